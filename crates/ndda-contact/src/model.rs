@@ -1,0 +1,119 @@
+//! The seam between solver and contact: what a contact model is given, what it returns, what it may remember.
+
+use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
+
+/// What a contact model sees of the blocks: positions and velocities, nothing of materials or integrators.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactInput<'a> {
+    /// Topology and block ranges.
+    pub blocks: &'a BlockSet,
+    /// Where contact is evaluated, x* per node [m].
+    pub position: &'a [Vec3],
+    /// Velocity v per node [m/s]; `dt_s · v` is the slip of this step.
+    pub velocity: &'a [Vec3],
+    /// Step Δt [s].
+    pub dt_s: f64,
+}
+
+/// Where a contact model adds its results; every slice has one entry per node.
+#[derive(Debug)]
+pub struct ContactOutput<'a> {
+    /// Total contact force [N], normal and friction; sums to zero over all blocks.
+    pub force: &'a mut [Vec3],
+    /// The part of `force` that friction does [N]; untouched by a model without friction.
+    pub friction_force: &'a mut [Vec3],
+    /// Row sum of the contact stiffness, Σⱼ |∂fᵢ/∂xⱼ| along the normal [N/m]; bounds ω_c = √(stiffness / mass).
+    pub stiffness: &'a mut [f64],
+}
+
+/// What one evaluation of contact found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactReport {
+    /// Pairs of a boundary triangle and a tetrahedron that were looked at.
+    pub candidate_pairs: usize,
+    /// Those of them that overlap.
+    pub contact_pairs: usize,
+    /// Potential energy of normal contact, W = k_n Σ ∫ (φ_c + φ_t) dV [J].
+    pub energy_j: f64,
+    /// Largest penetration depth over the height of the tetrahedron it is in (1/4 at the centroid).
+    pub max_penetration_ratio: f64,
+    /// The pair with that penetration.
+    pub deepest: Option<(TriangleId, TetId)>,
+    /// A tetrahedron whose centroid is inside another block: the potential no longer pushes out.
+    pub past_centroid: Option<(TriangleId, TetId)>,
+    /// Largest |force on contactor + force on target| / |force| over all pairs.
+    pub action_reaction_error: f64,
+}
+
+/// Why contact forces could not be computed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ContactError {
+    /// A target tetrahedron has no volume, so points in it have no barycentric coordinates.
+    #[error(
+        "tet {tet:?} of block {block:?} has collapsed (volume {volume_m3:e} m³): reduce step_s or the load"
+    )]
+    CollapsedTet {
+        /// The tetrahedron.
+        tet: TetId,
+        /// Its block.
+        block: BlockId,
+        /// Its volume [m³].
+        volume_m3: f64,
+    },
+    /// A force came out infinite or not a number.
+    #[error(
+        "the force between triangle {triangle:?} and tet {tet:?} is not finite: reduce step_s or the penalty"
+    )]
+    NotFinite {
+        /// The contactor's triangle.
+        triangle: TriangleId,
+        /// The target's tetrahedron.
+        tet: TetId,
+    },
+}
+
+/// Tangential memory of one contactor facet on one target body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FacetMemory {
+    /// The contactor's boundary triangle.
+    pub facet: TriangleId,
+    /// The body that it touches.
+    pub target: BlockId,
+    /// Shear force on the contactor in the facet's own basis (first edge, normal × first edge) [N].
+    /// The basis turns with the facet, so the force does too.
+    pub shear_n: [f64; 2],
+}
+
+/// What contact remembers from step to step; part of the state, so it is saved and rolled back with it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactHistory {
+    /// One entry per facet and target in contact, sorted by (facet, target).
+    pub facets: Vec<FacetMemory>,
+}
+
+/// A law of contact between blocks. `&mut self` is scratch only; memory that matters is in [`ContactHistory`].
+pub trait ContactModel: Send {
+    /// Adds the contact forces at `input.position` to `output` and advances `history` by one step.
+    ///
+    /// Forces sum to zero and exert no net torque.
+    ///
+    /// # Errors
+    /// [`ContactError`] when a force cannot be computed; `output` is then not to be used.
+    fn add_forces(
+        &mut self,
+        input: &ContactInput,
+        history: &mut ContactHistory,
+        output: &mut ContactOutput,
+    ) -> Result<ContactReport, ContactError>;
+
+    /// Potential energy of normal contact at `input.position` [J], without touching any history.
+    ///
+    /// # Errors
+    /// As [`add_forces`](Self::add_forces).
+    fn energy_j(&mut self, input: &ContactInput) -> Result<f64, ContactError>;
+
+    /// Whether `friction_force` is ever written; `false` lets the solver leave out its bookkeeping.
+    fn has_friction(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,398 @@
+//! The scene: everything a run needs, as a person writes it in RON. Every quantity is SI with its unit in the key.
+
+use serde::{Deserialize, Serialize};
+
+/// A complete scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// One line that says what the scene shows.
+    pub title: String,
+    /// Step, end and integrator.
+    pub time: Time,
+    /// Acceleration of gravity [m/s²]; applied suddenly at t = 0. Default: none.
+    #[serde(default)]
+    pub gravity_m_s2: [f64; 3],
+    /// Materials, referred to by name.
+    pub materials: Vec<Material>,
+    /// Blocks, in the order of the output.
+    pub blocks: Vec<Block>,
+    /// Where blocks are held or moved. Default: nowhere.
+    #[serde(default)]
+    pub supports: Vec<Support>,
+    /// Surface tractions. Default: none.
+    #[serde(default)]
+    pub tractions: Vec<Traction>,
+    /// Contact between blocks. Must be said when there is more than one block.
+    #[serde(default)]
+    pub contact: Option<Contact>,
+    /// Points whose motion is recorded. Default: none.
+    #[serde(default)]
+    pub monitors: Vec<Monitor>,
+    /// What is written and how often.
+    #[serde(default)]
+    pub output: Output,
+    /// The closed form that the result is compared with. Default: none.
+    #[serde(default)]
+    pub reference: Option<Reference>,
+}
+
+/// Time stepping.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Time {
+    /// Time step Δt [s].
+    pub step_s: f64,
+    /// End of the run [s]; rounded to a whole number of steps.
+    pub end_s: f64,
+    /// Time integrator. Default: `Midpoint(theta: 0.5)`.
+    #[serde(default)]
+    pub integrator: Integrator,
+}
+
+/// Choice of time integrator.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Integrator {
+    /// Second order; elasticity weighted by θ, contact at x + ½ Δt v.
+    Midpoint {
+        /// Weight θ of the end of the step, ½ (no damping) to 1. Default: 0.5.
+        #[serde(default = "half")]
+        theta: f64,
+    },
+    /// The paper's eqs (7)–(13); contact at the positions of the previous step.
+    Newmark {
+        /// The paper's α (β elsewhere). Default: 0.5.
+        #[serde(default = "half")]
+        alpha: f64,
+        /// The paper's δ (γ elsewhere). Default: 1.0.
+        #[serde(default = "one")]
+        delta: f64,
+    },
+}
+
+impl Default for Integrator {
+    fn default() -> Self {
+        Self::Midpoint { theta: half() }
+    }
+}
+
+/// Isotropic linear elastic rock.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Material {
+    /// Name that blocks refer to.
+    pub name: String,
+    /// Young's modulus E [Pa].
+    pub young_pa: f64,
+    /// Poisson's ratio ν [-].
+    pub poisson: f64,
+    /// Density ρ [kg/m³].
+    pub density_kg_m3: f64,
+}
+
+/// One block of rock.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Block {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Name of its material.
+    pub material: String,
+    /// Its shape and mesh.
+    pub shape: Shape,
+    /// Turns applied one after the other about the shape's own origin, before `at_m`. Default: none.
+    #[serde(default)]
+    pub turns: Vec<Turn>,
+    /// Where the shape's origin is placed [m]. Default: (0, 0, 0).
+    #[serde(default)]
+    pub at_m: [f64; 3],
+    /// Initial velocity of the mass centre [m/s]. Default: at rest.
+    #[serde(default)]
+    pub velocity_m_s: [f64; 3],
+    /// Initial rate of rotation about the mass centre [rad/s]. Default: none.
+    #[serde(default)]
+    pub spin_rad_s: [f64; 3],
+    /// Uniform initial stress σ₀ [Pa], tension positive. Default: none.
+    #[serde(default)]
+    pub initial_stress_pa: Option<Stress>,
+}
+
+/// A turn about an axis through the origin of the shape.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Turn {
+    /// Direction of the axis; its length does not matter.
+    pub axis: [f64; 3],
+    /// Angle, right-handed [°].
+    pub angle_deg: f64,
+}
+
+/// A symmetric stress [Pa], tension positive.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[allow(missing_docs)] // the components are their own names
+pub struct Stress {
+    #[serde(default)]
+    pub xx: f64,
+    #[serde(default)]
+    pub yy: f64,
+    #[serde(default)]
+    pub zz: f64,
+    #[serde(default)]
+    pub xy: f64,
+    #[serde(default)]
+    pub yz: f64,
+    #[serde(default)]
+    pub zx: f64,
+}
+
+/// Shape and mesh of a block.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Shape {
+    /// A box with one corner at the origin.
+    Box {
+        /// Edge lengths [m].
+        size_m: [f64; 3],
+        /// Cells along each edge.
+        cells: [u32; 3],
+        /// How a cell is cut into tetrahedra. Default: `Six`.
+        #[serde(default)]
+        pattern: Pattern,
+    },
+    /// A triangle in the x-y plane extruded along z.
+    Prism {
+        /// Corners of the triangle, counter-clockwise [m].
+        outline_m: [[f64; 2]; 3],
+        /// Length of the extrusion [m].
+        height_m: f64,
+        /// Cells along each edge of the triangle, and along the height.
+        cells: [u32; 2],
+    },
+    /// A tetrahedral mesh in a Gmsh file (`.msh` 2.2 or 4.1).
+    Mesh {
+        /// Path, relative to the scene file.
+        file: String,
+        /// Physical volume that is this block; may be left out when the file holds one body. Default: none.
+        #[serde(default)]
+        body: Option<String>,
+        /// Metres per unit of the file. Default: 1.
+        #[serde(default = "one")]
+        unit_m: f64,
+    },
+}
+
+/// How a box cell is cut into tetrahedra.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Pattern {
+    /// Six tetrahedra around one diagonal: fewest elements.
+    #[default]
+    Six,
+    /// Twenty-four around the centre: as symmetric as the cell.
+    TwentyFour,
+}
+
+/// Part of a block.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Region {
+    /// All nodes of the block.
+    All,
+    /// The boundary nodes on a plane, to within 1e-6 of the block's size.
+    Plane {
+        /// A point on the plane [m].
+        point_m: [f64; 3],
+        /// Its normal; its length does not matter.
+        normal: [f64; 3],
+    },
+    /// A named node set of the mesh.
+    Set(String),
+}
+
+/// A part of a block that is held or moved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Support {
+    /// Name of the block.
+    pub block: String,
+    /// Which part of it.
+    pub on: Region,
+    /// What is held.
+    pub hold: Hold,
+    /// How it is imposed. Default: `Elimination`.
+    #[serde(default)]
+    pub by: By,
+}
+
+/// What a support holds.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Hold {
+    /// All three components.
+    Fixed,
+    /// The component along the normal of the region's plane.
+    Normal,
+    /// The component along a direction.
+    Direction([f64; 3]),
+    /// All three components follow a displacement, linear between rows and constant after the last.
+    Motion(Vec<MotionRow>),
+}
+
+/// One row of a prescribed motion.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MotionRow {
+    /// Time [s].
+    pub time_s: f64,
+    /// Displacement since the start [m].
+    pub displacement_m: [f64; 3],
+}
+
+/// How a support is imposed.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum By {
+    /// The unknowns are taken out of the equations.
+    #[default]
+    Elimination,
+    /// A spring per node, as in the paper's §4.1.
+    Springs {
+        /// Stiffness per node [N/m]. Default: 1e6 · E · 1 m.
+        #[serde(default)]
+        stiffness_n_m: Option<f64>,
+    },
+}
+
+/// A traction on part of a block's surface, constant in time and direction, per area at rest.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Traction {
+    /// Name of the block.
+    pub block: String,
+    /// Which part of its surface: triangles whose three nodes are all in the region.
+    pub on: Region,
+    /// Traction [Pa].
+    pub traction_pa: [f64; 3],
+}
+
+/// Contact between blocks.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Contact {
+    /// Blocks do not feel each other.
+    Off,
+    /// The contact potential of the paper.
+    Potential {
+        /// Normal penalty k_n [Pa].
+        penalty_pa: f64,
+        /// Friction. Default: none.
+        #[serde(default)]
+        friction: Option<Friction>,
+    },
+}
+
+/// Coulomb friction with a shear spring, eqs (17)–(19).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Friction {
+    /// Friction angle φ [°]; μ = tan φ.
+    pub friction_deg: f64,
+    /// Shear penalty k_s [Pa/m]; the paper's "0.1 E" is 0.1 · E / 1 m.
+    pub shear_penalty_pa_m: f64,
+}
+
+/// A point whose motion is recorded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Monitor {
+    /// Name, unique in the scene.
+    pub name: String,
+    /// Name of the block.
+    pub block: String,
+    /// Where on the block. Default: `Centre`.
+    #[serde(default)]
+    pub at: At,
+}
+
+/// A place on a block.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum At {
+    /// The mass centre.
+    #[default]
+    Centre,
+    /// The material point that is here at the start [m].
+    Point([f64; 3]),
+}
+
+/// What is written and how often.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Output {
+    /// Frames of fields after the first; 0 writes none. Default: 20.
+    pub frames: u32,
+    /// Rows of `history.csv` after the first, at most one per step. Default: 1000.
+    pub history_rows: u32,
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self { frames: 20, history_rows: 1000 }
+    }
+}
+
+/// A closed form that the run is compared with.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Reference {
+    /// Rigid block on a ramp, the paper's eq (20): S = ½ (sin α − tan φ cos α) g t².
+    SlidingBlock {
+        /// Monitor on the block.
+        monitor: String,
+        /// Direction down the slope; its length does not matter.
+        downhill: [f64; 3],
+        /// Slope angle α [°].
+        slope_deg: f64,
+        /// Friction angle φ [°]. Default: 0.
+        #[serde(default)]
+        friction_deg: f64,
+        /// Thickness of the block normal to the slope [m]; adds the closed form of the shear spring's stick
+        /// stage to the report. Default: none.
+        #[serde(default)]
+        thickness_m: Option<f64>,
+        /// `error_max` is taken from here on [s].
+        after_s: f64,
+    },
+    /// Two blocks that meet once, centrally and elastically: final velocities from momentum and energy.
+    Collision {
+        /// The block that moves at the start.
+        first: String,
+        /// The block that it hits.
+        second: String,
+        /// Line of motion; its length does not matter.
+        along: [f64; 3],
+        /// `error_max` is taken from here on, after the blocks have parted [s].
+        after_s: f64,
+    },
+    /// Free flight of a point under gravity: x = x₀ + v₀ t + ½ g t².
+    FreeFall {
+        /// Monitor on the block.
+        monitor: String,
+        /// `error_max` is taken from here on [s].
+        after_s: f64,
+    },
+    /// Torque-free rotation: the angular momentum of the block stays what it was.
+    FreeSpin {
+        /// The block.
+        block: String,
+    },
+}
+
+fn half() -> f64 {
+    0.5
+}
+
+fn one() -> f64 {
+    1.0
+}

@@ -1,0 +1,193 @@
+//! All blocks of a scene: constant topology and rest shape, as structs of arrays.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use crate::geometry::Aabb;
+use crate::surface::boundary_faces;
+use crate::{BlockId, BlockMesh, MeshError, NodeId, TetId, TriangleId, Vec3, validate};
+
+/// All blocks of a scene. Blocks share nothing; each owns a contiguous range of every array.
+#[derive(Clone, Debug)]
+pub struct BlockSet {
+    /// Name of each block.
+    pub names: Vec<String>,
+    /// Rest position per node [m], relative to [`origin_m`](Self::origin_m).
+    pub rest_position: Vec<Vec3>,
+    /// Node indices per tetrahedron, positive volume.
+    pub tets: Vec<[NodeId; 4]>,
+    /// Node indices per boundary triangle, counter-clockwise seen from outside.
+    pub triangles: Vec<[NodeId; 3]>,
+    /// The tetrahedron behind each boundary triangle.
+    pub triangle_tet: Vec<TetId>,
+    /// The block of each tetrahedron.
+    pub tet_block: Vec<BlockId>,
+    /// The block of each boundary triangle.
+    pub triangle_block: Vec<BlockId>,
+    /// Named node sets of each block.
+    pub node_sets: Vec<BTreeMap<String, Vec<NodeId>>>,
+    /// What was subtracted from every coordinate so that map coordinates keep their digits [m].
+    pub origin_m: Vec3,
+    node_start: Vec<u32>,
+    tet_start: Vec<u32>,
+    triangle_start: Vec<u32>,
+}
+
+impl BlockSet {
+    /// Joins blocks into one set after checking each of them.
+    ///
+    /// Scenes far from the origin are shifted by [`origin_m`](Self::origin_m), a multiple of a power of two
+    /// at least as large as the scene, so that the shift itself rounds nothing that the input had.
+    ///
+    /// # Errors
+    /// All that [`validate::problems`] finds, with the name of the block.
+    pub fn new(blocks: Vec<(String, BlockMesh)>) -> Result<Self, MeshError> {
+        let mut problems = Vec::new();
+        for (name, mesh) in &blocks {
+            problems.extend(validate::problems(mesh).into_iter().map(|p| (name.clone(), p)));
+        }
+        if !problems.is_empty() {
+            return Err(MeshError { problems });
+        }
+        let origin_m = scene_origin(&blocks);
+        let mut set = Self {
+            names: Vec::new(),
+            rest_position: Vec::new(),
+            tets: Vec::new(),
+            triangles: Vec::new(),
+            triangle_tet: Vec::new(),
+            tet_block: Vec::new(),
+            triangle_block: Vec::new(),
+            node_sets: Vec::new(),
+            origin_m,
+            node_start: vec![0],
+            tet_start: vec![0],
+            triangle_start: vec![0],
+        };
+        for (name, mesh) in blocks {
+            set.push(name, &mesh);
+        }
+        Ok(set)
+    }
+
+    fn push(&mut self, name: String, mesh: &BlockMesh) {
+        let block = BlockId(self.names.len() as u32);
+        let first_node = self.rest_position.len() as u32;
+        let first_tet = self.tets.len() as u32;
+        let global = |node: u32| NodeId(first_node + node);
+        self.names.push(name);
+        self.rest_position.extend(mesh.nodes.iter().map(|x| x - self.origin_m));
+        self.tets.extend(mesh.tets.iter().map(|tet| tet.map(global)));
+        self.tet_block.resize(self.tets.len(), block);
+        for face in boundary_faces(&mesh.tets) {
+            self.triangles.push(face.nodes.map(global));
+            self.triangle_tet.push(TetId(first_tet + face.tet));
+            self.triangle_block.push(block);
+        }
+        let sets = &mesh.node_sets;
+        self.node_sets
+            .push(sets.iter().map(|(k, v)| (k.clone(), v.iter().map(|&n| global(n)).collect())).collect());
+        self.node_start.push(self.rest_position.len() as u32);
+        self.tet_start.push(self.tets.len() as u32);
+        self.triangle_start.push(self.triangles.len() as u32);
+    }
+
+    /// Number of blocks.
+    pub fn len(&self) -> usize {
+        self.names.len()
+    }
+
+    /// Whether the set holds no block.
+    pub fn is_empty(&self) -> bool {
+        self.names.is_empty()
+    }
+
+    /// All block ids in order.
+    pub fn ids(&self) -> impl Iterator<Item = BlockId> + use<> {
+        (0..self.len() as u32).map(BlockId)
+    }
+
+    /// The block of that name.
+    pub fn find(&self, name: &str) -> Option<BlockId> {
+        self.names.iter().position(|n| n == name).map(|i| BlockId(i as u32))
+    }
+
+    /// Range of a block's nodes in per-node arrays.
+    pub fn nodes_of(&self, block: BlockId) -> Range<usize> {
+        range(&self.node_start, block)
+    }
+
+    /// Range of a block's tetrahedra in per-tetrahedron arrays.
+    pub fn tets_of(&self, block: BlockId) -> Range<usize> {
+        range(&self.tet_start, block)
+    }
+
+    /// Range of a block's boundary triangles in per-triangle arrays.
+    pub fn triangles_of(&self, block: BlockId) -> Range<usize> {
+        range(&self.triangle_start, block)
+    }
+
+    /// First node of each block, and the node count at the end (`len() + 1` entries).
+    pub fn node_starts(&self) -> &[u32] {
+        &self.node_start
+    }
+
+    /// The tetrahedra of a block with indices that count from the block's first node.
+    pub fn local_tets(&self, block: BlockId) -> impl Iterator<Item = [u32; 4]> + '_ {
+        let first = self.node_start[block.index()];
+        self.tets[self.tets_of(block)].iter().map(move |tet| tet.map(|n| n.0 - first))
+    }
+
+    /// Corner positions of a tetrahedron [m], `position` being per node.
+    pub fn tet_corners(&self, tet: TetId, position: &[Vec3]) -> [Vec3; 4] {
+        self.tets[tet.index()].map(|n| position[n.index()])
+    }
+
+    /// Corner positions of a boundary triangle [m], `position` being per node.
+    pub fn triangle_corners(&self, triangle: TriangleId, position: &[Vec3]) -> [Vec3; 3] {
+        self.triangles[triangle.index()].map(|n| position[n.index()])
+    }
+}
+
+fn range(starts: &[u32], block: BlockId) -> Range<usize> {
+    starts[block.index()] as usize..starts[block.index() + 1] as usize
+}
+
+/// Centre of the scene rounded to multiples of a power of two no smaller than the scene; zero near the origin.
+fn scene_origin(blocks: &[(String, BlockMesh)]) -> Vec3 {
+    let bounds = Aabb::around(blocks.iter().flat_map(|(_, mesh)| &mesh.nodes));
+    let size = bounds.diagonal();
+    if size == 0.0 {
+        return Vec3::zeros();
+    }
+    let quantum = size.log2().ceil().exp2();
+    bounds.center().map(|c| (c / quantum).round() * quantum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corner_tet(at: f64) -> BlockMesh {
+        let corners = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)];
+        let nodes = corners.map(|(x, y, z)| Vec3::new(at + x, y, z)).to_vec();
+        BlockMesh { nodes, tets: vec![[0, 1, 2, 3]], ..BlockMesh::default() }
+    }
+
+    #[test]
+    fn blocks_own_contiguous_ranges() {
+        let set = BlockSet::new(vec![("a".into(), corner_tet(0.0)), ("b".into(), corner_tet(2.0))]).unwrap();
+        assert_eq!(set.nodes_of(BlockId(1)), 4..8);
+        assert_eq!(set.triangles_of(BlockId(1)), 4..8);
+        assert_eq!(set.tets[1][0], NodeId(4));
+        assert_eq!(set.origin_m, Vec3::zeros());
+        assert_eq!(set.find("b"), Some(BlockId(1)));
+    }
+
+    #[test]
+    fn a_scene_in_map_coordinates_is_moved_near_the_origin_exactly() {
+        let set = BlockSet::new(vec![("a".into(), corner_tet(4.5e6))]).unwrap();
+        assert!((set.origin_m.x - 4.5e6).abs() <= 2.0);
+        assert_eq!(set.rest_position[1] - set.rest_position[0], Vec3::x());
+    }
+}

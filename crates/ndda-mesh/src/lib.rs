@@ -1,0 +1,23 @@
+//! Blocks of rock as tetrahedra.
+//!
+//! A [`BlockMesh`] is one block on its own: what a generator makes and an importer reads.
+//! A [`BlockSet`] is all blocks of a scene in structs of arrays, with constant topology: each block owns a
+//! contiguous range of nodes, tetrahedra and outward boundary triangles.
+
+pub mod block_mesh;
+pub mod block_set;
+pub mod generate;
+pub mod geometry;
+pub mod ids;
+pub mod surface;
+pub mod validate;
+
+pub use block_mesh::BlockMesh;
+pub use block_set::BlockSet;
+pub use ids::{BlockId, NodeId, TetId, TriangleId};
+pub use validate::{MeshError, MeshProblem};
+
+/// A vector or point in space; positions are in metres unless a name says otherwise.
+pub type Vec3 = nalgebra::Vector3<f64>;
+/// A 3 × 3 matrix: rotation, deformation gradient, inertia.
+pub type Mat3 = nalgebra::Matrix3<f64>;
