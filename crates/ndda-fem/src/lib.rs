@@ -1,1 +1,21 @@
-//! x
+//! Finite elements inside a block.
+//!
+//! A block is linear elastic in its own frame: small strains, one rotation R. [`BlockOperator`] holds K and M in
+//! the rest frame, [`frame`] finds R, [`loads`] and [`supports`] say what acts on the nodes, [`stress`] recovers
+//! stresses for output. Nothing here knows of contact or of time.
+
+pub mod block_operator;
+pub mod frame;
+pub mod linear_elastic;
+pub mod loads;
+pub mod material;
+pub mod stress;
+pub mod supports;
+pub mod testing;
+pub mod tet4;
+
+pub use block_operator::BlockOperator;
+pub use frame::{Frame, FrameError};
+pub use linear_elastic::{LinearElastic, MaterialError};
+pub use material::{Material, Voigt};
+pub use supports::{BlockSupports, Hold, Motion, NodeSupport, SupportError};

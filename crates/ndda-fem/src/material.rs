@@ -1,0 +1,35 @@
+//! What a material law must say.
+
+use nalgebra::{Matrix6, Vector6};
+
+/// Strain or stress as (xx, yy, zz, xy, yz, zx); shear strains are engineering strains, γ = 2 ε.
+pub type Voigt = Vector6<f64>;
+
+/// A hyperelastic law for small strains in the block's frame.
+///
+/// Contract (checked by [`check_material`](crate::testing::check_material)): stress is the derivative of the
+/// energy density, moduli are the derivative of the stress, symmetric and positive definite.
+pub trait Material: Send + Sync {
+    /// Density ρ [kg/m³].
+    fn density_kg_m3(&self) -> f64;
+
+    /// Tangent moduli D, σ = D ε [Pa].
+    fn moduli(&self) -> Matrix6<f64>;
+
+    /// Stress at a strain [Pa].
+    fn stress(&self, strain: &Voigt) -> Voigt {
+        self.moduli() * strain
+    }
+
+    /// Elastic energy per volume at a strain [J/m³].
+    fn energy_density(&self, strain: &Voigt) -> f64 {
+        0.5 * strain.dot(&self.stress(strain))
+    }
+
+    /// Fastest wave, c = √(max Dᵢᵢ / ρ) over the normal components [m/s].
+    fn wave_speed_m_s(&self) -> f64 {
+        let moduli = self.moduli();
+        let stiffest = (0..3).map(|i| moduli[(i, i)]).fold(0.0, f64::max);
+        (stiffest / self.density_kg_m3()).sqrt()
+    }
+}

@@ -1,0 +1,76 @@
+//! Stress and volume change of elements, recovered only when somebody asks.
+
+use ndda_mesh::geometry::tet_volume;
+use ndda_mesh::{Mat3, Vec3};
+
+use crate::block_operator::BlockOperator;
+use crate::material::{Material, Voigt};
+use crate::tet4::Tet4;
+
+/// Cauchy stress per element in global axes, σ = R (D ε + σ₀) Rᵀ as (xx, yy, zz, xy, yz, zx) [Pa].
+///
+/// `displacement` is w = Rᵀ (x − c) − X per node, in the block's frame [m].
+pub fn cauchy_stress(
+    operator: &BlockOperator,
+    material: &dyn Material,
+    initial_pa: Option<&Voigt>,
+    rotation: &Mat3,
+    displacement: &[Vec3],
+    out: &mut [[f64; 6]],
+) {
+    for (tet, out) in operator.tets.iter().zip(out) {
+        let element = Tet4::new(&tet.map(|n| operator.rest[n as usize]));
+        let mut stress = material.stress(&element.strain(&tet.map(|n| displacement[n as usize])));
+        if let Some(initial) = initial_pa {
+            stress += initial;
+        }
+        *out = rotated(&stress, rotation);
+    }
+}
+
+/// R σ Rᵀ in Voigt order.
+fn rotated(stress: &Voigt, rotation: &Mat3) -> [f64; 6] {
+    let [xx, yy, zz, xy, yz, zx] = *stress.as_ref();
+    let turned = rotation * Mat3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz) * rotation.transpose();
+    [turned[(0, 0)], turned[(1, 1)], turned[(2, 2)], turned[(0, 1)], turned[(1, 2)], turned[(2, 0)]]
+}
+
+/// Smallest det F over the elements, and the element that has it.
+pub fn smallest_volume_ratio(operator: &BlockOperator, position: &[Vec3]) -> (f64, usize) {
+    let ratio = |tet: &[u32; 4]| {
+        let rest = tet_volume(&tet.map(|n| operator.rest[n as usize]));
+        tet_volume(&tet.map(|n| position[n as usize])) / rest
+    };
+    let smaller = |best: (f64, usize), next: (f64, usize)| if next.0 < best.0 { next } else { best };
+    let ratios = operator.tets.iter().enumerate().map(|(i, tet)| (ratio(tet), i));
+    ratios.fold((f64::INFINITY, 0), smaller)
+}
+
+/// Volume of the block at these positions [m³].
+pub fn volume_m3(operator: &BlockOperator, position: &[Vec3]) -> f64 {
+    let center = operator.center(position);
+    operator.tets.iter().map(|tet| tet_volume(&tet.map(|n| position[n as usize] - center))).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear_elastic::LinearElastic;
+
+    #[test]
+    fn stress_turns_with_the_block_and_volume_ratio_sees_compression() {
+        let nodes = [Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
+        let rock = LinearElastic::new(1e9, 0.0, 2e3).unwrap();
+        let operator = BlockOperator::new(&nodes, vec![[0, 1, 2, 3]], &rock);
+        let w: Vec<Vec3> = operator.rest.iter().map(|x| Vec3::new(1e-3 * x.x, 0.0, 0.0)).collect();
+        let quarter = Mat3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+        let mut stress = [[0.0; 6]];
+        let initial = Voigt::new(0.0, 0.0, 5.0, 0.0, 0.0, 0.0);
+        cauchy_stress(&operator, &rock, Some(&initial), &quarter, &w, &mut stress);
+        assert!((stress[0][1] - 1e6).abs() < 1e-6 && stress[0][0].abs() < 1e-6 && stress[0][2] == 5.0);
+
+        let half: Vec<Vec3> = nodes.iter().map(|x| Vec3::new(x.x, 0.5 * x.y, x.z)).collect();
+        assert_eq!(smallest_volume_ratio(&operator, &half), (0.5, 0));
+        assert!((volume_m3(&operator, &half) - 1.0 / 12.0).abs() < 1e-16);
+    }
+}

@@ -1,0 +1,345 @@
+//! Where a block is held or moved, and what of its motion is left.
+
+use nalgebra::{Matrix6, SymmetricEigen, Vector6};
+use ndda_mesh::{Mat3, Vec3};
+
+use crate::block_operator::BlockOperator;
+use crate::frame::Frame;
+
+/// Two directions closer than this (sine of the angle) are the same; far above round-off, far below any joint.
+const SAME_DIRECTION: f64 = 1e-6;
+
+/// What a support does to its nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Hold {
+    /// No motion.
+    Fixed,
+    /// No motion along a direction (a roller).
+    Along(Vec3),
+    /// A prescribed displacement.
+    Motion(Motion),
+}
+
+/// A displacement over time, linear between rows, constant before the first and after the last.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// Time [s], ascending, and displacement [m].
+    pub rows: Vec<(f64, Vec3)>,
+}
+
+impl Motion {
+    /// Displacement at a time [m].
+    pub fn displacement(&self, time_s: f64) -> Vec3 {
+        let after = self.rows.partition_point(|row| row.0 <= time_s);
+        if after == 0 {
+            return self.rows.first().map_or(Vec3::zeros(), |row| row.1);
+        }
+        let (t0, d0) = self.rows[after - 1];
+        match self.rows.get(after) {
+            Some(&(t1, d1)) => d0 + (d1 - d0) * ((time_s - t0) / (t1 - t0)),
+            None => d0,
+        }
+    }
+}
+
+/// One support of a block as asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NodeSupport {
+    /// Nodes of the block, counted from its first.
+    pub nodes: Vec<u32>,
+    /// What is held.
+    pub hold: Hold,
+    /// Stiffness per node of the springs that impose it [N/m]; `None` eliminates the unknowns.
+    pub spring_n_m: Option<f64>,
+}
+
+/// Why supports are refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SupportError {
+    /// Rollers that would have to turn with the block.
+    #[error(
+        "the supports let the block turn about {freedom} ax(es) in a way that turns the held directions with it: \
+         hold it at more nodes, or fix the nodes fully"
+    )]
+    TurnsHeldDirections {
+        /// How many independent rotations the supports leave.
+        freedom: usize,
+    },
+    /// Two supports want different things of one node.
+    #[error(
+        "node {node} is moved by one support and held or moved otherwise by another: leave it out of one"
+    )]
+    Conflict {
+        /// The node, counted from the block's first.
+        node: u32,
+    },
+}
+
+/// A node whose motion is partly or fully given.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HeldNode {
+    /// The node, counted from the block's first.
+    pub node: u32,
+    /// Orthonormal directions that are held.
+    pub held: Vec<Vec3>,
+    /// Orthonormal directions that stay free.
+    pub free: Vec<Vec3>,
+    /// Index into [`BlockSupports::motions`] when the held displacement is prescribed.
+    pub motion: Option<usize>,
+}
+
+/// A spring that pulls a node back to its rest place or along a prescribed motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spring {
+    /// The node, counted from the block's first.
+    pub node: u32,
+    /// Direction; `None` acts in all three.
+    pub along: Option<Vec3>,
+    /// Stiffness [N/m].
+    pub stiffness_n_m: f64,
+    /// Index into [`BlockSupports::motions`].
+    pub motion: Option<usize>,
+}
+
+/// All supports of one block.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BlockSupports {
+    /// Nodes with eliminated unknowns, ascending.
+    pub held: Vec<HeldNode>,
+    /// Springs, in the order asked for.
+    pub springs: Vec<Spring>,
+    /// Prescribed motions.
+    pub motions: Vec<Motion>,
+    /// How the block's frame may turn under these supports.
+    pub frame: Frame,
+}
+
+impl BlockSupports {
+    /// Merges the supports of one block and finds how its frame may turn.
+    ///
+    /// # Errors
+    /// [`SupportError::Conflict`] for contradictory prescriptions, [`SupportError::TurnsHeldDirections`] when a
+    /// roller direction would not stay constant in the block's frame.
+    pub fn new(operator: &BlockOperator, supports: &[NodeSupport]) -> Result<Self, SupportError> {
+        let mut merged =
+            Self { held: Vec::new(), springs: Vec::new(), motions: Vec::new(), frame: Frame::Held };
+        let mut held: Vec<Option<HeldNode>> = vec![None; operator.nodes()];
+        for support in supports {
+            let motion = match &support.hold {
+                Hold::Motion(motion) => {
+                    merged.motions.push(motion.clone());
+                    Some(merged.motions.len() - 1)
+                }
+                _ => None,
+            };
+            for &node in &support.nodes {
+                match support.spring_n_m {
+                    Some(stiffness_n_m) => {
+                        let along = direction(&support.hold);
+                        merged.springs.push(Spring { node, along, stiffness_n_m, motion });
+                    }
+                    None => merged.hold_node(&mut held[node as usize], node, &support.hold, motion)?,
+                }
+            }
+        }
+        merged.held = held.into_iter().flatten().collect();
+        for node in &mut merged.held {
+            node.free = complement(&node.held);
+        }
+        merged.frame = merged.choose_frame(operator)?;
+        Ok(merged)
+    }
+
+    fn hold_node(
+        &self,
+        slot: &mut Option<HeldNode>,
+        node: u32,
+        hold: &Hold,
+        motion: Option<usize>,
+    ) -> Result<(), SupportError> {
+        let entry = slot.get_or_insert(HeldNode { node, held: Vec::new(), free: Vec::new(), motion: None });
+        let moves = |index: Option<usize>, along: Option<&Vec3>| {
+            index.is_some_and(|i| {
+                self.motions[i]
+                    .rows
+                    .iter()
+                    .any(|row| along.map_or(row.1.norm(), |n| row.1.dot(n).abs()) > 0.0)
+            })
+        };
+        let along = direction(hold);
+        if !entry.held.is_empty() {
+            let same = entry.motion.map(|i| &self.motions[i]) == motion.map(|i| &self.motions[i]);
+            let old_moves_against = moves(entry.motion, along.as_ref());
+            let new_moves_against = motion.is_some() && moves(motion, None);
+            if !same && (old_moves_against || new_moves_against) {
+                return Err(SupportError::Conflict { node });
+            }
+        }
+        entry.motion = entry.motion.or(motion);
+        match along {
+            Some(n) => add_direction(&mut entry.held, &n),
+            None => entry.held = vec![Vec3::x(), Vec3::y(), Vec3::z()],
+        }
+        Ok(())
+    }
+
+    /// The frame is free where only whole nodes are held, held where no rotation is left, and turns about one
+    /// axis where that axis leaves all held directions alone.
+    fn choose_frame(&self, operator: &BlockOperator) -> Result<Frame, SupportError> {
+        let holds = self.all_holds();
+        if holds.is_empty() {
+            return Ok(Frame::free(operator));
+        }
+        let rotations = free_rotations(operator, &holds);
+        if rotations.is_empty() {
+            return Ok(Frame::Held);
+        }
+        if holds.iter().all(|(_, held)| held.len() == 3) {
+            return Ok(Frame::free(operator));
+        }
+        match rotations.as_slice() {
+            [axis] if holds.iter().all(|(_, held)| invariant_about(axis, held)) => {
+                Ok(Frame::About { axis: *axis })
+            }
+            _ => Err(SupportError::TurnsHeldDirections { freedom: rotations.len() }),
+        }
+    }
+
+    /// Held directions per support, eliminated and sprung alike.
+    fn all_holds(&self) -> Vec<(u32, Vec<Vec3>)> {
+        let all = || vec![Vec3::x(), Vec3::y(), Vec3::z()];
+        let eliminated = self.held.iter().map(|h| (h.node, h.held.clone()));
+        let sprung = self.springs.iter().map(|s| (s.node, s.along.map_or_else(all, |n| vec![n])));
+        eliminated.chain(sprung).collect()
+    }
+}
+
+fn direction(hold: &Hold) -> Option<Vec3> {
+    match hold {
+        Hold::Along(n) => Some(n.normalize()),
+        Hold::Fixed | Hold::Motion(_) => None,
+    }
+}
+
+/// Adds the part of `n` that is new, by Gram–Schmidt.
+fn add_direction(held: &mut Vec<Vec3>, n: &Vec3) {
+    let new = held.iter().fold(*n, |rest, h| rest - h * h.dot(&rest));
+    if new.norm() > SAME_DIRECTION {
+        held.push(new.normalize());
+    }
+}
+
+/// Orthonormal directions that complete `held` to a basis of space.
+fn complement(held: &[Vec3]) -> Vec<Vec3> {
+    let mut basis = held.to_vec();
+    while basis.len() < 3 {
+        let rest = |e: &Vec3| basis.iter().fold(*e, |rest, h| rest - h * h.dot(&rest));
+        let candidates = [Vec3::x(), Vec3::y(), Vec3::z()].map(|e| rest(&e));
+        let longest = candidates.iter().fold(candidates[0], |a, b| if b.norm() > a.norm() { *b } else { a });
+        basis.push(longest.normalize());
+    }
+    basis.split_off(held.len())
+}
+
+/// Axes of the rotations (with any translation) that move no node along its held directions.
+fn free_rotations(operator: &BlockOperator, holds: &[(u32, Vec<Vec3>)]) -> Vec<Vec3> {
+    let size = operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
+    let mut normal_matrix = Matrix6::zeros();
+    for (node, held) in holds {
+        let arm = operator.rest[*node as usize] / size;
+        for n in held {
+            let turn = arm.cross(n);
+            let row = Vector6::new(n.x, n.y, n.z, turn.x, turn.y, turn.z);
+            normal_matrix += row * row.transpose();
+        }
+    }
+    let eigen = SymmetricEigen::new(normal_matrix);
+    let negligible = SAME_DIRECTION * SAME_DIRECTION;
+    let largest = eigen.eigenvalues.amax();
+    // Null vectors mix translations and rotations: take the directions that their rotations span.
+    let mut spanned = Mat3::zeros();
+    for (i, &value) in eigen.eigenvalues.iter().enumerate() {
+        if value <= negligible * largest {
+            let axis = eigen.eigenvectors.fixed_view::<3, 1>(3, i);
+            spanned += axis * axis.transpose();
+        }
+    }
+    let turns = SymmetricEigen::new(spanned);
+    let kept = (0..3).filter(|&i| turns.eigenvalues[i] > negligible);
+    kept.map(|i| turns.eigenvectors.column(i).into_owned()).collect()
+}
+
+/// Whether turning about `axis` maps the span of `held` onto itself.
+fn invariant_about(axis: &Vec3, held: &[Vec3]) -> bool {
+    let along = |n: &Vec3| n.cross(axis).norm() <= SAME_DIRECTION;
+    let across = |n: &Vec3| n.dot(axis).abs() <= SAME_DIRECTION;
+    match held {
+        [n] => along(n),
+        [a, b] => across(a) && across(b),
+        _ => true,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linear_elastic::LinearElastic;
+
+    fn corner() -> BlockOperator {
+        let nodes = [Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
+        BlockOperator::new(&nodes, vec![[0, 1, 2, 3]], &LinearElastic::new(1e9, 0.2, 6e3).unwrap())
+    }
+
+    fn along(nodes: &[u32], n: Vec3) -> NodeSupport {
+        NodeSupport { nodes: nodes.to_vec(), hold: Hold::Along(n), spring_n_m: None }
+    }
+
+    #[test]
+    fn a_block_without_supports_turns_freely() {
+        let supports = BlockSupports::new(&corner(), &[]).unwrap();
+        assert!(matches!(supports.frame, Frame::Free { .. }));
+    }
+
+    #[test]
+    fn a_block_on_one_roller_plane_turns_about_its_normal() {
+        let supports = BlockSupports::new(&corner(), &[along(&[0, 1, 2], Vec3::z())]).unwrap();
+        let Frame::About { axis } = supports.frame else { panic!("{:?}", supports.frame) };
+        assert!(axis.cross(&Vec3::z()).norm() < 1e-12);
+    }
+
+    #[test]
+    fn three_roller_planes_hold_the_frame_and_merge_at_the_corner() {
+        let planes =
+            [along(&[0, 1, 2], Vec3::z()), along(&[0, 1, 3], Vec3::y()), along(&[0, 2, 3], -Vec3::x())];
+        let supports = BlockSupports::new(&corner(), &planes).unwrap();
+        assert_eq!(supports.frame, Frame::Held);
+        assert_eq!(supports.held[0].held.len(), 3);
+        assert_eq!(supports.held[1].free, vec![Vec3::x()]);
+    }
+
+    #[test]
+    fn a_fixed_corner_leaves_a_pendulum_and_a_single_roller_is_refused() {
+        let fixed = NodeSupport { nodes: vec![0], hold: Hold::Fixed, spring_n_m: None };
+        let supports = BlockSupports::new(&corner(), &[fixed]).unwrap();
+        assert!(matches!(supports.frame, Frame::Free { .. }));
+        let refused = BlockSupports::new(&corner(), &[along(&[0], Vec3::z())]);
+        assert!(matches!(refused, Err(SupportError::TurnsHeldDirections { .. })));
+    }
+
+    #[test]
+    fn a_motion_against_a_roller_is_a_conflict() {
+        let motion = Motion { rows: vec![(0.0, Vec3::zeros()), (1.0, Vec3::z())] };
+        let moved = NodeSupport { nodes: vec![0, 1, 2], hold: Hold::Motion(motion), spring_n_m: None };
+        let clash = BlockSupports::new(&corner(), &[moved.clone(), along(&[0], Vec3::z())]);
+        assert_eq!(clash, Err(SupportError::Conflict { node: 0 }));
+        assert!(BlockSupports::new(&corner(), &[moved, along(&[0], Vec3::x())]).is_ok());
+    }
+
+    #[test]
+    fn a_motion_is_linear_between_rows_and_constant_outside() {
+        let motion = Motion { rows: vec![(1.0, Vec3::zeros()), (3.0, Vec3::x())] };
+        assert_eq!(motion.displacement(0.0), Vec3::zeros());
+        assert_eq!(motion.displacement(2.0), 0.5 * Vec3::x());
+        assert_eq!(motion.displacement(9.0), Vec3::x());
+    }
+}
