@@ -1,1 +1,32 @@
-//! x
+//! The time step.
+//!
+//! [`Simulation`] holds the constant problem and the changing [`State`]; [`Simulation::step`] reads like the paper's
+//! page. Contact is known only through [`ContactModel`](ndda_contact::ContactModel), time through
+//! [`TimeIntegrator`], linear algebra through [`LinearSolver`].
+
+pub mod block_step;
+pub mod for_each_block;
+pub mod ledger;
+pub mod linear_solver;
+pub mod midpoint;
+pub mod newmark;
+pub mod shape;
+pub mod simulation;
+pub mod sink;
+pub mod sparse_cholesky;
+pub mod state;
+pub mod testing;
+pub mod time_integrator;
+pub mod unknowns;
+
+pub use block_step::BlockError;
+pub use ledger::{Invariants, Sample};
+pub use linear_solver::{Factor, FactorError, LinearSolver, SymmetricMatrix};
+pub use midpoint::Midpoint;
+pub use newmark::Newmark;
+pub use shape::{BodySetup, SetupError};
+pub use simulation::{Setup, Simulation, StageTimes, StepError, StepReport};
+pub use sink::{RunError, Sink, SinkError, View, run};
+pub use sparse_cholesky::SparseCholesky;
+pub use state::State;
+pub use time_integrator::{StepWeights, TimeIntegrator};

@@ -1,0 +1,211 @@
+//! The books of a run: energy, momentum, and the worst of everything that has a limit.
+
+use ndda_contact::ContactReport;
+use ndda_mesh::Vec3;
+
+/// Energies and momenta of all blocks at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sample {
+    /// Steps done.
+    pub step: u64,
+    /// Time [s].
+    pub time_s: f64,
+    /// ½ vᵀ M v [J].
+    pub kinetic_j: f64,
+    /// Elastic energy of the blocks, that of initial stress included [J].
+    pub strain_j: f64,
+    /// Potential energy of normal contact [J].
+    pub contact_j: f64,
+    /// Potential of constant loads: gravity and tractions, zero at the start [J].
+    pub load_j: f64,
+    /// Energy of support springs [J].
+    pub spring_j: f64,
+    /// Work of friction since the start, negative when it dissipates [J].
+    pub friction_work_j: f64,
+    /// Work of prescribed motions since the start [J].
+    pub motion_work_j: f64,
+    /// Energy that appeared (+) or vanished (−) without a cause since the start [J].
+    pub balance_j: f64,
+    /// Linear momentum [kg m/s].
+    pub momentum: Vec3,
+    /// Angular momentum about the scene's origin [kg m²/s].
+    pub angular_momentum: Vec3,
+    /// Σ m |v| [kg m/s].
+    pub momentum_scale: f64,
+    /// Σ m |x| |v| [kg m²/s].
+    pub angular_scale: f64,
+    /// Smallest det F over all elements, with the index of the element.
+    pub smallest_volume_ratio: (f64, usize),
+}
+
+impl Sample {
+    /// Kinetic + strain + contact + load + spring energy [J].
+    pub fn total_j(&self) -> f64 {
+        self.kinetic_j + self.strain_j + self.contact_j + self.load_j + self.spring_j
+    }
+}
+
+/// The worst values of a run so far; the limits are those of the summary.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Invariants {
+    /// I2: |momentum − impulses| / max Σ m |v|.
+    pub linear_momentum: f64,
+    /// I3: |angular momentum − angular impulses| / max Σ m |x| |v|.
+    pub angular_momentum: f64,
+    /// I4: largest energy gain over the peak energy.
+    pub energy_gain: f64,
+    /// I4: largest energy loss over the peak energy.
+    pub energy_loss: f64,
+    /// I5: penetration over tet height.
+    pub max_penetration_ratio: f64,
+    /// I6: |action + reaction| / |force| over the pairs.
+    pub action_reaction: f64,
+    /// I7: smallest det F.
+    pub smallest_volume_ratio: f64,
+    /// I8: h = ω_c Δt, ω_c² bounded by the row sums of the contact stiffness over nodal masses.
+    pub max_h: f64,
+    /// I8: travel of a step over the smallest tet height of the block.
+    pub max_travel_ratio: f64,
+    /// Most pairs looked at in a step.
+    pub candidate_pairs_max: usize,
+    /// Most pairs in contact in a step.
+    pub contact_pairs_max: usize,
+}
+
+/// Sums over steps and extremes over samples.
+#[derive(Clone, Debug)]
+pub struct Ledger {
+    start: Option<Sample>,
+    impulse: Vec3,
+    angular_impulse: Vec3,
+    last_force: (Vec3, Vec3),
+    friction_work_j: f64,
+    motion_work_j: f64,
+    peak_energy_j: f64,
+    peak_momentum: f64,
+    peak_angular: f64,
+    largest_gain_j: f64,
+    largest_loss_j: f64,
+    momentum_error: f64,
+    angular_error: f64,
+    worst: Invariants,
+}
+
+impl Ledger {
+    /// Empty books; `outside` is the force and torque of the constant loads at the start.
+    pub fn new(outside: (Vec3, Vec3)) -> Self {
+        let worst = Invariants {
+            linear_momentum: 0.0,
+            angular_momentum: 0.0,
+            energy_gain: 0.0,
+            energy_loss: 0.0,
+            max_penetration_ratio: 0.0,
+            action_reaction: 0.0,
+            smallest_volume_ratio: 1.0,
+            max_h: 0.0,
+            max_travel_ratio: 0.0,
+            candidate_pairs_max: 0,
+            contact_pairs_max: 0,
+        };
+        Self {
+            start: None,
+            impulse: Vec3::zeros(),
+            angular_impulse: Vec3::zeros(),
+            last_force: outside,
+            friction_work_j: 0.0,
+            motion_work_j: 0.0,
+            peak_energy_j: 0.0,
+            peak_momentum: 0.0,
+            peak_angular: 0.0,
+            largest_gain_j: 0.0,
+            largest_loss_j: 0.0,
+            momentum_error: 0.0,
+            angular_error: 0.0,
+            worst,
+        }
+    }
+
+    /// Books force and torque from outside over a step, Δt [(1 − γ) old + γ new].
+    pub fn add_impulse(&mut self, dt_s: f64, new_weight: f64, force: Vec3, torque: Vec3) {
+        let (old_force, old_torque) = self.last_force;
+        self.impulse += dt_s * ((1.0 - new_weight) * old_force + new_weight * force);
+        self.angular_impulse += dt_s * ((1.0 - new_weight) * old_torque + new_weight * torque);
+        self.last_force = (force, torque);
+    }
+
+    /// Books the work of friction and of prescribed motions in a step [J].
+    pub fn add_work(&mut self, friction_j: f64, motion_j: f64) {
+        self.friction_work_j += friction_j;
+        self.motion_work_j += motion_j;
+    }
+
+    /// Keeps the extremes of a step.
+    pub fn watch(&mut self, contact: &ContactReport, h: f64, travel_ratio: f64) {
+        let worst = &mut self.worst;
+        worst.max_penetration_ratio = worst.max_penetration_ratio.max(contact.max_penetration_ratio);
+        worst.action_reaction = worst.action_reaction.max(contact.action_reaction_error);
+        worst.candidate_pairs_max = worst.candidate_pairs_max.max(contact.candidate_pairs);
+        worst.contact_pairs_max = worst.contact_pairs_max.max(contact.contact_pairs);
+        worst.max_h = worst.max_h.max(h);
+        worst.max_travel_ratio = worst.max_travel_ratio.max(travel_ratio);
+    }
+
+    /// Balances a sample against the books and keeps the extremes; the first sample opens the books.
+    pub fn balance(&mut self, mut sample: Sample) -> Sample {
+        let start = *self.start.get_or_insert(sample);
+        sample.friction_work_j = self.friction_work_j;
+        sample.motion_work_j = self.motion_work_j;
+        sample.balance_j = sample.total_j() - start.total_j() - sample.friction_work_j - sample.motion_work_j;
+        let stored = sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j;
+        self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());
+        self.largest_gain_j = self.largest_gain_j.max(sample.balance_j);
+        self.largest_loss_j = self.largest_loss_j.max(-sample.balance_j);
+        self.peak_momentum = self.peak_momentum.max(sample.momentum_scale);
+        self.peak_angular = self.peak_angular.max(sample.angular_scale);
+        let momentum_error = (sample.momentum - start.momentum - self.impulse).norm();
+        let turn_error = (sample.angular_momentum - start.angular_momentum - self.angular_impulse).norm();
+        self.momentum_error = self.momentum_error.max(momentum_error);
+        self.angular_error = self.angular_error.max(turn_error);
+        let ratio = sample.smallest_volume_ratio.0;
+        self.worst.smallest_volume_ratio = self.worst.smallest_volume_ratio.min(ratio);
+        sample
+    }
+
+    /// The worst of the run so far.
+    pub fn invariants(&self) -> Invariants {
+        let over = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
+        Invariants {
+            linear_momentum: over(self.momentum_error, self.peak_momentum),
+            angular_momentum: over(self.angular_error, self.peak_angular),
+            energy_gain: over(self.largest_gain_j, self.peak_energy_j),
+            energy_loss: over(self.largest_loss_j, self.peak_energy_j),
+            ..self.worst
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn energy_that_friction_took_is_not_a_loss() {
+        let mut ledger = Ledger::new((Vec3::zeros(), Vec3::zeros()));
+        ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() });
+        ledger.add_work(-4.0, 0.0);
+        let sample = ledger.balance(Sample { kinetic_j: 5.0, ..Sample::default() });
+        assert_eq!(sample.balance_j, -1.0);
+        assert_eq!(ledger.invariants().energy_loss, 0.1);
+        assert_eq!(ledger.invariants().energy_gain, 0.0);
+    }
+
+    #[test]
+    fn an_impulse_from_outside_explains_momentum() {
+        let mut ledger = Ledger::new((Vec3::zeros(), Vec3::zeros()));
+        ledger.balance(Sample::default());
+        ledger.add_impulse(0.5, 1.0, Vec3::x(), Vec3::zeros());
+        let momentum = Vec3::new(0.5, 0.0, 0.1);
+        ledger.balance(Sample { momentum, momentum_scale: 0.5, ..Sample::default() });
+        assert!((ledger.invariants().linear_momentum - 0.2).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,131 @@
+//! What blocks of one shape share: operator, supports, factor. Everything here is computed once per run.
+
+use std::sync::Arc;
+
+use ndda_fem::frame::polar_rotation;
+use ndda_fem::{BlockOperator, BlockSupports, Frame, Material, NodeSupport, SupportError, Voigt};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
+
+use crate::linear_solver::{Factor, FactorError, LinearSolver};
+use crate::time_integrator::StepWeights;
+use crate::unknowns::Unknowns;
+
+/// Shapes that agree to this fraction of their size share one factor; a false strain of this size is the price.
+const CONGRUENT: f64 = 1e-12;
+
+/// What one block brings besides its mesh.
+#[derive(Clone)]
+pub struct BodySetup {
+    /// Its material; blocks that share the `Arc` can share a factor.
+    pub material: Arc<dyn Material>,
+    /// Its supports.
+    pub supports: Vec<NodeSupport>,
+    /// Uniform initial stress σ₀ [Pa].
+    pub initial_stress_pa: Option<Voigt>,
+    /// Tractions: triangles by nodes counted from the block's first, and the traction [Pa].
+    pub tractions: Vec<(Vec<[u32; 3]>, Vec3)>,
+    /// Velocity of the mass centre [m/s].
+    pub velocity_m_s: Vec3,
+    /// Rate of rotation about the mass centre [rad/s].
+    pub spin_rad_s: Vec3,
+}
+
+/// Why a simulation could not be set up.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SetupError {
+    /// Supports of a block cannot be imposed.
+    #[error("block `{block}`: {source}")]
+    Support {
+        /// Name of the block.
+        block: String,
+        /// What is wrong with them.
+        source: SupportError,
+    },
+    /// The equations of a block cannot be factored.
+    #[error("block `{block}`: {source}")]
+    Factor {
+        /// Name of the block.
+        block: String,
+        /// What is wrong with them.
+        source: FactorError,
+    },
+}
+
+/// One distinct block: all blocks congruent to it, of the same material, use its operator and factor.
+pub struct Shape {
+    /// K, M and rest shape.
+    pub operator: BlockOperator,
+    /// Supports and frame.
+    pub supports: BlockSupports,
+    /// Numbering of what is solved for.
+    pub unknowns: Unknowns,
+    /// K̃ factored; `None` when nothing is left to solve for.
+    pub factor: Option<Box<dyn Factor>>,
+    /// Material of its elements.
+    pub material: Arc<dyn Material>,
+    /// Smallest height of its elements at rest [m].
+    pub smallest_height_m: f64,
+}
+
+impl Shape {
+    /// Assembles and factors one block.
+    ///
+    /// # Errors
+    /// [`SetupError`] with the name of the block.
+    pub fn new(
+        blocks: &BlockSet,
+        block: BlockId,
+        setup: &BodySetup,
+        weights: &StepWeights,
+        solver: &dyn LinearSolver,
+    ) -> Result<Self, SetupError> {
+        let name = || blocks.names[block.index()].clone();
+        let position = &blocks.rest_position[blocks.nodes_of(block)];
+        let tets: Vec<[u32; 4]> = blocks.local_tets(block).collect();
+        let operator = BlockOperator::new(position, tets, setup.material.as_ref());
+        let supports = BlockSupports::new(&operator, &setup.supports)
+            .map_err(|source| SetupError::Support { block: name(), source })?;
+        let unknowns = Unknowns::new(operator.nodes(), &supports);
+        let factor = if unknowns.is_empty() {
+            None
+        } else {
+            let matrix = unknowns.matrix(&operator, &supports, weights);
+            let factor = solver.factor(&matrix);
+            Some(factor.map_err(|source| SetupError::Factor { block: name(), source })?)
+        };
+        let heights = operator
+            .tets
+            .iter()
+            .flat_map(|tet| ndda_mesh::geometry::tet_heights(&tet.map(|n| operator.rest[n as usize])));
+        let smallest_height_m = heights.fold(f64::INFINITY, f64::min);
+        let material = setup.material.clone();
+        Ok(Self { operator, supports, unknowns, factor, material, smallest_height_m })
+    }
+
+    /// Whether nothing holds the block, so that its momentum changes by outside forces only.
+    pub fn is_free(&self) -> bool {
+        self.supports.held.is_empty() && self.supports.springs.is_empty()
+    }
+
+    /// Whether a block is this shape up to a rigid motion, with the same mesh and material.
+    pub fn fits(&self, blocks: &BlockSet, block: BlockId, setup: &BodySetup) -> bool {
+        let position = &blocks.rest_position[blocks.nodes_of(block)];
+        if !self.is_free()
+            || !setup.supports.is_empty()
+            || !Arc::ptr_eq(&self.material, &setup.material)
+            || position.len() != self.operator.nodes()
+            || !blocks.local_tets(block).eq(self.operator.tets.iter().copied())
+        {
+            return false;
+        }
+        let Frame::Free { inverse_moment } = &self.supports.frame else { return false };
+        let center = self.operator.center(position);
+        let weighted = self.operator.node_mass.iter().zip(position).zip(&self.operator.rest);
+        let moment =
+            weighted.map(|((&m, x), rest)| m * (x - center) * rest.transpose()).sum::<ndda_mesh::Mat3>();
+        let Ok(rotation) = polar_rotation(&(moment * inverse_moment)) else { return false };
+        let size = self.operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
+        let misfit = |(x, rest): (&Vec3, &Vec3)| (x - center - rotation * rest).norm();
+        position.iter().zip(&self.operator.rest).map(misfit).fold(0.0, f64::max) <= CONGRUENT * size
+    }
+}

@@ -1,0 +1,507 @@
+//! The problem, the state, and the step that joins them.
+
+use std::time::Instant;
+
+use ndda_contact::{ContactError, ContactInput, ContactModel, ContactOutput, ContactReport};
+use ndda_fem::loads::{add_gravity, add_traction};
+use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
+use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
+
+use crate::block_step::{BlockError, Body, StepContext};
+use crate::for_each_block::{NodeSlices, for_each_block};
+use crate::ledger::{Invariants, Ledger, Sample};
+use crate::linear_solver::LinearSolver;
+use crate::shape::{BodySetup, SetupError, Shape};
+use crate::state::State;
+use crate::time_integrator::{StepWeights, TimeIntegrator};
+
+/// Nodes per half below which a second thread costs more than it brings.
+const GRAIN_NODES: usize = 400;
+
+/// Everything a simulation is made of.
+pub struct Setup {
+    /// Topology and rest shape.
+    pub blocks: BlockSet,
+    /// One entry per block.
+    pub bodies: Vec<BodySetup>,
+    /// g [m/s²].
+    pub gravity_m_s2: Vec3,
+    /// Δt [s].
+    pub step_s: f64,
+    /// Time integrator.
+    pub integrator: Box<dyn TimeIntegrator>,
+    /// Contact; `None` where blocks do not feel each other.
+    pub contact: Option<Box<dyn ContactModel>>,
+    /// Linear solver.
+    pub solver: Box<dyn LinearSolver>,
+}
+
+/// What one step found.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepReport {
+    /// Contact at x*.
+    pub contact: ContactReport,
+    /// h = ω_c Δt, bounded from above.
+    pub h: f64,
+    /// Travel of the step over the smallest tet height of the block, largest over the blocks.
+    pub travel_ratio: f64,
+}
+
+/// Seconds spent per stage of the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StageTimes {
+    /// Contact forces.
+    pub contact_s: f64,
+    /// Block solves.
+    pub blocks_s: f64,
+    /// Bookkeeping and energies.
+    pub ledger_s: f64,
+}
+
+/// Why a run stops.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// Contact could not be computed.
+    #[error("at t = {time_s} s: {source}")]
+    Contact {
+        /// Time [s].
+        time_s: f64,
+        /// The cause.
+        source: ContactError,
+    },
+    /// A block is past the depth at which contact pushes it out (invariant I5).
+    #[error(
+        "at t = {time_s} s: triangle {} of block `{contactor}` is past the centroid of tet {} of block `{target}`, \
+         where the contact potential no longer pushes it out: raise penalty_pa or reduce step_s", triangle.0, tet.0
+    )]
+    PastCentroid {
+        /// Time [s].
+        time_s: f64,
+        /// Name of the block that went in.
+        contactor: String,
+        /// Its boundary triangle.
+        triangle: TriangleId,
+        /// Name of the block that it went into.
+        target: String,
+        /// The tetrahedron.
+        tet: TetId,
+    },
+    /// A block could not take the step.
+    #[error("at t = {time_s} s: block `{block}`: {source}")]
+    Block {
+        /// Time [s].
+        time_s: f64,
+        /// Name of the block.
+        block: String,
+        /// The cause.
+        source: BlockError,
+    },
+    /// An element is inside out (invariant I7).
+    #[error(
+        "at t = {time_s} s: tet {} of block `{block}` is inverted (det F = {volume_ratio:e}): reduce step_s or the load",
+        tet.0
+    )]
+    Inverted {
+        /// Time [s].
+        time_s: f64,
+        /// Name of the block.
+        block: String,
+        /// The tetrahedron.
+        tet: TetId,
+        /// det F.
+        volume_ratio: f64,
+    },
+}
+
+/// A problem on its way through time.
+pub struct Simulation {
+    blocks: BlockSet,
+    shapes: Vec<Shape>,
+    bodies: Vec<Body>,
+    state: State,
+    step_s: f64,
+    integrator: Box<dyn TimeIntegrator>,
+    weights: StepWeights,
+    contact: Option<Box<dyn ContactModel>>,
+    ledger: Ledger,
+    stages: StageTimes,
+    external: Vec<Vec3>,
+    outside_force: Vec3,
+    force: Vec<Vec3>,
+    friction_force: Vec<Vec3>,
+    contact_stiffness: Vec<f64>,
+    contact_position: Vec<Vec3>,
+}
+
+impl Simulation {
+    /// Assembles, factors each distinct block once, and sets the state at t = 0.
+    ///
+    /// # Errors
+    /// [`SetupError`] naming the block whose supports or equations are at fault.
+    pub fn new(setup: Setup) -> Result<Self, SetupError> {
+        let Setup { blocks, bodies, gravity_m_s2, step_s, integrator, contact, solver } = setup;
+        let weights = integrator.weights(step_s);
+        let mut shapes: Vec<Shape> = Vec::new();
+        let mut shape_of = Vec::with_capacity(blocks.len());
+        for (block, body) in blocks.ids().zip(&bodies) {
+            let known = shapes.iter().position(|shape| shape.fits(&blocks, block, body));
+            shape_of.push(known.unwrap_or(shapes.len()));
+            if known.is_none() {
+                shapes.push(Shape::new(&blocks, block, body, &weights, solver.as_ref())?);
+            }
+        }
+        let nodes = blocks.rest_position.len();
+        // Contact between fewer than two blocks is left out altogether.
+        let contact = contact.filter(|_| blocks.len() > 1);
+        let friction_nodes = if contact.as_ref().is_some_and(|c| c.has_friction()) { nodes } else { 0 };
+        let contact_nodes = if contact.is_some() { nodes } else { 0 };
+        let mut simulation = Self {
+            state: State {
+                step: 0,
+                position: blocks.rest_position.clone(),
+                velocity: vec![Vec3::zeros(); nodes],
+                acceleration: vec![Vec3::zeros(); nodes],
+                contact: Default::default(),
+            },
+            bodies: Vec::with_capacity(blocks.len()),
+            external: vec![Vec3::zeros(); nodes],
+            outside_force: Vec3::zeros(),
+            force: vec![Vec3::zeros(); nodes],
+            friction_force: vec![Vec3::zeros(); friction_nodes],
+            contact_stiffness: vec![0.0; contact_nodes],
+            contact_position: blocks.rest_position.clone(),
+            ledger: Ledger::new((Vec3::zeros(), Vec3::zeros())),
+            stages: StageTimes::default(),
+            blocks,
+            shapes,
+            step_s,
+            integrator,
+            weights,
+            contact,
+        };
+        for (block, body) in simulation.blocks.ids().zip(&bodies) {
+            simulation.add_body(block, shape_of[block.index()], body, &gravity_m_s2);
+        }
+        simulation.open_books(solver.as_ref())?;
+        Ok(simulation)
+    }
+
+    fn add_body(&mut self, block: BlockId, shape_index: usize, setup: &BodySetup, gravity_m_s2: &Vec3) {
+        let range = self.blocks.nodes_of(block);
+        let rest = &self.blocks.rest_position[range.clone()];
+        let shape = &self.shapes[shape_index];
+        let external = &mut self.external[range.clone()];
+        add_gravity(&shape.operator, gravity_m_s2, external);
+        for (triangles, traction_pa) in &setup.tractions {
+            add_traction(triangles, rest, traction_pa, external);
+        }
+        let center = shape.operator.center(rest);
+        for (v, x) in self.state.velocity[range].iter_mut().zip(rest) {
+            *v = setup.velocity_m_s + setup.spin_rad_s.cross(&(x - center));
+        }
+        self.bodies.push(Body::new(shape_index, shape, setup.initial_stress_pa, rest));
+        for held in &shape.supports.held {
+            let v = &mut self.state.velocity[self.blocks.nodes_of(block).start + held.node as usize];
+            for n in &held.held {
+                *v -= n * n.dot(v);
+            }
+        }
+    }
+
+    /// Total constant load, and accelerations at the start for integrators that need them: M a = f − ∫Bᵀσ₀.
+    fn open_books(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
+        self.outside_force = self.external.iter().sum();
+        let arms = self.state.position.iter().zip(&self.external);
+        let torque = arms.map(|(x, f)| x.cross(f)).sum();
+        self.ledger = Ledger::new((self.outside_force, torque));
+        if !self.weights.needs_acceleration {
+            return Ok(());
+        }
+        let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
+        for block in self.blocks.ids() {
+            let body = &self.bodies[block.index()];
+            let shape = &self.shapes[body.shape];
+            if shape.unknowns.is_empty() {
+                continue;
+            }
+            let range = self.blocks.nodes_of(block);
+            let mut load = self.external[range.clone()].to_vec();
+            if let Some(initial) = &body.initial_force {
+                load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
+            }
+            let matrix = shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only);
+            let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor {
+                block: self.blocks.names[block.index()].clone(),
+                source,
+            })?;
+            let mut rhs = vec![0.0; factor.unknowns()];
+            shape.unknowns.gather(&load, &mut rhs);
+            factor.solve_in_place(&mut rhs, &mut factor.new_scratch());
+            shape.unknowns.scatter(&rhs, &mut self.state.acceleration[range]);
+        }
+        Ok(())
+    }
+
+    /// One step. The order is the paper's; what differs is where contact and rotation are taken.
+    ///
+    /// # Errors
+    /// [`StepError`] naming time, block and element; the state is then not to be used.
+    pub fn step(&mut self) -> Result<StepReport, StepError> {
+        let started = Instant::now();
+        self.gather_loads();
+        self.place_contact();
+        let contact = self.gather_contact_forces()?;
+        let contact_done = Instant::now();
+        self.solve_blocks()?;
+        let solved = Instant::now();
+        let report = self.keep_books(contact);
+        self.stages.contact_s += (contact_done - started).as_secs_f64();
+        self.stages.blocks_s += (solved - contact_done).as_secs_f64();
+        self.stages.ledger_s += solved.elapsed().as_secs_f64();
+        Ok(report)
+    }
+
+    /// f ← gravity and tractions.
+    fn gather_loads(&mut self) {
+        self.force.copy_from_slice(&self.external);
+    }
+
+    /// x* = x + lead · Δt v.
+    fn place_contact(&mut self) {
+        let lead = self.weights.contact_lead * self.step_s;
+        let moving = self.state.position.iter().zip(&self.state.velocity);
+        for (place, (x, v)) in self.contact_position.iter_mut().zip(moving) {
+            *place = x + lead * v;
+        }
+    }
+
+    /// f ± contact at x*; stops where contact has lost its grip.
+    fn gather_contact_forces(&mut self) -> Result<ContactReport, StepError> {
+        let Some(model) = &mut self.contact else { return Ok(ContactReport::default()) };
+        self.friction_force.fill(Vec3::zeros());
+        self.contact_stiffness.fill(0.0);
+        let input = ContactInput {
+            blocks: &self.blocks,
+            position: &self.contact_position,
+            velocity: &self.state.velocity,
+            dt_s: self.step_s,
+        };
+        let mut output = ContactOutput {
+            force: &mut self.force,
+            friction_force: &mut self.friction_force,
+            stiffness: &mut self.contact_stiffness,
+        };
+        let report = model.add_forces(&input, &mut self.state.contact, &mut output);
+        let report = report.map_err(|source| StepError::Contact { time_s: self.time_s(), source })?;
+        if let Some((triangle, tet)) = report.past_centroid {
+            let name = |block: BlockId| self.blocks.names[block.index()].clone();
+            return Err(StepError::PastCentroid {
+                time_s: self.time_s(),
+                contactor: name(self.blocks.triangle_block[triangle.index()]),
+                triangle,
+                target: name(self.blocks.tet_block[tet.index()]),
+                tet,
+            });
+        }
+        Ok(report)
+    }
+
+    /// Each block alone, in parallel.
+    fn solve_blocks(&mut self) -> Result<(), StepError> {
+        let (shapes, blocks) = (&self.shapes, &self.blocks);
+        let (force, external, contact_position) = (&self.force, &self.external, &self.contact_position);
+        let (friction_force, contact_stiffness) = (&self.friction_force, &self.contact_stiffness);
+        let (integrator, weights, dt_s) = (self.integrator.as_ref(), self.weights, self.step_s);
+        let (time_s, end_s) = (self.state.step as f64 * dt_s, (self.state.step + 1) as f64 * dt_s);
+        let slices = NodeSlices {
+            position: &mut self.state.position,
+            velocity: &mut self.state.velocity,
+            acceleration: &mut self.state.acceleration,
+        };
+        let starts = blocks.node_starts();
+        for_each_block(0, &mut self.bodies, starts, slices, GRAIN_NODES, &|index, body: &mut Body, nodes| {
+            let range = blocks.nodes_of(BlockId(index as u32));
+            let context = StepContext {
+                integrator,
+                weights,
+                dt_s,
+                time_s,
+                end_s,
+                contact_position: &contact_position[range.clone()],
+                force: &force[range.clone()],
+                external: &external[range.clone()],
+                friction_force: friction_force.get(range.clone()).unwrap_or(&[]),
+                contact_stiffness: contact_stiffness.get(range).unwrap_or(&[]),
+            };
+            body.error = body.step(&shapes[body.shape], &context, nodes).err();
+        });
+        for (index, body) in self.bodies.iter_mut().enumerate() {
+            if let Some(source) = body.error.take() {
+                let block = self.blocks.names[index].clone();
+                return Err(StepError::Block { time_s: end_s, block, source });
+            }
+        }
+        Ok(())
+    }
+
+    /// Impulses, work and extremes of the step; t advances.
+    fn keep_books(&mut self, contact: ContactReport) -> StepReport {
+        let (mut force, mut torque) = (self.outside_force, Vec3::zeros());
+        let (mut rate2, mut travel_ratio) = (0.0f64, 0.0f64);
+        let (mut friction_j, mut motion_j) = (0.0, 0.0);
+        for body in &self.bodies {
+            let report = &body.report;
+            force += report.reaction;
+            torque += report.outside_torque;
+            friction_j += report.friction_work_j;
+            motion_j += report.motion_work_j;
+            rate2 = rate2.max(report.contact_rate2);
+            let height_m = self.shapes[body.shape].smallest_height_m;
+            travel_ratio = travel_ratio.max(report.speed_m_s * self.step_s / height_m);
+        }
+        let h = self.step_s * rate2.sqrt();
+        self.ledger.add_impulse(self.step_s, self.weights.new_force, force, torque);
+        self.ledger.add_work(friction_j, motion_j);
+        self.ledger.watch(&contact, h, travel_ratio);
+        self.state.step += 1;
+        StepReport { contact, h, travel_ratio }
+    }
+
+    /// Energies and momenta now, balanced against the books.
+    ///
+    /// # Errors
+    /// [`StepError::Inverted`] when an element is inside out (invariant I7), or as [`step`](Self::step).
+    pub fn sample(&mut self) -> Result<Sample, StepError> {
+        let started = Instant::now();
+        let time_s = self.time_s();
+        let mut sample = Sample { step: self.state.step, time_s, ..Sample::default() };
+        sample.smallest_volume_ratio = (f64::INFINITY, 0);
+        for block in self.blocks.ids() {
+            self.add_block_to(&mut sample, block)?;
+        }
+        let loads = self.external.iter().zip(&self.state.position).zip(&self.blocks.rest_position);
+        sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
+        if let Some(model) = &mut self.contact {
+            let input = ContactInput {
+                blocks: &self.blocks,
+                position: &self.state.position,
+                velocity: &self.state.velocity,
+                dt_s: self.step_s,
+            };
+            sample.contact_j =
+                model.energy_j(&input).map_err(|source| StepError::Contact { time_s, source })?;
+        }
+        let sample = self.ledger.balance(sample);
+        self.stages.ledger_s += started.elapsed().as_secs_f64();
+        Ok(sample)
+    }
+
+    fn add_block_to(&mut self, sample: &mut Sample, block: BlockId) -> Result<(), StepError> {
+        let (range, time_s) = (self.blocks.nodes_of(block), sample.time_s);
+        let body = &mut self.bodies[block.index()];
+        let shape = &self.shapes[body.shape];
+        let (position, velocity) = (&self.state.position[range.clone()], &self.state.velocity[range]);
+        let name = || self.blocks.names[block.index()].clone();
+        let (volume_ratio, tet) = smallest_volume_ratio(&shape.operator, position);
+        let tet = self.blocks.tets_of(block).start + tet;
+        if volume_ratio.is_nan() || volume_ratio <= 0.0 {
+            let tet = TetId(tet as u32);
+            return Err(StepError::Inverted { time_s, block: name(), tet, volume_ratio });
+        }
+        if volume_ratio < sample.smallest_volume_ratio.0 {
+            sample.smallest_volume_ratio = (volume_ratio, tet);
+        }
+        sample.strain_j += body.strain_energy_j(shape, position).map_err(|source| StepError::Block {
+            time_s,
+            block: name(),
+            source: source.into(),
+        })?;
+        sample.spring_j += body.spring_energy_j(shape, position, time_s);
+        sample.kinetic_j += shape.operator.kinetic_energy_j(velocity);
+        sample.momentum += shape.operator.momentum(velocity);
+        sample.angular_momentum += shape.operator.angular_momentum(&Vec3::zeros(), position, velocity);
+        for ((x, v), &m) in position.iter().zip(velocity).zip(&shape.operator.node_mass) {
+            sample.momentum_scale += m * v.norm();
+            sample.angular_scale += m * x.norm() * v.norm();
+        }
+        Ok(())
+    }
+
+    /// Cauchy stress per tetrahedron, global axes, (xx, yy, zz, xy, yz, zx) [Pa].
+    ///
+    /// # Errors
+    /// [`StepError::Block`] when a block has no rotation any more.
+    pub fn recover_stress(&mut self, out: &mut [[f64; 6]]) -> Result<(), StepError> {
+        let time_s = self.time_s();
+        for block in self.blocks.ids() {
+            let body = &mut self.bodies[block.index()];
+            let shape = &self.shapes[body.shape];
+            let position = &self.state.position[self.blocks.nodes_of(block)];
+            let rotation = body.recover_displacement(shape, position).map_err(|source| StepError::Block {
+                time_s,
+                block: self.blocks.names[block.index()].clone(),
+                source: source.into(),
+            })?;
+            let (material, initial) = (shape.material.as_ref(), body.initial_stress_pa.as_ref());
+            let out = &mut out[self.blocks.tets_of(block)];
+            let displacement = body.displacement_in_frame();
+            cauchy_stress(&shape.operator, material, initial, &rotation, displacement, out);
+        }
+        Ok(())
+    }
+
+    /// Time [s]: steps done times Δt, never summed.
+    pub fn time_s(&self) -> f64 {
+        self.state.step as f64 * self.step_s
+    }
+
+    /// Δt [s].
+    pub fn step_s(&self) -> f64 {
+        self.step_s
+    }
+
+    /// Topology and rest shape.
+    pub fn blocks(&self) -> &BlockSet {
+        &self.blocks
+    }
+
+    /// The changing state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The shape of a block: operator, supports, factor.
+    pub fn shape(&self, block: BlockId) -> &Shape {
+        &self.shapes[self.bodies[block.index()].shape]
+    }
+
+    /// Number of factored matrices: distinct blocks with unknowns.
+    pub fn factors(&self) -> usize {
+        self.shapes.iter().filter(|shape| shape.factor.is_some()).count()
+    }
+
+    /// Number of unknowns over all blocks.
+    pub fn unknowns(&self) -> usize {
+        self.blocks.ids().map(|block| self.shape(block).unknowns.len()).sum()
+    }
+
+    /// Whether no block is supported, so that momentum can only come from loads.
+    pub fn is_closed(&self) -> bool {
+        self.shapes.iter().all(Shape::is_free)
+    }
+
+    /// Largest stable h = ω_c Δt of the integrator.
+    pub fn contact_bound(&self) -> Option<f64> {
+        self.integrator.contact_bound()
+    }
+
+    /// The worst of the run so far.
+    pub fn invariants(&self) -> Invariants {
+        self.ledger.invariants()
+    }
+
+    /// Seconds per stage so far.
+    pub fn stages(&self) -> StageTimes {
+        self.stages
+    }
+}

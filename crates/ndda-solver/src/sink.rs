@@ -1,0 +1,67 @@
+//! Output is pushed: a run calls each sink after each step.
+
+use std::ops::ControlFlow;
+
+use crate::ledger::Sample;
+use crate::simulation::{Simulation, StepError, StepReport};
+
+/// What a sink is shown.
+pub struct View<'a> {
+    /// The simulation after the step.
+    pub simulation: &'a mut Simulation,
+    /// What the step found; default before the first.
+    pub report: &'a StepReport,
+    /// Energies and momenta, if some sink wanted them at this step.
+    pub sample: Option<&'a Sample>,
+}
+
+/// Why a sink could not take a step.
+pub type SinkError = Box<dyn std::error::Error + Send + Sync>;
+
+/// Why a run ended early.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The numbers gave out.
+    #[error(transparent)]
+    Step(#[from] StepError),
+    /// Output failed.
+    #[error(transparent)]
+    Sink(SinkError),
+}
+
+/// Takes results as they come; a new quantity is a new small sink.
+pub trait Sink {
+    /// Called at the start and after each step; `Break` ends the run in good order.
+    ///
+    /// # Errors
+    /// Whatever keeps the sink from doing its work; the run then stops.
+    fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError>;
+
+    /// Whether `view.sample` is wanted at this step.
+    fn wants_sample(&self, _step: u64) -> bool {
+        false
+    }
+}
+
+/// Runs `steps` steps and shows each to the sinks; the last one is always sampled.
+///
+/// # Errors
+/// [`RunError`] of the step or sink that failed.
+pub fn run(simulation: &mut Simulation, steps: u64, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
+    let mut report = StepReport::default();
+    loop {
+        let step = simulation.state().step;
+        let wanted = step == 0 || step >= steps || sinks.iter().any(|sink| sink.wants_sample(step));
+        let sample = if wanted { Some(simulation.sample()?) } else { None };
+        for sink in sinks.iter_mut() {
+            let mut view = View { simulation, report: &report, sample: sample.as_ref() };
+            if sink.step_done(&mut view).map_err(RunError::Sink)?.is_break() {
+                return Ok(());
+            }
+        }
+        if step >= steps {
+            return Ok(());
+        }
+        report = simulation.step()?;
+    }
+}

@@ -1,0 +1,19 @@
+//! What changes from step to step, and nothing else.
+
+use ndda_contact::ContactHistory;
+use ndda_mesh::Vec3;
+
+/// The changing state of all blocks; a checkpoint, a rollback and a determinism test all work on it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// Steps done; the time is `step · Δt`, never summed.
+    pub step: u64,
+    /// Position x per node [m], relative to the origin of the block set.
+    pub position: Vec<Vec3>,
+    /// Velocity v per node [m/s].
+    pub velocity: Vec<Vec3>,
+    /// Acceleration a per node [m/s²].
+    pub acceleration: Vec<Vec3>,
+    /// What contact remembers.
+    pub contact: ContactHistory,
+}

@@ -1,0 +1,62 @@
+//! Contract suites that a fork can run on its own integrator or linear solver.
+
+use ndda_mesh::Vec3;
+
+use crate::linear_solver::{LinearSolver, SymmetricMatrix};
+use crate::time_integrator::TimeIntegrator;
+
+/// Panics unless `integrator` keeps the contract of [`TimeIntegrator`].
+pub fn check_integrator(integrator: &dyn TimeIntegrator) {
+    let (dt_s, gravity) = (1e-3, Vec3::new(0.0, 0.5, -9.8));
+    let weights = integrator.weights(dt_s);
+    assert!(0.0 < weights.stiffness && weights.stiffness <= 1.0, "θ = {}", weights.stiffness);
+    assert!(weights.mass_per_s2 > 0.0 && weights.mass_per_s2.is_finite());
+    assert!((0.0..=1.0).contains(&weights.contact_lead));
+
+    // Constant acceleration: c M (u − û) = M g in every step, exact for a start with a = g.
+    let (mut x, mut v, mut a) = (Vec3::zeros(), Vec3::new(1.0, 0.0, 2.0), gravity);
+    let (start, steps) = (v, 1000);
+    for _ in 0..steps {
+        let predicted = integrator.predict(dt_s, &v, &a);
+        let u = predicted + gravity / weights.mass_per_s2;
+        integrator.correct(dt_s, &u, &predicted, &mut v, &mut a);
+        x += u;
+    }
+    let t = dt_s * f64::from(steps);
+    assert!((x - start * t - 0.5 * gravity * t * t).norm() < 1e-12, "constant acceleration is not exact");
+    assert!((v - start - gravity * t).norm() < 1e-12);
+
+    let (mut v, mut a) = (Vec3::x(), Vec3::zeros());
+    let predicted = integrator.predict(dt_s, &v, &a);
+    integrator.correct(dt_s, &predicted.clone(), &predicted, &mut v, &mut a);
+    assert_eq!((v, a), (Vec3::x(), Vec3::zeros()), "a step without force changes the velocity");
+}
+
+/// Panics unless `solver` keeps the contract of [`LinearSolver`]: it solves positive definite systems to round-off
+/// and refuses others.
+pub fn check_linear_solver(solver: &dyn LinearSolver) {
+    for n in [1, 2, 40, 400] {
+        // −1, 4 + i/n, −1 on and next to the diagonal, one long-range coupling.
+        let entry = |i: usize, j: usize| match i - j {
+            0 => 4.0 + i as f64 / n as f64,
+            1 => -1.0,
+            d if d == n / 2 && n > 4 => -0.5,
+            _ => 0.0,
+        };
+        let matrix = SymmetricMatrix::from_lower(n, |j, out| {
+            out.extend((j..n).map(|i| (i, entry(i, j))).filter(|&(i, value)| i == j || value != 0.0));
+        });
+        let exact: Vec<f64> = (0..n).map(|i| (i as f64 * 0.7).sin() + 0.1).collect();
+        let mut x = matrix.times(&exact);
+        let factor = solver.factor(&matrix).expect("the matrix is positive definite");
+        assert_eq!(factor.unknowns(), n);
+        let mut scratch = factor.new_scratch();
+        factor.solve_in_place(&mut x, &mut scratch);
+        let error = x.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(error < 1e-13, "n = {n}: error {error}");
+    }
+    let indefinite = SymmetricMatrix::from_lower(2, |j, out| {
+        out.extend([(j, if j == 0 { 1.0 } else { -1.0 })]);
+    });
+    assert!(solver.factor(&indefinite).is_err(), "an indefinite matrix must be refused");
+}

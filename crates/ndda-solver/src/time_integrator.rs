@@ -1,0 +1,46 @@
+//! What a time integrator must say.
+
+use ndda_mesh::Vec3;
+
+/// The numbers by which one step is weighted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepWeights {
+    /// θ: elasticity acts at x + θ u.
+    pub stiffness: f64,
+    /// c = 1/(β Δt²) [1/s²]: the mean acceleration of the step is c (u − û).
+    pub mass_per_s2: f64,
+    /// Contact acts at x* = x + lead · Δt v.
+    pub contact_lead: f64,
+    /// γ: the momentum changes by Δt [(1 − γ) f_old + γ f_new].
+    pub new_force: f64,
+    /// Whether the acceleration at the start of a step matters, so that a run must begin with M a = f − K d.
+    pub needs_acceleration: bool,
+}
+
+/// A one-step integrator for M a + K d = f, solved per block as  (θ K + c M)(u − û) = f − K (d + θ û).
+///
+/// Contract (checked by [`check_integrator`](crate::testing::check_integrator)): exact for constant acceleration,
+/// keeps constant velocity, `correct` undoes `predict` when the step brings no acceleration.
+pub trait TimeIntegrator: Send + Sync {
+    /// Name in reports.
+    fn name(&self) -> &'static str;
+
+    /// Weights of a step Δt [s].
+    fn weights(&self, dt_s: f64) -> StepWeights;
+
+    /// û: the displacement of the step as far as it is known beforehand [m].
+    fn predict(&self, dt_s: f64, velocity: &Vec3, acceleration: &Vec3) -> Vec3;
+
+    /// Velocity and acceleration at the end of the step from u and û.
+    fn correct(
+        &self,
+        dt_s: f64,
+        increment: &Vec3,
+        predicted: &Vec3,
+        velocity: &mut Vec3,
+        acceleration: &mut Vec3,
+    );
+
+    /// Largest stable h = ω_c Δt for contact evaluated explicitly; `None` if there is none above zero.
+    fn contact_bound(&self) -> Option<f64>;
+}
