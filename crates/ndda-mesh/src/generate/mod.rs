@@ -10,8 +10,7 @@ mod testing;
 pub use box_block::{BoxPattern, box_block};
 pub use prism::prism;
 
-/// Most tetrahedra of one block: four faces of each must be countable in 32 bits.
-const MAX_TETS: u128 = u32::MAX as u128 / 4;
+use crate::validate::MAX_TETS;
 
 /// Lengths whose products, in any number of cells, neither overflow nor underflow.
 const LENGTHS_M: RangeInclusive<f64> = 1e-50..=1e50;
@@ -79,7 +78,7 @@ fn check_cells(along: &'static str, cells: u32) -> Result<(), GenerateError> {
 }
 
 fn check_counts(nodes: u128, tets: u128) -> Result<(), GenerateError> {
-    if nodes > u128::from(u32::MAX) || tets > MAX_TETS {
+    if nodes > u128::from(u32::MAX) || tets > MAX_TETS as u128 {
         return Err(GenerateError::TooMany { nodes, tets });
     }
     Ok(())
