@@ -9,12 +9,14 @@ pub mod block_set;
 pub mod generate;
 pub mod geometry;
 pub mod ids;
+pub mod stats;
 pub mod surface;
 pub mod validate;
 
 pub use block_mesh::BlockMesh;
 pub use block_set::BlockSet;
 pub use ids::{BlockId, NodeId, TetId, TriangleId};
+pub use stats::MeshStats;
 pub use validate::{MeshError, MeshProblem};
 
 /// A vector or point in space; positions are in metres unless a name says otherwise.
