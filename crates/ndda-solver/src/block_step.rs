@@ -1,6 +1,7 @@
 //! One step of one block, alone: predict, turn into its frame, solve, correct.
 
 use ndda_fem::loads::initial_stress_force;
+use ndda_fem::supports::HeldNode;
 use ndda_fem::{FrameError, Voigt};
 use ndda_mesh::{Mat3, Vec3};
 
@@ -54,6 +55,13 @@ pub struct StepContext<'a> {
     pub contact_stiffness: &'a [f64],
 }
 
+impl StepContext<'_> {
+    /// Time at which supports pull: (1 − θ) start + θ end [s].
+    fn theta_time_s(&self) -> f64 {
+        self.time_s + self.weights.stiffness * (self.end_s - self.time_s)
+    }
+}
+
 /// What a block reports of its step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BlockReport {
@@ -81,10 +89,18 @@ pub struct Body {
     pub initial_stress_pa: Option<Voigt>,
     /// Where the held nodes started [m], one entry per held node, then one per spring.
     anchor: Vec<Vec3>,
+    /// û [m].
     predicted: Vec<Vec3>,
+    /// Rᵀ f, later the velocity at the end of the step.
     load: Vec<Vec3>,
+    /// w in the block's frame [m].
     displacement: Vec<Vec3>,
+    /// s in the block's frame, later u in global axes [m].
     correction: Vec<Vec3>,
+    /// K w + ∫Bᵀσ₀ in the block's frame [N].
+    elastic: Vec<Vec3>,
+    /// Rigid part of u that keeps the books of momentum [m]; zero for supported blocks.
+    rigid: Vec<Vec3>,
     unknowns: Vec<f64>,
     scratch: Scratch,
     /// What it reports of the last step.
@@ -96,7 +112,7 @@ pub struct Body {
 impl Body {
     /// Memory for a block of this shape that rests at `position`.
     pub fn new(index: usize, shape: &Shape, initial: Option<Voigt>, position: &[Vec3]) -> Self {
-        let nodes = shape.operator.nodes();
+        let zeros = || vec![Vec3::zeros(); shape.operator.nodes()];
         let held = shape.supports.held.iter().map(|h| position[h.node as usize]);
         let sprung = shape.supports.springs.iter().map(|s| position[s.node as usize]);
         Self {
@@ -104,10 +120,12 @@ impl Body {
             initial_force: initial.map(|stress| initial_stress_force(&shape.operator, &stress)),
             initial_stress_pa: initial,
             anchor: held.chain(sprung).collect(),
-            predicted: vec![Vec3::zeros(); nodes],
-            load: vec![Vec3::zeros(); nodes],
-            displacement: vec![Vec3::zeros(); nodes],
-            correction: vec![Vec3::zeros(); nodes],
+            predicted: zeros(),
+            load: zeros(),
+            displacement: zeros(),
+            correction: zeros(),
+            elastic: zeros(),
+            rigid: zeros(),
             unknowns: vec![0.0; shape.unknowns.len()],
             scratch: shape.factor.as_ref().map_or_else(Vec::new, |f| f.new_scratch()),
             report: BlockReport::default(),
@@ -115,10 +133,15 @@ impl Body {
         }
     }
 
-    /// Advances the block by one step:  u = û + R K̃⁻¹ [Rᵀ f − K w − ∫Bᵀσ₀],  w = Rᵀ(x̂ − c) − X,  x̂ = x + θ û.
+    /// Advances the block by one step:
     ///
-    /// For R = I this is the paper's eqs (11)–(13). R is taken at x̂: taken at x it would let a spinning block gain
-    /// angular momentum.
+    /// ```text
+    /// u = û + R K̃⁻¹ [Rᵀ (f − (1 − θ) f_int) − θ (K w + ∫Bᵀσ₀)]      w = Rᵀ (x + û − c) − X
+    /// ```
+    ///
+    /// For R = I this is the paper's eqs (11)–(13). R is taken at x + û: taken at x it would let a spinning block
+    /// gain angular momentum. The start of the step enters by its own internal force f_int, in its own frame:
+    /// taken at the mean position instead, a turning block would be stretched by (ωΔt)²/8.
     ///
     /// # Errors
     /// [`BlockError`] when the block has lost its shape or its speed.
@@ -126,103 +149,107 @@ impl Body {
         &mut self,
         shape: &Shape,
         context: &StepContext,
-        nodes: NodeSlices,
+        mut nodes: NodeSlices,
     ) -> Result<(), BlockError> {
-        let NodeSlices { position, velocity, acceleration } = nodes;
         self.report = BlockReport::default();
-        self.predict(context, position, velocity, acceleration);
-        // x̂ is kept in `displacement` until w replaces it.
+        self.predict(context, &nodes);
+        // x + û is kept in `displacement` until w replaces it.
         let center = shape.operator.center(&self.displacement);
         let rotation = shape.supports.frame.rotation(&shape.operator, &self.displacement, &center)?;
-        self.gather_load(shape, context, &rotation);
+        self.gather_load(shape, context, &rotation, &nodes);
         self.turn_into_frame(shape, &rotation, &center);
-        self.add_internal_force(shape);
-        self.prescribe(shape, context, &rotation, position);
+        self.gather_residual(shape, context);
+        self.prescribe(shape, context, &rotation, nodes.position);
         self.solve(shape);
+        self.finish_prescribed(shape, context, &rotation, nodes.position);
+        self.update_internal_force(shape, &rotation, nodes.internal_force);
+        if !shape.is_free() {
+            self.collect_reactions(shape, context, &rotation, &nodes);
+        }
+        self.turn_back(&rotation);
         if shape.is_free() {
-            self.balance_momentum(shape, context, &rotation, position);
-        } else {
-            self.collect_reaction(shape, context, &rotation, position);
+            self.balance_momentum(shape, context, &nodes);
         }
-        self.advance(shape, context, &rotation, position, velocity, acceleration)
+        self.advance(shape, context, &mut nodes)
     }
 
-    /// û and x̂ = x + θ û.
-    fn predict(
-        &mut self,
-        context: &StepContext,
-        position: &[Vec3],
-        velocity: &[Vec3],
-        acceleration: &[Vec3],
-    ) {
+    /// û and x + û.
+    fn predict(&mut self, context: &StepContext, nodes: &NodeSlices) {
+        for (i, x) in nodes.position.iter().enumerate() {
+            let (v, a) = (&nodes.velocity[i], &nodes.acceleration[i]);
+            self.predicted[i] = context.integrator.predict(context.dt_s, v, a);
+            self.displacement[i] = x + self.predicted[i];
+        }
+    }
+
+    /// Rᵀ (f + springs at x + θ û − (1 − θ) f_int).
+    fn gather_load(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, nodes: &NodeSlices) {
         let theta = context.weights.stiffness;
-        for i in 0..position.len() {
-            self.predicted[i] = context.integrator.predict(context.dt_s, &velocity[i], &acceleration[i]);
-            self.displacement[i] = position[i] + theta * self.predicted[i];
-        }
-    }
-
-    /// Rᵀ (f + springs at x̂).
-    fn gather_load(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3) {
         self.load.copy_from_slice(context.force);
-        let theta_time = context.time_s + context.weights.stiffness * (context.end_s - context.time_s);
+        for (load, internal) in self.load.iter_mut().zip(&*nodes.internal_force) {
+            *load -= (1.0 - theta) * internal;
+        }
         let anchors = &self.anchor[shape.supports.held.len()..];
         for (spring, anchor) in shape.supports.springs.iter().zip(anchors) {
             let node = spring.node as usize;
-            let moved =
-                spring.motion.map_or(Vec3::zeros(), |m| shape.supports.motions[m].displacement(theta_time));
-            let stretch = along(spring.along.as_ref(), &(self.displacement[node] - anchor - moved));
-            self.load[node] -= spring.stiffness_n_m * stretch;
+            let place = nodes.position[node] + theta * self.predicted[node];
+            let stretch = place - anchor - displacement_at(shape, spring.motion, context.theta_time_s());
+            self.load[node] -= spring.stiffness_n_m * along(spring.along.as_ref(), &stretch);
         }
         for load in &mut self.load {
             *load = rotation.tr_mul(load);
         }
     }
 
-    /// w = Rᵀ (x̂ − c) − X.
+    /// w = Rᵀ (x − c) − X for the positions in `displacement`.
     fn turn_into_frame(&mut self, shape: &Shape, rotation: &Mat3, center: &Vec3) {
         for (w, rest) in self.displacement.iter_mut().zip(&shape.operator.rest) {
             *w = rotation.tr_mul(&(*w - center)) - rest;
         }
     }
 
-    /// Right-hand side Rᵀ f − K w − ∫Bᵀσ₀, left in `correction`.
-    fn add_internal_force(&mut self, shape: &Shape) {
-        shape.operator.stiffness_times(&self.displacement, &mut self.correction);
-        for (i, r) in self.correction.iter_mut().enumerate() {
-            *r = self.load[i] - *r - self.initial_force.as_ref().map_or(Vec3::zeros(), |f| f[i]);
+    /// K w + ∫Bᵀσ₀, and the right-hand side in `correction`.
+    fn gather_residual(&mut self, shape: &Shape, context: &StepContext) {
+        self.apply_stiffness(shape);
+        let theta = context.weights.stiffness;
+        for ((r, load), elastic) in self.correction.iter_mut().zip(&self.load).zip(&self.elastic) {
+            *r = load - theta * elastic;
+        }
+    }
+
+    /// elastic ← K w + ∫Bᵀσ₀ for w in `displacement`.
+    fn apply_stiffness(&mut self, shape: &Shape) {
+        shape.operator.stiffness_times(&self.displacement, &mut self.elastic);
+        if let Some(initial) = &self.initial_force {
+            self.elastic.iter_mut().zip(initial).for_each(|(e, f)| *e += f);
         }
     }
 
     /// Moves the terms of prescribed motion to the right-hand side; nothing to do for supports at rest.
     fn prescribe(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, position: &[Vec3]) {
-        for held in shape.supports.held.iter().filter(|h| h.motion.is_some()) {
-            let j = held.node as usize;
-            let goal = rotation.tr_mul(
-                &(self.prescribed_increment(shape, context, held.node, position) - self.predicted[j]),
-            );
-            let goal: Vec3 = held.held.iter().map(|n| n * n.dot(&goal)).sum();
-            for (i, stiffness, mass) in shape.operator.row(j) {
-                let coupling = context.weights.stiffness * stiffness.transpose() * goal
-                    + context.weights.mass_per_s2 * mass * goal;
-                self.correction[i] -= coupling;
+        let StepWeights { stiffness: theta, mass_per_s2: c, .. } = context.weights;
+        for (k, held) in moved(shape) {
+            let goal = self.prescribed_correction(shape, context, rotation, position, k);
+            for (i, stiffness, mass) in shape.operator.row(held.node as usize) {
+                self.correction[i] -= theta * stiffness.tr_mul(&goal) + c * mass * goal;
             }
         }
     }
 
-    /// u of a node with prescribed motion [m].
-    fn prescribed_increment(
+    /// s of the k-th held node when its motion is prescribed, in the block's frame [m].
+    fn prescribed_correction(
         &self,
         shape: &Shape,
         context: &StepContext,
-        node: u32,
+        rotation: &Mat3,
         position: &[Vec3],
+        k: usize,
     ) -> Vec3 {
-        let index = shape.supports.held.binary_search_by_key(&node, |h| h.node).expect("a held node");
-        let held = &shape.supports.held[index];
-        let displacement =
-            held.motion.map_or(Vec3::zeros(), |m| shape.supports.motions[m].displacement(context.end_s));
-        self.anchor[index] + displacement - position[node as usize]
+        let held = &shape.supports.held[k];
+        let node = held.node as usize;
+        let place = self.anchor[k] + displacement_at(shape, held.motion, context.end_s);
+        let goal = rotation.tr_mul(&(place - position[node] - self.predicted[node]));
+        onto(&held.held, &goal)
     }
 
     /// s = K̃⁻¹ r over the unknowns; held components stay zero.
@@ -235,85 +262,72 @@ impl Body {
         shape.unknowns.scatter(&self.unknowns, &mut self.correction);
     }
 
-    /// Gives the step exactly the momentum and angular momentum that outside forces bring.
-    ///
-    /// Internal forces of a corotated frame have no resultant but, to second order in the strain, a torque. It is
-    /// taken out as the rigid motion t + ω × y with  c m t = Σ g − c Σ m s  and  c I ω = Σ y* × g − c Σ y × M s,
-    /// where g = Rᵀ f, y* the places of contact and y the places at mid-step, both from their mass centre. Arms
-    /// at x* make the total exact: contact forces have no torque there.
-    fn balance_momentum(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, position: &[Vec3]) {
-        let (operator, c) = (&shape.operator, context.weights.mass_per_s2);
-        let missing = self.load.iter().sum::<Vec3>() - c * operator.momentum(&self.correction);
-        let shift = missing / (c * operator.mass_kg);
-        self.correction.iter_mut().for_each(|s| *s += shift);
-
-        let contact_center = operator.center(context.contact_position);
-        let arms = context.contact_position.iter().zip(&self.load);
-        let torque: Vec3 = arms.map(|(x, g)| rotation.tr_mul(&(x - contact_center)).cross(g)).sum();
-        // Two passes: the first changes the arms of the second by its own small size.
-        for _ in 0..2 {
-            // Arms at mid-step replace w, which is not needed any more.
-            for (i, x) in position.iter().enumerate() {
-                let middle = x + 0.5 * self.predicted[i];
-                self.displacement[i] = rotation.tr_mul(&(middle - contact_center)) + 0.5 * self.correction[i];
-            }
-            let center = operator.center(&self.displacement);
-            self.displacement.iter_mut().for_each(|y| *y -= center);
-            let spin = operator.angular_momentum(&Vec3::zeros(), &self.displacement, &self.correction);
-            let inertia = c * operator.inertia(&self.displacement);
-            let Some(inverse) = inertia.try_inverse() else { return };
-            let turn = inverse * (torque - c * spin);
-            for (s, y) in self.correction.iter_mut().zip(&self.displacement) {
-                *s += turn.cross(y);
-            }
+    fn finish_prescribed(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        rotation: &Mat3,
+        position: &[Vec3],
+    ) {
+        for (k, held) in moved(shape) {
+            let goal = self.prescribed_correction(shape, context, rotation, position, k);
+            self.correction[held.node as usize] += goal;
         }
     }
 
-    /// What supports must exert for the held components and springs to do as they do.
-    fn collect_reaction(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, position: &[Vec3]) {
-        let StepWeights { stiffness: theta, mass_per_s2: c, .. } = context.weights;
-        for held in shape.supports.held.iter().filter(|h| h.motion.is_some()) {
-            let j = held.node as usize;
-            let goal = rotation.tr_mul(
-                &(self.prescribed_increment(shape, context, held.node, position) - self.predicted[j]),
-            );
-            self.correction[j] += held.held.iter().map(|n| n * n.dot(&goal)).sum::<Vec3>();
+    /// f_int ← R (K (w + s) + ∫Bᵀσ₀) at the end of the step, where somebody will ask for it.
+    fn update_internal_force(&mut self, shape: &Shape, rotation: &Mat3, internal_force: &mut [Vec3]) {
+        if shape.is_free() && internal_force.is_empty() {
+            return;
         }
+        self.displacement.iter_mut().zip(&self.correction).for_each(|(w, s)| *w += s);
+        self.apply_stiffness(shape);
+        for (internal, elastic) in internal_force.iter_mut().zip(&self.elastic) {
+            *internal = rotation * elastic;
+        }
+    }
+
+    /// What supports must exert for held components and springs to do as they do.
+    fn collect_reactions(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        rotation: &Mat3,
+        nodes: &NodeSlices,
+    ) {
+        let StepWeights { stiffness: theta, mass_per_s2: c, .. } = context.weights;
+        self.collect_springs(shape, context, rotation, nodes);
         for held in &shape.supports.held {
             let i = held.node as usize;
-            let mut inertia = Vec3::zeros();
-            let mut elastic = self.initial_force.as_ref().map_or(Vec3::zeros(), |f| f[i]);
-            for (j, stiffness, mass) in shape.operator.row(i) {
-                inertia += c * mass * self.correction[j];
-                elastic += stiffness * (self.displacement[j] + theta * self.correction[j]);
-            }
-            let unbalanced = inertia + elastic - self.load[i];
-            let reaction = rotation * held.held.iter().map(|n| n * n.dot(&unbalanced)).sum::<Vec3>();
+            let row = shape.operator.row(i);
+            let inertia = row.fold(Vec3::zeros(), |sum, (j, _, mass)| sum + c * mass * self.correction[j]);
+            let unbalanced = inertia + theta * self.elastic[i] - self.load[i];
+            let reaction = rotation * onto(&held.held, &unbalanced);
             let increment = self.predicted[i] + rotation * self.correction[i];
-            self.add_reaction(&reaction, &(position[i] + 0.5 * increment));
+            self.add_reaction(&reaction, &(nodes.position[i] + 0.5 * increment));
             if held.motion.is_some() {
                 self.report.motion_work_j += reaction.dot(&increment);
             }
         }
-        self.collect_springs(shape, context, rotation, position);
     }
 
-    fn collect_springs(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, position: &[Vec3]) {
+    /// Forces of the springs at x + θ u; what u adds to them also goes to `load`, for nodes that are held, too.
+    fn collect_springs(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, nodes: &NodeSlices) {
         let theta = context.weights.stiffness;
-        let theta_time = context.time_s + theta * (context.end_s - context.time_s);
         for (k, spring) in shape.supports.springs.iter().enumerate() {
             let i = spring.node as usize;
-            let motion = spring.motion.map(|m| &shape.supports.motions[m]);
-            let moved = motion.map_or(Vec3::zeros(), |m| m.displacement(theta_time));
-            let increment = self.predicted[i] + rotation * self.correction[i];
-            let place = position[i] + theta * increment;
+            let turned = rotation * self.correction[i];
+            let increment = self.predicted[i] + turned;
             let anchor = self.anchor[shape.supports.held.len() + k];
-            let reaction = -spring.stiffness_n_m * along(spring.along.as_ref(), &(place - anchor - moved));
-            self.add_reaction(&reaction, &(position[i] + 0.5 * increment));
-            if let Some(motion) = motion {
-                let travel = motion.displacement(context.end_s) - motion.displacement(context.time_s);
-                self.report.motion_work_j += reaction.dot(&travel);
-            }
+            let target = anchor + displacement_at(shape, spring.motion, context.theta_time_s());
+            let stretch = nodes.position[i] + theta * increment - target;
+            let reaction = -spring.stiffness_n_m * along(spring.along.as_ref(), &stretch);
+            let added = -spring.stiffness_n_m * theta * along(spring.along.as_ref(), &turned);
+            self.load[i] += rotation.tr_mul(&added);
+            self.add_reaction(&reaction, &(nodes.position[i] + 0.5 * increment));
+            let travel = displacement_at(shape, spring.motion, context.end_s)
+                - displacement_at(shape, spring.motion, context.time_s);
+            self.report.motion_work_j += reaction.dot(&travel);
         }
     }
 
@@ -322,25 +336,86 @@ impl Body {
         self.report.outside_torque += place.cross(reaction);
     }
 
-    /// u = û + R s; velocities, accelerations and positions at the end of the step; what the step did.
+    /// u = û + R s.
+    fn turn_back(&mut self, rotation: &Mat3) {
+        for (s, predicted) in self.correction.iter_mut().zip(&self.predicted) {
+            *s = predicted + rotation * *s;
+        }
+    }
+
+    /// Gives a free block exactly the momentum and angular momentum that outside forces bring.
+    ///
+    /// Internal forces of a corotated frame have no resultant but, to second order in the strain, a torque. It is
+    /// taken out by a rigid part of u, t + ω × y, such that c Σ m (u − û) = Σ f and
+    /// Σ y × M (v₁ − v₀) + Σ u × M (½ (v₀ + v₁) − u/Δt) = Δt Σ y* × f,
+    /// y at mid-step and y* at x*, both from their mass centre. The left side is the change of angular momentum;
+    /// arms at x* keep the total of all blocks exact, since contact forces have no torque there.
+    fn balance_momentum(&mut self, shape: &Shape, context: &StepContext, nodes: &NodeSlices) {
+        let (operator, c) = (&shape.operator, context.weights.mass_per_s2);
+        let total: Vec3 = context.force.iter().sum();
+        let had = operator.momentum(&self.correction) - operator.momentum(&self.predicted);
+        let shift = (total - c * had) / (c * operator.mass_kg);
+        self.correction.iter_mut().for_each(|u| *u += shift);
+
+        let center = operator.center(context.contact_position);
+        let arms = context.contact_position.iter().zip(context.force);
+        let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
+        self.rigid.fill(Vec3::zeros());
+        let mut inverse_inertia = None;
+        // Two passes: the first changes the arms of the second by its own small size.
+        for _ in 0..2 {
+            let missing = context.dt_s * torque - self.angular_gain(shape, context, nodes);
+            let inertia = || operator.inertia(&self.displacement).try_inverse();
+            let Some(inverse) = inverse_inertia.or_else(inertia) else { return };
+            inverse_inertia = Some(inverse);
+            let turn = inverse * missing / context.weights.velocity_per_m;
+            for (r, y) in self.rigid.iter_mut().zip(&self.displacement) {
+                *r += turn.cross(y);
+            }
+        }
+    }
+
+    /// Change of angular momentum about the mass centre that u brings [kg m²/s]; leaves y in `displacement` and
+    /// v₁ − v₀ in `load`.
+    fn angular_gain(&mut self, shape: &Shape, context: &StepContext, nodes: &NodeSlices) -> Vec3 {
+        let (operator, rate) = (&shape.operator, context.weights.velocity_per_m);
+        for (i, u) in self.correction.iter().enumerate() {
+            let (mut velocity, mut acceleration) = (nodes.velocity[i], nodes.acceleration[i]);
+            let predicted = &self.predicted[i];
+            context.integrator.correct(context.dt_s, u, predicted, &mut velocity, &mut acceleration);
+            self.load[i] = velocity - nodes.velocity[i] + rate * self.rigid[i];
+            self.displacement[i] = nodes.position[i] + 0.5 * (u + self.rigid[i]);
+        }
+        let center = operator.center(&self.displacement);
+        self.displacement.iter_mut().for_each(|y| *y -= center);
+        let mut gained = operator.angular_momentum(&Vec3::zeros(), &self.displacement, &self.load);
+        if !context.weights.mean_velocity {
+            for (i, u) in self.correction.iter().enumerate() {
+                let mean = (u + self.rigid[i]) / context.dt_s;
+                self.elastic[i] = nodes.velocity[i] + 0.5 * self.load[i] - mean;
+            }
+            gained += operator.angular_momentum(&Vec3::zeros(), &self.correction, &self.elastic);
+        }
+        gained
+    }
+
+    /// Velocities, accelerations and positions at the end of the step; what the step did.
     fn advance(
         &mut self,
         shape: &Shape,
         context: &StepContext,
-        rotation: &Mat3,
-        position: &mut [Vec3],
-        velocity: &mut [Vec3],
-        acceleration: &mut [Vec3],
+        nodes: &mut NodeSlices,
     ) -> Result<(), BlockError> {
-        let report = &mut self.report;
+        let (report, rate) = (&mut self.report, context.weights.velocity_per_m);
         let mut fastest = (0.0, 0);
-        for i in 0..position.len() {
-            let predicted = self.predicted[i];
-            let u = predicted + rotation * self.correction[i];
-            context.integrator.correct(context.dt_s, &u, &predicted, &mut velocity[i], &mut acceleration[i]);
-            position[i] += u;
+        for (i, u) in self.correction.iter().enumerate() {
+            let (v, a) = (&mut nodes.velocity[i], &mut nodes.acceleration[i]);
+            context.integrator.correct(context.dt_s, u, &self.predicted[i], v, a);
+            *v += rate * self.rigid[i];
+            let u = u + self.rigid[i];
+            nodes.position[i] += u;
             report.outside_torque += context.contact_position[i].cross(&context.external[i]);
-            let speed = velocity[i].norm_squared();
+            let speed = v.norm_squared();
             // A NaN speed must win, too.
             if speed > fastest.0 || speed.is_nan() {
                 fastest = (speed, i);
@@ -352,8 +427,12 @@ impl Body {
                 report.contact_rate2 = report.contact_rate2.max(stiffness / shape.operator.node_mass[i]);
             }
         }
-        for held in shape.supports.held.iter().filter(|h| h.motion.is_some()) {
-            follow_motion(held, &self.predicted, rotation, &self.correction, context, velocity, acceleration);
+        for (_, held) in moved(shape) {
+            // The mean velocity of the step does not ring where the table has a kink.
+            let i = held.node as usize;
+            let mean = self.correction[i] / context.dt_s;
+            nodes.velocity[i] += onto(&held.held, &(mean - nodes.velocity[i]));
+            nodes.acceleration[i] -= onto(&held.held, &nodes.acceleration[i]);
         }
         report.speed_m_s = fastest.0.sqrt();
         let wave_speed_m_s = shape.material.wave_speed_m_s();
@@ -364,16 +443,15 @@ impl Body {
         Ok(())
     }
 
-    /// Elastic energy at `position`, ½ wᵀ K w + wᵀ ∫Bᵀσ₀ [J], and w left in the returned slice.
+    /// Elastic energy at `position`, ½ wᵀ K w + wᵀ ∫Bᵀσ₀ [J].
     ///
     /// # Errors
     /// [`FrameError`] when the block has no rotation any more.
     pub fn strain_energy_j(&mut self, shape: &Shape, position: &[Vec3]) -> Result<f64, FrameError> {
-        let rotation = self.recover_displacement(shape, position)?;
-        debug_assert!(rotation.determinant() > 0.0);
-        shape.operator.stiffness_times(&self.displacement, &mut self.correction);
+        self.recover_displacement(shape, position)?;
+        shape.operator.stiffness_times(&self.displacement, &mut self.elastic);
         let initial = |i: usize| self.initial_force.as_ref().map_or(Vec3::zeros(), |f| f[i]);
-        let terms = self.displacement.iter().zip(&self.correction).enumerate();
+        let terms = self.displacement.iter().zip(&self.elastic).enumerate();
         Ok(terms.map(|(i, (w, kw))| w.dot(&(0.5 * kw + initial(i)))).sum())
     }
 
@@ -413,20 +491,17 @@ fn along(direction: Option<&Vec3>, v: &Vec3) -> Vec3 {
     direction.map_or(*v, |n| n * n.dot(v))
 }
 
-/// Velocity of a moved node: its mean over the step, which does not ring where the table has a kink.
-fn follow_motion(
-    held: &ndda_fem::supports::HeldNode,
-    predicted: &[Vec3],
-    rotation: &Mat3,
-    correction: &[Vec3],
-    context: &StepContext,
-    velocity: &mut [Vec3],
-    acceleration: &mut [Vec3],
-) {
-    let i = held.node as usize;
-    let mean = (predicted[i] + rotation * correction[i]) / context.dt_s;
-    for n in &held.held {
-        velocity[i] += n * n.dot(&(mean - velocity[i]));
-        acceleration[i] -= n * n.dot(&acceleration[i]);
-    }
+/// The part of `v` in the span of orthonormal directions.
+fn onto(directions: &[Vec3], v: &Vec3) -> Vec3 {
+    directions.iter().map(|n| n * n.dot(v)).sum()
+}
+
+/// Held nodes whose motion is prescribed, with their place in the list.
+fn moved(shape: &Shape) -> impl Iterator<Item = (usize, &HeldNode)> {
+    shape.supports.held.iter().enumerate().filter(|(_, held)| held.motion.is_some())
+}
+
+/// Displacement of a prescribed motion, zero where there is none [m].
+fn displacement_at(shape: &Shape, motion: Option<usize>, time_s: f64) -> Vec3 {
+    motion.map_or(Vec3::zeros(), |m| shape.supports.motions[m].displacement(time_s))
 }

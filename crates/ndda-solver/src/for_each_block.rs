@@ -10,6 +10,8 @@ pub struct NodeSlices<'a> {
     pub velocity: &'a mut [Vec3],
     /// a [m/s²].
     pub acceleration: &'a mut [Vec3],
+    /// f_int [N]; empty when the integrator does not need it.
+    pub internal_force: &'a mut [Vec3],
 }
 
 impl<'a> NodeSlices<'a> {
@@ -17,8 +19,10 @@ impl<'a> NodeSlices<'a> {
         let (p0, p1) = self.position.split_at_mut(node);
         let (v0, v1) = self.velocity.split_at_mut(node);
         let (a0, a1) = self.acceleration.split_at_mut(node);
-        let head = Self { position: p0, velocity: v0, acceleration: a0 };
-        (head, Self { position: p1, velocity: v1, acceleration: a1 })
+        let kept = node.min(self.internal_force.len());
+        let (f0, f1) = self.internal_force.split_at_mut(kept);
+        let head = Self { position: p0, velocity: v0, acceleration: a0, internal_force: f0 };
+        (head, Self { position: p1, velocity: v1, acceleration: a1, internal_force: f1 })
     }
 }
 

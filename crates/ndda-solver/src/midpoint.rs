@@ -28,6 +28,8 @@ impl TimeIntegrator for Midpoint {
         StepWeights {
             stiffness: self.theta,
             mass_per_s2,
+            velocity_per_m: 2.0 / dt_s,
+            mean_velocity: true,
             contact_lead: 0.5,
             new_force: 1.0,
             needs_acceleration: false,

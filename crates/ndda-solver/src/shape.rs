@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use ndda_fem::frame::polar_rotation;
 use ndda_fem::{BlockOperator, BlockSupports, Frame, Material, NodeSupport, SupportError, Voigt};
-use ndda_mesh::{BlockId, BlockSet, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::linear_solver::{Factor, FactorError, LinearSolver};
 use crate::time_integrator::StepWeights;
@@ -121,8 +121,7 @@ impl Shape {
         let Frame::Free { inverse_moment } = &self.supports.frame else { return false };
         let center = self.operator.center(position);
         let weighted = self.operator.node_mass.iter().zip(position).zip(&self.operator.rest);
-        let moment =
-            weighted.map(|((&m, x), rest)| m * (x - center) * rest.transpose()).sum::<ndda_mesh::Mat3>();
+        let moment = weighted.map(|((&m, x), rest)| m * (x - center) * rest.transpose()).sum::<Mat3>();
         let Ok(rotation) = polar_rotation(&(moment * inverse_moment)) else { return false };
         let size = self.operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
         let misfit = |(x, rest): (&Vec3, &Vec3)| (x - center - rotation * rest).norm();

@@ -161,6 +161,7 @@ impl Simulation {
                 position: blocks.rest_position.clone(),
                 velocity: vec![Vec3::zeros(); nodes],
                 acceleration: vec![Vec3::zeros(); nodes],
+                internal_force: vec![Vec3::zeros(); if weights.stiffness < 1.0 { nodes } else { 0 }],
                 contact: Default::default(),
             },
             bodies: Vec::with_capacity(blocks.len()),
@@ -196,10 +197,15 @@ impl Simulation {
             add_traction(triangles, rest, traction_pa, external);
         }
         let center = shape.operator.center(rest);
-        for (v, x) in self.state.velocity[range].iter_mut().zip(rest) {
+        for (v, x) in self.state.velocity[range.clone()].iter_mut().zip(rest) {
             *v = setup.velocity_m_s + setup.spin_rad_s.cross(&(x - center));
         }
-        self.bodies.push(Body::new(shape_index, shape, setup.initial_stress_pa, rest));
+        let body = Body::new(shape_index, shape, setup.initial_stress_pa, rest);
+        let internal = self.state.internal_force.get_mut(range).unwrap_or_default();
+        if let Some(initial) = &body.initial_force {
+            internal.iter_mut().zip(initial).for_each(|(f, initial)| *f = *initial);
+        }
+        self.bodies.push(body);
         for held in &shape.supports.held {
             let v = &mut self.state.velocity[self.blocks.nodes_of(block).start + held.node as usize];
             for n in &held.held {
@@ -317,6 +323,7 @@ impl Simulation {
             position: &mut self.state.position,
             velocity: &mut self.state.velocity,
             acceleration: &mut self.state.acceleration,
+            internal_force: &mut self.state.internal_force,
         };
         let starts = blocks.node_starts();
         for_each_block(0, &mut self.bodies, starts, slices, GRAIN_NODES, &|index, body: &mut Body, nodes| {

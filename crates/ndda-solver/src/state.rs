@@ -14,6 +14,8 @@ pub struct State {
     pub velocity: Vec<Vec3>,
     /// Acceleration a per node [m/s²].
     pub acceleration: Vec<Vec3>,
+    /// Internal force R (K w + ∫Bᵀσ₀) per node [N]; empty for integrators that take elasticity at the end only.
+    pub internal_force: Vec<Vec3>,
     /// What contact remembers.
     pub contact: ContactHistory,
 }

@@ -5,10 +5,14 @@ use ndda_mesh::Vec3;
 /// The numbers by which one step is weighted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepWeights {
-    /// θ: elasticity acts at x + θ u.
+    /// θ: elasticity acts as (1 − θ) of its value at the start plus θ of that at the end.
     pub stiffness: f64,
     /// c = 1/(β Δt²) [1/s²]: the mean acceleration of the step is c (u − û).
     pub mass_per_s2: f64,
+    /// ∂v₁/∂u [1/s].
+    pub velocity_per_m: f64,
+    /// Whether u = Δt (v₀ + v₁)/2.
+    pub mean_velocity: bool,
     /// Contact acts at x* = x + lead · Δt v.
     pub contact_lead: f64,
     /// γ: the momentum changes by Δt [(1 − γ) f_old + γ f_new].
@@ -17,7 +21,8 @@ pub struct StepWeights {
     pub needs_acceleration: bool,
 }
 
-/// A one-step integrator for M a + K d = f, solved per block as  (θ K + c M)(u − û) = f − K (d + θ û).
+/// A one-step integrator for M a + K d = f, solved per block as
+/// (θ K + c M)(u − û) = f − (1 − θ) K d − θ K (d + û).
 ///
 /// Contract (checked by [`check_integrator`](crate::testing::check_integrator)): exact for constant acceleration,
 /// keeps constant velocity, `correct` undoes `predict` when the step brings no acceleration.
