@@ -120,13 +120,14 @@ impl BlockOperator {
         0.5 * (0..self.nodes()).map(|i| velocity[i].dot(&self.mass_row_times(i, velocity))).sum::<f64>()
     }
 
-    /// Moment of inertia Σᵢⱼ Mᵢⱼ (yᵢ·yⱼ I − yⱼ yᵢᵀ) of positions relative to the mass centre [kg m²].
-    pub fn inertia(&self, arm: &[Vec3]) -> Mat3 {
+    /// Σᵢⱼ Mᵢⱼ ((yᵢ·zⱼ) I − zⱼ yᵢᵀ) of arms from the mass centre [kg m²], so that Σ y × M (ω × z) is its product
+    /// with ω; for y = z the moment of inertia.
+    pub fn inertia(&self, y: &[Vec3], z: &[Vec3]) -> Mat3 {
         let mut second_moment = Mat3::zeros();
-        for (i, arm_i) in arm.iter().enumerate() {
-            second_moment += self.mass_row_times(i, arm) * arm_i.transpose();
+        for (i, y_i) in y.iter().enumerate() {
+            second_moment += self.mass_row_times(i, z) * y_i.transpose();
         }
-        Mat3::identity() * second_moment.trace() - 0.5 * (second_moment + second_moment.transpose())
+        Mat3::identity() * second_moment.trace() - second_moment
     }
 }
 
@@ -185,9 +186,12 @@ mod tests {
         let operator = two_tets();
         let spin = Vec3::new(0.3, -1.0, 0.5);
         let velocity: Vec<Vec3> = operator.rest.iter().map(|x| spin.cross(x)).collect();
-        let expected = 0.5 * spin.dot(&(operator.inertia(&operator.rest) * spin));
+        let expected = 0.5 * spin.dot(&(operator.inertia(&operator.rest, &operator.rest) * spin));
         assert!((operator.kinetic_energy_j(&velocity) - expected).abs() < 1e-13 * expected);
         let angular = operator.angular_momentum(&Vec3::zeros(), &operator.rest, &velocity);
-        assert!((angular - operator.inertia(&operator.rest) * spin).norm() < 1e-13 * angular.norm());
+        assert!(
+            (angular - operator.inertia(&operator.rest, &operator.rest) * spin).norm()
+                < 1e-13 * angular.norm()
+        );
     }
 }

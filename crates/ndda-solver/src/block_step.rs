@@ -346,9 +346,9 @@ impl Body {
     /// Gives a free block exactly the momentum and angular momentum that outside forces bring.
     ///
     /// Internal forces of a corotated frame have no resultant but, to second order in the strain, a torque. It is
-    /// taken out by a rigid part of u, t + ω × y, such that c Σ m (u − û) = Σ f and
+    /// taken out by a rigid part of u, t + ω × z, such that c Σ m (u − û) = Σ f and
     /// Σ y × M (v₁ − v₀) + Σ u × M (½ (v₀ + v₁) − u/Δt) = Δt Σ y* × f,
-    /// y at mid-step and y* at x*, both from their mass centre. The left side is the change of angular momentum;
+    /// y at mid-step, z at its end and y* at x*, all from their mass centre. The left side is the change of angular momentum;
     /// arms at x* keep the total of all blocks exact, since contact forces have no torque there.
     fn balance_momentum(&mut self, shape: &Shape, context: &StepContext, nodes: &NodeSlices) {
         let (operator, c) = (&shape.operator, context.weights.mass_per_s2);
@@ -365,14 +365,24 @@ impl Body {
         // Two passes: the first changes the arms of the second by its own small size.
         for _ in 0..2 {
             let missing = context.dt_s * torque - self.angular_gain(shape, context, nodes);
-            let inertia = || operator.inertia(&self.displacement).try_inverse();
+            self.place_end_arms(shape);
+            let inertia = || operator.inertia(&self.displacement, &self.elastic).try_inverse();
             let Some(inverse) = inverse_inertia.or_else(inertia) else { return };
             inverse_inertia = Some(inverse);
             let turn = inverse * missing / context.weights.velocity_per_m;
-            for (r, y) in self.rigid.iter_mut().zip(&self.displacement) {
-                *r += turn.cross(y);
+            for (r, z) in self.rigid.iter_mut().zip(&self.elastic) {
+                *r += turn.cross(z);
             }
         }
+    }
+
+    /// elastic ← z, the arms at the end of the step: a turn about them stretches nothing.
+    fn place_end_arms(&mut self, shape: &Shape) {
+        for (i, z) in self.elastic.iter_mut().enumerate() {
+            *z = self.displacement[i] + 0.5 * (self.correction[i] + self.rigid[i]);
+        }
+        let center = shape.operator.center(&self.elastic);
+        self.elastic.iter_mut().for_each(|z| *z -= center);
     }
 
     /// Change of angular momentum about the mass centre that u brings [kg m²/s]; leaves y in `displacement` and
