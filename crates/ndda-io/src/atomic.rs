@@ -1,0 +1,95 @@
+//! Whole files or none: a reader never sees half of one, a crash leaves the old one or the new one.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use crate::write_error::WriteError;
+
+/// Ending of the temporary file beside the one that is being written.
+pub const TEMPORARY_ENDING: &str = ".tmp";
+
+/// Replaces the file at `path` by `content`: temporary file in the same folder, sync, rename, sync of the folder.
+///
+/// # Errors
+/// [`WriteError::Io`] with the step that failed; the temporary file is then removed and an older file at `path`
+/// is as it was.
+pub fn write(path: &Path, content: &[u8]) -> Result<(), WriteError> {
+    let temporary = temporary_path(path);
+    let done = write_and_sync(&temporary, content).and_then(|()| {
+        fs::rename(&temporary, path).map_err(WriteError::io("rename the temporary file to", path))
+    });
+    match done {
+        Ok(()) => sync_folder_of(path),
+        // The first error is the one to report; a temporary file that was never created cannot be removed.
+        Err(_) => drop(fs::remove_file(&temporary)),
+    }
+    done
+}
+
+fn write_and_sync(path: &Path, content: &[u8]) -> Result<(), WriteError> {
+    let mut file = File::create(path).map_err(WriteError::io("create", path))?;
+    file.write_all(content).map_err(WriteError::io("write", path))?;
+    file.sync_all().map_err(WriteError::io("sync", path))
+}
+
+fn temporary_path(path: &Path) -> PathBuf {
+    let mut name = path.file_name().map_or_else(OsString::new, OsString::from);
+    name.push(TEMPORARY_ENDING);
+    path.with_file_name(name)
+}
+
+/// Makes the rename durable. Not every file system can sync a folder; the file itself is whole in any case, so a
+/// refusal is no error.
+fn sync_folder_of(path: &Path) {
+    let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if let Ok(folder) = File::open(folder) {
+        drop(folder.sync_all());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names_in(folder: &Path) -> Vec<OsString> {
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect()
+    }
+
+    #[test]
+    fn a_file_is_replaced_whole_and_no_temporary_is_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("summary.json");
+        write(&path, b"a long first version").unwrap();
+        write(&path, b"second").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"second");
+        assert_eq!(names_in(folder.path()), ["summary.json"]);
+    }
+
+    #[test]
+    fn a_temporary_left_by_a_killed_run_is_no_obstacle() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("a.csv.tmp"), "half a fi").unwrap();
+        write(&folder.path().join("a.csv"), b"whole").unwrap();
+        assert_eq!(names_in(folder.path()), ["a.csv"]);
+    }
+
+    #[test]
+    fn a_failed_rename_leaves_no_temporary_and_names_the_step() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("taken");
+        fs::create_dir_all(path.join("by a folder")).unwrap();
+        let error = write(&path, b"x").unwrap_err().to_string();
+        assert!(error.starts_with("cannot rename the temporary file to "), "{error}");
+        assert_eq!(names_in(folder.path()), ["taken"]);
+    }
+
+    #[test]
+    fn a_missing_folder_is_an_error_with_the_path() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = write(&folder.path().join("no/such.csv"), b"x").unwrap_err();
+        assert!(matches!(error, WriteError::Io { operation: "create", .. }));
+        assert!(error.to_string().contains("such.csv"));
+    }
+}

@@ -1,0 +1,306 @@
+//! The output folder: made ready before the run begins, and never at the cost of somebody's files.
+
+use std::fs::{self, File, FileType};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use crate::atomic::TEMPORARY_ENDING;
+use crate::write_error::WriteError;
+
+/// File of the end-of-run summary.
+pub const SUMMARY: &str = "summary.json";
+/// File of the history.
+pub const HISTORY: &str = "history.csv";
+/// File that lists the frames of fields.
+pub const FIELDS_INDEX: &str = "fields.pvd";
+/// Folder of the frames.
+pub const FIELDS_FOLDER: &str = "fields";
+
+/// Files at the top of the folder, in the order in which an earlier run is deleted: an index before what it lists.
+const TOP_FILES: [&str; 3] = [FIELDS_INDEX, HISTORY, SUMMARY];
+const PROBE: &str = "ndda-probe.tmp";
+const PROBE_BYTES: usize = 1 << 20;
+
+/// Name of a frame's file: `frame_000012.vtu`.
+pub fn frame_name(number: usize) -> String {
+    format!("frame_{number:06}.vtu")
+}
+
+/// A folder that exists, holds no earlier run, and can be written to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutputFolder {
+    path: PathBuf,
+}
+
+impl OutputFolder {
+    /// Makes the folder at `path` ready for a run; parents are created.
+    ///
+    /// With `force` the files of an earlier run are deleted: those that ndda writes, by name, and nothing else.
+    /// A mebibyte is written and removed again, so that a read-only folder or a full disk shows up now.
+    ///
+    /// # Errors
+    /// [`WriteError::IsFile`] when `path` is a file; without `force`, [`WriteError::EarlierRun`] or
+    /// [`WriteError::NotOurs`] when the folder is not empty; [`WriteError::InTheWay`] when something of another
+    /// kind has one of our names; [`WriteError::Io`] when the folder cannot be created or written to.
+    pub fn create(path: &Path, force: bool) -> Result<Self, WriteError> {
+        if path.exists() && !path.is_dir() {
+            return Err(WriteError::IsFile { path: path.to_path_buf() });
+        }
+        fs::create_dir_all(path).map_err(WriteError::io("create the folder", path))?;
+        if force {
+            delete_earlier_run(path)?;
+        } else {
+            refuse_unless_empty(path)?;
+        }
+        probe(path)?;
+        Ok(Self { path: path.to_path_buf() })
+    }
+
+    /// The folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Where the summary goes.
+    pub fn summary(&self) -> PathBuf {
+        self.path.join(SUMMARY)
+    }
+
+    /// Where the history goes.
+    pub fn history(&self) -> PathBuf {
+        self.path.join(HISTORY)
+    }
+
+    /// Where the list of frames goes.
+    pub fn fields_index(&self) -> PathBuf {
+        self.path.join(FIELDS_INDEX)
+    }
+}
+
+fn refuse_unless_empty(path: &Path) -> Result<(), WriteError> {
+    // A probe that a killed run left behind is no result.
+    let names: Vec<String> =
+        entries(path)?.into_iter().map(|(name, _)| name).filter(|n| n != PROBE).collect();
+    let ours = |name: &&String| is_top_file(name) || *name == FIELDS_FOLDER;
+    if let Some(found) = names.iter().find(ours) {
+        return Err(WriteError::EarlierRun { path: path.to_path_buf(), found: found.clone() });
+    }
+    match names.first() {
+        Some(found) => Err(WriteError::NotOurs { path: path.to_path_buf(), found: found.clone() }),
+        None => Ok(()),
+    }
+}
+
+/// Deletes what ndda writes. Looks at everything first, so that nothing is deleted when something is in the way.
+fn delete_earlier_run(path: &Path) -> Result<(), WriteError> {
+    let mut has_frames = false;
+    for (name, kind) in entries(path)? {
+        let in_the_way = |needed| Err(WriteError::InTheWay { path: path.join(&name), needed });
+        if is_top_file(&name) && kind.is_dir() {
+            return in_the_way("file");
+        }
+        if name == FIELDS_FOLDER {
+            // A link is not followed: what it points to may be somebody else's.
+            if !kind.is_dir() {
+                return in_the_way("folder");
+            }
+            has_frames = true;
+        }
+    }
+    let frames = path.join(FIELDS_FOLDER);
+    let mut frame_files = Vec::new();
+    if has_frames {
+        for (name, kind) in entries(&frames)? {
+            if is_frame(&name) {
+                if kind.is_dir() {
+                    return Err(WriteError::InTheWay { path: frames.join(&name), needed: "file" });
+                }
+                frame_files.push(frames.join(name));
+            }
+        }
+    }
+    delete(&path.join(FIELDS_INDEX))?;
+    for file in &frame_files {
+        delete(file)?;
+    }
+    for name in TOP_FILES {
+        delete(&path.join(name))?;
+        delete(&path.join(format!("{name}{TEMPORARY_ENDING}")))?;
+    }
+    Ok(())
+}
+
+fn delete(path: &Path) -> Result<(), WriteError> {
+    match fs::remove_file(path) {
+        Err(e) if e.kind() != ErrorKind::NotFound => Err(WriteError::io("delete", path)(e)),
+        _ => Ok(()),
+    }
+}
+
+/// Names in a folder, sorted, each with its own kind (a link is a link).
+fn entries(path: &Path) -> Result<Vec<(String, FileType)>, WriteError> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(path).map_err(WriteError::io("list", path))? {
+        let entry = entry.map_err(WriteError::io("list", path))?;
+        let kind = entry.file_type().map_err(WriteError::io("look at", &entry.path()))?;
+        found.push((entry.file_name().to_string_lossy().into_owned(), kind));
+    }
+    found.sort_by(|a, b| a.0.cmp(&b.0));
+    Ok(found)
+}
+
+fn is_top_file(name: &str) -> bool {
+    TOP_FILES.contains(&name.strip_suffix(TEMPORARY_ENDING).unwrap_or(name))
+}
+
+/// Whether `name` is `frame_`, six digits or more, `.vtu`, and perhaps the temporary ending.
+fn is_frame(name: &str) -> bool {
+    let name = name.strip_suffix(TEMPORARY_ENDING).unwrap_or(name);
+    let number = name.strip_prefix("frame_").and_then(|rest| rest.strip_suffix(".vtu"));
+    number.is_some_and(|n| n.len() >= 6 && n.bytes().all(|b| b.is_ascii_digit()))
+}
+
+fn probe(folder: &Path) -> Result<(), WriteError> {
+    let path = folder.join(PROBE);
+    delete(&path)?;
+    let written = write_probe(&path);
+    let removed = delete(&path);
+    written.and(removed)
+}
+
+fn write_probe(path: &Path) -> Result<(), WriteError> {
+    let mut file = File::create_new(path).map_err(WriteError::io("create", path))?;
+    file.write_all(&vec![0x5a; PROBE_BYTES]).map_err(WriteError::io("write", path))?;
+    file.sync_all().map_err(WriteError::io("sync", path))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names_in(folder: &Path) -> Vec<String> {
+        entries(folder).unwrap().into_iter().map(|(name, _)| name).collect()
+    }
+
+    fn earlier_run(folder: &Path) {
+        fs::create_dir_all(folder.join(FIELDS_FOLDER)).unwrap();
+        for name in ["summary.json", "history.csv", "fields.pvd", "fields.pvd.tmp", "fields/frame_000000.vtu"]
+        {
+            fs::write(folder.join(name), "old").unwrap();
+        }
+    }
+
+    #[test]
+    fn a_new_folder_is_created_with_its_parents_and_left_empty() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out/../out/sliding");
+        let output = OutputFolder::create(&path, false).unwrap();
+        assert_eq!(names_in(output.path()), [""; 0]);
+        assert_eq!(output.summary(), path.join("summary.json"));
+        fs::write(path.join(PROBE), "left by a killed run").unwrap();
+        OutputFolder::create(&path, false).unwrap();
+        assert_eq!(names_in(output.path()), [""; 0]);
+    }
+
+    #[test]
+    fn an_earlier_run_is_refused_and_replaced_only_by_force() {
+        let folder = tempfile::tempdir().unwrap();
+        earlier_run(folder.path());
+        let error = OutputFolder::create(folder.path(), false).unwrap_err();
+        assert!(matches!(error, WriteError::EarlierRun { .. }));
+        assert!(error.to_string().contains("--force") && error.to_string().contains("--out"));
+        assert_eq!(fs::read(folder.path().join("history.csv")).unwrap(), b"old");
+        OutputFolder::create(folder.path(), true).unwrap();
+        assert_eq!(names_in(folder.path()), ["fields"]);
+        assert_eq!(names_in(&folder.path().join("fields")), [""; 0]);
+    }
+
+    #[test]
+    fn force_deletes_nothing_that_ndda_did_not_write() {
+        let folder = tempfile::tempdir().unwrap();
+        earlier_run(folder.path());
+        let theirs = [
+            "thesis.tex",
+            "history.csv.bak",
+            "fields/frame_1.vtu",
+            "fields/frame_00000x.vtu",
+            "fields/a.png",
+        ];
+        for name in theirs {
+            fs::write(folder.path().join(name), "theirs").unwrap();
+        }
+        OutputFolder::create(folder.path(), true).unwrap();
+        assert_eq!(names_in(folder.path()), ["fields", "history.csv.bak", "thesis.tex"]);
+        for name in theirs {
+            assert_eq!(fs::read(folder.path().join(name)).unwrap(), b"theirs");
+        }
+    }
+
+    #[test]
+    fn a_folder_with_other_files_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("thesis.tex"), "theirs").unwrap();
+        let error = OutputFolder::create(folder.path(), false).unwrap_err();
+        assert!(matches!(&error, WriteError::NotOurs { found, .. } if found == "thesis.tex"));
+        OutputFolder::create(folder.path(), true).unwrap();
+    }
+
+    #[test]
+    fn a_file_in_place_of_the_folder_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out");
+        fs::write(&path, "a file").unwrap();
+        for force in [false, true] {
+            let error = OutputFolder::create(&path, force).unwrap_err();
+            assert!(matches!(error, WriteError::IsFile { .. }));
+            let below = OutputFolder::create(&path.join("deeper"), force).unwrap_err().to_string();
+            assert!(below.contains("a part of this path is a file"), "{below}");
+        }
+        assert!(OutputFolder::create(Path::new(""), false).is_err());
+    }
+
+    #[test]
+    fn a_folder_with_the_name_of_a_file_of_ours_is_never_deleted() {
+        let folder = tempfile::tempdir().unwrap();
+        earlier_run(folder.path());
+        fs::remove_file(folder.path().join("summary.json")).unwrap();
+        fs::create_dir(folder.path().join("summary.json")).unwrap();
+        let error = OutputFolder::create(folder.path(), true).unwrap_err();
+        assert!(matches!(error, WriteError::InTheWay { needed: "file", .. }));
+        assert!(
+            folder.path().join("history.csv").exists(),
+            "nothing is deleted when something is in the way"
+        );
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn force_does_not_follow_links_out_of_the_folder() {
+        let (folder, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+        earlier_run(other.path());
+        let link = |name: &str| {
+            std::os::unix::fs::symlink(other.path().join(name), folder.path().join(name)).unwrap();
+        };
+        link("summary.json");
+        OutputFolder::create(folder.path(), true).unwrap();
+        link("fields");
+        let error = OutputFolder::create(folder.path(), true).unwrap_err();
+        assert!(matches!(error, WriteError::InTheWay { needed: "folder", .. }));
+        assert!(other.path().join("summary.json").exists());
+        assert!(other.path().join("fields/frame_000000.vtu").exists());
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_read_only_folder_is_found_before_the_run() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).unwrap();
+        // An administrator may write anywhere; then there is nothing to find.
+        if File::create_new(folder.path().join("may-i")).is_ok() {
+            return;
+        }
+        let error = OutputFolder::create(folder.path(), false).unwrap_err().to_string();
+        assert!(error.contains("ndda-probe.tmp") && error.contains("choose a folder"), "{error}");
+    }
+}

@@ -1,0 +1,341 @@
+//! The summary: what a run did, what it cost and whether it can be trusted, as `summary.json`.
+
+use std::path::Path;
+
+use serde::{Serialize, Serializer};
+use serde_json::Value;
+
+use crate::atomic;
+use crate::write_error::WriteError;
+
+/// Entries by name, in the order of the scene rather than of the alphabet.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Named<T>(pub Vec<(String, T)>);
+
+impl<T> FromIterator<(String, T)> for Named<T> {
+    fn from_iter<I: IntoIterator<Item = (String, T)>>(entries: I) -> Self {
+        Self(entries.into_iter().collect())
+    }
+}
+
+impl<T: Serialize> Serialize for Named<T> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, entry)| (name, entry)))
+    }
+}
+
+/// Everything that `summary.json` says.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Summary {
+    /// Version of ndda.
+    pub version: String,
+    /// Name of the scene: its file without the ending.
+    pub scene: String,
+    /// The scene's own title.
+    pub title: String,
+    /// How the run ended.
+    pub status: Status,
+    /// Why it stopped before its end. Left out when it did not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped_by: Option<String>,
+    /// Steps done.
+    pub steps: u64,
+    /// Step Δt \[s\].
+    pub step_s: f64,
+    /// Simulated time reached \[s\].
+    pub end_s: f64,
+    /// Wall-clock time of the whole run \[s\].
+    pub wall_s: f64,
+    /// Threads used.
+    pub threads: usize,
+    /// Sizes of the problem.
+    pub counts: Counts,
+    /// Wall-clock time per stage of the step \[s\].
+    pub stages_s: Named<f64>,
+    /// The largest violation of each invariant.
+    pub invariants: Invariants,
+    /// The invariants and the scene's own criteria with their limits.
+    pub verdicts: Named<Verdict>,
+    /// Where the monitors ended.
+    pub monitors: Named<MonitorEnd>,
+    /// Where the blocks ended.
+    pub blocks: Named<BlockEnd>,
+    /// Comparison with the closed form that the scene names; null when it names none.
+    pub reference: Option<ReferenceError>,
+    /// What a person should know before using the result.
+    pub warnings: Vec<String>,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Status {
+    /// It ran to its end and every criterion was met.
+    Done,
+    /// It ran to its end and a criterion was not met.
+    Failed,
+    /// It was stopped because going on would have given a wrong number.
+    Stopped,
+    /// A person or the system ended it.
+    Interrupted,
+}
+
+/// Sizes of the problem.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Counts {
+    /// Blocks.
+    pub blocks: usize,
+    /// Nodes.
+    pub nodes: usize,
+    /// Tetrahedra.
+    pub tets: usize,
+    /// Unknown displacement components.
+    pub dofs: usize,
+    /// Matrices factored; congruent blocks share one.
+    pub factors: usize,
+    /// Most pairs that the broad phase reported in a step.
+    pub candidate_pairs_max: usize,
+    /// Most pairs that touched in a step.
+    pub contact_pairs_max: usize,
+}
+
+/// The largest violation of each invariant over the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Invariants {
+    /// Energy gained, relative to the peak.
+    pub energy_gain: f64,
+    /// Energy lost by the algorithm, relative to the peak.
+    pub energy_loss: f64,
+    /// Linear momentum minus impulses, relative to Σ m |v|.
+    pub linear_momentum: f64,
+    /// Angular momentum minus angular impulses, relative.
+    pub angular_momentum: f64,
+    /// Deepest penetration over the height of its tetrahedron.
+    pub max_penetration_ratio: f64,
+    /// Largest h = ω_c Δt of contact.
+    pub max_h: f64,
+}
+
+/// A number judged against its limit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Verdict {
+    /// The number. Left out when it is not computed yet.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub value: Option<f64>,
+    /// Its limit. Left out when the number is only shown.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limit: Option<f64>,
+    /// The judgement.
+    pub verdict: Judgement,
+}
+
+/// How a number compares with its limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Judgement {
+    /// Within the limit.
+    #[serde(rename = "pass")]
+    Pass,
+    /// Beyond the limit that asks for attention.
+    #[serde(rename = "warn")]
+    Warn,
+    /// Beyond the limit: the result is not to be used.
+    #[serde(rename = "fail")]
+    Fail,
+    /// This version does not compute it.
+    #[serde(rename = "not yet")]
+    NotYet,
+}
+
+/// State of a monitor at the end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct MonitorEnd {
+    /// Displacement since the start \[m\].
+    pub displacement: [f64; 3],
+    /// Velocity [m/s].
+    pub velocity: [f64; 3],
+}
+
+/// State of a block at the end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct BlockEnd {
+    /// Mass \[kg\].
+    pub mass: f64,
+    /// Mass-mean velocity [m/s].
+    pub velocity: [f64; 3],
+    /// Linear momentum [kg m/s].
+    pub momentum: [f64; 3],
+    /// Angular momentum about the origin of the scene's coordinates [kg m²/s].
+    pub angular_momentum: [f64; 3],
+    /// Volume over volume at rest.
+    pub volume_ratio: f64,
+}
+
+/// Error against a closed form, relative to its magnitude.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReferenceError {
+    /// Which closed form, by its name in the scene.
+    pub kind: String,
+    /// Relative error at the end.
+    pub error_end: f64,
+    /// Largest relative error after `after_s`.
+    pub error_max: f64,
+    /// From when on the largest error is taken \[s\].
+    pub after_s: f64,
+    /// Relative error at the end against the closed form with the shear spring's stick stage.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stick_stage_end: Option<f64>,
+    /// Largest relative error after `after_s` against the closed form with the stick stage.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stick_stage_max: Option<f64>,
+}
+
+/// Writes the summary to `path`, replacing an older file whole.
+///
+/// # Errors
+/// [`WriteError::NotFinite`] with the key of the first number that is not finite, before anything is written;
+/// [`WriteError::Io`] when the file cannot be written.
+pub fn write(path: &Path, summary: &Summary) -> Result<(), WriteError> {
+    let encode =
+        |e: serde_json::Error| WriteError::Encode { path: path.to_path_buf(), reason: e.to_string() };
+    let tree = serde_json::to_value(summary).map_err(encode)?;
+    if let Some(key) = first_null(&tree, "") {
+        return Err(WriteError::not_finite(path, key, None));
+    }
+    let mut text = serde_json::to_string_pretty(summary).map_err(encode)?;
+    text.push('\n');
+    atomic::write(path, text.as_bytes())
+}
+
+/// The key of the first null other than `reference`. JSON has no word for NaN and infinity: serde_json writes null.
+/// Every other field that may be absent is left out rather than null, so any other null is such a number.
+fn first_null(value: &Value, key: &str) -> Option<String> {
+    let below = |name: String| if key.is_empty() { name } else { format!("{key}.{name}") };
+    match value {
+        Value::Null => (key != "reference").then(|| key.to_owned()),
+        Value::Array(items) => {
+            items.iter().enumerate().find_map(|(i, item)| first_null(item, &format!("{key}[{i}]")))
+        }
+        Value::Object(map) => map.iter().find_map(|(name, item)| first_null(item, &below(name.clone()))),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::*;
+
+    fn example() -> Summary {
+        let verdict = |value, limit, verdict| Verdict { value, limit, verdict };
+        Summary {
+            version: "0.1.0".into(),
+            scene: "sliding_45".into(),
+            title: "Block on a ramp".into(),
+            status: Status::Done,
+            stopped_by: None,
+            steps: 10_000,
+            step_s: 1e-4,
+            end_s: 1.0,
+            wall_s: 2.5,
+            threads: 2,
+            counts: Counts { blocks: 2, nodes: 100, ..Counts::default() },
+            stages_s: Named(vec![("contact".into(), 1.5), ("assemble".into(), 0.5)]),
+            invariants: Invariants { energy_gain: 1e-9, ..Invariants::default() },
+            verdicts: Named(vec![
+                ("I4 energy gain".into(), verdict(Some(1e-9), Some(0.01), Judgement::Pass)),
+                ("I6 action and reaction".into(), verdict(None, None, Judgement::NotYet)),
+            ]),
+            monitors: Named(vec![("top".into(), MonitorEnd::default())]),
+            blocks: Named(vec![("ramp".into(), BlockEnd::default()), ("block".into(), BlockEnd::default())]),
+            reference: Some(ReferenceError {
+                kind: "SlidingBlock".into(),
+                error_end: 1e-7,
+                error_max: 2e-7,
+                after_s: 0.02,
+                stick_stage_end: None,
+                stick_stage_max: Some(3e-7),
+            }),
+            warnings: Vec::new(),
+        }
+    }
+
+    fn written(summary: &Summary) -> (String, Value) {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("summary.json");
+        write(&path, summary).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        let value = serde_json::from_str(&text).unwrap();
+        (text, value)
+    }
+
+    fn keys(value: &Value) -> Vec<&str> {
+        value.as_object().unwrap().keys().map(String::as_str).collect()
+    }
+
+    #[test]
+    fn the_promised_keys_are_there() {
+        let (_, value) = written(&example());
+        let top = "scene status steps step_s end_s wall_s threads counts stages_s invariants monitors blocks reference";
+        let promised = [
+            ("", top),
+            ("/counts", "blocks nodes tets dofs factors candidate_pairs_max contact_pairs_max"),
+            (
+                "/invariants",
+                "energy_gain energy_loss linear_momentum angular_momentum max_penetration_ratio max_h",
+            ),
+            ("/monitors/top", "displacement velocity"),
+            ("/blocks/block", "mass velocity momentum"),
+            ("/reference", "kind error_end error_max"),
+        ];
+        for (pointer, names) in promised {
+            let found = keys(value.pointer(pointer).unwrap());
+            for name in names.split(' ') {
+                assert!(found.contains(&name), "{pointer}/{name} is missing: {found:?}");
+            }
+        }
+        assert_eq!(value["status"], "done");
+        assert_eq!(value["verdicts"]["I6 action and reaction"], serde_json::json!({ "verdict": "not yet" }));
+        assert!(value["reference"].get("stick_stage_end").is_none());
+    }
+
+    #[test]
+    fn blocks_and_stages_keep_their_order() {
+        let (text, _) = written(&example());
+        assert!(text.find("\"ramp\"").unwrap() < text.find("\"block\"").unwrap());
+        assert!(text.find("\"contact\"").unwrap() < text.find("\"assemble\"").unwrap());
+    }
+
+    #[test]
+    fn a_scene_without_a_closed_form_has_a_null_reference() {
+        let (_, value) = written(&Summary { reference: None, ..example() });
+        assert_eq!(value["reference"], Value::Null);
+    }
+
+    #[test]
+    fn numbers_read_back_to_the_same_bits() {
+        let (_, value) = written(&Summary { wall_s: 0.1 + 0.2, end_s: 5e-324, ..example() });
+        assert_eq!(value["wall_s"].as_f64(), Some(0.1 + 0.2));
+        assert_eq!(value["end_s"].as_f64(), Some(5e-324));
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_refused_by_its_key() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("summary.json");
+        let refused = |summary: &Summary| match write(&path, summary).unwrap_err() {
+            WriteError::NotFinite { array, .. } => array,
+            other => panic!("{other}"),
+        };
+        let mut summary = example();
+        summary.blocks.0[1].1.momentum[2] = f64::NAN;
+        assert_eq!(refused(&summary), "blocks.block.momentum[2]");
+        let mut summary = example();
+        summary.reference.as_mut().unwrap().stick_stage_max = Some(f64::INFINITY);
+        assert_eq!(refused(&summary), "reference.stick_stage_max");
+        let mut summary = example();
+        summary.verdicts.0[0].1.value = Some(f64::NEG_INFINITY);
+        assert_eq!(refused(&summary), "verdicts.I4 energy gain.value");
+        assert!(!path.exists());
+    }
+}

@@ -1,0 +1,145 @@
+//! Why a result could not be written.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a result could not be written, and what to do about it.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The operating system refused.
+    #[error("cannot {operation} {}: {source}{}", path.display(), advice(source.kind()))]
+    Io {
+        /// What was being done, as a verb: "create", "write", "rename".
+        operation: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// A number is infinite or not a number; nothing was written.
+    #[error(
+        "{array}{} is not a finite number, so {} was not written: the run has lost its way before this, \
+         reduce time.step_s",
+        bracketed(*index),
+        path.display()
+    )]
+    NotFinite {
+        /// The file that should have held it.
+        path: PathBuf,
+        /// Name of the array, the column or the key.
+        array: String,
+        /// Index of the node, tetrahedron, row or frame, where there is one.
+        index: Option<usize>,
+    },
+    /// The data cannot be put into the file's format.
+    #[error("cannot encode {}: {reason}", path.display())]
+    Encode {
+        /// The file.
+        path: PathBuf,
+        /// What the encoder said.
+        reason: String,
+    },
+    /// Two columns of a table have one name.
+    #[error("{} would have two columns called '{column}': rename a monitor or a block", path.display())]
+    DuplicateColumn {
+        /// The table.
+        path: PathBuf,
+        /// The name.
+        column: String,
+    },
+    /// The output folder is a file.
+    #[error("the output folder {} is a file: choose another folder with --out", path.display())]
+    IsFile {
+        /// The path.
+        path: PathBuf,
+    },
+    /// The output folder holds the results of an earlier run.
+    #[error(
+        "{} holds an earlier run ({found}): choose another folder with --out, or replace it with --force",
+        path.display()
+    )]
+    EarlierRun {
+        /// The folder.
+        path: PathBuf,
+        /// One of its files.
+        found: String,
+    },
+    /// The output folder holds something that ndda did not write.
+    #[error(
+        "{} is not empty and holds something that ndda did not write ({found}): choose another folder with \
+         --out, or write beside it with --force",
+        path.display()
+    )]
+    NotOurs {
+        /// The folder.
+        path: PathBuf,
+        /// One of the things in it.
+        found: String,
+    },
+    /// Something has the name of a file or folder of ours but is of another kind; it is never deleted.
+    #[error(
+        "{} is in the way, ndda needs this name for a {needed}: move it or choose another folder with --out",
+        path.display()
+    )]
+    InTheWay {
+        /// What is in the way.
+        path: PathBuf,
+        /// "file" or "folder".
+        needed: &'static str,
+    },
+}
+
+impl WriteError {
+    /// For `map_err`: wraps what the operating system said.
+    pub(crate) fn io(operation: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_path_buf();
+        move |source| Self::Io { operation, path, source }
+    }
+
+    /// A number of `array` in the file at `path` is not finite.
+    pub(crate) fn not_finite(path: &Path, array: impl Into<String>, index: Option<usize>) -> Self {
+        Self::NotFinite { path: path.to_path_buf(), array: array.into(), index }
+    }
+}
+
+fn bracketed(index: Option<usize>) -> String {
+    index.map(|i| format!("[{i}]")).unwrap_or_default()
+}
+
+/// What a person can do about an error of the operating system.
+fn advice(kind: io::ErrorKind) -> &'static str {
+    match kind {
+        io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
+            "; choose a folder that you may write to with --out"
+        }
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "; free some space, choose another disk with --out, or lower output.frames"
+        }
+        io::ErrorKind::NotADirectory => "; a part of this path is a file, choose another folder with --out",
+        _ => "",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_disk_is_named_with_the_file_and_the_cure() {
+        let full = io::Error::from(io::ErrorKind::StorageFull);
+        let text = WriteError::io("write", Path::new("out/history.csv"))(full).to_string();
+        assert!(text.starts_with("cannot write out/history.csv: "), "{text}");
+        assert!(text.ends_with("free some space, choose another disk with --out, or lower output.frames"));
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_named_by_array_and_index() {
+        let text = WriteError::not_finite(Path::new("a.vtu"), "velocity_m_s", Some(12)).to_string();
+        assert!(
+            text.starts_with("velocity_m_s[12] is not a finite number, so a.vtu was not written"),
+            "{text}"
+        );
+        let text = WriteError::not_finite(Path::new("a.json"), "wall_s", None).to_string();
+        assert!(text.starts_with("wall_s is not"), "{text}");
+    }
+}
