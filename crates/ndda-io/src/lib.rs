@@ -3,6 +3,7 @@
 pub mod atomic;
 pub mod folder;
 pub mod history;
+pub mod msh;
 pub mod pvd;
 pub mod scene;
 pub mod summary;
