@@ -1,1 +1,12 @@
-//! x
+//! ndda on the command line: where names in a scene become objects, and a run becomes files and a table.
+
+pub mod args;
+pub mod check;
+pub mod exit;
+pub mod monitor;
+pub mod progress;
+pub mod recorder;
+pub mod reference;
+pub mod report;
+pub mod run;
+pub mod wiring;

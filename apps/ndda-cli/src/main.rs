@@ -1,2 +1,15 @@
-//! x
-fn main() {}
+//! The binary `ndda`.
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use ndda_cli::args::{Cli, Verb};
+use ndda_cli::{check, run};
+
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().verb {
+        Verb::Run(args) => run::run(&args),
+        Verb::Check(args) => check::check(&args),
+    };
+    ExitCode::from(outcome)
+}

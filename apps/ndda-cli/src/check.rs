@@ -1,0 +1,74 @@
+//! `ndda check`: everything that can be wrong with a scene, without running it.
+
+use std::io::IsTerminal;
+use std::path::Path;
+
+use ndda_io::diagnostic::Diagnostic;
+use ndda_io::read::{LoadedScene, SceneErrors, load};
+use ndda_solver::Simulation;
+
+use crate::args::CheckArgs;
+use crate::exit;
+use crate::monitor::Monitor;
+use crate::wiring::{self, Fault};
+
+/// A scene that is ready to run.
+pub struct Ready {
+    /// The scene and its text.
+    pub loaded: LoadedScene,
+    /// The simulation at its start.
+    pub simulation: Simulation,
+    /// Its monitors.
+    pub monitors: Vec<Monitor>,
+}
+
+/// Whether messages on standard error may be coloured.
+pub fn colour() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
+}
+
+/// Reads, checks and builds a scene.
+///
+/// # Errors
+/// All that is wrong with it, as far as the earlier errors let one see.
+pub fn prepare(path: &Path, overrides: &[String]) -> Result<Ready, SceneErrors> {
+    let loaded = load(path, overrides)?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    let located = |faults: Vec<Fault>| {
+        let diagnostics: Vec<Diagnostic> =
+            faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();
+        loaded.errors(diagnostics)
+    };
+    let blocks = wiring::blocks(&loaded.scene, folder).map_err(located)?;
+    let simulation = wiring::simulation(&loaded.scene, blocks).map_err(located)?;
+    let monitors = wiring::monitors(&loaded.scene, &simulation).map_err(located)?;
+    Ok(Ready { loaded, simulation, monitors })
+}
+
+/// Runs `ndda check`; returns the exit code.
+pub fn check(args: &CheckArgs) -> u8 {
+    let ready = match prepare(&args.scene, &args.overrides) {
+        Ok(ready) => ready,
+        Err(errors) => {
+            eprintln!("{}", errors.render(colour()));
+            return exit::BAD_INPUT;
+        }
+    };
+    if !ready.loaded.warnings.is_empty() {
+        eprintln!("{}", ready.loaded.errors(ready.loaded.warnings.clone()).render(colour()));
+    }
+    let (scene, simulation) = (&ready.loaded.scene, &ready.simulation);
+    let blocks = simulation.blocks();
+    println!(
+        "{}: no errors, {} warning(s)\n{} block(s), {} nodes, {} tets, {} unknowns, {} factor(s); {} steps",
+        args.scene.display(),
+        ready.loaded.warnings.len(),
+        blocks.len(),
+        blocks.rest_position.len(),
+        blocks.tets.len(),
+        simulation.unknowns(),
+        simulation.factors(),
+        wiring::steps(&scene.time),
+    );
+    exit::DONE
+}

@@ -1,0 +1,235 @@
+//! Sinks of a run: history, fields, comparison with the closed form.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use ndda_io::vtu::Frame;
+use ndda_io::{FieldSeries, History, OutputFolder, WriteError};
+use ndda_mesh::Vec3;
+use ndda_solver::{Sample, Simulation, Sink, SinkError, View};
+
+use crate::monitor::Monitor;
+use crate::reference::{Comparison, Errors};
+
+/// Whether one of `count` evenly spaced events falls on `step` of `steps`; the first and last steps always count.
+pub fn is_due(step: u64, steps: u64, count: u64) -> bool {
+    let passed = |s: u64| u128::from(s) * u128::from(count.min(steps)) / u128::from(steps.max(1));
+    step == 0 || step >= steps || passed(step) != passed(step - 1)
+}
+
+/// Writes `history.csv` and follows the errors against the closed form.
+pub struct Recorder {
+    history: History,
+    steps: u64,
+    rows: u64,
+    after_s: f64,
+    comparison: Option<Comparison>,
+    row: Vec<f64>,
+    /// Points whose motion is recorded.
+    pub monitors: Vec<Monitor>,
+    /// Errors at the last row.
+    pub error_end: Option<Errors>,
+    /// Largest errors since `after_s`.
+    pub error_max: Option<Errors>,
+    /// The last row's energies.
+    pub last: Sample,
+    /// Seconds spent.
+    pub spent_s: f64,
+}
+
+impl Recorder {
+    /// Begins a history.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the file cannot be written or two columns have one name.
+    pub fn new(
+        folder: &OutputFolder,
+        monitors: Vec<Monitor>,
+        comparison: Option<Comparison>,
+        after_s: f64,
+        steps: u64,
+        rows: u64,
+    ) -> Result<Self, WriteError> {
+        let columns = columns(&monitors, comparison.is_some());
+        let history = History::create(&folder.history(), &columns)?;
+        let row = Vec::with_capacity(columns.len());
+        Ok(Self {
+            history,
+            steps,
+            rows,
+            after_s,
+            comparison,
+            row,
+            monitors,
+            error_end: None,
+            error_max: None,
+            last: Sample::default(),
+            spent_s: 0.0,
+        })
+    }
+
+    /// Closes the file.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the last rows cannot be written.
+    pub fn finish(&mut self) -> Result<(), WriteError> {
+        self.history.flush()
+    }
+
+    fn compare(&mut self, simulation: &Simulation) -> Option<Errors> {
+        let errors = self.comparison.as_ref()?.errors(simulation, &self.monitors)?;
+        self.error_end = Some(errors);
+        if simulation.time_s() >= self.after_s {
+            let larger = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| a.max(b)).or(a).or(b);
+            let old = self.error_max.unwrap_or_default();
+            self.error_max = Some(Errors {
+                plain: old.plain.max(errors.plain),
+                stick_stage: larger(old.stick_stage, errors.stick_stage),
+            });
+        }
+        Some(errors)
+    }
+}
+
+fn columns(monitors: &[Monitor], compared: bool) -> Vec<String> {
+    let fixed = [
+        "time_s",
+        "kinetic_j",
+        "strain_j",
+        "contact_j",
+        "load_j",
+        "spring_j",
+        "friction_work_j",
+        "motion_work_j",
+        "balance_j",
+        "momentum_x_kg_m_s",
+        "momentum_y_kg_m_s",
+        "momentum_z_kg_m_s",
+        "angular_x_kg_m2_s",
+        "angular_y_kg_m2_s",
+        "angular_z_kg_m2_s",
+        "contact_pairs",
+        "penetration_ratio",
+        "h",
+    ];
+    let mut columns: Vec<String> = fixed.map(String::from).to_vec();
+    for monitor in monitors {
+        for (quantity, unit) in [("displacement", "m"), ("velocity", "m_s")] {
+            columns.extend(["x", "y", "z"].map(|axis| format!("{}.{quantity}_{axis}_{unit}", monitor.name)));
+        }
+    }
+    if compared {
+        columns.push("reference_error".into());
+    }
+    columns
+}
+
+impl Sink for Recorder {
+    fn wants_sample(&self, step: u64) -> bool {
+        is_due(step, self.steps, self.rows)
+    }
+
+    fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
+        let Some(sample) = view.sample else { return Ok(ControlFlow::Continue(())) };
+        let started = Instant::now();
+        let simulation = &*view.simulation;
+        self.last = *sample;
+        self.row.clear();
+        self.row.extend([
+            sample.time_s,
+            sample.kinetic_j,
+            sample.strain_j,
+            sample.contact_j,
+            sample.load_j,
+            sample.spring_j,
+            sample.friction_work_j,
+            sample.motion_work_j,
+            sample.balance_j,
+        ]);
+        self.row.extend(sample.momentum.iter().chain(sample.angular_momentum.iter()));
+        let contact = &view.report.contact;
+        self.row.extend([contact.contact_pairs as f64, contact.max_penetration_ratio, view.report.h]);
+        for monitor in &self.monitors {
+            self.row.extend(monitor.displacement(simulation).iter());
+            self.row.extend(monitor.velocity(simulation).iter());
+        }
+        let errors = self.compare(simulation);
+        if self.comparison.is_some() {
+            self.row.push(errors.unwrap_or_default().plain);
+        }
+        self.history.push(&self.row)?;
+        self.spent_s += started.elapsed().as_secs_f64();
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+/// Writes a frame of fields at even intervals.
+pub struct FieldWriter {
+    series: FieldSeries,
+    steps: u64,
+    frames: u64,
+    displacement: Vec<Vec3>,
+    stress_pa: Vec<[f64; 6]>,
+    /// Seconds spent.
+    pub spent_s: f64,
+}
+
+impl FieldWriter {
+    /// Begins a series of frames.
+    ///
+    /// # Errors
+    /// [`WriteError`] when its folder cannot be made.
+    pub fn new(
+        folder: &OutputFolder,
+        simulation: &Simulation,
+        steps: u64,
+        frames: u64,
+    ) -> Result<Self, WriteError> {
+        let blocks = simulation.blocks();
+        Ok(Self {
+            series: FieldSeries::create(folder)?,
+            steps,
+            frames,
+            displacement: vec![Vec3::zeros(); blocks.rest_position.len()],
+            stress_pa: vec![[0.0; 6]; blocks.tets.len()],
+            spent_s: 0.0,
+        })
+    }
+}
+
+impl Sink for FieldWriter {
+    fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
+        if !is_due(view.simulation.state().step, self.steps, self.frames) {
+            return Ok(ControlFlow::Continue(()));
+        }
+        let started = Instant::now();
+        view.simulation.recover_stress(&mut self.stress_pa)?;
+        let (state, blocks) = (view.simulation.state(), view.simulation.blocks());
+        let moved = state.position.iter().zip(&blocks.rest_position);
+        self.displacement.iter_mut().zip(moved).for_each(|(d, (x, rest))| *d = x - rest);
+        let frame = Frame {
+            blocks,
+            position: &state.position,
+            displacement: &self.displacement,
+            velocity: &state.velocity,
+            stress_pa: &self.stress_pa,
+        };
+        self.series.push(view.simulation.time_s(), &frame)?;
+        self.spent_s += started.elapsed().as_secs_f64();
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn events_are_evenly_spaced_and_never_more_than_asked_for() {
+        let due = |steps, count| (0..=steps).filter(|&s| is_due(s, steps, count)).collect::<Vec<_>>();
+        assert_eq!(due(10, 2), [0, 5, 10]);
+        assert_eq!(due(3, 100), [0, 1, 2, 3]);
+        assert_eq!(due(7, 0), [0, 7]);
+        assert_eq!(due(1000, 7).len(), 8);
+    }
+}

@@ -1,0 +1,303 @@
+//! What a run says of itself: the summary, its verdicts, and the table at the end.
+
+use comfy_table::presets::UTF8_BORDERS_ONLY;
+use comfy_table::{CellAlignment, Table};
+use ndda_fem::stress::volume_m3;
+use ndda_io::scene::{Integrator, Scene};
+use ndda_io::summary::{
+    BlockEnd, Counts, Invariants, Judgement, MonitorEnd, Named, ReferenceError, Status, Summary, Verdict,
+};
+use ndda_mesh::Vec3;
+use ndda_solver::Simulation;
+
+use crate::recorder::Recorder;
+use crate::reference;
+
+/// What the summary needs besides the simulation.
+pub struct Outcome<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Its name: the file without its ending.
+    pub name: &'a str,
+    /// Why the run stopped early.
+    pub stopped_by: Option<String>,
+    /// Wall time [s].
+    pub wall_s: f64,
+    /// Threads.
+    pub threads: usize,
+    /// Seconds per stage outside the step.
+    pub stages: Vec<(String, f64)>,
+    /// What was found before the run.
+    pub warnings: Vec<String>,
+    /// Whether a limit that is passed fails the run.
+    pub strict: bool,
+}
+
+/// The summary of a run.
+pub fn summarise(simulation: &Simulation, recorder: &Recorder, outcome: Outcome) -> Summary {
+    let worst = simulation.invariants();
+    let verdicts = verdicts(simulation, outcome.scene);
+    let failed = outcome.strict && verdicts.0.iter().any(|(_, v)| v.verdict == Judgement::Fail);
+    let status = match (&outcome.stopped_by, failed) {
+        (Some(_), _) => Status::Stopped,
+        (None, true) => Status::Failed,
+        (None, false) => Status::Done,
+    };
+    let mut warnings = outcome.warnings;
+    warnings.extend(advice(simulation, outcome.scene));
+    Summary {
+        version: env!("CARGO_PKG_VERSION").into(),
+        scene: outcome.name.into(),
+        title: outcome.scene.title.clone(),
+        status,
+        stopped_by: outcome.stopped_by,
+        steps: simulation.state().step,
+        step_s: simulation.step_s(),
+        end_s: simulation.time_s(),
+        wall_s: outcome.wall_s,
+        threads: outcome.threads,
+        counts: counts(simulation),
+        stages_s: stages(simulation, outcome.stages, outcome.wall_s),
+        invariants: Invariants {
+            energy_gain: worst.energy_gain,
+            energy_loss: worst.energy_loss,
+            linear_momentum: worst.linear_momentum,
+            angular_momentum: worst.angular_momentum,
+            max_penetration_ratio: worst.max_penetration_ratio,
+            max_h: worst.max_h,
+        },
+        verdicts,
+        monitors: monitor_ends(simulation, recorder),
+        blocks: block_ends(simulation),
+        reference: reference_error(outcome.scene, recorder),
+        warnings,
+    }
+}
+
+fn counts(simulation: &Simulation) -> Counts {
+    let (blocks, worst) = (simulation.blocks(), simulation.invariants());
+    Counts {
+        blocks: blocks.len(),
+        nodes: blocks.rest_position.len(),
+        tets: blocks.tets.len(),
+        dofs: simulation.unknowns(),
+        factors: simulation.factors(),
+        candidate_pairs_max: worst.candidate_pairs_max,
+        contact_pairs_max: worst.contact_pairs_max,
+    }
+}
+
+/// Seconds per stage; what no stage owns is `other`, so that the shares sum to the whole.
+fn stages(simulation: &Simulation, outside: Vec<(String, f64)>, wall_s: f64) -> Named<f64> {
+    let times = simulation.stages();
+    let inside = [("contact", times.contact_s), ("blocks", times.blocks_s), ("ledger", times.ledger_s)];
+    let mut stages: Vec<(String, f64)> = inside.map(|(name, s)| (name.to_string(), s)).to_vec();
+    stages.extend(outside);
+    let known: f64 = stages.iter().map(|stage| stage.1).sum();
+    stages.push(("other".into(), (wall_s - known).max(0.0)));
+    Named(stages)
+}
+
+/// A value that should not exceed `warn`, and fails the run beyond `fail`.
+fn judged(value: f64, warn: f64, fail: f64) -> Verdict {
+    let verdict = if value > fail {
+        Judgement::Fail
+    } else if value > warn {
+        Judgement::Warn
+    } else {
+        Judgement::Pass
+    };
+    Verdict { value: Some(value), limit: Some(warn), verdict }
+}
+
+fn shown(value: f64) -> Verdict {
+    Verdict { value: Some(value), limit: None, verdict: Judgement::Pass }
+}
+
+/// The invariants I1–I8 against their limits.
+fn verdicts(simulation: &Simulation, scene: &Scene) -> Named<Verdict> {
+    let worst = simulation.invariants();
+    // Held blocks exchange angular momentum with their supports through strains that the books do not see.
+    let closed = simulation.is_closed();
+    let angular =
+        if closed { judged(worst.angular_momentum, 1e-8, 1e-4) } else { shown(worst.angular_momentum) };
+    let h = match (&scene.time.integrator, simulation.contact_bound()) {
+        (Integrator::Midpoint { .. }, Some(bound)) => judged(worst.max_h, bound, f64::INFINITY),
+        _ => shown(worst.max_h),
+    };
+    let volume_ratio = worst.smallest_volume_ratio;
+    let upright = if volume_ratio > 0.0 { Judgement::Pass } else { Judgement::Fail };
+    let entries = [
+        ("I1 finite state", Verdict { value: None, limit: None, verdict: Judgement::Pass }),
+        ("I2 linear momentum", judged(worst.linear_momentum, 1e-10, 1e-6)),
+        ("I3 angular momentum", angular),
+        ("I4 energy gain", judged(worst.energy_gain, 0.01, 0.02)),
+        ("I4 energy loss", shown(worst.energy_loss)),
+        ("I5 penetration / height", judged(worst.max_penetration_ratio, 0.05, 0.25)),
+        ("I6 action = reaction", judged(worst.action_reaction, 1e-12, 1e-9)),
+        ("I7 smallest det F", Verdict { value: Some(volume_ratio), limit: Some(0.0), verdict: upright }),
+        ("I8 h = ω_c Δt", h),
+        ("I8 travel / height", judged(worst.max_travel_ratio, 0.5, f64::INFINITY)),
+    ];
+    Named(entries.map(|(name, verdict)| (name.to_string(), verdict)).to_vec())
+}
+
+/// What a person should do about the numbers.
+fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
+    let worst = simulation.invariants();
+    let mut advice = Vec::new();
+    if let Some(bound) = simulation.contact_bound()
+        && worst.max_h > bound
+    {
+        let step_s = simulation.step_s() * bound / worst.max_h;
+        advice.push(format!(
+            "h = ω_c Δt reached {:.2}, bound {bound}: contact may be unstable; step_s = {step_s:.1e} would be safe",
+            worst.max_h
+        ));
+    }
+    if matches!(scene.time.integrator, Integrator::Newmark { .. }) && worst.max_h > 0.0 {
+        let restitution = (std::f64::consts::FRAC_PI_4 * worst.max_h).exp();
+        advice.push(format!(
+            "Newmark takes contact at the previous positions, which adds energy at every Δt: restitution up to \
+             {restitution:.4} at h = {:.3}; Midpoint does not",
+            worst.max_h
+        ));
+    }
+    if worst.max_penetration_ratio > 0.05 {
+        advice.push(format!(
+            "penetration reached {:.1} % of a tet's height: raise penalty_pa (the potential gives way at 25 %)",
+            100.0 * worst.max_penetration_ratio
+        ));
+    }
+    if worst.energy_gain > 0.01 {
+        advice.push(format!(
+            "{:.2} % of the energy came from nowhere: reduce step_s",
+            100.0 * worst.energy_gain
+        ));
+    }
+    advice
+}
+
+fn monitor_ends(simulation: &Simulation, recorder: &Recorder) -> Named<MonitorEnd> {
+    let end = |monitor: &crate::monitor::Monitor| MonitorEnd {
+        displacement: monitor.displacement(simulation).into(),
+        velocity: monitor.velocity(simulation).into(),
+    };
+    recorder.monitors.iter().map(|m| (m.name.clone(), end(m))).collect()
+}
+
+fn block_ends(simulation: &Simulation) -> Named<BlockEnd> {
+    let blocks = simulation.blocks();
+    let end = |block| {
+        let (operator, range) = (&simulation.shape(block).operator, blocks.nodes_of(block));
+        let position = &simulation.state().position[range.clone()];
+        let velocity = &simulation.state().velocity[range];
+        let momentum = operator.momentum(velocity);
+        let angular = operator.angular_momentum(&Vec3::zeros(), position, velocity);
+        BlockEnd {
+            mass: operator.mass_kg,
+            velocity: (momentum / operator.mass_kg).into(),
+            momentum: momentum.into(),
+            angular_momentum: (angular + blocks.origin_m.cross(&momentum)).into(),
+            volume_ratio: volume_m3(operator, position) / volume_m3(operator, &operator.rest),
+        }
+    };
+    blocks.ids().map(|block| (blocks.names[block.index()].clone(), end(block))).collect()
+}
+
+fn reference_error(scene: &Scene, recorder: &Recorder) -> Option<ReferenceError> {
+    let (kind, after_s) = reference::kind(scene.reference.as_ref()?);
+    let (end, max) = (recorder.error_end?, recorder.error_max?);
+    Some(ReferenceError {
+        kind: kind.into(),
+        error_end: end.plain,
+        error_max: max.plain,
+        after_s,
+        stick_stage_end: end.stick_stage,
+        stick_stage_max: max.stick_stage,
+    })
+}
+
+/// The table that a run ends with.
+pub fn table(summary: &Summary) -> String {
+    let mut text = format!("{}: {}\n", summary.scene, summary.title);
+    let speed = summary.steps as f64 / summary.wall_s;
+    text.push_str(&format!(
+        "{} steps of {:e} s to t = {} s in {:.2} s ({speed:.0} steps/s, {} thread(s)); {} blocks, {} tets, {} dofs, \
+         {} factor(s)\n",
+        summary.steps,
+        summary.step_s,
+        summary.end_s,
+        summary.wall_s,
+        summary.threads,
+        summary.counts.blocks,
+        summary.counts.tets,
+        summary.counts.dofs,
+        summary.counts.factors,
+    ));
+    for part in [stage_table(summary), verdict_table(summary), monitor_table(summary)] {
+        text.push_str(&format!("{part}\n"));
+    }
+    if let Some(reference) = &summary.reference {
+        text.push_str(&format!(
+            "against the closed form {}: relative error {:.2e} at the end, at most {:.2e} for t ≥ {} s\n",
+            reference.kind, reference.error_end, reference.error_max, reference.after_s
+        ));
+        if let (Some(end), Some(max)) = (reference.stick_stage_end, reference.stick_stage_max) {
+            text.push_str(&format!(
+                "against its form with the shear spring's stick stage: {end:.2e} at the end, at most {max:.2e}\n"
+            ));
+        }
+    }
+    for warning in &summary.warnings {
+        text.push_str(&format!("warning: {warning}\n"));
+    }
+    if let Some(cause) = &summary.stopped_by {
+        text.push_str(&format!("stopped: {cause}\n"));
+    }
+    text
+}
+
+fn framed(header: &[&str], rows: Vec<Vec<String>>) -> Table {
+    let mut table = Table::new();
+    table.load_style(UTF8_BORDERS_ONLY).set_header(header.to_vec());
+    for row in rows {
+        table.add_row(row);
+    }
+    for column in table.column_iter_mut().skip(1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table
+}
+
+fn stage_table(summary: &Summary) -> Table {
+    let share = |s: f64| format!("{:.1} %", 100.0 * s / summary.wall_s);
+    let rows = summary.stages_s.0.iter().map(|(name, s)| vec![name.clone(), format!("{s:.3} s"), share(*s)]);
+    framed(&["stage", "time", "share"], rows.collect())
+}
+
+fn verdict_table(summary: &Summary) -> Table {
+    let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.2e}"));
+    let word = |verdict: &Verdict| match (verdict.verdict, verdict.limit) {
+        (Judgement::Pass, None) if verdict.value.is_some() => "shown",
+        (Judgement::Pass, _) => "pass",
+        (Judgement::Warn, _) => "WARN",
+        (Judgement::Fail, _) => "FAIL",
+        (Judgement::NotYet, _) => "not yet",
+    };
+    let row =
+        |(name, v): &(String, Verdict)| vec![name.clone(), number(v.value), number(v.limit), word(v).into()];
+    framed(&["invariant", "worst", "limit", "verdict"], summary.verdicts.0.iter().map(row).collect())
+}
+
+fn monitor_table(summary: &Summary) -> Table {
+    let triple = |v: &[f64; 3]| format!("({:.6}, {:.6}, {:.6})", v[0], v[1], v[2]);
+    let monitors = summary.monitors.0.iter();
+    let rows =
+        monitors.map(|(name, end)| vec![name.clone(), triple(&end.displacement), triple(&end.velocity)]);
+    let mut rows: Vec<Vec<String>> = rows.collect();
+    for (name, end) in &summary.blocks.0 {
+        rows.push(vec![format!("block {name}"), String::new(), triple(&end.velocity)]);
+    }
+    framed(&["monitor", "displacement [m]", "velocity [m/s]"], rows)
+}

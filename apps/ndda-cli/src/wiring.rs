@@ -1,0 +1,349 @@
+//! Scene → simulation: the only place where names become objects.
+//!
+//! A fork that brings its own contact model changes [`contact_model`], one match arm.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use ndda_contact::{ContactModel, Coulomb, PotentialContact};
+use ndda_fem::supports::Motion;
+use ndda_fem::{Hold as FemHold, LinearElastic, NodeSupport, Voigt};
+use ndda_io::msh;
+use ndda_io::scene::{self, At, By, Contact, Hold, Integrator, Pattern, Region, Scene, Shape};
+use ndda_mesh::generate::{BoxPattern, box_block, prism};
+use ndda_mesh::geometry::Aabb;
+use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
+use ndda_solver::{
+    BodySetup, Midpoint, Newmark, Setup, SetupError, Simulation, SparseCholesky, TimeIntegrator,
+};
+
+use crate::monitor::Monitor;
+
+/// A node is on a plane when it is nearer than this part of its block's size.
+const ON_PLANE: f64 = 1e-6;
+/// The paper's support springs: 10⁶ E per metre of reference length.
+const SPRING_PER_YOUNG_M: f64 = 1e6;
+
+/// Something in the scene that cannot be built, with its path in the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// Path of the value, as in `blocks[1].shape`.
+    pub path: String,
+    /// What is wrong and what to do.
+    pub message: String,
+}
+
+impl Fault {
+    fn new(path: impl Into<String>, message: impl ToString) -> Self {
+        Self { path: path.into(), message: message.to_string() }
+    }
+}
+
+/// The blocks of a scene, meshed and placed; `folder` is where the scene file is.
+///
+/// # Errors
+/// All shapes that cannot be built, and all defects of their meshes.
+pub fn blocks(scene: &Scene, folder: &Path) -> Result<BlockSet, Vec<Fault>> {
+    let mut faults = Vec::new();
+    let mut meshes = Vec::new();
+    for (i, block) in scene.blocks.iter().enumerate() {
+        match mesh(&block.shape, folder) {
+            Ok(mesh) => {
+                meshes.push((block.name.clone(), mesh.placed(&turned(&block.turns), &vec3(block.at_m))))
+            }
+            Err(message) => faults.push(Fault::new(format!("blocks[{i}].shape"), message)),
+        }
+    }
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    BlockSet::new(meshes).map_err(|error| {
+        let index = |name: &str| scene.blocks.iter().position(|b| b.name == name).unwrap_or(0);
+        let fault =
+            |(name, problem): (String, _)| Fault::new(format!("blocks[{}].shape", index(&name)), problem);
+        error.problems.into_iter().map(fault).collect()
+    })
+}
+
+fn mesh(shape: &Shape, folder: &Path) -> Result<BlockMesh, String> {
+    match shape {
+        Shape::Box { size_m, cells, pattern } => {
+            let pattern = match pattern {
+                Pattern::Six => BoxPattern::Six,
+                Pattern::TwentyFour => BoxPattern::TwentyFour,
+            };
+            box_block(*size_m, *cells, pattern).map_err(|e| e.to_string())
+        }
+        Shape::Prism { outline_m, height_m, cells } => {
+            prism(*outline_m, *height_m, *cells).map_err(|e| e.to_string())
+        }
+        Shape::Mesh { file, body, unit_m } => {
+            let mut mesh = body_of(&folder.join(file), body.as_deref())?;
+            mesh.nodes.iter_mut().for_each(|x| *x *= *unit_m);
+            Ok(mesh)
+        }
+    }
+}
+
+fn body_of(file: &Path, body: Option<&str>) -> Result<BlockMesh, String> {
+    let bodies = msh::read(file).map_err(|e| e.to_string())?.bodies;
+    let names = bodies.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
+    match body {
+        None if bodies.len() > 1 => {
+            Err(format!("{} holds the bodies {names}: say which with `body`", file.display()))
+        }
+        _ => bodies
+            .into_iter()
+            .find(|(name, _)| body.is_none_or(|wanted| wanted == name))
+            .map(|(_, mesh)| mesh)
+            .ok_or_else(|| {
+                format!("{} has no body `{}`; it has {names}", file.display(), body.unwrap_or(""))
+            }),
+    }
+}
+
+/// The product of turns; whole quarters are exact.
+fn turned(turns: &[scene::Turn]) -> Mat3 {
+    turns.iter().fold(Mat3::identity(), |before, turn| rotation(turn) * before)
+}
+
+/// Rodrigues' formula, R = cos θ I + sin θ [n]× + (1 − cos θ) n nᵀ.
+fn rotation(turn: &scene::Turn) -> Mat3 {
+    let axis = vec3(turn.axis).normalize();
+    let (sin, cos) = match turn.angle_deg.rem_euclid(360.0) {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        angle => angle.to_radians().sin_cos(),
+    };
+    cos * Mat3::identity() + sin * axis.cross_matrix() + (1.0 - cos) * axis * axis.transpose()
+}
+
+fn vec3(v: [f64; 3]) -> Vec3 {
+    Vec3::from(v)
+}
+
+/// The simulation of a scene on its blocks, with the contact model that the scene names.
+///
+/// # Errors
+/// All supports, tractions and materials that cannot be built.
+pub fn simulation(scene: &Scene, blocks: BlockSet) -> Result<Simulation, Vec<Fault>> {
+    let contact = contact_model(scene.contact.as_ref());
+    simulation_with(scene, blocks, contact)
+}
+
+/// The simulation of a scene with a contact model of one's own.
+///
+/// # Errors
+/// As [`simulation`].
+pub fn simulation_with(
+    scene: &Scene,
+    blocks: BlockSet,
+    contact: Option<Box<dyn ContactModel>>,
+) -> Result<Simulation, Vec<Fault>> {
+    let bodies = bodies(scene, &blocks)?;
+    let setup = Setup {
+        blocks,
+        bodies,
+        gravity_m_s2: vec3(scene.gravity_m_s2),
+        step_s: scene.time.step_s,
+        integrator: integrator(&scene.time.integrator),
+        contact,
+        solver: Box::new(SparseCholesky),
+    };
+    Simulation::new(setup).map_err(|error| {
+        let (SetupError::Support { block, .. } | SetupError::Factor { block, .. }) = &error;
+        let index = scene.blocks.iter().position(|b| b.name == *block).unwrap_or(0);
+        let path = match &error {
+            SetupError::Support { .. } => scene.supports.iter().position(|s| s.block == *block),
+            SetupError::Factor { .. } => None,
+        };
+        let path = path.map_or(format!("blocks[{index}]"), |i| format!("supports[{i}]"));
+        vec![Fault::new(path, error)]
+    })
+}
+
+/// The contact model that a scene names: a fork adds its own arm here.
+pub fn contact_model(contact: Option<&Contact>) -> Option<Box<dyn ContactModel>> {
+    match contact {
+        None | Some(Contact::Off) => None,
+        Some(Contact::Potential { penalty_pa, friction }) => {
+            let friction = friction
+                .as_ref()
+                .filter(|f| f.friction_deg > 0.0)
+                .map(|f| Coulomb { friction_deg: f.friction_deg, shear_penalty_pa_m: f.shear_penalty_pa_m });
+            Some(Box::new(PotentialContact::new(*penalty_pa, friction)))
+        }
+    }
+}
+
+/// The time integrator that a scene names.
+pub fn integrator(choice: &Integrator) -> Box<dyn TimeIntegrator> {
+    match choice {
+        Integrator::Midpoint { theta } => Box::new(Midpoint { theta: *theta }),
+        Integrator::Newmark { alpha, delta } => Box::new(Newmark { alpha: *alpha, delta: *delta }),
+    }
+}
+
+fn bodies(scene: &Scene, blocks: &BlockSet) -> Result<Vec<BodySetup>, Vec<Fault>> {
+    let mut faults = Vec::new();
+    let materials = materials(scene, &mut faults);
+    let mut bodies = Vec::new();
+    for block in &scene.blocks {
+        let used = scene.materials.iter().position(|m| m.name == block.material);
+        let Some(material) = used.and_then(|i| materials[i].clone()) else { continue };
+        bodies.push(BodySetup {
+            material,
+            supports: Vec::new(),
+            initial_stress_pa: block
+                .initial_stress_pa
+                .as_ref()
+                .map(|s| Voigt::new(s.xx, s.yy, s.zz, s.xy, s.yz, s.zx)),
+            tractions: Vec::new(),
+            velocity_m_s: vec3(block.velocity_m_s),
+            spin_rad_s: vec3(block.spin_rad_s),
+        });
+    }
+    for (i, support) in scene.supports.iter().enumerate() {
+        match node_support(scene, blocks, support) {
+            Ok((block, held)) => bodies[block.index()].supports.push(held),
+            Err(message) => faults.push(Fault::new(format!("supports[{i}].on"), message)),
+        }
+    }
+    for (i, traction) in scene.tractions.iter().enumerate() {
+        match loaded_triangles(blocks, traction) {
+            Ok((block, triangles)) => {
+                bodies[block.index()].tractions.push((triangles, vec3(traction.traction_pa)));
+            }
+            Err(message) => faults.push(Fault::new(format!("tractions[{i}].on"), message)),
+        }
+    }
+    if faults.is_empty() { Ok(bodies) } else { Err(faults) }
+}
+
+fn materials(scene: &Scene, faults: &mut Vec<Fault>) -> Vec<Option<Arc<LinearElastic>>> {
+    let mut build = |(i, m): (usize, &scene::Material)| {
+        let built = LinearElastic::new(m.young_pa, m.poisson, m.density_kg_m3);
+        built.map_err(|error| faults.push(Fault::new(format!("materials[{i}]"), error))).ok().map(Arc::new)
+    };
+    scene.materials.iter().enumerate().map(&mut build).collect()
+}
+
+fn node_support(
+    scene: &Scene,
+    blocks: &BlockSet,
+    support: &scene::Support,
+) -> Result<(BlockId, NodeSupport), String> {
+    let block = find(blocks, &support.block)?;
+    let nodes = region_nodes(blocks, block, &support.on)?;
+    let hold = match (&support.hold, &support.on) {
+        (Hold::Fixed, _) => FemHold::Fixed,
+        (Hold::Direction(n), _) => FemHold::Along(vec3(*n)),
+        (Hold::Normal, Region::Plane { normal, .. }) => FemHold::Along(vec3(*normal)),
+        (Hold::Normal, _) => return Err("`Normal` needs a region that is a plane; use `Direction(…)`".into()),
+        (Hold::Motion(rows), _) => {
+            let rows = rows.iter().map(|row| (row.time_s, vec3(row.displacement_m))).collect();
+            FemHold::Motion(Motion { rows })
+        }
+    };
+    let young_pa = || {
+        let material = &scene.blocks[block.index()].material;
+        scene.materials.iter().find(|m| m.name == *material).map_or(0.0, |m| m.young_pa)
+    };
+    let spring_n_m = match support.by {
+        By::Elimination => None,
+        By::Springs { stiffness_n_m } => {
+            Some(stiffness_n_m.unwrap_or_else(|| SPRING_PER_YOUNG_M * young_pa()))
+        }
+    };
+    Ok((block, NodeSupport { nodes, hold, spring_n_m }))
+}
+
+fn find(blocks: &BlockSet, name: &str) -> Result<BlockId, String> {
+    blocks.find(name).ok_or_else(|| format!("there is no block `{name}`"))
+}
+
+/// Nodes of a region, counted from the block's first, ascending.
+fn region_nodes(blocks: &BlockSet, block: BlockId, region: &Region) -> Result<Vec<u32>, String> {
+    let range = blocks.nodes_of(block);
+    let name = &blocks.names[block.index()];
+    let nodes: Vec<u32> = match region {
+        Region::All => (0..range.len() as u32).collect(),
+        Region::Set(set) => {
+            let sets = &blocks.node_sets[block.index()];
+            let known = sets.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+            let found =
+                sets.get(set).ok_or_else(|| format!("block `{name}` has no set `{set}`; it has {known}"))?;
+            found.iter().map(|n| n.0 - range.start as u32).collect()
+        }
+        Region::Plane { point_m, normal } => {
+            let size = Aabb::around(&blocks.rest_position[range.clone()]).diagonal();
+            let (point, normal) = (vec3(*point_m) - blocks.origin_m, vec3(*normal).normalize());
+            let near = |n: &u32| {
+                let x = blocks.rest_position[range.start + *n as usize];
+                (x - point).dot(&normal).abs() <= ON_PLANE * size
+            };
+            boundary_nodes(blocks, block).into_iter().filter(near).collect()
+        }
+    };
+    if nodes.is_empty() {
+        return Err(format!("no node of block `{name}` is in this region: check its place"));
+    }
+    Ok(nodes)
+}
+
+fn boundary_nodes(blocks: &BlockSet, block: BlockId) -> Vec<u32> {
+    let first = blocks.nodes_of(block).start as u32;
+    let triangles = &blocks.triangles[blocks.triangles_of(block)];
+    let mut nodes: Vec<u32> = triangles.iter().flatten().map(|n| n.0 - first).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+type Loaded = (BlockId, Vec<[u32; 3]>);
+
+fn loaded_triangles(blocks: &BlockSet, traction: &scene::Traction) -> Result<Loaded, String> {
+    let block = find(blocks, &traction.block)?;
+    let nodes = region_nodes(blocks, block, &traction.on)?;
+    let first = blocks.nodes_of(block).start as u32;
+    let local = blocks.triangles[blocks.triangles_of(block)].iter().map(|t| t.map(|n| n.0 - first));
+    let inside = |t: &[u32; 3]| t.iter().all(|n| nodes.binary_search(n).is_ok());
+    let triangles: Vec<[u32; 3]> = local.filter(inside).collect();
+    if triangles.is_empty() {
+        return Err(format!("no boundary triangle of block `{}` lies in this region", traction.block));
+    }
+    Ok((block, triangles))
+}
+
+/// The monitors of a scene.
+///
+/// # Errors
+/// All monitors whose point is outside their block.
+pub fn monitors(scene: &Scene, simulation: &Simulation) -> Result<Vec<Monitor>, Vec<Fault>> {
+    let blocks = simulation.blocks();
+    let mut faults = Vec::new();
+    let mut monitors = Vec::new();
+    for (i, monitor) in scene.monitors.iter().enumerate() {
+        let path = || format!("monitors[{i}].at");
+        let built = match (find(blocks, &monitor.block), &monitor.at) {
+            (Err(message), _) => Err(message),
+            (Ok(block), At::Centre) => Ok(Monitor::centre(&monitor.name, simulation, block)),
+            (Ok(block), At::Point(place)) => {
+                let point = Monitor::point(&monitor.name, blocks, block, &(vec3(*place) - blocks.origin_m));
+                point.ok_or_else(|| format!("this point is outside block `{}` at the start", monitor.block))
+            }
+        };
+        match built {
+            Ok(monitor) => monitors.push(monitor),
+            Err(message) => faults.push(Fault::new(path(), message)),
+        }
+    }
+    if faults.is_empty() { Ok(monitors) } else { Err(faults) }
+}
+
+/// Steps of a run: its end rounded to whole steps, at least one.
+pub fn steps(time: &scene::Time) -> u64 {
+    ((time.end_s / time.step_s).round() as u64).max(1)
+}

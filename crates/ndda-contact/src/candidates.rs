@@ -1,0 +1,134 @@
+//! The list of pairs that are worth clipping, kept while nothing has moved far.
+
+use std::ops::Range;
+
+use ndda_mesh::geometry::Aabb;
+use ndda_mesh::{BlockId, TetId, TriangleId, Vec3};
+
+use crate::broad_phase::{Boxes, BroadPhase};
+use crate::bvh::BvhBroadPhase;
+use crate::model::ContactInput;
+
+/// Skin over the mean size of boundary triangles; a list then lasts for many steps of a slow scene.
+const SKIN: f64 = 0.05;
+/// Steps that a list should last when blocks are fast.
+const LASTING_STEPS: f64 = 8.0;
+
+/// A boundary triangle and the tetrahedra of one other block that it may be in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Facet {
+    /// The contactor's triangle.
+    pub triangle: TriangleId,
+    /// The other block.
+    pub target: BlockId,
+    /// Its pairs in [`Candidates::pairs`].
+    pub pairs: Range<usize>,
+}
+
+/// One pair; the tetrahedron is an index into [`Candidates::tets`], the overlap one into a list as long as
+/// [`Candidates::overlaps`] says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pair {
+    /// The contactor's triangle.
+    pub triangle: TriangleId,
+    /// Index of the target tetrahedron in `tets`.
+    pub tet: u32,
+    /// Index of the combination (contactor block, target tetrahedron).
+    pub overlap: u32,
+}
+
+/// Pairs near contact, sorted by (triangle, target block, tetrahedron) so that sums have one order.
+#[derive(Default)]
+pub struct Candidates {
+    /// All pairs.
+    pub pairs: Vec<Pair>,
+    /// Runs of pairs with one triangle and one target block.
+    pub facets: Vec<Facet>,
+    /// The distinct target tetrahedra, ascending.
+    pub tets: Vec<TetId>,
+    /// The distinct (target tetrahedron, contactor block), ascending.
+    pub overlaps: Vec<(TetId, BlockId)>,
+    found: Vec<(TriangleId, TetId)>,
+    broad_phase: BvhBroadPhase,
+    listed_at: Vec<Vec3>,
+    skin_m: f64,
+    triangle_boxes: Vec<Aabb>,
+    tet_boxes: Vec<Aabb>,
+    block_boxes: Vec<Aabb>,
+}
+
+impl Candidates {
+    /// Brings the list up to date: nothing to do while no node has moved by half the skin.
+    pub fn update(&mut self, input: &ContactInput) {
+        let reach = 0.5 * self.skin_m;
+        let moved = |(x, y): (&Vec3, &Vec3)| (x - y).norm_squared() > reach * reach;
+        if self.listed_at.len() == input.position.len()
+            && !self.listed_at.iter().zip(input.position).any(moved)
+        {
+            return;
+        }
+        self.listed_at.clear();
+        self.listed_at.extend_from_slice(input.position);
+        self.box_everything(input);
+        let boxes = Boxes {
+            triangles: &self.triangle_boxes,
+            triangle_block: &input.blocks.triangle_block,
+            tets: &self.tet_boxes,
+            tet_block: &input.blocks.tet_block,
+            blocks: &self.block_boxes,
+        };
+        self.broad_phase.find_pairs(&boxes, &mut self.found);
+        self.arrange(input);
+    }
+
+    /// Boxes of triangles, tetrahedra and blocks; each is inflated by half the skin, and by the rounding of its own
+    /// coordinates.
+    fn box_everything(&mut self, input: &ContactInput) {
+        let (blocks, position) = (input.blocks, input.position);
+        let around = |nodes: &[ndda_mesh::NodeId]| Aabb::around(nodes.iter().map(|n| &position[n.index()]));
+        self.triangle_boxes.clear();
+        self.triangle_boxes.extend(blocks.triangles.iter().map(|t| around(t)));
+        let size = self.triangle_boxes.iter().map(Aabb::diagonal).sum::<f64>();
+        let size = size / self.triangle_boxes.len().max(1) as f64;
+        let fastest = input.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
+        let travel = LASTING_STEPS * 2.0 * fastest * input.dt_s;
+        self.skin_m = (SKIN * size).max(travel.min(size));
+        let furthest = position.iter().map(|x| x.amax()).fold(0.0, f64::max);
+        let margin = 0.5 * self.skin_m + 8.0 * f64::EPSILON * furthest;
+        self.triangle_boxes.iter_mut().for_each(|b| *b = b.inflated(margin));
+        self.tet_boxes.clear();
+        self.tet_boxes.extend(blocks.tets.iter().map(|t| around(t).inflated(margin)));
+        self.block_boxes.clear();
+        let nodes = |block| &position[blocks.nodes_of(block)];
+        self.block_boxes.extend(blocks.ids().map(|block| Aabb::around(nodes(block)).inflated(margin)));
+    }
+
+    /// Sorts the pairs and numbers what they share.
+    fn arrange(&mut self, input: &ContactInput) {
+        let (tet_block, triangle_block) = (&input.blocks.tet_block, &input.blocks.triangle_block);
+        // Blocks are contiguous in tetrahedra, so this order is also by target block.
+        self.found.sort_unstable();
+        self.tets.clear();
+        self.tets.extend(self.found.iter().map(|pair| pair.1));
+        self.tets.sort_unstable();
+        self.tets.dedup();
+        let overlap_of = |pair: &(TriangleId, TetId)| (pair.1, triangle_block[pair.0.index()]);
+        self.overlaps.clear();
+        self.overlaps.extend(self.found.iter().map(overlap_of));
+        self.overlaps.sort_unstable();
+        self.overlaps.dedup();
+        self.pairs.clear();
+        self.facets.clear();
+        for (i, found) in self.found.iter().enumerate() {
+            let (triangle, tet_id) = *found;
+            let tet = self.tets.binary_search(&tet_id).expect("listed above") as u32;
+            let overlap = self.overlaps.binary_search(&overlap_of(found)).expect("listed above") as u32;
+            self.pairs.push(Pair { triangle, tet, overlap });
+            let target = tet_block[tet_id.index()];
+            match self.facets.last_mut() {
+                Some(last) if last.triangle == triangle && last.target == target => last.pairs.end = i + 1,
+                _ => self.facets.push(Facet { triangle, target, pairs: i..i + 1 }),
+            }
+        }
+    }
+}
