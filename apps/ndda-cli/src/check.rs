@@ -3,8 +3,8 @@
 use std::io::IsTerminal;
 use std::path::Path;
 
-use ndda_io::diagnostic::Diagnostic;
-use ndda_io::read::{LoadedScene, SceneErrors, load};
+use ndda_io::diagnostic::{Diagnostic, SceneErrors};
+use ndda_io::read::{LoadedScene, load};
 use ndda_solver::Simulation;
 
 use crate::args::CheckArgs;

@@ -5,7 +5,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use ndda_contact::{ContactModel, Coulomb, PotentialContact};
+use ndda_contact::{ContactModel, Coulomb, FrictionLaw, PotentialContact};
 use ndda_fem::supports::Motion;
 use ndda_fem::{Hold as FemHold, LinearElastic, NodeSupport, Voigt};
 use ndda_io::msh;
@@ -169,11 +169,12 @@ pub fn contact_model(contact: Option<&Contact>) -> Option<Box<dyn ContactModel>>
     match contact {
         None | Some(Contact::Off) => None,
         Some(Contact::Potential { penalty_pa, friction }) => {
-            let friction = friction
-                .as_ref()
-                .filter(|f| f.friction_deg > 0.0)
-                .map(|f| Coulomb { friction_deg: f.friction_deg, shear_penalty_pa_m: f.shear_penalty_pa_m });
-            Some(Box::new(PotentialContact::new(*penalty_pa, friction)))
+            // Without friction no shear spring and no memory is made.
+            let friction = friction.as_ref().filter(|f| f.friction_deg > 0.0);
+            let law = friction.map(|f| -> Box<dyn FrictionLaw> {
+                Box::new(Coulomb::new(f.friction_deg, f.shear_penalty_pa_m))
+            });
+            Some(Box::new(PotentialContact::new(*penalty_pa, law)))
         }
     }
 }

@@ -1,10 +1,15 @@
 //! Files in and out: RON scenes with their diagnostics, Gmsh meshes, VTU fields, history and summary.
 
 pub mod atomic;
+pub mod check;
+pub mod diagnostic;
 pub mod folder;
 pub mod history;
+pub mod locate;
 pub mod msh;
+pub mod overrides;
 pub mod pvd;
+pub mod read;
 pub mod scene;
 pub mod summary;
 pub mod vtu;

@@ -409,48 +409,69 @@ impl Body {
         gained
     }
 
-    /// Velocities, accelerations and positions at the end of the step; what the step did.
+    /// Velocities, accelerations and positions at the end of the step; nothing is written before all are sound.
     fn advance(
         &mut self,
         shape: &Shape,
         context: &StepContext,
         nodes: &mut NodeSlices,
     ) -> Result<(), BlockError> {
-        let (report, rate) = (&mut self.report, context.weights.velocity_per_m);
-        let mut fastest = (0.0, 0);
-        for (i, u) in self.correction.iter().enumerate() {
-            let (v, a) = (&mut nodes.velocity[i], &mut nodes.acceleration[i]);
-            context.integrator.correct(context.dt_s, u, &self.predicted[i], v, a);
-            *v += rate * self.rigid[i];
-            let u = u + self.rigid[i];
-            nodes.position[i] += u;
-            report.outside_torque += context.contact_position[i].cross(&context.external[i]);
-            let speed = v.norm_squared();
-            // A NaN speed must win, too.
-            if speed > fastest.0 || speed.is_nan() {
-                fastest = (speed, i);
-            }
-            if let Some(friction) = context.friction_force.get(i) {
-                report.friction_work_j += friction.dot(&u);
-            }
-            if let Some(stiffness) = context.contact_stiffness.get(i) {
-                report.contact_rate2 = report.contact_rate2.max(stiffness / shape.operator.node_mass[i]);
-            }
+        let rate = context.weights.velocity_per_m;
+        // v₁ and a₁ wait in `load` and `elastic`.
+        for (i, u) in self.correction.iter_mut().enumerate() {
+            let (mut v, mut a) = (nodes.velocity[i], nodes.acceleration[i]);
+            context.integrator.correct(context.dt_s, u, &self.predicted[i], &mut v, &mut a);
+            (self.load[i], self.elastic[i]) = (v + rate * self.rigid[i], a);
+            *u += self.rigid[i];
         }
         for (_, held) in moved(shape) {
             // The mean velocity of the step does not ring where the table has a kink.
             let i = held.node as usize;
             let mean = self.correction[i] / context.dt_s;
-            nodes.velocity[i] += onto(&held.held, &(mean - nodes.velocity[i]));
-            nodes.acceleration[i] -= onto(&held.held, &nodes.acceleration[i]);
+            self.load[i] += onto(&held.held, &(mean - self.load[i]));
+            self.elastic[i] -= onto(&held.held, &self.elastic[i]);
         }
-        report.speed_m_s = fastest.0.sqrt();
+        self.check_speed(shape)?;
+        for (i, u) in self.correction.iter().enumerate() {
+            nodes.position[i] += u;
+        }
+        nodes.velocity.copy_from_slice(&self.load);
+        nodes.acceleration.copy_from_slice(&self.elastic);
+        self.report_step(shape, context);
+        Ok(())
+    }
+
+    /// Invariant I1: finite, and slower than ten waves.
+    fn check_speed(&mut self, shape: &Shape) -> Result<(), BlockError> {
+        let mut fastest = (0.0, 0);
+        for (i, v) in self.load.iter().enumerate() {
+            let speed = v.norm_squared();
+            // A NaN speed must win, too.
+            if speed > fastest.0 || speed.is_nan() {
+                fastest = (speed, i);
+            }
+        }
+        let (speed_m_s, node) = (fastest.0.sqrt(), fastest.1);
+        self.report.speed_m_s = speed_m_s;
         let wave_speed_m_s = shape.material.wave_speed_m_s();
-        let (node, speed_m_s) = (fastest.1, report.speed_m_s);
         if speed_m_s.is_nan() || speed_m_s >= 10.0 * wave_speed_m_s {
             return Err(BlockError::TooFast { node, speed_m_s, wave_speed_m_s });
         }
         Ok(())
+    }
+
+    /// Torque of constant loads, work of friction, and the contact rate of the step.
+    fn report_step(&mut self, shape: &Shape, context: &StepContext) {
+        let report = &mut self.report;
+        for (x, f) in context.contact_position.iter().zip(context.external) {
+            report.outside_torque += x.cross(f);
+        }
+        for (friction, u) in context.friction_force.iter().zip(&self.correction) {
+            report.friction_work_j += friction.dot(u);
+        }
+        for (stiffness, mass) in context.contact_stiffness.iter().zip(&shape.operator.node_mass) {
+            report.contact_rate2 = report.contact_rate2.max(stiffness / mass);
+        }
     }
 
     /// Elastic energy at `position`, ½ wᵀ K w + wᵀ ∫Bᵀσ₀ [J].

@@ -497,6 +497,11 @@ impl Simulation {
         self.shapes.iter().all(Shape::is_free)
     }
 
+    /// Whether blocks feel each other.
+    pub fn has_contact(&self) -> bool {
+        self.contact.is_some()
+    }
+
     /// Largest stable h = ω_c Δt of the integrator.
     pub fn contact_bound(&self) -> Option<f64> {
         self.integrator.contact_bound()

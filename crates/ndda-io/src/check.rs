@@ -1,0 +1,393 @@
+//! What the types of a scene cannot say: ranges, names, and what fits together. All of it in one pass.
+
+use std::path::Path;
+
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::read::suggest;
+use crate::scene::{By, Contact, Hold, Integrator, Reference, Region, Scene, Shape};
+
+/// More steps than this are a slip of the keyboard.
+const MOST_STEPS: f64 = 1e9;
+/// More nodes than this per block are a slip of the keyboard.
+const MOST_NODES: f64 = 5e7;
+
+/// Everything that is wrong or odd about a scene; `folder` is where its meshes should be. Places are not yet known.
+pub fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> {
+    let mut check = Check { scene, found: Vec::new() };
+    check.time();
+    check.numbers("gravity_m_s2", &scene.gravity_m_s2);
+    check.materials();
+    check.blocks(folder);
+    check.supports();
+    check.tractions();
+    check.contact();
+    check.monitors();
+    check.reference();
+    check.output();
+    check.found
+}
+
+struct Check<'a> {
+    scene: &'a Scene,
+    found: Vec<Diagnostic>,
+}
+
+impl Check<'_> {
+    fn error(&mut self, path: impl Into<String>, message: impl Into<String>, help: impl Into<String>) {
+        self.found.push(Diagnostic::error(path, message, None).with_help(help));
+    }
+
+    fn warn(&mut self, path: impl Into<String>, message: impl Into<String>, help: impl Into<String>) {
+        let mut warning = Diagnostic::error(path, message, None).with_help(help);
+        warning.severity = Severity::Warning;
+        self.found.push(warning);
+    }
+
+    /// A number that must be positive and finite.
+    fn positive(&mut self, path: String, value: f64, unit: &str) {
+        if !(value > 0.0 && value.is_finite()) {
+            self.error(
+                path,
+                format!("{value} {unit}: must be positive"),
+                format!("give a value above 0 {unit}"),
+            );
+        }
+    }
+
+    /// Numbers of any sign that must be finite.
+    fn numbers(&mut self, path: &str, values: &[f64]) {
+        if values.iter().any(|v| !v.is_finite()) {
+            self.error(path, "must be finite numbers", "write plain numbers");
+        }
+    }
+
+    fn direction(&mut self, path: String, value: &[f64; 3]) {
+        let length = value.iter().map(|v| v * v).sum::<f64>().sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            self.error(
+                path,
+                "is no direction: its length is zero or overflows",
+                "give a vector such as (0, 0, 1)",
+            );
+        }
+    }
+
+    /// A name that must be one of `known`.
+    fn known(&mut self, path: String, what: &str, name: &str, known: &[&str]) {
+        if !known.contains(&name) {
+            self.error(path, format!("there is no {what} `{name}`"), suggest(name, known));
+        }
+    }
+
+    fn names(&mut self, list: &str, names: &[&str]) {
+        for (i, name) in names.iter().enumerate() {
+            let path = format!("{list}[{i}].name");
+            if name.trim().is_empty() || name.chars().any(|c| c.is_control() || "/\\,\"'`".contains(c)) {
+                let help = "use letters, digits, spaces, - and _: names become columns and files";
+                self.error(path, format!("`{}` cannot be a name", name.escape_debug()), help);
+            } else if names[..i].contains(name) {
+                self.error(
+                    path,
+                    format!("the name `{name}` is used twice in {list}"),
+                    "give each its own name",
+                );
+            }
+        }
+    }
+
+    fn time(&mut self) {
+        let time = &self.scene.time;
+        self.positive("time.step_s".into(), time.step_s, "s");
+        self.positive("time.end_s".into(), time.end_s, "s");
+        if time.step_s > 0.0 && time.end_s > 0.0 {
+            if time.end_s < time.step_s {
+                let message =
+                    format!("{} s is before the end of the first step ({} s)", time.end_s, time.step_s);
+                self.error("time.end_s", message, "make it at least one step");
+            } else if time.end_s / time.step_s > MOST_STEPS {
+                let message = format!("{:.1e} steps", time.end_s / time.step_s);
+                self.error("time.step_s", message, "at most 1e9 steps are taken: make the step larger");
+            } else if time.step_s > 0.1 * time.end_s {
+                self.warn(
+                    "time.step_s",
+                    "fewer than ten steps",
+                    "is it meant in milliseconds? the unit is seconds",
+                );
+            }
+        }
+        match time.integrator {
+            Integrator::Midpoint { theta } if !(0.5..=1.0).contains(&theta) => {
+                self.error(
+                    "time.integrator.theta",
+                    format!("θ = {theta}: must be from 0.5 to 1"),
+                    "0.5 damps nothing",
+                );
+            }
+            Integrator::Newmark { alpha, delta } if !(delta >= 0.5 && 2.0 * alpha >= delta) => {
+                let message = format!("α = {alpha}, δ = {delta}: unstable, must be 2 α ≥ δ ≥ ½");
+                self.error("time.integrator", message, "the paper has α = 0.5, δ = 1");
+            }
+            _ => {}
+        }
+    }
+
+    fn materials(&mut self) {
+        let scene = self.scene;
+        self.names("materials", &scene.materials.iter().map(|m| m.name.as_str()).collect::<Vec<_>>());
+        for (i, material) in scene.materials.iter().enumerate() {
+            let path = |field: &str| format!("materials[{i}].{field}");
+            self.positive(path("young_pa"), material.young_pa, "Pa");
+            self.positive(path("density_kg_m3"), material.density_kg_m3, "kg/m³");
+            if !(-1.0 < material.poisson && material.poisson < 0.5) {
+                let message = format!("{}: must lie between −1 and 0.5, both excluded", material.poisson);
+                self.error(path("poisson"), message, "rock has 0.15 to 0.35");
+            } else if material.poisson > 0.49 {
+                let help = "four-node tetrahedra lock near 0.5: displacements come out too small";
+                self.warn(path("poisson"), "nearly incompressible", help);
+            }
+            if material.young_pa > 0.0 && material.young_pa < 1e6 {
+                let help = "the unit is pascal: 20 GPa is 20e9";
+                self.warn(
+                    path("young_pa"),
+                    format!("{} Pa is softer than any rock", material.young_pa),
+                    help,
+                );
+            }
+            let density = material.density_kg_m3;
+            if density > 0.0 && !(100.0..=20000.0).contains(&density) {
+                let help = "the unit is kg/m³: granite is 2650";
+                self.warn(
+                    path("density_kg_m3"),
+                    format!("{density} kg/m³ is not the density of a rock"),
+                    help,
+                );
+            }
+            if !scene.blocks.iter().any(|b| b.material == material.name) {
+                self.warn(
+                    path("name"),
+                    format!("no block is made of `{}`", material.name),
+                    "it may be left out",
+                );
+            }
+        }
+    }
+
+    fn blocks(&mut self, folder: Option<&Path>) {
+        let scene = self.scene;
+        if scene.blocks.is_empty() {
+            self.error("blocks", "there is no block", "a scene has at least one");
+        }
+        self.names("blocks", &scene.blocks.iter().map(|b| b.name.as_str()).collect::<Vec<_>>());
+        let materials: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+        for (i, block) in scene.blocks.iter().enumerate() {
+            let path = |field: &str| format!("blocks[{i}].{field}");
+            self.known(path("material"), "material", &block.material, &materials);
+            for (k, turn) in block.turns.iter().enumerate() {
+                self.direction(path(&format!("turns[{k}].axis")), &turn.axis);
+                self.numbers(&path(&format!("turns[{k}].angle_deg")), &[turn.angle_deg]);
+            }
+            self.numbers(&path("at_m"), &block.at_m);
+            self.numbers(&path("velocity_m_s"), &block.velocity_m_s);
+            self.numbers(&path("spin_rad_s"), &block.spin_rad_s);
+            self.shape(&path("shape"), &block.shape, folder);
+        }
+    }
+
+    fn shape(&mut self, path: &str, shape: &Shape, folder: Option<&Path>) {
+        match shape {
+            Shape::Box { size_m, cells, .. } => {
+                for (i, size) in size_m.iter().enumerate() {
+                    self.positive(format!("{path}.size_m[{i}]"), *size, "m");
+                }
+                self.cells(path, cells);
+            }
+            Shape::Prism { outline_m: [a, b, c], height_m, cells } => {
+                self.positive(format!("{path}.height_m"), *height_m, "m");
+                let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+                if twice_area < 0.0 {
+                    let help = "swap two corners";
+                    self.error(format!("{path}.outline_m"), "the corners run clockwise", help);
+                } else if twice_area.is_nan() || twice_area == 0.0 {
+                    let help = "give three corners that span an area";
+                    self.error(format!("{path}.outline_m"), "the triangle has no area", help);
+                }
+                self.cells(path, cells);
+            }
+            Shape::Mesh { file, unit_m, .. } => {
+                self.positive(format!("{path}.unit_m"), *unit_m, "m");
+                if let Some(folder) = folder
+                    && !folder.join(file).is_file()
+                {
+                    let message = format!("there is no file {}", folder.join(file).display());
+                    self.error(format!("{path}.file"), message, "the path counts from the scene file");
+                }
+            }
+        }
+    }
+
+    fn cells(&mut self, path: &str, cells: &[u32]) {
+        let nodes: f64 = cells.iter().map(|&n| f64::from(n) + 1.0).product();
+        for (i, _) in cells.iter().enumerate().filter(|(_, n)| **n == 0) {
+            self.error(format!("{path}.cells[{i}]"), "0 cells", "at least one cell is needed");
+        }
+        if nodes > MOST_NODES {
+            self.error(format!("{path}.cells"), format!("about {nodes:.1e} nodes"), "at most 5e7 are made");
+        }
+    }
+
+    fn region(&mut self, path: &str, region: &Region) {
+        if let Region::Plane { point_m, normal } = region {
+            self.numbers(&format!("{path}.point_m"), point_m);
+            self.direction(format!("{path}.normal"), normal);
+        }
+    }
+
+    fn supports(&mut self) {
+        let scene = self.scene;
+        let blocks: Vec<&str> = scene.blocks.iter().map(|b| b.name.as_str()).collect();
+        for (i, support) in scene.supports.iter().enumerate() {
+            let path = |field: &str| format!("supports[{i}].{field}");
+            self.known(path("block"), "block", &support.block, &blocks);
+            self.region(&path("on"), &support.on);
+            match &support.hold {
+                Hold::Normal if !matches!(support.on, Region::Plane { .. }) => {
+                    let help = "use `Plane(…)` as region, or `Direction((x, y, z))`";
+                    self.error(path("hold"), "`Normal` needs a region that is a plane", help);
+                }
+                Hold::Direction(n) => self.direction(path("hold"), n),
+                Hold::Motion(rows) => self.motion(&path("hold"), rows),
+                _ => {}
+            }
+            if let By::Springs { stiffness_n_m: Some(stiffness) } = support.by {
+                self.positive(path("by.stiffness_n_m"), stiffness, "N/m");
+            }
+        }
+    }
+
+    fn motion(&mut self, path: &str, rows: &[crate::scene::MotionRow]) {
+        if rows.is_empty() {
+            self.error(path, "the table has no rows", "give at least one row with time_s and displacement_m");
+        }
+        if rows.windows(2).any(|pair| pair[0].time_s.is_nan() || pair[1].time_s <= pair[0].time_s) {
+            self.error(path, "times must increase from row to row", "sort the rows by time_s");
+        }
+        if rows.first().is_some_and(|row| row.time_s <= 0.0 && row.displacement_m != [0.0; 3]) {
+            self.error(
+                path,
+                "the motion does not begin at rest",
+                "let it start with displacement_m: (0, 0, 0)",
+            );
+        }
+        rows.iter().for_each(|row| self.numbers(path, &row.displacement_m));
+    }
+
+    fn tractions(&mut self) {
+        let scene = self.scene;
+        let blocks: Vec<&str> = scene.blocks.iter().map(|b| b.name.as_str()).collect();
+        for (i, traction) in scene.tractions.iter().enumerate() {
+            self.known(format!("tractions[{i}].block"), "block", &traction.block, &blocks);
+            self.region(&format!("tractions[{i}].on"), &traction.on);
+            self.numbers(&format!("tractions[{i}].traction_pa"), &traction.traction_pa);
+        }
+    }
+
+    fn contact(&mut self) {
+        let several = self.scene.blocks.len() > 1;
+        match &self.scene.contact {
+            None if several => {
+                let help = "write `contact: Potential(penalty_pa: …)` or `contact: Off`";
+                self.error("contact", "more than one block, and no word on contact", help);
+            }
+            Some(Contact::Potential { penalty_pa, friction }) => {
+                self.positive("contact.penalty_pa".into(), *penalty_pa, "Pa");
+                if let Some(friction) = friction {
+                    let angle = friction.friction_deg;
+                    if !(0.0..90.0).contains(&angle) {
+                        let message = format!("{angle}°: must be from 0 to below 90");
+                        self.error("contact.friction.friction_deg", message, "μ = tan φ");
+                    }
+                    let path = "contact.friction.shear_penalty_pa_m";
+                    self.positive(path.into(), friction.shear_penalty_pa_m, "Pa/m");
+                }
+                if !several && !self.scene.blocks.is_empty() {
+                    self.warn("contact", "one block has nothing to touch", "contact is left out of this run");
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn monitors(&mut self) {
+        let scene = self.scene;
+        self.names("monitors", &scene.monitors.iter().map(|m| m.name.as_str()).collect::<Vec<_>>());
+        let blocks: Vec<&str> = scene.blocks.iter().map(|b| b.name.as_str()).collect();
+        for (i, monitor) in scene.monitors.iter().enumerate() {
+            self.known(format!("monitors[{i}].block"), "block", &monitor.block, &blocks);
+            if let crate::scene::At::Point(place) = &monitor.at {
+                self.numbers(&format!("monitors[{i}].at"), place);
+            }
+        }
+    }
+
+    fn reference(&mut self) {
+        let scene = self.scene;
+        let blocks: Vec<&str> = scene.blocks.iter().map(|b| b.name.as_str()).collect();
+        let monitors: Vec<&str> = scene.monitors.iter().map(|m| m.name.as_str()).collect();
+        let path = |field: &str| format!("reference.{field}");
+        match &scene.reference {
+            Some(Reference::SlidingBlock {
+                monitor,
+                downhill,
+                slope_deg,
+                friction_deg,
+                thickness_m,
+                after_s,
+            }) => {
+                self.known(path("monitor"), "monitor", monitor, &monitors);
+                self.direction(path("downhill"), downhill);
+                if !(*slope_deg > 0.0 && *slope_deg < 90.0) {
+                    self.error(
+                        path("slope_deg"),
+                        format!("{slope_deg}°: must be between 0 and 90"),
+                        "α of the ramp",
+                    );
+                }
+                if !(0.0..90.0).contains(friction_deg) {
+                    let message = format!("{friction_deg}°: must be from 0 to below 90");
+                    self.error(path("friction_deg"), message, "as in `contact`");
+                }
+                if let Some(thickness) = thickness_m {
+                    self.positive(path("thickness_m"), *thickness, "m");
+                }
+                self.after(*after_s);
+            }
+            Some(Reference::Collision { first, second, along, after_s }) => {
+                self.known(path("first"), "block", first, &blocks);
+                self.known(path("second"), "block", second, &blocks);
+                self.direction(path("along"), along);
+                self.after(*after_s);
+            }
+            Some(Reference::FreeFall { monitor, after_s }) => {
+                self.known(path("monitor"), "monitor", monitor, &monitors);
+                self.after(*after_s);
+            }
+            Some(Reference::FreeSpin { block }) => self.known(path("block"), "block", block, &blocks),
+            None => {}
+        }
+    }
+
+    fn after(&mut self, after_s: f64) {
+        let end_s = self.scene.time.end_s;
+        if !(0.0..=end_s).contains(&after_s) {
+            let message = format!("{after_s} s is outside the run, which ends at {end_s} s");
+            self.error("reference.after_s", message, "the largest error is taken from here to the end");
+        }
+    }
+
+    fn output(&mut self) {
+        if self.scene.output.frames > 100_000 {
+            let frames = self.scene.output.frames;
+            self.warn("output.frames", format!("{frames} frames are as many files"), "are that many needed?");
+        }
+    }
+}

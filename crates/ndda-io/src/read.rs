@@ -1,0 +1,200 @@
+//! Reading a scene: file → text → overrides → types → checks, with every message at its place.
+
+use std::ops::Range;
+use std::path::Path;
+
+use ron::error::{Error as RonError, Position, SpannedError};
+use ron::extensions::Extensions;
+
+use crate::check;
+use crate::diagnostic::{Diagnostic, SceneErrors, Severity};
+use crate::locate::{self, Node};
+use crate::overrides;
+use crate::scene::Scene;
+
+/// Names less alike than this are no suggestion.
+const ALIKE: f64 = 0.75;
+
+/// A scene that parsed and passed its checks.
+#[derive(Clone, Debug)]
+pub struct LoadedScene {
+    /// The scene.
+    pub scene: Scene,
+    /// Its text, overrides included.
+    pub text: String,
+    /// The file, as it was named.
+    pub file: String,
+    /// What may not be meant.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl LoadedScene {
+    /// An error about the value at `path`, with its place in the text.
+    pub fn diagnose(&self, path: &str, message: String) -> Diagnostic {
+        Diagnostic::error(path, message, place(&locate::tree(&self.text), &self.text, path))
+    }
+
+    /// Messages about this scene.
+    pub fn errors(&self, diagnostics: Vec<Diagnostic>) -> SceneErrors {
+        SceneErrors { file: self.file.clone(), text: self.text.clone(), diagnostics }
+    }
+}
+
+/// Reads and checks a scene file.
+///
+/// # Errors
+/// Everything that is wrong with it: syntax and types one at a time, values all at once.
+pub fn load(path: &Path, overrides: &[String]) -> Result<LoadedScene, SceneErrors> {
+    let file = path.display().to_string();
+    let unreadable = |message: String, help: &str| SceneErrors {
+        file: file.clone(),
+        text: String::new(),
+        diagnostics: vec![Diagnostic::error("", message, None).with_help(help)],
+    };
+    if path.is_dir() {
+        return Err(unreadable("is a folder".into(), "name a scene file, such as scenes/sliding_45.ron"));
+    }
+    let bytes = std::fs::read(path)
+        .map_err(|e| unreadable(format!("cannot be read: {e}"), "check the path of the scene file"))?;
+    let text = String::from_utf8(bytes).map_err(|e| {
+        let at = e.utf8_error().valid_up_to();
+        let line = e.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count() + 1;
+        let message = format!("is not UTF-8 text (byte {at}, line {line})");
+        unreadable(message, "save the file as UTF-8")
+    })?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    load_text(&file, &text, overrides, Some(folder))
+}
+
+/// Reads and checks the text of a scene; `folder` is where its meshes are, if they are to be looked for.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_text(
+    file: &str,
+    text: &str,
+    overrides: &[String],
+    folder: Option<&Path>,
+) -> Result<LoadedScene, SceneErrors> {
+    let fail = |text: &str, diagnostics: Vec<Diagnostic>| SceneErrors {
+        file: file.to_string(),
+        text: text.to_string(),
+        diagnostics,
+    };
+    if let Some(rest) = text.strip_prefix('\u{feff}') {
+        let begins = Diagnostic::error("", "the file begins with a byte order mark", Some(0..0));
+        return Err(fail(rest, vec![begins.with_help("save it as UTF-8 without BOM")]));
+    }
+    if text.trim().is_empty() {
+        let empty = Diagnostic::error("", "the file is empty", Some(0..0));
+        return Err(fail(text, vec![empty.with_help("begin with one of the scenes in scenes/")]));
+    }
+    let text = overrides::apply(text, overrides).map_err(|refused| fail(text, vec![refused]))?;
+    let tree = locate::tree(&text);
+    let numbers = not_finite(&tree, &text);
+    if !numbers.is_empty() {
+        return Err(fail(&text, numbers));
+    }
+    let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+    let scene: Scene = options.from_str(&text).map_err(|e| fail(&text, vec![explain(&e, &text, &tree)]))?;
+    let mut found = check::problems(&scene, folder);
+    for diagnostic in &mut found {
+        diagnostic.span = place(&tree, &text, &diagnostic.path);
+    }
+    found.sort_by_key(|d| d.span.as_ref().map_or(0, |span| span.start));
+    if found.iter().any(|d| d.severity == Severity::Error) {
+        return Err(fail(&text, found));
+    }
+    Ok(LoadedScene { scene, text, file: file.to_string(), warnings: found })
+}
+
+/// Place of the value at a path, or of the nearest value around it that is written.
+fn place(tree: &Node, text: &str, path: &str) -> Option<Range<usize>> {
+    let mut node = tree;
+    for segment in locate::segments(path) {
+        match node.child(text, segment) {
+            Some(child) => node = child,
+            None => break,
+        }
+    }
+    Some(node.span.clone())
+}
+
+/// Numbers that RON accepts and nothing can be computed with: NaN, infinities, and 1e400.
+fn not_finite(tree: &Node, text: &str) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    tree.for_each_leaf(&mut |leaf| {
+        let word = &text[leaf.span.clone()];
+        let digits = word.replace('_', "");
+        let looks_like_number = digits.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+            || ["NaN", "inf"].contains(&digits.as_str());
+        if looks_like_number && digits.parse::<f64>().is_ok_and(|number| !number.is_finite()) {
+            let path = leaf.key.clone().unwrap_or_default();
+            let message = format!("{word} is not a number that one can compute with");
+            found.push(Diagnostic::error(path, message, Some(leaf.span.clone())));
+        }
+    });
+    found
+}
+
+/// RON's complaint in the words of a scene, at the place a person would look.
+fn explain(error: &SpannedError, text: &str, tree: &Node) -> Diagnostic {
+    let start = offset(text, &error.span.start);
+    let span = start..offset(text, &error.span.end).max(start);
+    let at = |message: String| Diagnostic::error("", message, Some(span.clone()));
+    let of = |outer: &Option<String>| outer.as_ref().map_or(String::new(), |name| format!(" of `{name}`"));
+    match &error.code {
+        RonError::NoSuchStructField { expected, found, outer } => {
+            at(format!("there is no field `{found}`{}", of(outer))).with_help(suggest(found, expected))
+        }
+        RonError::NoSuchEnumVariant { expected, found, outer } => {
+            at(format!("`{found}` is no choice{}", of(outer))).with_help(suggest(found, expected))
+        }
+        RonError::MissingStructField { field, outer } => {
+            // RON points at the closing bracket; the struct is what lacks the field.
+            let around = tree.innermost(start.saturating_sub(1));
+            let span = around.map_or(span.clone(), |node| node.span.clone());
+            let path = around.and_then(|node| node.key.clone()).unwrap_or_default();
+            Diagnostic::error(path, format!("the field `{field}`{} is missing", of(outer)), Some(span))
+                .with_help(format!("write `{field}: …,` (see docs/scene.md)"))
+        }
+        RonError::DuplicateStructField { field, outer } => {
+            at(format!("the field `{field}`{} is written twice", of(outer))).with_help("keep one of them")
+        }
+        RonError::Eof => at("the file ends before the scene does".into())
+            .with_help("a closing bracket is missing, or the file was cut off"),
+        RonError::InvalidValueForType { expected, found } => {
+            at(format!("expected {expected}, found {found}")).with_help("see docs/scene.md for this field")
+        }
+        code => at(lowercase_first(&code.to_string())),
+    }
+}
+
+fn lowercase_first(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_lowercase().chain(letters).collect())
+}
+
+/// "did you mean", or all that would be allowed.
+pub(crate) fn suggest(found: &str, expected: &[&str]) -> String {
+    match nearest(found, expected) {
+        Some(name) => format!("did you mean `{name}`?"),
+        None => format!("there is {}", expected.join(", ")),
+    }
+}
+
+/// The name most like `found`, if any is like it.
+pub(crate) fn nearest<'a>(found: &str, expected: &[&'a str]) -> Option<&'a str> {
+    let likeness = |name: &&str| strsim::jaro_winkler(found, name);
+    let best = expected.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
+    (likeness(best) >= ALIKE).then_some(*best)
+}
+
+/// Byte of a line and column, both from 1 and in characters.
+fn offset(text: &str, position: &Position) -> usize {
+    let line_start =
+        text.split_inclusive('\n').take(position.line.saturating_sub(1)).map(str::len).sum::<usize>();
+    let line = &text[line_start.min(text.len())..];
+    let inside = line.char_indices().nth(position.col.saturating_sub(1)).map_or(line.len(), |(i, _)| i);
+    line_start.min(text.len()) + inside
+}
