@@ -428,8 +428,9 @@ impl Body {
             // The mean velocity of the step does not ring where the table has a kink.
             let i = held.node as usize;
             let mean = self.correction[i] / context.dt_s;
-            self.load[i] += onto(&held.held, &(mean - self.load[i]));
-            self.elastic[i] -= onto(&held.held, &self.elastic[i]);
+            let (v, a) = (self.load[i], self.elastic[i]);
+            self.load[i] += onto(&held.held, &(mean - v));
+            self.elastic[i] -= onto(&held.held, &a);
         }
         self.check_speed(shape)?;
         for (i, u) in self.correction.iter().enumerate() {
