@@ -3,6 +3,7 @@
 //! [`model`] is the seam: the solver knows contact only through [`ContactModel`]. The default model (feature
 //! `potential`) is the contact potential of the paper, integrated exactly over boundary triangles.
 
+pub mod element_pairs;
 pub mod model;
 pub mod testing;
 
