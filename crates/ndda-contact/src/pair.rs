@@ -40,10 +40,7 @@ impl TetFrame {
     /// λ_b at the corners of a triangle, as `[b][a]`.
     fn lambda(&self, triangle: &[Vec3; 3]) -> [[f64; 3]; 4] {
         let arms = triangle.map(|x| x - self.origin);
-        let mut lambda = [[0.0; 3]; 4];
-        for b in 1..4 {
-            lambda[b] = arms.map(|arm| self.gradients[b].dot(&arm));
-        }
+        let mut lambda = self.gradients.map(|gradient| arms.map(|arm| gradient.dot(&arm)));
         lambda[0] = std::array::from_fn(|a| 1.0 - lambda[1][a] - lambda[2][a] - lambda[3][a]);
         lambda
     }
@@ -97,8 +94,8 @@ pub fn pair_moments(triangle: &[Vec3; 3], area_vector: &Vec3, tet: &TetFrame) ->
         add_piece(&mut moments, polygon, smallest, area, slope);
     });
     moments.energy *= tet.centroid_distance(&triangle[0], &normal);
-    for b in 0..4 {
-        let at_target = |w: &[f64; 3]| (0..3).map(|a| lambda[b][a] * w[a]).sum::<f64>();
+    for (b, lambda) in lambda.iter().enumerate() {
+        let at_target = |w: &[f64; 3]| (0..3).map(|a| lambda[a] * w[a]).sum::<f64>();
         moments.target_pressure[b] = at_target(&moments.pressure);
         moments.target_slope[b] = at_target(&moments.slope);
     }

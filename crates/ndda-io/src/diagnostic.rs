@@ -62,7 +62,7 @@ impl SceneErrors {
 
     /// All messages as text: `file:line:column`, the source line, a caret and advice.
     pub fn render(&self, colour: bool) -> String {
-        let theme = if colour { GraphicalTheme::unicode() } else { GraphicalTheme::ascii() };
+        let theme = if colour { GraphicalTheme::unicode() } else { GraphicalTheme::none() };
         let handler = GraphicalReportHandler::new_themed(theme).with_width(110).with_links(false);
         let mut out = String::new();
         for diagnostic in &self.diagnostics {

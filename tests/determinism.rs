@@ -1,0 +1,39 @@
+//! The same bits on any number of threads, and in every run.
+
+use std::path::Path;
+
+use ndda_cli::args::RunArgs;
+use ndda_cli::{exit, run};
+
+/// Scenes with contact, friction and spin, cut short.
+const SCENES: [(&str, &[&str]); 4] = [
+    ("collision_equal", &["time.end_s=0.025", "reference.after_s=0"]),
+    ("collision_unequal_free", &[]),
+    ("sliding_30_phi25", &["time.end_s=0.02", "reference.after_s=0"]),
+    ("spinning_block", &["time.end_s=1"]),
+];
+
+fn history(scene: &str, overrides: &[&str], threads: u16) -> Vec<u8> {
+    let out = tempfile::tempdir().unwrap();
+    let args = RunArgs {
+        scene: Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron")),
+        out: Some(out.path().join("results")),
+        force: false,
+        overrides: overrides.iter().chain(&["output.frames=0"]).map(ToString::to_string).collect(),
+        threads: Some(threads),
+        strict: false,
+        quiet: true,
+    };
+    assert_eq!(run::run(&args), exit::DONE, "{scene}");
+    std::fs::read(out.path().join("results/history.csv")).unwrap()
+}
+
+#[test]
+fn history_is_the_same_to_the_byte_on_one_two_and_eight_threads_and_in_two_runs() {
+    for (scene, overrides) in SCENES {
+        let one = history(scene, overrides, 1);
+        for threads in [1, 2, 8] {
+            assert!(one == history(scene, overrides, threads), "{scene} differs on {threads} thread(s)");
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! The step after warm-up allocates nothing.
+#![allow(unsafe_code)] // a global allocator cannot be had without
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use ndda_cli::check::prepare;
+
+/// Counts every request for memory of the whole process.
+struct Counting;
+
+static REQUESTS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: every call is handed to the system's allocator unchanged.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        REQUESTS.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(memory, layout) }
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        REQUESTS.fetch_add(1, Ordering::Relaxed);
+        unsafe { System.realloc(memory, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Requests for memory in `steps` steps of a scene after `warm_up` steps.
+fn requests(scene: &str, threads: usize, warm_up: usize, steps: usize) -> usize {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"));
+    let mut simulation = prepare(&scene, &[]).unwrap().simulation;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    // Threads make room for themselves when they start.
+    pool.broadcast(|_| ());
+    pool.install(|| {
+        for _ in 0..warm_up {
+            simulation.step().unwrap();
+        }
+        let before = REQUESTS.load(Ordering::Relaxed);
+        for _ in 0..steps {
+            simulation.step().unwrap();
+        }
+        REQUESTS.load(Ordering::Relaxed) - before
+    })
+}
+
+// One test: the counter belongs to the process, and tests run side by side.
+#[test]
+fn a_warm_step_with_contact_friction_and_supports_allocates_nothing() {
+    for (scene, warm_up, steps) in
+        [("sliding_45_phi35", 2000, 2000), ("collision_equal", 2500, 200), ("spinning_block", 5, 1000)]
+    {
+        for threads in [1, 2] {
+            assert_eq!(requests(scene, threads, warm_up, steps), 0, "{scene} on {threads} thread(s)");
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Every scene of `scenes/` runs, and passes by the criterion of its header.
+
+use std::path::{Path, PathBuf};
+
+use ndda_cli::args::RunArgs;
+use ndda_cli::{exit, run};
+use serde_json::Value;
+
+/// Scene, largest `error_end` and largest `error_max` that its header allows.
+const CRITERIA: [(&str, f64, f64); 9] = [
+    ("collision_equal", 1e-3, f64::INFINITY),
+    ("collision_equal_free", 2e-4, f64::INFINITY),
+    ("collision_unequal", 1e-3, f64::INFINITY),
+    ("collision_unequal_free", 2e-4, f64::INFINITY),
+    ("free_fall", 1e-12, 1e-12),
+    ("sliding_30_phi25", 1e-2, f64::INFINITY),
+    ("sliding_45", 1e-6, 1e-6),
+    ("sliding_45_phi35", 2e-3, f64::INFINITY),
+    ("spinning_block", 1e-9, 1e-9),
+];
+
+fn scenes() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
+}
+
+fn args(scene: &str, out: &Path) -> RunArgs {
+    RunArgs {
+        scene: scenes().join(format!("{scene}.ron")),
+        out: Some(out.join(scene)),
+        force: false,
+        overrides: vec!["output.frames=2".into()],
+        threads: None,
+        strict: false,
+        quiet: true,
+    }
+}
+
+#[test]
+fn every_scene_has_a_criterion() {
+    let entries = std::fs::read_dir(scenes()).unwrap().map(|e| e.unwrap().path());
+    let mut found: Vec<String> = entries
+        .filter(|p| p.extension().is_some_and(|e| e == "ron"))
+        .map(|p| p.file_stem().unwrap().to_string_lossy().into_owned())
+        .collect();
+    found.sort();
+    assert_eq!(found, CRITERIA.map(|(name, ..)| name));
+}
+
+#[test]
+fn every_scene_passes_its_criterion_and_fills_its_summary() {
+    let out = tempfile::tempdir().unwrap();
+    for (scene, end, max) in CRITERIA {
+        assert_eq!(run::run(&args(scene, out.path())), exit::DONE, "{scene}");
+        let text = std::fs::read_to_string(out.path().join(scene).join("summary.json")).unwrap();
+        let summary: Value = serde_json::from_str(&text).unwrap();
+        let error = |name: &str| summary["reference"][name].as_f64().unwrap();
+        assert!(error("error_end") <= end, "{scene}: error_end = {:e}", error("error_end"));
+        assert!(error("error_max") <= max, "{scene}: error_max = {:e}", error("error_max"));
+        has_the_promised_keys(scene, &summary);
+    }
+}
+
+fn has_the_promised_keys(scene: &str, summary: &Value) {
+    let promised: [(&str, &[&str]); 5] = [
+        ("", &["scene", "status", "steps", "step_s", "end_s", "wall_s", "threads"]),
+        (
+            "/counts",
+            &["blocks", "nodes", "tets", "dofs", "factors", "candidate_pairs_max", "contact_pairs_max"],
+        ),
+        (
+            "/invariants",
+            &[
+                "energy_gain",
+                "energy_loss",
+                "linear_momentum",
+                "angular_momentum",
+                "max_penetration_ratio",
+                "max_h",
+            ],
+        ),
+        ("/reference", &["kind", "error_end", "error_max"]),
+        ("/stages_s", &[]),
+    ];
+    for (at, keys) in promised {
+        let object = summary.pointer(at).unwrap_or_else(|| panic!("{scene}: no {at}"));
+        for key in keys {
+            assert!(object.get(key).is_some(), "{scene}: no {at}/{key}");
+        }
+    }
+    for block in summary["blocks"].as_object().unwrap().values() {
+        assert!(["mass", "velocity", "momentum"].iter().all(|key| block.get(key).is_some()), "{scene}");
+    }
+    for monitor in summary["monitors"].as_object().unwrap().values() {
+        assert!(["displacement", "velocity"].iter().all(|key| monitor.get(key).is_some()), "{scene}");
+    }
+}
+
+#[test]
+fn a_run_past_the_reach_of_contact_stops_with_its_cause_and_no_nan() {
+    let out = tempfile::tempdir().unwrap();
+    let mut soft = args("collision_equal_free", out.path());
+    soft.overrides.push("contact.penalty_pa=1e3".into());
+    assert_eq!(run::run(&soft), exit::STOPPED);
+    let folder = out.path().join("collision_equal_free");
+    let text = std::fs::read_to_string(folder.join("summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(summary["status"], "stopped");
+    assert!(summary["stopped_by"].as_str().unwrap().contains("past the centroid"), "{text}");
+    let history = std::fs::read_to_string(folder.join("history.csv")).unwrap();
+    assert!(!history.contains("NaN") && !history.contains("inf"));
+}
+
+#[test]
+fn results_of_another_run_are_not_replaced_unless_asked() {
+    let out = tempfile::tempdir().unwrap();
+    let mut fall = args("free_fall", out.path());
+    assert_eq!(run::run(&fall), exit::DONE);
+    assert_eq!(run::run(&fall), exit::INPUT_OUTPUT);
+    fall.force = true;
+    assert_eq!(run::run(&fall), exit::DONE);
+}
