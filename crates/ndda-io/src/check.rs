@@ -10,6 +10,8 @@ use crate::scene::{By, Contact, Hold, Integrator, Reference, Region, Scene, Shap
 const MOST_STEPS: f64 = 1e9;
 /// More nodes than this per block are a slip of the keyboard.
 const MOST_NODES: f64 = 5e7;
+/// Speed of light [m/s].
+const LIGHT_M_S: f64 = 299_792_458.0;
 
 /// Everything that is wrong or odd about a scene; `folder` is where its meshes should be. Places are not yet known.
 pub fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> {
@@ -82,7 +84,10 @@ impl Check<'_> {
     fn names(&mut self, list: &str, names: &[&str]) {
         for (i, name) in names.iter().enumerate() {
             let path = format!("{list}[{i}].name");
-            if name.trim().is_empty() || name.chars().any(|c| c.is_control() || "/\\,\"'`".contains(c)) {
+            if name.trim().is_empty()
+                || name.starts_with('.')
+                || name.chars().any(|c| c.is_control() || "/\\,\"'`".contains(c))
+            {
                 let help = "use letters, digits, spaces, - and _: names become columns and files";
                 self.error(path, format!("`{}` cannot be a name", name.escape_debug()), help);
             } else if names[..i].contains(name) {
@@ -188,6 +193,9 @@ impl Check<'_> {
             }
             self.numbers(&path("at_m"), &block.at_m);
             self.numbers(&path("velocity_m_s"), &block.velocity_m_s);
+            if block.velocity_m_s.iter().any(|v| v.abs() > LIGHT_M_S) {
+                self.error(path("velocity_m_s"), "is faster than light", "the unit is metres per second");
+            }
             self.numbers(&path("spin_rad_s"), &block.spin_rad_s);
             self.shape(&path("shape"), &block.shape, folder);
         }
@@ -268,8 +276,16 @@ impl Check<'_> {
         if rows.is_empty() {
             self.error(path, "the table has no rows", "give at least one row with time_s and displacement_m");
         }
-        if rows.windows(2).any(|pair| pair[0].time_s.is_nan() || pair[1].time_s <= pair[0].time_s) {
-            self.error(path, "times must increase from row to row", "sort the rows by time_s");
+        if rows.first().is_some_and(|row| row.time_s < 0.0) {
+            self.error(
+                format!("{path}[0][0].time_s"),
+                "is before the start of the run",
+                "begin at 0 s or later",
+            );
+        }
+        if let Some(i) = (1..rows.len()).find(|&i| rows[i].time_s <= rows[i - 1].time_s) {
+            let message = "times must increase from row to row";
+            self.error(format!("{path}[0][{i}].time_s"), message, "sort the rows by time_s");
         }
         if rows.first().is_some_and(|row| row.time_s <= 0.0 && row.displacement_m != [0.0; 3]) {
             self.error(
@@ -356,6 +372,10 @@ impl Check<'_> {
                     let message = format!("{friction_deg}°: must be from 0 to below 90");
                     self.error(path("friction_deg"), message, "as in `contact`");
                 }
+                if slope_deg.to_radians().tan() <= friction_deg.to_radians().tan() {
+                    let message = "the block does not slide: the closed form is 0 and has no relative error";
+                    self.error(path("friction_deg"), message, "compare a slope that is steeper than φ");
+                }
                 if let Some(thickness) = thickness_m {
                     self.positive(path("thickness_m"), *thickness, "m");
                 }
@@ -378,7 +398,7 @@ impl Check<'_> {
 
     fn after(&mut self, after_s: f64) {
         let end_s = self.scene.time.end_s;
-        if !(0.0..=end_s).contains(&after_s) {
+        if !(0.0..end_s).contains(&after_s) {
             let message = format!("{after_s} s is outside the run, which ends at {end_s} s");
             self.error("reference.after_s", message, "the largest error is taken from here to the end");
         }
