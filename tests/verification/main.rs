@@ -1,0 +1,62 @@
+//! Runs against closed forms and against each other: one file per case.
+
+mod bar_under_traction;
+mod one_block_alone;
+mod prescribed_motion;
+mod release_of_initial_stress;
+mod springs_and_elimination;
+
+use ndda_cli::wiring;
+use ndda_mesh::Vec3;
+use ndda_solver::Simulation;
+
+/// The simulation of a scene text.
+fn simulation(text: &str) -> Simulation {
+    let loaded = ndda_io::read::load_text("case.ron", text, &[], None).unwrap_or_else(|e| panic!("{e}"));
+    let folder = std::path::Path::new(".");
+    let blocks = wiring::blocks(&loaded.scene, folder).unwrap_or_else(|faults| panic!("{faults:?}"));
+    wiring::simulation(&loaded.scene, blocks).unwrap_or_else(|faults| panic!("{faults:?}"))
+}
+
+/// A bar of 2 × 1 × 0.5 m on rollers at its lower faces, damped as the paper's integrator damps at ω Δt ≈ 1; `more`
+/// goes into the block, `loads` into the scene.
+fn bar(more: &str, supports: &str, loads: &str) -> Simulation {
+    simulation(&format!(
+        "(title: \"bar\", time: (step_s: 2e-4, end_s: 1, integrator: Newmark(alpha: 0.5, delta: 1)),
+          materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: {POISSON}, density_kg_m3: 2500)],
+          blocks: [(name: \"bar\", material: \"rock\", shape: Box(size_m: (2, 1, 0.5), cells: (4, 2, 1)), {more})],
+          supports: [{supports}], {loads})"
+    ))
+}
+
+const YOUNG_PA: f64 = 10e9;
+const POISSON: f64 = 0.25;
+
+/// The three lower faces of [`bar`] on rollers; `by` may ask for springs.
+fn rollers(by: &str) -> String {
+    ["(1, 0, 0)", "(0, 1, 0)", "(0, 0, 1)"]
+        .map(|n| format!("(block: \"bar\", on: Plane(point_m: (0, 0, 0), normal: {n}), hold: Normal, {by}),"))
+        .concat()
+}
+
+fn settle(simulation: &mut Simulation) {
+    for _ in 0..2000 {
+        simulation.step().unwrap();
+    }
+}
+
+/// Displacement of every node [m].
+fn displacements(simulation: &Simulation) -> Vec<Vec3> {
+    let rest = &simulation.blocks().rest_position;
+    simulation.state().position.iter().zip(rest).map(|(x, rest)| x - rest).collect()
+}
+
+/// Panics unless every node is displaced by `strain` ∘ (its place) to within `tolerance` of the largest.
+fn assert_uniform_strain(simulation: &Simulation, strain: Vec3, tolerance: f64) {
+    let origin = simulation.blocks().origin_m;
+    let largest = 2.0 * strain.amax();
+    for (u, rest) in displacements(simulation).iter().zip(&simulation.blocks().rest_position) {
+        let exact = strain.component_mul(&(rest + origin));
+        assert!((u - exact).norm() < tolerance * largest, "{u:?} instead of {exact:?}");
+    }
+}
