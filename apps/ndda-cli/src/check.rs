@@ -1,6 +1,5 @@
 //! `ndda check`: everything that can be wrong with a scene, without running it.
 
-use std::io::IsTerminal;
 use std::path::Path;
 
 use ndda_io::diagnostic::{Diagnostic, SceneErrors};
@@ -8,6 +7,7 @@ use ndda_io::read::{LoadedScene, load};
 use ndda_solver::Simulation;
 
 use crate::args::CheckArgs;
+use crate::console::{colour, complain, say};
 use crate::exit;
 use crate::monitor::Monitor;
 use crate::wiring::{self, Fault};
@@ -20,11 +20,6 @@ pub struct Ready {
     pub simulation: Simulation,
     /// Its monitors.
     pub monitors: Vec<Monitor>,
-}
-
-/// Whether messages on standard error may be coloured.
-pub fn colour() -> bool {
-    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
 /// Reads, checks and builds a scene.
@@ -50,16 +45,16 @@ pub fn check(args: &CheckArgs) -> u8 {
     let ready = match prepare(&args.scene, &args.overrides) {
         Ok(ready) => ready,
         Err(errors) => {
-            eprintln!("{}", errors.render(colour()));
+            complain(&errors.render(colour()));
             return exit::BAD_INPUT;
         }
     };
     if !ready.loaded.warnings.is_empty() {
-        eprintln!("{}", ready.loaded.errors(ready.loaded.warnings.clone()).render(colour()));
+        complain(&ready.loaded.errors(ready.loaded.warnings.clone()).render(colour()));
     }
     let (scene, simulation) = (&ready.loaded.scene, &ready.simulation);
     let blocks = simulation.blocks();
-    println!(
+    say(&format!(
         "{}: no errors, {} warning(s)\n{} block(s), {} nodes, {} tets, {} unknowns, {} factor(s); {} steps",
         args.scene.display(),
         ready.loaded.warnings.len(),
@@ -69,6 +64,6 @@ pub fn check(args: &CheckArgs) -> u8 {
         simulation.unknowns(),
         simulation.factors(),
         wiring::steps(&scene.time),
-    );
+    ));
     exit::DONE
 }

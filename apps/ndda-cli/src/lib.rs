@@ -2,6 +2,7 @@
 
 pub mod args;
 pub mod check;
+pub mod console;
 pub mod exit;
 pub mod monitor;
 pub mod progress;

@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use ndda_solver::{Sink, SinkError, View};
 
+use crate::console::complain;
+
 /// How often the bar is redrawn.
 const REDRAW: Duration = Duration::from_millis(100);
 
@@ -58,7 +60,7 @@ impl Sink for Progress {
             let spent = self.started.elapsed().as_secs_f64();
             let left = spent * (self.steps - step) as f64 / step as f64;
             let t = view.simulation.time_s();
-            eprintln!("{:3} %  t = {t:.4} s  {spent:.1} s spent, {left:.1} s left", 10 * tenths);
+            complain(&format!("{:3} %  t = {t:.4} s  {spent:.1} s spent, {left:.1} s left", 10 * tenths));
         }
         Ok(ControlFlow::Continue(()))
     }

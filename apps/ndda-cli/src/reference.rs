@@ -1,6 +1,6 @@
 //! Closed forms that a run is compared with. Each is a short function of its own with its source.
 
-use ndda_io::scene::{Contact, Integrator, Reference, Scene};
+use ndda_io::scene::{Contact, Reference, Scene};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Simulation;
 
@@ -207,14 +207,6 @@ pub fn kind(reference: &Reference) -> (&'static str, f64) {
         Reference::Collision { after_s, .. } => ("Collision", *after_s),
         Reference::FreeFall { after_s, .. } => ("FreeFall", *after_s),
         Reference::FreeSpin { .. } => ("FreeSpin", 0.0),
-    }
-}
-
-/// Name of an integrator in reports.
-pub fn integrator_name(integrator: &Integrator) -> String {
-    match integrator {
-        Integrator::Midpoint { theta } => format!("Midpoint, θ = {theta}"),
-        Integrator::Newmark { alpha, delta } => format!("Newmark, α = {alpha}, δ = {delta}"),
     }
 }
 

@@ -7,7 +7,8 @@ use ndda_io::{OutputFolder, WriteError, summary};
 use ndda_solver::{RunError, Sink, StepError};
 
 use crate::args::RunArgs;
-use crate::check::{Ready, colour, prepare};
+use crate::check::{Ready, prepare};
+use crate::console::{colour, complain, say};
 use crate::progress::Progress;
 use crate::recorder::{FieldWriter, Recorder};
 use crate::reference::{self, Comparison};
@@ -20,7 +21,7 @@ pub fn run(args: &RunArgs) -> u8 {
     let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool,
         Err(error) => {
-            eprintln!("error: cannot start {threads} threads: {error}; use a smaller --threads");
+            complain(&format!("error: cannot start {threads} threads: {error}; use a smaller --threads"));
             return exit::RESOURCE;
         }
     };
@@ -33,17 +34,17 @@ fn run_here(args: &RunArgs, threads: usize) -> u8 {
     let ready = match prepare(&args.scene, &args.overrides) {
         Ok(ready) => ready,
         Err(errors) => {
-            eprintln!("{}", errors.render(colour()));
+            complain(&errors.render(colour()));
             return exit::BAD_INPUT;
         }
     };
     if !ready.loaded.warnings.is_empty() && !args.quiet {
-        eprintln!("{}", ready.loaded.errors(ready.loaded.warnings.clone()).render(colour()));
+        complain(&ready.loaded.errors(ready.loaded.warnings.clone()).render(colour()));
     }
     match run_ready(args, ready, threads, started) {
         Ok(code) => code,
         Err(error) => {
-            eprintln!("error: {error}");
+            complain(&format!("error: {error}"));
             exit::INPUT_OUTPUT
         }
     }
@@ -96,15 +97,17 @@ fn run_ready(args: &RunArgs, ready: Ready, threads: usize, started: Instant) -> 
     let summary = report::summarise(&simulation, &recorder, outcome);
     summary::write(&folder.summary(), &summary)?;
     if !args.quiet {
-        print!("{}", report::table(&summary));
-        println!("results in {}", folder.path().display());
+        say(&format!("{}results in {}", report::table(&summary), folder.path().display()));
+    }
+    for (name, _) in summary.verdicts.0.iter().filter(|(_, v)| v.verdict == summary::Judgement::Fail) {
+        complain(&format!("warning: {name} is beyond its limit: do not use this result"));
     }
     Ok(match summary.status {
         summary::Status::Done => exit::DONE,
         summary::Status::Failed => exit::FAILED,
         summary::Status::Stopped | summary::Status::Interrupted => {
             if let Some(cause) = &summary.stopped_by {
-                eprintln!("error: stopped {cause}");
+                complain(&format!("error: stopped {cause}"));
             }
             exit::STOPPED
         }
