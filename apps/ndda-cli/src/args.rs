@@ -35,7 +35,7 @@ pub enum Verb {
 pub struct RunArgs {
     /// Scene file (RON; see docs/scene.md).
     pub scene: PathBuf,
-    /// Output folder [default: out/<scene>].
+    /// Output folder [default: out/ and the name of the scene].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Replace the results of an earlier run in the output folder.
