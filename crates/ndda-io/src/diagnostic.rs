@@ -55,11 +55,6 @@ pub struct SceneErrors {
 }
 
 impl SceneErrors {
-    /// Whether any message is an error.
-    pub fn has_errors(&self) -> bool {
-        self.diagnostics.iter().any(|d| d.severity == Severity::Error)
-    }
-
     /// All messages as text: `file:line:column`, the source line, a caret and advice.
     pub fn render(&self, colour: bool) -> String {
         let theme = if colour { GraphicalTheme::unicode() } else { GraphicalTheme::none() };
