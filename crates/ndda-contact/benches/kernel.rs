@@ -4,8 +4,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use ndda_contact::testing::{test_box, test_set};
 use ndda_contact::{
-    ContactHistory, ContactInput, ContactModel, ContactOutput, Coulomb, FrictionLaw, PotentialContact,
-    element_pairs,
+    ContactHistory, ContactInput, ContactModel, ContactOutput, Coulomb, PotentialContact, element_pairs,
     pair::{TetFrame, pair_moments},
 };
 use ndda_mesh::geometry::triangle_area_vector;
@@ -20,6 +19,15 @@ fn one_pair(c: &mut Criterion) {
     let frame = TetFrame::new(&corners);
     c.bench_function("kernel/one overlapping pair", |b| {
         b.iter(|| pair_moments(black_box(&triangle), &area_vector, black_box(&frame)))
+    });
+    let group = ndda_contact::kernel::PairGroup {
+        lambda: frame.lambda(&triangle).map(|at| at.map(|l| [l; 8])),
+        slope: [[1.0; 8]; 4],
+    };
+    let arch = pulp::Arch::new();
+    let mut moments = ndda_contact::kernel::GroupMoments::default();
+    c.bench_function("kernel/eight overlapping pairs", |b| {
+        b.iter(|| ndda_contact::kernel::element_moments(arch, black_box(&group), black_box(&mut moments)))
     });
     let outside = triangle.map(|x| x + Vec3::repeat(1.0));
     c.bench_function("kernel/one pair apart", |b| {
@@ -39,15 +47,12 @@ fn evaluation(c: &mut Criterion) {
         let blocks = pressed(n);
         let nodes = blocks.rest_position.len();
         let velocity = vec![Vec3::x(); nodes];
-        let input = ContactInput {
-            blocks: &blocks,
-            position: &blocks.rest_position,
-            velocity: &velocity,
-            dt_s: 1e-5,
-        };
+        let input = ContactInput::new(&blocks, &blocks.rest_position, &velocity, 1e-5);
         for friction in [false, true] {
-            let law = friction.then(|| -> Box<dyn FrictionLaw> { Box::new(Coulomb::new(30.0, 1e9)) });
-            let mut model = PotentialContact::new(1e9, law);
+            let mut model = PotentialContact::new(1e9);
+            if friction {
+                model = model.with_friction(Box::new(Coulomb::new(30.0, 1e9)));
+            }
             let mut history = ContactHistory::default();
             let (mut force, mut shear) = (vec![Vec3::zeros(); nodes], vec![Vec3::zeros(); nodes]);
             let mut stiffness = vec![0.0; nodes];

@@ -48,6 +48,8 @@ pub struct Candidates {
     pub tets: Vec<TetId>,
     /// The distinct (target tetrahedron, contactor block), ascending.
     pub overlaps: Vec<(TetId, BlockId)>,
+    /// Whether facets end at the borders of target elements, too.
+    pub split_by_element: bool,
     found: Vec<(TriangleId, TetId)>,
     broad_phase: BvhBroadPhase,
     listed_at: Vec<Vec3>,
@@ -58,14 +60,19 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// Brings the list up to date: nothing to do while no node has moved by half the skin.
-    pub fn update(&mut self, input: &ContactInput) {
+    /// The target tetrahedron of a pair.
+    pub fn tet_of(&self, pair: u32) -> TetId {
+        self.tets[self.pairs[pair as usize].tet as usize]
+    }
+
+    /// Brings the list up to date and says whether it changed: nothing to do while no node has moved by half the skin.
+    pub fn update(&mut self, input: &ContactInput) -> bool {
         let reach = 0.5 * self.skin_m;
         let moved = |(x, y): (&Vec3, &Vec3)| (x - y).norm_squared() > reach * reach;
         if self.listed_at.len() == input.position.len()
             && !self.listed_at.iter().zip(input.position).any(moved)
         {
-            return;
+            return false;
         }
         self.listed_at.clear();
         self.listed_at.extend_from_slice(input.position);
@@ -79,6 +86,7 @@ impl Candidates {
         };
         self.broad_phase.find_pairs(&boxes, &mut self.found);
         self.arrange(input);
+        true
     }
 
     /// Boxes of triangles, tetrahedra and blocks; each is inflated by half the skin, and by the rounding of its own
@@ -126,7 +134,11 @@ impl Candidates {
             self.pairs.push(Pair { triangle, tet, overlap });
             let target = tet_block[tet_id.index()];
             match self.facets.last_mut() {
-                Some(last) if last.triangle == triangle && last.target == target => last.pairs.end = i + 1,
+                Some(last)
+                    if last.triangle == triangle && last.target == target && !self.split_by_element =>
+                {
+                    last.pairs.end = i + 1
+                }
                 _ => self.facets.push(Facet { triangle, target, pairs: i..i + 1 }),
             }
         }

@@ -1,59 +1,69 @@
-//! Friction laws.
+//! The seam for friction laws, and the memory that they keep.
 
-/// A law for the shear force of one contactor facet on one target body.
-///
-/// Contract (checked by [`check_friction`](crate::testing::check_friction)): the force never exceeds what the
-/// normal force carries, opposes the slip, and is zero without a normal force.
-pub trait FrictionLaw: Send + Sync {
-    /// Advances the shear force \[N\] on the contactor over a slip \[m\]; both are in the facet's own basis.
-    fn advance(&self, normal_n: f64, area_m2: f64, slip_m: &[f64; 2], shear_n: &mut [f64; 2]);
+/// What a facet does against its target in this step; vectors are in the facet's own basis.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FacetSlip {
+    /// Normal force f_n on the facet [N].
+    pub normal_n: f64,
+    /// Area in contact S [m²].
+    pub area_m2: f64,
+    /// Slip of this step, contactor minus target, predicted from the velocities [m].
+    pub slip_m: [f64; 2],
+    /// Change of the shear force on the contactor that would leave no slip velocity at the end of the step [N].
+    pub stopping_n: [f64; 2],
 }
 
-/// Coulomb friction with a shear spring, the paper's eqs (17)–(19).
-///
-/// Both sides of a contact patch carry facets, so each gets half the spring: a patch of area S has k_s S in all.
+/// What a facet remembers of its target.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Coulomb {
-    friction: f64,
-    shear_penalty_pa_m: f64,
+pub struct ShearMemory {
+    /// Shear force on the contactor in the facet's own basis (first edge, normal × first edge) [N].
+    /// The basis turns with the facet, so the force does too.
+    pub shear_n: [f64; 2],
+    /// Whether cohesion is gone; it never comes back.
+    pub broken: bool,
 }
 
-impl Coulomb {
-    /// Friction angle φ [°], μ = tan φ, and shear penalty k_s [Pa/m].
-    pub fn new(friction_deg: f64, shear_penalty_pa_m: f64) -> Self {
-        Self { friction: friction_deg.to_radians().tan(), shear_penalty_pa_m }
+impl Default for ShearMemory {
+    /// A contact that begins during a run: no shear, and nothing that could hold it together.
+    fn default() -> Self {
+        Self { shear_n: [0.0; 2], broken: true }
     }
 }
 
-impl FrictionLaw for Coulomb {
-    /// f′ = f − ½ k_s Δu S, capped at μ |f_n| along its own direction.
-    fn advance(&self, normal_n: f64, area_m2: f64, slip_m: &[f64; 2], shear_n: &mut [f64; 2]) {
-        let spring = 0.5 * self.shear_penalty_pa_m * area_m2;
-        let trial = [shear_n[0] - spring * slip_m[0], shear_n[1] - spring * slip_m[1]];
-        let (size, most) = (trial[0].hypot(trial[1]), self.friction * normal_n);
-        let scale = if size > most { most / size } else { 1.0 };
-        *shear_n = [trial[0] * scale, trial[1] * scale];
+/// A law for the shear force of one contactor facet on one target.
+///
+/// Contract (checked by [`check_friction`](crate::testing::check_friction)): the force never exceeds what the law
+/// says it can carry, opposes the slip, and is zero without contact.
+pub trait FrictionLaw: Send + Sync {
+    /// Advances the shear force by one step.
+    fn advance(&self, slip: &FacetSlip, memory: &mut ShearMemory);
+
+    /// Most that the law carries [N].
+    fn capacity_n(&self, slip: &FacetSlip, memory: &ShearMemory) -> f64;
+
+    /// Tension that an unbroken contact carries [Pa].
+    fn tension_pa(&self) -> f64 {
+        0.0
+    }
+
+    /// Stiffness of a bond that carries tension [Pa/m].
+    fn bond_stiffness_pa_m(&self) -> f64 {
+        0.0
+    }
+
+    /// Whether [`FacetSlip::stopping_n`] is used.
+    fn needs_stopping_force(&self) -> bool {
+        false
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::check_friction;
-
-    #[test]
-    fn it_keeps_the_contract_of_a_friction_law() {
-        check_friction(&Coulomb::new(35.0, 2e10));
-        check_friction(&Coulomb::new(0.0, 1e3));
-    }
-
-    #[test]
-    fn below_the_cap_it_is_a_spring_and_above_it_slides() {
-        let law = Coulomb::new(45.0, 2.0);
-        let mut shear = [0.0, 0.0];
-        law.advance(10.0, 3.0, &[1.0, 0.0], &mut shear);
-        assert_eq!(shear, [-3.0, 0.0]);
-        law.advance(10.0, 3.0, &[0.0, 100.0], &mut shear);
-        assert!((shear[0].hypot(shear[1]) - 10.0).abs() < 1e-12 && shear[1] < 0.0);
+/// The vector no longer than `most`, along its own direction; whether it was.
+pub(crate) fn capped(trial: [f64; 2], most: f64) -> ([f64; 2], bool) {
+    let size = trial[0].hypot(trial[1]);
+    if size > most {
+        let scale = most / size;
+        ([trial[0] * scale, trial[1] * scale], true)
+    } else {
+        (trial, false)
     }
 }

@@ -8,6 +8,8 @@ pub mod model;
 pub mod testing;
 
 #[cfg(feature = "potential")]
+pub mod bonds;
+#[cfg(feature = "potential")]
 pub mod broad_phase;
 #[cfg(feature = "potential")]
 pub mod bvh;
@@ -16,17 +18,55 @@ pub mod candidates;
 #[cfg(feature = "potential")]
 pub mod clip;
 #[cfg(feature = "potential")]
+pub mod coulomb;
+#[cfg(feature = "potential")]
+pub mod element_potential;
+#[cfg(feature = "potential")]
+pub mod energy;
+#[cfg(feature = "potential")]
+pub mod facets;
+#[cfg(feature = "potential")]
 pub mod friction;
+#[cfg(feature = "potential")]
+pub mod integrals;
+#[cfg(feature = "potential")]
+pub mod joints;
+#[cfg(feature = "potential")]
+pub mod kernel;
+#[cfg(feature = "potential")]
+pub mod mohr_coulomb;
+#[cfg(feature = "potential")]
+pub mod overlap;
 #[cfg(feature = "potential")]
 pub mod pair;
 #[cfg(feature = "potential")]
+pub mod potential;
+#[cfg(feature = "potential")]
 pub mod potential_contact;
+#[cfg(feature = "potential")]
+pub mod scatter;
+#[cfg(feature = "potential")]
+pub mod smooth_potential;
+#[cfg(feature = "potential")]
+pub mod velocity_friction;
+#[cfg(feature = "potential")]
+pub mod volume_potential;
 
 pub use model::{
-    ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetMemory,
+    Body, Bond, ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport,
+    FacetMemory,
 };
 
 #[cfg(feature = "potential")]
-pub use friction::{Coulomb, FrictionLaw};
-#[cfg(feature = "potential")]
-pub use potential_contact::PotentialContact;
+pub use {
+    coulomb::Coulomb,
+    element_potential::ElementPotential,
+    friction::{FacetSlip, FrictionLaw, ShearMemory},
+    joints::{Joints, Memory},
+    mohr_coulomb::MohrCoulomb,
+    potential::{ContactPotential, Field, OverlapLaw, PieceTable, PotentialError},
+    potential_contact::PotentialContact,
+    smooth_potential::SmoothPotential,
+    velocity_friction::VelocityCoulomb,
+    volume_potential::VolumePotential,
+};

@@ -13,6 +13,27 @@ pub struct ContactInput<'a> {
     pub velocity: &'a [Vec3],
     /// Step Δt [s].
     pub dt_s: f64,
+    /// Velocity at the end of the step if contact did what it did in the last one [m/s]; `velocity` itself where loads
+    /// are steady.
+    pub expected_velocity: &'a [Vec3],
+    /// How hard each block is to move; empty when nobody said.
+    pub bodies: &'a [Body],
+}
+
+impl<'a> ContactInput<'a> {
+    /// An input under steady loads, about blocks of which only the motion is known.
+    pub fn new(blocks: &'a BlockSet, position: &'a [Vec3], velocity: &'a [Vec3], dt_s: f64) -> Self {
+        Self { blocks, position, velocity, dt_s, expected_velocity: velocity, bodies: &[] }
+    }
+}
+
+/// What a contact model may know of a block's inertia.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Mass [kg]; infinite for a block that cannot move.
+    pub mass_kg: f64,
+    /// Impedance for shear, ρ c_s [Pa s/m]: what a step shorter than the block's wave time has to move.
+    pub impedance_pa_s_m: f64,
 }
 
 /// Where a contact model adds its results; every slice has one entry per node.
@@ -33,8 +54,6 @@ pub struct ContactReport {
     pub candidate_pairs: usize,
     /// Those of them that overlap.
     pub contact_pairs: usize,
-    /// Potential energy of normal contact, W = k_n Σ ∫ (φ_c + φ_t) dV [J].
-    pub energy_j: f64,
     /// Largest penetration depth over the height of the tetrahedron it is in (1/4 at the centroid).
     pub max_penetration_ratio: f64,
     /// The pair with that penetration.
@@ -60,6 +79,9 @@ pub enum ContactError {
         /// Its volume [m³].
         volume_m3: f64,
     },
+    /// The potential cannot serve a block.
+    #[error("{0}")]
+    Potential(String),
     /// A force came out infinite or not a number.
     #[error(
         "the force between triangle {triangle:?} and tet {tet:?} is not finite: reduce step_s or the penalty"
@@ -72,23 +94,42 @@ pub enum ContactError {
     },
 }
 
-/// Tangential memory of one contactor facet on one target body.
+/// Tangential memory of one contactor facet on one target.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FacetMemory {
     /// The contactor's boundary triangle.
     pub facet: TriangleId,
     /// The body that it touches.
     pub target: BlockId,
+    /// The element that it touches, where memory belongs to pairs of elements.
+    pub element: Option<TetId>,
     /// Shear force on the contactor in the facet's own basis (first edge, normal × first edge) [N].
     /// The basis turns with the facet, so the force does too.
     pub shear_n: [f64; 2],
+    /// Whether cohesion is gone.
+    pub broken: bool,
+}
+
+/// A facet that is glued to a point of another block until it breaks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bond {
+    /// The facet; its centroid is the glued point.
+    pub facet: TriangleId,
+    /// The element that holds the other end.
+    pub tet: TetId,
+    /// Where in it, as barycentric coordinates.
+    pub lambda: [f64; 4],
 }
 
 /// What contact remembers from step to step; part of the state, so it is saved and rolled back with it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactHistory {
-    /// One entry per facet and target in contact, sorted by (facet, target).
+    /// One entry per facet and target in contact, sorted by (facet, target, element).
     pub facets: Vec<FacetMemory>,
+    /// Bonds that hold, sorted by facet.
+    pub bonds: Vec<Bond>,
+    /// Whether contact has been evaluated before: what touches then, and only that, may hold together.
+    pub begun: bool,
 }
 
 /// A law of contact between blocks. `&mut self` is scratch only; memory that matters is in [`ContactHistory`].
@@ -106,11 +147,11 @@ pub trait ContactModel: Send {
         output: &mut ContactOutput,
     ) -> Result<ContactReport, ContactError>;
 
-    /// Potential energy of normal contact at `input.position` [J], without touching any history.
+    /// Potential energy of contact at `input.position`, bonds included [J].
     ///
     /// # Errors
     /// As [`add_forces`](Self::add_forces).
-    fn energy_j(&mut self, input: &ContactInput) -> Result<f64, ContactError>;
+    fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError>;
 
     /// Whether `friction_force` is ever written; `false` lets the solver leave out its bookkeeping.
     fn has_friction(&self) -> bool {

@@ -1,4 +1,4 @@
-//! One boundary triangle in one tetrahedron: the exact integrals of the element potential.
+//! One boundary triangle in one tetrahedron: the exact integrals of the element potential, one pair at a time.
 //!
 //! φ(P) = 4 min λᵢ(P): 0 on the faces, 1 at the centroid, linear in the four regions between (Munjiza 2004, ch. 2;
 //! his printed eq. 2.36 has the maximum ¼, his codes have 1). The force on the triangle is −k_n n ∫ φ dA; in the
@@ -13,7 +13,7 @@
 
 use ndda_mesh::Vec3;
 
-use crate::clip::{Polygon, for_each_piece};
+use crate::clip::{Form, Polygon, region};
 
 /// What the kernel needs of a target tetrahedron; made once per step.
 #[derive(Clone, Copy, Debug, Default)]
@@ -38,15 +38,30 @@ impl TetFrame {
     }
 
     /// λ_b at the corners of a triangle, as `[b][a]`.
-    fn lambda(&self, triangle: &[Vec3; 3]) -> [[f64; 3]; 4] {
+    pub fn lambda(&self, triangle: &[Vec3; 3]) -> [[f64; 3]; 4] {
         let arms = triangle.map(|x| x - self.origin);
         let mut lambda = self.gradients.map(|gradient| arms.map(|arm| gradient.dot(&arm)));
         lambda[0] = std::array::from_fn(|a| 1.0 - lambda[1][a] - lambda[2][a] - lambda[3][a]);
         lambda
     }
 
+    /// |∂φ/∂n| in the four regions [1/m].
+    pub fn slopes(&self, normal: &Vec3) -> [f64; 4] {
+        self.gradients.map(|gradient| 4.0 * gradient.dot(normal).abs())
+    }
+
+    /// Corner 0 [m].
+    pub fn origin(&self) -> &Vec3 {
+        &self.origin
+    }
+
+    /// ∇λ_b [1/m].
+    pub fn gradients(&self) -> &[Vec3; 4] {
+        &self.gradients
+    }
+
     /// (x − g)·n [m] of a plane through x.
-    fn centroid_distance(&self, x: &Vec3, normal: &Vec3) -> f64 {
+    pub fn centroid_distance(&self, x: &Vec3, normal: &Vec3) -> f64 {
         (x - self.origin - self.centroid_arm).dot(normal)
     }
 }
@@ -64,8 +79,6 @@ pub struct PairMoments {
     pub target_slope: [f64; 4],
     /// Area of the part [m²].
     pub area: f64,
-    /// Its share of ∫ φ dV over the overlap of the triangle's block with the tetrahedron [m³].
-    pub energy: f64,
     /// Largest φ on the part.
     pub depth: f64,
 }
@@ -75,55 +88,88 @@ impl PairMoments {
     pub fn total(&self) -> f64 {
         self.pressure.iter().sum()
     }
+
+    /// Adds the integrals over a polygon on which φ is linear, fanned into triangles:
+    /// ∫ f g dA = A/12 [(Σf)(Σg) + Σ fᵢ gᵢ],  ∫ f dA = A/3 Σf.
+    pub fn add(&mut self, polygon: &Polygon, phi: &Form, slope: f64, area_m2: f64) {
+        for (corners, twice) in polygon.fan() {
+            let part = area_m2 * twice;
+            let phi = corners.map(|c| phi.at(&c));
+            let phi_sum = phi[0] + phi[1] + phi[2];
+            let psi = corners.map(|c| [1.0 - c[0] - c[1], c[0], c[1]]);
+            for a in 0..3 {
+                let psi_sum = psi[0][a] + psi[1][a] + psi[2][a];
+                let products = phi[0] * psi[0][a] + phi[1] * psi[1][a] + phi[2] * psi[2][a];
+                self.pressure[a] += part / 12.0 * (phi_sum * psi_sum + products);
+                self.slope[a] += part / 3.0 * slope * psi_sum;
+            }
+            self.area += part;
+            self.depth = phi.iter().copied().fold(self.depth, f64::max);
+        }
+    }
+
+    /// Adds another part of the same pair.
+    pub fn join(&mut self, part: &Self) {
+        for a in 0..3 {
+            self.pressure[a] += part.pressure[a];
+            self.slope[a] += part.slope[a];
+        }
+        self.area += part.area;
+        self.depth = self.depth.max(part.depth);
+    }
+
+    /// Fills in what the target's nodes feel; `lambda[b][a]` is λ_b at corner a.
+    pub fn share_with_target(&mut self, lambda: &[[f64; 3]; 4]) {
+        for (b, lambda) in lambda.iter().enumerate() {
+            let at_target = |w: &[f64; 3]| lambda[0] * w[0] + lambda[1] * w[1] + lambda[2] * w[2];
+            self.target_pressure[b] = at_target(&self.pressure);
+            self.target_slope[b] = at_target(&self.slope);
+        }
+    }
+}
+
+/// Whether a face of the tetrahedron separates it from the triangle.
+pub fn is_outside(lambda: &[[f64; 3]; 4]) -> bool {
+    lambda.iter().any(|at| at.iter().all(|&l| l <= 0.0))
 }
 
 /// The integrals of one pair; `None` when the triangle is outside. `area_vector` is the triangle's, outward [m²].
 pub fn pair_moments(triangle: &[Vec3; 3], area_vector: &Vec3, tet: &TetFrame) -> Option<PairMoments> {
     let lambda = tet.lambda(triangle);
-    if lambda.iter().any(|at| at.iter().all(|&l| l <= 0.0)) {
-        return None;
-    }
     let area = area_vector.norm();
-    if area == 0.0 {
+    if area == 0.0 || is_outside(&lambda) {
         return None;
     }
-    let normal = area_vector / area;
-    let mut moments = PairMoments::default();
-    for_each_piece(&lambda, |polygon, smallest| {
-        let slope = 4.0 * tet.gradients[smallest].dot(&normal).abs();
-        add_piece(&mut moments, polygon, smallest, area, slope);
-    });
-    moments.energy *= tet.centroid_distance(&triangle[0], &normal);
-    for (b, lambda) in lambda.iter().enumerate() {
-        let at_target = |w: &[f64; 3]| (0..3).map(|a| lambda[a] * w[a]).sum::<f64>();
-        moments.target_pressure[b] = at_target(&moments.pressure);
-        moments.target_slope[b] = at_target(&moments.slope);
-    }
+    let moments = element_moments(&lambda, &tet.slopes(&(area_vector / area)), area);
     (moments.area > 0.0).then_some(moments)
 }
 
-/// Adds one piece, fanned into triangles on which φ is linear:
-/// ∫ f g dA = A/12 [(Σf)(Σg) + Σ fᵢ gᵢ],  ∫ f dA = A/3 Σf.
-fn add_piece(moments: &mut PairMoments, polygon: &Polygon, smallest: usize, area: f64, slope: f64) {
-    let vertices = polygon.vertices();
-    let apex = &vertices[0];
-    for pair in vertices[1..].windows(2) {
-        let corners = [apex, &pair[0], &pair[1]];
-        let [u, v] = [1, 2].map(|k| [1, 2].map(|i| corners[k].psi[i] - apex.psi[i]));
-        let part = area * (u[0] * v[1] - u[1] * v[0]).abs();
-        let phi = corners.map(|corner| 4.0 * corner.lambda[smallest]);
-        let phi_sum = phi[0] + phi[1] + phi[2];
-        for a in 0..3 {
-            let psi = corners.map(|corner| corner.psi[a]);
-            let psi_sum = psi[0] + psi[1] + psi[2];
-            let products = phi[0] * psi[0] + phi[1] * psi[1] + phi[2] * psi[2];
-            moments.pressure[a] += part / 12.0 * (phi_sum * psi_sum + products);
-            moments.slope[a] += part / 3.0 * slope * psi_sum;
-        }
-        moments.area += part;
-        moments.energy += part * mean_of_a(&phi);
-        moments.depth = phi.iter().copied().fold(moments.depth, f64::max);
+/// The integrals of the element potential, region by region; `slopes` are |∂φ/∂n| there [1/m].
+pub fn element_moments(lambda: &[[f64; 3]; 4], slopes: &[f64; 4], area_m2: f64) -> PairMoments {
+    let mut moments = PairMoments::default();
+    for i in 0..4 {
+        let phi = Form::through(&lambda[i].map(|l| 4.0 * l));
+        moments.add(&region(lambda, i), &phi, slopes[i], area_m2);
     }
+    moments.share_with_target(lambda);
+    moments
+}
+
+/// The pair's share of ∫ φ dV over the overlap of the triangle's block with the tetrahedron [m³].
+pub fn pair_energy(triangle: &[Vec3; 3], area_vector: &Vec3, tet: &TetFrame) -> f64 {
+    let lambda = tet.lambda(triangle);
+    let area = area_vector.norm();
+    if area == 0.0 || is_outside(&lambda) {
+        return 0.0;
+    }
+    let over_region = |i: usize| {
+        let phi = Form::through(&lambda[i].map(|l| 4.0 * l));
+        let parts = region(&lambda, i);
+        parts.fan().map(|(corners, twice)| twice * mean_of_a(&corners.map(|c| phi.at(&c)))).sum::<f64>()
+    };
+    let mean: f64 = (0..4).map(over_region).sum();
+    // |n| dA and the height of the centroid in one product.
+    mean * tet.centroid_distance(&triangle[0], area_vector)
 }
 
 /// Mean of a over a triangle with linear φ. With p = Σφ, q = Σ φᵢφⱼ, r = φ₁φ₂φ₃:

@@ -64,7 +64,7 @@ pub fn check_model(model: &mut dyn ContactModel) {
     let tilt = nalgebra::Rotation3::new(Vec3::new(0.02, -0.03, 0.05)).into_inner();
     let position = place(&tilt, &Vec3::zeros());
     let velocity = vec![Vec3::zeros(); position.len()];
-    let input = ContactInput { blocks: &blocks, position: &position, velocity: &velocity, dt_s: 1e-3 };
+    let input = ContactInput::new(&blocks, &position, &velocity, 1e-3);
     let answer = evaluate(model, &input, &mut ContactHistory::default());
     let scale: f64 = answer.force.iter().map(|f| f.norm()).sum();
     assert!(scale > 0.0, "overlapping blocks feel no force");
@@ -84,7 +84,11 @@ pub fn check_model(model: &mut dyn ContactModel) {
     let far = ContactInput { position: &apart, ..input };
     let nothing = evaluate(model, &far, &mut ContactHistory::default());
     assert!(nothing.force.iter().all(|f| *f == Vec3::zeros()), "blocks apart feel a force");
-    assert_eq!(model.energy_j(&far).expect("an energy"), 0.0, "blocks apart have contact energy");
+    assert_eq!(
+        model.energy_j(&far, &ContactHistory::default()).expect("an energy"),
+        0.0,
+        "blocks apart have contact energy"
+    );
 }
 
 fn check_rigid_motion(model: &mut dyn ContactModel, input: &ContactInput, answer: &Answer, scale: f64) {
@@ -107,7 +111,9 @@ fn check_energy(
     let step = 1e-5;
     let mut energy = |turn: &Mat3, shift: &Vec3| {
         let position = place(&(turn * tilt), shift);
-        model.energy_j(&ContactInput { position: &position, ..*input }).expect("an energy")
+        model
+            .energy_j(&ContactInput { position: &position, ..*input }, &ContactHistory::default())
+            .expect("an energy")
     };
     let upper = input.blocks.nodes_of(BlockId(1));
     let force: Vec3 = answer.force[upper.clone()].iter().sum();
@@ -126,30 +132,50 @@ fn check_energy(
     }
 }
 
+/// Panics unless `potential` keeps the contract of [`ContactPotential`](crate::potential::ContactPotential) in the
+/// default contact model.
+#[cfg(feature = "potential")]
+pub fn check_potential<P: crate::potential::ContactPotential + Clone + 'static>(potential: &P) {
+    check_model(&mut crate::PotentialContact::new(1e9).with_potential(Box::new(potential.clone())));
+}
+
 /// Panics unless `law` keeps the contract of [`FrictionLaw`](crate::friction::FrictionLaw).
 #[cfg(feature = "potential")]
 pub fn check_friction(law: &dyn crate::friction::FrictionLaw) {
-    let slip = [1e-3, -2e-3];
-    let mut stuck = [5.0, 5.0];
-    law.advance(0.0, 1.0, &slip, &mut stuck);
-    assert_eq!(stuck, [0.0, 0.0], "shear without a normal force");
+    use crate::friction::{FacetSlip, ShearMemory};
 
-    let (mut once, mut last) = ([0.0, 0.0], 0.0);
+    let along = [1e-3, -2e-3];
+    let slip = |normal_n: f64| FacetSlip {
+        normal_n,
+        area_m2: 1.0,
+        slip_m: along,
+        stopping_n: along.map(|s| -1e2 * s),
+    };
+    let size = |memory: &ShearMemory| memory.shear_n[0].hypot(memory.shear_n[1]);
+    let mut stuck = ShearMemory { shear_n: [5.0, 5.0], ..ShearMemory::default() };
+    law.advance(&slip(0.0), &mut stuck);
+    assert_eq!(stuck.shear_n, [0.0, 0.0], "shear without a normal force");
+
+    let (mut once, mut last) = (ShearMemory::default(), 0.0);
     for _ in 0..1000 {
-        law.advance(1.0, 1.0, &slip, &mut once);
-        let size = once[0].hypot(once[1]);
-        assert!(once[0] * slip[0] + once[1] * slip[1] <= 0.0, "friction pushes along the slip");
-        assert!(size.is_finite() && size >= last * (1.0 - 1e-12), "a steady slip lets the force sink");
-        last = size;
+        law.advance(&slip(1.0), &mut once);
+        let power = once.shear_n[0] * along[0] + once.shear_n[1] * along[1];
+        assert!(power <= 0.0, "friction pushes along the slip");
+        let reached = size(&once);
+        assert!(reached.is_finite() && reached >= last * (1.0 - 1e-12), "a steady slip lets the force sink");
+        assert!(reached <= law.capacity_n(&slip(1.0), &once) * (1.0 + 1e-12), "more than the law carries");
+        last = reached;
     }
-    let mut double = [0.0, 0.0];
+    let mut double = ShearMemory::default();
     for _ in 0..1000 {
-        law.advance(2.0, 1.0, &slip, &mut double);
+        law.advance(&slip(2.0), &mut double);
     }
-    assert!(
-        double[0].hypot(double[1]) <= 2.0 * last * (1.0 + 1e-12),
-        "the cap grows faster than the normal force"
-    );
+    assert!(size(&double) <= 2.0 * last * (1.0 + 1e-12), "the cap grows faster than the normal force");
+    let kept = double;
+    let rest = FacetSlip { slip_m: [0.0; 2], stopping_n: [0.0; 2], ..slip(2.0) };
+    law.advance(&rest, &mut double);
+    let lost = (kept.shear_n[0] - double.shear_n[0]).hypot(kept.shear_n[1] - double.shear_n[1]);
+    assert!(lost <= 1e-12 * size(&kept), "a block at rest loses its hold");
 }
 
 /// Panics unless `phase` keeps the contract of [`BroadPhase`](crate::broad_phase::BroadPhase) on drifting boxes.

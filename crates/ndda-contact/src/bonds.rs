@@ -1,0 +1,109 @@
+//! Joints that carry tension: facets glued to a point of the other block until the glue breaks.
+//!
+//! Bonds form where facets touch another block when contact is first evaluated. Compression is the potential's, shear
+//! the friction law's; a bond acts when its facet moves away: a spring along its length d, ½ k S d, with half the
+//! facet's area for each side. Past σ_t S it is gone for good, and so is the facet's cohesion.
+
+use ndda_mesh::geometry::triangle_area_vector;
+use ndda_mesh::{TriangleId, Vec3};
+
+use crate::candidates::Candidates;
+use crate::joints::Joints;
+use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput};
+use crate::pair::TetFrame;
+
+/// A facet touches when its centroid is no further outside than this part of the tetrahedron.
+const TOUCHING: f64 = 1e-6;
+
+/// Adds the forces of bonds, and drops those that break.
+pub fn add_forces(
+    joints: &Joints,
+    candidates: &Candidates,
+    input: &ContactInput,
+    history: &mut ContactHistory,
+    output: &mut ContactOutput,
+) {
+    if !history.begun {
+        form(joints, candidates, input, &mut history.bonds);
+    }
+    let ContactHistory { bonds, facets, .. } = history;
+    bonds.retain(|bond| {
+        let holds = pull(joints, input, bond, output);
+        if !holds {
+            let of_bond = facets.iter_mut().filter(|memory| memory.facet == bond.facet);
+            of_bond.for_each(|memory| memory.broken = true);
+        }
+        holds
+    });
+}
+
+fn form(joints: &Joints, candidates: &Candidates, input: &ContactInput, bonds: &mut Vec<Bond>) {
+    let blocks = input.blocks;
+    for facet in &candidates.facets {
+        let owner = blocks.triangle_block[facet.triangle.index()];
+        let tension_pa = joints.law(owner, facet.target).map_or(0.0, |law| law.tension_pa());
+        let known = bonds.last().is_some_and(|bond: &Bond| bond.facet == facet.triangle);
+        if tension_pa <= 0.0 || known {
+            continue;
+        }
+        let centroid = centroid(input, facet.triangle);
+        let bond = facet.pairs.clone().find_map(|pair| {
+            let tet = candidates.tet_of(pair as u32);
+            let frame = TetFrame::new(&blocks.tet_corners(tet, input.position));
+            let lambda = frame.lambda(&[centroid; 3]).map(|at| at[0]);
+            let inside = lambda.iter().all(|&l| l >= -TOUCHING);
+            inside.then_some(Bond { facet: facet.triangle, tet, lambda })
+        });
+        bonds.extend(bond);
+    }
+}
+
+/// Adds the force of one bond; false when it breaks.
+fn pull(joints: &Joints, input: &ContactInput, bond: &Bond, output: &mut ContactOutput) -> bool {
+    let blocks = input.blocks;
+    let nodes = blocks.triangles[bond.facet.index()];
+    let tet = blocks.tets[bond.tet.index()];
+    let corners = nodes.map(|n| input.position[n.index()]);
+    let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
+    let area_vector = triangle_area_vector(&corners);
+    let stretch = anchor - centroid(input, bond.facet);
+    let (owner, target) = (blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]);
+    let Some(law) = joints.law(owner, target) else { return false };
+    if stretch.dot(&area_vector) <= 0.0 {
+        return true;
+    }
+    let half_area = 0.5 * area_vector.norm();
+    if law.bond_stiffness_pa_m() * stretch.norm() > law.tension_pa() {
+        return false;
+    }
+    let force = law.bond_stiffness_pa_m() * half_area * stretch;
+    for node in nodes {
+        output.force[node.index()] += force / 3.0;
+        output.stiffness[node.index()] += 2.0 * law.bond_stiffness_pa_m() * half_area / 3.0;
+    }
+    for (node, lambda) in tet.iter().zip(bond.lambda) {
+        output.force[node.index()] -= lambda * force;
+        output.stiffness[node.index()] += 2.0 * law.bond_stiffness_pa_m() * half_area * lambda.abs();
+    }
+    true
+}
+
+fn centroid(input: &ContactInput, facet: TriangleId) -> Vec3 {
+    input.blocks.triangle_corners(facet, input.position).iter().sum::<Vec3>() / 3.0
+}
+
+/// Energy stretched into bonds, ½ k ½S |d|² each [J].
+pub fn energy_j(joints: &Joints, input: &ContactInput, bonds: &[Bond]) -> f64 {
+    let blocks = input.blocks;
+    let of_bond = |bond: &Bond| {
+        let tet = blocks.tets[bond.tet.index()];
+        let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
+        let area_vector = triangle_area_vector(&blocks.triangle_corners(bond.facet, input.position));
+        let stretch = anchor - centroid(input, bond.facet);
+        let pair = (blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]);
+        let stiffness = joints.law(pair.0, pair.1).map_or(0.0, |law| law.bond_stiffness_pa_m());
+        let open = stretch.dot(&area_vector) > 0.0;
+        if open { 0.25 * stiffness * area_vector.norm() * stretch.norm_squared() } else { 0.0 }
+    };
+    bonds.iter().map(of_bond).sum()
+}

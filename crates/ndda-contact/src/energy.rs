@@ -1,0 +1,168 @@
+//! Potential energy: U = ∫_{A∩B} (φ_A + φ_B) dV of each pair of blocks.
+//!
+//! The element potential needs the surface pieces only (see [`pair`](crate::pair)), a volume is a sum over the
+//! surface of the overlap, and any other potential is integrated over the overlaps of tetrahedra. Forces never need
+//! U, except where its law is not linear; energies are asked for when results are written.
+
+use ndda_mesh::geometry::{Aabb, triangle_area_vector};
+use ndda_mesh::{BlockId, BlockSet, TetId, Vec3};
+
+use crate::candidates::Candidates;
+use crate::integrals::Integrals;
+use crate::model::ContactInput;
+use crate::overlap::{Linear, overlap_of};
+use crate::pair::{TetFrame, pair_energy};
+use crate::potential::{Field, OverlapLaw, PieceTable};
+
+/// Part of a tetrahedron's volume beyond which a negative integral is more than rounding.
+const PAST_CENTROID: f64 = 1e-9;
+
+/// U for each pair of blocks that may touch.
+#[derive(Default)]
+pub struct BlockOverlaps {
+    /// (smaller, larger), ascending.
+    pairs: Vec<(BlockId, BlockId)>,
+    overlap_m3: Vec<f64>,
+    origin: Vec<Option<Vec3>>,
+    per_tet: Vec<f64>,
+}
+
+impl BlockOverlaps {
+    /// U of a pair of blocks [m³]; zero for those that cannot touch.
+    pub fn of(&self, a: BlockId, b: BlockId) -> f64 {
+        self.place(a, b).map_or(0.0, |k| self.overlap_m3[k])
+    }
+
+    /// Σ w(U) [m³].
+    pub fn energy_m3(&self, law: OverlapLaw) -> f64 {
+        self.overlap_m3.iter().map(|&overlap| law.energy_m3(overlap)).sum()
+    }
+
+    fn place(&self, a: BlockId, b: BlockId) -> Option<usize> {
+        self.pairs.binary_search(&(a.min(b), a.max(b))).ok()
+    }
+
+    fn list(&mut self, blocks: &BlockSet, candidates: &Candidates) {
+        self.pairs.clear();
+        self.pairs.extend(candidates.facets.iter().map(|facet| {
+            let (a, b) = (blocks.triangle_block[facet.triangle.index()], facet.target);
+            (a.min(b), a.max(b))
+        }));
+        self.pairs.sort_unstable();
+        self.pairs.dedup();
+        self.overlap_m3.clear();
+        self.overlap_m3.resize(self.pairs.len(), 0.0);
+    }
+
+    /// U of any potential.
+    pub fn integrate(
+        &mut self,
+        input: &ContactInput,
+        candidates: &Candidates,
+        integrals: &Integrals,
+        frames: &[TetFrame],
+        field: &Field,
+        law: OverlapLaw,
+    ) {
+        match (field, law) {
+            (_, OverlapLaw::Power { .. }) => self.from_surfaces(input, candidates, integrals),
+            (Field::Element, _) => self.from_pieces(input, candidates, integrals, frames),
+            (Field::Pieces(table), _) => self.from_tets(input, candidates, table),
+        }
+    }
+
+    /// The volume of overlaps, V = ⅓ ∮ (x − o)·n dS over the pieces of both surfaces.
+    pub fn from_surfaces(&mut self, input: &ContactInput, candidates: &Candidates, integrals: &Integrals) {
+        self.list(input.blocks, candidates);
+        self.origin.clear();
+        self.origin.resize(self.pairs.len(), None);
+        for (f, facet) in candidates.facets.iter().enumerate() {
+            let area: f64 = integrals.hits_of(f).iter().map(|hit| hit.moments.area).sum();
+            if area <= 0.0 {
+                continue;
+            }
+            let owner = input.blocks.triangle_block[facet.triangle.index()];
+            let k = self.place(owner, facet.target).expect("listed above");
+            let corners = input.blocks.triangle_corners(facet.triangle, input.position);
+            let origin = *self.origin[k].get_or_insert(corners[0]);
+            let normal = triangle_area_vector(&corners).normalize();
+            self.overlap_m3[k] += area * (corners[0] - origin).dot(&normal) / 3.0;
+        }
+    }
+
+    /// The element potential, from the flux through surface pieces.
+    fn from_pieces(
+        &mut self,
+        input: &ContactInput,
+        candidates: &Candidates,
+        integrals: &Integrals,
+        frames: &[TetFrame],
+    ) {
+        let blocks = input.blocks;
+        self.list(blocks, candidates);
+        self.per_tet.clear();
+        self.per_tet.resize(candidates.overlaps.len(), 0.0);
+        for hit in integrals.chunks().iter().flat_map(|chunk| &chunk.hits) {
+            let pair = &candidates.pairs[hit.pair as usize];
+            let corners = blocks.triangle_corners(pair.triangle, input.position);
+            let frame = &frames[pair.tet as usize];
+            self.per_tet[pair.overlap as usize] +=
+                pair_energy(&corners, &triangle_area_vector(&corners), frame);
+        }
+        for (&(tet, block), &integral) in candidates.overlaps.iter().zip(&self.per_tet) {
+            let slot = candidates.tets.binary_search(&tet).expect("every overlap has its tet");
+            let volume_m3 = frames[slot].volume_m3;
+            // ∫ φ over the whole tetrahedron is V/4: that is what a contained centroid leaves out.
+            let past = integral < -PAST_CENTROID * volume_m3;
+            let missing = if past { 0.25 * volume_m3 } else { 0.0 };
+            let k = self.place(blocks.tet_block[tet.index()], block).expect("listed above");
+            self.overlap_m3[k] += integral + missing;
+        }
+    }
+
+    /// Any potential, over the overlaps of tetrahedra.
+    fn from_tets(&mut self, input: &ContactInput, candidates: &Candidates, table: &PieceTable) {
+        self.list(input.blocks, candidates);
+        for k in 0..self.pairs.len() {
+            let (a, b) = self.pairs[k];
+            self.overlap_m3[k] = overlap_of_blocks(input, a, b, table);
+        }
+    }
+}
+
+/// U of two blocks: every pair of their tetrahedra whose boxes touch.
+fn overlap_of_blocks(input: &ContactInput, a: BlockId, b: BlockId, table: &PieceTable) -> f64 {
+    let (blocks, position) = (input.blocks, input.position);
+    let box_of = |tet: usize| Aabb::around(blocks.tets[tet].iter().map(|n| &position[n.index()]));
+    let block_box = |block: BlockId| Aabb::around(&position[blocks.nodes_of(block)]);
+    let near = |block: BlockId, other: &Aabb| -> Vec<(usize, Aabb)> {
+        let tets = blocks.tets_of(block).map(|tet| (tet, box_of(tet)));
+        let mut near: Vec<_> = tets.filter(|(_, bounds)| bounds.touches(other)).collect();
+        near.sort_by(|(_, x), (_, y)| x.min.x.total_cmp(&y.min.x));
+        near
+    };
+    let (of_a, of_b) = (near(a, &block_box(b)), near(b, &block_box(a)));
+    let mut sum = 0.0;
+    for (c, c_box) in &of_a {
+        let within = of_b.iter().take_while(|(_, t_box)| t_box.min.x <= c_box.max.x);
+        for (t, _) in within.filter(|(t, t_box)| t != c && t_box.touches(c_box)) {
+            sum += overlap_of_tets(input, TetId(*c as u32), TetId(*t as u32), table);
+        }
+    }
+    sum
+}
+
+/// ∫ (φ_c + φ_t) dV over c ∩ t.
+fn overlap_of_tets(input: &ContactInput, c: TetId, t: TetId, table: &PieceTable) -> f64 {
+    let corners = |tet: TetId| input.blocks.tet_corners(tet, input.position);
+    let (frame_c, frame_t) = (TetFrame::new(&corners(c)), TetFrame::new(&corners(t)));
+    let origin = corners(c)[0];
+    let overlap = overlap_of(&corners(c), &frame_t, &origin);
+    if overlap.is_empty() {
+        return 0.0;
+    }
+    let phi = |tet: TetId, frame: &TetFrame| -> Vec<Linear> {
+        table.of(tet).iter().map(|values| Linear::of_corners(frame, values, &origin)).collect()
+    };
+    overlap.integral_of_smallest(&phi(c, &frame_c)) + overlap.integral_of_smallest(&phi(t, &frame_t))
+}

@@ -1,0 +1,149 @@
+//! What one facet does: normal force, slip and friction.
+
+use ndda_mesh::geometry::triangle_area_vector;
+use ndda_mesh::{TetId, Vec3};
+
+use crate::candidates::{Candidates, Facet};
+use crate::friction::{FacetSlip, ShearMemory};
+use crate::integrals::Hit;
+use crate::joints::{Joints, Memory};
+use crate::model::{Body, ContactHistory, ContactInput, FacetMemory};
+
+/// The forces of one facet per unit of ∫ φ N dA, and what it remembers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FacetForce {
+    /// −k n: what the facet's normal force is made of [Pa].
+    pub push: Vec3,
+    /// The same for friction [Pa].
+    pub shear: Vec3,
+    /// Memory to keep, where there is friction and contact.
+    pub memory: Option<ShearMemory>,
+    /// Whether there is a force at all.
+    pub touches: bool,
+}
+
+/// What the evaluation of a facet reads.
+#[derive(Clone, Copy)]
+pub struct FacetScene<'a> {
+    /// Blocks and their motion.
+    pub input: &'a ContactInput<'a>,
+    /// Pairs and facets.
+    pub candidates: &'a Candidates,
+    /// Friction, if there is any.
+    pub joints: Option<&'a Joints>,
+    /// Memory of the last step.
+    pub history: &'a ContactHistory,
+    /// Mass per area in contact of each block within a step [kg/m²]; empty if no law asks.
+    pub mass_per_area: &'a [f64],
+}
+
+impl FacetScene<'_> {
+    /// Normal force −k n ∫ φ dA and friction of one facet.
+    pub fn force(&self, facet: &Facet, hits: &[Hit], penalty_pa: f64) -> FacetForce {
+        let pressure: f64 = hits.iter().map(|hit| hit.moments.total()).sum();
+        if pressure <= 0.0 {
+            return FacetForce::default();
+        }
+        let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
+        let normal = triangle_area_vector(&corners).normalize();
+        let mut force = FacetForce { push: -penalty_pa * normal, touches: true, ..FacetForce::default() };
+        let owner = self.input.blocks.triangle_block[facet.triangle.index()];
+        if let Some(law) = self.joints.and_then(|joints| joints.law(owner, facet.target)) {
+            let basis = facet_basis(&corners, &normal);
+            let mut memory = self.remembered(facet);
+            let slip = self.slip(facet, hits, &basis, pressure, penalty_pa);
+            law.advance(&slip, &mut memory);
+            force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / pressure;
+            force.memory = Some(memory);
+        }
+        force
+    }
+
+    fn slip(
+        &self,
+        facet: &Facet,
+        hits: &[Hit],
+        basis: &[Vec3; 2],
+        pressure: f64,
+        penalty_pa: f64,
+    ) -> FacetSlip {
+        let in_basis = |v: &Vec3| [v.dot(&basis[0]), v.dot(&basis[1])];
+        let area_m2 = hits.iter().map(|hit| hit.moments.area).sum();
+        let velocity = self.relative_velocity(facet, hits, self.input.velocity) / pressure;
+        let mut slip = FacetSlip {
+            normal_n: penalty_pa * pressure,
+            area_m2,
+            slip_m: in_basis(&(self.input.dt_s * velocity)),
+            stopping_n: [0.0; 2],
+        };
+        if !self.mass_per_area.is_empty() {
+            let velocity = self.relative_velocity(facet, hits, self.input.expected_velocity) / pressure;
+            let owner = self.input.blocks.triangle_block[facet.triangle.index()];
+            let [own, other] = [owner, facet.target].map(|block| self.mass_per_area[block.index()]);
+            let mass_kg = area_m2 * reduced(own, other);
+            slip.stopping_n = in_basis(&(-mass_kg / self.input.dt_s * velocity));
+        }
+        slip
+    }
+
+    /// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.
+    fn relative_velocity(&self, facet: &Facet, hits: &[Hit], velocity: &[Vec3]) -> Vec3 {
+        let blocks = self.input.blocks;
+        let triangle = blocks.triangles[facet.triangle.index()];
+        let mut sum = Vec3::zeros();
+        for hit in hits {
+            let tet = blocks.tets[self.candidates.tet_of(hit.pair).index()];
+            for (node, w) in triangle.iter().zip(hit.moments.pressure) {
+                sum += w * velocity[node.index()];
+            }
+            for (node, w) in tet.iter().zip(hit.moments.target_pressure) {
+                sum -= w * velocity[node.index()];
+            }
+        }
+        sum
+    }
+
+    /// What the facet remembers of its target; nothing when they did not touch before.
+    fn remembered(&self, facet: &Facet) -> ShearMemory {
+        let key = |memory: &FacetMemory| (memory.facet, memory.target, memory.element);
+        let wanted = (facet.triangle, facet.target, self.element_of(facet));
+        match self.history.facets.binary_search_by_key(&wanted, key) {
+            Ok(place) => {
+                let FacetMemory { shear_n, broken, .. } = self.history.facets[place];
+                ShearMemory { shear_n, broken }
+            }
+            Err(_) => ShearMemory { broken: self.history.begun, ..ShearMemory::default() },
+        }
+    }
+
+    /// The element that memory belongs to, if it belongs to one.
+    pub fn element_of(&self, facet: &Facet) -> Option<TetId> {
+        let per_element = self.joints.is_some_and(|joints| joints.memory == Memory::Element);
+        per_element.then(|| self.candidates.tet_of(facet.pairs.start as u32))
+    }
+}
+
+/// 1/(1/a + 1/b), also where one of them is infinite; nothing where both are.
+fn reduced(a: f64, b: f64) -> f64 {
+    match (a.is_finite(), b.is_finite()) {
+        (true, true) if a + b > 0.0 => a * b / (a + b),
+        (true, false) => a,
+        (false, true) => b,
+        _ => 0.0,
+    }
+}
+
+/// Mass that a square metre of contact moves within a step [kg/m²]: the block's, spread over all of its contacts, but
+/// no more than a shear wave reaches, ρ c_s Δt.
+pub fn mass_per_area(body: &Body, area_m2: f64, dt_s: f64) -> f64 {
+    if body.mass_kg.is_infinite() || area_m2 <= 0.0 {
+        return f64::INFINITY;
+    }
+    (body.mass_kg / area_m2).min(body.impedance_pa_s_m * dt_s)
+}
+
+/// Two unit vectors in the facet: along its first edge, and across. They turn with the facet.
+fn facet_basis(corners: &[Vec3; 3], normal: &Vec3) -> [Vec3; 2] {
+    let along = (corners[1] - corners[0]).normalize();
+    [along, normal.cross(&along)]
+}

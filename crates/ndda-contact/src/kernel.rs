@@ -1,0 +1,377 @@
+//! Many pairs at a time: the integrals of [`pair`](crate::pair) for as many pairs as the processor has lanes.
+//!
+//! A lane never branches. A convex polygon in the triangle is a set of directed edges, in no order: a cut shortens
+//! each edge on its own and adds one, from where the rim leaves the half-plane to where it comes back. Integrals are
+//! fans of the edges about one of their ends. Each region of φ is cut on its own. Every field is a linear form in ψ
+//! given by its values at the corners, λ_j − λ_i for two regions, so the field of region i against j is exactly minus
+//! that of j against i, and a tie goes to the smaller index: no point is in two regions, or in none.
+//!
+//! Rounding can make a rim that runs along a cut leave twice; such a lane is flagged, and its pair is done again by
+//! the ordered clipper of [`clip`](crate::clip). Only sums, products and quotients are used, each rounded once, so
+//! the bits do not depend on the processor.
+
+use pulp::{Arch, Simd, WithSimd};
+
+/// Pairs in a group; a multiple of every lane count.
+pub const GROUP: usize = 8;
+/// Cuts of a region of the element potential.
+const ELEMENT_CUTS: usize = 4;
+/// Most cuts of a piece of any other potential: four faces, and its rivals.
+pub const MOST_CUTS: usize = 16;
+
+/// One number for each pair of a group.
+pub type Row = [f64; GROUP];
+
+/// What the kernel needs of a group of pairs.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PairGroup {
+    /// λ_b at corner a, as `[b][a]`.
+    pub lambda: [[Row; 3]; 4],
+    /// |∂φ/∂n| in the four regions [1/m].
+    pub slope: [Row; 4],
+}
+
+/// One piece of a potential on each of a group of pairs; a field is given by its values at the triangle's corners.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PieceGroup {
+    /// φ.
+    pub phi: [Row; 3],
+    /// |∂φ/∂n| [1/m].
+    pub slope: Row,
+    /// Fields that are not negative in the piece.
+    pub cuts: [[Row; 3]; MOST_CUTS],
+    /// 1 where a zero of the field belongs to the piece, 0 where it does not.
+    pub ties: [Row; MOST_CUTS],
+    /// Cuts in use.
+    pub len: usize,
+}
+
+/// The integrals of a group, over the triangle's area. ψ are the shape functions of the triangle.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct GroupMoments {
+    /// ∫ φ ψ_a dA.
+    pub pressure: [Row; 3],
+    /// ∫ |∂φ/∂n| ψ_a dA [1/m].
+    pub slope: [Row; 3],
+    /// Area of the part inside.
+    pub area: Row,
+    /// Largest φ.
+    pub depth: Row,
+    /// Not zero where the pair has to be done one by one.
+    pub doubtful: Row,
+}
+
+/// The integrals of the element potential, φ = 4 min λᵢ, for a group of pairs.
+pub fn element_moments(arch: Arch, group: &PairGroup, moments: &mut GroupMoments) {
+    arch.dispatch(ElementMoments { group, moments });
+}
+
+/// The integrals of one piece for a group of pairs.
+pub fn piece_moments(arch: Arch, group: &PieceGroup, moments: &mut GroupMoments) {
+    arch.dispatch(PieceMoments { group, moments });
+}
+
+struct PieceMoments<'a> {
+    group: &'a PieceGroup,
+    moments: &'a mut GroupMoments,
+}
+
+impl WithSimd for PieceMoments<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { group, moments } = self;
+        for k in 0..GROUP / S::F64_LANES {
+            let load = |row: &Row| S::as_simd_f64s(row).0[k];
+            let field = |at: &[Row; 3]| Form::through(simd, at.each_ref().map(load));
+            let mut sums = Sums::zero(simd);
+            let mut edges = Edges::<S, { 3 + MOST_CUTS }>::triangle(simd);
+            for (cut, tie) in group.cuts.iter().zip(&group.ties).take(group.len) {
+                edges.cut(simd, &field(cut), load(tie), &mut sums.doubtful);
+            }
+            add_fan(simd, &edges, &field(&group.phi), load(&group.slope), &mut sums);
+            let mut store = |row: &mut Row, v: S::f64s| S::as_mut_simd_f64s(row).0[k] = v;
+            sums.store(moments, &mut store);
+        }
+    }
+}
+
+struct ElementMoments<'a> {
+    group: &'a PairGroup,
+    moments: &'a mut GroupMoments,
+}
+
+impl WithSimd for ElementMoments<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { group, moments } = self;
+        for k in 0..GROUP / S::F64_LANES {
+            let load = |row: &Row| S::as_simd_f64s(row).0[k];
+            let lambda = group.lambda.each_ref().map(|at| at.each_ref().map(load));
+            let mut sums = Sums::zero(simd);
+            for i in 0..4 {
+                add_region(simd, &lambda, i, load(&group.slope[i]), &mut sums);
+            }
+            let mut store = |row: &mut Row, v: S::f64s| S::as_mut_simd_f64s(row).0[k] = v;
+            sums.store(moments, &mut store);
+        }
+    }
+}
+
+/// Running sums of a lane.
+struct Sums<S: Simd> {
+    pressure: [S::f64s; 3],
+    slope: [S::f64s; 3],
+    area: S::f64s,
+    depth: S::f64s,
+    doubtful: S::f64s,
+}
+
+impl<S: Simd> Sums<S> {
+    #[inline(always)]
+    fn zero(simd: S) -> Self {
+        let zero = simd.splat_f64s(0.0);
+        Self { pressure: [zero; 3], slope: [zero; 3], area: zero, depth: zero, doubtful: zero }
+    }
+
+    #[inline(always)]
+    fn store(&self, to: &mut GroupMoments, store: &mut impl FnMut(&mut Row, S::f64s)) {
+        for a in 0..3 {
+            store(&mut to.pressure[a], self.pressure[a]);
+            store(&mut to.slope[a], self.slope[a]);
+        }
+        store(&mut to.area, self.area);
+        store(&mut to.depth, self.depth);
+        store(&mut to.doubtful, self.doubtful);
+    }
+}
+
+/// A linear form c₀ + c₁ ψ₁ + c₂ ψ₂.
+#[derive(Clone, Copy)]
+struct Form<S: Simd>([S::f64s; 3]);
+
+impl<S: Simd> Form<S> {
+    /// The form with these values at the corners.
+    #[inline(always)]
+    fn through(simd: S, at: [S::f64s; 3]) -> Self {
+        Self([at[0], simd.sub_f64s(at[1], at[0]), simd.sub_f64s(at[2], at[0])])
+    }
+
+    #[inline(always)]
+    fn at(&self, simd: S, x: S::f64s, y: S::f64s) -> S::f64s {
+        let Self([c0, c1, c2]) = *self;
+        simd.add_f64s(c0, simd.add_f64s(simd.mul_f64s(c1, x), simd.mul_f64s(c2, y)))
+    }
+}
+
+/// Directed edges in the plane (ψ₁, ψ₂); an edge without length is outside.
+struct Edges<S: Simd, const MOST: usize> {
+    x: [[S::f64s; 2]; MOST],
+    y: [[S::f64s; 2]; MOST],
+    len: usize,
+}
+
+impl<S: Simd, const MOST: usize> Edges<S, MOST> {
+    /// The whole triangle, counter-clockwise.
+    #[inline(always)]
+    fn triangle(simd: S) -> Self {
+        let (o, l) = (simd.splat_f64s(0.0), simd.splat_f64s(1.0));
+        let (mut x, mut y) = ([[o; 2]; MOST], [[o; 2]; MOST]);
+        (x[0], y[0]) = ([o, l], [o, o]);
+        (x[1], y[1]) = ([l, o], [o, l]);
+        (x[2], y[2]) = ([o, o], [l, o]);
+        Self { x, y, len: 3 }
+    }
+
+    /// Keeps what is inside: the field > 0, or = 0 where `tie` is 1.
+    #[inline(always)]
+    fn cut(&mut self, simd: S, field: &Form<S>, tie: S::f64s, doubtful: &mut S::f64s) {
+        let zero = simd.splat_f64s(0.0);
+        let tie_is_outside = simd.equal_f64s(tie, zero);
+        let outside = |d| {
+            let tie = simd.and_m64s(tie_is_outside, simd.equal_f64s(d, zero));
+            simd.or_m64s(simd.less_than_f64s(d, zero), tie)
+        };
+        let (mut leave, mut back) = ([zero; 2], [zero; 2]);
+        let mut left = simd.less_than_f64s(zero, zero);
+        for k in 0..self.len {
+            let ([x0, x1], [y0, y1]) = (self.x[k], self.y[k]);
+            let (d0, d1) = (field.at(simd, x0, y0), field.at(simd, x1, y1));
+            let (out0, out1) = (outside(d0), outside(d1));
+            let leaves = simd.and_m64s(simd.not_m64s(out0), out1);
+            let returns = simd.and_m64s(out0, simd.not_m64s(out1));
+            let gone = simd.and_m64s(out0, out1);
+            let t = simd.div_f64s(d0, simd.sub_f64s(d0, d1));
+            let x = simd.add_f64s(x0, simd.mul_f64s(t, simd.sub_f64s(x1, x0)));
+            let y = simd.add_f64s(y0, simd.mul_f64s(t, simd.sub_f64s(y1, y0)));
+            let end =
+                |cross, first, last| simd.select_f64s(leaves, cross, simd.select_f64s(gone, first, last));
+            self.x[k] = [simd.select_f64s(returns, x, x0), end(x, x0, x1)];
+            self.y[k] = [simd.select_f64s(returns, y, y0), end(y, y0, y1)];
+            leave = [simd.select_f64s(leaves, x, leave[0]), simd.select_f64s(leaves, y, leave[1])];
+            back = [simd.select_f64s(returns, x, back[0]), simd.select_f64s(returns, y, back[1])];
+            let again = simd.and_m64s(left, leaves);
+            *doubtful = simd.select_f64s(again, simd.splat_f64s(1.0), *doubtful);
+            left = simd.or_m64s(left, leaves);
+        }
+        self.x[self.len] = [leave[0], back[0]];
+        self.y[self.len] = [leave[1], back[1]];
+        self.len += 1;
+    }
+
+    /// An end of an edge that has a length.
+    #[inline(always)]
+    fn apex(&self, simd: S) -> [S::f64s; 2] {
+        let mut apex = [self.x[0][0], self.y[0][0]];
+        for k in 1..self.len {
+            let has_length = self.has_length(simd, k);
+            apex[0] = simd.select_f64s(has_length, self.x[k][0], apex[0]);
+            apex[1] = simd.select_f64s(has_length, self.y[k][0], apex[1]);
+        }
+        apex
+    }
+
+    #[inline(always)]
+    fn has_length(&self, simd: S, k: usize) -> S::m64s {
+        let differ = |[from, to]: [S::f64s; 2]| simd.not_m64s(simd.equal_f64s(from, to));
+        simd.or_m64s(differ(self.x[k]), differ(self.y[k]))
+    }
+}
+
+/// Adds the integrals over the region where λ_i is the smallest.
+#[inline(always)]
+fn add_region<S: Simd>(simd: S, lambda: &[[S::f64s; 3]; 4], i: usize, slope: S::f64s, sums: &mut Sums<S>) {
+    let own = Form::through(simd, lambda[i]);
+    let (one, zero) = (simd.splat_f64s(1.0), simd.splat_f64s(0.0));
+    let mut edges = Edges::<S, { 3 + ELEMENT_CUTS }>::triangle(simd);
+    edges.cut(simd, &own, one, &mut sums.doubtful);
+    for j in 0..4 {
+        if j != i {
+            let ahead = [0, 1, 2].map(|a| simd.sub_f64s(lambda[j][a], lambda[i][a]));
+            edges.cut(simd, &Form::through(simd, ahead), if i < j { one } else { zero }, &mut sums.doubtful);
+        }
+    }
+    let four = simd.splat_f64s(4.0);
+    add_fan(simd, &edges, &Form(own.0.map(|c| simd.mul_f64s(four, c))), slope, sums);
+}
+
+/// Adds the integrals over a polygon on which φ is linear:
+/// ∫ f g dA = A/12 [(Σf)(Σg) + Σ fᵢ gᵢ],  ∫ f dA = A/3 Σf  over each triangle of the fan.
+#[inline(always)]
+fn add_fan<S: Simd, const MOST: usize>(
+    simd: S,
+    edges: &Edges<S, MOST>,
+    phi: &Form<S>,
+    slope: S::f64s,
+    sums: &mut Sums<S>,
+) {
+    let zero = simd.splat_f64s(0.0);
+    let phi = |x, y| phi.at(simd, x, y);
+    let add = |a, b| simd.add_f64s(a, b);
+    let [px, py] = edges.apex(simd);
+    let phi_apex = phi(px, py);
+    let (mut area, mut first, mut total, mut pressure) = (zero, [zero; 2], zero, [zero; 2]);
+    for k in 0..edges.len {
+        let ([x0, x1], [y0, y1]) = (edges.x[k], edges.y[k]);
+        let (ux, uy) = (simd.sub_f64s(x0, px), simd.sub_f64s(y0, py));
+        let (vx, vy) = (simd.sub_f64s(x1, x0), simd.sub_f64s(y1, y0));
+        let part = simd.sub_f64s(simd.mul_f64s(ux, vy), simd.mul_f64s(uy, vx));
+        let (phi0, phi1) = (phi(x0, y0), phi(x1, y1));
+        let (phi_sum, x_sum, y_sum) =
+            (add(phi_apex, add(phi0, phi1)), add(px, add(x0, x1)), add(py, add(y0, y1)));
+        let products = |p, q0, q1| {
+            let ends = add(simd.mul_f64s(phi0, q0), simd.mul_f64s(phi1, q1));
+            add(simd.mul_f64s(phi_apex, p), ends)
+        };
+        let weighted =
+            |sum, p, q0, q1| simd.mul_f64s(part, add(simd.mul_f64s(phi_sum, sum), products(p, q0, q1)));
+        area = add(area, part);
+        first = [add(first[0], simd.mul_f64s(part, x_sum)), add(first[1], simd.mul_f64s(part, y_sum))];
+        total = add(total, simd.mul_f64s(part, phi_sum));
+        pressure =
+            [add(pressure[0], weighted(x_sum, px, x0, x1)), add(pressure[1], weighted(y_sum, py, y0, y1))];
+        let higher = simd.max_f64s(sums.depth, phi0);
+        sums.depth = simd.select_f64s(edges.has_length(simd, k), higher, sums.depth);
+    }
+    let third = simd.splat_f64s(1.0 / 3.0);
+    let twelfth = simd.splat_f64s(1.0 / 12.0);
+    let total = simd.mul_f64s(third, total);
+    let pressure = pressure.map(|w| simd.mul_f64s(twelfth, w));
+    let first = first.map(|w| simd.mul_f64s(third, w));
+    let rest = |all, two: [S::f64s; 2]| simd.sub_f64s(all, add(two[0], two[1]));
+    for (sum, w) in sums.pressure.iter_mut().zip([rest(total, pressure), pressure[0], pressure[1]]) {
+        *sum = add(*sum, w);
+    }
+    for (sum, w) in sums.slope.iter_mut().zip([rest(area, first), first[0], first[1]]) {
+        *sum = add(*sum, simd.mul_f64s(slope, w));
+    }
+    sums.area = add(sums.area, area);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pair::{TetFrame, pair_moments};
+    use ndda_mesh::Vec3;
+    use ndda_mesh::geometry::triangle_area_vector;
+    use proptest::prelude::*;
+
+    fn group_of(triangle: &[Vec3; 3], frame: &TetFrame) -> PairGroup {
+        let mut group = PairGroup::default();
+        let (lambda, slope) =
+            (frame.lambda(triangle), frame.slopes(&triangle_area_vector(triangle).normalize()));
+        for b in 0..4 {
+            group.slope[b] = [slope[b]; GROUP];
+            for a in 0..3 {
+                group.lambda[b][a] = [lambda[b][a]; GROUP];
+            }
+        }
+        group
+    }
+
+    /// Coordinates on a coarse grid, so that corners, edges and planes often meet, some off it by a few ulps.
+    fn coordinate() -> impl Strategy<Value = f64> {
+        (-3i32..4, 0i32..12).prop_map(|(i, off)| {
+            let on_grid = f64::from(i) * 0.25;
+            if off < 8 { on_grid } else { on_grid + f64::from(off - 9) * f64::EPSILON }
+        })
+    }
+
+    fn point() -> impl Strategy<Value = Vec3> {
+        [coordinate(), coordinate(), coordinate()].prop_map(Vec3::from)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { max_global_rejects: 1_000_000, failure_persistence: None, ..ProptestConfig::with_cases(20_000) })]
+
+        #[test]
+        fn a_lane_gives_what_the_ordered_clipper_gives(
+            triangle in [point(), point(), point()], corners in [point(), point(), point(), point()]
+        ) {
+            let mut corners = corners;
+            if TetFrame::new(&corners).volume_m3 < 0.0 {
+                corners.swap(0, 1);
+            }
+            let frame = TetFrame::new(&corners);
+            let area_vector = triangle_area_vector(&triangle);
+            prop_assume!(frame.volume_m3 > 1e-4 && area_vector.norm() > 1e-3);
+            prop_assume!(!crate::pair::is_outside(&frame.lambda(&triangle)));
+            let expected = pair_moments(&triangle, &area_vector, &frame).unwrap_or_default();
+            let area = area_vector.norm();
+            let mut found = GroupMoments::default();
+            element_moments(Arch::new(), &group_of(&triangle, &frame), &mut found);
+            if found.doubtful[0] == 0.0 {
+                let close = |x: f64, y: f64, scale: f64| (x * area - y).abs() <= 1e-13 * scale;
+                for a in 0..3 {
+                    prop_assert!(close(found.pressure[a][0], expected.pressure[a], area), "{found:?}\n{expected:?}");
+                    let most = expected.slope.iter().fold(area, |most, s| most.max(*s));
+                    prop_assert!(close(found.slope[a][0], expected.slope[a], 10.0 * most), "{found:?}\n{expected:?}");
+                }
+                prop_assert!(close(found.area[0], expected.area, area));
+            }
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! Facet forces to nodal forces, block by block: each block sums what it gives and takes, in one order.
+
+use std::ops::Range;
+
+use ndda_mesh::BlockSet;
+
+use crate::candidates::Candidates;
+use crate::facets::FacetForce;
+use crate::integrals::{Hit, Integrals};
+use crate::model::ContactOutput;
+
+/// Facets per half below which a second thread costs more than it brings.
+const GRAIN_FACETS: usize = 200;
+
+/// Where each block's facets are, as contactor and as target.
+#[derive(Default)]
+pub struct Scatter {
+    /// First facet of each block; facets are sorted by contactor.
+    own_start: Vec<u32>,
+    /// Facets sorted by (target, facet), and where each block's begin.
+    on_target: Vec<u32>,
+    target_start: Vec<u32>,
+}
+
+/// What the sums read.
+#[derive(Clone, Copy)]
+pub struct ScatterScene<'a> {
+    /// Topology.
+    pub blocks: &'a BlockSet,
+    /// Pairs and facets.
+    pub candidates: &'a Candidates,
+    /// Integrals of the pairs.
+    pub integrals: &'a Integrals,
+    /// One entry per facet.
+    pub forces: &'a [FacetForce],
+    /// Stiffness per slope, one entry per facet [Pa].
+    pub stiffness_pa: &'a [f64],
+}
+
+impl Scatter {
+    /// Sorts facets by block; needed when the list of facets has changed.
+    pub fn arrange(&mut self, blocks: &BlockSet, candidates: &Candidates) {
+        let facets = &candidates.facets;
+        let owner = |f: usize| blocks.triangle_block[facets[f].triangle.index()].index();
+        self.own_start.clear();
+        self.own_start.resize(blocks.len() + 1, 0);
+        self.target_start.clear();
+        self.target_start.resize(blocks.len() + 1, 0);
+        for f in 0..facets.len() {
+            self.own_start[owner(f) + 1] += 1;
+            self.target_start[facets[f].target.index() + 1] += 1;
+        }
+        for b in 0..blocks.len() {
+            self.own_start[b + 1] += self.own_start[b];
+            self.target_start[b + 1] += self.target_start[b];
+        }
+        self.on_target.clear();
+        self.on_target.extend(0..facets.len() as u32);
+        self.on_target.sort_unstable_by_key(|&f| (facets[f as usize].target, f));
+    }
+
+    /// Adds all forces to the nodes.
+    pub fn add(&self, scene: &ScatterScene, output: &mut ContactOutput) {
+        let all = ContactOutput {
+            force: output.force,
+            friction_force: output.friction_force,
+            stiffness: output.stiffness,
+        };
+        self.add_blocks(scene, 0..scene.blocks.len(), all);
+    }
+
+    fn facets_between(&self, blocks: &Range<usize>) -> usize {
+        (self.own_start[blocks.end] - self.own_start[blocks.start] + self.target_start[blocks.end]
+            - self.target_start[blocks.start]) as usize
+    }
+
+    fn add_blocks(&self, scene: &ScatterScene, blocks: Range<usize>, output: ContactOutput) {
+        match self.facets_between(&blocks) {
+            0 => {}
+            _ if blocks.len() == 1 => self.add_block(scene, blocks.start, output),
+            _ => {
+                let middle = blocks.start + blocks.len() / 2;
+                let (head, tail) = (blocks.start..middle, middle..blocks.end);
+                let starts = scene.blocks.node_starts();
+                let (first, second) = split(output, (starts[middle] - starts[blocks.start]) as usize);
+                let parallel = self.facets_between(&head).min(self.facets_between(&tail)) > GRAIN_FACETS;
+                let run_head = || self.add_blocks(scene, head.clone(), first);
+                let run_tail = || self.add_blocks(scene, tail.clone(), second);
+                if parallel {
+                    rayon::join(run_head, run_tail);
+                } else {
+                    run_head();
+                    run_tail();
+                }
+            }
+        }
+    }
+
+    fn add_block(&self, scene: &ScatterScene, block: usize, output: ContactOutput) {
+        let first = scene.blocks.node_starts()[block] as usize;
+        let mut nodes = BlockNodes { first, output };
+        for f in self.own_start[block]..self.own_start[block + 1] {
+            nodes.add_contactor(scene, f as usize);
+        }
+        let range = self.target_start[block] as usize..self.target_start[block + 1] as usize;
+        for &f in &self.on_target[range] {
+            nodes.add_target(scene, f as usize);
+        }
+    }
+}
+
+fn split(output: ContactOutput, node: usize) -> (ContactOutput, ContactOutput) {
+    let (f0, f1) = output.force.split_at_mut(node);
+    let (s0, s1) = output.stiffness.split_at_mut(node);
+    let (t0, t1) = output.friction_force.split_at_mut(node.min(output.friction_force.len()));
+    let head = ContactOutput { force: f0, friction_force: t0, stiffness: s0 };
+    (head, ContactOutput { force: f1, friction_force: t1, stiffness: s1 })
+}
+
+/// Nodes of one block.
+struct BlockNodes<'a> {
+    first: usize,
+    output: ContactOutput<'a>,
+}
+
+impl BlockNodes<'_> {
+    /// Nodal forces ∫ N dF of a facet of this block.
+    fn add_contactor(&mut self, scene: &ScatterScene, f: usize) {
+        let (facet, force) = (&scene.candidates.facets[f], &scene.forces[f]);
+        if !force.touches {
+            return;
+        }
+        let (mut pressure, mut slope) = ([0.0; 3], [0.0; 3]);
+        for hit in scene.integrals.hits_of(f) {
+            for a in 0..3 {
+                pressure[a] += hit.moments.pressure[a];
+                slope[a] += hit.moments.slope[a];
+            }
+        }
+        let nodes = scene.blocks.triangles[facet.triangle.index()];
+        for a in 0..3 {
+            self.add(nodes[a].index(), pressure[a], force, scene.stiffness_pa[f] * slope[a]);
+        }
+    }
+
+    /// The opposite of a facet of another block. Its weights are the contactor's seen from this block's shape
+    /// functions, so force and moment balance to round-off.
+    fn add_target(&mut self, scene: &ScatterScene, f: usize) {
+        let force = &scene.forces[f];
+        if !force.touches {
+            return;
+        }
+        for hit in scene.integrals.hits_of(f) {
+            self.add_hit(scene, hit, force, scene.stiffness_pa[f]);
+        }
+    }
+
+    fn add_hit(&mut self, scene: &ScatterScene, hit: &Hit, force: &FacetForce, stiffness_pa: f64) {
+        let nodes = scene.blocks.tets[scene.candidates.tet_of(hit.pair).index()];
+        for b in 0..4 {
+            let slope = hit.moments.target_slope[b].max(0.0);
+            self.add(nodes[b].index(), -hit.moments.target_pressure[b], force, stiffness_pa * slope);
+        }
+    }
+
+    fn add(&mut self, node: usize, weight: f64, force: &FacetForce, stiffness: f64) {
+        let i = node - self.first;
+        let friction = weight * force.shear;
+        self.output.force[i] += weight * force.push + friction;
+        self.output.stiffness[i] += 2.0 * stiffness;
+        if let Some(sum) = self.output.friction_force.get_mut(i) {
+            *sum += friction;
+        }
+    }
+}

@@ -1,0 +1,205 @@
+//! The potential that grows with depth below the block's surface.
+
+use ndda_mesh::geometry::triangle_area_vector;
+use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, Vec3};
+
+use crate::potential::{ContactPotential, Field, MOST_PIECES, PieceTable, PotentialError};
+
+/// Planes whose normals and offsets differ by less than this part are one face of the block.
+const SAME_PLANE: f64 = 1e-9;
+
+/// φ = depth / L₀, depth being the distance to the nearest face of the block in its rest shape; it moves and
+/// stretches with the block's nodes.
+///
+/// After the smooth potential of Lei, Rougier, Euser & Munjiza (2020) and the distance potential of Zhao (2018). In
+/// a convex block the depth below each face is interpolated from the nodes and the least of them counts, which is
+/// exact in the rest shape whatever the mesh: the stiffness is k_n/L₀ per area on either side, deep blocks are pushed
+/// out, and nothing changes where a contact crosses the border of two elements. In a concave block the distance to
+/// the surface is itself interpolated from the nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SmoothPotential {
+    /// L₀ [m]: k_n is the pressure at this depth.
+    pub reference_m: f64,
+}
+
+impl ContactPotential for SmoothPotential {
+    fn name(&self) -> &'static str {
+        "Smooth"
+    }
+
+    fn field(&self, blocks: &BlockSet) -> Result<Field, PotentialError> {
+        let mut table = PieceTable::new();
+        for block in blocks.ids() {
+            let planes = faces_of(blocks, block);
+            if is_convex(blocks, block, &planes) {
+                self.add_convex(blocks, block, &planes, &mut table)?;
+            } else {
+                self.add_concave(blocks, block, &mut table)?;
+            }
+        }
+        Ok(Field::Pieces(table))
+    }
+}
+
+impl SmoothPotential {
+    fn add_convex(
+        &self,
+        blocks: &BlockSet,
+        block: BlockId,
+        planes: &[Plane],
+        table: &mut PieceTable,
+    ) -> Result<(), PotentialError> {
+        let (mut pieces, mut kept) = (Vec::new(), Vec::new());
+        for tet in blocks.tets_of(block) {
+            let corners = blocks.tets[tet].map(|n| blocks.rest_position[n.index()]);
+            let depth = |plane: &Plane| corners.map(|x| plane.depth_m(&x).max(0.0) / self.reference_m);
+            pieces.clear();
+            pieces.extend(planes.iter().map(depth));
+            keep_the_smallest(&pieces, &mut kept);
+            if kept.len() > MOST_PIECES {
+                let (block, tet) = (blocks.names[block.index()].clone(), TetId(tet as u32));
+                return Err(PotentialError::TooManyFaces { block, tet, faces: kept.len() });
+            }
+            table.push(&kept);
+        }
+        Ok(())
+    }
+
+    fn add_concave(
+        &self,
+        blocks: &BlockSet,
+        block: BlockId,
+        table: &mut PieceTable,
+    ) -> Result<(), PotentialError> {
+        let depth = depth_of_nodes(blocks, block);
+        let first = blocks.nodes_of(block).start;
+        for tet in blocks.tets_of(block) {
+            let values = blocks.tets[tet].map(|n| depth[n.index() - first] / self.reference_m);
+            if values.iter().all(|&d| d == 0.0) {
+                let block = blocks.names[block.index()].clone();
+                return Err(PotentialError::NoInteriorNode { block, tet: TetId(tet as u32) });
+            }
+            table.push(&[values]);
+        }
+        Ok(())
+    }
+}
+
+/// A plane of the surface, n·x = d, n outward.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// n.
+    pub normal: Vec3,
+    /// A point of it [m].
+    pub point: Vec3,
+}
+
+impl Plane {
+    /// Distance below it [m].
+    pub fn depth_m(&self, x: &Vec3) -> f64 {
+        self.normal.dot(&(self.point - x))
+    }
+}
+
+/// The planes of a block's boundary triangles in the rest shape, each once.
+pub fn faces_of(blocks: &BlockSet, block: BlockId) -> Vec<Plane> {
+    let size = size_of(blocks, block);
+    let mut planes: Vec<Plane> = Vec::new();
+    for triangle in blocks.triangles_of(block) {
+        let corners = blocks.triangles[triangle].map(|n| blocks.rest_position[n.index()]);
+        let normal = triangle_area_vector(&corners).normalize();
+        let plane = Plane { normal, point: corners[0] };
+        let same = |other: &Plane| {
+            (other.normal - normal).norm() <= SAME_PLANE
+                && other.depth_m(&corners[0]).abs() <= SAME_PLANE * size
+        };
+        if !planes.iter().any(same) {
+            planes.push(plane);
+        }
+    }
+    planes
+}
+
+/// Whether no node is above any face.
+pub fn is_convex(blocks: &BlockSet, block: BlockId, planes: &[Plane]) -> bool {
+    let most = SAME_PLANE * size_of(blocks, block);
+    let nodes = &blocks.rest_position[blocks.nodes_of(block)];
+    planes.iter().all(|plane| nodes.iter().all(|x| plane.depth_m(x) >= -most))
+}
+
+fn size_of(blocks: &BlockSet, block: BlockId) -> f64 {
+    ndda_mesh::geometry::Aabb::around(blocks.rest_position[blocks.nodes_of(block)].iter()).diagonal()
+}
+
+/// Drops functions that another is nowhere above: they are never the only smallest.
+fn keep_the_smallest(pieces: &[[f64; 4]], kept: &mut Vec<[f64; 4]>) {
+    kept.clear();
+    for (k, piece) in pieces.iter().enumerate() {
+        let below = |other: &[f64; 4]| other.iter().zip(piece).all(|(o, p)| o <= p);
+        let beaten = |(j, other): (usize, &[f64; 4])| j != k && below(other) && (other != piece || j < k);
+        if !pieces.iter().enumerate().any(beaten) {
+            kept.push(*piece);
+        }
+    }
+}
+
+/// Distance of each node of a block to its surface in the rest shape [m]; exactly zero for nodes of the surface.
+fn depth_of_nodes(blocks: &BlockSet, block: BlockId) -> Vec<f64> {
+    let range = blocks.nodes_of(block);
+    let mut on_surface = vec![false; range.len()];
+    let triangles = || blocks.triangles_of(block).map(|t| blocks.triangles[t]);
+    triangles().flatten().for_each(|n: NodeId| on_surface[n.index() - range.start] = true);
+    let distance = |x: &Vec3| {
+        let to = |t: [NodeId; 3]| distance_to_triangle(x, &t.map(|n| blocks.rest_position[n.index()]));
+        triangles().map(to).fold(f64::INFINITY, f64::min)
+    };
+    let nodes = blocks.rest_position[range.clone()].iter();
+    nodes.zip(&on_surface).map(|(x, &on)| if on { 0.0 } else { distance(x) }).collect()
+}
+
+/// Distance of a point to a triangle [m] (Ericson 2005, §5.1.5).
+fn distance_to_triangle(p: &Vec3, [a, b, c]: &[Vec3; 3]) -> f64 {
+    let normal = (b - a).cross(&(c - a));
+    let inside = |u: &Vec3, v: &Vec3| (v - u).cross(&(p - u)).dot(&normal) >= 0.0;
+    if inside(a, b) && inside(b, c) && inside(c, a) {
+        return (p - a).dot(&normal).abs() / normal.norm();
+    }
+    let to_edge = |u: &Vec3, v: &Vec3| {
+        let along = v - u;
+        let t = ((p - u).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        (p - (u + along * t)).norm()
+    };
+    to_edge(a, b).min(to_edge(b, c)).min(to_edge(c, a))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{check_potential, test_box, test_set};
+
+    #[test]
+    fn it_keeps_the_contract_of_a_potential() {
+        check_potential(&SmoothPotential { reference_m: 1.0 });
+    }
+
+    #[test]
+    fn in_a_box_it_is_the_distance_to_the_nearest_face_whatever_the_mesh() {
+        for cells in [[1, 1, 1], [2, 3, 1]] {
+            let blocks = test_set(vec![test_box([0.0; 3], [1.0, 2.0, 3.0], cells)]);
+            let Ok(Field::Pieces(table)) = (SmoothPotential { reference_m: 0.5 }).field(&blocks) else {
+                panic!("a box has a smooth potential")
+            };
+            for tet in 0..blocks.tets.len() {
+                let corners = blocks.tets[tet].map(|n| blocks.rest_position[n.index()]);
+                for weights in [[0.25; 4], [0.7, 0.1, 0.1, 0.1], [0.05, 0.05, 0.3, 0.6]] {
+                    let x: Vec3 = (0..4).map(|b| weights[b] * corners[b]).sum();
+                    let value = |piece: &[f64; 4]| (0..4).map(|b| weights[b] * piece[b]).sum::<f64>();
+                    let phi = table.of(TetId(tet as u32)).iter().map(value).fold(f64::INFINITY, f64::min);
+                    let walls = [x.x, 1.0 - x.x, x.y, 2.0 - x.y, x.z, 3.0 - x.z];
+                    let depth = walls.iter().copied().fold(f64::INFINITY, f64::min);
+                    assert!((phi - depth / 0.5).abs() < 1e-14, "{phi} for depth {depth}");
+                }
+            }
+        }
+    }
+}
