@@ -50,11 +50,10 @@ impl ContactModel for LinearSprings {
             report.contact_pairs += 1;
         });
         report.candidate_pairs = report.contact_pairs;
-        report.energy_j = self.energy_j(input)?;
         Ok(report)
     }
 
-    fn energy_j(&mut self, input: &ContactInput) -> Result<f64, ContactError> {
+    fn energy_j(&mut self, input: &ContactInput, _history: &ContactHistory) -> Result<f64, ContactError> {
         let mut energy_j = 0.0;
         self.for_each_spring(input, |_, _, _, compression_m| {
             energy_j += 0.5 * self.stiffness_n_m * compression_m * compression_m;

@@ -197,7 +197,7 @@ fn shear_omega(scene: &Scene, monitor: &str, thickness_m: f64) -> Option<f64> {
     let block = &scene.monitors.iter().find(|m| m.name == monitor)?.block;
     let material = &scene.blocks.iter().find(|b| b.name == *block)?.material;
     let density = scene.materials.iter().find(|m| m.name == *material)?.density_kg_m3;
-    Some((friction.shear_penalty_pa_m / (density * thickness_m)).sqrt())
+    Some((friction.shear_penalty_pa_m? / (density * thickness_m)).sqrt())
 }
 
 /// Name of a reference and the time from which its largest error counts [s].

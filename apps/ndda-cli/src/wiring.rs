@@ -5,7 +5,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use ndda_contact::{ContactModel, Coulomb, FrictionLaw, PotentialContact};
+use ndda_contact::{
+    ContactModel, ContactPotential, Coulomb, ElementPotential, FrictionLaw, Joints, Memory, MohrCoulomb,
+    PotentialContact, SmoothPotential, VelocityCoulomb, VolumePotential,
+};
 use ndda_fem::supports::Motion;
 use ndda_fem::{Hold as FemHold, LinearElastic, NodeSupport, Voigt};
 use ndda_io::msh;
@@ -129,7 +132,7 @@ fn vec3(v: [f64; 3]) -> Vec3 {
 /// # Errors
 /// All supports, tractions and materials that cannot be built.
 pub fn simulation(scene: &Scene, blocks: BlockSet) -> Result<Simulation, Vec<Fault>> {
-    let contact = contact_model(scene.contact.as_ref());
+    let contact = contact_model(scene, &blocks).map_err(|fault| vec![fault])?;
     simulation_with(scene, blocks, contact)
 }
 
@@ -165,17 +168,69 @@ pub fn simulation_with(
 }
 
 /// The contact model that a scene names: a fork adds its own arm here.
-pub fn contact_model(contact: Option<&Contact>) -> Option<Box<dyn ContactModel>> {
-    match contact {
-        None | Some(Contact::Off) => None,
-        Some(Contact::Potential { penalty_pa, friction }) => {
-            // Without friction no shear spring and no memory is made.
-            let friction = friction.as_ref().filter(|f| f.friction_deg > 0.0);
-            let law = friction.map(|f| -> Box<dyn FrictionLaw> {
-                Box::new(Coulomb::new(f.friction_deg, f.shear_penalty_pa_m))
-            });
-            Some(Box::new(PotentialContact::new(*penalty_pa, law)))
+///
+/// # Errors
+/// A potential that cannot serve the blocks.
+pub fn contact_model(scene: &Scene, blocks: &BlockSet) -> Result<Option<Box<dyn ContactModel>>, Fault> {
+    match &scene.contact {
+        None | Some(Contact::Off) => Ok(None),
+        Some(Contact::Potential { penalty_pa, potential, friction, joints, memory }) => {
+            let potential = contact_potential(potential);
+            potential.field(blocks).map_err(|e| Fault::new("contact.potential", e))?;
+            let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);
+            if let Some(joints) = friction_table(scene, friction.as_ref(), joints, *memory) {
+                model = model.with_joints(joints);
+            }
+            Ok(Some(Box::new(model)))
         }
+    }
+}
+
+/// The potential that a scene names.
+fn contact_potential(potential: &scene::Potential) -> Box<dyn ContactPotential> {
+    match *potential {
+        scene::Potential::Element => Box::new(ElementPotential),
+        scene::Potential::Smooth { reference_m } => Box::new(SmoothPotential { reference_m }),
+        scene::Potential::Volume { exponent, reference_m3 } => {
+            Box::new(VolumePotential { exponent, reference_m3 })
+        }
+    }
+}
+
+/// Laws between materials; `None` where nothing rubs, so that no shear spring and no memory is made.
+fn friction_table(
+    scene: &Scene,
+    everywhere: Option<&scene::Friction>,
+    special: &[scene::Joint],
+    memory: scene::Memory,
+) -> Option<Joints> {
+    let rubs = |f: &&scene::Friction| f.friction_deg > 0.0 || f.cohesion_pa > 0.0 || f.tension_pa > 0.0;
+    let index = |name: &str| scene.materials.iter().position(|m| m.name == name).unwrap_or(0) as u32;
+    let material = scene.blocks.iter().map(|block| index(&block.material)).collect();
+    let mut joints = Joints::between(material, scene.materials.len());
+    let all = || 0..scene.materials.len() as u32;
+    let pairs: Vec<(u32, u32)> = all().flat_map(|a| all().map(move |b| (a, b))).collect();
+    joints.set(&pairs, everywhere.filter(rubs).map(friction_law));
+    for joint in special {
+        let pair = (index(&joint.between.0), index(&joint.between.1));
+        joints.set(&[pair], joint.friction.as_ref().filter(rubs).map(friction_law));
+    }
+    joints.memory = match memory {
+        scene::Memory::Body => Memory::Body,
+        scene::Memory::Element => Memory::Element,
+    };
+    joints.have_laws().then_some(joints)
+}
+
+/// The law that a scene's friction asks for.
+fn friction_law(friction: &scene::Friction) -> Box<dyn FrictionLaw> {
+    let scene::Friction { friction_deg, shear_penalty_pa_m, cohesion_pa, tension_pa } = *friction;
+    match shear_penalty_pa_m {
+        None => Box::new(VelocityCoulomb::new(friction_deg)),
+        Some(shear) if cohesion_pa > 0.0 || tension_pa > 0.0 => {
+            Box::new(MohrCoulomb::new(friction_deg, shear, cohesion_pa, tension_pa))
+        }
+        Some(shear) => Box::new(Coulomb::new(friction_deg, shear)),
     }
 }
 

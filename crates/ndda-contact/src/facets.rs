@@ -33,8 +33,6 @@ pub struct FacetScene<'a> {
     pub joints: Option<&'a Joints>,
     /// Memory of the last step.
     pub history: &'a ContactHistory,
-    /// Mass per area in contact of each block within a step [kg/m²]; empty if no law asks.
-    pub mass_per_area: &'a [f64],
 }
 
 impl FacetScene<'_> {
@@ -48,7 +46,8 @@ impl FacetScene<'_> {
         let normal = triangle_area_vector(&corners).normalize();
         let mut force = FacetForce { push: -penalty_pa * normal, touches: true, ..FacetForce::default() };
         let owner = self.input.blocks.triangle_block[facet.triangle.index()];
-        if let Some(law) = self.joints.and_then(|joints| joints.law(owner, facet.target)) {
+        let law = self.joints.and_then(|joints| joints.law(owner, facet.target));
+        if let Some(law) = law.filter(|law| !law.acts_on_faces()) {
             let basis = facet_basis(&corners, &normal);
             let mut memory = self.remembered(facet);
             let slip = self.slip(facet, hits, &basis, pressure, penalty_pa);
@@ -69,38 +68,13 @@ impl FacetScene<'_> {
     ) -> FacetSlip {
         let in_basis = |v: &Vec3| [v.dot(&basis[0]), v.dot(&basis[1])];
         let area_m2 = hits.iter().map(|hit| hit.moments.area).sum();
-        let velocity = self.relative_velocity(facet, hits, self.input.velocity) / pressure;
-        let mut slip = FacetSlip {
+        let velocity = relative_velocity(facet, hits, self.candidates, self.input) / pressure;
+        FacetSlip {
             normal_n: penalty_pa * pressure,
             area_m2,
             slip_m: in_basis(&(self.input.dt_s * velocity)),
             stopping_n: [0.0; 2],
-        };
-        if !self.mass_per_area.is_empty() {
-            let velocity = self.relative_velocity(facet, hits, self.input.expected_velocity) / pressure;
-            let owner = self.input.blocks.triangle_block[facet.triangle.index()];
-            let [own, other] = [owner, facet.target].map(|block| self.mass_per_area[block.index()]);
-            let mass_kg = area_m2 * reduced(own, other);
-            slip.stopping_n = in_basis(&(-mass_kg / self.input.dt_s * velocity));
         }
-        slip
-    }
-
-    /// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.
-    fn relative_velocity(&self, facet: &Facet, hits: &[Hit], velocity: &[Vec3]) -> Vec3 {
-        let blocks = self.input.blocks;
-        let triangle = blocks.triangles[facet.triangle.index()];
-        let mut sum = Vec3::zeros();
-        for hit in hits {
-            let tet = blocks.tets[self.candidates.tet_of(hit.pair).index()];
-            for (node, w) in triangle.iter().zip(hit.moments.pressure) {
-                sum += w * velocity[node.index()];
-            }
-            for (node, w) in tet.iter().zip(hit.moments.target_pressure) {
-                sum -= w * velocity[node.index()];
-            }
-        }
-        sum
     }
 
     /// What the facet remembers of its target; nothing when they did not touch before.
@@ -123,8 +97,25 @@ impl FacetScene<'_> {
     }
 }
 
+/// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.
+pub fn relative_velocity(facet: &Facet, hits: &[Hit], candidates: &Candidates, input: &ContactInput) -> Vec3 {
+    let (blocks, velocity) = (input.blocks, input.velocity);
+    let triangle = blocks.triangles[facet.triangle.index()];
+    let mut sum = Vec3::zeros();
+    for hit in hits {
+        let tet = blocks.tets[candidates.tet_of(hit.pair).index()];
+        for (node, w) in triangle.iter().zip(hit.moments.pressure) {
+            sum += w * velocity[node.index()];
+        }
+        for (node, w) in tet.iter().zip(hit.moments.target_pressure) {
+            sum -= w * velocity[node.index()];
+        }
+    }
+    sum
+}
+
 /// 1/(1/a + 1/b), also where one of them is infinite; nothing where both are.
-fn reduced(a: f64, b: f64) -> f64 {
+pub fn reduced(a: f64, b: f64) -> f64 {
     match (a.is_finite(), b.is_finite()) {
         (true, true) if a + b > 0.0 => a * b / (a + b),
         (true, false) => a,

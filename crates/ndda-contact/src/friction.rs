@@ -1,6 +1,6 @@
 //! The seam for friction laws, and the memory that they keep.
 
-/// What a facet does against its target in this step; vectors are in the facet's own basis.
+/// What a facet, or a whole face, does against its target in this step; vectors are in the facet's own basis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FacetSlip {
     /// Normal force f_n on the facet [N].
@@ -30,7 +30,7 @@ impl Default for ShearMemory {
     }
 }
 
-/// A law for the shear force of one contactor facet on one target.
+/// A law for the shear force of one contactor facet, or one face, on one target.
 ///
 /// Contract (checked by [`check_friction`](crate::testing::check_friction)): the force never exceeds what the law
 /// says it can carry, opposes the slip, and is zero without contact.
@@ -51,8 +51,8 @@ pub trait FrictionLaw: Send + Sync {
         0.0
     }
 
-    /// Whether [`FacetSlip::stopping_n`] is used.
-    fn needs_stopping_force(&self) -> bool {
+    /// Whether the law acts on whole faces through [`FacetSlip::stopping_n`], not on each facet by its slip.
+    fn acts_on_faces(&self) -> bool {
         false
     }
 }

@@ -38,17 +38,18 @@ impl Joints {
         }
     }
 
-    /// No law yet, for blocks of these materials (one index per block).
-    pub fn between(material: Vec<u32>) -> Self {
-        let materials = material.iter().max().map_or(1, |&most| most as usize + 1);
+    /// No law yet, for blocks of so many materials (one index per block).
+    pub fn between(material: Vec<u32>, materials: usize) -> Self {
         let law_of = vec![None; materials * materials];
         Self { laws: Vec::new(), material, materials, law_of, memory: Memory::Body }
     }
 
-    /// Sets the law between two materials, whichever is contactor; the latest call counts.
-    pub fn set(&mut self, pairs: &[(u32, u32)], law: Box<dyn FrictionLaw>) {
-        self.laws.push(law);
-        let index = Some(self.laws.len() as u32 - 1);
+    /// Sets the law between materials, whichever is contactor; the latest call counts.
+    pub fn set(&mut self, pairs: &[(u32, u32)], law: Option<Box<dyn FrictionLaw>>) {
+        let index = law.map(|law| {
+            self.laws.push(law);
+            self.laws.len() as u32 - 1
+        });
         for &(a, b) in pairs {
             for (a, b) in [(a, b), (b, a)] {
                 self.law_of[a as usize * self.materials + b as usize] = index;
@@ -62,9 +63,14 @@ impl Joints {
         self.law_of[material(a) * self.materials + material(b)].map(|law| self.laws[law as usize].as_ref())
     }
 
-    /// Whether a law asks for the force that stops a slip.
-    pub fn need_stopping_force(&self) -> bool {
-        self.laws.iter().any(|law| law.needs_stopping_force())
+    /// Whether there is a law at all.
+    pub fn have_laws(&self) -> bool {
+        self.law_of.iter().any(Option::is_some)
+    }
+
+    /// Whether a law acts on whole faces.
+    pub fn act_on_faces(&self) -> bool {
+        self.laws.iter().any(|law| law.acts_on_faces())
     }
 
     /// Whether a law carries tension.

@@ -24,6 +24,8 @@ pub mod element_potential;
 #[cfg(feature = "potential")]
 pub mod energy;
 #[cfg(feature = "potential")]
+pub mod faces;
+#[cfg(feature = "potential")]
 pub mod facets;
 #[cfg(feature = "potential")]
 pub mod friction;
@@ -54,7 +56,7 @@ pub mod volume_potential;
 
 pub use model::{
     Body, Bond, ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport,
-    FacetMemory,
+    FaceMemory, FacetMemory,
 };
 
 #[cfg(feature = "potential")]

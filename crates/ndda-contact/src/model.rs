@@ -1,6 +1,6 @@
 //! The seam between solver and contact: what a contact model is given, what it returns, what it may remember.
 
-use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 
 /// What a contact model sees of the blocks: positions and velocities, nothing of materials or integrators.
 #[derive(Clone, Copy, Debug)]
@@ -13,27 +13,55 @@ pub struct ContactInput<'a> {
     pub velocity: &'a [Vec3],
     /// Step Δt [s].
     pub dt_s: f64,
-    /// Velocity at the end of the step if contact did what it did in the last one [m/s]; `velocity` itself where loads
-    /// are steady.
-    pub expected_velocity: &'a [Vec3],
-    /// How hard each block is to move; empty when nobody said.
+    /// Rigid motion of each block; empty unless the model [`needs_bodies`](ContactModel::needs_bodies).
     pub bodies: &'a [Body],
 }
 
 impl<'a> ContactInput<'a> {
-    /// An input under steady loads, about blocks of which only the motion is known.
+    /// An input about blocks of which only the nodes' motion is known.
     pub fn new(blocks: &'a BlockSet, position: &'a [Vec3], velocity: &'a [Vec3], dt_s: f64) -> Self {
-        Self { blocks, position, velocity, dt_s, expected_velocity: velocity, bodies: &[] }
+        Self { blocks, position, velocity, dt_s, bodies: &[] }
     }
 }
 
-/// What a contact model may know of a block's inertia.
+/// What a contact model may know of a block's rigid motion and inertia.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Mass [kg]; infinite for a block that cannot move.
     pub mass_kg: f64,
+    /// Inverse of the inertia about the mass centre [1/(kg m²)]; zero for a block that cannot move.
+    pub inverse_inertia: Mat3,
+    /// Sum of all loads but contact [N].
+    pub load_n: Vec3,
+    /// Their torque about the mass centre [N m].
+    pub torque_n_m: Vec3,
+    /// Mass centre [m].
+    pub center: Vec3,
+    /// Its velocity [m/s].
+    pub velocity_m_s: Vec3,
+    /// Rate of rotation [rad/s].
+    pub spin_rad_s: Vec3,
     /// Impedance for shear, ρ c_s [Pa s/m]: what a step shorter than the block's wave time has to move.
     pub impedance_pa_s_m: f64,
+}
+
+impl Body {
+    /// Adds a force at a point.
+    pub fn push(&mut self, x: &Vec3, force_n: &Vec3) {
+        self.load_n += force_n;
+        self.torque_n_m += (x - self.center).cross(force_n);
+    }
+
+    /// Velocity at a point at the end of a step under its loads [m/s].
+    pub fn velocity_after(&self, dt_s: f64, x: &Vec3) -> Vec3 {
+        let velocity = self.velocity_m_s + dt_s / self.mass_kg * self.load_n;
+        velocity + self.spin_after(dt_s).cross(&(x - self.center))
+    }
+
+    /// Rate of rotation then [rad/s].
+    pub fn spin_after(&self, dt_s: f64) -> Vec3 {
+        self.spin_rad_s + dt_s * (self.inverse_inertia * self.torque_n_m)
+    }
 }
 
 /// Where a contact model adds its results; every slice has one entry per node.
@@ -110,6 +138,23 @@ pub struct FacetMemory {
     pub broken: bool,
 }
 
+/// Friction of one face on one block.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FaceMemory {
+    /// Number of the face.
+    pub face: u32,
+    /// The block that it touches.
+    pub target: BlockId,
+    /// Friction force on the face's block [N].
+    pub force_n: Vec3,
+    /// Friction torque about the normal [N m].
+    pub torque_n_m: f64,
+    /// Whether the face slides.
+    pub slides: bool,
+    /// Outward normal of the face then.
+    pub normal: Vec3,
+}
+
 /// A facet that is glued to a point of another block until it breaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bond {
@@ -126,6 +171,8 @@ pub struct Bond {
 pub struct ContactHistory {
     /// One entry per facet and target in contact, sorted by (facet, target, element).
     pub facets: Vec<FacetMemory>,
+    /// One entry per face and target in contact, for laws that act on faces; sorted by (face, target).
+    pub faces: Vec<FaceMemory>,
     /// Bonds that hold, sorted by facet.
     pub bonds: Vec<Bond>,
     /// Whether contact has been evaluated before: what touches then, and only that, may hold together.
@@ -152,6 +199,11 @@ pub trait ContactModel: Send {
     /// # Errors
     /// As [`add_forces`](Self::add_forces).
     fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError>;
+
+    /// Whether [`ContactInput::bodies`] is read; `false` lets the solver leave them out.
+    fn needs_bodies(&self) -> bool {
+        false
+    }
 
     /// Whether `friction_force` is ever written; `false` lets the solver leave out its bookkeeping.
     fn has_friction(&self) -> bool {

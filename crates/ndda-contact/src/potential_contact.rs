@@ -7,7 +7,8 @@ use crate::bonds;
 use crate::candidates::Candidates;
 use crate::element_potential::ElementPotential;
 use crate::energy;
-use crate::facets::{FacetForce, FacetScene, mass_per_area};
+use crate::faces::Faces;
+use crate::facets::{FacetForce, FacetScene};
 use crate::friction::FrictionLaw;
 use crate::integrals::{Integrals, Scene};
 use crate::joints::{Joints, Memory};
@@ -33,8 +34,7 @@ pub struct PotentialContact {
     frames: Vec<TetFrame>,
     forces: Vec<FacetForce>,
     penalty_of_facet: Vec<f64>,
-    block_area: Vec<f64>,
-    mass_per_area: Vec<f64>,
+    faces: Faces,
     overlaps: energy::BlockOverlaps,
     reach: Vec<Reach>,
     new_facets: Vec<FacetMemory>,
@@ -65,8 +65,7 @@ impl PotentialContact {
             frames: Vec::new(),
             forces: Vec::new(),
             penalty_of_facet: Vec::new(),
-            block_area: Vec::new(),
-            mass_per_area: Vec::new(),
+            faces: Faces::default(),
             overlaps: Default::default(),
             reach: Vec::new(),
             new_facets: Vec::new(),
@@ -96,10 +95,16 @@ impl PotentialContact {
         let tets = input.blocks.tets.len();
         if self.field.as_ref().is_none_or(|(known, _)| *known != tets) {
             let field = self.potential.field(input.blocks);
+            if self.needs_bodies() {
+                self.faces.fit(input.blocks);
+            }
             self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
         }
         if self.candidates.update(input) {
             self.scatter.arrange(input.blocks, &self.candidates);
+            if self.needs_bodies() {
+                self.faces.arrange(&self.candidates);
+            }
         }
         self.place_frames(input)?;
         let Some((_, field)) = &self.field else { return Ok(()) };
@@ -141,32 +146,8 @@ impl PotentialContact {
         self.penalty_of_facet.extend(facets.iter().map(penalty));
     }
 
-    /// How much mass a square metre of contact moves, for laws that ask.
-    fn weigh_bodies(&mut self, input: &ContactInput) {
-        self.mass_per_area.clear();
-        if input.bodies.is_empty() || !self.joints.as_ref().is_some_and(Joints::need_stopping_force) {
-            return;
-        }
-        self.block_area.clear();
-        self.block_area.resize(input.blocks.len(), 0.0);
-        for (f, facet) in self.candidates.facets.iter().enumerate() {
-            let area: f64 = self.integrals.hits_of(f).iter().map(|hit| hit.moments.area).sum();
-            let owner = input.blocks.triangle_block[facet.triangle.index()];
-            self.block_area[owner.index()] += area;
-            self.block_area[facet.target.index()] += area;
-        }
-        let each = input.bodies.iter().zip(&self.block_area);
-        self.mass_per_area.extend(each.map(|(body, &area)| mass_per_area(body, area, input.dt_s)));
-    }
-
     fn place_forces(&mut self, input: &ContactInput, history: &ContactHistory) {
-        let scene = FacetScene {
-            input,
-            candidates: &self.candidates,
-            joints: self.joints.as_ref(),
-            history,
-            mass_per_area: &self.mass_per_area,
-        };
+        let scene = FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
         let (facets, integrals) = (&self.candidates.facets, &self.integrals);
         self.forces.resize(facets.len(), FacetForce::default());
         let penalties = &self.penalty_of_facet;
@@ -183,13 +164,7 @@ impl PotentialContact {
     /// Takes over what facets remember; what did not touch is forgotten.
     fn remember(&mut self, input: &ContactInput, history: &mut ContactHistory) {
         self.new_facets.clear();
-        let scene = FacetScene {
-            input,
-            candidates: &self.candidates,
-            joints: self.joints.as_ref(),
-            history,
-            mass_per_area: &[],
-        };
+        let scene = FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
         for (facet, force) in self.candidates.facets.iter().zip(&self.forces) {
             if let Some(memory) = force.memory {
                 self.new_facets.push(FacetMemory {
@@ -286,8 +261,12 @@ impl ContactModel for PotentialContact {
         self.integrate(input)?;
         let report = self.report(input)?;
         self.place_penalties(input);
-        self.weigh_bodies(input);
         self.place_forces(input, history);
+        if self.needs_bodies() && !input.bodies.is_empty() {
+            let joints = self.joints.as_ref().expect("faces rub by a law");
+            let (candidates, integrals) = (&self.candidates, &self.integrals);
+            self.faces.add(input, candidates, integrals, joints, &mut self.forces, history);
+        }
         let scene = crate::scatter::ScatterScene {
             blocks: input.blocks,
             candidates: &self.candidates,
@@ -312,6 +291,10 @@ impl ContactModel for PotentialContact {
         self.overlaps.integrate(input, &self.candidates, &self.integrals, &self.frames, field, law);
         let bonds = self.joints.as_ref().map_or(0.0, |joints| bonds::energy_j(joints, input, &history.bonds));
         Ok(self.penalty_pa * self.overlaps.energy_m3(law) + bonds)
+    }
+
+    fn needs_bodies(&self) -> bool {
+        self.joints.as_ref().is_some_and(Joints::act_on_faces)
     }
 
     fn has_friction(&self) -> bool {

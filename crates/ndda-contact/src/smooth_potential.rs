@@ -103,8 +103,13 @@ impl Plane {
 
 /// The planes of a block's boundary triangles in the rest shape, each once.
 pub fn faces_of(blocks: &BlockSet, block: BlockId) -> Vec<Plane> {
+    coplanar_faces(blocks, block).0
+}
+
+/// The planes of a block's boundary triangles in the rest shape, and which of them each triangle is in.
+pub fn coplanar_faces(blocks: &BlockSet, block: BlockId) -> (Vec<Plane>, Vec<usize>) {
     let size = size_of(blocks, block);
-    let mut planes: Vec<Plane> = Vec::new();
+    let (mut planes, mut of_triangle) = (Vec::<Plane>::new(), Vec::new());
     for triangle in blocks.triangles_of(block) {
         let corners = blocks.triangles[triangle].map(|n| blocks.rest_position[n.index()]);
         let normal = triangle_area_vector(&corners).normalize();
@@ -113,11 +118,13 @@ pub fn faces_of(blocks: &BlockSet, block: BlockId) -> Vec<Plane> {
             (other.normal - normal).norm() <= SAME_PLANE
                 && other.depth_m(&corners[0]).abs() <= SAME_PLANE * size
         };
-        if !planes.iter().any(same) {
+        let known = planes.iter().position(same);
+        of_triangle.push(known.unwrap_or(planes.len()));
+        if known.is_none() {
             planes.push(plane);
         }
     }
-    planes
+    (planes, of_triangle)
 }
 
 /// Whether no node is above any face.

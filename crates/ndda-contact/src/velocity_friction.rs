@@ -9,7 +9,7 @@ use crate::friction::{FacetSlip, FrictionLaw, ShearMemory, capped};
 /// ```
 ///
 /// v_t is the slip velocity that this step would end with if contact did what it did in the last one, m_eff the mass
-/// that the facet moves within the step. A block that slides has its friction from the first step on; one that
+/// that the face moves within the step (see [`faces`](crate::faces)). A block that slides has its friction from the first step on; one that
 /// sticks is held by the force that it was held by before, without any displacement. In the manner of
 /// velocity-level contact dynamics (Moreau 1988; Anitescu & Potra 1997).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,7 +35,7 @@ impl FrictionLaw for VelocityCoulomb {
         self.friction * slip.normal_n
     }
 
-    fn needs_stopping_force(&self) -> bool {
+    fn acts_on_faces(&self) -> bool {
         true
     }
 }

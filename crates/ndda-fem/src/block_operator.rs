@@ -115,6 +115,21 @@ impl BlockOperator {
         (0..self.nodes()).map(|i| arm(i).cross(&self.mass_row_times(i, velocity))).sum()
     }
 
+    /// The rigid motion with the momentum and angular momentum of the nodes, masses lumped.
+    pub fn rigid_motion(&self, position: &[Vec3], velocity: &[Vec3]) -> RigidMotion {
+        let center = self.center(position);
+        let mean = self.momentum(velocity) / self.mass_kg;
+        let (mut moment, mut angular) = (Mat3::zeros(), Vec3::zeros());
+        for ((&m, x), v) in self.node_mass.iter().zip(position).zip(velocity) {
+            let arm = x - center;
+            moment += m * arm * arm.transpose();
+            angular += m * arm.cross(&(v - mean));
+        }
+        let inertia = Mat3::identity() * moment.trace() - moment;
+        let inverse_inertia = inertia.try_inverse().unwrap_or_else(Mat3::zeros);
+        RigidMotion { center, velocity_m_s: mean, spin_rad_s: inverse_inertia * angular, inverse_inertia }
+    }
+
     /// Kinetic energy ½ vᵀ M v [J].
     pub fn kinetic_energy_j(&self, velocity: &[Vec3]) -> f64 {
         0.5 * (0..self.nodes()).map(|i| velocity[i].dot(&self.mass_row_times(i, velocity))).sum::<f64>()
@@ -129,6 +144,19 @@ impl BlockOperator {
         }
         Mat3::identity() * second_moment.trace() - second_moment
     }
+}
+
+/// The rigid part of a block's motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidMotion {
+    /// Mass centre [m].
+    pub center: Vec3,
+    /// Its velocity [m/s].
+    pub velocity_m_s: Vec3,
+    /// Rate of rotation [rad/s].
+    pub spin_rad_s: Vec3,
+    /// Inverse of the inertia about the mass centre [1/(kg m²)].
+    pub inverse_inertia: Mat3,
 }
 
 /// Compressed rows of the node graph, each node being its own neighbour.

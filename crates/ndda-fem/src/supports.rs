@@ -114,7 +114,32 @@ pub struct BlockSupports {
     pub frame: Frame,
 }
 
+/// Rigid motions with less than this part of the stiffness of the best held one are free.
+const RIGID: f64 = 1e-9;
+
 impl BlockSupports {
+    /// Whether no rigid motion is left: Σ c cᵀ over the held components c = (n, x × n) has full rank.
+    pub fn hold_all_rigid_motions(&self, operator: &BlockOperator) -> bool {
+        let size = operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
+        let mut held = nalgebra::Matrix6::<f64>::zeros();
+        let mut add = |node: u32, n: &Vec3| {
+            let turn = operator.rest[node as usize].cross(n) / size;
+            let c = nalgebra::Vector6::new(n.x, n.y, n.z, turn.x, turn.y, turn.z);
+            held += c * c.transpose();
+        };
+        for node in &self.held {
+            node.held.iter().for_each(|n| add(node.node, n));
+        }
+        for spring in &self.springs {
+            match &spring.along {
+                Some(n) => add(spring.node, n),
+                None => [Vec3::x(), Vec3::y(), Vec3::z()].iter().for_each(|n| add(spring.node, n)),
+            }
+        }
+        let stiffness = held.symmetric_eigenvalues();
+        stiffness.min() > RIGID * stiffness.max()
+    }
+
     /// Merges the supports of one block and finds how its frame may turn.
     ///
     /// # Errors

@@ -4,7 +4,9 @@ use std::path::Path;
 
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::read::suggest;
-use crate::scene::{By, Contact, Hold, Integrator, Reference, Region, Scene, Shape};
+use crate::scene::{
+    By, Contact, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene, Shape,
+};
 
 /// More steps than this are a slip of the keyboard.
 const MOST_STEPS: f64 = 1e9;
@@ -307,6 +309,59 @@ impl Check<'_> {
         }
     }
 
+    fn potential(&mut self, potential: &Potential) {
+        match *potential {
+            Potential::Element => {}
+            Potential::Smooth { reference_m } => {
+                self.positive("contact.potential.reference_m".into(), reference_m, "m")
+            }
+            Potential::Volume { exponent, reference_m3 } => {
+                self.positive("contact.potential.reference_m3".into(), reference_m3, "m³");
+                if !(exponent > 1.0 && exponent.is_finite()) {
+                    let message = format!("{exponent}: must be above 1");
+                    self.error(
+                        "contact.potential.exponent",
+                        message,
+                        "W ∝ V^m; m = 2 makes pressure grow with V",
+                    );
+                }
+            }
+        }
+    }
+
+    fn friction(&mut self, path: &str, friction: &Friction) {
+        let field = |name: &str| format!("{path}.{name}");
+        let angle = friction.friction_deg;
+        if !(0.0..90.0).contains(&angle) {
+            let message = format!("{angle}°: must be from 0 to below 90");
+            self.error(field("friction_deg"), message, "μ = tan φ");
+        }
+        if let Some(penalty) = friction.shear_penalty_pa_m {
+            self.positive(field("shear_penalty_pa_m"), penalty, "Pa/m");
+        }
+        for (name, strength) in [("cohesion_pa", friction.cohesion_pa), ("tension_pa", friction.tension_pa)] {
+            if !(strength >= 0.0 && strength.is_finite()) {
+                let message = format!("{strength} Pa: must be zero or positive");
+                self.error(field(name), message, "0 for a joint that does not hold together");
+            } else if strength > 0.0 && friction.shear_penalty_pa_m.is_none() {
+                let help = "give shear_penalty_pa_m, the stiffness of the joint until it breaks";
+                self.error(field(name), "a joint that holds together needs a spring to hold with", help);
+            }
+        }
+    }
+
+    fn joints(&mut self, joints: &[Joint]) {
+        let scene = self.scene;
+        let materials: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+        for (i, joint) in joints.iter().enumerate() {
+            self.known(format!("contact.joints[{i}].between[0]"), "material", &joint.between.0, &materials);
+            self.known(format!("contact.joints[{i}].between[1]"), "material", &joint.between.1, &materials);
+            if let Some(friction) = &joint.friction {
+                self.friction(&format!("contact.joints[{i}].friction"), friction);
+            }
+        }
+    }
+
     fn contact(&mut self) {
         let several = self.scene.blocks.len() > 1;
         match &self.scene.contact {
@@ -314,17 +369,13 @@ impl Check<'_> {
                 let help = "write `contact: Potential(penalty_pa: …)` or `contact: Off`";
                 self.error("contact", "more than one block, and no word on contact", help);
             }
-            Some(Contact::Potential { penalty_pa, friction }) => {
+            Some(Contact::Potential { penalty_pa, potential, friction, joints, .. }) => {
                 self.positive("contact.penalty_pa".into(), *penalty_pa, "Pa");
+                self.potential(potential);
                 if let Some(friction) = friction {
-                    let angle = friction.friction_deg;
-                    if !(0.0..90.0).contains(&angle) {
-                        let message = format!("{angle}°: must be from 0 to below 90");
-                        self.error("contact.friction.friction_deg", message, "μ = tan φ");
-                    }
-                    let path = "contact.friction.shear_penalty_pa_m";
-                    self.positive(path.into(), friction.shear_penalty_pa_m, "Pa/m");
+                    self.friction("contact.friction", friction);
                 }
+                self.joints(joints);
                 if !several && !self.scene.blocks.is_empty() {
                     self.warn("contact", "one block has nothing to touch", "contact is left out of this run");
                 }

@@ -78,7 +78,7 @@ fn missing_fields_are_pointed_at_in_their_struct() {
         ("time: (step_s: 1e-4, ", "time: @("),
         ("(name: \"rock\", young_pa: 20e9, ", "@(name: \"rock\", "),
         ("Box(size_m: (1, 1, 0.5), ", "@Box("),
-        ("(friction_deg: 25, shear_penalty_pa_m: 2e9)", "@(friction_deg: 25)"),
+        ("(friction_deg: 25, shear_penalty_pa_m: 2e9)", "@(shear_penalty_pa_m: 2e9)"),
         ("(time_s: 0.1, displacement_m: (0, 0, 0.1))", "@(time_s: 0.1)"),
         ("reference: SlidingBlock(\n        monitor: \"centre\",", "reference: @SlidingBlock("),
         ("        (\n            name: \"slider\",", "        @("),

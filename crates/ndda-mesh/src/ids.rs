@@ -1,7 +1,7 @@
 //! Indices that cannot be mistaken for each other.
 
 /// Index of a block in a [`BlockSet`](crate::BlockSet).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct BlockId(pub u32);
 
 /// Index of a node; blocks never share nodes.

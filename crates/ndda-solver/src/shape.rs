@@ -107,6 +107,24 @@ impl Shape {
         self.supports.held.is_empty() && self.supports.springs.is_empty()
     }
 
+    /// What contact may know of the block's inertia. Supports that leave no rigid motion make it immovable.
+    pub fn contact_body(&self) -> ndda_contact::Body {
+        let immovable = self.supports.hold_all_rigid_motions(&self.operator);
+        let density = self.material.density_kg_m3();
+        let moduli = self.material.moduli();
+        let softest = (3..6).map(|i| moduli[(i, i)]).fold(f64::INFINITY, f64::min);
+        ndda_contact::Body {
+            mass_kg: if immovable { f64::INFINITY } else { self.operator.mass_kg },
+            inverse_inertia: Mat3::zeros(),
+            load_n: Vec3::zeros(),
+            torque_n_m: Vec3::zeros(),
+            center: Vec3::zeros(),
+            velocity_m_s: Vec3::zeros(),
+            spin_rad_s: Vec3::zeros(),
+            impedance_pa_s_m: (density * softest).sqrt(),
+        }
+    }
+
     /// Whether a block is this shape up to a rigid motion, with the same mesh and material.
     pub fn fits(&self, blocks: &BlockSet, block: BlockId, setup: &BodySetup) -> bool {
         let position = &blocks.rest_position[blocks.nodes_of(block)];

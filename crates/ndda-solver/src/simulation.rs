@@ -2,7 +2,9 @@
 
 use std::time::Instant;
 
-use ndda_contact::{ContactError, ContactInput, ContactModel, ContactOutput, ContactReport};
+use ndda_contact::{
+    Body as ContactBody, ContactError, ContactInput, ContactModel, ContactOutput, ContactReport,
+};
 use ndda_fem::loads::{add_gravity, add_traction};
 use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
@@ -131,6 +133,7 @@ pub struct Simulation {
     friction_force: Vec<Vec3>,
     contact_stiffness: Vec<f64>,
     contact_position: Vec<Vec3>,
+    contact_bodies: Vec<ContactBody>,
 }
 
 impl Simulation {
@@ -171,6 +174,7 @@ impl Simulation {
             friction_force: vec![Vec3::zeros(); friction_nodes],
             contact_stiffness: vec![0.0; contact_nodes],
             contact_position: blocks.rest_position.clone(),
+            contact_bodies: Vec::new(),
             ledger: Ledger::new((Vec3::zeros(), Vec3::zeros())),
             stages: StageTimes::default(),
             blocks,
@@ -182,6 +186,10 @@ impl Simulation {
         };
         for (block, body) in simulation.blocks.ids().zip(&bodies) {
             simulation.add_body(block, shape_of[block.index()], body, &gravity_m_s2);
+        }
+        if simulation.contact.as_ref().is_some_and(|c| c.needs_bodies()) {
+            let bodies = simulation.blocks.ids().map(|block| simulation.shape(block).contact_body());
+            simulation.contact_bodies = bodies.collect();
         }
         simulation.open_books(solver.as_ref())?;
         Ok(simulation)
@@ -281,8 +289,30 @@ impl Simulation {
         }
     }
 
+    /// Rigid motion and loads of the blocks, where contact asks for them.
+    fn place_bodies(&mut self) {
+        for (index, body) in self.contact_bodies.iter_mut().enumerate() {
+            if body.mass_kg.is_infinite() {
+                continue;
+            }
+            let range = self.blocks.nodes_of(BlockId(index as u32));
+            let (position, velocity) =
+                (&self.contact_position[range.clone()], &self.state.velocity[range.clone()]);
+            let motion = self.shapes[self.bodies[index].shape].operator.rigid_motion(position, velocity);
+            body.center = motion.center;
+            body.velocity_m_s = motion.velocity_m_s;
+            body.spin_rad_s = motion.spin_rad_s;
+            body.inverse_inertia = motion.inverse_inertia;
+            (body.load_n, body.torque_n_m) = (Vec3::zeros(), Vec3::zeros());
+            for (x, load) in position.iter().zip(&self.external[range]) {
+                body.push(x, load);
+            }
+        }
+    }
+
     /// f ± contact at x*; stops where contact has lost its grip.
     fn gather_contact_forces(&mut self) -> Result<ContactReport, StepError> {
+        self.place_bodies();
         let Some(model) = &mut self.contact else { return Ok(ContactReport::default()) };
         self.friction_force.fill(Vec3::zeros());
         self.contact_stiffness.fill(0.0);
@@ -291,6 +321,7 @@ impl Simulation {
             position: &self.contact_position,
             velocity: &self.state.velocity,
             dt_s: self.step_s,
+            bodies: &self.contact_bodies,
         };
         let mut output = ContactOutput {
             force: &mut self.force,
@@ -389,14 +420,10 @@ impl Simulation {
         let loads = self.external.iter().zip(&self.state.position).zip(&self.blocks.rest_position);
         sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
         if let Some(model) = &mut self.contact {
-            let input = ContactInput {
-                blocks: &self.blocks,
-                position: &self.state.position,
-                velocity: &self.state.velocity,
-                dt_s: self.step_s,
-            };
-            sample.contact_j =
-                model.energy_j(&input).map_err(|source| StepError::Contact { time_s, source })?;
+            let (position, velocity) = (&self.state.position, &self.state.velocity);
+            let input = ContactInput::new(&self.blocks, position, velocity, self.step_s);
+            let energy_j = model.energy_j(&input, &self.state.contact);
+            sample.contact_j = energy_j.map_err(|source| StepError::Contact { time_s, source })?;
         }
         let sample = self.ledger.balance(sample);
         self.stages.ledger_s += started.elapsed().as_secs_f64();

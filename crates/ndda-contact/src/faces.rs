@@ -1,0 +1,419 @@
+//! Friction of whole faces, for laws that act on velocities.
+//!
+//! A face is a set of boundary triangles in one plane. Its friction on another block is one force F and one torque T
+//! about the normal, spread in proportion to the pressure p, and it answers to the slip velocity v and the spin ω
+//! about the normal in the same proportion, so that a face that sticks can only take energy from what it acts on.
+//!
+//! ```text
+//! touching, sliding   F′ = F − m_eff v₁/Δt,   |F′| ≤ μ N               stops the slip of this step, or slides
+//! sticking            F′ = F − η m_eff v/Δt,   and F′ − ζ m_eff v/Δt on the block   a stiff spring and a damper
+//! torque              the same with J_eff and ω,   |T′| ≤ μ N r √(1 − (F′/μN)²)
+//! ```
+//!
+//! v₁ is the slip velocity that the rigid motion of both blocks would have at the end of the step under the loads and
+//! normal forces of this step and the friction of the last; r is the mean distance of the pressure from its centre.
+//! So friction is mobilised at once on a block that slides, and one that sticks is held by the force that it takes.
+//! Measured on a block that sticks on a slope: with the first line in every step it is fed energy through its
+//! elasticity, with v of each facet ringing is clipped at μ N, and either way it creeps.
+
+use std::ops::Range;
+
+use ndda_mesh::{BlockId, BlockSet, Vec3};
+
+use crate::candidates::Candidates;
+use crate::facets::{FacetForce, mass_per_area, reduced, relative_velocity};
+use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
+use crate::integrals::Integrals;
+use crate::joints::Joints;
+use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
+use crate::smooth_potential::coplanar_faces;
+
+/// η = (ω_s Δt)² of the spring that holds a face.
+const SPRING: f64 = 0.1;
+/// ζ, the part of a slip velocity that a step takes away.
+const DAMPER: f64 = 0.2;
+
+/// Facets by face and target, and room for what a step finds.
+#[derive(Default)]
+pub struct Faces {
+    /// Face of each boundary triangle, numbered over all blocks.
+    face_of: Vec<u32>,
+    /// (face, target, facet), sorted.
+    order: Vec<(u32, BlockId, u32)>,
+    block_area: Vec<f64>,
+    bodies: Vec<Body>,
+    patches: Vec<Patch>,
+    new_faces: Vec<FaceMemory>,
+}
+
+/// What one face does to one block.
+#[derive(Clone, Debug, Default)]
+struct Patch {
+    owner: BlockId,
+    target: BlockId,
+    /// Its facets in the order of faces.
+    run: Range<usize>,
+    /// ∫ φ dA and its centre.
+    pressure: f64,
+    center: Vec3,
+    normal: Vec3,
+    normal_n: f64,
+    area_m2: f64,
+    /// ∫ φ r² dA, and mean r, from the centre.
+    pressure_radius2: f64,
+    radius: f64,
+    /// Slip velocity, and spin about the normal, weighted by pressure.
+    velocity_m_s: Vec3,
+    spin_rad_s: f64,
+    /// Friction of the last step, turned with the face; none at first touch.
+    old: Option<FaceMemory>,
+}
+
+impl Faces {
+    /// Finds the faces of all blocks; once per set of blocks.
+    pub fn fit(&mut self, blocks: &BlockSet) {
+        self.face_of.clear();
+        let mut next = 0;
+        for block in blocks.ids() {
+            let (faces, of_triangle) = coplanar_faces(blocks, block);
+            self.face_of.extend(of_triangle.iter().map(|&face| next + face as u32));
+            next += faces.len() as u32;
+        }
+    }
+
+    /// Sorts facets by face and target; needed when the list of facets has changed.
+    pub fn arrange(&mut self, candidates: &Candidates) {
+        self.order.clear();
+        let key = |(f, facet): (usize, &crate::candidates::Facet)| {
+            (self.face_of[facet.triangle.index()], facet.target, f as u32)
+        };
+        self.order.extend(candidates.facets.iter().enumerate().map(key));
+        self.order.sort_unstable();
+    }
+
+    /// Adds the friction of faces whose law asks for it to the facets' forces, and takes over what they remember.
+    pub fn add(
+        &mut self,
+        input: &ContactInput,
+        candidates: &Candidates,
+        integrals: &Integrals,
+        joints: &Joints,
+        forces: &mut [FacetForce],
+        history: &mut ContactHistory,
+    ) {
+        self.sum_areas(input, candidates, integrals);
+        self.find_patches(input, candidates, integrals, joints, forces, history);
+        self.push_bodies(input, candidates, integrals, forces);
+        self.new_faces.clear();
+        for patch in &self.patches {
+            let law = joints.law(patch.owner, patch.target).expect("patches have a law");
+            let step = FaceStep { dt_s: input.dt_s, patch, bodies: &self.bodies, areas: &self.block_area };
+            let (force_n, torque_n_m, memory) = step.advance(law);
+            let run = &self.order[patch.run.clone()];
+            for &(_, _, f) in run {
+                let arm = pressure_center(f, input, candidates, integrals) - patch.center;
+                let twist = torque_n_m / patch.pressure_radius2;
+                forces[f as usize].shear = force_n / patch.pressure + twist * patch.normal.cross(&arm);
+            }
+            let (face, target, _) = run[0];
+            self.new_faces.push(FaceMemory { face, target, ..memory });
+        }
+        std::mem::swap(&mut history.faces, &mut self.new_faces);
+    }
+
+    fn find_patches(
+        &mut self,
+        input: &ContactInput,
+        candidates: &Candidates,
+        integrals: &Integrals,
+        joints: &Joints,
+        forces: &[FacetForce],
+        history: &ContactHistory,
+    ) {
+        self.patches.clear();
+        let same = |a: &(u32, BlockId, u32), b: &(u32, BlockId, u32)| (a.0, a.1) == (b.0, b.1);
+        let mut start = 0;
+        for run in self.order.chunk_by(same) {
+            let (face, target, first) = run[0];
+            let range = start..start + run.len();
+            start = range.end;
+            let owner = input.blocks.triangle_block[candidates.facets[first as usize].triangle.index()];
+            if joints.law(owner, target).is_none_or(|law| !law.acts_on_faces()) {
+                continue;
+            }
+            let mut patch = Patch { owner, target, run: range, ..Patch::default() };
+            patch.sum(run, input, candidates, integrals, forces);
+            if patch.pressure > 0.0 && patch.area_m2 > 0.0 {
+                patch.measure(run, input, candidates, integrals);
+                let old = remembered(history, face, target);
+                let old = old.filter(|old| old.normal.dot(&patch.normal) > 0.0);
+                patch.old = old.map(|old| old.turned_to(&patch.normal));
+                self.patches.push(patch);
+            }
+        }
+    }
+
+    /// All blocks under their loads, the normal forces of this step and the friction of the last one.
+    fn push_bodies(
+        &mut self,
+        input: &ContactInput,
+        candidates: &Candidates,
+        integrals: &Integrals,
+        forces: &[FacetForce],
+    ) {
+        self.bodies.clear();
+        self.bodies.extend_from_slice(input.bodies);
+        for (f, (facet, force)) in candidates.facets.iter().zip(forces).enumerate() {
+            if force.touches {
+                let pressure: f64 = integrals.hits_of(f).iter().map(|hit| hit.moments.total()).sum();
+                let center = pressure_center(f as u32, input, candidates, integrals);
+                let owner = input.blocks.triangle_block[facet.triangle.index()];
+                let push = pressure * (force.push + force.shear);
+                self.bodies[owner.index()].push(&center, &push);
+                self.bodies[facet.target.index()].push(&center, &-push);
+            }
+        }
+        for patch in &self.patches {
+            let Some(old) = &patch.old else { continue };
+            let torque = old.torque_n_m * patch.normal;
+            for (block, sign) in [(patch.owner, 1.0), (patch.target, -1.0)] {
+                let body = &mut self.bodies[block.index()];
+                body.push(&patch.center, &(sign * old.force_n));
+                body.torque_n_m += sign * torque;
+            }
+        }
+    }
+
+    fn sum_areas(&mut self, input: &ContactInput, candidates: &Candidates, integrals: &Integrals) {
+        self.block_area.clear();
+        self.block_area.resize(input.blocks.len(), 0.0);
+        for (f, facet) in candidates.facets.iter().enumerate() {
+            let area: f64 = integrals.hits_of(f).iter().map(|hit| hit.moments.area).sum();
+            let owner = input.blocks.triangle_block[facet.triangle.index()];
+            self.block_area[owner.index()] += area;
+            self.block_area[facet.target.index()] += area;
+        }
+    }
+}
+
+impl Patch {
+    fn sum(
+        &mut self,
+        run: &[(u32, BlockId, u32)],
+        input: &ContactInput,
+        candidates: &Candidates,
+        integrals: &Integrals,
+        forces: &[FacetForce],
+    ) {
+        let mut push = Vec3::zeros();
+        for &(_, _, f) in run {
+            let hits = integrals.hits_of(f as usize);
+            let pressure: f64 = hits.iter().map(|hit| hit.moments.total()).sum();
+            if pressure > 0.0 {
+                self.pressure += pressure;
+                self.center += pressure * pressure_center(f, input, candidates, integrals);
+                self.area_m2 += hits.iter().map(|hit| hit.moments.area).sum::<f64>();
+                push += pressure * forces[f as usize].push;
+            }
+        }
+        if self.pressure > 0.0 {
+            self.center /= self.pressure;
+            self.normal_n = push.norm();
+            self.normal = -push / self.normal_n;
+        }
+    }
+
+    /// Radii and slip about the centre; a facet counts with its own size, so that one facet has a radius, too.
+    fn measure(
+        &mut self,
+        run: &[(u32, BlockId, u32)],
+        input: &ContactInput,
+        candidates: &Candidates,
+        integrals: &Integrals,
+    ) {
+        let mut twist = 0.0;
+        for &(_, _, f) in run {
+            let hits = integrals.hits_of(f as usize);
+            let pressure: f64 = hits.iter().map(|hit| hit.moments.total()).sum();
+            let area: f64 = hits.iter().map(|hit| hit.moments.area).sum();
+            if pressure > 0.0 {
+                let facet = &candidates.facets[f as usize];
+                let arm = pressure_center(f, input, candidates, integrals) - self.center;
+                let slip = relative_velocity(facet, hits, candidates, input);
+                // A disc of the same area: mean r² = A/2π.
+                let radius2 = arm.norm_squared() + area / std::f64::consts::TAU;
+                self.pressure_radius2 += pressure * radius2;
+                self.radius += pressure / self.pressure * radius2.sqrt();
+                self.velocity_m_s += slip / self.pressure;
+                twist += arm.cross(&slip).dot(&self.normal);
+            }
+        }
+        self.velocity_m_s -= self.normal * self.normal.dot(&self.velocity_m_s);
+        self.spin_rad_s = twist / self.pressure_radius2;
+    }
+}
+
+/// One face in one step.
+struct FaceStep<'a> {
+    dt_s: f64,
+    patch: &'a Patch,
+    bodies: &'a [Body],
+    areas: &'a [f64],
+}
+
+impl FaceStep<'_> {
+    /// Force and torque on the face, and what it remembers.
+    fn advance(&self, law: &dyn FrictionLaw) -> (Vec3, f64, FaceMemory) {
+        let mass_kg = self.mass_per_area() * self.patch.area_m2;
+        let rate =
+            [mass_kg, mass_kg * self.patch.pressure_radius2 / self.patch.pressure].map(|m| m / self.dt_s);
+        match &self.patch.old {
+            Some(old) if !old.slides => self.hold(law, old, rate),
+            Some(old) => self.stop(law, old.force_n, old.torque_n_m, rate),
+            None => self.stop(law, Vec3::zeros(), 0.0, rate),
+        }
+    }
+
+    /// Touching or sliding: what stops the rigid motion in this step, or all there is.
+    fn stop(
+        &self,
+        law: &dyn FrictionLaw,
+        old_n: Vec3,
+        old_n_m: f64,
+        rate: [f64; 2],
+    ) -> (Vec3, f64, FaceMemory) {
+        let (velocity, spin) = self.slip_to_come();
+        let (force_n, slides) = self.limited(law, old_n - rate[0] * velocity);
+        let most_torque = self.most_torque(law, &force_n);
+        let torque_n_m = (old_n_m - rate[1] * spin).clamp(-most_torque, most_torque);
+        let memory =
+            FaceMemory { force_n, torque_n_m, slides, normal: self.patch.normal, ..Default::default() };
+        (force_n, torque_n_m, memory)
+    }
+
+    /// Sticking: a spring and a damper.
+    fn hold(&self, law: &dyn FrictionLaw, old: &FaceMemory, rate: [f64; 2]) -> (Vec3, f64, FaceMemory) {
+        let (velocity, spin) = (self.patch.velocity_m_s, self.patch.spin_rad_s);
+        let (spring, slides) = self.limited(law, old.force_n - SPRING * rate[0] * velocity);
+        let most_torque = self.most_torque(law, &spring);
+        let torque_n_m = (old.torque_n_m - SPRING * rate[1] * spin).clamp(-most_torque, most_torque);
+        let memory = FaceMemory {
+            force_n: spring,
+            torque_n_m,
+            slides,
+            normal: self.patch.normal,
+            ..Default::default()
+        };
+        let (force_n, _) = self.limited(law, spring - DAMPER * rate[0] * velocity);
+        let most_torque = self.most_torque(law, &force_n);
+        let damped = (torque_n_m - DAMPER * rate[1] * spin).clamp(-most_torque, most_torque);
+        (force_n, damped, memory)
+    }
+
+    /// What the law leaves of a force in the plane of the face, and whether that is less than asked for.
+    fn limited(&self, law: &dyn FrictionLaw, force: Vec3) -> (Vec3, bool) {
+        let basis = tangents(&self.patch.normal);
+        let stopping_n = [force.dot(&basis[0]), force.dot(&basis[1])];
+        let mut memory = ShearMemory::default();
+        law.advance(&FacetSlip { stopping_n, ..self.slip() }, &mut memory);
+        let slides = stopping_n[0].hypot(stopping_n[1]) > law.capacity_n(&self.slip(), &memory);
+        (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1], slides)
+    }
+
+    /// μ N r √(1 − (F/μN)²).
+    fn most_torque(&self, law: &dyn FrictionLaw, force: &Vec3) -> f64 {
+        let most_n = law.capacity_n(&self.slip(), &ShearMemory::default());
+        let used = if most_n > 0.0 { force.norm() / most_n } else { 1.0 };
+        most_n * self.patch.radius * (1.0 - used * used).max(0.0).sqrt()
+    }
+
+    fn slip(&self) -> FacetSlip {
+        FacetSlip { normal_n: self.patch.normal_n, area_m2: self.patch.area_m2, ..FacetSlip::default() }
+    }
+
+    /// Slip velocity at the end of the step, and spin about the normal, if this face gave no friction.
+    fn slip_to_come(&self) -> (Vec3, f64) {
+        let (own, other) = (self.body(self.patch.owner), self.body(self.patch.target));
+        let (normal, at) = (&self.patch.normal, &self.patch.center);
+        let velocity = own.velocity_after(self.dt_s, at) - other.velocity_after(self.dt_s, at);
+        let spin = own.spin_after(self.dt_s) - other.spin_after(self.dt_s);
+        (velocity - normal * normal.dot(&velocity), spin.dot(normal))
+    }
+
+    fn mass_per_area(&self) -> f64 {
+        let of = |block: BlockId| mass_per_area(self.body(block), self.areas[block.index()], self.dt_s);
+        reduced(of(self.patch.owner), of(self.patch.target))
+    }
+
+    fn body(&self, block: BlockId) -> &Body {
+        &self.bodies[block.index()]
+    }
+}
+
+impl FaceMemory {
+    /// The memory turned with the normal, by the least rotation: c = a × b, v + c × v + c × (c × v)/(1 + a·b).
+    fn turned_to(self, normal: &Vec3) -> Self {
+        let (c, d) = (self.normal.cross(normal), 1.0 + self.normal.dot(normal));
+        let in_plane = |v: Vec3| {
+            let turned = v + c.cross(&v) + c.cross(&c.cross(&v)) / d;
+            turned - normal * normal.dot(&turned)
+        };
+        Self { force_n: in_plane(self.force_n), ..self }
+    }
+}
+
+fn remembered(history: &ContactHistory, face: u32, target: BlockId) -> Option<FaceMemory> {
+    let key = |memory: &FaceMemory| (memory.face, memory.target);
+    let place = history.faces.binary_search_by_key(&(face, target), key);
+    place.ok().map(|place| history.faces[place])
+}
+
+/// ∫ φ x dA / ∫ φ dA of a facet.
+fn pressure_center(f: u32, input: &ContactInput, candidates: &Candidates, integrals: &Integrals) -> Vec3 {
+    let corners = input.blocks.triangle_corners(candidates.facets[f as usize].triangle, input.position);
+    let mut weights = [0.0; 3];
+    for hit in integrals.hits_of(f as usize) {
+        (0..3).for_each(|a| weights[a] += hit.moments.pressure[a]);
+    }
+    let total = weights[0] + weights[1] + weights[2];
+    if total <= 0.0 {
+        return corners[0];
+    }
+    (corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]) / total
+}
+
+/// Two unit vectors across a normal.
+fn tangents(normal: &Vec3) -> [Vec3; 2] {
+    let axis = [Vec3::x(), Vec3::y(), Vec3::z()][normal.iamin()];
+    let first = normal.cross(&axis).normalize();
+    [first, normal.cross(&first)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{test_box, test_set};
+    use ndda_mesh::geometry::triangle_area_vector;
+
+    #[test]
+    fn a_box_has_six_faces_whatever_its_mesh() {
+        let blocks = test_set(vec![
+            test_box([0.0; 3], [1.0; 3], [3, 2, 1]),
+            test_box([2.0, 0.0, 0.0], [1.0; 3], [1, 1, 1]),
+        ]);
+        let mut faces = Faces::default();
+        faces.fit(&blocks);
+        let most = faces.face_of.iter().max().copied();
+        assert_eq!(most, Some(11));
+        for (i, corners) in blocks.triangles.iter().enumerate() {
+            let normal = triangle_area_vector(&corners.map(|n| blocks.rest_position[n.index()])).normalize();
+            for (j, other) in blocks.triangles.iter().enumerate() {
+                if faces.face_of[i] == faces.face_of[j] {
+                    let same =
+                        triangle_area_vector(&other.map(|n| blocks.rest_position[n.index()])).normalize();
+                    assert!((same - normal).norm() < 1e-12);
+                }
+            }
+        }
+    }
+}
