@@ -1,10 +1,13 @@
 //! Runs against closed forms and against each other: one file per case.
 
 mod bar_under_traction;
+mod contact_patch;
 mod one_block_alone;
 mod prescribed_motion;
 mod release_of_initial_stress;
+mod sliding_over_element_borders;
 mod springs_and_elimination;
+mod sticking_plate;
 
 use ndda_cli::wiring;
 use ndda_mesh::Vec3;

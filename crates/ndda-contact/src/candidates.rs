@@ -46,6 +46,8 @@ pub struct Candidates {
     pub facets: Vec<Facet>,
     /// The distinct target tetrahedra, ascending.
     pub tets: Vec<TetId>,
+    /// Their corners in the order of node numbers, on which neighbours agree.
+    pub order: Vec<[u8; 4]>,
     /// The distinct (target tetrahedron, contactor block), ascending.
     pub overlaps: Vec<(TetId, BlockId)>,
     /// Whether facets end at the borders of target elements, too.
@@ -120,6 +122,12 @@ impl Candidates {
         self.tets.extend(self.found.iter().map(|pair| pair.1));
         self.tets.sort_unstable();
         self.tets.dedup();
+        self.order.clear();
+        self.order.extend(self.tets.iter().map(|tet| {
+            let mut order = [0, 1, 2, 3];
+            order.sort_unstable_by_key(|&i: &u8| input.blocks.tets[tet.index()][usize::from(i)]);
+            order
+        }));
         let overlap_of = |pair: &(TriangleId, TetId)| (pair.1, triangle_block[pair.0.index()]);
         self.overlaps.clear();
         self.overlaps.extend(self.found.iter().map(overlap_of));

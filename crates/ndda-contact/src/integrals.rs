@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::candidates::{Candidates, Facet, Pair};
 use crate::clip::{Form, Polygon};
 use crate::kernel::{GROUP, GroupMoments, MOST_CUTS, PairGroup, PieceGroup, element_moments, piece_moments};
-use crate::pair::{self, PairMoments, TetFrame, is_outside};
+use crate::pair::{self, PairMoments, TetFrame};
 use crate::potential::{Field, PieceTable};
 
 /// Pairs of a chunk: one task for a thread.
@@ -85,13 +85,13 @@ impl Chunk {
             return;
         }
         let normal = area_vector / area;
+        let pieces = matches!(scene.field, Field::Pieces(_));
         for index in facet.pairs.clone() {
             let pair: &Pair = &scene.candidates.pairs[index];
             let frame = &scene.frames[pair.tet as usize];
-            let lambda = frame.lambda(&corners);
-            if is_outside(&lambda) {
-                continue;
-            }
+            let in_plane = || Some(frame.lambda(&corners)).filter(|l| lies_in_a_plane_of(frame, l, &normal));
+            let inside = frame.lambda_inside(&corners);
+            let Some(lambda) = inside.or_else(|| if pieces { in_plane() } else { None }) else { continue };
             let hit = self.hits.len();
             self.hits.push(Hit { pair: index as u32, ..Hit::default() });
             match scene.field {
@@ -154,6 +154,14 @@ impl Chunk {
         self.piece.len = 0;
         self.piece.group.len = 0;
     }
+}
+
+/// Whether the triangle lies exactly in a face's plane and the tetrahedron owns it: other potentials than the
+/// paper's are not zero on the faces inside a block.
+fn lies_in_a_plane_of(frame: &TetFrame, lambda: &[[f64; 3]; 4], normal: &Vec3) -> bool {
+    let beyond = |at: &[f64; 3]| at.iter().all(|&l| l < 0.0);
+    let off = |b: usize| lambda[b].iter().all(|&l| l <= 0.0) && !frame.owns_plane(b, normal);
+    !lambda.iter().any(beyond) && !(0..4).any(off)
 }
 
 impl GroupMoments {
@@ -231,7 +239,7 @@ impl PieceBatch {
             self.open(cut);
         }
         for (b, lambda) in item.lambda.iter().enumerate() {
-            self.set_cut(b, lane, lambda, 1.0);
+            self.set_cut(b, lane, lambda, f64::from(item.frame.owns_plane(b, item.normal)));
         }
         let rivals = (0..pieces.len()).filter(|&j| j != k);
         for (slot, j) in rivals.enumerate() {

@@ -16,11 +16,21 @@ use ndda_mesh::Vec3;
 use crate::clip::{Form, Polygon, region};
 
 /// What the kernel needs of a target tetrahedron; made once per step.
+///
+/// λ_b(x) = n·(x − p) / n·(x_b − p), the normal n and the point p of the face opposite to corner b taken from its
+/// corners in the order of their coordinates. Two tetrahedra that share a face therefore compute the same n·(x − p)
+/// to the last bit, and no point near the face is in both of them or in neither.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TetFrame {
-    origin: Vec3,
-    centroid_arm: Vec3,
+    /// The first two corners in order; every face but one has the first, and that one has the second.
+    first: [Vec3; 2],
+    /// The corner opposite to the face that has the second.
+    apart: usize,
+    normal: [Vec3; 4],
+    per_height: [f64; 4],
     gradients: [Vec3; 4],
+    centroid: Vec3,
+    origin: Vec3,
     /// Volume [m³].
     pub volume_m3: f64,
 }
@@ -28,21 +38,63 @@ pub struct TetFrame {
 impl TetFrame {
     /// The frame of a tetrahedron with these corners [m].
     pub fn new(corners: &[Vec3; 4]) -> Self {
-        let [a, b, c] = [1, 2, 3].map(|i| corners[i] - corners[0]);
-        let (bc, ca, ab) = (b.cross(&c), c.cross(&a), a.cross(&b));
-        let six_volumes = a.dot(&bc);
-        let [g1, g2, g3] = [bc, ca, ab].map(|normal| normal / six_volumes);
-        let gradients = [-(g1 + g2 + g3), g1, g2, g3];
-        let centroid_arm = (a + b + c) / 4.0;
-        Self { origin: corners[0], centroid_arm, gradients, volume_m3: six_volumes / 6.0 }
+        Self::in_order(corners, &lexicographic(corners))
+    }
+
+    /// The frame of a tetrahedron whose corners come in this order; any order that neighbours agree on will do.
+    pub fn in_order(corners: &[Vec3; 4], order: &[u8; 4]) -> Self {
+        let order = order.map(usize::from);
+        let [p, q, r, s] = order.map(|i| corners[i]);
+        let [a, b, c] = [q - p, r - p, s - p];
+        let normals = [(r - q).cross(&(s - q)), b.cross(&c), a.cross(&c), a.cross(&b)];
+        let heights = [-normals[0].dot(&a), normals[1].dot(&a), normals[2].dot(&b), normals[3].dot(&c)];
+        let [_, along, across, up] = [0, 1, 2, 3].map(|i| corners[i] - corners[0]);
+        let mut frame = Self {
+            first: [p, q],
+            apart: order[0],
+            centroid: p + (a + b + c) / 4.0,
+            origin: corners[0],
+            volume_m3: along.dot(&across.cross(&up)) / 6.0,
+            ..Self::default()
+        };
+        for k in 0..4 {
+            let per_height = 1.0 / heights[k];
+            frame.normal[order[k]] = normals[k];
+            frame.per_height[order[k]] = per_height;
+            frame.gradients[order[k]] = per_height * normals[k];
+        }
+        frame
     }
 
     /// λ_b at the corners of a triangle, as `[b][a]`.
     pub fn lambda(&self, triangle: &[Vec3; 3]) -> [[f64; 3]; 4] {
-        let arms = triangle.map(|x| x - self.origin);
-        let mut lambda = self.gradients.map(|gradient| arms.map(|arm| gradient.dot(&arm)));
-        lambda[0] = std::array::from_fn(|a| 1.0 - lambda[1][a] - lambda[2][a] - lambda[3][a]);
-        lambda
+        let arms = self.first.map(|p| triangle.map(|x| x - p));
+        [0, 1, 2, 3].map(|b| self.lambda_of(b, &arms))
+    }
+
+    /// The same, or nothing if a face separates the triangle from the tetrahedron.
+    pub fn lambda_inside(&self, triangle: &[Vec3; 3]) -> Option<[[f64; 3]; 4]> {
+        let arms = self.first.map(|p| triangle.map(|x| x - p));
+        let mut lambda = [[0.0; 3]; 4];
+        for b in 0..4 {
+            lambda[b] = self.lambda_of(b, &arms);
+            if lambda[b].iter().all(|&l| l <= 0.0) {
+                return None;
+            }
+        }
+        Some(lambda)
+    }
+
+    #[inline(always)]
+    fn lambda_of(&self, b: usize, arms: &[[Vec3; 3]; 2]) -> [f64; 3] {
+        let arms = &arms[usize::from(b == self.apart)];
+        [0, 1, 2].map(|a| self.per_height[b] * self.normal[b].dot(&arms[a]))
+    }
+
+    /// Whether a triangle that lies in the plane of face b is to be counted in this tetrahedron: if the tetrahedron is
+    /// on the inner side of the triangle, so that one of two that share the face has it, and touching is not overlap.
+    pub fn owns_plane(&self, b: usize, outward: &Vec3) -> bool {
+        self.gradients[b].dot(outward) < 0.0
     }
 
     /// |∂φ/∂n| in the four regions [1/m].
@@ -62,7 +114,7 @@ impl TetFrame {
 
     /// (x − g)·n [m] of a plane through x.
     pub fn centroid_distance(&self, x: &Vec3, normal: &Vec3) -> f64 {
-        (x - self.origin - self.centroid_arm).dot(normal)
+        (x - self.centroid).dot(normal)
     }
 }
 
@@ -128,7 +180,18 @@ impl PairMoments {
     }
 }
 
-/// Whether a face of the tetrahedron separates it from the triangle.
+/// The corners' indices in the lexicographic order of their coordinates.
+fn lexicographic(corners: &[Vec3; 4]) -> [u8; 4] {
+    let mut order = [0, 1, 2, 3];
+    let key = |i: &u8| {
+        let x = &corners[usize::from(*i)];
+        (x.x, x.y, x.z)
+    };
+    order.sort_unstable_by(|i, j| key(i).partial_cmp(&key(j)).unwrap_or(std::cmp::Ordering::Equal));
+    order
+}
+
+/// Whether a face of the tetrahedron separates it from the triangle; φ = 0 on the faces themselves.
 pub fn is_outside(lambda: &[[f64; 3]; 4]) -> bool {
     lambda.iter().any(|at| at.iter().all(|&l| l <= 0.0))
 }

@@ -117,8 +117,8 @@ impl PotentialContact {
     fn place_frames(&mut self, input: &ContactInput) -> Result<(), ContactError> {
         let blocks = input.blocks;
         self.frames.clear();
-        for &tet in &self.candidates.tets {
-            let frame = TetFrame::new(&blocks.tet_corners(tet, input.position));
+        for (&tet, order) in self.candidates.tets.iter().zip(&self.candidates.order) {
+            let frame = TetFrame::in_order(&blocks.tet_corners(tet, input.position), order);
             if frame.volume_m3.is_nan() || frame.volume_m3 <= 0.0 {
                 let block = blocks.tet_block[tet.index()];
                 return Err(ContactError::CollapsedTet { tet, block, volume_m3: frame.volume_m3 });

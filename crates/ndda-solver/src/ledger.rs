@@ -79,6 +79,8 @@ pub struct Ledger {
     impulse: Vec3,
     angular_impulse: Vec3,
     last_force: (Vec3, Vec3),
+    load_n: f64,
+    load_impulse: f64,
     friction_work_j: f64,
     motion_work_j: f64,
     peak_energy_j: f64,
@@ -112,6 +114,8 @@ impl Ledger {
             impulse: Vec3::zeros(),
             angular_impulse: Vec3::zeros(),
             last_force: outside,
+            load_n: outside.0.norm(),
+            load_impulse: 0.0,
             friction_work_j: 0.0,
             motion_work_j: 0.0,
             peak_energy_j: 0.0,
@@ -131,6 +135,7 @@ impl Ledger {
         self.impulse += dt_s * ((1.0 - new_weight) * old_force + new_weight * force);
         self.angular_impulse += dt_s * ((1.0 - new_weight) * old_torque + new_weight * torque);
         self.last_force = (force, torque);
+        self.load_impulse += dt_s * self.load_n;
     }
 
     /// Books the work of friction and of prescribed motions in a step [J].
@@ -160,7 +165,8 @@ impl Ledger {
         self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());
         self.largest_gain_j = self.largest_gain_j.max(sample.balance_j);
         self.largest_loss_j = self.largest_loss_j.max(-sample.balance_j);
-        self.peak_momentum = self.peak_momentum.max(sample.momentum_scale);
+        // What supports and loads exchange rounds as they do, however little it leaves to move.
+        self.peak_momentum = self.peak_momentum.max(sample.momentum_scale).max(self.load_impulse);
         self.peak_angular = self.peak_angular.max(sample.angular_scale);
         let momentum_error = (sample.momentum - start.momentum - self.impulse).norm();
         let turn_error = (sample.angular_momentum - start.angular_momentum - self.angular_impulse).norm();
