@@ -9,7 +9,9 @@ use rayon::prelude::*;
 
 use crate::candidates::{Candidates, Facet, Pair};
 use crate::clip::{Form, Polygon};
-use crate::kernel::{GROUP, GroupMoments, MOST_CUTS, PairGroup, PieceGroup, element_moments, piece_moments};
+use crate::kernel::{
+    GROUP, GroupMoments, MOST_CUTS, PairGroup, PieceGroup, Row, element_moments, piece_moments,
+};
 use crate::pair::{self, PairMoments, TetFrame};
 use crate::potential::{Field, PieceTable};
 
@@ -70,11 +72,6 @@ impl Chunk {
         }
         self.flush_elements(arch);
         self.flush_pieces(arch);
-        for hit in &mut self.hits {
-            let pair = &scene.candidates.pairs[hit.pair as usize];
-            let corners = scene.blocks.triangle_corners(pair.triangle, scene.position);
-            hit.moments.share_with_target(&scene.frames[pair.tet as usize].lambda(&corners));
-        }
     }
 
     fn add_facet(&mut self, arch: Arch, scene: &Scene, facet: &Facet) {
@@ -166,12 +163,15 @@ fn lies_in_a_plane_of(frame: &TetFrame, lambda: &[[f64; 3]; 4], normal: &Vec3) -
 
 impl GroupMoments {
     fn of(&self, lane: usize, area_m2: f64) -> PairMoments {
+        let at =
+            |rows: &[Row; 3]| [area_m2 * rows[0][lane], area_m2 * rows[1][lane], area_m2 * rows[2][lane]];
         PairMoments {
-            pressure: self.pressure.each_ref().map(|row| area_m2 * row[lane]),
-            slope: self.slope.each_ref().map(|row| area_m2 * row[lane]),
+            pressure: at(&self.pressure),
+            slope: at(&self.slope),
+            target_pressure: [0, 1, 2, 3].map(|b| area_m2 * self.target_pressure[b][lane]),
+            target_slope: [0, 1, 2, 3].map(|b| area_m2 * self.target_slope[b][lane]),
             area: area_m2 * self.area[lane],
             depth: self.depth[lane],
-            ..PairMoments::default()
         }
     }
 }
@@ -284,6 +284,8 @@ impl PieceBatch {
         let polygon = cuts.fold(Polygon::triangle(), |p, (cut, tie)| p.cut(&field(cut), tie[lane] != 0.0));
         let mut moments = PairMoments::default();
         moments.add(&polygon, &field(&group.phi), group.slope[lane], self.area[lane]);
+        let at = |b: usize| [0, 1, 2].map(|a| group.cuts[b][a][lane]);
+        moments.share_with_target(&[at(0), at(1), at(2), at(3)]);
         moments
     }
 }

@@ -53,6 +53,10 @@ pub struct GroupMoments {
     pub pressure: [Row; 3],
     /// ∫ |∂φ/∂n| ψ_a dA [1/m].
     pub slope: [Row; 3],
+    /// Σ_a λ_b(X_a) of the same for the target's corners.
+    pub target_pressure: [Row; 4],
+    /// And of the slope.
+    pub target_slope: [Row; 4],
     /// Area of the part inside.
     pub area: Row,
     /// Largest φ.
@@ -84,7 +88,7 @@ impl WithSimd for PieceMoments<'_> {
         let Self { group, moments } = self;
         for k in 0..GROUP / S::F64_LANES {
             let load = |row: &Row| S::as_simd_f64s(row).0[k];
-            let field = |at: &[Row; 3]| Form::through(simd, at.each_ref().map(load));
+            let field = |at: &[Row; 3]| Form::through(simd, [load(&at[0]), load(&at[1]), load(&at[2])]);
             let mut sums = Sums::zero(simd);
             let mut edges = Edges::<S, { 3 + MOST_CUTS }>::triangle(simd);
             for (cut, tie) in group.cuts.iter().zip(&group.ties).take(group.len) {
@@ -92,9 +96,16 @@ impl WithSimd for PieceMoments<'_> {
             }
             add_fan(simd, &edges, &field(&group.phi), load(&group.slope), &mut sums);
             let mut store = |row: &mut Row, v: S::f64s| S::as_mut_simd_f64s(row).0[k] = v;
-            sums.store(moments, &mut store);
+            let [l0, l1, l2, l3] = [0, 1, 2, 3].map(|b| at_corners(&group.cuts[b], &load));
+            sums.store(simd, &[l0, l1, l2, l3], moments, &mut store);
         }
     }
+}
+
+/// The values of a field at the corners, in lanes.
+#[inline(always)]
+fn at_corners<V>(at: &[Row; 3], load: &impl Fn(&Row) -> V) -> [V; 3] {
+    [load(&at[0]), load(&at[1]), load(&at[2])]
 }
 
 struct ElementMoments<'a> {
@@ -110,13 +121,15 @@ impl WithSimd for ElementMoments<'_> {
         let Self { group, moments } = self;
         for k in 0..GROUP / S::F64_LANES {
             let load = |row: &Row| S::as_simd_f64s(row).0[k];
-            let lambda = group.lambda.each_ref().map(|at| at.each_ref().map(load));
+            let field = |at: &[Row; 3]| [load(&at[0]), load(&at[1]), load(&at[2])];
+            let [l0, l1, l2, l3] = &group.lambda;
+            let lambda = [field(l0), field(l1), field(l2), field(l3)];
             let mut sums = Sums::zero(simd);
             for i in 0..4 {
                 add_region(simd, &lambda, i, load(&group.slope[i]), &mut sums);
             }
             let mut store = |row: &mut Row, v: S::f64s| S::as_mut_simd_f64s(row).0[k] = v;
-            sums.store(moments, &mut store);
+            sums.store(simd, &lambda, moments, &mut store);
         }
     }
 }
@@ -138,7 +151,21 @@ impl<S: Simd> Sums<S> {
     }
 
     #[inline(always)]
-    fn store(&self, to: &mut GroupMoments, store: &mut impl FnMut(&mut Row, S::f64s)) {
+    fn store(
+        &self,
+        simd: S,
+        lambda: &[[S::f64s; 3]; 4],
+        to: &mut GroupMoments,
+        store: &mut impl FnMut(&mut Row, S::f64s),
+    ) {
+        for (b, lambda) in lambda.iter().enumerate() {
+            let at_target = |w: &[S::f64s; 3]| {
+                let two = simd.add_f64s(simd.mul_f64s(lambda[0], w[0]), simd.mul_f64s(lambda[1], w[1]));
+                simd.add_f64s(two, simd.mul_f64s(lambda[2], w[2]))
+            };
+            store(&mut to.target_pressure[b], at_target(&self.pressure));
+            store(&mut to.target_slope[b], at_target(&self.slope));
+        }
         for a in 0..3 {
             store(&mut to.pressure[a], self.pressure[a]);
             store(&mut to.slope[a], self.slope[a]);
@@ -158,6 +185,12 @@ impl<S: Simd> Form<S> {
     #[inline(always)]
     fn through(simd: S, at: [S::f64s; 3]) -> Self {
         Self([at[0], simd.sub_f64s(at[1], at[0]), simd.sub_f64s(at[2], at[0])])
+    }
+
+    #[inline(always)]
+    fn times(&self, simd: S, factor: S::f64s) -> Self {
+        let Self([c0, c1, c2]) = *self;
+        Self([simd.mul_f64s(c0, factor), simd.mul_f64s(c1, factor), simd.mul_f64s(c2, factor)])
     }
 
     #[inline(always)]
@@ -244,18 +277,29 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
 /// Adds the integrals over the region where λ_i is the smallest.
 #[inline(always)]
 fn add_region<S: Simd>(simd: S, lambda: &[[S::f64s; 3]; 4], i: usize, slope: S::f64s, sums: &mut Sums<S>) {
+    let (one, zero, four) = (simd.splat_f64s(1.0), simd.splat_f64s(0.0), simd.splat_f64s(4.0));
     let own = Form::through(simd, lambda[i]);
-    let (one, zero) = (simd.splat_f64s(1.0), simd.splat_f64s(0.0));
     let mut edges = Edges::<S, { 3 + ELEMENT_CUTS }>::triangle(simd);
-    edges.cut(simd, &own, one, &mut sums.doubtful);
-    for j in 0..4 {
-        if j != i {
-            let ahead = [0, 1, 2].map(|a| simd.sub_f64s(lambda[j][a], lambda[i][a]));
-            edges.cut(simd, &Form::through(simd, ahead), if i < j { one } else { zero }, &mut sums.doubtful);
-        }
+    let mut ahead = [(lambda[i], one); ELEMENT_CUTS];
+    let mut empty = simd.less_than_f64s(one, zero);
+    for j in (0..4).filter(|&j| j != i) {
+        let field = [
+            simd.sub_f64s(lambda[j][0], lambda[i][0]),
+            simd.sub_f64s(lambda[j][1], lambda[i][1]),
+            simd.sub_f64s(lambda[j][2], lambda[i][2]),
+        ];
+        ahead[if j < i { j + 1 } else { j }] = (field, if i < j { one } else { zero });
+        let most = simd.max_f64s(field[0], simd.max_f64s(field[1], field[2]));
+        empty = simd.or_m64s(empty, simd.less_than_f64s(most, zero));
     }
-    let four = simd.splat_f64s(4.0);
-    add_fan(simd, &edges, &Form(own.0.map(|c| simd.mul_f64s(four, c))), slope, sums);
+    // In a shallow contact most triangles see only some of the regions.
+    if simd.first_true_m64s(simd.not_m64s(empty)) >= S::F64_LANES {
+        return;
+    }
+    for (field, tie) in ahead {
+        edges.cut(simd, &Form::through(simd, field), tie, &mut sums.doubtful);
+    }
+    add_fan(simd, &edges, &own.times(simd, four), slope, sums);
 }
 
 /// Adds the integrals over a polygon on which φ is linear:
@@ -299,8 +343,8 @@ fn add_fan<S: Simd, const MOST: usize>(
     let third = simd.splat_f64s(1.0 / 3.0);
     let twelfth = simd.splat_f64s(1.0 / 12.0);
     let total = simd.mul_f64s(third, total);
-    let pressure = pressure.map(|w| simd.mul_f64s(twelfth, w));
-    let first = first.map(|w| simd.mul_f64s(third, w));
+    let pressure = [simd.mul_f64s(twelfth, pressure[0]), simd.mul_f64s(twelfth, pressure[1])];
+    let first = [simd.mul_f64s(third, first[0]), simd.mul_f64s(third, first[1])];
     let rest = |all, two: [S::f64s; 2]| simd.sub_f64s(all, add(two[0], two[1]));
     for (sum, w) in sums.pressure.iter_mut().zip([rest(total, pressure), pressure[0], pressure[1]]) {
         *sum = add(*sum, w);

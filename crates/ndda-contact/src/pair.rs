@@ -68,17 +68,22 @@ impl TetFrame {
 
     /// λ_b at the corners of a triangle, as `[b][a]`.
     pub fn lambda(&self, triangle: &[Vec3; 3]) -> [[f64; 3]; 4] {
-        let arms = self.first.map(|p| triangle.map(|x| x - p));
-        [0, 1, 2, 3].map(|b| self.lambda_of(b, &arms))
+        let mut lambda = [[0.0; 3]; 4];
+        let arms = self.arms(triangle);
+        for b in 0..4 {
+            lambda[b] = self.lambda_of(b, &arms);
+        }
+        lambda
     }
 
     /// The same, or nothing if a face separates the triangle from the tetrahedron.
     pub fn lambda_inside(&self, triangle: &[Vec3; 3]) -> Option<[[f64; 3]; 4]> {
-        let arms = self.first.map(|p| triangle.map(|x| x - p));
+        let arms = self.arms(triangle);
         let mut lambda = [[0.0; 3]; 4];
         for b in 0..4 {
             lambda[b] = self.lambda_of(b, &arms);
-            if lambda[b].iter().all(|&l| l <= 0.0) {
+            let [l0, l1, l2] = lambda[b];
+            if l0.max(l1).max(l2) <= 0.0 {
                 return None;
             }
         }
@@ -86,9 +91,16 @@ impl TetFrame {
     }
 
     #[inline(always)]
+    fn arms(&self, [x, y, z]: &[Vec3; 3]) -> [[Vec3; 3]; 2] {
+        let [p, q] = &self.first;
+        [[x - p, y - p, z - p], [x - q, y - q, z - q]]
+    }
+
+    #[inline(always)]
     fn lambda_of(&self, b: usize, arms: &[[Vec3; 3]; 2]) -> [f64; 3] {
-        let arms = &arms[usize::from(b == self.apart)];
-        [0, 1, 2].map(|a| self.per_height[b] * self.normal[b].dot(&arms[a]))
+        let [x, y, z] = &arms[usize::from(b == self.apart)];
+        let (normal, per_height) = (&self.normal[b], self.per_height[b]);
+        [per_height * normal.dot(x), per_height * normal.dot(y), per_height * normal.dot(z)]
     }
 
     /// Whether a triangle that lies in the plane of face b is to be counted in this tetrahedron: if the tetrahedron is
@@ -99,7 +111,8 @@ impl TetFrame {
 
     /// |∂φ/∂n| in the four regions [1/m].
     pub fn slopes(&self, normal: &Vec3) -> [f64; 4] {
-        self.gradients.map(|gradient| 4.0 * gradient.dot(normal).abs())
+        let [g0, g1, g2, g3] = &self.gradients;
+        [g0.dot(normal), g1.dot(normal), g2.dot(normal), g3.dot(normal)].map(|slope| 4.0 * slope.abs())
     }
 
     /// Corner 0 [m].
@@ -165,6 +178,10 @@ impl PairMoments {
         for a in 0..3 {
             self.pressure[a] += part.pressure[a];
             self.slope[a] += part.slope[a];
+        }
+        for b in 0..4 {
+            self.target_pressure[b] += part.target_pressure[b];
+            self.target_slope[b] += part.target_slope[b];
         }
         self.area += part.area;
         self.depth = self.depth.max(part.depth);
