@@ -3,10 +3,10 @@
 use std::ops::Range;
 
 use ndda_mesh::geometry::Aabb;
-use ndda_mesh::{BlockId, TetId, TriangleId, Vec3};
+use ndda_mesh::{BlockId, NodeId, TetId, TriangleId, Vec3};
 
-use crate::broad_phase::{Boxes, BroadPhase};
-use crate::bvh::BvhBroadPhase;
+use crate::broad_phase::{BroadPhase, BroadScene};
+use crate::bvh::TreeBroadPhase;
 use crate::model::ContactInput;
 
 /// Skin over the mean size of boundary triangles; a list then lasts for many steps of a slow scene.
@@ -53,12 +53,9 @@ pub struct Candidates {
     /// Whether facets end at the borders of target elements, too.
     pub split_by_element: bool,
     found: Vec<(TriangleId, TetId)>,
-    broad_phase: BvhBroadPhase,
+    broad_phase: TreeBroadPhase,
     listed_at: Vec<Vec3>,
     skin_m: f64,
-    triangle_boxes: Vec<Aabb>,
-    tet_boxes: Vec<Aabb>,
-    block_boxes: Vec<Aabb>,
 }
 
 impl Candidates {
@@ -78,39 +75,23 @@ impl Candidates {
         }
         self.listed_at.clear();
         self.listed_at.extend_from_slice(input.position);
-        self.box_everything(input);
-        let boxes = Boxes {
-            triangles: &self.triangle_boxes,
-            triangle_block: &input.blocks.triangle_block,
-            tets: &self.tet_boxes,
-            tet_block: &input.blocks.tet_block,
-            blocks: &self.block_boxes,
-        };
-        self.broad_phase.find_pairs(&boxes, &mut self.found);
+        let scene =
+            BroadScene { blocks: input.blocks, position: input.position, margin_m: self.margin(input) };
+        self.broad_phase.find_pairs(&scene, &mut self.found);
         self.arrange(input);
         true
     }
 
-    /// Boxes of triangles, tetrahedra and blocks; each is inflated by half the skin, and by the rounding of its own
-    /// coordinates.
-    fn box_everything(&mut self, input: &ContactInput) {
+    /// Half the skin, and the rounding of coordinates [m].
+    fn margin(&mut self, input: &ContactInput) -> f64 {
         let (blocks, position) = (input.blocks, input.position);
-        let around = |nodes: &[ndda_mesh::NodeId]| Aabb::around(nodes.iter().map(|n| &position[n.index()]));
-        self.triangle_boxes.clear();
-        self.triangle_boxes.extend(blocks.triangles.iter().map(|t| around(t)));
-        let size = self.triangle_boxes.iter().map(Aabb::diagonal).sum::<f64>();
-        let size = size / self.triangle_boxes.len().max(1) as f64;
+        let diagonal = |t: &[NodeId; 3]| Aabb::around(t.iter().map(|n| &position[n.index()])).diagonal();
+        let size = blocks.triangles.iter().map(diagonal).sum::<f64>() / blocks.triangles.len().max(1) as f64;
         let fastest = input.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
         let travel = LASTING_STEPS * 2.0 * fastest * input.dt_s;
         self.skin_m = (SKIN * size).max(travel.min(size));
         let furthest = position.iter().map(|x| x.amax()).fold(0.0, f64::max);
-        let margin = 0.5 * self.skin_m + 8.0 * f64::EPSILON * furthest;
-        self.triangle_boxes.iter_mut().for_each(|b| *b = b.inflated(margin));
-        self.tet_boxes.clear();
-        self.tet_boxes.extend(blocks.tets.iter().map(|t| around(t).inflated(margin)));
-        self.block_boxes.clear();
-        let nodes = |block| &position[blocks.nodes_of(block)];
-        self.block_boxes.extend(blocks.ids().map(|block| Aabb::around(nodes(block)).inflated(margin)));
+        0.5 * self.skin_m + 8.0 * f64::EPSILON * furthest
     }
 
     /// Sorts the pairs and numbers what they share.

@@ -145,7 +145,7 @@ fn overlap_of_blocks(input: &ContactInput, a: BlockId, b: BlockId, table: &Piece
     let mut sum = 0.0;
     for (c, c_box) in &of_a {
         let within = of_b.iter().take_while(|(_, t_box)| t_box.min.x <= c_box.max.x);
-        for (t, _) in within.filter(|(t, t_box)| t != c && t_box.touches(c_box)) {
+        for (t, _) in within.filter(|(t, t_box)| (a != b || t > c) && t_box.touches(c_box)) {
             sum += overlap_of_tets(input, TetId(*c as u32), TetId(*t as u32), table);
         }
     }
