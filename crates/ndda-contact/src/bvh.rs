@@ -18,15 +18,39 @@ use crate::smooth_potential::{faces_of, is_convex};
 const FEW_TETS: usize = 12;
 /// Blocks below which a second thread costs more than it brings.
 const GRAIN_BLOCKS: usize = 16;
+/// The same for boxes.
+const GRAIN_BOXES: usize = 2048;
 
 /// The default broad phase.
 #[derive(Default)]
 pub struct TreeBroadPhase {
     own: Vec<OwnTree>,
-    boxes: Vec<Aabb>,
+    boxes: Boxes,
     tree: Bvh,
     workspace: BvhWorkspace,
     found: Vec<Vec<(TriangleId, TetId)>>,
+}
+
+/// Boxes of everything, with the margin.
+#[derive(Default)]
+struct Boxes {
+    blocks: Vec<Aabb>,
+    triangles: Vec<Aabb>,
+    tets: Vec<Aabb>,
+}
+
+impl Boxes {
+    fn place(&mut self, scene: &BroadScene) {
+        let blocks = scene.blocks;
+        let all = |count: usize, boxes: &mut Vec<Aabb>, of: &(dyn Fn(usize) -> Aabb + Sync)| {
+            boxes.resize(count, Aabb::empty());
+            let place = |(i, bounds): (usize, &mut Aabb)| *bounds = of(i);
+            boxes.par_iter_mut().enumerate().with_min_len(GRAIN_BOXES).for_each(place);
+        };
+        all(blocks.len(), &mut self.blocks, &|i| scene.block_box(BlockId(i as u32)));
+        all(blocks.triangles.len(), &mut self.triangles, &|i| scene.box_around(&blocks.triangles[i]));
+        all(blocks.tets.len(), &mut self.tets, &|i| scene.box_around(&blocks.tets[i]));
+    }
 }
 
 /// A block in its rest shape, and how it lies in space now.
@@ -54,11 +78,13 @@ impl BroadPhase for TreeBroadPhase {
         self.found.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(|(index, found)| {
             found.clear();
             let block = BlockId(index as u32);
-            for other in tree.leaves(|node| node_touches(node, &boxes[index])) {
+            for other in tree.leaves(|node| node_touches(node, &boxes.blocks[index])) {
                 if other as usize != index || !own[index].convex {
-                    own[other as usize].find(scene, block, BlockId(other), &boxes[other as usize], found);
+                    own[other as usize].find(scene, boxes, block, BlockId(other), found);
                 }
             }
+            // Block by block they are in order then, and the list as a whole is.
+            found.sort_unstable();
         });
         pairs.clear();
         self.found.iter().for_each(|found| pairs.extend_from_slice(found));
@@ -67,9 +93,8 @@ impl BroadPhase for TreeBroadPhase {
 
 impl TreeBroadPhase {
     fn place_blocks(&mut self, scene: &BroadScene) {
-        self.boxes.clear();
-        self.boxes.extend(scene.blocks.ids().map(|block| scene.block_box(block)));
-        for (index, bounds) in self.boxes.iter().enumerate() {
+        self.boxes.place(scene);
+        for (index, bounds) in self.boxes.blocks.iter().enumerate() {
             self.tree.insert_or_update_partially(to_parry(bounds), index as u32, 0.0);
         }
         self.tree.rebuild(&mut self.workspace, BvhBuildStrategy::Binned);
@@ -113,22 +138,21 @@ impl OwnTree {
     fn find(
         &self,
         scene: &BroadScene,
+        boxes: &Boxes,
         block: BlockId,
         other: BlockId,
-        bounds: &Aabb,
         found: &mut Vec<(TriangleId, TetId)>,
     ) {
         let blocks = scene.blocks;
         let first = blocks.tets_of(other).start;
         let one_block = block == other;
         for i in blocks.triangles_of(block) {
-            let triangle = scene.box_around(&blocks.triangles[i]);
-            if !triangle.touches(bounds) {
+            let triangle = &boxes.triangles[i];
+            if !triangle.touches(&boxes.blocks[other.index()]) {
                 continue;
             }
             let mut add = |j: usize| {
-                let near = triangle.touches(&scene.box_around(&blocks.tets[j]));
-                if near && !(one_block && scene.are_neighbours(i, j)) {
+                if triangle.touches(&boxes.tets[j]) && !(one_block && scene.are_neighbours(i, j)) {
                     found.push((TriangleId(i as u32), TetId(j as u32)));
                 }
             };

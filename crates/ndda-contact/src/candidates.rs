@@ -48,11 +48,15 @@ pub struct Candidates {
     pub tets: Vec<TetId>,
     /// Their corners in the order of node numbers, on which neighbours agree.
     pub order: Vec<[u8; 4]>,
-    /// The distinct (target tetrahedron, contactor block), ascending.
+    /// The distinct (target tetrahedron, contactor block), block by block.
     pub overlaps: Vec<(TetId, BlockId)>,
     /// Whether facets end at the borders of target elements, too.
     pub split_by_element: bool,
     found: Vec<(TriangleId, TetId)>,
+    slot_of: Vec<u32>,
+    sorted: Vec<TetId>,
+    /// First overlap of each contactor block.
+    overlap_start: Vec<u32>,
     broad_phase: TreeBroadPhase,
     listed_at: Vec<Vec3>,
     skin_m: f64,
@@ -62,6 +66,11 @@ impl Candidates {
     /// The target tetrahedron of a pair.
     pub fn tet_of(&self, pair: u32) -> TetId {
         self.tets[self.pairs[pair as usize].tet as usize]
+    }
+
+    /// Makes the next update start anew.
+    pub fn forget(&mut self) {
+        self.listed_at.clear();
     }
 
     /// Brings the list up to date and says whether it changed: nothing to do while no node has moved by half the skin.
@@ -99,27 +108,17 @@ impl Candidates {
         let (tet_block, triangle_block) = (&input.blocks.tet_block, &input.blocks.triangle_block);
         // Blocks are contiguous in tetrahedra, so this order is also by target block.
         self.found.sort_unstable();
-        self.tets.clear();
-        self.tets.extend(self.found.iter().map(|pair| pair.1));
-        self.tets.sort_unstable();
-        self.tets.dedup();
-        self.order.clear();
-        self.order.extend(self.tets.iter().map(|tet| {
-            let mut order = [0, 1, 2, 3];
-            order.sort_unstable_by_key(|&i: &u8| input.blocks.tets[tet.index()][usize::from(i)]);
-            order
-        }));
-        let overlap_of = |pair: &(TriangleId, TetId)| (pair.1, triangle_block[pair.0.index()]);
-        self.overlaps.clear();
-        self.overlaps.extend(self.found.iter().map(overlap_of));
-        self.overlaps.sort_unstable();
-        self.overlaps.dedup();
+        self.number_tets(input);
+        self.number_overlaps(triangle_block);
         self.pairs.clear();
         self.facets.clear();
         for (i, found) in self.found.iter().enumerate() {
             let (triangle, tet_id) = *found;
-            let tet = self.tets.binary_search(&tet_id).expect("listed above") as u32;
-            let overlap = self.overlaps.binary_search(&overlap_of(found)).expect("listed above") as u32;
+            let tet = self.slot_of[tet_id.index()];
+            let block = triangle_block[triangle.index()];
+            let first = self.overlap_start[block.index()] as usize;
+            let end = self.overlap_start.get(block.index() + 1).map_or(self.overlaps.len(), |&e| e as usize);
+            let overlap = (first + self.overlaps[first..end].partition_point(|o| o.0 < tet_id)) as u32;
             self.pairs.push(Pair { triangle, tet, overlap });
             let target = tet_block[tet_id.index()];
             match self.facets.last_mut() {
@@ -130,6 +129,40 @@ impl Candidates {
                 }
                 _ => self.facets.push(Facet { triangle, target, pairs: i..i + 1 }),
             }
+        }
+    }
+
+    /// The distinct tetrahedra, ascending, and the place of each.
+    fn number_tets(&mut self, input: &ContactInput) {
+        self.slot_of.clear();
+        self.slot_of.resize(input.blocks.tets.len(), u32::MAX);
+        self.found.iter().for_each(|pair| self.slot_of[pair.1.index()] = 0);
+        self.tets.clear();
+        for (tet, slot) in self.slot_of.iter_mut().enumerate().filter(|(_, slot)| **slot == 0) {
+            *slot = self.tets.len() as u32;
+            self.tets.push(TetId(tet as u32));
+        }
+        self.order.clear();
+        self.order.extend(self.tets.iter().map(|tet| {
+            let mut order = [0, 1, 2, 3];
+            order.sort_unstable_by_key(|&i: &u8| input.blocks.tets[tet.index()][usize::from(i)]);
+            order
+        }));
+    }
+
+    /// The distinct (tetrahedron, contactor block), block by block.
+    fn number_overlaps(&mut self, triangle_block: &[BlockId]) {
+        self.overlaps.clear();
+        self.overlap_start.clear();
+        let block_of = |pair: &(TriangleId, TetId)| triangle_block[pair.0.index()];
+        for run in self.found.chunk_by(|a, b| block_of(a) == block_of(b)) {
+            let block = block_of(&run[0]);
+            self.overlap_start.resize(block.index() + 1, self.overlaps.len() as u32);
+            self.sorted.clear();
+            self.sorted.extend(run.iter().map(|pair| pair.1));
+            self.sorted.sort_unstable();
+            self.sorted.dedup();
+            self.overlaps.extend(self.sorted.iter().map(|&tet| (tet, block)));
         }
     }
 }
