@@ -65,14 +65,14 @@ impl BlockOverlaps {
         law: OverlapLaw,
     ) {
         match (field, law) {
-            (_, OverlapLaw::Power { .. }) => self.from_surfaces(input, candidates, integrals),
-            (Field::Element, _) => self.from_pieces(input, candidates, integrals, frames),
-            (Field::Pieces(table), _) => self.from_tets(input, candidates, table),
+            (_, OverlapLaw::Power { .. }) => self.add_surfaces(input, candidates, integrals),
+            (Field::Element, _) => self.add_pieces(input, candidates, integrals, frames),
+            (Field::Pieces(table), _) => self.add_tets(input, candidates, table),
         }
     }
 
     /// The volume of overlaps, V = ⅓ ∮ (x − o)·n dS over the pieces of both surfaces.
-    pub fn from_surfaces(&mut self, input: &ContactInput, candidates: &Candidates, integrals: &Integrals) {
+    pub fn add_surfaces(&mut self, input: &ContactInput, candidates: &Candidates, integrals: &Integrals) {
         self.list(input.blocks, candidates);
         self.origin.clear();
         self.origin.resize(self.pairs.len(), None);
@@ -91,7 +91,7 @@ impl BlockOverlaps {
     }
 
     /// The element potential, from the flux through surface pieces.
-    fn from_pieces(
+    fn add_pieces(
         &mut self,
         input: &ContactInput,
         candidates: &Candidates,
@@ -121,7 +121,7 @@ impl BlockOverlaps {
     }
 
     /// Any potential, over the overlaps of tetrahedra.
-    fn from_tets(&mut self, input: &ContactInput, candidates: &Candidates, table: &PieceTable) {
+    fn add_tets(&mut self, input: &ContactInput, candidates: &Candidates, table: &PieceTable) {
         self.list(input.blocks, candidates);
         for k in 0..self.pairs.len() {
             let (a, b) = self.pairs[k];

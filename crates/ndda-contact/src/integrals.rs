@@ -189,11 +189,9 @@ impl ElementBatch {
     /// Adds a pair; true when the group is full.
     fn push(&mut self, hit: usize, area: f64, lambda: &[[f64; 3]; 4], slopes: &[f64; 4]) -> bool {
         let lane = self.len;
-        for b in 0..4 {
-            for a in 0..3 {
-                self.group.lambda[b][a][lane] = lambda[b][a];
-            }
-            self.group.slope[b][lane] = slopes[b];
+        let rows = self.group.lambda.as_flattened_mut().iter_mut().chain(&mut self.group.slope);
+        for (row, value) in rows.zip(lambda.as_flattened().iter().chain(slopes)) {
+            row[lane] = *value;
         }
         (self.hit[lane], self.area[lane]) = (hit, area);
         self.len += 1;
@@ -249,8 +247,8 @@ impl PieceBatch {
         }
         let gradient: Vec3 = (0..4).map(|b| pieces[k][b] * item.frame.gradients()[b]).sum();
         self.group.slope[lane] = gradient.dot(item.normal).abs();
-        for a in 0..3 {
-            self.group.phi[a][lane] = phi[a];
+        for (row, value) in self.group.phi.iter_mut().zip(phi) {
+            row[lane] = value;
         }
         (self.hit[lane], self.area[lane]) = (item.hit, item.area);
         self.len += 1;
@@ -265,8 +263,8 @@ impl PieceBatch {
     }
 
     fn set_cut(&mut self, cut: usize, lane: usize, field: &[f64; 3], tie: f64) {
-        for a in 0..3 {
-            self.group.cuts[cut][a][lane] = field[a];
+        for (row, value) in self.group.cuts[cut].iter_mut().zip(field) {
+            row[lane] = *value;
         }
         self.group.ties[cut][lane] = tie;
     }

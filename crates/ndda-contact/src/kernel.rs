@@ -367,12 +367,8 @@ mod tests {
         let mut group = PairGroup::default();
         let (lambda, slope) =
             (frame.lambda(triangle), frame.slopes(&triangle_area_vector(triangle).normalize()));
-        for b in 0..4 {
-            group.slope[b] = [slope[b]; GROUP];
-            for a in 0..3 {
-                group.lambda[b][a] = [lambda[b][a]; GROUP];
-            }
-        }
+        group.slope = slope.map(|s| [s; GROUP]);
+        group.lambda = lambda.map(|at| at.map(|l| [l; GROUP]));
         group
     }
 

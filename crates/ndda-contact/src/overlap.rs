@@ -67,9 +67,9 @@ impl Polyhedron {
     pub fn cut(&mut self, side: &Linear) {
         let mut sides = [0.0; MOST_CORNERS];
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for i in 0..self.len {
-            sides[i] = side.at(&self.position[i]);
-            (least, most) = (least.min(sides[i]), most.max(sides[i]));
+        for (value, x) in sides.iter_mut().zip(&self.position[..self.len]) {
+            *value = side.at(x);
+            (least, most) = (least.min(*value), most.max(*value));
         }
         // A polyhedron that only touches the plane has no volume in front of it.
         if most <= 0.0 {

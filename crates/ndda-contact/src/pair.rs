@@ -70,8 +70,8 @@ impl TetFrame {
     pub fn lambda(&self, triangle: &[Vec3; 3]) -> [[f64; 3]; 4] {
         let mut lambda = [[0.0; 3]; 4];
         let arms = self.arms(triangle);
-        for b in 0..4 {
-            lambda[b] = self.lambda_of(b, &arms);
+        for (b, lambda) in lambda.iter_mut().enumerate() {
+            *lambda = self.lambda_of(b, &arms);
         }
         lambda
     }
@@ -80,9 +80,9 @@ impl TetFrame {
     pub fn lambda_inside(&self, triangle: &[Vec3; 3]) -> Option<[[f64; 3]; 4]> {
         let arms = self.arms(triangle);
         let mut lambda = [[0.0; 3]; 4];
-        for b in 0..4 {
-            lambda[b] = self.lambda_of(b, &arms);
-            let [l0, l1, l2] = lambda[b];
+        for (b, lambda) in lambda.iter_mut().enumerate() {
+            *lambda = self.lambda_of(b, &arms);
+            let [l0, l1, l2] = *lambda;
             if l0.max(l1).max(l2) <= 0.0 {
                 return None;
             }
@@ -161,12 +161,14 @@ impl PairMoments {
             let part = area_m2 * twice;
             let phi = corners.map(|c| phi.at(&c));
             let phi_sum = phi[0] + phi[1] + phi[2];
-            let psi = corners.map(|c| [1.0 - c[0] - c[1], c[0], c[1]]);
-            for a in 0..3 {
-                let psi_sum = psi[0][a] + psi[1][a] + psi[2][a];
-                let products = phi[0] * psi[0][a] + phi[1] * psi[1][a] + phi[2] * psi[2][a];
-                self.pressure[a] += part / 12.0 * (phi_sum * psi_sum + products);
-                self.slope[a] += part / 3.0 * slope * psi_sum;
+            // ψ_a at the three corners.
+            let psi = [corners.map(|c| 1.0 - c[0] - c[1]), corners.map(|c| c[0]), corners.map(|c| c[1])];
+            for (psi, (pressure, slope_sum)) in psi.iter().zip(self.pressure.iter_mut().zip(&mut self.slope))
+            {
+                let psi_sum = psi[0] + psi[1] + psi[2];
+                let products = phi[0] * psi[0] + phi[1] * psi[1] + phi[2] * psi[2];
+                *pressure += part / 12.0 * (phi_sum * psi_sum + products);
+                *slope_sum += part / 3.0 * slope * psi_sum;
             }
             self.area += part;
             self.depth = phi.iter().copied().fold(self.depth, f64::max);

@@ -41,14 +41,14 @@ impl Scatter {
     /// Sorts facets by block; needed when the list of facets has changed.
     pub fn arrange(&mut self, blocks: &BlockSet, candidates: &Candidates) {
         let facets = &candidates.facets;
-        let owner = |f: usize| blocks.triangle_block[facets[f].triangle.index()].index();
         self.own_start.clear();
         self.own_start.resize(blocks.len() + 1, 0);
         self.target_start.clear();
         self.target_start.resize(blocks.len() + 1, 0);
-        for f in 0..facets.len() {
-            self.own_start[owner(f) + 1] += 1;
-            self.target_start[facets[f].target.index() + 1] += 1;
+        for facet in facets {
+            let owner = blocks.triangle_block[facet.triangle.index()];
+            self.own_start[owner.index() + 1] += 1;
+            self.target_start[facet.target.index() + 1] += 1;
         }
         for b in 0..blocks.len() {
             self.own_start[b + 1] += self.own_start[b];
@@ -157,9 +157,9 @@ impl BlockNodes<'_> {
 
     fn add_hit(&mut self, scene: &ScatterScene, hit: &Hit, force: &FacetForce, stiffness_pa: f64) {
         let nodes = scene.blocks.tets[scene.candidates.tet_of(hit.pair).index()];
-        for b in 0..4 {
-            let slope = hit.moments.target_slope[b].max(0.0);
-            self.add(nodes[b].index(), -hit.moments.target_pressure[b], force, stiffness_pa * slope);
+        let weights = hit.moments.target_pressure.iter().zip(hit.moments.target_slope);
+        for (node, (pressure, slope)) in nodes.iter().zip(weights) {
+            self.add(node.index(), -pressure, force, stiffness_pa * slope.max(0.0));
         }
     }
 
