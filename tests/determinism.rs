@@ -6,11 +6,12 @@ use ndda_cli::args::RunArgs;
 use ndda_cli::{exit, run};
 
 /// Scenes with contact, friction and spin, cut short.
-const SCENES: [(&str, &[&str]); 4] = [
+const SCENES: [(&str, &[&str]); 5] = [
     ("collision_equal", &["time.end_s=0.025", "reference.after_s=0"]),
     ("collision_unequal_free", &[]),
     ("sliding_30_phi25", &["time.end_s=0.02", "reference.after_s=0"]),
     ("spinning_block", &["time.end_s=1"]),
+    ("sticking_30_phi35", &["time.end_s=0.5"]),
 ];
 
 fn history(scene: &str, overrides: &[&str], threads: u16) -> Vec<u8> {

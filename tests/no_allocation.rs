@@ -54,9 +54,12 @@ fn requests(scene: &str, threads: usize, warm_up: usize, steps: usize) -> usize 
 // One test: the counter belongs to the process, and tests run side by side.
 #[test]
 fn a_warm_step_with_contact_friction_and_supports_allocates_nothing() {
-    for (scene, warm_up, steps) in
-        [("sliding_45_phi35", 2000, 2000), ("collision_equal", 2500, 200), ("spinning_block", 5, 1000)]
-    {
+    for (scene, warm_up, steps) in [
+        ("sliding_45_phi35", 2000, 2000),
+        ("collision_equal", 2500, 200),
+        ("spinning_block", 5, 1000),
+        ("sticking_30_phi35", 50, 1000),
+    ] {
         for threads in [1, 2] {
             assert_eq!(requests(scene, threads, warm_up, steps), 0, "{scene} on {threads} thread(s)");
         }
