@@ -23,6 +23,8 @@ pub struct BlockOverlaps {
     /// (smaller, larger), ascending.
     pairs: Vec<(BlockId, BlockId)>,
     overlap_m3: Vec<f64>,
+    /// ∫ φ dA over the pieces of both surfaces [m²].
+    pressure_m2: Vec<f64>,
     origin: Vec<Option<Vec3>>,
     per_tet: Vec<f64>,
 }
@@ -31,6 +33,11 @@ impl BlockOverlaps {
     /// U of a pair of blocks [m³]; zero for those that cannot touch.
     pub fn of(&self, a: BlockId, b: BlockId) -> f64 {
         self.place(a, b).map_or(0.0, |k| self.overlap_m3[k])
+    }
+
+    /// ∫ φ dA over both surfaces, as [`add_surfaces`](Self::add_surfaces) found it [m²].
+    pub fn pressure_of(&self, a: BlockId, b: BlockId) -> f64 {
+        self.place(a, b).map_or(0.0, |k| self.pressure_m2[k])
     }
 
     /// Σ w(U) [m³].
@@ -74,6 +81,8 @@ impl BlockOverlaps {
     /// The volume of overlaps, V = ⅓ ∮ (x − o)·n dS over the pieces of both surfaces.
     pub fn add_surfaces(&mut self, input: &ContactInput, candidates: &Candidates, integrals: &Integrals) {
         self.list(input.blocks, candidates);
+        self.pressure_m2.clear();
+        self.pressure_m2.resize(self.pairs.len(), 0.0);
         self.origin.clear();
         self.origin.resize(self.pairs.len(), None);
         for (f, facet) in candidates.facets.iter().enumerate() {
@@ -86,6 +95,7 @@ impl BlockOverlaps {
             let corners = input.blocks.triangle_corners(facet.triangle, input.position);
             let origin = *self.origin[k].get_or_insert(corners[0]);
             let normal = triangle_area_vector(&corners).normalize();
+            self.pressure_m2[k] += integrals.hits_of(f).iter().map(|hit| hit.moments.total()).sum::<f64>();
             self.overlap_m3[k] += area * (corners[0] - origin).dot(&normal) / 3.0;
         }
     }

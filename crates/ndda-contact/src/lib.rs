@@ -50,6 +50,8 @@ pub mod scatter;
 #[cfg(feature = "potential")]
 pub mod smooth_potential;
 #[cfg(feature = "potential")]
+pub mod tangent;
+#[cfg(feature = "potential")]
 pub mod tet_pair;
 #[cfg(feature = "potential")]
 pub mod velocity_friction;

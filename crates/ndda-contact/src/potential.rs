@@ -69,6 +69,18 @@ impl OverlapLaw {
     }
 }
 
+impl OverlapLaw {
+    /// d²w/dU² [1/m³].
+    pub fn curvature(&self, overlap_m3: f64) -> f64 {
+        match *self {
+            Self::Power { exponent, reference_m3 } if overlap_m3 > 0.0 => {
+                (exponent - 1.0) / reference_m3 * (overlap_m3 / reference_m3).powf(exponent - 2.0)
+            }
+            _ => 0.0,
+        }
+    }
+}
+
 /// φ of all blocks of a scene.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Field {

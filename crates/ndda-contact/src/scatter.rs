@@ -35,6 +35,15 @@ pub struct ScatterScene<'a> {
     pub forces: &'a [FacetForce],
     /// Stiffness per slope, one entry per facet [Pa].
     pub stiffness_pa: &'a [f64],
+    /// Stiffness per pressure, one entry per facet, or none [Pa/m].
+    pub curvature_pa_m: &'a [f64],
+}
+
+impl ScatterScene<'_> {
+    fn stiffness(&self, facet: usize, slope: f64, pressure: f64) -> f64 {
+        let curvature = self.curvature_pa_m.get(facet).copied().unwrap_or(0.0);
+        self.stiffness_pa[facet] * slope + curvature * pressure.abs()
+    }
 }
 
 impl Scatter {
@@ -139,7 +148,7 @@ impl BlockNodes<'_> {
         }
         let nodes = scene.blocks.triangles[facet.triangle.index()];
         for a in 0..3 {
-            self.add(nodes[a].index(), pressure[a], force, scene.stiffness_pa[f] * slope[a]);
+            self.add(nodes[a].index(), pressure[a], force, scene.stiffness(f, slope[a], pressure[a]));
         }
     }
 
@@ -151,15 +160,15 @@ impl BlockNodes<'_> {
             return;
         }
         for hit in scene.integrals.hits_of(f) {
-            self.add_hit(scene, hit, force, scene.stiffness_pa[f]);
+            self.add_hit(scene, hit, force, f);
         }
     }
 
-    fn add_hit(&mut self, scene: &ScatterScene, hit: &Hit, force: &FacetForce, stiffness_pa: f64) {
+    fn add_hit(&mut self, scene: &ScatterScene, hit: &Hit, force: &FacetForce, f: usize) {
         let nodes = scene.blocks.tets[scene.candidates.tet_of(hit.pair).index()];
         let weights = hit.moments.target_pressure.iter().zip(hit.moments.target_slope);
         for (node, (pressure, slope)) in nodes.iter().zip(weights) {
-            self.add(node.index(), -pressure, force, stiffness_pa * slope.max(0.0));
+            self.add(node.index(), -pressure, force, scene.stiffness(f, slope.max(0.0), *pressure));
         }
     }
 

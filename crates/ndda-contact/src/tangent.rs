@@ -1,0 +1,125 @@
+//! Tangent stiffness of normal contact, for solvers that iterate on it; explicit steps never come here.
+//!
+//! A point ψ of a triangle moves against the target by δ = Σ_p s_p(ψ) u_p over seven nodes, s = ψ_a on the three of the
+//! triangle and −Σ_a λ_b(X_a) ψ_a on the four of the tetrahedron. Its traction −k φ n changes by −k n (∇φ·δ), and φ is
+//! zero where the piece ends, so
+//!
+//! ```text
+//! ∂f_p/∂x_q = −k ∫ s_p s_q dA  sym(n ⊗ ∇φ)      = −k (S H Sᵀ)_pq sym(n ⊗ ∇φ),   H_ab = ∫ ψ_a ψ_b dA
+//! ```
+//!
+//! Summed over both surfaces n ⊗ ∇φ is symmetric under a shift of a block, so taking the symmetric part of each pair
+//! loses nothing there. What is left out is the turning and stretching of the triangle under its own pressure, of the
+//! order of the depth over the size of the triangle.
+
+use ndda_mesh::geometry::triangle_area_vector;
+use ndda_mesh::{Mat3, NodeId, Vec3};
+
+use crate::clip::{Form, Polygon, region};
+use crate::pair::TetFrame;
+
+/// Stiffness between the seven nodes of a pair: the triangle's three, then the tetrahedron's four.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PairStiffness {
+    /// The nodes.
+    pub nodes: [NodeId; 7],
+    /// (S H Sᵀ)_pq for each part of the pair, summed with its −k sym(n ⊗ ∇φ): ∂f_p/∂x_q [N/m].
+    pub block: [[Mat3; 7]; 7],
+}
+
+impl PairStiffness {
+    /// No stiffness between these nodes.
+    pub fn new(triangle: &[NodeId; 3], tet: &[NodeId; 4]) -> Self {
+        let ([a, b, c], [d, e, f, g]) = (*triangle, *tet);
+        Self { nodes: [a, b, c, d, e, f, g], block: [[Mat3::zeros(); 7]; 7] }
+    }
+
+    /// out ← out + (∂f/∂x) u.
+    pub fn add_times(&self, u: &[Vec3], out: &mut [Vec3]) {
+        for (row, p) in self.block.iter().zip(self.nodes) {
+            for (k, q) in row.iter().zip(self.nodes) {
+                out[p.index()] += k * u[q.index()];
+            }
+        }
+    }
+
+    /// Adds the part of the pair where φ is one linear function with this gradient.
+    fn add(&mut self, part: &Polygon, shapes: &[[f64; 3]; 7], tensor: &Mat3, area_m2: f64) {
+        let h = second_moments(part, area_m2);
+        let times_h = |s: &[f64; 3]| h.map(|row| row[0] * s[0] + row[1] * s[1] + row[2] * s[2]);
+        for (s_p, row) in shapes.iter().zip(&mut self.block) {
+            let left = times_h(s_p);
+            for (s_q, block) in shapes.iter().zip(row) {
+                *block += tensor * (left[0] * s_q[0] + left[1] * s_q[1] + left[2] * s_q[2]);
+            }
+        }
+    }
+}
+
+/// H_ab = ∫ ψ_a ψ_b dA over a polygon: A/12 [(Σψ_a)(Σψ_b) + Σ ψ_a ψ_b] for each triangle of its fan.
+fn second_moments(part: &Polygon, area_m2: f64) -> [[f64; 3]; 3] {
+    let mut h = [[0.0; 3]; 3];
+    for (corners, twice) in part.fan() {
+        let psi = corners.map(|c| [1.0 - c[0] - c[1], c[0], c[1]]);
+        let sum = |a: usize| psi[0][a] + psi[1][a] + psi[2][a];
+        for (a, row) in h.iter_mut().enumerate() {
+            for (b, entry) in row.iter_mut().enumerate() {
+                let products: f64 = psi.iter().map(|p| p[a] * p[b]).sum();
+                *entry += area_m2 * twice / 12.0 * (sum(a) * sum(b) + products);
+            }
+        }
+    }
+    h
+}
+
+/// Adds the stiffness of a triangle in a tetrahedron. `pieces` are the nodal values of the linear functions whose
+/// smallest is φ; none for the element potential.
+pub fn add_pair(
+    stiffness: &mut PairStiffness,
+    corners: &[Vec3; 3],
+    frame: &TetFrame,
+    pieces: Option<&[[f64; 4]]>,
+    penalty_pa: f64,
+) {
+    let lambda = frame.lambda(corners);
+    let area_vector = triangle_area_vector(corners);
+    let area = area_vector.norm();
+    if area == 0.0 {
+        return;
+    }
+    let normal = area_vector / area;
+    let mut shapes = [[0.0; 3]; 7];
+    (0..3).for_each(|a| shapes[a][a] = 1.0);
+    (0..4).for_each(|b| shapes[3 + b] = lambda[b].map(|l| -l));
+    let tensor = |gradient: &Vec3| {
+        let product = normal * gradient.transpose();
+        -0.5 * penalty_pa * (product + product.transpose())
+    };
+    match pieces {
+        None => {
+            for i in 0..4 {
+                let gradient = 4.0 * frame.gradients()[i];
+                stiffness.add(&region(&lambda, i), &shapes, &tensor(&gradient), area);
+            }
+        }
+        Some(pieces) => {
+            for k in 0..pieces.len() {
+                let gradient: Vec3 = (0..4).map(|b| pieces[k][b] * frame.gradients()[b]).sum();
+                stiffness.add(&piece(&lambda, pieces, k, frame, &normal), &shapes, &tensor(&gradient), area);
+            }
+        }
+    }
+}
+
+/// The part of a triangle inside where the k-th function is the smallest.
+fn piece(lambda: &[[f64; 3]; 4], pieces: &[[f64; 4]], k: usize, frame: &TetFrame, normal: &Vec3) -> Polygon {
+    let at = |values: &[f64; 4]| [0, 1, 2].map(|a| (0..4).map(|b| values[b] * lambda[b][a]).sum::<f64>());
+    let own = at(&pieces[k]);
+    let inside = (0..4).fold(Polygon::triangle(), |part, b| {
+        part.cut(&Form::through(&lambda[b]), frame.owns_plane(b, normal))
+    });
+    (0..pieces.len()).filter(|&j| j != k).fold(inside, |part, j| {
+        let rival = at(&pieces[j]);
+        part.cut(&Form::through(&[0, 1, 2].map(|a| rival[a] - own[a])), k < j)
+    })
+}
