@@ -42,6 +42,21 @@ fn pressed(n: u32) -> BlockSet {
     test_set(vec![lower, upper])
 }
 
+/// Two tetrahedra: their nodal forces, and the volume that they share.
+fn two_tetrahedra(c: &mut Criterion) {
+    let a = [[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.1, 1.1, 0.0], [0.2, 0.1, 0.9]].map(Vec3::from);
+    let b = [[0.3, 0.2, 0.3], [1.2, 0.3, 0.4], [0.3, 1.3, 0.2], [0.4, 0.5, 1.4]].map(Vec3::from);
+    c.bench_function("two tetrahedra/nodal forces", |x| {
+        x.iter(|| ndda_contact::tet_pair::nodal_forces(black_box(&a), black_box(&b), 1.0))
+    });
+    c.bench_function("two tetrahedra/shared volume", |x| {
+        x.iter(|| {
+            let frame = TetFrame::new(black_box(&b));
+            ndda_contact::overlap::overlap_of(black_box(&a), &frame, &a[0]).volume_and_moment()
+        })
+    });
+}
+
 fn evaluation(c: &mut Criterion) {
     for n in [4, 16] {
         let blocks = pressed(n);
@@ -57,6 +72,8 @@ fn evaluation(c: &mut Criterion) {
             let (mut force, mut shear) = (vec![Vec3::zeros(); nodes], vec![Vec3::zeros(); nodes]);
             let mut stiffness = vec![0.0; nodes];
             let name = format!("evaluation/{n}x{n} facets{}", if friction { ", friction" } else { "" });
+            let answer = ndda_contact::testing::evaluate(&mut model, &input, &mut history).report;
+            println!("{name}: {} candidate pairs, {} overlap", answer.candidate_pairs, answer.contact_pairs);
             c.bench_function(&name, |b| {
                 b.iter(|| {
                     let mut output = ContactOutput {
@@ -75,5 +92,5 @@ fn evaluation(c: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, one_pair, evaluation);
+criterion_group!(benches, one_pair, two_tetrahedra, evaluation);
 criterion_main!(benches);

@@ -9,9 +9,7 @@ use rayon::prelude::*;
 
 use crate::candidates::{Candidates, Facet, Pair};
 use crate::clip::{Form, Polygon};
-use crate::kernel::{
-    GROUP, GroupMoments, MOST_CUTS, PairGroup, PieceGroup, Row, element_moments, piece_moments,
-};
+use crate::kernel::{GROUP, GroupMoments, MOST_CUTS, PairGroup, PieceGroup, element_moments, piece_moments};
 use crate::pair::{self, PairMoments, TetFrame};
 use crate::potential::{Field, PieceTable};
 
@@ -159,21 +157,6 @@ fn lies_in_a_plane_of(frame: &TetFrame, lambda: &[[f64; 3]; 4], normal: &Vec3) -
     let beyond = |at: &[f64; 3]| at.iter().all(|&l| l < 0.0);
     let off = |b: usize| lambda[b].iter().all(|&l| l <= 0.0) && !frame.owns_plane(b, normal);
     !lambda.iter().any(beyond) && !(0..4).any(off)
-}
-
-impl GroupMoments {
-    fn of(&self, lane: usize, area_m2: f64) -> PairMoments {
-        let at =
-            |rows: &[Row; 3]| [area_m2 * rows[0][lane], area_m2 * rows[1][lane], area_m2 * rows[2][lane]];
-        PairMoments {
-            pressure: at(&self.pressure),
-            slope: at(&self.slope),
-            target_pressure: [0, 1, 2, 3].map(|b| area_m2 * self.target_pressure[b][lane]),
-            target_slope: [0, 1, 2, 3].map(|b| area_m2 * self.target_slope[b][lane]),
-            area: area_m2 * self.area[lane],
-            depth: self.depth[lane],
-        }
-    }
 }
 
 /// Pairs of the element potential that wait for a full group.

@@ -12,6 +12,8 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
+use crate::pair::PairMoments;
+
 /// Pairs in a group; a multiple of every lane count.
 pub const GROUP: usize = 8;
 /// Cuts of a region of the element potential.
@@ -63,6 +65,22 @@ pub struct GroupMoments {
     pub depth: Row,
     /// Not zero where the pair has to be done one by one.
     pub doubtful: Row,
+}
+
+impl GroupMoments {
+    /// The integrals of one pair, on a triangle of this area [m²].
+    pub fn of(&self, lane: usize, area_m2: f64) -> PairMoments {
+        let at =
+            |rows: &[Row; 3]| [area_m2 * rows[0][lane], area_m2 * rows[1][lane], area_m2 * rows[2][lane]];
+        PairMoments {
+            pressure: at(&self.pressure),
+            slope: at(&self.slope),
+            target_pressure: [0, 1, 2, 3].map(|b| area_m2 * self.target_pressure[b][lane]),
+            target_slope: [0, 1, 2, 3].map(|b| area_m2 * self.target_slope[b][lane]),
+            area: area_m2 * self.area[lane],
+            depth: self.depth[lane],
+        }
+    }
 }
 
 /// The integrals of the element potential, φ = 4 min λᵢ, for a group of pairs.

@@ -7,8 +7,12 @@ use ndda_mesh::geometry::{TET_FACES, tet_volume, triangle_area_vector};
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::clip::region;
+use crate::kernel::{GROUP, GroupMoments, PairGroup, element_moments};
 use crate::overlap::{Linear, faces_of, overlap_of};
-use crate::pair::{TetFrame, is_outside, pair_moments};
+use crate::pair::{self, TetFrame, is_outside};
+
+/// What the processor can do; asked once.
+static ARCH: std::sync::LazyLock<pulp::Arch> = std::sync::LazyLock::new(pulp::Arch::new);
 
 /// What a pair of tetrahedra gives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -63,9 +67,8 @@ pub fn pair_forces(
     let (t, t_swapped) = oriented(&target.map(|x| x - origin), "target")?;
     let mut forces = PairForces::default();
     add_volume_integrals(&c, &t, penalty_pa, &mut forces);
-    let (mut of_c, mut of_t) = ([Vec3::zeros(); 4], [Vec3::zeros(); 4]);
-    let mut own_stiffness = add_faces(&c, &t, penalty_pa, &mut of_c, &mut of_t);
-    own_stiffness += add_faces(&t, &c, penalty_pa, &mut of_t, &mut of_c);
+    let [of_c, of_t] = nodal_forces(&c, &t, penalty_pa);
+    let own_stiffness = -penalty_pa * (slope_of_surface(&c, &t) + slope_of_surface(&t, &c));
     forces.stiffness_n_m = -own_stiffness;
     forces.force_n = of_c.iter().sum();
     forces.torque_n_m = c.iter().zip(&of_c).map(|(x, f)| x.cross(f)).sum::<Vec3>();
@@ -109,30 +112,51 @@ fn add_volume_integrals(c: &[Vec3; 4], t: &[Vec3; 4], penalty_pa: f64, forces: &
     }
 }
 
-/// Adds −k φ n of the owner's faces to both, and returns what a shift of the owner changes: −k Σ n ⊗ ∇φ dS [N/m].
-fn add_faces(
-    owner: &[Vec3; 4],
-    other: &[Vec3; 4],
-    penalty_pa: f64,
-    on_owner: &mut [Vec3; 4],
-    on_other: &mut [Vec3; 4],
-) -> Mat3 {
-    let frame = TetFrame::new(other);
-    let mut stiffness = Mat3::zeros();
-    for face in TET_FACES {
-        let corners = face.map(|i| owner[i]);
-        let area_vector = triangle_area_vector(&corners);
-        let Some(moments) = pair_moments(&corners, &area_vector, &frame) else { continue };
-        let push = -penalty_pa * area_vector.normalize();
-        for (i, w) in face.iter().zip(moments.pressure) {
-            on_owner[*i] += w * push;
+/// Nodal forces of two tetrahedra of positive volume on each other [N]: all eight faces at once, a lane each.
+pub fn nodal_forces(c: &[Vec3; 4], t: &[Vec3; 4], penalty_pa: f64) -> [[Vec3; 4]; 2] {
+    let (tets, frames) = ([c, t], [TetFrame::new(c), TetFrame::new(t)]);
+    let (mut group, mut areas) = (PairGroup::default(), [Vec3::zeros(); GROUP]);
+    for (lane, area_vector) in areas.iter_mut().enumerate() {
+        let (owner, face) = (lane / 4, TET_FACES[lane % 4]);
+        let corners = face.map(|i| tets[owner][i]);
+        *area_vector = triangle_area_vector(&corners);
+        let inside = frames[1 - owner].lambda_inside(&corners);
+        let lambda = inside.filter(|_| *area_vector != Vec3::zeros()).unwrap_or([[-1.0; 3]; 4]);
+        for (row, value) in group.lambda.as_flattened_mut().iter_mut().zip(lambda.as_flattened()) {
+            row[lane] = *value;
         }
-        for (sum, w) in on_other.iter_mut().zip(moments.target_pressure) {
+    }
+    let mut moments = GroupMoments::default();
+    element_moments(*ARCH, &group, &mut moments);
+    let mut forces = [[Vec3::zeros(); 4]; 2];
+    for (lane, area_vector) in areas.iter().enumerate().filter(|(lane, _)| group.lambda[0][0][*lane] != -1.0)
+    {
+        let (owner, face, area) = (lane / 4, TET_FACES[lane % 4], area_vector.norm());
+        let part = if moments.doubtful[lane] == 0.0 {
+            moments.of(lane, area)
+        } else {
+            let lambda = group.lambda.each_ref().map(|at| at.each_ref().map(|row| row[lane]));
+            pair::element_moments(&lambda, &[0.0; 4], area)
+        };
+        let push = -penalty_pa / area * area_vector;
+        for (i, w) in face.iter().zip(part.pressure) {
+            forces[owner][*i] += w * push;
+        }
+        for (sum, w) in forces[1 - owner].iter_mut().zip(part.target_pressure) {
             *sum -= w * push;
         }
-        stiffness -= penalty_pa * slope_of_face(&corners, &area_vector, &frame);
     }
-    stiffness
+    forces
+}
+
+/// Σ ∫ n ⊗ ∇φ dS over the owner's faces in the other.
+fn slope_of_surface(owner: &[Vec3; 4], other: &[Vec3; 4]) -> Mat3 {
+    let frame = TetFrame::new(other);
+    let of_face = |face: &[usize; 3]| {
+        let corners = face.map(|i| owner[i]);
+        slope_of_face(&corners, &triangle_area_vector(&corners), &frame)
+    };
+    TET_FACES.iter().map(of_face).sum()
 }
 
 /// ∫ n ⊗ ∇φ dS over the part of a face inside.
