@@ -11,8 +11,8 @@ use parry3d_f64::math::Vector;
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode, BvhWorkspace};
 use rayon::prelude::*;
 
+use crate::block_faces::BlockFaces;
 use crate::broad_phase::{BroadPhase, BroadScene};
-use crate::smooth_potential::{faces_of, is_convex};
 
 /// Tetrahedra of a block below which looking at all of them is quicker than a tree.
 const FEW_TETS: usize = 12;
@@ -112,7 +112,7 @@ impl OwnTree {
         let tree = (tets.len() > FEW_TETS).then(|| {
             Bvh::from_iter(BvhBuildStrategy::Binned, tets.clone().map(|t| (t - tets.start, rest_box(t))))
         });
-        Self { tree, convex: is_convex(blocks, block, &faces_of(blocks, block)), ..Self::default() }
+        Self { tree, convex: BlockFaces::new(blocks, block).convex, ..Self::default() }
     }
 
     /// Fits the rigid motion; whatever the fit, the deviation covers the rest.

@@ -20,13 +20,13 @@ use std::ops::Range;
 
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
+use crate::block_faces::BlockFaces;
 use crate::candidates::Candidates;
 use crate::facets::{FacetForce, mass_per_area, reduced, relative_velocity};
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
 use crate::integrals::Integrals;
 use crate::joints::Joints;
 use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
-use crate::smooth_potential::coplanar_faces;
 
 /// η = (ω_s Δt)² of the spring that holds a face.
 const SPRING: f64 = 0.1;
@@ -75,9 +75,9 @@ impl Faces {
         self.face_of.clear();
         let mut next = 0;
         for block in blocks.ids() {
-            let (faces, of_triangle) = coplanar_faces(blocks, block);
-            self.face_of.extend(of_triangle.iter().map(|&face| next + face as u32));
-            next += faces.len() as u32;
+            let faces = BlockFaces::new(blocks, block);
+            self.face_of.extend(faces.of_triangle.iter().map(|&face| next + face as u32));
+            next += faces.planes.len() as u32;
         }
     }
 
@@ -387,33 +387,4 @@ fn tangents(normal: &Vec3) -> [Vec3; 2] {
     let axis = [Vec3::x(), Vec3::y(), Vec3::z()][normal.iamin()];
     let first = normal.cross(&axis).normalize();
     [first, normal.cross(&first)]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::testing::{test_box, test_set};
-    use ndda_mesh::geometry::triangle_area_vector;
-
-    #[test]
-    fn a_box_has_six_faces_whatever_its_mesh() {
-        let blocks = test_set(vec![
-            test_box([0.0; 3], [1.0; 3], [3, 2, 1]),
-            test_box([2.0, 0.0, 0.0], [1.0; 3], [1, 1, 1]),
-        ]);
-        let mut faces = Faces::default();
-        faces.fit(&blocks);
-        let most = faces.face_of.iter().max().copied();
-        assert_eq!(most, Some(11));
-        for (i, corners) in blocks.triangles.iter().enumerate() {
-            let normal = triangle_area_vector(&corners.map(|n| blocks.rest_position[n.index()])).normalize();
-            for (j, other) in blocks.triangles.iter().enumerate() {
-                if faces.face_of[i] == faces.face_of[j] {
-                    let same =
-                        triangle_area_vector(&other.map(|n| blocks.rest_position[n.index()])).normalize();
-                    assert!((same - normal).norm() < 1e-12);
-                }
-            }
-        }
-    }
 }

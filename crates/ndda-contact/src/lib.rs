@@ -8,6 +8,8 @@ pub mod model;
 pub mod testing;
 
 #[cfg(feature = "potential")]
+pub mod block_faces;
+#[cfg(feature = "potential")]
 pub mod bonds;
 #[cfg(feature = "potential")]
 pub mod broad_phase;

@@ -23,6 +23,8 @@ use crate::tangent::{self, PairStiffness};
 const GRAIN_FACETS: usize = 128;
 
 /// Normal forces −k_n n ∫ φ dA on boundary triangles, both ways, and friction on top of them.
+///
+/// One model serves one set of blocks: what it learns of their rest shape at the first evaluation it keeps.
 pub struct PotentialContact {
     penalty_pa: f64,
     potential: Box<dyn ContactPotential>,

@@ -1,12 +1,9 @@
 //! The potential that grows with depth below the block's surface.
 
-use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, Vec3};
 
+use crate::block_faces::{BlockFaces, Plane};
 use crate::potential::{ContactPotential, Field, MOST_PIECES, PieceTable, PotentialError};
-
-/// Planes whose normals and offsets differ by less than this part are one face of the block.
-const SAME_PLANE: f64 = 1e-9;
 
 /// φ = depth / L₀, depth being the distance to the nearest face of the block in its rest shape; it moves and
 /// stretches with the block's nodes.
@@ -30,9 +27,9 @@ impl ContactPotential for SmoothPotential {
     fn field(&self, blocks: &BlockSet) -> Result<Field, PotentialError> {
         let mut table = PieceTable::new();
         for block in blocks.ids() {
-            let planes = faces_of(blocks, block);
-            if is_convex(blocks, block, &planes) {
-                self.add_convex(blocks, block, &planes, &mut table)?;
+            let faces = BlockFaces::new(blocks, block);
+            if faces.convex {
+                self.add_convex(blocks, block, &faces.planes, &mut table)?;
             } else {
                 self.add_concave(blocks, block, &mut table)?;
             }
@@ -53,8 +50,11 @@ impl SmoothPotential {
         for tet in blocks.tets_of(block) {
             let corners = blocks.tets[tet].map(|n| blocks.rest_position[n.index()]);
             let depth = |plane: &Plane| corners.map(|x| plane.depth_m(&x).max(0.0) / self.reference_m);
+            // A function that is nowhere below another's largest value is never the smallest.
+            let largest = |piece: &[f64; 4]| piece.iter().copied().fold(0.0, f64::max);
+            let enough = planes.iter().map(|plane| largest(&depth(plane))).fold(f64::INFINITY, f64::min);
             pieces.clear();
-            pieces.extend(planes.iter().map(depth));
+            pieces.extend(planes.iter().map(depth).filter(|piece| piece.iter().any(|&d| d <= enough)));
             keep_the_smallest(&pieces, &mut kept);
             if kept.len() > MOST_PIECES {
                 let (block, tet) = (blocks.names[block.index()].clone(), TetId(tet as u32));
@@ -83,59 +83,6 @@ impl SmoothPotential {
         }
         Ok(())
     }
-}
-
-/// A plane of the surface, n·x = d, n outward.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
-    /// n.
-    pub normal: Vec3,
-    /// A point of it [m].
-    pub point: Vec3,
-}
-
-impl Plane {
-    /// Distance below it [m].
-    pub fn depth_m(&self, x: &Vec3) -> f64 {
-        self.normal.dot(&(self.point - x))
-    }
-}
-
-/// The planes of a block's boundary triangles in the rest shape, each once.
-pub fn faces_of(blocks: &BlockSet, block: BlockId) -> Vec<Plane> {
-    coplanar_faces(blocks, block).0
-}
-
-/// The planes of a block's boundary triangles in the rest shape, and which of them each triangle is in.
-pub fn coplanar_faces(blocks: &BlockSet, block: BlockId) -> (Vec<Plane>, Vec<usize>) {
-    let size = size_of(blocks, block);
-    let (mut planes, mut of_triangle) = (Vec::<Plane>::new(), Vec::new());
-    for triangle in blocks.triangles_of(block) {
-        let corners = blocks.triangles[triangle].map(|n| blocks.rest_position[n.index()]);
-        let normal = triangle_area_vector(&corners).normalize();
-        let plane = Plane { normal, point: corners[0] };
-        let same = |other: &Plane| {
-            (other.normal - normal).norm() <= SAME_PLANE
-                && other.depth_m(&corners[0]).abs() <= SAME_PLANE * size
-        };
-        let known = planes.iter().position(same);
-        of_triangle.push(known.unwrap_or(planes.len()));
-        if known.is_none() {
-            planes.push(plane);
-        }
-    }
-    (planes, of_triangle)
-}
-
-/// Whether no node is above any face.
-pub fn is_convex(blocks: &BlockSet, block: BlockId, planes: &[Plane]) -> bool {
-    let most = SAME_PLANE * size_of(blocks, block);
-    let nodes = &blocks.rest_position[blocks.nodes_of(block)];
-    planes.iter().all(|plane| nodes.iter().all(|x| plane.depth_m(x) >= -most))
-}
-
-fn size_of(blocks: &BlockSet, block: BlockId) -> f64 {
-    ndda_mesh::geometry::Aabb::around(blocks.rest_position[blocks.nodes_of(block)].iter()).diagonal()
 }
 
 /// Drops functions that another is nowhere above: they are never the only smallest.

@@ -1,6 +1,6 @@
 //! One pair of tetrahedra against exact rational arithmetic, over families made to be hard.
 //!
-//! `NDDA_CASES` sets the number of pairs (default 400): `NDDA_CASES=100000 cargo test --release -p ndda-contact
+//! `NDDA_CASES` sets the number of pairs (default 240): `NDDA_CASES=100000 cargo test --release -p ndda-contact
 //! --test exact -- --nocapture` prints the worst error of each family.
 #![cfg(feature = "potential")]
 
@@ -312,7 +312,7 @@ fn errors(c: &[Vec3; 4], t: &[Vec3; 4]) -> Option<[f64; 3]> {
 
 #[test]
 fn volume_energy_and_force_are_those_of_exact_arithmetic() {
-    let cases: usize = std::env::var("NDDA_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(400);
+    let cases: usize = std::env::var("NDDA_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(240);
     let mut random = Random(20_261_121);
     let mut worst = [[0.0f64; 3]; FAMILIES.len()];
     let mut pairs = [0; FAMILIES.len()];
