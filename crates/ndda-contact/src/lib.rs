@@ -56,6 +56,8 @@ pub mod tangent;
 #[cfg(feature = "potential")]
 pub mod tet_pair;
 #[cfg(feature = "potential")]
+mod twofold;
+#[cfg(feature = "potential")]
 pub mod velocity_friction;
 #[cfg(feature = "potential")]
 pub mod volume_potential;

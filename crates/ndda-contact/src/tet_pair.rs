@@ -3,13 +3,15 @@
 //! W = k ∫_{c∩t} (φ_c + φ_t) dV, φ = 4 min λᵢ. The contactor feels −k ∮ φ_t n dS over its faces in the target, the
 //! target −k ∮ φ_c n dS over its own faces in the contactor, and each the opposite of the other's (eq 16).
 
-use ndda_mesh::geometry::{TET_FACES, tet_volume, triangle_area_vector};
+use ndda_mesh::geometry::{TET_FACES, triangle_area_vector};
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::clip::region;
 use crate::kernel::{GROUP, GroupMoments, PairGroup, element_moments};
-use crate::overlap::{Linear, faces_of, overlap_of};
+pub use crate::overlap::PairError;
+use crate::overlap::ScaledPair;
 use crate::pair::{self, TetFrame, is_outside};
+use crate::twofold::Barycentric;
 
 /// What the processor can do; asked once.
 static ARCH: std::sync::LazyLock<pulp::Arch> = std::sync::LazyLock::new(pulp::Arch::new);
@@ -28,22 +30,24 @@ pub struct PairForces {
     /// Nodal forces ∫ N dF of the contactor's corners, then of the target's [N].
     pub nodal_n: [Vec3; 8],
     /// ∂f/∂x_t: change of the force on the contactor when the target is shifted [N/m]. That of the contactor's own
-    /// shift is its opposite.
+    /// shift is its opposite. A surface piece keeps its shape in its own body and φ vanishes on the rim that the
+    /// other cuts, so only φ changes: k ∫ n ⊗ ∇φ_t dS over c's faces in t, and the same of t's faces in c.
     pub stiffness_n_m: Mat3,
 }
 
-/// Why a pair has no forces.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PairError {
-    /// A coordinate or the penalty is infinite or not a number, or too large to compute with.
-    #[error("{0} is not finite, or too large to compute with")]
-    NotFinite(&'static str),
-    /// A tetrahedron without volume has no barycentric coordinates.
-    #[error("the {0} is flat: its volume is zero to rounding")]
-    Flat(&'static str),
-    /// The penalty must push.
-    #[error("penalty_pa = {0}: must be positive")]
-    Penalty(f64),
+impl PairForces {
+    /// Largest singular value of [`stiffness_n_m`](Self::stiffness_n_m) [N/m].
+    pub fn largest_stiffness_n_m(&self) -> f64 {
+        let largest = self.stiffness_n_m.amax();
+        // Squares of the entries would leave the range of f64.
+        if largest > 0.0 { largest * (self.stiffness_n_m / largest).singular_values().max() } else { 0.0 }
+    }
+
+    fn is_finite(&self) -> bool {
+        let vectors = self.nodal_n.iter().chain([&self.force_n, &self.torque_n_m]);
+        let numbers = vectors.flat_map(|v| v.iter()).chain(self.stiffness_n_m.iter());
+        numbers.chain([&self.energy_j]).all(|v| v.is_finite()) && self.largest_stiffness_n_m().is_finite()
+    }
 }
 
 /// Forces, energy, volume and stiffness of a pair. Corners may be in either order; results keep the caller's.
@@ -61,67 +65,49 @@ pub fn pair_forces(
     if penalty_pa.is_infinite() {
         return Err(PairError::NotFinite("penalty_pa"));
     }
-    // From here on coordinates are local: map coordinates lose no digits, and the shift is exact for close corners.
-    let origin = contactor[0];
-    let (c, c_swapped) = oriented(&contactor.map(|x| x - origin), "contactor")?;
-    let (t, t_swapped) = oriented(&target.map(|x| x - origin), "target")?;
-    let mut forces = PairForces::default();
-    add_volume_integrals(&c, &t, penalty_pa, &mut forces);
-    let [of_c, of_t] = nodal_forces(&c, &t, penalty_pa);
-    let own_stiffness = -penalty_pa * (slope_of_surface(&c, &t) + slope_of_surface(&t, &c));
-    forces.stiffness_n_m = -own_stiffness;
-    forces.force_n = of_c.iter().sum();
-    forces.torque_n_m = c.iter().zip(&of_c).map(|(x, f)| x.cross(f)).sum::<Vec3>();
-    forces.torque_n_m += origin.cross(&forces.force_n);
-    forces.nodal_n[..4].copy_from_slice(&in_callers_order(of_c, c_swapped));
-    forces.nodal_n[4..].copy_from_slice(&in_callers_order(of_t, t_swapped));
-    let sound = forces.energy_j.is_finite()
-        && forces.torque_n_m.iter().all(|t| t.is_finite())
-        && forces.nodal_n.iter().flat_map(|f| f.iter()).all(|f| f.is_finite())
-        && forces.stiffness_n_m.iter().all(|k| k.is_finite());
-    if sound { Ok(forces) } else { Err(PairError::NotFinite("a result")) }
+    let pair = ScaledPair::new(contactor, target)?;
+    let overlap = pair.overlap()?;
+    let energy_j = (overlap.phi_contactor_m3 + overlap.phi_target_m3) * penalty_pa;
+    let mut forces = PairForces { volume_m3: overlap.volume_m3, energy_j, ..PairForces::default() };
+    if pair.may_overlap() {
+        add_forces(&pair, penalty_pa, &mut forces);
+    }
+    if forces.is_finite() { Ok(forces) } else { Err(PairError::NotFinite("a result")) }
 }
 
-/// The corners with positive volume, and whether two of them had to be swapped.
-fn oriented(corners: &[Vec3; 4], which: &'static str) -> Result<([Vec3; 4], bool), PairError> {
-    let edges = [1, 2, 3].map(|i| (corners[i] - corners[0]).norm());
-    let scale = edges[0] * edges[1] * edges[2] / 6.0;
-    let volume = tet_volume(corners);
-    if !volume.is_finite() || !scale.is_finite() {
-        return Err(PairError::NotFinite(which));
-    }
-    if volume.abs() <= 8.0 * f64::EPSILON * scale || !volume.is_normal() {
-        return Err(PairError::Flat(which));
-    }
-    let [a, b, c, d] = *corners;
-    Ok(if volume > 0.0 { (*corners, false) } else { ([b, a, c, d], true) })
+fn add_forces(pair: &ScaledPair, penalty_pa: f64, forces: &mut PairForces) {
+    let ([c, t], unit_m) = (&pair.corners, pair.unit_m);
+    let (mut of_c, mut of_t) = ([Vec3::zeros(); 4], [Vec3::zeros(); 4]);
+    let own_stiffness = add_faces(c, t, &mut of_c, &mut of_t) + add_faces(t, c, &mut of_t, &mut of_c);
+    forces.stiffness_n_m = -own_stiffness * unit_m * penalty_pa;
+    let [of_c, of_t] = [of_c, of_t].map(|nodal| nodal.map(|f| f * unit_m * unit_m * penalty_pa));
+    forces.force_n = of_c.iter().sum();
+    // About the contactor's corner, then about the caller's origin: map coordinates lose no digits.
+    let arms = c.iter().zip(&of_c).map(|(x, f)| ((x - c[0]) * unit_m).cross(f));
+    forces.torque_n_m = arms.sum::<Vec3>() + (c[0] * unit_m).cross(&forces.force_n);
+    forces.nodal_n[..4].copy_from_slice(&in_callers_order(of_c, pair.swapped[0]));
+    forces.nodal_n[4..].copy_from_slice(&in_callers_order(of_t, pair.swapped[1]));
 }
 
 fn in_callers_order([a, b, c, d]: [Vec3; 4], swapped: bool) -> [Vec3; 4] {
     if swapped { [b, a, c, d] } else { [a, b, c, d] }
 }
 
-fn add_volume_integrals(c: &[Vec3; 4], t: &[Vec3; 4], penalty_pa: f64, forces: &mut PairForces) {
-    let (frame_c, frame_t) = (TetFrame::new(c), TetFrame::new(t));
-    let overlap = overlap_of(c, &frame_t, &Vec3::zeros());
-    let four = |f: Linear| Linear { value: 4.0 * f.value, gradient: 4.0 * f.gradient };
-    let phi = |frame: &TetFrame| overlap.integral_of_smallest(&faces_of(frame, &Vec3::zeros()).map(four));
-    forces.volume_m3 = overlap.volume_and_moment().0.max(0.0);
-    if !overlap.is_empty() {
-        forces.energy_j = penalty_pa * (phi(&frame_c) + phi(&frame_t));
-    }
-}
-
 /// Nodal forces of two tetrahedra of positive volume on each other [N]: all eight faces at once, a lane each.
+///
+/// This is the kernel that blocks use. λ is rounded to f64 there: the forces of a flat tetrahedron along a face are off
+/// by ε times its width over its height, where [`pair_forces`] is right to rounding.
 pub fn nodal_forces(c: &[Vec3; 4], t: &[Vec3; 4], penalty_pa: f64) -> [[Vec3; 4]; 2] {
     let (tets, frames) = ([c, t], [TetFrame::new(c), TetFrame::new(t)]);
     let (mut group, mut areas) = (PairGroup::default(), [Vec3::zeros(); GROUP]);
+    let mut is_inside = [false; GROUP];
     for (lane, area_vector) in areas.iter_mut().enumerate() {
         let (owner, face) = (lane / 4, TET_FACES[lane % 4]);
         let corners = face.map(|i| tets[owner][i]);
         *area_vector = triangle_area_vector(&corners);
-        let inside = frames[1 - owner].lambda_inside(&corners);
-        let lambda = inside.filter(|_| *area_vector != Vec3::zeros()).unwrap_or([[-1.0; 3]; 4]);
+        let inside = frames[1 - owner].lambda_inside(&corners).filter(|_| *area_vector != Vec3::zeros());
+        is_inside[lane] = inside.is_some();
+        let lambda = inside.unwrap_or([[-1.0; 3]; 4]);
         for (row, value) in group.lambda.as_flattened_mut().iter_mut().zip(lambda.as_flattened()) {
             row[lane] = *value;
         }
@@ -129,8 +115,7 @@ pub fn nodal_forces(c: &[Vec3; 4], t: &[Vec3; 4], penalty_pa: f64) -> [[Vec3; 4]
     let mut moments = GroupMoments::default();
     element_moments(*ARCH, &group, &mut moments);
     let mut forces = [[Vec3::zeros(); 4]; 2];
-    for (lane, area_vector) in areas.iter().enumerate().filter(|(lane, _)| group.lambda[0][0][*lane] != -1.0)
-    {
+    for (lane, area_vector) in areas.iter().enumerate().filter(|(lane, _)| is_inside[*lane]) {
         let (owner, face, area) = (lane / 4, TET_FACES[lane % 4], area_vector.norm());
         let part = if moments.doubtful[lane] == 0.0 {
             moments.of(lane, area)
@@ -149,32 +134,48 @@ pub fn nodal_forces(c: &[Vec3; 4], t: &[Vec3; 4], penalty_pa: f64) -> [[Vec3; 4]
     forces
 }
 
-/// Σ ∫ n ⊗ ∇φ dS over the owner's faces in the other.
-fn slope_of_surface(owner: &[Vec3; 4], other: &[Vec3; 4]) -> Mat3 {
-    let frame = TetFrame::new(other);
-    let of_face = |face: &[usize; 3]| {
+/// Adds −φ n of the owner's faces to both, and returns what a shift of the owner changes: −Σ ∫ n ⊗ ∇φ dS.
+fn add_faces(
+    owner: &[Vec3; 4],
+    other: &[Vec3; 4],
+    on_owner: &mut [Vec3; 4],
+    on_other: &mut [Vec3; 4],
+) -> Mat3 {
+    let of_other = Barycentric::new(other);
+    let mut stiffness = Mat3::zeros();
+    for face in TET_FACES {
         let corners = face.map(|i| owner[i]);
-        slope_of_face(&corners, &triangle_area_vector(&corners), &frame)
-    };
-    TET_FACES.iter().map(of_face).sum()
+        let lambda = [0, 1, 2, 3].map(|b| corners.map(|x| of_other.at(b, &x)));
+        if is_outside(&lambda) {
+            continue;
+        }
+        let area_vector = triangle_area_vector(&corners);
+        // Over a face of unit area; the area comes with the normal.
+        let moments = pair::element_moments(&lambda, &[0.0; 4], 1.0);
+        for (i, w) in face.iter().zip(moments.pressure) {
+            on_owner[*i] -= w * area_vector;
+        }
+        for (sum, w) in on_other.iter_mut().zip(moments.target_pressure) {
+            *sum += w * area_vector;
+        }
+        let slope = |b: usize| part_in_region(&lambda, b) * 4.0 * of_other.gradient(b);
+        stiffness -= area_vector * (0..4).map(slope).sum::<Vec3>().transpose();
+    }
+    stiffness
 }
 
-/// ∫ n ⊗ ∇φ dS over the part of a face inside.
-fn slope_of_face(corners: &[Vec3; 3], area_vector: &Vec3, frame: &TetFrame) -> Mat3 {
-    let lambda = frame.lambda(corners);
-    if is_outside(&lambda) {
-        return Mat3::zeros();
-    }
-    let of_region = |i: usize| {
-        let part: f64 = region(&lambda, i).fan().map(|(_, twice)| twice).sum();
-        part * area_vector * (4.0 * frame.gradients()[i]).transpose()
-    };
-    (0..4).map(of_region).sum()
+/// The part of a face's area where λ_b ≥ 0 is the smallest.
+fn part_in_region(lambda: &[[f64; 3]; 4], b: usize) -> f64 {
+    region(lambda, b).fan().map(|(_, twice)| twice).sum()
 }
 
 #[cfg(test)]
 mod tests {
+    use ndda_mesh::BlockMesh;
+
     use super::*;
+    use crate::element_pairs;
+    use crate::testing::test_set;
 
     fn tets() -> ([Vec3; 4], [Vec3; 4]) {
         let c = [[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.1, 1.1, 0.0], [0.2, 0.1, 0.9]].map(Vec3::from);
@@ -198,6 +199,51 @@ mod tests {
         }
         let asymmetry = (here.stiffness_n_m - here.stiffness_n_m.transpose()).norm();
         assert!(asymmetry < 1e-12 * here.stiffness_n_m.norm());
+    }
+
+    #[test]
+    fn the_kernel_and_the_calculator_agree_also_where_a_barycentric_coordinate_is_minus_one() {
+        let t = [Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
+        // λ₀ = 1 − x − y − z is −1 there.
+        let far = Vec3::new(1.0, 0.5, 0.5);
+        let near = [Vec3::new(0.1, 0.1, 0.1), Vec3::new(0.2, 0.5, 0.1), Vec3::new(0.1, 0.2, 0.6)];
+        for c in [[near[0], far, near[1], near[2]], [far, near[0], near[2], near[1]]] {
+            let found = pair_forces(&c, &t, 1.0).unwrap();
+            let fast = nodal_forces(&c, &t, 1.0);
+            for (a, b) in found.nodal_n.iter().zip(fast.as_flattened()) {
+                assert!((a - b).norm() < 1e-15, "{a:?} and {b:?} for {c:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn nodal_forces_are_those_of_the_slow_twin_and_turn_the_body_by_the_torque() {
+        let (c, t) = tets();
+        let mesh =
+            |x: [Vec3; 4]| BlockMesh { nodes: x.to_vec(), tets: vec![[0, 1, 2, 3]], ..BlockMesh::default() };
+        let blocks = test_set(vec![mesh(c), mesh(t)]);
+        let expected = element_pairs::forces(&blocks, &blocks.rest_position, 3.0);
+        let found = pair_forces(&c, &t, 3.0).unwrap();
+        assert!(found.nodal_n.iter().zip(&expected).all(|(a, b)| (a - b).norm() < 1e-14));
+        let torque: Vec3 = c.iter().zip(&found.nodal_n).map(|(x, f)| x.cross(f)).sum();
+        assert!((torque - found.torque_n_m).norm() < 1e-15);
+        let far = Vec3::new(4.5e6, 4.2e6, -4.5e6);
+        let away = pair_forces(&c.map(|x| x + far), &t.map(|x| x + far), 3.0).unwrap();
+        // The corners there are rounded to 2⁻³⁰ m.
+        assert!((away.torque_n_m - far.cross(&away.force_n) - found.torque_n_m).norm() < 1e-8);
+    }
+
+    #[test]
+    fn a_pair_of_any_size_that_f64_can_hold_is_answered() {
+        let (c, t) = tets();
+        let here = pair_forces(&c, &t, 1.0).unwrap();
+        for scale in [1e-100, 1e-30, 1e30, 1e100] {
+            let there = pair_forces(&c.map(|x| x * scale), &t.map(|x| x * scale), 1.0).unwrap();
+            assert!((there.volume_m3 / scale / scale / scale - here.volume_m3).abs() < 1e-15);
+            assert!((there.force_n / scale / scale - here.force_n).norm() < 1e-15);
+            let stiffness = there.largest_stiffness_n_m() / scale;
+            assert!((stiffness - here.largest_stiffness_n_m()).abs() < 1e-13);
+        }
     }
 
     #[test]
