@@ -6,10 +6,16 @@
 //! out   {"volume":…,"energy":…,"force":[…],"torque":[…],"nodal":[[…],… eight],"stiffness_offdiagonal":…}
 //! ```
 //!
-//! Element potential φ = 4 min λᵢ; force and torque (about the origin) on the contactor; nodal forces ∫ N dF of the
-//! contactor's corners, then of the target's. `stiffness_offdiagonal` is the largest singular value of ∂f/∂x_t, the
-//! change of the contactor's force with a shift of the target [N/m]. A line that has no answer gives
-//! {"line":n,"error":"…"} and the rest goes on; blank lines are skipped.
+//! Element potential φ = 4 min λᵢ, W = k ∫ (φ_c + φ_t) dV over the overlap. Lengths in m, k in Pa: volume [m³], energy
+//! W [J], force [N] and torque [N m] on the contactor, the torque about the origin of the coordinates; nodal forces
+//! ∫ N dF [N] of the contactor's corners, then of the target's, in the order in which they came. Corners may have
+//! either orientation.
+//!
+//! `stiffness_offdiagonal` [N/m] is the largest singular value (the spectral norm) of the 3 × 3 block ∂f_c/∂x_t: the
+//! change of the contactor's force when the target is shifted as a whole. φ vanishes where the other body cuts a face,
+//! so only φ changes on the pieces of the surface: k Σ ∫ n ⊗ ∇φ_t dS over c's faces in t, and the same of t's in c.
+//!
+//! A line that has no answer gives {"line":n,"error":"…"} and the rest goes on; blank lines count and are skipped.
 
 use std::io::{self, BufRead, Write};
 
@@ -27,10 +33,8 @@ struct Pair {
 }
 
 /// The answer to one line; `number` counts from 1.
-fn answer(number: usize, line: &[u8]) -> Value {
-    let text = std::str::from_utf8(line).map_err(|e| format!("not UTF-8: {e}"));
-    let pair = text.and_then(|text| serde_json::from_str::<Pair>(text).map_err(|e| e.to_string()));
-    let forces = pair.and_then(|pair| {
+pub fn answer(number: usize, line: &[u8]) -> Value {
+    let forces = read(line).and_then(|pair| {
         let [contactor, target] = [pair.contactor, pair.target].map(|corners| corners.map(Vec3::from));
         pair_forces(&contactor, &target, pair.penalty_pa).map_err(|e| e.to_string())
     });
@@ -38,6 +42,15 @@ fn answer(number: usize, line: &[u8]) -> Value {
         Ok(forces) => written(&forces),
         Err(error) => json!({ "line": number, "error": error }),
     }
+}
+
+fn read(line: &[u8]) -> Result<Pair, String> {
+    let text = std::str::from_utf8(line).map_err(|e| format!("not UTF-8: {e}"))?;
+    // Three values in a row would otherwise pass for the three fields.
+    if !text.trim_start().starts_with('{') {
+        return Err("not a JSON object".to_owned());
+    }
+    serde_json::from_str(text).map_err(|e| e.to_string())
 }
 
 fn written(forces: &PairForces) -> Value {
@@ -48,7 +61,7 @@ fn written(forces: &PairForces) -> Value {
         "force": numbers(&forces.force_n),
         "torque": numbers(&forces.torque_n_m),
         "nodal": forces.nodal_n.iter().map(numbers).collect::<Vec<_>>(),
-        "stiffness_offdiagonal": forces.stiffness_n_m.singular_values().max(),
+        "stiffness_offdiagonal": forces.largest_stiffness_n_m(),
     })
 }
 
