@@ -1,11 +1,15 @@
 //! The broad phase of a pile of cubes, nearly at rest: keeping the list, making it, and the contact stage beside it.
 #![allow(missing_docs)] // criterion's macro makes public functions
 
+mod twins;
+
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use ndda_contact::candidates::Candidates;
 use ndda_contact::testing::{test_box, test_set};
 use ndda_contact::{ContactHistory, ContactInput, ContactModel, ContactOutput, PotentialContact};
+use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockSet, Vec3};
+use twins::{BoxPairs, Grid, Sweep, Tree};
 
 /// n³ unit cubes of six tetrahedra in columns, each 1e-4 deep in the one below and 0.02 from its neighbours.
 fn pile(n: usize) -> BlockSet {
@@ -48,5 +52,66 @@ fn piles(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, piles);
+/// n³ boxes of blocks in a pile: about 26 neighbours each; with `mixed`, sizes from 1 to 1000 at random places instead,
+/// as many of each decade.
+fn boxes(n: usize, mixed: bool) -> Vec<Aabb> {
+    let mut seed = 1u64;
+    let mut random = move || {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let one = |k: usize| {
+        let cell = Vec3::new((k % n) as f64, (k / n % n) as f64, (k / (n * n)) as f64);
+        let size = if mixed { 10f64.powf(0.5 - 3.0 * random()) } else { 1.0 };
+        let jitter = if mixed { n as f64 } else { 0.02 };
+        let corner = if mixed { Vec3::zeros() } else { cell };
+        let corner = corner + jitter * Vec3::new(random(), random(), random());
+        Aabb { min: corner, max: corner.add_scalar(size) }.inflated(if mixed { 0.0 } else { 0.025 })
+    };
+    (0..n * n * n).map(one).collect()
+}
+
+fn block_level(c: &mut Criterion) {
+    for mixed in [false, true] {
+        let mut group = c.benchmark_group(if mixed { "mixed boxes" } else { "boxes" });
+        group.sample_size(10);
+        for n in [10usize, 22, 46] {
+            let boxes = boxes(n, mixed);
+            let (mut pairs, mut expected) = (Vec::new(), Vec::new());
+            Tree::default().find(&boxes, &mut expected);
+            expected.sort_unstable();
+            println!(
+                "{} boxes, {:.1} neighbours",
+                boxes.len(),
+                2.0 * expected.len() as f64 / boxes.len() as f64
+            );
+            let methods: [(&str, Box<dyn BoxPairs>); 3] = [
+                ("sort and sweep", Box::new(Sweep::default())),
+                ("uniform grid", Box::new(Grid::default())),
+                ("tree", Box::new(Tree::default())),
+            ];
+            for (name, mut method) in methods {
+                method.find(&boxes, &mut pairs);
+                pairs.sort_unstable();
+                assert!(pairs == expected, "{name} finds other pairs");
+                group.bench_function(BenchmarkId::new(name, boxes.len()), |b| {
+                    b.iter(|| method.find(&boxes, &mut pairs))
+                });
+            }
+            let mut tree = Tree::default();
+            tree.find(&boxes, &mut pairs);
+            let (middle, mut there) = (boxes.len() / 2 + n / 2 * (n + 1), false);
+            group.bench_function(BenchmarkId::new("tree, one box moved", boxes.len()), |b| {
+                b.iter(|| {
+                    there = !there;
+                    let bounds = &boxes[middle];
+                    tree.renew_one(middle, &if there { bounds.inflated(0.1) } else { *bounds })
+                })
+            });
+        }
+        group.finish();
+    }
+}
+
+criterion_group!(benches, block_level, piles);
 criterion_main!(benches);
