@@ -17,8 +17,8 @@ use crate::smooth_potential::{faces_of, is_convex};
 const GRAIN_BLOCKS: usize = 16;
 /// The same for boxes.
 const GRAIN_BOXES: usize = 2048;
-/// Part of the blocks, 1 / this, from which placing them all at once is quicker than one by one.
-const MANY: usize = 16;
+/// Part of the blocks, 1 / this, beyond which placing them all at once is quicker than one by one.
+const MANY: usize = 4;
 
 /// The default broad phase.
 #[derive(Default)]
@@ -102,7 +102,7 @@ impl BroadPhase for TreeBroadPhase {
         }
         self.is_renewed.fill(false);
         renewed.iter().for_each(|block| self.is_renewed[block.index()] = true);
-        let many = renewed.len() > scene.blocks.len() / MANY;
+        let many = MANY * renewed.len() > scene.blocks.len();
         self.is_near.fill(many);
         if many {
             self.place_all(scene);
