@@ -3,32 +3,37 @@
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
 
-/// Blocks where they are.
+/// Blocks where they were when they were last looked at.
 #[derive(Clone, Copy, Debug)]
 pub struct BroadScene<'a> {
     /// Topology and rest shape.
     pub blocks: &'a BlockSet,
     /// Position of each node [m].
     pub position: &'a [Vec3],
-    /// How far a node may move while the answer is in use [m].
-    pub margin_m: f64,
+    /// How far the nodes of each block may move while the answer is in use [m].
+    pub margin_m: &'a [f64],
 }
 
 impl BroadScene<'_> {
-    /// Box around nodes, with the margin.
-    pub fn box_around(&self, nodes: &[NodeId]) -> Aabb {
-        Aabb::around(nodes.iter().map(|n| &self.position[n.index()])).inflated(self.margin_m)
+    /// Box around a boundary triangle, with the margin of its block.
+    pub fn triangle_box(&self, triangle: usize) -> Aabb {
+        let block = self.blocks.triangle_block[triangle];
+        self.around(&self.blocks.triangles[triangle]).inflated(self.margin_m[block.index()])
     }
 
-    /// Box around a block, with the margin.
+    /// Box around a tetrahedron, with the margin of its block.
+    pub fn tet_box(&self, tet: usize) -> Aabb {
+        let block = self.blocks.tet_block[tet];
+        self.around(&self.blocks.tets[tet]).inflated(self.margin_m[block.index()])
+    }
+
+    /// Box around a block, with its margin.
     pub fn block_box(&self, block: BlockId) -> Aabb {
-        Aabb::around(&self.position[self.blocks.nodes_of(block)]).inflated(self.margin_m)
+        Aabb::around(&self.position[self.blocks.nodes_of(block)]).inflated(self.margin_m[block.index()])
     }
 
-    /// Whether the boxes of a triangle and a tetrahedron, with their margins, touch.
-    pub fn boxes_touch(&self, triangle: usize, tet: usize) -> bool {
-        let triangle = self.box_around(&self.blocks.triangles[triangle]);
-        triangle.touches(&self.box_around(&self.blocks.tets[tet]))
+    fn around(&self, nodes: &[NodeId]) -> Aabb {
+        Aabb::around(nodes.iter().map(|n| &self.position[n.index()]))
     }
 
     /// Whether a triangle and a tetrahedron of one block are too near each other at rest to be contact later: they
@@ -42,13 +47,24 @@ impl BroadScene<'_> {
     }
 }
 
+/// Numbers of blocks, nodes, tetrahedra and boundary triangles: a set with others is another set.
+pub fn shape_of(blocks: &BlockSet) -> [usize; 4] {
+    [blocks.len(), blocks.rest_position.len(), blocks.tets.len(), blocks.triangles.len()]
+}
+
 /// Finds the pairs of a boundary triangle and a tetrahedron that may overlap before a node has moved by the margin.
 ///
 /// Contract (checked by [`check_broad_phase`](crate::testing::check_broad_phase)): no such pair of two blocks is
 /// missed, nor one of two far parts of a concave block; each pair comes once, and neighbours in one block never.
 pub trait BroadPhase: Send {
-    /// Replaces `pairs`, in any order.
-    fn find_pairs(&mut self, scene: &BroadScene, pairs: &mut Vec<(TriangleId, TetId)>);
+    /// Brings `pairs`, the answer to the last call, up to date after the blocks `renewed` (ascending; in the first
+    /// call all of them) were given other positions or margins, and says whether they changed. Sorted.
+    fn find_pairs(
+        &mut self,
+        scene: &BroadScene,
+        renewed: &[BlockId],
+        pairs: &mut Vec<(TriangleId, TetId)>,
+    ) -> bool;
 }
 
 /// The definition, in O(triangles × tetrahedra); oracle of tests and baseline of benches.
@@ -56,16 +72,24 @@ pub trait BroadPhase: Send {
 pub struct AllPairs;
 
 impl BroadPhase for AllPairs {
-    fn find_pairs(&mut self, scene: &BroadScene, pairs: &mut Vec<(TriangleId, TetId)>) {
+    fn find_pairs(
+        &mut self,
+        scene: &BroadScene,
+        _renewed: &[BlockId],
+        pairs: &mut Vec<(TriangleId, TetId)>,
+    ) -> bool {
         pairs.clear();
         let blocks = scene.blocks;
+        let tet_boxes: Vec<Aabb> = (0..blocks.tets.len()).map(|tet| scene.tet_box(tet)).collect();
         for i in 0..blocks.triangles.len() {
-            for j in 0..blocks.tets.len() {
+            let triangle = scene.triangle_box(i);
+            for (j, tet) in tet_boxes.iter().enumerate() {
                 let one_block = blocks.triangle_block[i] == blocks.tet_block[j];
-                if scene.boxes_touch(i, j) && !(one_block && scene.are_neighbours(i, j)) {
+                if triangle.touches(tet) && !(one_block && scene.are_neighbours(i, j)) {
                     pairs.push((TriangleId(i as u32), TetId(j as u32)));
                 }
             }
         }
+        true
     }
 }

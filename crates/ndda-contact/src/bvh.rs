@@ -1,34 +1,63 @@
-//! Two levels of trees: blocks in space, and the tetrahedra of each block in its own frame.
+//! Two levels of trees: blocks in space, and the elements of each block in its own frame.
 //!
-//! The tree of a block is built once, from its rest shape. A triangle of another block is carried into that frame by
-//! the inverse of the block's rigid motion x ≈ R X + c; what the block deforms is a margin on top. The tree over the
-//! blocks is rebuilt in its own memory.
+//! A block that has not moved on keeps its pairs with all others that have not; one that has takes its leaf of the
+//! tree along. The tree is rebuilt, in its own memory, when as many leaves have moved as there are. Cells of a uniform
+//! grid find all pairs of boxes a few times quicker, but have to be filled anew when one box has moved.
 
 use ndda_mesh::geometry::Aabb;
-use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
-use parry3d_f64::bounding_volume::Aabb as ParryAabb;
-use parry3d_f64::math::Vector;
-use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode, BvhWorkspace};
+use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId};
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
-use crate::broad_phase::{BroadPhase, BroadScene};
+use crate::broad_phase::{BroadPhase, BroadScene, shape_of};
+use crate::own_trees::{OwnTrees, node_touches, to_parry};
 
-/// Tetrahedra of a block below which looking at all of them is quicker than a tree.
-const FEW_TETS: usize = 12;
 /// Blocks below which a second thread costs more than it brings.
 const GRAIN_BLOCKS: usize = 16;
 /// The same for boxes.
 const GRAIN_BOXES: usize = 2048;
+/// Part of the blocks, 1 / this, beyond which placing them all at once is quicker than one by one.
+const MANY: usize = 4;
 
 /// The default broad phase.
 #[derive(Default)]
 pub struct TreeBroadPhase {
-    own: Vec<OwnTree>,
+    own: Vec<Option<Box<OwnTrees>>>,
+    is_convex: Vec<bool>,
     boxes: Boxes,
     tree: Bvh,
     workspace: BvhWorkspace,
-    found: Vec<Vec<(TriangleId, TetId)>>,
+    /// Leaves moved since the tree was rebuilt.
+    displaced: usize,
+    is_renewed: Vec<bool>,
+    /// Blocks that touched a renewed one before, or do now.
+    is_near: Vec<bool>,
+    found: Vec<Found>,
+    /// Of the set that all this is about.
+    shape: [usize; 4],
+}
+
+/// The pairs of the triangles of one block, sorted.
+#[derive(Default)]
+struct Found {
+    pairs: Vec<(TriangleId, TetId)>,
+    /// Those of them with a renewed block, on either side.
+    fresh: Vec<(TriangleId, TetId)>,
+    changed: bool,
+}
+
+impl Found {
+    /// Puts the fresh pairs in the place of those that `is_stale`.
+    fn merge(&mut self, is_stale: impl Fn(&(TriangleId, TetId)) -> bool) {
+        self.fresh.sort_unstable();
+        self.changed = !self.pairs.iter().filter(|pair| is_stale(pair)).eq(&self.fresh);
+        if self.changed {
+            self.pairs.retain(|pair| !is_stale(pair));
+            self.pairs.extend_from_slice(&self.fresh);
+            self.pairs.sort_unstable();
+        }
+    }
 }
 
 /// Boxes of everything, with the margin.
@@ -40,7 +69,7 @@ struct Boxes {
 }
 
 impl Boxes {
-    fn place(&mut self, scene: &BroadScene) {
+    fn place_all(&mut self, scene: &BroadScene) {
         let blocks = scene.blocks;
         let all = |count: usize, boxes: &mut Vec<Aabb>, of: &(dyn Fn(usize) -> Aabb + Sync)| {
             boxes.resize(count, Aabb::empty());
@@ -48,140 +77,190 @@ impl Boxes {
             boxes.par_iter_mut().enumerate().with_min_len(GRAIN_BOXES).for_each(place);
         };
         all(blocks.len(), &mut self.blocks, &|i| scene.block_box(BlockId(i as u32)));
-        all(blocks.triangles.len(), &mut self.triangles, &|i| scene.box_around(&blocks.triangles[i]));
-        all(blocks.tets.len(), &mut self.tets, &|i| scene.box_around(&blocks.tets[i]));
+        all(blocks.triangles.len(), &mut self.triangles, &|i| scene.triangle_box(i));
+        all(blocks.tets.len(), &mut self.tets, &|i| scene.tet_box(i));
+    }
+
+    fn place(&mut self, scene: &BroadScene, block: BlockId) {
+        self.blocks[block.index()] = scene.block_box(block);
+        scene.blocks.triangles_of(block).for_each(|i| self.triangles[i] = scene.triangle_box(i));
+        scene.blocks.tets_of(block).for_each(|i| self.tets[i] = scene.tet_box(i));
     }
 }
 
-/// A block in its rest shape, and how it lies in space now.
-#[derive(Default)]
-struct OwnTree {
-    /// Over the boxes of its tetrahedra at rest; none for a block of few.
-    tree: Option<Bvh>,
-    convex: bool,
-    /// The rigid motion x ≈ R (X − rest) + center, and the largest deviation from it [m].
-    rotation: Mat3,
-    center: Vec3,
-    rest: Vec3,
-    deviation_m: f64,
-}
-
 impl BroadPhase for TreeBroadPhase {
-    fn find_pairs(&mut self, scene: &BroadScene, pairs: &mut Vec<(TriangleId, TetId)>) {
-        let blocks = scene.blocks;
-        if self.own.len() != blocks.len() {
-            self.own = blocks.ids().map(|block| OwnTree::new(blocks, block)).collect();
-            self.found.resize_with(blocks.len(), Vec::new);
+    fn find_pairs(
+        &mut self,
+        scene: &BroadScene,
+        renewed: &[BlockId],
+        pairs: &mut Vec<(TriangleId, TetId)>,
+    ) -> bool {
+        let begins = self.shape != shape_of(scene.blocks);
+        if begins {
+            assert_eq!(renewed.len(), scene.blocks.len(), "at first all blocks are new");
+            self.begin(scene.blocks);
         }
-        self.place_blocks(scene);
-        let (own, tree, boxes) = (&self.own, &self.tree, &self.boxes);
-        self.found.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(|(index, found)| {
-            found.clear();
-            let block = BlockId(index as u32);
-            for other in tree.leaves(|node| node_touches(node, &boxes.blocks[index])) {
-                if other as usize != index || !own[index].convex {
-                    own[other as usize].find(scene, boxes, block, BlockId(other), found);
-                }
-            }
-            // Block by block they are in order then, and the list as a whole is.
-            found.sort_unstable();
-        });
-        pairs.clear();
-        self.found.iter().for_each(|found| pairs.extend_from_slice(found));
+        self.is_renewed.fill(false);
+        renewed.iter().for_each(|block| self.is_renewed[block.index()] = true);
+        let many = MANY * renewed.len() > scene.blocks.len();
+        self.is_near.fill(many);
+        if many {
+            self.place_all(scene);
+        } else {
+            self.mark_near(renewed);
+            self.place(scene, renewed);
+        }
+        self.place_leaves(renewed);
+        if !many {
+            self.mark_near(renewed);
+        }
+        let changed = self.search(scene);
+        if changed || begins {
+            pairs.clear();
+            self.found.iter().for_each(|found| pairs.extend_from_slice(&found.pairs));
+        }
+        changed || begins
     }
 }
 
 impl TreeBroadPhase {
-    fn place_blocks(&mut self, scene: &BroadScene) {
-        self.boxes.place(scene);
-        for (index, bounds) in self.boxes.blocks.iter().enumerate() {
-            self.tree.insert_or_update_partially(to_parry(bounds), index as u32, 0.0);
-        }
-        self.tree.rebuild(&mut self.workspace, BvhBuildStrategy::Binned);
-        let place = |(index, own): (usize, &mut OwnTree)| own.place(scene, BlockId(index as u32));
+    fn begin(&mut self, blocks: &BlockSet) {
+        self.shape = shape_of(blocks);
+        self.own = blocks.ids().map(|block| OwnTrees::new(blocks, block)).collect();
+        self.is_convex = blocks.ids().map(|id| BlockFaces::new(blocks, id).convex).collect();
+        self.is_renewed = vec![true; blocks.len()];
+        self.is_near = vec![true; blocks.len()];
+        self.found.clear();
+        self.found.resize_with(blocks.len(), Found::default);
+        self.boxes = Boxes::default();
+        let everywhere = blocks.ids().map(|id| (id.index(), to_parry(&Aabb::around(&blocks.rest_position))));
+        self.tree = Bvh::from_iter(BvhBuildStrategy::Binned, everywhere);
+        self.displaced = 0;
+    }
+
+    fn place_all(&mut self, scene: &BroadScene) {
+        // Blocks that are not renewed are where they were: their boxes stay the same.
+        self.boxes.place_all(scene);
+        let is_renewed = &self.is_renewed;
+        let place = |(index, own): (usize, &mut Option<Box<OwnTrees>>)| {
+            if let Some(own) = own.as_mut().filter(|_| is_renewed[index]) {
+                own.place(scene, BlockId(index as u32));
+            }
+        };
         self.own.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(place);
     }
-}
 
-impl OwnTree {
-    fn new(blocks: &BlockSet, block: BlockId) -> Self {
-        let tets = blocks.tets_of(block);
-        let rest_box = |tet: usize| {
-            to_parry(&Aabb::around(blocks.tets[tet].iter().map(|n| &blocks.rest_position[n.index()])))
+    fn place(&mut self, scene: &BroadScene, renewed: &[BlockId]) {
+        for &block in renewed {
+            self.boxes.place(scene, block);
+            if let Some(own) = &mut self.own[block.index()] {
+                own.place(scene, block);
+            }
+        }
+    }
+
+    fn place_leaves(&mut self, renewed: &[BlockId]) {
+        let leaf = |block: &BlockId| (to_parry(&self.boxes.blocks[block.index()]), block.0);
+        self.displaced += renewed.len();
+        if self.displaced < self.boxes.blocks.len() {
+            renewed.iter().map(leaf).for_each(|(bounds, index)| self.tree.insert(bounds, index));
+        } else {
+            for (bounds, index) in renewed.iter().map(leaf) {
+                self.tree.insert_or_update_partially(bounds, index, 0.0);
+            }
+            self.tree.rebuild(&mut self.workspace, BvhBuildStrategy::Binned);
+            self.displaced = 0;
+        }
+    }
+
+    /// Marks what touches a renewed block.
+    fn mark_near(&mut self, renewed: &[BlockId]) {
+        for block in renewed {
+            self.is_near[block.index()] = true;
+            let bounds = &self.boxes.blocks[block.index()];
+            let leaves = self.tree.leaves(|node| node_touches(node, bounds));
+            leaves.for_each(|other| self.is_near[other as usize] = true);
+        }
+    }
+
+    /// Brings the pairs of all blocks near renewed ones up to date, and says whether any changed.
+    fn search(&mut self, scene: &BroadScene) -> bool {
+        let (is_renewed, is_near, tree) = (&self.is_renewed, &self.is_near, &self.tree);
+        let near = Near { scene, own: &self.own, boxes: &self.boxes };
+        let is_convex = &self.is_convex;
+        let search = |(index, found): (usize, &mut Found)| {
+            if !is_near[index] {
+                return;
+            }
+            found.fresh.clear();
+            for other in tree.leaves(|node| node_touches(node, &near.boxes.blocks[index])) {
+                let stale = is_renewed[index] || is_renewed[other as usize];
+                if stale && (other as usize != index || !is_convex[index]) {
+                    near.find(BlockId(index as u32), BlockId(other), &mut found.fresh);
+                }
+            }
+            found.merge(|pair| {
+                is_renewed[index] || is_renewed[scene.blocks.tet_block[pair.1.index()].index()]
+            });
         };
-        let tree = (tets.len() > FEW_TETS).then(|| {
-            Bvh::from_iter(BvhBuildStrategy::Binned, tets.clone().map(|t| (t - tets.start, rest_box(t))))
-        });
-        Self { tree, convex: BlockFaces::new(blocks, block).convex, ..Self::default() }
+        self.found.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(search);
+        self.found.iter().zip(is_near).any(|(found, &near)| near && found.changed)
     }
 
-    /// Fits the rigid motion; whatever the fit, the deviation covers the rest.
-    fn place(&mut self, scene: &BroadScene, block: BlockId) {
-        if self.tree.is_none() {
-            return;
-        }
-        let nodes = scene.blocks.nodes_of(block);
-        let (now, rest) = (&scene.position[nodes.clone()], &scene.blocks.rest_position[nodes]);
-        let count = now.len() as f64;
-        self.center = now.iter().sum::<Vec3>() / count;
-        self.rest = rest.iter().sum::<Vec3>() / count;
-        let moment: Mat3 =
-            now.iter().zip(rest).map(|(x, r)| (x - self.center) * (r - self.rest).transpose()).sum();
-        let guess = nalgebra::Rotation3::from_matrix_unchecked(self.rotation);
-        let guess = if self.rotation == Mat3::zeros() { nalgebra::Rotation3::identity() } else { guess };
-        self.rotation = nalgebra::Rotation3::from_matrix_eps(&moment, 1e-9, 20, guess).into_inner();
-        let off = |(x, r): (&Vec3, &Vec3)| (x - self.center - self.rotation * (r - self.rest)).norm();
-        self.deviation_m = now.iter().zip(rest).map(off).fold(0.0, f64::max);
-    }
-
-    /// Adds the pairs of triangles of `block` and tetrahedra of `other`, which is this one.
-    fn find(
-        &self,
-        scene: &BroadScene,
-        boxes: &Boxes,
-        block: BlockId,
-        other: BlockId,
-        found: &mut Vec<(TriangleId, TetId)>,
-    ) {
-        let blocks = scene.blocks;
-        let first = blocks.tets_of(other).start;
-        let one_block = block == other;
-        for i in blocks.triangles_of(block) {
-            let triangle = &boxes.triangles[i];
-            if !triangle.touches(&boxes.blocks[other.index()]) {
-                continue;
-            }
-            let mut add = |j: usize| {
-                if triangle.touches(&boxes.tets[j]) && !(one_block && scene.are_neighbours(i, j)) {
-                    found.push((TriangleId(i as u32), TetId(j as u32)));
-                }
-            };
-            match &self.tree {
-                None => blocks.tets_of(other).for_each(&mut add),
-                Some(tree) => {
-                    let here = self.carried(scene, i);
-                    tree.leaves(|node| node_touches(node, &here)).for_each(|leaf| add(first + leaf as usize));
-                }
-            }
-        }
-    }
-
-    /// Box of a triangle in the block's rest frame, with the margins of both.
-    fn carried(&self, scene: &BroadScene, triangle: usize) -> Aabb {
-        let back = |x: Vec3| self.rotation.tr_mul(&(x - self.center)) + self.rest;
-        let corners = scene.blocks.triangles[triangle].map(|n| back(scene.position[n.index()]));
-        Aabb::around(&corners).inflated(2.0 * scene.margin_m + self.deviation_m)
+    /// Memory on the heap [B], but for the workspace of the tree.
+    pub fn heap_bytes(&self) -> usize {
+        let own =
+            self.own.iter().flatten().map(|own| size_of::<OwnTrees>() + own.heap_bytes()).sum::<usize>();
+        let boxes = &self.boxes;
+        let boxes = boxes.blocks.capacity() + boxes.triangles.capacity() + boxes.tets.capacity();
+        let of_found = |found: &Found| found.pairs.capacity() + found.fresh.capacity();
+        let found = self.found.iter().map(of_found).sum::<usize>() * size_of::<(TriangleId, TetId)>();
+        let per_block = size_of::<Option<Box<OwnTrees>>>() + size_of::<Found>() + 3 * size_of::<bool>();
+        let tree = self.tree.heap_memory_size();
+        own + boxes * size_of::<Aabb>() + found + per_block * self.found.capacity() + tree
     }
 }
 
-fn to_parry(bounds: &Aabb) -> ParryAabb {
-    let vector = |v: &Vec3| Vector::new(v.x, v.y, v.z);
-    ParryAabb::new(vector(&bounds.min), vector(&bounds.max))
+/// What the search between two blocks reads.
+struct Near<'a> {
+    scene: &'a BroadScene<'a>,
+    own: &'a [Option<Box<OwnTrees>>],
+    boxes: &'a Boxes,
 }
 
-fn node_touches(node: &BvhNode, bounds: &Aabb) -> bool {
-    let (min, max) = (node.mins(), node.maxs());
-    (0..3).all(|i| min[i] <= bounds.max[i] && bounds.min[i] <= max[i])
+impl Near<'_> {
+    /// Adds the pairs of triangles of `block` that reach into the box of `other` and its tetrahedra.
+    fn find(&self, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
+        let triangles = self.scene.blocks.triangles_of(block);
+        let there = &self.boxes.blocks[other.index()];
+        let reaches = |i: &usize| self.boxes.triangles[*i].touches(there);
+        match &self.own[block.index()] {
+            None => triangles.filter(reaches).for_each(|i| self.find_tets(i, block, other, found)),
+            Some(own) => own
+                .triangles_near(there, self.scene.margin_m[block.index()])
+                .map(|leaf| triangles.start + leaf)
+                .filter(reaches)
+                .for_each(|i| self.find_tets(i, block, other, found)),
+        }
+    }
+
+    fn find_tets(&self, i: usize, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
+        let (scene, triangle) = (self.scene, &self.boxes.triangles[i]);
+        let tets = scene.blocks.tets_of(other);
+        let mut add = |j: usize| {
+            if triangle.touches(&self.boxes.tets[j]) && !(block == other && scene.are_neighbours(i, j)) {
+                found.push((TriangleId(i as u32), TetId(j as u32)));
+            }
+        };
+        match &self.own[other.index()] {
+            None => tets.for_each(&mut add),
+            Some(own) => {
+                let corners = scene.blocks.triangle_corners(TriangleId(i as u32), scene.position);
+                let margin_m = scene.margin_m[block.index()] + scene.margin_m[other.index()];
+                own.tets_near_triangle(&corners, margin_m).for_each(|leaf| add(tets.start + leaf));
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -191,6 +270,8 @@ mod tests {
 
     #[test]
     fn it_finds_what_all_pairs_finds() {
-        check_broad_phase(TreeBroadPhase::default);
+        let counts = check_broad_phase(TreeBroadPhase::default);
+        println!("{counts:?}");
+        assert!(counts.overlapping > 100_000 && counts.in_one_block > 1000, "the scenes hardly touch");
     }
 }

@@ -1,18 +1,13 @@
-//! The list of pairs that are worth clipping, kept while nothing has moved far.
+//! The list of pairs that are worth clipping; those of two blocks are kept while neither has moved far.
 
 use std::ops::Range;
 
-use ndda_mesh::geometry::Aabb;
-use ndda_mesh::{BlockId, NodeId, TetId, TriangleId, Vec3};
+use ndda_mesh::{BlockId, TetId, TriangleId};
 
-use crate::broad_phase::{BroadPhase, BroadScene};
+use crate::broad_phase::BroadPhase;
 use crate::bvh::TreeBroadPhase;
+use crate::listed::Listed;
 use crate::model::ContactInput;
-
-/// Skin over the mean size of boundary triangles; a list then lasts for many steps of a slow scene.
-const SKIN: f64 = 0.05;
-/// Steps that a list should last when blocks are fast.
-const LASTING_STEPS: f64 = 8.0;
 
 /// A boundary triangle and the tetrahedra of one other block that it may be in.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,8 +53,7 @@ pub struct Candidates {
     /// First overlap of each contactor block.
     overlap_start: Vec<u32>,
     broad_phase: TreeBroadPhase,
-    listed_at: Vec<Vec3>,
-    skin_m: f64,
+    listed: Listed,
 }
 
 impl Candidates {
@@ -70,44 +64,39 @@ impl Candidates {
 
     /// Makes the next update start anew.
     pub fn forget(&mut self) {
-        self.listed_at.clear();
+        self.listed.forget();
     }
 
-    /// Brings the list up to date and says whether it changed: nothing to do while no node has moved by half the skin.
+    /// Brings the list up to date and says whether it changed: the pairs of blocks that have moved no further than
+    /// their margin since they were listed stay.
     pub fn update(&mut self, input: &ContactInput) -> bool {
-        let reach = 0.5 * self.skin_m;
-        let moved = |(x, y): (&Vec3, &Vec3)| (x - y).norm_squared() > reach * reach;
-        if self.listed_at.len() == input.position.len()
-            && !self.listed_at.iter().zip(input.position).any(moved)
-        {
+        let begins = self.listed.renew(input);
+        if self.listed.renewed().is_empty() && !begins {
             return false;
         }
-        self.listed_at.clear();
-        self.listed_at.extend_from_slice(input.position);
-        let scene =
-            BroadScene { blocks: input.blocks, position: input.position, margin_m: self.margin(input) };
-        self.broad_phase.find_pairs(&scene, &mut self.found);
-        self.arrange(input);
-        true
+        let scene = self.listed.scene(input.blocks);
+        let changed = self.broad_phase.find_pairs(&scene, self.listed.renewed(), &mut self.found);
+        if changed || begins {
+            self.arrange(input);
+        }
+        changed || begins
     }
 
-    /// Half the skin, and the rounding of coordinates [m].
-    fn margin(&mut self, input: &ContactInput) -> f64 {
-        let (blocks, position) = (input.blocks, input.position);
-        let diagonal = |t: &[NodeId; 3]| Aabb::around(t.iter().map(|n| &position[n.index()])).diagonal();
-        let size = blocks.triangles.iter().map(diagonal).sum::<f64>() / blocks.triangles.len().max(1) as f64;
-        let fastest = input.velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
-        let travel = LASTING_STEPS * 2.0 * fastest * input.dt_s;
-        self.skin_m = (SKIN * size).max(travel.min(size));
-        let furthest = position.iter().map(|x| x.amax()).fold(0.0, f64::max);
-        0.5 * self.skin_m + 8.0 * f64::EPSILON * furthest
+    /// Memory on the heap [B]; it grows while a scene is new, and no longer.
+    pub fn heap_bytes(&self) -> usize {
+        let pairs = self.pairs.capacity() * size_of::<Pair>() + self.facets.capacity() * size_of::<Facet>();
+        let tets = (self.tets.capacity() + self.sorted.capacity()) * size_of::<TetId>()
+            + self.order.capacity() * size_of::<[u8; 4]>();
+        let found = self.found.capacity() * size_of::<(TriangleId, TetId)>();
+        let overlaps = self.overlaps.capacity() * size_of::<(TetId, BlockId)>();
+        let places = (self.slot_of.capacity() + self.overlap_start.capacity()) * size_of::<u32>();
+        pairs + tets + found + overlaps + places + self.listed.heap_bytes() + self.broad_phase.heap_bytes()
     }
 
-    /// Sorts the pairs and numbers what they share.
+    /// Numbers what the pairs share.
     fn arrange(&mut self, input: &ContactInput) {
         let (tet_block, triangle_block) = (&input.blocks.tet_block, &input.blocks.triangle_block);
-        // Blocks are contiguous in tetrahedra, so this order is also by target block.
-        self.found.sort_unstable();
+        // Blocks are contiguous in tetrahedra, so the pairs are in the order of target blocks, too.
         self.number_tets(input);
         self.number_overlaps(triangle_block);
         self.pairs.clear();

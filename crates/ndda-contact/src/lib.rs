@@ -14,6 +14,8 @@ pub mod bonds;
 #[cfg(feature = "potential")]
 pub mod broad_phase;
 #[cfg(feature = "potential")]
+mod broad_scenes;
+#[cfg(feature = "potential")]
 pub mod bvh;
 #[cfg(feature = "potential")]
 pub mod candidates;
@@ -38,9 +40,13 @@ pub mod joints;
 #[cfg(feature = "potential")]
 pub mod kernel;
 #[cfg(feature = "potential")]
+pub mod listed;
+#[cfg(feature = "potential")]
 pub mod mohr_coulomb;
 #[cfg(feature = "potential")]
 pub mod overlap;
+#[cfg(feature = "potential")]
+pub mod own_trees;
 #[cfg(feature = "potential")]
 pub mod pair;
 #[cfg(feature = "potential")]

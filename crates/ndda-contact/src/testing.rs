@@ -1,14 +1,36 @@
 //! Contract suites that a fork can run on its own laws, and blocks to run them on.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
 
+#[cfg(feature = "potential")]
+pub use crate::broad_scenes::{BroadCounts, check_broad_phase};
 use crate::model::{ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport};
 
 /// A box with one corner at `corner`, cut into six tetrahedra per cell.
 pub fn test_box(corner: [f64; 3], size_m: [f64; 3], cells: [u32; 3]) -> BlockMesh {
     let mesh = box_block(size_m, cells, BoxPattern::Six).expect("positive sizes");
     mesh.placed(&Mat3::identity(), &Vec3::from(corner))
+}
+
+/// A horseshoe of twelve cells, `size_m` wide: its arms are so far apart that they may touch. Arms point along z.
+pub fn test_horseshoe(corner: [f64; 3], size_m: f64) -> BlockMesh {
+    let cell = size_m / 6.0;
+    let mut mesh = test_box(corner, [size_m, cell, 4.0 * cell], [6, 1, 4]);
+    let nodes = std::mem::take(&mut mesh.nodes);
+    let is_gap = |tet: &[u32; 4]| {
+        let middle = tet.iter().map(|&n| nodes[n as usize]).sum::<Vec3>() / 4.0 - Vec3::from(corner);
+        middle.z > cell && (middle.x - 0.5 * size_m).abs() < 2.0 * cell
+    };
+    mesh.tets.retain(|tet| !is_gap(tet));
+    let used: BTreeSet<u32> = mesh.tets.iter().flatten().copied().collect();
+    let place: BTreeMap<u32, u32> = used.iter().zip(0..).map(|(&node, place)| (node, place)).collect();
+    mesh.tets.iter_mut().flatten().for_each(|node| *node = place[node]);
+    mesh.nodes = used.iter().map(|&node| nodes[node as usize]).collect();
+    mesh.node_sets.clear();
+    mesh
 }
 
 /// Blocks named by their number.
@@ -176,69 +198,4 @@ pub fn check_friction(law: &dyn crate::friction::FrictionLaw) {
     law.advance(&rest, &mut double);
     let lost = (kept.shear_n[0] - double.shear_n[0]).hypot(kept.shear_n[1] - double.shear_n[1]);
     assert!(lost <= 1e-12 * size(&kept), "a block at rest loses its hold");
-}
-
-/// Panics unless a broad phase keeps the contract of [`BroadPhase`](crate::broad_phase::BroadPhase): over random
-/// blocks of sizes from 1 to 1000 that turn, shift and deform, no pair that overlaps within the margin is missed, and
-/// every pair is one of [`AllPairs`](crate::broad_phase::AllPairs).
-#[cfg(feature = "potential")]
-pub fn check_broad_phase<P: crate::broad_phase::BroadPhase>(new: impl Fn() -> P) {
-    use crate::broad_phase::{AllPairs, BroadPhase, BroadScene};
-    use crate::pair::{TetFrame, is_outside};
-
-    let mut seed = 1u64;
-    let mut random = move || {
-        // Knuth's MMIX generator: tests need numbers that are the same everywhere, no more.
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1u64 << 53) as f64
-    };
-    for scene in 0..250 {
-        let meshes = (0..3 + scene % 3).map(|_| {
-            let size = [1.0, 1.0, 0.1, 0.001][(4.0 * random()) as usize];
-            let cells = [1, 2, 1 + (2.0 * random()) as u32];
-            test_box([random(), random(), random()], [size, size * (0.5 + random()), size], cells)
-        });
-        let blocks = test_set(meshes.collect());
-        let mut phase = new();
-        let mut position = blocks.rest_position.clone();
-        for _ in 0..4 {
-            for block in blocks.ids() {
-                let turn = Vec3::new(random() - 0.5, random() - 0.5, random() - 0.5);
-                let turn = nalgebra::Rotation3::new(turn).into_inner();
-                let nodes = blocks.nodes_of(block);
-                let center = position[nodes.start];
-                let shift = 0.2 * Vec3::new(random() - 0.5, random() - 0.5, random() - 0.5);
-                for x in &mut position[nodes] {
-                    let strain = 0.01 * Vec3::new(random(), random(), random());
-                    let arm = turn * (*x - center);
-                    *x = center + shift + arm + strain * arm.norm();
-                }
-            }
-            let margin_m = 0.02 * random();
-            let input = BroadScene { blocks: &blocks, position: &position, margin_m };
-            let (mut found, mut all) = (Vec::new(), Vec::new());
-            phase.find_pairs(&input, &mut found);
-            AllPairs.find_pairs(&input, &mut all);
-            found.sort_unstable();
-            let count = found.len();
-            found.dedup();
-            assert_eq!(found.len(), count, "a pair comes twice in scene {scene}");
-            assert!(
-                found.iter().all(|pair| all.binary_search(pair).is_ok()),
-                "a pair out of reach in scene {scene}"
-            );
-            // Moved by up to the margin, whatever overlaps must be in the list.
-            let moved: Vec<Vec3> = position
-                .iter()
-                .map(|x| x + margin_m / 2.0 * Vec3::new(random() - 0.5, random() - 0.5, random() - 0.5))
-                .collect();
-            for pair in all.iter().filter(|pair| found.binary_search(pair).is_err()) {
-                let frame = TetFrame::new(&blocks.tet_corners(pair.1, &moved));
-                let lambda = frame.lambda(&blocks.triangle_corners(pair.0, &moved));
-                let overlaps = !is_outside(&lambda)
-                    && (0..4).any(|i| crate::clip::region(&lambda, i).fan().any(|(_, part)| part > 0.0));
-                assert!(!overlaps, "{pair:?} overlap and are not in the list of scene {scene}");
-            }
-        }
-    }
 }

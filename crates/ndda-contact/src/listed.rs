@@ -1,0 +1,123 @@
+//! Where the blocks were when their pairs were listed, and how far each may move before they are listed again.
+
+use ndda_mesh::geometry::Aabb;
+use ndda_mesh::{BlockId, BlockSet, NodeId, Vec3};
+use rayon::prelude::*;
+
+use crate::broad_phase::{BroadScene, shape_of};
+use crate::model::ContactInput;
+
+/// Skin over the mean size of a block's boundary triangles: twice the way that a resting block may creep.
+const SKIN: f64 = 0.05;
+/// Steps that the pairs of a fast block should last.
+const LASTING_STEPS: f64 = 8.0;
+/// Widest margin over the mean size of boundary triangles.
+const WIDEST: f64 = 0.5;
+/// Blocks below which a second thread costs more than it brings.
+const GRAIN_BLOCKS: usize = 2048;
+
+/// A record of positions, block by block.
+#[derive(Default)]
+pub struct Listed {
+    position: Vec<Vec3>,
+    /// Mean size of the boundary triangles of each block at rest [m]; zero without any.
+    size_m: Vec<f64>,
+    /// How far each block's nodes may move [m].
+    reach_m: Vec<f64>,
+    /// That and the rounding of coordinates [m].
+    margin_m: Vec<f64>,
+    moved: Vec<bool>,
+    renewed: Vec<BlockId>,
+    /// Of the set that all this is about; none makes the next record take all blocks.
+    shape: Option<[usize; 4]>,
+}
+
+impl Listed {
+    /// Makes the next [`renew`](Self::renew) take all blocks.
+    pub fn forget(&mut self) {
+        self.shape = None;
+    }
+
+    /// Records the positions of all blocks that have moved out of reach, and says whether it is the first time.
+    pub fn renew(&mut self, input: &ContactInput) -> bool {
+        let blocks = input.blocks;
+        let begins = self.shape != Some(shape_of(blocks));
+        if begins {
+            self.begin(blocks);
+        } else {
+            self.look(input);
+        }
+        self.renewed.clear();
+        self.renewed.extend(blocks.ids().filter(|block| self.moved[block.index()]));
+        for k in 0..self.renewed.len() {
+            self.record(input, self.renewed[k]);
+        }
+        begins
+    }
+
+    /// The blocks of the last [`renew`](Self::renew), ascending.
+    pub fn renewed(&self) -> &[BlockId] {
+        &self.renewed
+    }
+
+    /// The blocks where they are recorded.
+    pub fn scene<'a>(&'a self, blocks: &'a BlockSet) -> BroadScene<'a> {
+        BroadScene { blocks, position: &self.position, margin_m: &self.margin_m }
+    }
+
+    fn begin(&mut self, blocks: &BlockSet) {
+        let diagonal =
+            |t: &[NodeId; 3]| Aabb::around(t.iter().map(|n| &blocks.rest_position[n.index()])).diagonal();
+        let mean = |block: BlockId| {
+            let triangles = &blocks.triangles[blocks.triangles_of(block)];
+            triangles.iter().map(diagonal).sum::<f64>() / triangles.len().max(1) as f64
+        };
+        self.size_m.clear();
+        self.size_m.extend(blocks.ids().map(mean));
+        for per_block in [&mut self.reach_m, &mut self.margin_m] {
+            per_block.clear();
+            per_block.resize(blocks.len(), 0.0);
+        }
+        self.position.clear();
+        self.position.resize(blocks.rest_position.len(), Vec3::zeros());
+        self.moved.clear();
+        self.moved.resize(blocks.len(), true);
+        self.shape = Some(shape_of(blocks));
+    }
+
+    /// Finds the blocks that have moved; a node that is nowhere has.
+    fn look(&mut self, input: &ContactInput) {
+        let (position, reach_m) = (&self.position, &self.reach_m);
+        let has_moved = |block: usize| {
+            let nodes = input.blocks.nodes_of(BlockId(block as u32));
+            let (most, was) = (reach_m[block] * reach_m[block], &position[nodes.clone()]);
+            !was.iter().zip(&input.position[nodes]).all(|(x, y)| (x - y).norm_squared() <= most)
+        };
+        let look = |(block, moved): (usize, &mut bool)| *moved = has_moved(block);
+        if self.moved.len() > GRAIN_BLOCKS {
+            self.moved.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(look);
+        } else {
+            self.moved.iter_mut().enumerate().for_each(look);
+        }
+    }
+
+    fn record(&mut self, input: &ContactInput, block: BlockId) {
+        let (nodes, b) = (input.blocks.nodes_of(block), block.index());
+        let (now, velocity) = (&input.position[nodes.clone()], &input.velocity[nodes.clone()]);
+        self.position[nodes].copy_from_slice(now);
+        let fastest = velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
+        let travel = (LASTING_STEPS * fastest * input.dt_s).min(WIDEST * self.size_m[b]);
+        self.reach_m[b] = travel.max(0.5 * SKIN * self.size_m[b]);
+        let furthest = now.iter().map(|x| x.amax()).fold(0.0, f64::max);
+        self.margin_m[b] = self.reach_m[b] + 8.0 * f64::EPSILON * furthest;
+    }
+
+    /// Memory on the heap [B].
+    pub fn heap_bytes(&self) -> usize {
+        let numbers = self.size_m.capacity() + self.reach_m.capacity() + self.margin_m.capacity();
+        self.position.capacity() * size_of::<Vec3>()
+            + numbers * size_of::<f64>()
+            + self.moved.capacity()
+            + self.renewed.capacity() * size_of::<BlockId>()
+    }
+}
