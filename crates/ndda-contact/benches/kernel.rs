@@ -2,13 +2,15 @@
 #![allow(missing_docs)] // criterion's macro makes public functions
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use ndda_contact::batch::Batches;
 use ndda_contact::testing::{test_box, test_set};
+use ndda_contact::tet_pair::NodalForces;
 use ndda_contact::{
     ContactHistory, ContactInput, ContactModel, ContactOutput, Coulomb, PotentialContact, element_pairs,
     pair::{TetFrame, pair_moments},
 };
-use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{BlockSet, Vec3};
+use ndda_mesh::geometry::{Aabb, TET_FACES, tet_volume, triangle_area_vector};
+use ndda_mesh::{BlockSet, TetId, Vec3};
 use std::hint::black_box;
 
 fn one_pair(c: &mut Criterion) {
@@ -20,18 +22,61 @@ fn one_pair(c: &mut Criterion) {
     c.bench_function("kernel/one overlapping pair", |b| {
         b.iter(|| pair_moments(black_box(&triangle), &area_vector, black_box(&frame)))
     });
-    let group = ndda_contact::kernel::PairGroup {
-        lambda: frame.lambda(&triangle).map(|at| at.map(|l| [l; 8])),
-        slope: [[1.0; 8]; 4],
-    };
+    hits(c, "deep", 0.0);
+    hits(c, "shallow", 0.97);
+    rejects(c, &triangle);
+}
+
+/// Faces of random tetrahedra in others, moved towards a face until a corner is just inside; all that is done for a
+/// pair after it has been found to overlap.
+fn hits(c: &mut Criterion, name: &str, out: f64) {
+    let mut pairs = Vec::new();
+    for [a, b] in random_pairs() {
+        let frame = TetFrame::new(&b);
+        let corners = TET_FACES[0].map(|i| a[i]);
+        let Some(lambda) = frame.lambda_inside(&corners) else { continue };
+        let (face, deepest) = (0..4)
+            .map(|b| (b, lambda[b].iter().copied().fold(0.0, f64::max)))
+            .min_by(|x, y| x.1.total_cmp(&y.1))
+            .expect("four faces");
+        let gradient = frame.gradient(face);
+        let moved = corners.map(|x| x - out * deepest * gradient / gradient.norm_squared());
+        if let Some(lambda) = frame.lambda_inside(&moved) {
+            let area_vector = triangle_area_vector(&moved);
+            pairs.push((lambda, frame.slopes(&area_vector.normalize()), area_vector.norm()));
+        }
+    }
     let arch = pulp::Arch::new();
-    let mut moments = ndda_contact::kernel::GroupMoments::default();
-    c.bench_function("kernel/eight overlapping pairs", |b| {
-        b.iter(|| ndda_contact::kernel::element_moments(arch, black_box(&group), black_box(&mut moments)))
+    let mut batches = Batches::default();
+    c.bench_function(&format!("kernel/{} {name} pairs", pairs.len()), |x| {
+        x.iter(|| {
+            for (pair, (lambda, slopes, area)) in black_box(&pairs).iter().enumerate() {
+                batches.push_element(arch, pair as u32, *area, lambda, slopes);
+            }
+            let mut total = 0.0;
+            batches.finish(arch, |part| total += part.pressure[0]);
+            total
+        })
     });
-    let outside = triangle.map(|x| x + Vec3::repeat(1.0));
-    c.bench_function("kernel/one pair apart", |b| {
-        b.iter(|| pair_moments(black_box(&outside), &area_vector, black_box(&frame)))
+}
+
+/// A triangle and 1024 tetrahedra that touch its box and not itself, in the tight loop of the product.
+fn rejects(c: &mut Criterion, triangle: &[Vec3; 3]) {
+    let blocks = test_set(vec![test_box([-1.0; 3], [3.0; 3], [6; 3])]);
+    let [p, q, r] = triangle;
+    let bounds = Aabb::around(triangle);
+    let frames: Vec<TetFrame> = (0..blocks.tets.len())
+        .map(|tet| blocks.tet_corners(TetId(tet as u32), &blocks.rest_position))
+        .filter(|corners| Aabb::around(corners).inflated(0.1).touches(&bounds))
+        .map(|corners| TetFrame::new(&corners))
+        .filter(|frame| frame.lambda_inside(&[*p, *q, *r]).is_none())
+        .collect();
+    let frames: Vec<TetFrame> = frames.iter().cycle().take(1024).copied().collect();
+    c.bench_function("kernel/1024 rejected candidates", |b| {
+        b.iter(|| {
+            let triangle = black_box(triangle);
+            frames.iter().filter(|frame| frame.lambda_inside(triangle).is_some()).count()
+        })
     });
 }
 
@@ -42,18 +87,43 @@ fn pressed(n: u32) -> BlockSet {
     test_set(vec![lower, upper])
 }
 
+/// 1024 pairs of random tetrahedra in the unit cube that overlap; `benches/peers/r3d.c` takes the same.
+fn random_pairs() -> Vec<[[Vec3; 4]; 2]> {
+    let mut seed = 1u64;
+    let mut random = move || {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut tet = move || loop {
+        let mut corners = [[0.0; 3]; 4].map(|x| Vec3::from(x.map(|_| random())));
+        let volume = tet_volume(&corners);
+        if volume < 0.0 {
+            corners.swap(0, 1);
+        }
+        if volume.abs() > 0.02 {
+            return corners;
+        }
+    };
+    let pairs = std::iter::from_fn(move || Some([tet(), tet()]));
+    pairs.filter(|[a, b]| shared_volume(a, b) > 1e-4).take(1024).collect()
+}
+
+fn shared_volume(a: &[Vec3; 4], b: &[Vec3; 4]) -> f64 {
+    ndda_contact::overlap::overlap_of(a, &TetFrame::new(b), &a[0]).volume_and_moment().0
+}
+
 /// Two tetrahedra: their nodal forces, and the volume that they share.
 fn two_tetrahedra(c: &mut Criterion) {
-    let a = [[0.0, 0.0, 0.0], [1.0, 0.1, 0.0], [0.1, 1.1, 0.0], [0.2, 0.1, 0.9]].map(Vec3::from);
-    let b = [[0.3, 0.2, 0.3], [1.2, 0.3, 0.4], [0.3, 1.3, 0.2], [0.4, 0.5, 1.4]].map(Vec3::from);
-    c.bench_function("two tetrahedra/nodal forces", |x| {
-        x.iter(|| ndda_contact::tet_pair::nodal_forces(black_box(&a), black_box(&b), 1.0))
-    });
-    c.bench_function("two tetrahedra/shared volume", |x| {
+    let pairs = random_pairs();
+    let (mut kernel, mut forces) = (NodalForces::default(), vec![[[Vec3::zeros(); 4]; 2]; pairs.len()]);
+    c.bench_function("two tetrahedra/nodal forces of 1024 pairs", |x| {
         x.iter(|| {
-            let frame = TetFrame::new(black_box(&b));
-            ndda_contact::overlap::overlap_of(black_box(&a), &frame, &a[0]).volume_and_moment()
+            kernel.of(black_box(&pairs), 1.0, &mut forces);
+            forces[0][0][0]
         })
+    });
+    c.bench_function("two tetrahedra/shared volume of 1024 pairs", |x| {
+        x.iter(|| black_box(&pairs).iter().map(|[a, b]| shared_volume(a, b)).sum::<f64>())
     });
 }
 

@@ -84,7 +84,11 @@ fn compare(input: &BroadScene, moved: &[Vec3], found: &[(TriangleId, TetId)], co
 fn overlap(blocks: &BlockSet, position: &[Vec3], pair: &(TriangleId, TetId)) -> bool {
     let frame = TetFrame::new(&blocks.tet_corners(pair.1, position));
     let lambda = frame.lambda(&blocks.triangle_corners(pair.0, position));
-    !is_outside(&lambda) && (0..4).any(|i| crate::clip::region(&lambda, i).fan().any(|(_, part)| part > 0.0))
+    let mut area = 0.0;
+    crate::region::element_regions(&lambda, &[0.0; 4], |_, region| {
+        area += region.polygon().fan().map(|(_, part)| part).sum::<f64>();
+    });
+    !is_outside(&lambda) && area > 0.0
 }
 
 /// Where blocks are listed.

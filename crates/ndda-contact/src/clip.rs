@@ -45,9 +45,9 @@ impl Polygon {
         &self.corners[..self.len]
     }
 
-    /// The part where the field is positive, or zero if `tie_is_inside`.
-    pub fn cut(&self, field: &Form, tie_is_inside: bool) -> Self {
-        let inside = |d: f64| d > 0.0 || (d == 0.0 && tie_is_inside);
+    /// The part where the field is not below `bound`: 0, or the least positive number to leave the zeros out.
+    pub fn cut(&self, field: &Form, bound: f64) -> Self {
+        let inside = |d: f64| d >= bound;
         let mut kept = Self { corners: [[0.0; 2]; MOST], len: 0 };
         for (i, here) in self.corners().iter().enumerate() {
             let next = &self.corners[(i + 1) % self.len];
@@ -78,62 +78,5 @@ impl Polygon {
             let [u, v] = [pair[0], pair[1]].map(|c| [c[0] - apex[0], c[1] - apex[1]]);
             ([apex, pair[0], pair[1]], u[0] * v[1] - u[1] * v[0])
         })
-    }
-}
-
-/// The region of a triangle where λ_i ≥ 0 is the smallest of four; `lambda[b][a]` is λ_b at corner a. Where λ_i = λ_j
-/// the smaller index has the point.
-pub fn region(lambda: &[[f64; 3]; 4], i: usize) -> Polygon {
-    let inside = Polygon::triangle().cut(&Form::through(&lambda[i]), true);
-    let rivals = (0..4).filter(|&j| j != i);
-    rivals.fold(inside, |part, j| {
-        let ahead = [0, 1, 2].map(|a| lambda[j][a] - lambda[i][a]);
-        part.cut(&Form::through(&ahead), i < j)
-    })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// λ of a triangle given by three points in the coordinates (λ₁, λ₂, λ₃).
-    fn lambda_of(points: [[f64; 3]; 3]) -> [[f64; 3]; 4] {
-        let mut lambda = [[0.0; 3]; 4];
-        for (a, p) in points.iter().enumerate() {
-            lambda[0][a] = 1.0 - p[0] - p[1] - p[2];
-            for b in 0..3 {
-                lambda[b + 1][a] = p[b];
-            }
-        }
-        lambda
-    }
-
-    fn total(lambda: &[[f64; 3]; 4]) -> f64 {
-        (0..4).flat_map(|i| region(lambda, i).fan().map(|(_, part)| part).collect::<Vec<_>>()).sum()
-    }
-
-    #[test]
-    fn a_triangle_inside_is_split_into_regions_that_fill_it() {
-        let area = total(&lambda_of([[0.1, 0.1, 0.1], [0.6, 0.1, 0.2], [0.1, 0.7, 0.05]]));
-        assert!((area - 1.0).abs() < 1e-14, "{area}");
-    }
-
-    #[test]
-    fn a_triangle_in_a_kink_plane_is_counted_once() {
-        // λ₁ = λ₂ everywhere: the plane between two regions.
-        let area = total(&lambda_of([[0.1, 0.1, 0.1], [0.2, 0.2, 0.1], [0.1, 0.1, 0.6]]));
-        assert!((area - 1.0).abs() < 1e-14, "{area}");
-    }
-
-    #[test]
-    fn a_triangle_outside_leaves_nothing() {
-        assert_eq!(total(&lambda_of([[-0.1, 0.1, 0.1], [-0.2, 0.2, 0.1], [-0.1, 0.1, 0.6]])), 0.0);
-    }
-
-    #[test]
-    fn a_large_triangle_is_clipped_to_the_section() {
-        // The section λ₃ = 1/4 of the tetrahedron is a triangle of (3/4)² of the face.
-        let area = total(&lambda_of([[-4.0, -4.0, 0.25], [8.0, -4.0, 0.25], [-4.0, 8.0, 0.25]]));
-        assert!((area * 144.0 - 0.5625).abs() < 1e-13, "{area}");
     }
 }

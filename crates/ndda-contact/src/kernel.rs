@@ -1,50 +1,37 @@
-//! Many pairs at a time: the integrals of [`pair`](crate::pair) for as many pairs as the processor has lanes.
+//! Many regions at a time: the integrals over [`region`](crate::region)s for as many as the processor has lanes.
 //!
 //! A lane never branches. A convex polygon in the triangle is a set of directed edges, in no order: a cut shortens
 //! each edge on its own and adds one, from where the rim leaves the half-plane to where it comes back. Integrals are
-//! fans of the edges about one of their ends. Each region of φ is cut on its own. Every field is a linear form in ψ
-//! given by its values at the corners, λ_j − λ_i for two regions, so the field of region i against j is exactly minus
-//! that of j against i, and a tie goes to the smaller index: no point is in two regions, or in none.
+//! fans of the edges about one of their ends. Every field is a linear form in ψ given by its values at the corners.
 //!
-//! Rounding can make a rim that runs along a cut leave twice; such a lane is flagged, and its pair is done again by
+//! Rounding can make a rim that runs along a cut leave twice; such a lane is flagged, and its region is done again by
 //! the ordered clipper of [`clip`](crate::clip). Only sums, products and quotients are used, each rounded once, so
 //! the bits do not depend on the processor.
 
 use pulp::{Arch, Simd, WithSimd};
 
-use crate::pair::PairMoments;
-
-/// Pairs in a group; a multiple of every lane count.
+/// Regions in a group; a multiple of every lane count.
 pub const GROUP: usize = 8;
-/// Cuts of a region of the element potential.
-const ELEMENT_CUTS: usize = 4;
-/// Most cuts of a piece of any other potential: four faces, and its rivals.
+/// Most cuts of a region: four faces, and its rivals.
 pub const MOST_CUTS: usize = 16;
 
-/// One number for each pair of a group.
+/// One number for each region of a group.
 pub type Row = [f64; GROUP];
 
-/// What the kernel needs of a group of pairs.
+/// A group of regions; a field is given by its values at the triangle's corners.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct PairGroup {
-    /// λ_b at corner a, as `[b][a]`.
-    pub lambda: [[Row; 3]; 4],
-    /// |∂φ/∂n| in the four regions [1/m].
-    pub slope: [Row; 4],
-}
-
-/// One piece of a potential on each of a group of pairs; a field is given by its values at the triangle's corners.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct PieceGroup {
+pub struct RegionGroup {
     /// φ.
     pub phi: [Row; 3],
     /// |∂φ/∂n| [1/m].
     pub slope: Row,
-    /// Fields that are not negative in the piece.
-    pub cuts: [[Row; 3]; MOST_CUTS],
-    /// 1 where a zero of the field belongs to the piece, 0 where it does not.
-    pub ties: [Row; MOST_CUTS],
+    /// Fields that are not below their bound in the region.
+    pub fields: [[Row; 3]; MOST_CUTS],
+    /// The bounds, see [`Cut`](crate::region::Cut).
+    pub bounds: [Row; MOST_CUTS],
     /// Cuts in use.
+    pub cuts: usize,
+    /// Regions in use.
     pub len: usize,
 }
 
@@ -55,99 +42,49 @@ pub struct GroupMoments {
     pub pressure: [Row; 3],
     /// ∫ |∂φ/∂n| ψ_a dA [1/m].
     pub slope: [Row; 3],
-    /// Σ_a λ_b(X_a) of the same for the target's corners.
-    pub target_pressure: [Row; 4],
-    /// And of the slope.
-    pub target_slope: [Row; 4],
-    /// Area of the part inside.
+    /// Area of the region.
     pub area: Row,
     /// Largest φ.
     pub depth: Row,
-    /// Not zero where the pair has to be done one by one.
+    /// Not zero where the region has to be done one by one.
     pub doubtful: Row,
 }
 
-impl GroupMoments {
-    /// The integrals of one pair, on a triangle of this area [m²].
-    pub fn of(&self, lane: usize, area_m2: f64) -> PairMoments {
-        let at =
-            |rows: &[Row; 3]| [area_m2 * rows[0][lane], area_m2 * rows[1][lane], area_m2 * rows[2][lane]];
-        PairMoments {
-            pressure: at(&self.pressure),
-            slope: at(&self.slope),
-            target_pressure: [0, 1, 2, 3].map(|b| area_m2 * self.target_pressure[b][lane]),
-            target_slope: [0, 1, 2, 3].map(|b| area_m2 * self.target_slope[b][lane]),
-            area: area_m2 * self.area[lane],
-            depth: self.depth[lane],
-        }
+/// The integrals of a group of regions.
+pub fn region_moments(arch: Arch, group: &RegionGroup, moments: &mut GroupMoments) {
+    // Room for the edges is a constant, so that a few cuts are unrolled.
+    match group.cuts {
+        0 => arch.dispatch(RegionKernel::<0, 3> { group, moments }),
+        1 => arch.dispatch(RegionKernel::<1, 4> { group, moments }),
+        2 => arch.dispatch(RegionKernel::<2, 5> { group, moments }),
+        3 => arch.dispatch(RegionKernel::<3, 6> { group, moments }),
+        4 => arch.dispatch(RegionKernel::<4, 7> { group, moments }),
+        _ => arch.dispatch(RegionKernel::<MOST_CUTS, { 3 + MOST_CUTS }> { group, moments }),
     }
 }
 
-/// The integrals of the element potential, φ = 4 min λᵢ, for a group of pairs.
-pub fn element_moments(arch: Arch, group: &PairGroup, moments: &mut GroupMoments) {
-    arch.dispatch(ElementMoments { group, moments });
-}
-
-/// The integrals of one piece for a group of pairs.
-pub fn piece_moments(arch: Arch, group: &PieceGroup, moments: &mut GroupMoments) {
-    arch.dispatch(PieceMoments { group, moments });
-}
-
-struct PieceMoments<'a> {
-    group: &'a PieceGroup,
+struct RegionKernel<'a, const CUTS: usize, const EDGES: usize> {
+    group: &'a RegionGroup,
     moments: &'a mut GroupMoments,
 }
 
-impl WithSimd for PieceMoments<'_> {
+impl<const CUTS: usize, const EDGES: usize> WithSimd for RegionKernel<'_, CUTS, EDGES> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { group, moments } = self;
-        for k in 0..GROUP / S::F64_LANES {
+        let cuts = if CUTS < MOST_CUTS { CUTS } else { group.cuts };
+        for k in 0..group.len.div_ceil(S::F64_LANES) {
             let load = |row: &Row| S::as_simd_f64s(row).0[k];
             let field = |at: &[Row; 3]| Form::through(simd, [load(&at[0]), load(&at[1]), load(&at[2])]);
             let mut sums = Sums::zero(simd);
-            let mut edges = Edges::<S, { 3 + MOST_CUTS }>::triangle(simd);
-            for (cut, tie) in group.cuts.iter().zip(&group.ties).take(group.len) {
-                edges.cut(simd, &field(cut), load(tie), &mut sums.doubtful);
+            let mut edges = Edges::<S, EDGES>::triangle(simd);
+            for (cut, bound) in group.fields.iter().zip(&group.bounds).take(cuts) {
+                edges.cut(simd, &field(cut), load(bound), &mut sums.doubtful);
             }
             add_fan(simd, &edges, &field(&group.phi), load(&group.slope), &mut sums);
-            let mut store = |row: &mut Row, v: S::f64s| S::as_mut_simd_f64s(row).0[k] = v;
-            let [l0, l1, l2, l3] = [0, 1, 2, 3].map(|b| at_corners(&group.cuts[b], &load));
-            sums.store(simd, &[l0, l1, l2, l3], moments, &mut store);
-        }
-    }
-}
-
-/// The values of a field at the corners, in lanes.
-#[inline(always)]
-fn at_corners<V>(at: &[Row; 3], load: &impl Fn(&Row) -> V) -> [V; 3] {
-    [load(&at[0]), load(&at[1]), load(&at[2])]
-}
-
-struct ElementMoments<'a> {
-    group: &'a PairGroup,
-    moments: &'a mut GroupMoments,
-}
-
-impl WithSimd for ElementMoments<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { group, moments } = self;
-        for k in 0..GROUP / S::F64_LANES {
-            let load = |row: &Row| S::as_simd_f64s(row).0[k];
-            let field = |at: &[Row; 3]| [load(&at[0]), load(&at[1]), load(&at[2])];
-            let [l0, l1, l2, l3] = &group.lambda;
-            let lambda = [field(l0), field(l1), field(l2), field(l3)];
-            let mut sums = Sums::zero(simd);
-            for i in 0..4 {
-                add_region(simd, &lambda, i, load(&group.slope[i]), &mut sums);
-            }
-            let mut store = |row: &mut Row, v: S::f64s| S::as_mut_simd_f64s(row).0[k] = v;
-            sums.store(simd, &lambda, moments, &mut store);
+            sums.store(moments, &mut |row, v| S::as_mut_simd_f64s(row).0[k] = v);
         }
     }
 }
@@ -169,21 +106,7 @@ impl<S: Simd> Sums<S> {
     }
 
     #[inline(always)]
-    fn store(
-        &self,
-        simd: S,
-        lambda: &[[S::f64s; 3]; 4],
-        to: &mut GroupMoments,
-        store: &mut impl FnMut(&mut Row, S::f64s),
-    ) {
-        for (b, lambda) in lambda.iter().enumerate() {
-            let at_target = |w: &[S::f64s; 3]| {
-                let two = simd.add_f64s(simd.mul_f64s(lambda[0], w[0]), simd.mul_f64s(lambda[1], w[1]));
-                simd.add_f64s(two, simd.mul_f64s(lambda[2], w[2]))
-            };
-            store(&mut to.target_pressure[b], at_target(&self.pressure));
-            store(&mut to.target_slope[b], at_target(&self.slope));
-        }
+    fn store(&self, to: &mut GroupMoments, store: &mut impl FnMut(&mut Row, S::f64s)) {
         for a in 0..3 {
             store(&mut to.pressure[a], self.pressure[a]);
             store(&mut to.slope[a], self.slope[a]);
@@ -203,12 +126,6 @@ impl<S: Simd> Form<S> {
     #[inline(always)]
     fn through(simd: S, at: [S::f64s; 3]) -> Self {
         Self([at[0], simd.sub_f64s(at[1], at[0]), simd.sub_f64s(at[2], at[0])])
-    }
-
-    #[inline(always)]
-    fn times(&self, simd: S, factor: S::f64s) -> Self {
-        let Self([c0, c1, c2]) = *self;
-        Self([simd.mul_f64s(c0, factor), simd.mul_f64s(c1, factor), simd.mul_f64s(c2, factor)])
     }
 
     #[inline(always)]
@@ -237,15 +154,11 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
         Self { x, y, len: 3 }
     }
 
-    /// Keeps what is inside: the field > 0, or = 0 where `tie` is 1.
+    /// Keeps what is inside: the field is not below the bound.
     #[inline(always)]
-    fn cut(&mut self, simd: S, field: &Form<S>, tie: S::f64s, doubtful: &mut S::f64s) {
+    fn cut(&mut self, simd: S, field: &Form<S>, bound: S::f64s, doubtful: &mut S::f64s) {
         let zero = simd.splat_f64s(0.0);
-        let tie_is_outside = simd.equal_f64s(tie, zero);
-        let outside = |d| {
-            let tie = simd.and_m64s(tie_is_outside, simd.equal_f64s(d, zero));
-            simd.or_m64s(simd.less_than_f64s(d, zero), tie)
-        };
+        let outside = |d| simd.less_than_f64s(d, bound);
         let (mut leave, mut back) = ([zero; 2], [zero; 2]);
         let mut left = simd.less_than_f64s(zero, zero);
         for k in 0..self.len {
@@ -290,34 +203,6 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
         let differ = |[from, to]: [S::f64s; 2]| simd.not_m64s(simd.equal_f64s(from, to));
         simd.or_m64s(differ(self.x[k]), differ(self.y[k]))
     }
-}
-
-/// Adds the integrals over the region where λ_i is the smallest.
-#[inline(always)]
-fn add_region<S: Simd>(simd: S, lambda: &[[S::f64s; 3]; 4], i: usize, slope: S::f64s, sums: &mut Sums<S>) {
-    let (one, zero, four) = (simd.splat_f64s(1.0), simd.splat_f64s(0.0), simd.splat_f64s(4.0));
-    let own = Form::through(simd, lambda[i]);
-    let mut edges = Edges::<S, { 3 + ELEMENT_CUTS }>::triangle(simd);
-    let mut ahead = [(lambda[i], one); ELEMENT_CUTS];
-    let mut empty = simd.less_than_f64s(one, zero);
-    for j in (0..4).filter(|&j| j != i) {
-        let field = [
-            simd.sub_f64s(lambda[j][0], lambda[i][0]),
-            simd.sub_f64s(lambda[j][1], lambda[i][1]),
-            simd.sub_f64s(lambda[j][2], lambda[i][2]),
-        ];
-        ahead[if j < i { j + 1 } else { j }] = (field, if i < j { one } else { zero });
-        let most = simd.max_f64s(field[0], simd.max_f64s(field[1], field[2]));
-        empty = simd.or_m64s(empty, simd.less_than_f64s(most, zero));
-    }
-    // In a shallow contact most triangles see only some of the regions.
-    if simd.first_true_m64s(simd.not_m64s(empty)) >= S::F64_LANES {
-        return;
-    }
-    for (field, tie) in ahead {
-        edges.cut(simd, &Form::through(simd, field), tie, &mut sums.doubtful);
-    }
-    add_fan(simd, &edges, &own.times(simd, four), slope, sums);
 }
 
 /// Adds the integrals over a polygon on which φ is linear:
@@ -376,19 +261,12 @@ fn add_fan<S: Simd, const MOST: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pair::{TetFrame, pair_moments};
+    use crate::batch::Batches;
+    use crate::pair::{TetFrame, element_moments, is_outside};
+    use crate::region::element_regions;
     use ndda_mesh::Vec3;
     use ndda_mesh::geometry::triangle_area_vector;
     use proptest::prelude::*;
-
-    fn group_of(triangle: &[Vec3; 3], frame: &TetFrame) -> PairGroup {
-        let mut group = PairGroup::default();
-        let (lambda, slope) =
-            (frame.lambda(triangle), frame.slopes(&triangle_area_vector(triangle).normalize()));
-        group.slope = slope.map(|s| [s; GROUP]);
-        group.lambda = lambda.map(|at| at.map(|l| [l; GROUP]));
-        group
-    }
 
     /// Coordinates on a coarse grid, so that corners, edges and planes often meet, some off it by a few ulps.
     fn coordinate() -> impl Strategy<Value = f64> {
@@ -416,20 +294,22 @@ mod tests {
             let frame = TetFrame::new(&corners);
             let area_vector = triangle_area_vector(&triangle);
             prop_assume!(frame.volume_m3 > 1e-4 && area_vector.norm() > 1e-3);
-            prop_assume!(!crate::pair::is_outside(&frame.lambda(&triangle)));
-            let expected = pair_moments(&triangle, &area_vector, &frame).unwrap_or_default();
+            let lambda = frame.lambda(&triangle);
+            prop_assume!(!is_outside(&lambda));
             let area = area_vector.norm();
-            let mut found = GroupMoments::default();
-            element_moments(Arch::new(), &group_of(&triangle, &frame), &mut found);
-            if found.doubtful[0] == 0.0 {
-                let close = |x: f64, y: f64, scale: f64| (x * area - y).abs() <= 1e-13 * scale;
-                for a in 0..3 {
-                    prop_assert!(close(found.pressure[a][0], expected.pressure[a], area), "{found:?}\n{expected:?}");
-                    let most = expected.slope.iter().fold(area, |most, s| most.max(*s));
-                    prop_assert!(close(found.slope[a][0], expected.slope[a], 10.0 * most), "{found:?}\n{expected:?}");
-                }
-                prop_assert!(close(found.area[0], expected.area, area));
+            let slopes = frame.slopes(&(area_vector / area));
+            let expected = element_moments(&lambda, &slopes, area);
+            let mut batches = Batches::default();
+            element_regions(&lambda, &slopes, |_, region| batches.push(Arch::new(), 0, area, region));
+            let mut found = crate::pair::PairMoments::default();
+            batches.finish(Arch::new(), |part| found.add_region(part));
+            let close = |x: f64, y: f64, scale: f64| (x - y).abs() <= 1e-13 * scale;
+            for a in 0..3 {
+                prop_assert!(close(found.pressure[a], expected.pressure[a], area), "{found:?}\n{expected:?}");
+                let most = expected.slope.iter().fold(area, |most, s| most.max(*s));
+                prop_assert!(close(found.slope[a], expected.slope[a], 10.0 * most), "{found:?}\n{expected:?}");
             }
+            prop_assert!(close(found.area, expected.area, area));
         }
     }
 }

@@ -8,6 +8,8 @@ pub mod model;
 pub mod testing;
 
 #[cfg(feature = "potential")]
+pub mod batch;
+#[cfg(feature = "potential")]
 pub mod block_faces;
 #[cfg(feature = "potential")]
 pub mod bonds;
@@ -53,6 +55,8 @@ pub mod pair;
 pub mod potential;
 #[cfg(feature = "potential")]
 pub mod potential_contact;
+#[cfg(feature = "potential")]
+pub mod region;
 #[cfg(feature = "potential")]
 pub mod scatter;
 #[cfg(feature = "potential")]

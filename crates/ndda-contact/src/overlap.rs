@@ -139,7 +139,7 @@ pub struct Linear {
 impl Linear {
     /// The function with these values at the corners of a tetrahedron, seen from `origin`.
     pub fn of_corners(frame: &TetFrame, values: &[f64; 4], origin: &Vec3) -> Self {
-        let gradient: Vec3 = (0..4).map(|b| values[b] * frame.gradients()[b]).sum();
+        let gradient: Vec3 = (0..4).map(|b| values[b] * frame.gradient(b)).sum();
         // λ₀ is 1 at the frame's own corner, the others 0.
         Self { value: values[0] + gradient.dot(&(origin - frame.origin())), gradient }
     }

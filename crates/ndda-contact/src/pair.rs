@@ -13,7 +13,12 @@
 
 use ndda_mesh::Vec3;
 
-use crate::clip::{Form, Polygon, region};
+use crate::batch::RegionMoments;
+use crate::clip::{Form, Polygon};
+use crate::region::element_regions;
+
+/// One number for each face of a tetrahedron; face b is opposite to corner b.
+type Faces = [f64; 4];
 
 /// What the kernel needs of a target tetrahedron; made once per step.
 ///
@@ -22,13 +27,11 @@ use crate::clip::{Form, Polygon, region};
 /// to the last bit, and no point near the face is in both of them or in neither.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TetFrame {
-    /// The first two corners in order; every face but one has the first, and that one has the second.
-    first: [Vec3; 2],
-    /// The corner opposite to the face that has the second.
-    apart: usize,
-    normal: [Vec3; 4],
-    per_height: [f64; 4],
-    gradients: [Vec3; 4],
+    /// n, coordinate by coordinate, so that a processor with four lanes does the four faces at once.
+    normal: [Faces; 3],
+    /// p: the first corner in order, but for the face opposite to it, which has the second.
+    point: [Faces; 3],
+    per_height: Faces,
     centroid: Vec3,
     origin: Vec3,
     /// Volume [m³].
@@ -50,69 +53,57 @@ impl TetFrame {
         let heights = [-normals[0].dot(&a), normals[1].dot(&a), normals[2].dot(&b), normals[3].dot(&c)];
         let [_, along, across, up] = [0, 1, 2, 3].map(|i| corners[i] - corners[0]);
         let mut frame = Self {
-            first: [p, q],
-            apart: order[0],
             centroid: p + (a + b + c) / 4.0,
             origin: corners[0],
             volume_m3: along.dot(&across.cross(&up)) / 6.0,
             ..Self::default()
         };
-        for k in 0..4 {
-            let per_height = 1.0 / heights[k];
-            frame.normal[order[k]] = normals[k];
-            frame.per_height[order[k]] = per_height;
-            frame.gradients[order[k]] = per_height * normals[k];
+        for (k, point) in [q, p, p, p].iter().enumerate() {
+            let face = order[k];
+            frame.per_height[face] = 1.0 / heights[k];
+            for i in 0..3 {
+                (frame.normal[i][face], frame.point[i][face]) = (normals[k][i], point[i]);
+            }
         }
         frame
     }
 
-    /// λ_b at the corners of a triangle, as `[b][a]`.
-    pub fn lambda(&self, triangle: &[Vec3; 3]) -> [[f64; 3]; 4] {
-        let mut lambda = [[0.0; 3]; 4];
-        let arms = self.arms(triangle);
-        for (b, lambda) in lambda.iter_mut().enumerate() {
-            *lambda = self.lambda_of(b, &arms);
+    /// All λ at a point.
+    #[inline(always)]
+    pub fn lambda_at(&self, x: &Vec3) -> [f64; 4] {
+        let ([nx, ny, nz], [px, py, pz]) = (&self.normal, &self.point);
+        let mut lambda = [0.0; 4];
+        for b in 0..4 {
+            let above = nx[b] * (x.x - px[b]) + ny[b] * (x.y - py[b]) + nz[b] * (x.z - pz[b]);
+            lambda[b] = self.per_height[b] * above;
         }
         lambda
     }
 
+    /// λ_b at the corners of a triangle, as `[b][a]`.
+    pub fn lambda(&self, [x, y, z]: &[Vec3; 3]) -> [[f64; 3]; 4] {
+        by_face(&[self.lambda_at(x), self.lambda_at(y), self.lambda_at(z)])
+    }
+
     /// The same, or nothing if a face separates the triangle from the tetrahedron.
-    pub fn lambda_inside(&self, triangle: &[Vec3; 3]) -> Option<[[f64; 3]; 4]> {
-        let arms = self.arms(triangle);
-        let mut lambda = [[0.0; 3]; 4];
-        for (b, lambda) in lambda.iter_mut().enumerate() {
-            *lambda = self.lambda_of(b, &arms);
-            let [l0, l1, l2] = *lambda;
-            if l0.max(l1).max(l2) <= 0.0 {
-                return None;
-            }
-        }
-        Some(lambda)
-    }
-
     #[inline(always)]
-    fn arms(&self, [x, y, z]: &[Vec3; 3]) -> [[Vec3; 3]; 2] {
-        let [p, q] = &self.first;
-        [[x - p, y - p, z - p], [x - q, y - q, z - q]]
-    }
-
-    #[inline(always)]
-    fn lambda_of(&self, b: usize, arms: &[[Vec3; 3]; 2]) -> [f64; 3] {
-        let [x, y, z] = &arms[usize::from(b == self.apart)];
-        let (normal, per_height) = (&self.normal[b], self.per_height[b]);
-        [per_height * normal.dot(x), per_height * normal.dot(y), per_height * normal.dot(z)]
+    pub fn lambda_inside(&self, [x, y, z]: &[Vec3; 3]) -> Option<[[f64; 3]; 4]> {
+        let at = [self.lambda_at(x), self.lambda_at(y), self.lambda_at(z)];
+        if some_face_separates(&at) { None } else { Some(by_face(&at)) }
     }
 
     /// Whether a triangle that lies in the plane of face b is to be counted in this tetrahedron: if the tetrahedron is
     /// on the inner side of the triangle, so that one of two that share the face has it, and touching is not overlap.
     pub fn owns_plane(&self, b: usize, outward: &Vec3) -> bool {
-        self.gradients[b].dot(outward) < 0.0
+        self.gradient(b).dot(outward) < 0.0
     }
 
     /// |∂φ/∂n| in the four regions [1/m].
     pub fn slopes(&self, normal: &Vec3) -> [f64; 4] {
-        let [g0, g1, g2, g3] = &self.gradients;
-        [g0.dot(normal), g1.dot(normal), g2.dot(normal), g3.dot(normal)].map(|slope| 4.0 * slope.abs())
+        let [nx, ny, nz] = &self.normal;
+        [0, 1, 2, 3].map(|b| {
+            4.0 * (self.per_height[b] * (nx[b] * normal.x + ny[b] * normal.y + nz[b] * normal.z)).abs()
+        })
     }
 
     /// Corner 0 [m].
@@ -121,14 +112,33 @@ impl TetFrame {
     }
 
     /// ∇λ_b [1/m].
-    pub fn gradients(&self) -> &[Vec3; 4] {
-        &self.gradients
+    pub fn gradient(&self, b: usize) -> Vec3 {
+        self.per_height[b] * Vec3::new(self.normal[0][b], self.normal[1][b], self.normal[2][b])
     }
 
     /// (x − g)·n [m] of a plane through x.
     pub fn centroid_distance(&self, x: &Vec3, normal: &Vec3) -> f64 {
         (x - self.centroid).dot(normal)
     }
+}
+
+/// λ as `[b][a]` of λ as `[a][b]`.
+#[inline(always)]
+pub(crate) fn by_face([x, y, z]: &[Faces; 3]) -> [[f64; 3]; 4] {
+    [0, 1, 2, 3].map(|b| [x[b], y[b], z[b]])
+}
+
+/// Whether no corner of a triangle is inside some face, from λ as `[a][b]`; without a branch, since either answer is
+/// as likely.
+#[inline(always)]
+pub(crate) fn some_face_separates([x, y, z]: &[Faces; 3]) -> bool {
+    let mut separates = false;
+    for b in 0..4 {
+        let larger = if x[b] > y[b] { x[b] } else { y[b] };
+        let largest = if z[b] > larger { z[b] } else { larger };
+        separates |= largest <= 0.0;
+    }
+    separates
 }
 
 /// Integrals over the part of a triangle inside a tetrahedron. ψ are the shape functions of the triangle.
@@ -175,15 +185,12 @@ impl PairMoments {
         }
     }
 
-    /// Adds another part of the same pair.
-    pub fn join(&mut self, part: &Self) {
+    /// Adds the integrals over a region of the same triangle.
+    #[inline(always)]
+    pub fn add_region(&mut self, part: &RegionMoments) {
         for a in 0..3 {
             self.pressure[a] += part.pressure[a];
             self.slope[a] += part.slope[a];
-        }
-        for b in 0..4 {
-            self.target_pressure[b] += part.target_pressure[b];
-            self.target_slope[b] += part.target_slope[b];
         }
         self.area += part.area;
         self.depth = self.depth.max(part.depth);
@@ -199,14 +206,15 @@ impl PairMoments {
     }
 }
 
-/// The corners' indices in the lexicographic order of their coordinates.
+/// The corners' indices in the lexicographic order of their coordinates, by five comparisons.
 fn lexicographic(corners: &[Vec3; 4]) -> [u8; 4] {
     let mut order = [0, 1, 2, 3];
-    let key = |i: &u8| {
-        let x = &corners[usize::from(*i)];
-        (x.x, x.y, x.z)
-    };
-    order.sort_unstable_by(|i, j| key(i).partial_cmp(&key(j)).unwrap_or(std::cmp::Ordering::Equal));
+    for (i, j) in [(0, 1), (2, 3), (0, 2), (1, 3), (1, 2)] {
+        let (a, b) = (&corners[usize::from(order[i])], &corners[usize::from(order[j])]);
+        let by_z = (a.y == b.y) & (b.z < a.z);
+        let swap = (b.x < a.x) | ((a.x == b.x) & ((b.y < a.y) | by_z));
+        (order[i], order[j]) = if swap { (order[j], order[i]) } else { (order[i], order[j]) };
+    }
     order
 }
 
@@ -229,10 +237,9 @@ pub fn pair_moments(triangle: &[Vec3; 3], area_vector: &Vec3, tet: &TetFrame) ->
 /// The integrals of the element potential, region by region; `slopes` are |∂φ/∂n| there [1/m].
 pub fn element_moments(lambda: &[[f64; 3]; 4], slopes: &[f64; 4], area_m2: f64) -> PairMoments {
     let mut moments = PairMoments::default();
-    for i in 0..4 {
-        let phi = Form::through(&lambda[i].map(|l| 4.0 * l));
-        moments.add(&region(lambda, i), &phi, slopes[i], area_m2);
-    }
+    element_regions(lambda, slopes, |_, region| {
+        moments.add(&region.polygon(), &Form::through(&region.phi), region.slope, area_m2);
+    });
     moments.share_with_target(lambda);
     moments
 }
@@ -244,12 +251,11 @@ pub fn pair_energy(triangle: &[Vec3; 3], area_vector: &Vec3, tet: &TetFrame) -> 
     if area == 0.0 || is_outside(&lambda) {
         return 0.0;
     }
-    let over_region = |i: usize| {
-        let phi = Form::through(&lambda[i].map(|l| 4.0 * l));
-        let parts = region(&lambda, i);
-        parts.fan().map(|(corners, twice)| twice * mean_of_a(&corners.map(|c| phi.at(&c)))).sum::<f64>()
-    };
-    let mean: f64 = (0..4).map(over_region).sum();
+    let mut mean = 0.0;
+    element_regions(&lambda, &[0.0; 4], |_, region| {
+        let (phi, part) = (Form::through(&region.phi), region.polygon());
+        mean += part.fan().map(|(x, twice)| twice * mean_of_a(&x.map(|c| phi.at(&c)))).sum::<f64>();
+    });
     // |n| dA and the height of the centroid in one product.
     mean * tet.centroid_distance(&triangle[0], area_vector)
 }

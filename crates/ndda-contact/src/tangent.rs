@@ -15,8 +15,9 @@
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{Mat3, NodeId, Vec3};
 
-use crate::clip::{Form, Polygon, region};
+use crate::clip::Polygon;
 use crate::pair::TetFrame;
+use crate::region::{Region, element_outside};
 
 /// Stiffness between the seven nodes of a pair: the triangle's three, then the tetrahedron's four.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,31 +96,17 @@ pub fn add_pair(
         let product = normal * gradient.transpose();
         -0.5 * penalty_pa * (product + product.transpose())
     };
-    match pieces {
-        None => {
-            for i in 0..4 {
-                let gradient = 4.0 * frame.gradients()[i];
-                stiffness.add(&region(&lambda, i), &shapes, &tensor(&gradient), area);
+    let (mut region, outside) = (Region::default(), element_outside(&lambda));
+    for k in 0..pieces.map_or(4, <[_]>::len) {
+        let (somewhere, gradient) = match pieces {
+            None => (region.set_element(&lambda, &outside, k, 0.0), 4.0 * frame.gradient(k)),
+            Some(pieces) => {
+                let gradient: Vec3 = (0..4).map(|b| pieces[k][b] * frame.gradient(b)).sum();
+                (region.set_piece(&lambda, pieces, k, frame, &normal), gradient)
             }
-        }
-        Some(pieces) => {
-            for k in 0..pieces.len() {
-                let gradient: Vec3 = (0..4).map(|b| pieces[k][b] * frame.gradients()[b]).sum();
-                stiffness.add(&piece(&lambda, pieces, k, frame, &normal), &shapes, &tensor(&gradient), area);
-            }
+        };
+        if somewhere {
+            stiffness.add(&region.polygon(), &shapes, &tensor(&gradient), area);
         }
     }
-}
-
-/// The part of a triangle inside where the k-th function is the smallest.
-fn piece(lambda: &[[f64; 3]; 4], pieces: &[[f64; 4]], k: usize, frame: &TetFrame, normal: &Vec3) -> Polygon {
-    let at = |values: &[f64; 4]| [0, 1, 2].map(|a| (0..4).map(|b| values[b] * lambda[b][a]).sum::<f64>());
-    let own = at(&pieces[k]);
-    let inside = (0..4).fold(Polygon::triangle(), |part, b| {
-        part.cut(&Form::through(&lambda[b]), frame.owns_plane(b, normal))
-    });
-    (0..pieces.len()).filter(|&j| j != k).fold(inside, |part, j| {
-        let rival = at(&pieces[j]);
-        part.cut(&Form::through(&[0, 1, 2].map(|a| rival[a] - own[a])), k < j)
-    })
 }

@@ -6,15 +6,18 @@
 use ndda_mesh::geometry::{TET_FACES, triangle_area_vector};
 use ndda_mesh::{Mat3, Vec3};
 
-use crate::clip::region;
-use crate::kernel::{GROUP, GroupMoments, PairGroup, element_moments};
+use crate::batch::Batches;
 pub use crate::overlap::PairError;
 use crate::overlap::ScaledPair;
-use crate::pair::{self, TetFrame, is_outside};
+use crate::pair::{self, TetFrame, by_face, is_outside, some_face_separates};
+use crate::region::element_regions;
 use crate::twofold::Barycentric;
 
 /// What the processor can do; asked once.
 static ARCH: std::sync::LazyLock<pulp::Arch> = std::sync::LazyLock::new(pulp::Arch::new);
+
+/// Pairs at a time, so that all about them stays in the cache.
+const CHUNK: usize = 64;
 
 /// What a pair of tetrahedra gives.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -93,42 +96,87 @@ fn in_callers_order([a, b, c, d]: [Vec3; 4], swapped: bool) -> [Vec3; 4] {
     if swapped { [b, a, c, d] } else { [a, b, c, d] }
 }
 
-/// Nodal forces of two tetrahedra of positive volume on each other [N]: all eight faces at once, a lane each.
+/// The kernel that blocks use, for many pairs of tetrahedra; its memory is used again and again.
 ///
-/// This is the kernel that blocks use. λ is rounded to f64 there: the forces of a flat tetrahedron along a face are off
-/// by ε times its width over its height, where [`pair_forces`] is right to rounding.
-pub fn nodal_forces(c: &[Vec3; 4], t: &[Vec3; 4], penalty_pa: f64) -> [[Vec3; 4]; 2] {
-    let (tets, frames) = ([c, t], [TetFrame::new(c), TetFrame::new(t)]);
-    let (mut group, mut areas) = (PairGroup::default(), [Vec3::zeros(); GROUP]);
-    let mut is_inside = [false; GROUP];
-    for (lane, area_vector) in areas.iter_mut().enumerate() {
-        let (owner, face) = (lane / 4, TET_FACES[lane % 4]);
-        let corners = face.map(|i| tets[owner][i]);
-        *area_vector = triangle_area_vector(&corners);
-        let inside = frames[1 - owner].lambda_inside(&corners).filter(|_| *area_vector != Vec3::zeros());
-        is_inside[lane] = inside.is_some();
-        let lambda = inside.unwrap_or([[-1.0; 3]; 4]);
-        for (row, value) in group.lambda.as_flattened_mut().iter_mut().zip(lambda.as_flattened()) {
-            row[lane] = *value;
+/// λ is rounded to f64 here: the forces of a flat tetrahedron along a face are off by ε times its width over its height,
+/// where [`pair_forces`] is right to rounding.
+#[derive(Default)]
+pub struct NodalForces {
+    batches: Batches,
+    /// λ of each pair's corners in the other tetrahedron, as `[owner][corner][b]`.
+    lambda: Vec<[[[f64; 4]; 4]; 2]>,
+    /// ∫ φ ψ_a dA over the area of each face of each pair.
+    pressure: Vec<[[f64; 3]; 8]>,
+}
+
+impl NodalForces {
+    /// Nodal forces of each pair of tetrahedra of positive volume on each other [N].
+    pub fn of(&mut self, pairs: &[[[Vec3; 4]; 2]], penalty_pa: f64, forces: &mut [[[Vec3; 4]; 2]]) {
+        for (pairs, forces) in pairs.chunks(CHUNK).zip(forces.chunks_mut(CHUNK)) {
+            self.of_chunk(pairs, penalty_pa, forces);
         }
     }
-    let mut moments = GroupMoments::default();
-    element_moments(*ARCH, &group, &mut moments);
-    let mut forces = [[Vec3::zeros(); 4]; 2];
-    for (lane, area_vector) in areas.iter().enumerate().filter(|(lane, _)| is_inside[*lane]) {
-        let (owner, face, area) = (lane / 4, TET_FACES[lane % 4], area_vector.norm());
-        let part = if moments.doubtful[lane] == 0.0 {
-            moments.of(lane, area)
-        } else {
-            let lambda = group.lambda.each_ref().map(|at| at.each_ref().map(|row| row[lane]));
-            pair::element_moments(&lambda, &[0.0; 4], area)
-        };
-        let push = -penalty_pa / area * area_vector;
-        for (i, w) in face.iter().zip(part.pressure) {
-            forces[owner][*i] += w * push;
+
+    fn of_chunk(&mut self, pairs: &[[[Vec3; 4]; 2]], penalty_pa: f64, forces: &mut [[[Vec3; 4]; 2]]) {
+        self.lambda.clear();
+        self.pressure.clear();
+        self.pressure.resize(pairs.len(), [[0.0; 3]; 8]);
+        for (index, pair) in pairs.iter().enumerate() {
+            self.add_pair(index, pair);
         }
-        for (sum, w) in forces[1 - owner].iter_mut().zip(part.target_pressure) {
-            *sum -= w * push;
+        let pressure = &mut self.pressure;
+        self.batches.finish(*ARCH, |part| {
+            let of_face = &mut pressure[part.pair as usize / 8][part.pair as usize % 8];
+            (0..3).for_each(|a| of_face[a] += part.pressure[a]);
+        });
+        let found = self.lambda.iter().zip(&self.pressure);
+        for ((pair, (lambda, pressure)), forces) in pairs.iter().zip(found).zip(forces) {
+            *forces = spread(pair, lambda, pressure, penalty_pa);
+        }
+    }
+
+    fn add_pair(&mut self, index: usize, tets: &[[Vec3; 4]; 2]) {
+        let mut lambda = [[[0.0; 4]; 4]; 2];
+        for owner in 0..2 {
+            let frame = TetFrame::new(&tets[1 - owner]);
+            for (lambda, x) in lambda[owner].iter_mut().zip(&tets[owner]) {
+                *lambda = frame.lambda_at(x);
+            }
+            for (face, [i, j, k]) in TET_FACES.iter().enumerate() {
+                let at = &lambda[owner];
+                self.add_face((8 * index + 4 * owner + face) as u32, &[at[*i], at[*j], at[*k]]);
+            }
+        }
+        self.lambda.push(lambda);
+    }
+
+    /// The regions of a face from λ as `[a][b]`, over a face of unit area: the area comes with the normal.
+    fn add_face(&mut self, face: u32, at: &[[f64; 4]; 3]) {
+        if some_face_separates(at) {
+            return;
+        }
+        self.batches.push_element(*ARCH, face, 1.0, &by_face(at), &[0.0; 4]);
+    }
+}
+
+/// Nodal forces of one pair.
+fn spread(
+    tets: &[[Vec3; 4]; 2],
+    lambda: &[[[f64; 4]; 4]; 2],
+    pressure: &[[f64; 3]; 8],
+    penalty_pa: f64,
+) -> [[Vec3; 4]; 2] {
+    let mut forces = [[Vec3::zeros(); 4]; 2];
+    for (face, [p, q, r]) in pressure.iter().enumerate().filter(|(_, w)| **w != [0.0; 3]) {
+        let (owner, [i, j, k]) = (face / 4, TET_FACES[face % 4]);
+        let own = &tets[owner];
+        let push = -penalty_pa * triangle_area_vector(&[own[i], own[j], own[k]]);
+        forces[owner][i] += *p * push;
+        forces[owner][j] += *q * push;
+        forces[owner][k] += *r * push;
+        let (x, y, z) = (&lambda[owner][i], &lambda[owner][j], &lambda[owner][k]);
+        for b in 0..4 {
+            forces[1 - owner][b] -= (x[b] * p + y[b] * q + z[b] * r) * push;
         }
     }
     forces
@@ -158,15 +206,13 @@ fn add_faces(
         for (sum, w) in on_other.iter_mut().zip(moments.target_pressure) {
             *sum += w * area_vector;
         }
-        let slope = |b: usize| part_in_region(&lambda, b) * 4.0 * of_other.gradient(b);
-        stiffness -= area_vector * (0..4).map(slope).sum::<Vec3>().transpose();
+        let mut slope = Vec3::zeros();
+        element_regions(&lambda, &[0.0; 4], |b, region| {
+            slope += region.polygon().fan().map(|(_, twice)| twice).sum::<f64>() * 4.0 * of_other.gradient(b);
+        });
+        stiffness -= area_vector * slope.transpose();
     }
     stiffness
-}
-
-/// The part of a face's area where λ_b ≥ 0 is the smallest.
-fn part_in_region(lambda: &[[f64; 3]; 4], b: usize) -> f64 {
-    region(lambda, b).fan().map(|(_, twice)| twice).sum()
 }
 
 #[cfg(test)]
@@ -209,7 +255,9 @@ mod tests {
         let near = [Vec3::new(0.1, 0.1, 0.1), Vec3::new(0.2, 0.5, 0.1), Vec3::new(0.1, 0.2, 0.6)];
         for c in [[near[0], far, near[1], near[2]], [far, near[0], near[2], near[1]]] {
             let found = pair_forces(&c, &t, 1.0).unwrap();
-            let fast = nodal_forces(&c, &t, 1.0);
+            let mut fast = [[[Vec3::zeros(); 4]; 2]];
+            NodalForces::default().of(&[[c, t]], 1.0, &mut fast);
+            let [fast] = fast;
             for (a, b) in found.nodal_n.iter().zip(fast.as_flattened()) {
                 assert!((a - b).norm() < 1e-15, "{a:?} and {b:?} for {c:?}");
             }

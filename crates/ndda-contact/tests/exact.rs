@@ -11,7 +11,7 @@
 
 use std::array::from_fn;
 
-use ndda_contact::tet_pair::{PairError, nodal_forces, pair_forces};
+use ndda_contact::tet_pair::{NodalForces, PairError, pair_forces};
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::{TET_FACES, tet_heights, tet_volume};
 use num_bigint::{BigInt, Sign};
@@ -268,7 +268,9 @@ fn force_of_kernel(c: &[Vec3; 4], t: &[Vec3; 4]) -> Vec3 {
         let [p, q, r, s] = tet.map(|x| x - c[0]);
         if tet_volume(tet) > 0.0 { [p, q, r, s] } else { [q, p, r, s] }
     };
-    nodal_forces(&oriented(c), &oriented(t), 1.0)[0].iter().sum()
+    let mut forces = [[[Vec3::zeros(); 4]; 2]];
+    NodalForces::default().of(&[[oriented(c), oriented(t)]], 1.0, &mut forces);
+    forces[0][0].iter().sum()
 }
 
 /// Whether they overlap; the errors of volume, energy, force and the kernel's force relative to the larger tetrahedron,

@@ -1,0 +1,162 @@
+//! Regions that wait until there are enough of them for all lanes.
+
+use pulp::Arch;
+
+use crate::clip::{Form, Polygon};
+use crate::kernel::{GROUP, GroupMoments, RegionGroup, region_moments};
+use crate::pair::PairMoments;
+use crate::region::{Cut, Region, element_cuts, element_outside, is_somewhere};
+
+/// Regions with this many cuts or more wait together.
+const MANY_CUTS: usize = 5;
+
+/// The regions of many pairs, by the number of their cuts. What comes out does not depend on the company that a region
+/// was computed in.
+#[derive(Default)]
+pub struct Batches {
+    waiting: [Batch; MANY_CUTS + 1],
+    parts: Vec<RegionMoments>,
+    moments: GroupMoments,
+}
+
+/// The integrals over one region of a pair. ψ are the shape functions of the triangle.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct RegionMoments {
+    /// Which pair.
+    pub pair: u32,
+    /// ∫ φ ψ_a dA [m²].
+    pub pressure: [f64; 3],
+    /// ∫ |∂φ/∂n| ψ_a dA [m].
+    pub slope: [f64; 3],
+    /// Area [m²].
+    pub area: f64,
+    /// Largest φ.
+    pub depth: f64,
+}
+
+impl Batches {
+    /// Adds a region of a pair, on a triangle of this area [m²].
+    pub fn push(&mut self, arch: Arch, pair: u32, area_m2: f64, region: &Region) {
+        let cuts = region.cuts();
+        let batch = &mut self.waiting[cuts.len().min(MANY_CUTS)];
+        batch.make_room(cuts.len());
+        for (k, cut) in cuts.iter().enumerate() {
+            batch.set_cut(k, cut);
+        }
+        batch.set(self.parts.len(), area_m2, &region.phi, region.slope);
+        self.added(arch, pair, cuts.len().min(MANY_CUTS));
+    }
+
+    /// Adds the regions of the element potential on a triangle of this area [m²]; `slopes` are |∂φ/∂n| there [1/m].
+    #[inline(always)]
+    pub fn push_element(
+        &mut self,
+        arch: Arch,
+        pair: u32,
+        area_m2: f64,
+        lambda: &[[f64; 3]; 4],
+        slopes: &[f64; 4],
+    ) {
+        let outside = element_outside(lambda);
+        for i in (0..4).filter(|&i| is_somewhere(&outside[i])) {
+            let cuts = outside[i].iter().map(|n| usize::from(*n > 0)).sum::<usize>();
+            let batch = &mut self.waiting[cuts];
+            batch.group.cuts = cuts;
+            element_cuts(lambda, &outside, i, |k, cut| batch.set_cut(k, &cut));
+            let [x, y, z] = lambda[i];
+            batch.set(self.parts.len(), area_m2, &[4.0 * x, 4.0 * y, 4.0 * z], slopes[i]);
+            self.added(arch, pair, cuts);
+        }
+    }
+
+    #[inline(always)]
+    fn added(&mut self, arch: Arch, pair: u32, batch: usize) {
+        self.parts.push(RegionMoments { pair, ..RegionMoments::default() });
+        let batch = &mut self.waiting[batch];
+        if batch.group.len == GROUP {
+            batch.flush(arch, &mut self.moments, &mut self.parts);
+        }
+    }
+
+    /// Does what still waits and hands out all integrals, region by region as they came.
+    pub fn finish(&mut self, arch: Arch, visit: impl FnMut(&RegionMoments)) {
+        for batch in self.waiting.iter_mut().filter(|batch| batch.group.len > 0) {
+            batch.flush(arch, &mut self.moments, &mut self.parts);
+        }
+        self.parts.iter().for_each(visit);
+        self.parts.clear();
+    }
+}
+
+/// One group while it fills.
+#[derive(Default)]
+struct Batch {
+    group: RegionGroup,
+    part: [usize; GROUP],
+    area: [f64; GROUP],
+}
+
+impl Batch {
+    /// Makes room for a region with so many cuts, of which those that it has not cut nothing.
+    fn make_room(&mut self, cuts: usize) {
+        let group = &mut self.group;
+        for cut in group.cuts..cuts {
+            group.fields[cut] = [[1.0; GROUP]; 3];
+            group.bounds[cut] = [0.0; GROUP];
+        }
+        for cut in cuts..group.cuts {
+            group.fields[cut].iter_mut().for_each(|row| row[group.len] = 1.0);
+            group.bounds[cut][group.len] = 0.0;
+        }
+        group.cuts = group.cuts.max(cuts);
+    }
+
+    #[inline(always)]
+    fn set_cut(&mut self, k: usize, cut: &Cut) {
+        let lane = self.group.len;
+        let [x, y, z] = &mut self.group.fields[k];
+        (x[lane], y[lane], z[lane]) = (cut.field[0], cut.field[1], cut.field[2]);
+        self.group.bounds[k][lane] = cut.bound;
+    }
+
+    /// Completes the next lane.
+    #[inline(always)]
+    fn set(&mut self, part: usize, area_m2: f64, phi: &[f64; 3], slope: f64) {
+        let (lane, group) = (self.group.len, &mut self.group);
+        let [x, y, z] = &mut group.phi;
+        (x[lane], y[lane], z[lane]) = (phi[0], phi[1], phi[2]);
+        group.slope[lane] = slope;
+        (self.part[lane], self.area[lane]) = (part, area_m2);
+        group.len += 1;
+    }
+
+    /// Writes all integrals to their places.
+    fn flush(&mut self, arch: Arch, moments: &mut GroupMoments, parts: &mut [RegionMoments]) {
+        region_moments(arch, &self.group, moments);
+        for lane in 0..self.group.len {
+            let (part, area) = (&mut parts[self.part[lane]], self.area[lane]);
+            if moments.doubtful[lane] != 0.0 {
+                self.in_order(lane, part);
+                continue;
+            }
+            for a in 0..3 {
+                part.pressure[a] = area * moments.pressure[a][lane];
+                part.slope[a] = area * moments.slope[a][lane];
+            }
+            (part.area, part.depth) = (area * moments.area[lane], moments.depth[lane]);
+        }
+        (self.group.len, self.group.cuts) = (0, 0);
+    }
+
+    /// A region that the lanes doubt.
+    fn in_order(&self, lane: usize, part: &mut RegionMoments) {
+        let group = &self.group;
+        let form = |rows: &[[f64; GROUP]; 3]| Form::through(&rows.each_ref().map(|row| row[lane]));
+        let cuts = group.fields.iter().zip(&group.bounds).take(group.cuts);
+        let polygon = cuts.fold(Polygon::triangle(), |p, (field, bound)| p.cut(&form(field), bound[lane]));
+        let mut moments = PairMoments::default();
+        moments.add(&polygon, &form(&group.phi), group.slope[lane], self.area[lane]);
+        (part.pressure, part.slope) = (moments.pressure, moments.slope);
+        (part.area, part.depth) = (moments.area, moments.depth);
+    }
+}

@@ -1,0 +1,225 @@
+//! The part of a triangle where φ is one linear function, as the cuts that make it.
+//!
+//! A region is where some linear fields are positive: λ_i and λ_j − λ_i for the element potential, the four λ and the
+//! rivals' lead over a piece for any other. Most pairs of a shallow contact see one region and one or two cuts of it,
+//! so a field is looked at by its signs at the corners first: none outside, and it cuts nothing; all outside, and there
+//! is no region. The sign of a field is taken the same way from both of its sides, so no point is in two regions or
+//! in none.
+
+use crate::clip::{Form, Polygon};
+use crate::kernel::MOST_CUTS;
+use crate::pair::TetFrame;
+use ndda_mesh::Vec3;
+
+/// A field by its values at the triangle's corners, that is positive in the region.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Cut {
+    /// The values.
+    pub field: [f64; 3],
+    /// Below this is outside: 0 where a zero of the field belongs to the region, the least positive number where not.
+    pub bound: f64,
+}
+
+impl Cut {
+    /// A cut that keeps the zeros of its field, or leaves them to another region.
+    #[inline(always)]
+    pub fn new(field: [f64; 3], tie_is_inside: bool) -> Self {
+        Self { field, bound: if tie_is_inside { 0.0 } else { f64::from_bits(1) } }
+    }
+
+    /// How many corners are outside.
+    #[inline(always)]
+    fn outside(&self) -> u8 {
+        let [a, b, c] = self.field.map(|d| u8::from(d < self.bound));
+        a + b + c
+    }
+}
+
+/// A region; one is used again and again.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Region {
+    /// φ at the triangle's corners.
+    pub phi: [f64; 3],
+    /// |∂φ/∂n| [1/m].
+    pub slope: f64,
+    cuts: [Cut; MOST_CUTS],
+    len: usize,
+}
+
+impl Region {
+    /// The cuts, at most [`MOST_CUTS`].
+    #[inline(always)]
+    pub fn cuts(&self) -> &[Cut] {
+        &self.cuts[..self.len]
+    }
+
+    /// Begins anew.
+    #[inline(always)]
+    fn begin(&mut self, phi: [f64; 3], slope: f64) {
+        (self.phi, self.slope, self.len) = (phi, slope, 0);
+    }
+
+    /// Adds a cut if it cuts anything; false if it leaves nothing.
+    #[inline(always)]
+    fn add(&mut self, cut: Cut) -> bool {
+        let outside = cut.outside();
+        if (1..3).contains(&outside) {
+            self.cuts[self.len] = cut;
+            self.len += 1;
+        }
+        outside < 3
+    }
+
+    /// Where λ_i ≥ 0 is the smallest of four and φ = 4 λ_i; `lambda[b][a]` is λ_b at corner a. `outside` is from
+    /// [`element_outside`]. False if that is nowhere.
+    pub fn set_element(
+        &mut self,
+        lambda: &[[f64; 3]; 4],
+        outside: &[[u8; 4]; 4],
+        i: usize,
+        slope: f64,
+    ) -> bool {
+        self.begin(lambda[i].map(|l| 4.0 * l), slope);
+        self.len = element_cuts(lambda, outside, i, |k, cut| self.cuts[k] = cut);
+        is_somewhere(&outside[i])
+    }
+
+    /// Where the k-th of the functions with these nodal values is the smallest. `normal` is the triangle's outward unit
+    /// normal. False if that is nowhere.
+    pub fn set_piece(
+        &mut self,
+        lambda: &[[f64; 3]; 4],
+        pieces: &[[f64; 4]],
+        k: usize,
+        frame: &TetFrame,
+        normal: &Vec3,
+    ) -> bool {
+        let at = |values: &[f64; 4]| [0, 1, 2].map(|a| (0..4).map(|b| values[b] * lambda[b][a]).sum::<f64>());
+        let own = at(&pieces[k]);
+        let gradient: Vec3 = (0..4).map(|b| pieces[k][b] * frame.gradient(b)).sum();
+        self.begin(own, gradient.dot(normal).abs());
+        let ahead = |j: usize| {
+            let rival = at(&pieces[j]);
+            Cut::new([0, 1, 2].map(|a| rival[a] - own[a]), k < j)
+        };
+        (0..4).all(|b| self.add(Cut::new(lambda[b], frame.owns_plane(b, normal))))
+            && (0..pieces.len()).all(|j| j == k || self.add(ahead(j)))
+    }
+
+    /// The region corner by corner.
+    pub fn polygon(&self) -> Polygon {
+        let cut = |part: Polygon, cut: &Cut| part.cut(&Form::through(&cut.field), cut.bound);
+        self.cuts().iter().fold(Polygon::triangle(), cut)
+    }
+}
+
+/// For region i of the element potential, how many corners are outside of λ_i ≥ 0 (at [i][i]) and of λ_j ≥ λ_i (at
+/// [i][j]).
+#[inline(always)]
+pub fn element_outside(lambda: &[[f64; 3]; 4]) -> [[u8; 4]; 4] {
+    let mut outside = [[0; 4]; 4];
+    for i in 0..4 {
+        let [x, y, z] = &lambda[i];
+        outside[i][i] = u8::from(*x < 0.0) + u8::from(*y < 0.0) + u8::from(*z < 0.0);
+        for j in i + 1..4 {
+            let [u, v, w] = &lambda[j];
+            let below = u8::from(u < x) + u8::from(v < y) + u8::from(w < z);
+            (outside[i][j], outside[j][i]) = (below, 3 - below);
+        }
+    }
+    outside
+}
+
+/// Whether no cut of a region has all corners outside.
+#[inline(always)]
+pub fn is_somewhere([a, b, c, d]: &[u8; 4]) -> bool {
+    (*a != 3) & (*b != 3) & (*c != 3) & (*d != 3)
+}
+
+/// The cuts of region i of the element potential that cut something: λ_i ≥ 0, and λ_j − λ_i; where λ_i = λ_j the
+/// smaller index has the point. Gives each its place and returns how many there are; a place may be given again, and
+/// the one after the last too: to write is quicker than to ask.
+#[inline(always)]
+pub fn element_cuts(
+    lambda: &[[f64; 3]; 4],
+    outside: &[[u8; 4]; 4],
+    i: usize,
+    mut put: impl FnMut(usize, Cut),
+) -> usize {
+    let own = &lambda[i];
+    let mut len = 0;
+    for j in 0..4 {
+        let base = if j == i { [0.0; 3] } else { *own };
+        let ahead = [lambda[j][0] - base[0], lambda[j][1] - base[1], lambda[j][2] - base[2]];
+        put(len, Cut::new(ahead, i <= j));
+        len += usize::from(outside[i][j] > 0);
+    }
+    len
+}
+
+/// The regions of the element potential that are somewhere.
+pub fn element_regions(lambda: &[[f64; 3]; 4], slopes: &[f64; 4], mut visit: impl FnMut(usize, &Region)) {
+    let (mut region, outside) = (Region::default(), element_outside(lambda));
+    for (i, slope) in slopes.iter().enumerate() {
+        if region.set_element(lambda, &outside, i, *slope) {
+            visit(i, &region);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lambda_of(points: [[f64; 3]; 3]) -> [[f64; 3]; 4] {
+        let mut lambda = [[0.0; 3]; 4];
+        for (a, p) in points.iter().enumerate() {
+            lambda[0][a] = 1.0 - p[0] - p[1] - p[2];
+            for b in 0..3 {
+                lambda[b + 1][a] = p[b];
+            }
+        }
+        lambda
+    }
+
+    fn total(lambda: &[[f64; 3]; 4]) -> f64 {
+        let mut total = 0.0;
+        element_regions(lambda, &[0.0; 4], |_, r| {
+            total += r.polygon().fan().map(|(_, part)| part).sum::<f64>()
+        });
+        total
+    }
+
+    #[test]
+    fn a_triangle_inside_is_split_into_regions_that_fill_it() {
+        let area = total(&lambda_of([[0.1, 0.1, 0.1], [0.6, 0.1, 0.2], [0.1, 0.7, 0.05]]));
+        assert!((area - 1.0).abs() < 1e-14, "{area}");
+    }
+
+    #[test]
+    fn a_triangle_in_a_kink_plane_is_counted_once() {
+        // λ₁ = λ₂ everywhere: the plane between two regions.
+        let area = total(&lambda_of([[0.1, 0.1, 0.1], [0.2, 0.2, 0.1], [0.1, 0.1, 0.6]]));
+        assert!((area - 1.0).abs() < 1e-14, "{area}");
+    }
+
+    #[test]
+    fn a_triangle_outside_leaves_nothing() {
+        assert_eq!(total(&lambda_of([[-0.1, 0.1, 0.1], [-0.2, 0.2, 0.1], [-0.1, 0.1, 0.6]])), 0.0);
+    }
+
+    #[test]
+    fn a_large_triangle_is_clipped_to_the_section() {
+        // The section λ₃ = 1/4 of the tetrahedron is a triangle of (3/4)² of the face.
+        let area = total(&lambda_of([[-4.0, -4.0, 0.25], [8.0, -4.0, 0.25], [-4.0, 8.0, 0.25]]));
+        assert!((area * 144.0 - 0.5625).abs() < 1e-13, "{area}");
+    }
+
+    #[test]
+    fn a_shallow_triangle_far_from_the_kinks_needs_no_cut() {
+        let lambda = lambda_of([[0.3, 0.3, 0.01], [0.35, 0.3, 0.01], [0.3, 0.35, 0.01]]);
+        let mut seen = Vec::new();
+        element_regions(&lambda, &[0.0; 4], |i, region| seen.push((i, region.cuts().len())));
+        assert_eq!(seen, [(3, 0)]);
+    }
+}
