@@ -1,6 +1,9 @@
 //! Contact: one pair, a whole evaluation, and the slow twin beside it.
 #![allow(missing_docs)] // criterion's macro makes public functions
 
+#[path = "../tests/frictionless/mod.rs"]
+mod frictionless;
+
 use criterion::{Criterion, criterion_group, criterion_main};
 use ndda_contact::batch::Batches;
 use ndda_contact::testing::{test_box, test_set};
@@ -156,6 +159,19 @@ fn evaluation(c: &mut Criterion) {
             });
         }
     }
+    let blocks = pressed(16);
+    let nodes = blocks.rest_position.len();
+    let velocity = vec![Vec3::x(); nodes];
+    let input = ContactInput::new(&blocks, &blocks.rest_position, &velocity, 1e-5);
+    let (mut force, mut stiffness) = (vec![Vec3::zeros(); nodes], vec![0.0; nodes]);
+    let mut twin = frictionless::Frictionless::default();
+    c.bench_function("evaluation/16x16 facets, no friction code", |b| {
+        b.iter(|| {
+            let mut output =
+                ContactOutput { force: &mut force, friction_force: &mut [], stiffness: &mut stiffness };
+            twin.add_forces(&input, 1e9, &mut output)
+        })
+    });
     let blocks = pressed(4);
     c.bench_function("evaluation/4x4 facets, slow twin", |b| {
         b.iter(|| element_pairs::forces(&blocks, &blocks.rest_position, 1e9))

@@ -26,6 +26,10 @@ impl FrictionLaw for Coulomb {
         memory.shear_n = capped(trial, self.capacity_n(slip, memory)).0;
     }
 
+    fn shear_stiffness_pa_m(&self) -> f64 {
+        self.shear_penalty_pa_m
+    }
+
     /// μ |f_n|.
     fn capacity_n(&self, slip: &FacetSlip, _memory: &ShearMemory) -> f64 {
         self.friction * slip.normal_n

@@ -16,6 +16,8 @@ pub struct FacetForce {
     pub push: Vec3,
     /// The same for friction [Pa].
     pub shear: Vec3,
+    /// ½ k_s S / ∫ φ dA: what a shift of the facet adds to `shear` [Pa/m].
+    pub shear_slope: f64,
     /// Memory to keep, where there is friction and contact.
     pub memory: Option<ShearMemory>,
     /// Whether there is a force at all.
@@ -53,6 +55,7 @@ impl FacetScene<'_> {
             let slip = self.slip(facet, hits, &basis, pressure, penalty_pa);
             law.advance(&slip, &mut memory);
             force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / pressure;
+            force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / pressure;
             force.memory = Some(memory);
         }
         force

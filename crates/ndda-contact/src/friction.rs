@@ -41,6 +41,11 @@ pub trait FrictionLaw: Send + Sync {
     /// Most that the law carries [N].
     fn capacity_n(&self, slip: &FacetSlip, memory: &ShearMemory) -> f64;
 
+    /// Stiffness of the law against slip, of both sides together [Pa/m]: with it a step has to be short enough.
+    fn shear_stiffness_pa_m(&self) -> f64 {
+        0.0
+    }
+
     /// Tension that an unbroken contact carries [Pa].
     fn tension_pa(&self) -> f64 {
         0.0

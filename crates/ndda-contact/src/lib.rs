@@ -58,6 +58,8 @@ pub mod potential_contact;
 #[cfg(feature = "potential")]
 pub mod region;
 #[cfg(feature = "potential")]
+pub mod report;
+#[cfg(feature = "potential")]
 pub mod scatter;
 #[cfg(feature = "potential")]
 pub mod smooth_potential;

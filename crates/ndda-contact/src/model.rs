@@ -71,7 +71,8 @@ pub struct ContactOutput<'a> {
     pub force: &'a mut [Vec3],
     /// The part of `force` that friction does [N]; untouched by a model without friction.
     pub friction_force: &'a mut [Vec3],
-    /// Row sum of the contact stiffness, Σⱼ |∂fᵢ/∂xⱼ| along the normal [N/m]; bounds ω_c = √(stiffness / mass).
+    /// Row sum of the contact stiffness, Σⱼ |∂fᵢ/∂xⱼ| along the normal, and that of shear springs [N/m]; bounds
+    /// ω_c = √(stiffness / mass).
     pub stiffness: &'a mut [f64],
 }
 

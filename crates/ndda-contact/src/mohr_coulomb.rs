@@ -39,6 +39,10 @@ impl FrictionLaw for MohrCoulomb {
         (cohesion + self.friction * slip.normal_n).max(0.0)
     }
 
+    fn shear_stiffness_pa_m(&self) -> f64 {
+        self.shear_penalty_pa_m
+    }
+
     fn tension_pa(&self) -> f64 {
         self.tension_pa
     }

@@ -1,6 +1,5 @@
 //! The default contact model: a contact potential, and friction on top of it.
 
-use ndda_mesh::TetId;
 use rayon::prelude::*;
 
 use crate::bonds;
@@ -17,6 +16,7 @@ use crate::model::{
 };
 use crate::pair::TetFrame;
 use crate::potential::{ContactPotential, Field, OverlapLaw};
+use crate::report::Reporter;
 use crate::tangent::{self, PairStiffness};
 
 /// Facets below which a second thread costs more than it brings.
@@ -41,19 +41,8 @@ pub struct PotentialContact {
     curvature_of_facet: Vec<f64>,
     faces: Faces,
     overlaps: energy::BlockOverlaps,
-    reach: Vec<Reach>,
+    reporter: Reporter,
     new_facets: Vec<FacetMemory>,
-}
-
-/// On which sides of a tetrahedron's centroid the pieces of another block are.
-#[derive(Clone, Copy, Default, PartialEq)]
-enum Reach {
-    #[default]
-    Nowhere,
-    /// The triangle has passed the centroid.
-    Past(u32),
-    /// A triangle is between: the centroid is outside.
-    Short,
 }
 
 impl PotentialContact {
@@ -73,7 +62,7 @@ impl PotentialContact {
             curvature_of_facet: Vec::new(),
             faces: Faces::default(),
             overlaps: Default::default(),
-            reach: Vec::new(),
+            reporter: Reporter::default(),
             new_facets: Vec::new(),
         }
     }
@@ -223,78 +212,6 @@ impl PotentialContact {
         }
         Ok(())
     }
-
-    fn report(&mut self, input: &ContactInput) -> Result<ContactReport, ContactError> {
-        let mut report =
-            ContactReport { candidate_pairs: self.candidates.pairs.len(), ..ContactReport::default() };
-        for hit in self.integrals.chunks().iter().flat_map(|chunk| &chunk.hits) {
-            if hit.moments.area <= 0.0 {
-                continue;
-            }
-            let triangle = self.candidates.pairs[hit.pair as usize].triangle;
-            let tet = self.candidates.tet_of(hit.pair);
-            let on_contactor = hit.moments.total();
-            let on_target: f64 = hit.moments.target_pressure.iter().sum();
-            if !on_contactor.is_finite() || !on_target.is_finite() {
-                return Err(ContactError::NotFinite { triangle, tet });
-            }
-            report.contact_pairs += 1;
-            // Nodal forces of a grazing pair may cancel: their sizes are what rounding is relative to.
-            let scale: f64 = hit.moments.pressure.iter().map(|w| w.abs()).sum();
-            if scale > 0.0 {
-                let error = (on_contactor - on_target).abs() / scale;
-                report.action_reaction_error = report.action_reaction_error.max(error);
-            }
-            let ratio = self.penetration_ratio(tet, hit.moments.depth);
-            if report.deepest.is_none() || ratio > report.max_penetration_ratio {
-                report.max_penetration_ratio = ratio;
-                report.deepest = Some((triangle, tet));
-            }
-        }
-        report.past_centroid = self.past_centroid(input);
-        Ok(report)
-    }
-
-    /// Depth over the height of the tetrahedron. For the element potential φ = 4 λ, and λ is that ratio.
-    fn penetration_ratio(&self, tet: TetId, phi: f64) -> f64 {
-        match &self.field {
-            Some((_, Field::Pieces(table))) => {
-                let most = table.of(tet).iter().flatten().copied().fold(0.0, f64::max);
-                if most > 0.0 { phi / most } else { 0.0 }
-            }
-            _ => 0.25 * phi,
-        }
-    }
-
-    /// A pair whose triangle has passed the tetrahedron's centroid, if every piece of that block in it has: then the
-    /// centroid is inside the block, and the element potential no longer pushes out.
-    fn past_centroid(&mut self, input: &ContactInput) -> Option<(ndda_mesh::TriangleId, TetId)> {
-        if !matches!(self.field, Some((_, Field::Element))) {
-            return None;
-        }
-        self.reach.clear();
-        self.reach.resize(self.candidates.overlaps.len(), Reach::Nowhere);
-        for hit in self.integrals.chunks().iter().flat_map(|chunk| &chunk.hits) {
-            if hit.moments.area <= 0.0 {
-                continue;
-            }
-            let pair = &self.candidates.pairs[hit.pair as usize];
-            let corners = input.blocks.triangle_corners(pair.triangle, input.position);
-            let normal = ndda_mesh::geometry::triangle_area_vector(&corners);
-            let distance = self.frames[pair.tet as usize].centroid_distance(&corners[0], &normal);
-            let reach = &mut self.reach[pair.overlap as usize];
-            *reach = match *reach {
-                Reach::Short => Reach::Short,
-                _ if distance <= 0.0 => Reach::Short,
-                _ => Reach::Past(hit.pair),
-            };
-        }
-        let past = self.reach.iter().find_map(|reach| match reach {
-            Reach::Past(pair) => Some(*pair),
-            _ => None,
-        })?;
-        Some((self.candidates.pairs[past as usize].triangle, self.candidates.tet_of(past)))
-    }
 }
 
 impl ContactModel for PotentialContact {
@@ -305,7 +222,9 @@ impl ContactModel for PotentialContact {
         output: &mut ContactOutput,
     ) -> Result<ContactReport, ContactError> {
         self.integrate(input)?;
-        let report = self.report(input)?;
+        let Some((_, field)) = &self.field else { return Ok(ContactReport::default()) };
+        let (candidates, integrals) = (&self.candidates, &self.integrals);
+        let report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
         self.place_penalties(input);
         self.place_forces(input, history);
         if self.needs_bodies() && !input.bodies.is_empty() {

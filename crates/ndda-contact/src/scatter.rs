@@ -42,7 +42,8 @@ pub struct ScatterScene<'a> {
 impl ScatterScene<'_> {
     fn stiffness(&self, facet: usize, slope: f64, pressure: f64) -> f64 {
         let curvature = self.curvature_pa_m.get(facet).copied().unwrap_or(0.0);
-        self.stiffness_pa[facet] * slope + curvature * pressure.abs()
+        let normal = self.stiffness_pa[facet] * slope + curvature * pressure.abs();
+        normal + self.forces[facet].shear_slope * pressure.abs()
     }
 }
 

@@ -1,0 +1,76 @@
+//! The contact model built without a line of friction: what switching friction off must be equal to.
+
+use ndda_contact::candidates::Candidates;
+use ndda_contact::facets::FacetForce;
+use ndda_contact::integrals::{Integrals, Scene};
+use ndda_contact::pair::TetFrame;
+use ndda_contact::report::Reporter;
+use ndda_contact::scatter::{Scatter, ScatterScene};
+use ndda_contact::{ContactInput, ContactOutput, ContactReport, Field};
+use ndda_mesh::geometry::triangle_area_vector;
+use rayon::prelude::*;
+
+/// The element potential's normal forces.
+#[derive(Default)]
+pub struct Frictionless {
+    candidates: Candidates,
+    frames: Vec<TetFrame>,
+    integrals: Integrals,
+    scatter: Scatter,
+    reporter: Reporter,
+    forces: Vec<FacetForce>,
+    stiffness_pa: Vec<f64>,
+}
+
+impl Frictionless {
+    /// Adds the forces.
+    pub fn add_forces(
+        &mut self,
+        input: &ContactInput,
+        penalty_pa: f64,
+        output: &mut ContactOutput,
+    ) -> ContactReport {
+        let blocks = input.blocks;
+        if self.candidates.update(input) {
+            self.scatter.arrange(blocks, &self.candidates);
+        }
+        self.frames.clear();
+        let tets = self.candidates.tets.iter().zip(&self.candidates.order);
+        self.frames.extend(tets.map(|(&tet, order)| {
+            let frame = TetFrame::in_order(&blocks.tet_corners(tet, input.position), order);
+            assert!(frame.volume_m3 > 0.0);
+            frame
+        }));
+        let (candidates, frames, field) = (&self.candidates, &self.frames[..], &Field::Element);
+        self.integrals.update(&Scene { blocks, position: input.position, candidates, frames, field });
+        let (integrals, facets) = (&self.integrals, &candidates.facets);
+        let report =
+            self.reporter.report(input, candidates, integrals, frames, field).expect("finite forces");
+        self.forces.resize(facets.len(), FacetForce::default());
+        let push = |(f, force): (usize, &mut FacetForce)| {
+            *force = FacetForce::default();
+            if integrals.hits_of(f).iter().map(|hit| hit.moments.total()).sum::<f64>() > 0.0 {
+                let corners = blocks.triangle_corners(facets[f].triangle, input.position);
+                force.push = -penalty_pa * triangle_area_vector(&corners).normalize();
+                force.touches = true;
+            }
+        };
+        if facets.len() > 128 {
+            self.forces.par_iter_mut().enumerate().with_min_len(64).for_each(push);
+        } else {
+            self.forces.iter_mut().enumerate().for_each(push);
+        }
+        self.stiffness_pa.clear();
+        self.stiffness_pa.resize(facets.len(), penalty_pa);
+        let scene = ScatterScene {
+            blocks,
+            candidates,
+            integrals,
+            forces: &self.forces,
+            stiffness_pa: &self.stiffness_pa,
+            curvature_pa_m: &[],
+        };
+        self.scatter.add(&scene, output);
+        report
+    }
+}
