@@ -39,6 +39,7 @@ pub struct FacetScene<'a> {
 
 impl FacetScene<'_> {
     /// Normal force −k n ∫ φ dA and friction of one facet.
+    #[inline]
     pub fn force(&self, facet: &Facet, hits: &[Hit], penalty_pa: f64) -> FacetForce {
         let pressure: f64 = hits.iter().map(|hit| hit.moments.total()).sum();
         if pressure <= 0.0 {
@@ -47,18 +48,32 @@ impl FacetScene<'_> {
         let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
         let normal = triangle_area_vector(&corners).normalize();
         let mut force = FacetForce { push: -penalty_pa * normal, touches: true, ..FacetForce::default() };
-        let owner = self.input.blocks.triangle_block[facet.triangle.index()];
-        let law = self.joints.and_then(|joints| joints.law(owner, facet.target));
-        if let Some(law) = law.filter(|law| !law.acts_on_faces()) {
-            let basis = facet_basis(&corners, &normal);
-            let mut memory = self.remembered(facet);
-            let slip = self.slip(facet, hits, &basis, pressure, penalty_pa);
-            law.advance(&slip, &mut memory);
-            force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / pressure;
-            force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / pressure;
-            force.memory = Some(memory);
+        if let Some(joints) = self.joints {
+            self.add_friction(joints, facet, hits, (pressure, penalty_pa), &mut force);
         }
         force
+    }
+
+    /// Friction by the law between the two blocks, if it acts on facets; apart, so that it is no weight on scenes without.
+    #[inline(never)]
+    fn add_friction(
+        &self,
+        joints: &Joints,
+        facet: &Facet,
+        hits: &[Hit],
+        (pressure, penalty_pa): (f64, f64),
+        force: &mut FacetForce,
+    ) {
+        let owner = self.input.blocks.triangle_block[facet.triangle.index()];
+        let Some(law) = joints.law(owner, facet.target).filter(|law| !law.acts_on_faces()) else { return };
+        let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
+        let basis = facet_basis(&corners, &(-force.push / penalty_pa));
+        let mut memory = self.remembered(facet);
+        let slip = self.slip(facet, hits, &basis, pressure, penalty_pa);
+        law.advance(&slip, &mut memory);
+        force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / pressure;
+        force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / pressure;
+        force.memory = Some(memory);
     }
 
     fn slip(

@@ -1,0 +1,211 @@
+//! What is measured, by the clock and by counting instructions.
+#![allow(dead_code)] // each bench takes some of it
+
+#[path = "../../tests/frictionless/mod.rs"]
+pub mod frictionless;
+
+use ndda_contact::batch::Batches;
+use ndda_contact::pair::TetFrame;
+use ndda_contact::testing::{test_box, test_set};
+use ndda_contact::{
+    ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, Coulomb, ElementPotential,
+    PotentialContact, SmoothPotential, VelocityCoulomb, VolumePotential,
+};
+use ndda_mesh::geometry::{Aabb, TET_FACES, tet_volume, triangle_area_vector};
+use ndda_mesh::{BlockSet, TetId, Vec3};
+use pulp::Arch;
+
+/// 1024 pairs of random tetrahedra in the unit cube that overlap; `benches/peers/r3d.c` takes the same.
+pub fn random_pairs() -> Vec<[[Vec3; 4]; 2]> {
+    let mut seed = 1u64;
+    let mut random = move || {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut tet = move || loop {
+        let mut corners = [[0.0; 3]; 4].map(|x| Vec3::from(x.map(|_| random())));
+        let volume = tet_volume(&corners);
+        if volume < 0.0 {
+            corners.swap(0, 1);
+        }
+        if volume.abs() > 0.02 {
+            return corners;
+        }
+    };
+    let pairs = std::iter::from_fn(move || Some([tet(), tet()]));
+    pairs.filter(|[a, b]| shared_volume(a, b) > 1e-4).take(1024).collect()
+}
+
+/// Their common volume.
+pub fn shared_volume(a: &[Vec3; 4], b: &[Vec3; 4]) -> f64 {
+    ndda_contact::overlap::overlap_of(a, &TetFrame::new(b), &a[0]).volume_and_moment().0
+}
+
+/// Pairs that overlap, waiting for their integrals.
+pub struct Hits {
+    pairs: Vec<([[f64; 3]; 4], [f64; 4], f64)>,
+    arch: Arch,
+    batches: Batches,
+}
+
+impl Hits {
+    /// Faces of random tetrahedra in others.
+    pub fn deep() -> Self {
+        Self::moved_out(0.0)
+    }
+
+    /// The same moved towards a face until a corner is just inside.
+    pub fn shallow() -> Self {
+        Self::moved_out(0.97)
+    }
+
+    fn moved_out(part: f64) -> Self {
+        let pairs = random_pairs().iter().filter_map(|[a, b]| hit(a, b, part)).collect();
+        let mut hits = Self { pairs, arch: Arch::new(), batches: Batches::default() };
+        hits.integrate();
+        hits
+    }
+
+    /// How many.
+    pub fn count(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// All that is done for a pair after it has been found to overlap.
+    pub fn integrate(&mut self) -> f64 {
+        for (pair, (lambda, slopes, area)) in self.pairs.iter().enumerate() {
+            self.batches.push_element(self.arch, pair as u32, *area, lambda, slopes);
+        }
+        let mut total = 0.0;
+        self.batches.finish(self.arch, |part| total += part.pressure[0]);
+        total
+    }
+}
+
+fn hit(a: &[Vec3; 4], b: &[Vec3; 4], out: f64) -> Option<([[f64; 3]; 4], [f64; 4], f64)> {
+    let frame = TetFrame::new(b);
+    let corners = TET_FACES[0].map(|i| a[i]);
+    let lambda = frame.lambda_inside(&corners)?;
+    let deepest = |b: usize| lambda[b].iter().copied().fold(0.0, f64::max);
+    let face = (0..4).min_by(|&x, &y| deepest(x).total_cmp(&deepest(y))).expect("four faces");
+    let gradient = frame.gradient(face);
+    let moved = corners.map(|x| x - out * deepest(face) * gradient / gradient.norm_squared());
+    let area_vector = triangle_area_vector(&moved);
+    let lambda = frame.lambda_inside(&moved)?;
+    Some((lambda, frame.slopes(&area_vector.normalize()), area_vector.norm()))
+}
+
+/// A triangle and 1024 tetrahedra that touch its box and not itself.
+pub struct Rejects {
+    triangle: [Vec3; 3],
+    frames: Vec<TetFrame>,
+}
+
+impl Rejects {
+    /// Elements of a cube around a triangle.
+    pub fn new() -> Self {
+        let triangle = [[0.1, 0.05, 0.02], [0.9, 0.1, -0.1], [0.0, 0.7, 0.15]].map(Vec3::from);
+        let blocks = test_set(vec![test_box([-1.0; 3], [3.0; 3], [6; 3])]);
+        let bounds = Aabb::around(&triangle);
+        let frames: Vec<TetFrame> = (0..blocks.tets.len())
+            .map(|tet| blocks.tet_corners(TetId(tet as u32), &blocks.rest_position))
+            .filter(|corners| Aabb::around(corners).inflated(0.1).touches(&bounds))
+            .map(|corners| TetFrame::new(&corners))
+            .filter(|frame| frame.lambda_inside(&triangle).is_none())
+            .collect();
+        Self { triangle, frames: frames.iter().cycle().take(1024).copied().collect() }
+    }
+
+    /// Looks at all of them.
+    pub fn look(&self) -> usize {
+        self.frames.iter().filter(|frame| frame.lambda_inside(&self.triangle).is_some()).count()
+    }
+}
+
+/// A block of n³ cells pressed into its equal by a hundredth of a cell, askew.
+pub fn pressed(n: u32) -> BlockSet {
+    let lower = test_box([0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [n, n, n]);
+    let upper = test_box([0.13, 0.07, 1.0 - 0.01 / f64::from(n)], [1.0, 1.0, 1.0], [n, n, n]);
+    test_set(vec![lower, upper])
+}
+
+/// A model and all that one evaluation needs.
+pub struct Evaluation {
+    blocks: BlockSet,
+    model: PotentialContact,
+    twin: frictionless::Frictionless,
+    history: ContactHistory,
+    velocity: Vec<Vec3>,
+    force: Vec<Vec3>,
+    shear: Vec<Vec3>,
+    stiffness: Vec<f64>,
+}
+
+impl Evaluation {
+    /// A model on [`pressed`] blocks of n³ cells, by the names of its potential and its friction.
+    pub fn new(n: u32, potential: &str, friction: &str) -> Self {
+        let model = PotentialContact::new(1e9);
+        let model = match potential {
+            "element" => model.with_potential(Box::new(ElementPotential)),
+            "smooth" => model.with_potential(Box::new(SmoothPotential { reference_m: 1.0 })),
+            _ => model.with_potential(Box::new(VolumePotential { exponent: 2.0, reference_m3: 1.0 })),
+        };
+        let model = match friction {
+            "none" => model,
+            "spring" => model.with_friction(Box::new(Coulomb::new(30.0, 1e9))),
+            _ => model.with_friction(Box::new(VelocityCoulomb::new(30.0))),
+        };
+        let blocks = pressed(n);
+        let nodes = blocks.rest_position.len();
+        let mut evaluation = Self {
+            model,
+            twin: Default::default(),
+            history: ContactHistory::default(),
+            velocity: vec![Vec3::x(); nodes],
+            force: vec![Vec3::zeros(); nodes],
+            // As the solver does it.
+            shear: vec![Vec3::zeros(); if friction == "none" { 0 } else { nodes }],
+            stiffness: vec![0.0; nodes],
+            blocks,
+        };
+        evaluation.step();
+        evaluation.frictionless_step();
+        evaluation
+    }
+
+    /// One evaluation.
+    pub fn step(&mut self) -> ContactReport {
+        let input = ContactInput::new(&self.blocks, &self.blocks.rest_position, &self.velocity, 1e-5);
+        let mut output = ContactOutput {
+            force: &mut self.force,
+            friction_force: &mut self.shear,
+            stiffness: &mut self.stiffness,
+        };
+        self.model.add_forces(&input, &mut self.history, &mut output).expect("sound blocks")
+    }
+
+    /// The same by a model without a line of friction.
+    pub fn frictionless_step(&mut self) -> ContactReport {
+        let input = ContactInput::new(&self.blocks, &self.blocks.rest_position, &self.velocity, 1e-5);
+        let mut output =
+            ContactOutput { force: &mut self.force, friction_force: &mut [], stiffness: &mut self.stiffness };
+        self.twin.add_forces(&input, 1e9, &mut output)
+    }
+
+    /// The energy.
+    pub fn energy(&mut self) -> f64 {
+        let input = ContactInput::new(&self.blocks, &self.blocks.rest_position, &self.velocity, 1e-5);
+        self.model.energy_j(&input, &self.history).expect("sound blocks")
+    }
+
+    /// The tangent of normal contact.
+    pub fn tangent(&mut self, pairs: &mut Vec<ndda_contact::tangent::PairStiffness>) {
+        let input = ContactInput::new(&self.blocks, &self.blocks.rest_position, &self.velocity, 1e-5);
+        self.model.stiffness(&input, pairs).expect("sound blocks");
+    }
+
+    /// The paper's sum over all pairs of elements.
+    pub fn slow_twin(&self) -> Vec<Vec3> {
+        ndda_contact::element_pairs::forces(&self.blocks, &self.blocks.rest_position, 1e9)
+    }
+}
