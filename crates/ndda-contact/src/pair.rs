@@ -40,18 +40,20 @@ pub struct TetFrame {
 
 impl TetFrame {
     /// The frame of a tetrahedron with these corners [m].
+    #[inline]
     pub fn new(corners: &[Vec3; 4]) -> Self {
         Self::in_order(corners, &lexicographic(corners))
     }
 
     /// The frame of a tetrahedron whose corners come in this order; any order that neighbours agree on will do.
+    #[inline]
     pub fn in_order(corners: &[Vec3; 4], order: &[u8; 4]) -> Self {
-        let order = order.map(usize::from);
-        let [p, q, r, s] = order.map(|i| corners[i]);
+        let order = [0, 1, 2, 3].map(|k| usize::from(order[k]));
+        let (p, q, r, s) = (corners[order[0]], corners[order[1]], corners[order[2]], corners[order[3]]);
         let [a, b, c] = [q - p, r - p, s - p];
         let normals = [(r - q).cross(&(s - q)), b.cross(&c), a.cross(&c), a.cross(&b)];
         let heights = [-normals[0].dot(&a), normals[1].dot(&a), normals[2].dot(&b), normals[3].dot(&c)];
-        let [_, along, across, up] = [0, 1, 2, 3].map(|i| corners[i] - corners[0]);
+        let (along, across, up) = (corners[1] - corners[0], corners[2] - corners[0], corners[3] - corners[0]);
         let mut frame = Self {
             centroid: p + (a + b + c) / 4.0,
             origin: corners[0],

@@ -5,6 +5,7 @@
 
 use ndda_mesh::geometry::{TET_FACES, triangle_area_vector};
 use ndda_mesh::{Mat3, Vec3};
+use pulp::Arch;
 
 use crate::batch::Batches;
 pub use crate::overlap::PairError;
@@ -12,9 +13,6 @@ use crate::overlap::ScaledPair;
 use crate::pair::{self, TetFrame, by_face, is_outside, some_face_separates};
 use crate::region::element_regions;
 use crate::twofold::Barycentric;
-
-/// What the processor can do; asked once.
-static ARCH: std::sync::LazyLock<pulp::Arch> = std::sync::LazyLock::new(pulp::Arch::new);
 
 /// Pairs at a time, so that all about them stays in the cache.
 const CHUNK: usize = 64;
@@ -100,13 +98,20 @@ fn in_callers_order([a, b, c, d]: [Vec3; 4], swapped: bool) -> [Vec3; 4] {
 ///
 /// λ is rounded to f64 here: the forces of a flat tetrahedron along a face are off by ε times its width over its height,
 /// where [`pair_forces`] is right to rounding.
-#[derive(Default)]
 pub struct NodalForces {
+    arch: Arch,
     batches: Batches,
     /// λ of each pair's corners in the other tetrahedron, as `[owner][corner][b]`.
     lambda: Vec<[[[f64; 4]; 4]; 2]>,
     /// ∫ φ ψ_a dA over the area of each face of each pair.
     pressure: Vec<[[f64; 3]; 8]>,
+}
+
+impl Default for NodalForces {
+    fn default() -> Self {
+        let (lambda, pressure) = (Vec::new(), Vec::new());
+        Self { arch: Arch::new(), batches: Batches::default(), lambda, pressure }
+    }
 }
 
 impl NodalForces {
@@ -125,7 +130,7 @@ impl NodalForces {
             self.add_pair(index, pair);
         }
         let pressure = &mut self.pressure;
-        self.batches.finish(*ARCH, |part| {
+        self.batches.finish(self.arch, |part| {
             let of_face = &mut pressure[part.pair as usize / 8][part.pair as usize % 8];
             (0..3).for_each(|a| of_face[a] += part.pressure[a]);
         });
@@ -155,7 +160,7 @@ impl NodalForces {
         if some_face_separates(at) {
             return;
         }
-        self.batches.push_element(*ARCH, face, 1.0, &by_face(at), &[0.0; 4]);
+        self.batches.push_element(self.arch, face, 1.0, &by_face(at), &[0.0; 4]);
     }
 }
 
