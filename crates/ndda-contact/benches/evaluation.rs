@@ -3,8 +3,9 @@
 
 mod cases;
 
-use cases::Evaluation;
+use cases::{Cubes, Evaluation};
 use criterion::{Criterion, criterion_group, criterion_main};
+use ndda_mesh::generate::BoxPattern;
 
 fn sizes(c: &mut Criterion) {
     for n in [4, 16] {
@@ -18,6 +19,18 @@ fn sizes(c: &mut Criterion) {
     }
     let case = Evaluation::new(4, "element", "none");
     c.bench_function("element_pairs/4x4 facets, all pairs of elements", |b| b.iter(|| case.slow_twin()));
+}
+
+/// The saving that interior faces cancel.
+fn all_elements(c: &mut Criterion) {
+    for (cells, pattern) in
+        [([1, 1, 1], BoxPattern::Six), ([1, 1, 1], BoxPattern::TwentyFour), ([5, 4, 4], BoxPattern::Six)]
+    {
+        let mut case = Cubes::new(cells, pattern);
+        let name = format!("cubes of {} tets", case.tets());
+        c.bench_function(&format!("{name}/boundary triangles"), |b| b.iter(|| case.boundary()));
+        c.bench_function(&format!("{name}/all pairs of elements"), |b| b.iter(|| case.all_elements()));
+    }
 }
 
 fn laws(c: &mut Criterion) {
@@ -40,5 +53,5 @@ fn others(c: &mut Criterion) {
     c.bench_function("tangent/16x16 facets", |b| b.iter(|| case.tangent(&mut pairs)));
 }
 
-criterion_group!(benches, sizes, laws, others);
+criterion_group!(benches, sizes, all_elements, laws, others);
 criterion_main!(benches);

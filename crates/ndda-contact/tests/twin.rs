@@ -3,6 +3,7 @@
 
 use ndda_contact::element_pairs;
 use ndda_contact::testing::{evaluate, test_set};
+use ndda_contact::tet_pair::NodalForces;
 use ndda_contact::{ContactHistory, ContactInput, ContactModel, PotentialContact};
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockMesh, BlockSet, Mat3, Vec3};
@@ -101,5 +102,41 @@ proptest! {
         let (force, energy) = deviation(&test_set(vec![mesh(patterns.0), second]));
         prop_assert!(force < 1e-12, "forces differ by {force:e}");
         prop_assert!(energy < 1e-12, "energies differ by {energy:e}");
+    }
+}
+
+/// The sum over all pairs of elements (eq 16) by the kernel that the fast sum uses, too.
+fn over_all_elements(blocks: &BlockSet) -> Vec<Vec3> {
+    let corners = |t: usize| blocks.tets[t].map(|n| blocks.rest_position[n.index()]);
+    let [lower, upper] = [0, 1].map(|b| blocks.tets_of(ndda_mesh::BlockId(b)));
+    let pairs: Vec<_> = lower.flat_map(|a| upper.clone().map(move |b| (a, b))).collect();
+    let tets: Vec<_> = pairs.iter().map(|&(a, b)| [corners(a), corners(b)]).collect();
+    let mut nodal = vec![[[Vec3::zeros(); 4]; 2]; pairs.len()];
+    NodalForces::default().of(&tets, PENALTY_PA, &mut nodal);
+    let mut force = vec![Vec3::zeros(); blocks.rest_position.len()];
+    for ((a, b), nodal) in pairs.iter().zip(&nodal) {
+        for (tet, nodal) in [a, b].iter().zip(nodal) {
+            blocks.tets[**tet].iter().zip(nodal).for_each(|(node, f)| force[node.index()] += f);
+        }
+    }
+    force
+}
+
+#[test]
+fn faces_inside_a_block_cancel_whatever_its_mesh() {
+    let meshes =
+        [([1, 1, 1], BoxPattern::Six), ([1, 1, 1], BoxPattern::TwentyFour), ([5, 4, 4], BoxPattern::Six)];
+    for (cells, pattern) in meshes {
+        let cube = box_block([1.0; 3], cells, pattern).unwrap();
+        let turn = nalgebra::Rotation3::new(Vec3::new(0.3, -0.2, 0.5)).into_inner();
+        let blocks = test_set(vec![cube.clone(), cube.placed(&turn, &Vec3::new(0.4, 0.3, 0.9))]);
+        let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
+        let input = ContactInput::new(&blocks, &blocks.rest_position, &velocity, 1e-3);
+        let mut model = PotentialContact::new(PENALTY_PA);
+        let fast = evaluate(&mut model, &input, &mut ContactHistory::default()).force;
+        let all = over_all_elements(&blocks);
+        let difference = fast.iter().zip(&all).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(fast.iter().any(|f| f.norm() > 1e-3 * PENALTY_PA), "no contact");
+        assert!(difference < 1e-12 * PENALTY_PA, "{difference:e} for {cells:?}");
     }
 }

@@ -11,6 +11,7 @@ use ndda_contact::{
     ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, Coulomb, ElementPotential,
     PotentialContact, SmoothPotential, VelocityCoulomb, VolumePotential,
 };
+use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::geometry::{Aabb, TET_FACES, tet_volume, triangle_area_vector};
 use ndda_mesh::{BlockSet, TetId, Vec3};
 use pulp::Arch;
@@ -144,6 +145,10 @@ pub struct Evaluation {
 impl Evaluation {
     /// A model on [`pressed`] blocks of n³ cells, by the names of its potential and its friction.
     pub fn new(n: u32, potential: &str, friction: &str) -> Self {
+        Self::of(pressed(n), potential, friction)
+    }
+
+    fn of(blocks: BlockSet, potential: &str, friction: &str) -> Self {
         let model = PotentialContact::new(1e9);
         let model = match potential {
             "element" => model.with_potential(Box::new(ElementPotential)),
@@ -155,7 +160,6 @@ impl Evaluation {
             "spring" => model.with_friction(Box::new(Coulomb::new(30.0, 1e9))),
             _ => model.with_friction(Box::new(VelocityCoulomb::new(30.0))),
         };
-        let blocks = pressed(n);
         let nodes = blocks.rest_position.len();
         let mut evaluation = Self {
             model,
@@ -207,5 +211,51 @@ impl Evaluation {
     /// The paper's sum over all pairs of elements.
     pub fn slow_twin(&self) -> Vec<Vec3> {
         ndda_contact::element_pairs::forces(&self.blocks, &self.blocks.rest_position, 1e9)
+    }
+}
+
+/// A cube with a corner in another of the same mesh, and all pairs of their elements whose boxes touch.
+pub struct Cubes {
+    evaluation: Evaluation,
+    pairs: Vec<[[Vec3; 4]; 2]>,
+    forces: Vec<[[Vec3; 4]; 2]>,
+    kernel: ndda_contact::tet_pair::NodalForces,
+}
+
+impl Cubes {
+    /// Of so many cells.
+    pub fn new(cells: [u32; 3], pattern: BoxPattern) -> Self {
+        let cube = box_block([1.0; 3], cells, pattern).expect("cells");
+        let turn = nalgebra::Rotation3::new(Vec3::new(0.3, -0.2, 0.5)).into_inner();
+        let blocks = test_set(vec![cube.clone(), cube.placed(&turn, &Vec3::new(0.4, 0.3, 0.9))]);
+        let corners = |tet: usize| blocks.tet_corners(TetId(tet as u32), &blocks.rest_position);
+        let [lower, upper] = [0, 1].map(|b| blocks.tets_of(ndda_mesh::BlockId(b)));
+        let pairs: Vec<_> = lower
+            .flat_map(|a| upper.clone().map(move |b| (a, b)))
+            .map(|(a, b)| [corners(a), corners(b)])
+            .filter(|[a, b]| Aabb::around(a).touches(&Aabb::around(b)))
+            .collect();
+        let forces = vec![[[Vec3::zeros(); 4]; 2]; pairs.len()];
+        Self {
+            evaluation: Evaluation::of(blocks, "element", "none"),
+            pairs,
+            forces,
+            kernel: Default::default(),
+        }
+    }
+
+    /// Elements of one cube.
+    pub fn tets(&self) -> usize {
+        self.evaluation.blocks.tets.len() / 2
+    }
+
+    /// The sum over boundary triangles.
+    pub fn boundary(&mut self) -> ContactReport {
+        self.evaluation.step()
+    }
+
+    /// The paper's sum over pairs of elements by the same kernel; scattering it to nodes is not even counted.
+    pub fn all_elements(&mut self) {
+        self.kernel.of(&self.pairs, 1e9, &mut self.forces);
     }
 }
