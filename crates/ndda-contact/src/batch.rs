@@ -35,6 +35,11 @@ pub struct RegionMoments {
 }
 
 impl Batches {
+    /// Room for the regions of so many pairs.
+    pub fn make_room(&mut self, pairs: usize) {
+        self.parts.reserve(4 * pairs);
+    }
+
     /// Adds a region of a pair, on a triangle of this area [m²].
     pub fn push(&mut self, arch: Arch, pair: u32, area_m2: f64, region: &Region) {
         let cuts = region.cuts();

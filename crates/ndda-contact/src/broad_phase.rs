@@ -1,6 +1,6 @@
 //! Which triangles may be in which tetrahedra: the seam, and its definition.
 
-use ndda_mesh::geometry::Aabb;
+use ndda_mesh::geometry::{Aabb, TET_FACES, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
 
 /// Blocks where they were when they were last looked at.
@@ -30,6 +30,31 @@ impl BroadScene<'_> {
     /// Box around a block, with its margin.
     pub fn block_box(&self, block: BlockId) -> Aabb {
         Aabb::around(&self.position[self.blocks.nodes_of(block)]).inflated(self.margin_m[block.index()])
+    }
+
+    /// Whether a plane of one of them keeps a triangle and a tetrahedron apart by more than both margins: any point of
+    /// either, while its nodes stay within the margin, is that near to a point where it is now.
+    pub fn are_apart(&self, triangle: usize, tet: usize) -> bool {
+        let (blocks, position) = (self.blocks, self.position);
+        let corners = blocks.triangle_corners(TriangleId(triangle as u32), position);
+        let others = blocks.tet_corners(TetId(tet as u32), position);
+        let reach_m = self.margin_m[blocks.triangle_block[triangle].index()]
+            + self.margin_m[blocks.tet_block[tet].index()];
+        // n·(x − p) > reach |n|, without a root.
+        let beyond = |normal: &Vec3, from: &Vec3, x: &Vec3| {
+            let distance = normal.dot(&(x - from));
+            distance > 0.0 && distance * distance > reach_m * reach_m * normal.norm_squared()
+        };
+        let apart_by_face = TET_FACES.iter().zip(&others).any(|(&[i, j, k], opposite)| {
+            let normal = triangle_area_vector(&[others[i], others[j], others[k]]);
+            // A tetrahedron may be inside out while it is looked at.
+            let outward = if normal.dot(&(opposite - others[i])) > 0.0 { -normal } else { normal };
+            corners.iter().all(|x| beyond(&outward, &others[i], x))
+        });
+        let normal = triangle_area_vector(&corners);
+        apart_by_face
+            || others.iter().all(|x| beyond(&normal, &corners[0], x))
+            || others.iter().all(|x| beyond(&-normal, &corners[0], x))
     }
 
     fn around(&self, nodes: &[NodeId]) -> Aabb {

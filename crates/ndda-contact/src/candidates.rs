@@ -5,7 +5,7 @@ use std::ops::Range;
 use ndda_mesh::{BlockId, TetId, TriangleId};
 
 use crate::broad_phase::BroadPhase;
-use crate::bvh::TreeBroadPhase;
+use crate::bvh::{TreeBroadPhase, make_room};
 use crate::listed::Listed;
 use crate::model::ContactInput;
 
@@ -100,6 +100,7 @@ impl Candidates {
         self.number_tets(input);
         self.number_overlaps(triangle_block);
         self.pairs.clear();
+        make_room(&mut self.pairs, self.found.len());
         self.facets.clear();
         for (i, found) in self.found.iter().enumerate() {
             let (triangle, tet_id) = *found;

@@ -1,6 +1,7 @@
 //! The integrals of all candidate pairs, in parallel, many regions at a time.
 
 use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockSet, Vec3};
@@ -49,6 +50,11 @@ pub struct Chunk {
     pub hits: Vec<Hit>,
     /// End of each facet's hits.
     ends: Vec<usize>,
+}
+
+/// What a thread needs while it is at a chunk.
+#[derive(Default)]
+struct Scratch {
     /// λ of each hit.
     lambda: Vec<[[f64; 3]; 4]>,
     region: Region,
@@ -62,22 +68,26 @@ impl Chunk {
         &self.hits[start..self.ends[k]]
     }
 
-    fn integrate(&mut self, arch: Arch, scene: &Scene) {
+    fn integrate(&mut self, arch: Arch, scene: &Scene, scratch: &mut Scratch) {
+        let facets = &scene.candidates.facets[self.facets.clone()];
         self.hits.clear();
-        self.lambda.clear();
+        // A contact that closes further rarely asks for more than a quarter.
+        self.hits.reserve(facets.iter().map(|facet| facet.pairs.len()).sum::<usize>() / 4);
         self.ends.clear();
-        for facet in &scene.candidates.facets[self.facets.clone()] {
-            self.add_facet(arch, scene, facet);
+        self.ends.reserve(facets.len());
+        scratch.make_room(facets.iter().map(|facet| facet.pairs.len()).sum());
+        for facet in facets {
+            self.add_facet(arch, scene, facet, scratch);
             self.ends.push(self.hits.len());
         }
         let hits = &mut self.hits;
-        self.batches.finish(arch, |part| hits[part.pair as usize].moments.add_region(part));
-        for (hit, lambda) in hits.iter_mut().zip(&self.lambda) {
+        scratch.batches.finish(arch, |part| hits[part.pair as usize].moments.add_region(part));
+        for (hit, lambda) in hits.iter_mut().zip(&scratch.lambda) {
             hit.moments.share_with_target(lambda);
         }
     }
 
-    fn add_facet(&mut self, arch: Arch, scene: &Scene, facet: &Facet) {
+    fn add_facet(&mut self, arch: Arch, scene: &Scene, facet: &Facet, scratch: &mut Scratch) {
         let corners = scene.blocks.triangle_corners(facet.triangle, scene.position);
         let area_vector = triangle_area_vector(&corners);
         let area = area_vector.norm();
@@ -92,15 +102,29 @@ impl Chunk {
             let in_plane = || Some(frame.lambda(&corners)).filter(|l| lies_in_a_plane_of(frame, l, &normal));
             let inside = frame.lambda_inside(&corners);
             let Some(lambda) = inside.or_else(|| if pieces { in_plane() } else { None }) else { continue };
-            self.add_regions(arch, scene, index, &Placed { frame, lambda: &lambda, normal: &normal, area });
-            self.lambda.push(lambda);
+            let hit = self.hits.len() as u32;
+            self.hits.push(Hit { pair: index as u32, ..Hit::default() });
+            scratch.lambda.push(lambda);
+            scratch.add_regions(
+                arch,
+                scene,
+                hit,
+                &Placed { index, frame, lambda: &lambda, normal: &normal, area },
+            );
         }
     }
+}
 
-    fn add_regions(&mut self, arch: Arch, scene: &Scene, index: usize, placed: &Placed) {
-        let hit = self.hits.len() as u32;
-        self.hits.push(Hit { pair: index as u32, ..Hit::default() });
-        let (region, Placed { frame, lambda, normal, area }) = (&mut self.region, *placed);
+impl Scratch {
+    fn make_room(&mut self, pairs: usize) {
+        let pairs = pairs.max(CHUNK_PAIRS);
+        self.lambda.clear();
+        self.lambda.reserve(pairs);
+        self.batches.make_room(pairs);
+    }
+
+    fn add_regions(&mut self, arch: Arch, scene: &Scene, hit: u32, placed: &Placed) {
+        let (region, Placed { index, frame, lambda, normal, area }) = (&mut self.region, *placed);
         match scene.field {
             Field::Element => {
                 self.batches.push_element(arch, hit, area, lambda, &frame.slopes(normal));
@@ -120,6 +144,8 @@ impl Chunk {
 /// A triangle in a tetrahedron.
 #[derive(Clone, Copy)]
 struct Placed<'a> {
+    /// In [`Candidates::pairs`].
+    index: usize,
     frame: &'a TetFrame,
     lambda: &'a [[f64; 3]; 4],
     normal: &'a Vec3,
@@ -138,13 +164,15 @@ fn lies_in_a_plane_of(frame: &TetFrame, lambda: &[[f64; 3]; 4], normal: &Vec3) -
 pub struct Integrals {
     arch: Arch,
     chunks: Vec<Chunk>,
+    /// One for each thread.
+    scratch: Vec<Mutex<Scratch>>,
     /// Chunk of each facet.
     chunk_of: Vec<u32>,
 }
 
 impl Default for Integrals {
     fn default() -> Self {
-        Self { arch: Arch::new(), chunks: Vec::new(), chunk_of: Vec::new() }
+        Self { arch: Arch::new(), chunks: Vec::new(), scratch: Vec::new(), chunk_of: Vec::new() }
     }
 }
 
@@ -153,10 +181,16 @@ impl Integrals {
     pub fn update(&mut self, scene: &Scene) {
         self.divide(&scene.candidates.facets);
         let (arch, used) = (self.arch, self.chunk_count());
-        let chunks = &mut self.chunks[..used];
+        let threads = rayon::current_num_threads().max(self.scratch.len());
+        self.scratch.resize_with(threads, Mutex::default);
+        let (chunks, scratch) = (&mut self.chunks[..used], &self.scratch);
+        let integrate = |chunk: &mut Chunk| {
+            let own = &scratch[rayon::current_thread_index().unwrap_or(0)];
+            chunk.integrate(arch, scene, &mut own.lock().unwrap_or_else(PoisonError::into_inner));
+        };
         match chunks {
-            [only] => only.integrate(arch, scene),
-            many => many.par_iter_mut().for_each(|chunk| chunk.integrate(arch, scene)),
+            [only] => integrate(only),
+            many => many.par_iter_mut().for_each(integrate),
         }
     }
 

@@ -8,7 +8,7 @@ use crate::broad_phase::{BroadScene, shape_of};
 use crate::model::ContactInput;
 
 /// Skin over the mean size of a block's boundary triangles: twice the way that a resting block may creep.
-const SKIN: f64 = 0.05;
+const SKIN: f64 = 0.005;
 /// Steps that the pairs of a fast block should last.
 const LASTING_STEPS: f64 = 8.0;
 /// Widest margin over the mean size of boundary triangles.
