@@ -26,6 +26,8 @@ pub enum Verb {
     /// Writes summary.json (numbers and verdicts), history.csv (monitors, energies, momentum over time) and
     /// fields.pvd with its frames (open it in ParaView).
     Run(RunArgs),
+    /// Go on with a run that was interrupted, from its last checkpoint: the same bits as if it never had been.
+    Resume(ResumeArgs),
     /// Read and check a scene without running it: all errors at once, each with its place.
     Check(CheckArgs),
 }
@@ -53,6 +55,22 @@ pub struct RunArgs {
     #[arg(long)]
     pub strict: bool,
     /// Print nothing but errors.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// What `ndda resume` takes.
+#[derive(Debug, Args)]
+pub struct ResumeArgs {
+    /// Output folder of the run.
+    pub folder: PathBuf,
+    /// Number of threads; the results do not depend on it. Default: all processors.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Exit code 1 when an invariant is beyond its limit.
+    #[arg(long)]
+    pub strict: bool,
+    /// No progress and no table.
     #[arg(long, short)]
     pub quiet: bool,
 }

@@ -10,6 +10,7 @@ use crate::args::CheckArgs;
 use crate::console::{colour, complain, say};
 use crate::exit;
 use crate::monitor::Monitor;
+use crate::reference::Comparison;
 use crate::wiring::{self, Fault};
 
 /// A scene that is ready to run.
@@ -27,8 +28,21 @@ pub struct Ready {
 /// # Errors
 /// All that is wrong with it, as far as the earlier errors let one see.
 pub fn prepare(path: &Path, overrides: &[String]) -> Result<Ready, SceneErrors> {
-    let loaded = load(path, overrides)?;
-    let folder = path.parent().unwrap_or(Path::new("."));
+    prepare_loaded(load(path, overrides)?, path.parent().unwrap_or(Path::new(".")))
+}
+
+impl Ready {
+    /// The scene's closed form, bound to the blocks as they are.
+    pub fn comparison(&self) -> Option<Comparison> {
+        Comparison::new(&self.loaded.scene, &self.simulation, &self.monitors)
+    }
+}
+
+/// A scene that is read, ready to run; its meshes are in `folder`.
+///
+/// # Errors
+/// As [`prepare`].
+pub fn prepare_loaded(loaded: LoadedScene, folder: &Path) -> Result<Ready, SceneErrors> {
     let located = |faults: Vec<Fault>| {
         let diagnostics: Vec<Diagnostic> =
             faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();

@@ -2,6 +2,7 @@
 
 pub mod args;
 pub mod check;
+pub mod checkpoint;
 pub mod console;
 pub mod exit;
 pub mod monitor;
@@ -9,5 +10,6 @@ pub mod progress;
 pub mod recorder;
 pub mod reference;
 pub mod report;
+pub mod resume;
 pub mod run;
 pub mod wiring;

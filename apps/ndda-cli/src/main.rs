@@ -4,11 +4,12 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use ndda_cli::args::{Cli, Verb};
-use ndda_cli::{check, run};
+use ndda_cli::{check, resume, run};
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().verb {
         Verb::Run(args) => run::run(&args),
+        Verb::Resume(args) => resume::resume(&args),
         Verb::Check(args) => check::check(&args),
     };
     ExitCode::from(outcome)

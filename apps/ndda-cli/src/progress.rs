@@ -20,11 +20,13 @@ pub struct Progress {
     started: Instant,
     drawn: Instant,
     tenths: u64,
+    /// Step at which this part of the run began.
+    first: u64,
 }
 
 impl Progress {
-    /// Progress towards `steps`; shows nothing when `quiet`.
-    pub fn new(steps: u64, quiet: bool) -> Self {
+    /// Progress from step `first` towards `steps`; shows nothing when `quiet`.
+    pub fn new(first: u64, steps: u64, quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let bar = (terminal && !quiet).then(|| {
             let style = "{bar:40} {percent:>3} %  {eta} left  {msg}";
@@ -32,7 +34,15 @@ impl Progress {
             bar.with_style(ProgressStyle::with_template(style).expect("a fixed template"))
         });
         let now = Instant::now();
-        Self { steps, bar, plain: !terminal && !quiet, started: now, drawn: now, tenths: 0 }
+        Self {
+            steps,
+            bar,
+            plain: !terminal && !quiet,
+            started: now,
+            drawn: now,
+            tenths: 10 * first / steps.max(1),
+            first,
+        }
     }
 
     /// Clears the bar.
@@ -55,10 +65,10 @@ impl Sink for Progress {
             bar.set_message(format!("t = {:.4} s  {pairs} contacts  h = {h:.2}", view.simulation.time_s()));
         }
         let tenths = 10 * step / self.steps;
-        if self.plain && step > 0 && tenths > self.tenths {
+        if self.plain && step > self.first && tenths > self.tenths {
             self.tenths = tenths;
             let spent = self.started.elapsed().as_secs_f64();
-            let left = spent * (self.steps - step) as f64 / step as f64;
+            let left = spent * (self.steps - step) as f64 / (step - self.first) as f64;
             let t = view.simulation.time_s();
             complain(&format!("{:3} %  t = {t:.4} s  {spent:.1} s spent, {left:.1} s left", 10 * tenths));
         }

@@ -7,6 +7,7 @@ use ndda_io::vtu::Frame;
 use ndda_io::{FieldSeries, History, OutputFolder, WriteError};
 use ndda_mesh::Vec3;
 use ndda_solver::{Sample, Simulation, Sink, SinkError, View};
+use serde::{Deserialize, Serialize};
 
 use crate::monitor::Monitor;
 use crate::reference::{Comparison, Errors};
@@ -37,21 +38,42 @@ pub struct Recorder {
     pub spent_s: f64,
 }
 
+/// What a checkpoint keeps of a [`Recorder`].
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct SavedRecorder {
+    rows: usize,
+    error_end: Option<Errors>,
+    error_max: Option<Errors>,
+    last: Sample,
+    spent_s: f64,
+}
+
+/// What a checkpoint keeps of a [`FieldWriter`].
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct SavedFields {
+    times_s: Vec<f64>,
+    spent_s: f64,
+}
+
 impl Recorder {
-    /// Begins a history.
+    /// Begins a history, or goes on with a saved one.
     ///
     /// # Errors
-    /// [`WriteError`] when the file cannot be written or two columns have one name.
+    /// [`WriteError`] when the file cannot be written, two columns have one name, or the saved table is another one.
     pub fn new(
         folder: &OutputFolder,
         monitors: Vec<Monitor>,
         comparison: Option<Comparison>,
         after_s: f64,
-        steps: u64,
-        rows: u64,
+        (steps, rows): (u64, u64),
+        saved: Option<SavedRecorder>,
     ) -> Result<Self, WriteError> {
         let columns = columns(&monitors, comparison.is_some());
-        let history = History::create(&folder.history(), &columns)?;
+        let history = match &saved {
+            None => History::create(&folder.history(), &columns)?,
+            Some(saved) => History::resume(&folder.history(), &columns, saved.rows)?,
+        };
+        let SavedRecorder { error_end, error_max, last, spent_s, .. } = saved.unwrap_or_default();
         let row = Vec::with_capacity(columns.len());
         Ok(Self {
             history,
@@ -61,10 +83,25 @@ impl Recorder {
             comparison,
             row,
             monitors,
-            error_end: None,
-            error_max: None,
-            last: Sample::default(),
-            spent_s: 0.0,
+            error_end,
+            error_max,
+            last,
+            spent_s,
+        })
+    }
+
+    /// What a checkpoint keeps of it, all rows handed to the operating system.
+    ///
+    /// # Errors
+    /// [`WriteError`] when it does not take them.
+    pub fn save(&mut self) -> Result<SavedRecorder, WriteError> {
+        self.history.flush()?;
+        Ok(SavedRecorder {
+            rows: self.history.rows(),
+            error_end: self.error_end,
+            error_max: self.error_max,
+            last: self.last,
+            spent_s: self.spent_s,
         })
     }
 
@@ -175,25 +212,34 @@ pub struct FieldWriter {
 }
 
 impl FieldWriter {
-    /// Begins a series of frames.
+    /// Begins a series of frames, or goes on with a saved one.
     ///
     /// # Errors
     /// [`WriteError`] when its folder cannot be made.
     pub fn new(
         folder: &OutputFolder,
         simulation: &Simulation,
-        steps: u64,
-        frames: u64,
+        (steps, frames): (u64, u64),
+        saved: Option<SavedFields>,
     ) -> Result<Self, WriteError> {
         let blocks = simulation.blocks();
+        let spent_s = saved.as_ref().map_or(0.0, |saved| saved.spent_s);
         Ok(Self {
-            series: FieldSeries::create(folder)?,
+            series: match saved {
+                None => FieldSeries::create(folder)?,
+                Some(saved) => FieldSeries::resume(folder, saved.times_s)?,
+            },
             steps,
             frames,
             displacement: vec![Vec3::zeros(); blocks.rest_position.len()],
             stress_pa: vec![[0.0; 6]; blocks.tets.len()],
-            spent_s: 0.0,
+            spent_s,
         })
+    }
+
+    /// What a checkpoint keeps of it.
+    pub fn save(&self) -> SavedFields {
+        SavedFields { times_s: self.series.times_s().to_vec(), spent_s: self.spent_s }
     }
 }
 

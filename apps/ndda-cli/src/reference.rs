@@ -3,6 +3,7 @@
 use ndda_io::scene::{Contact, Reference, Scene};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Simulation;
+use serde::{Deserialize, Serialize};
 
 use crate::monitor::Monitor;
 
@@ -50,7 +51,7 @@ pub fn fall_m(velocity_m_s: &Vec3, gravity_m_s2: &Vec3, time_s: f64) -> Vec3 {
 }
 
 /// Relative errors at one instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
     /// Against the closed form.
     pub plain: f64,

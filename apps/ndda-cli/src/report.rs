@@ -31,6 +31,8 @@ pub struct Outcome<'a> {
     pub warnings: Vec<String>,
     /// Whether a limit that is passed fails the run.
     pub strict: bool,
+    /// Fingerprint of the final state.
+    pub state_crc32: u32,
 }
 
 /// The summary of a run.
@@ -54,6 +56,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, outcome: Outcome)
         steps: simulation.state().step,
         step_s: simulation.step_s(),
         end_s: simulation.time_s(),
+        state_crc32: format!("{:08x}", outcome.state_crc32),
         wall_s: outcome.wall_s,
         threads: outcome.threads,
         counts: counts(simulation),

@@ -1,13 +1,14 @@
 //! `ndda run`: a scene from its text to its files.
 
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-use ndda_io::{OutputFolder, WriteError, summary};
-use ndda_solver::{RunError, Sink, StepError};
+use ndda_io::{OutputFolder, WriteError, checkpoint, summary};
+use ndda_solver::{RunError, StepError};
 
 use crate::args::RunArgs;
 use crate::check::{Ready, prepare};
+use crate::checkpoint::{Identity, Outputs, SavedRun};
 use crate::console::{colour, complain, say};
 use crate::progress::Progress;
 use crate::recorder::{FieldWriter, Recorder};
@@ -15,9 +16,17 @@ use crate::reference::{self, Comparison};
 use crate::report::{self, Outcome};
 use crate::{exit, wiring};
 
-/// Runs `ndda run`; returns the exit code.
+/// Runs a scene and reports; the result is the exit code.
 pub fn run(args: &RunArgs) -> u8 {
-    let threads = args.threads.map_or(0, usize::from);
+    in_pool(args.threads, |threads| {
+        let started = Instant::now();
+        run_here(args, &Options { threads, strict: args.strict, quiet: args.quiet, started })
+    })
+}
+
+/// Does `work` on so many threads.
+pub fn in_pool(threads: Option<u16>, work: impl FnOnce(usize) -> u8 + Send) -> u8 {
+    let threads = threads.map_or(0, usize::from);
     let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool,
         Err(error) => {
@@ -26,11 +35,36 @@ pub fn run(args: &RunArgs) -> u8 {
         }
     };
     // Everything runs inside the pool: a step handed in from outside would allocate.
-    pool.install(|| run_here(args, pool.current_num_threads()))
+    pool.install(|| work(pool.current_num_threads()))
 }
 
-fn run_here(args: &RunArgs, threads: usize) -> u8 {
-    let started = Instant::now();
+/// How to run, whatever the scene.
+pub struct Options {
+    /// Threads.
+    pub threads: usize,
+    /// Whether a limit that is passed fails the run.
+    pub strict: bool,
+    /// No progress and no table.
+    pub quiet: bool,
+    /// When this process began.
+    pub started: Instant,
+}
+
+/// A run that begins or goes on.
+pub struct Job {
+    /// The scene and its simulation.
+    pub ready: Ready,
+    /// The closed form, bound to the blocks as they were at the start.
+    pub comparison: Option<Comparison>,
+    /// Which scene it is.
+    pub identity: Identity,
+    /// Where results go.
+    pub folder: OutputFolder,
+    /// Where it goes on from.
+    pub saved: Option<SavedRun>,
+}
+
+fn run_here(args: &RunArgs, options: &Options) -> u8 {
     let ready = match prepare(&args.scene, &args.overrides) {
         Ok(ready) => ready,
         Err(errors) => {
@@ -38,10 +72,31 @@ fn run_here(args: &RunArgs, threads: usize) -> u8 {
             return exit::BAD_INPUT;
         }
     };
-    if !ready.loaded.warnings.is_empty() && !args.quiet {
+    if !ready.loaded.warnings.is_empty() && !options.quiet {
         complain(&ready.loaded.errors(ready.loaded.warnings.clone()).render(colour()));
     }
-    match run_ready(args, ready, threads, started) {
+    let name = scene_name(&args.scene);
+    let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(&name));
+    let folder = match OutputFolder::create(&folder, args.force) {
+        Ok(folder) => folder,
+        Err(error) => {
+            complain(&format!("error: {error}"));
+            return exit::INPUT_OUTPUT;
+        }
+    };
+    let file = std::path::absolute(&args.scene).unwrap_or_else(|_| args.scene.clone());
+    let identity = Identity { name, text: ready.loaded.text.clone(), file };
+    let comparison = ready.comparison();
+    execute(Job { ready, comparison, identity, folder, saved: None }, options)
+}
+
+fn scene_name(scene: &Path) -> String {
+    scene.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// Runs to the end and reports; the result is the exit code.
+pub fn execute(job: Job, options: &Options) -> u8 {
+    match run_job(job, options) {
         Ok(code) => code,
         Err(error) => {
             complain(&format!("error: {error}"));
@@ -50,59 +105,64 @@ fn run_here(args: &RunArgs, threads: usize) -> u8 {
     }
 }
 
-/// Name of a scene: its file without the ending.
-fn scene_name(scene: &Path) -> String {
-    scene.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned())
-}
-
-fn run_ready(args: &RunArgs, ready: Ready, threads: usize, started: Instant) -> Result<u8, WriteError> {
-    let Ready { loaded, mut simulation, monitors } = ready;
-    let (scene, name) = (&loaded.scene, scene_name(&args.scene));
-    let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(&name));
-    let folder = OutputFolder::create(&folder, args.force)?;
-    let steps = wiring::steps(&scene.time);
-    let comparison = Comparison::new(scene, &simulation, &monitors);
+fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
+    let Job { ready: Ready { loaded, mut simulation, monitors }, comparison, identity, folder, saved } = job;
+    let scene = &loaded.scene;
+    let (steps, name) = (wiring::steps(&scene.time), identity.name.clone());
     let after_s = scene.reference.as_ref().map_or(0.0, |r| reference::kind(r).1);
-    let rows = u64::from(scene.output.history_rows);
-    let mut recorder = Recorder::new(&folder, monitors, comparison, after_s, steps, rows)?;
-    let frames = u64::from(scene.output.frames);
-    let mut fields =
-        if frames > 0 { Some(FieldWriter::new(&folder, &simulation, steps, frames)?) } else { None };
-    let mut progress = Progress::new(steps, args.quiet);
-    let setup_s = started.elapsed().as_secs_f64();
-
-    let mut sinks: Vec<&mut dyn Sink> = vec![&mut recorder, &mut progress];
-    if let Some(fields) = &mut fields {
-        sinks.push(fields);
-    }
-    let ended = ndda_solver::run(&mut simulation, steps, &mut sinks);
-    progress.finish();
-    recorder.finish()?;
+    let (rows, frames) = (u64::from(scene.output.history_rows), u64::from(scene.output.frames));
+    let earlier_s = saved.as_ref().map_or(0.0, |saved| saved.wall_s);
+    let (saved_recorder, saved_fields) = saved.map_or((None, None), |s| (Some(s.recorder), s.fields));
+    let recorder = Recorder::new(&folder, monitors, comparison, after_s, (steps, rows), saved_recorder)?;
+    let fields = || FieldWriter::new(&folder, &simulation, (steps, frames), saved_fields);
+    let mut outputs = Outputs {
+        recorder,
+        fields: if frames > 0 { Some(fields()?) } else { None },
+        progress: Progress::new(simulation.state().step, steps, options.quiet),
+        identity,
+        folder: &folder,
+        steps,
+        every: Duration::from_secs_f64(scene.output.checkpoint_wall_s),
+        last: Instant::now(),
+        started: options.started,
+        earlier_s,
+        spent_s: 0.0,
+    };
+    let setup_s = options.started.elapsed().as_secs_f64();
+    let ended = ndda_solver::run(&mut simulation, steps, &mut [&mut outputs]);
+    outputs.progress.finish();
+    outputs.recorder.finish()?;
     let stopped_by = match ended {
         Ok(()) => None,
         Err(error) => Some(numerical_stop(error)?),
     };
-
-    let output_s = recorder.spent_s + fields.as_ref().map_or(0.0, |f| f.spent_s);
+    let Outputs { recorder, fields, spent_s, .. } = outputs;
+    let output_s = recorder.spent_s + fields.as_ref().map_or(0.0, |f| f.spent_s) + spent_s;
     let outcome = Outcome {
         scene,
         name: &name,
         stopped_by,
-        wall_s: started.elapsed().as_secs_f64(),
-        threads,
+        wall_s: earlier_s + options.started.elapsed().as_secs_f64(),
+        threads: options.threads,
         stages: vec![("output".into(), output_s), ("setup".into(), setup_s)],
         warnings: loaded.warnings.iter().map(|w| w.message.clone()).collect(),
-        strict: args.strict,
+        strict: options.strict,
+        state_crc32: checkpoint::fingerprint(simulation.state()),
     };
     let summary = report::summarise(&simulation, &recorder, outcome);
     summary::write(&folder.summary(), &summary)?;
-    if !args.quiet {
+    if !options.quiet {
         say(&format!("{}results in {}", report::table(&summary), folder.path().display()));
     }
+    Ok(conclude(&summary))
+}
+
+/// Says what is beyond its limit, and gives the exit code.
+fn conclude(summary: &summary::Summary) -> u8 {
     for (name, _) in summary.verdicts.0.iter().filter(|(_, v)| v.verdict == summary::Judgement::Fail) {
         complain(&format!("warning: {name} is beyond its limit: do not use this result"));
     }
-    Ok(match summary.status {
+    match summary.status {
         summary::Status::Done => exit::DONE,
         summary::Status::Failed => exit::FAILED,
         summary::Status::Stopped | summary::Status::Interrupted => {
@@ -111,7 +171,7 @@ fn run_ready(args: &RunArgs, ready: Ready, threads: usize, started: Instant) -> 
             }
             exit::STOPPED
         }
-    })
+    }
 }
 
 /// The cause of a numerical stop in words; errors of output are handed on.

@@ -1,6 +1,7 @@
 //! The seam between solver and contact: what a contact model is given, what it returns, what it may remember.
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// What a contact model sees of the blocks: positions and velocities, nothing of materials or integrators.
 #[derive(Clone, Copy, Debug)]
@@ -124,7 +125,7 @@ pub enum ContactError {
 }
 
 /// Tangential memory of one contactor facet on one target.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FacetMemory {
     /// The contactor's boundary triangle.
     pub facet: TriangleId,
@@ -140,7 +141,7 @@ pub struct FacetMemory {
 }
 
 /// Friction of one face on one block.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct FaceMemory {
     /// Number of the face.
     pub face: u32,
@@ -157,7 +158,7 @@ pub struct FaceMemory {
 }
 
 /// A facet that is glued to a point of another block until it breaks.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bond {
     /// The facet; its centroid is the glued point.
     pub facet: TriangleId,
@@ -168,7 +169,7 @@ pub struct Bond {
 }
 
 /// What contact remembers from step to step; part of the state, so it is saved and rolled back with it.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactHistory {
     /// One entry per facet and target in contact, sorted by (facet, target, element).
     pub facets: Vec<FacetMemory>,

@@ -456,6 +456,14 @@ impl Check<'_> {
     }
 
     fn output(&mut self) {
+        let wall_s = self.scene.output.checkpoint_wall_s;
+        if !(0.0..=1e9).contains(&wall_s) {
+            self.error(
+                "output.checkpoint_wall_s",
+                format!("{wall_s} is no time between checkpoints"),
+                "give seconds, or 0 for none between start and end",
+            );
+        }
         if self.scene.output.frames > 100_000 {
             let frames = self.scene.output.frames;
             self.warn("output.frames", format!("{frames} frames are as many files"), "are that many needed?");

@@ -13,11 +13,17 @@ pub const SUMMARY: &str = "summary.json";
 pub const HISTORY: &str = "history.csv";
 /// File that lists the frames of fields.
 pub const FIELDS_INDEX: &str = "fields.pvd";
+/// The newest checkpoint.
+pub const CHECKPOINT: &str = "checkpoint.ndda";
+/// The checkpoint before.
+const PREVIOUS: &str = "checkpoint.previous.ndda";
+/// A checkpoint that is whole and not yet in its place.
+const WAITING: &str = "checkpoint.new.ndda";
 /// Folder of the frames.
 pub const FIELDS_FOLDER: &str = "fields";
 
 /// Files at the top of the folder, in the order in which an earlier run is deleted: an index before what it lists.
-const TOP_FILES: [&str; 3] = [FIELDS_INDEX, HISTORY, SUMMARY];
+const TOP_FILES: [&str; 6] = [FIELDS_INDEX, HISTORY, SUMMARY, CHECKPOINT, PREVIOUS, WAITING];
 const PROBE: &str = "ndda-probe.tmp";
 const PROBE_BYTES: usize = 1 << 20;
 
@@ -59,6 +65,31 @@ impl OutputFolder {
     /// The folder.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// The folder of a run that is to go on, as it is.
+    ///
+    /// # Errors
+    /// [`WriteError`] when it is no folder, or nothing can be written there.
+    pub fn open(path: &Path) -> Result<Self, WriteError> {
+        entries(path)?;
+        probe(path)?;
+        Ok(Self { path: path.to_path_buf() })
+    }
+
+    /// Where the newest checkpoint goes.
+    pub fn checkpoint(&self) -> PathBuf {
+        self.path.join(CHECKPOINT)
+    }
+
+    /// Where the one before goes.
+    pub fn previous_checkpoint(&self) -> PathBuf {
+        self.path.join(PREVIOUS)
+    }
+
+    /// Where a new one waits until it is whole.
+    pub(crate) fn waiting_checkpoint(&self) -> PathBuf {
+        self.path.join(WAITING)
     }
 
     /// Where the summary goes.

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::fs::File;
-use std::io;
+use std::io::{self, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -50,6 +50,44 @@ impl History {
         history.writer.write_record(columns).map_err(|e| history.csv_error(e))?;
         history.flush()?;
         Ok(history)
+    }
+
+    /// Goes on with the table at `path` after its first `rows` rows; later ones are cut off.
+    ///
+    /// # Errors
+    /// [`WriteError::NotThatTable`] when it has other columns or fewer rows; [`WriteError::Io`] when it cannot be read
+    /// or written.
+    pub fn resume(path: &Path, columns: &[String], rows: usize) -> Result<Self, WriteError> {
+        let mismatch = |what: String| WriteError::NotThatTable { path: path.to_path_buf(), what };
+        let mut table = csv::ReaderBuilder::new()
+            .has_headers(false)
+            .from_path(path)
+            .map_err(|e| WriteError::io("read", path)(io::Error::other(e)))?;
+        let mut record = csv::ByteRecord::new();
+        let mut found = 0;
+        let mut end = 0;
+        while found <= rows && table.read_byte_record(&mut record).unwrap_or(false) {
+            let same = record.iter().eq(columns.iter().map(String::as_bytes));
+            if found == 0 && !same {
+                return Err(mismatch("other columns".to_owned()));
+            }
+            found += 1;
+            end = table.position().byte();
+        }
+        if found <= rows {
+            return Err(mismatch(format!("{} rows, not {rows}", found.max(1) - 1)));
+        }
+        let mut file = File::options().write(true).open(path).map_err(WriteError::io("open", path))?;
+        file.set_len(end).map_err(WriteError::io("cut", path))?;
+        file.seek(SeekFrom::End(0)).map_err(WriteError::io("open", path))?;
+        Ok(Self {
+            path: path.to_path_buf(),
+            columns: columns.to_vec(),
+            writer: csv::Writer::from_writer(file),
+            number: String::new(),
+            rows,
+            flushed: Instant::now(),
+        })
     }
 
     /// Adds a row, one value per column.
@@ -151,6 +189,28 @@ mod tests {
         }
         history.finish().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "time_s,energy_j\n0.0,1.0\n");
+    }
+
+    #[test]
+    fn a_table_goes_on_after_the_rows_that_count() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let names = columns(&["time_s", "block, left"]);
+        let mut history = History::create(&path, &names).unwrap();
+        (0..5).for_each(|i| history.push(&[f64::from(i), 1.5]).unwrap());
+        history.finish().unwrap();
+        let mut text = fs::read_to_string(&path).unwrap();
+        text.push_str("5.0,");
+        fs::write(&path, &text).unwrap();
+        let mut history = History::resume(&path, &names, 2).unwrap();
+        history.push(&[7.0, 2.5]).unwrap();
+        assert_eq!(history.rows(), 3);
+        history.finish().unwrap();
+        let expected = "time_s,\"block, left\"\n0.0,1.5\n1.0,1.5\n7.0,2.5\n";
+        assert_eq!(fs::read_to_string(&path).unwrap(), expected);
+        let other = History::resume(&path, &columns(&["time_s", "right"]), 2);
+        assert!(matches!(other, Err(WriteError::NotThatTable { .. })));
+        assert!(matches!(History::resume(&path, &names, 4), Err(WriteError::NotThatTable { .. })));
     }
 
     #[test]

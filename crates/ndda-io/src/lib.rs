@@ -1,7 +1,8 @@
-//! Files in and out: RON scenes with their diagnostics, Gmsh meshes, VTU fields, history and summary.
+//! Files in and out: RON scenes with their diagnostics, Gmsh meshes, VTU fields, history, summary and checkpoints.
 
 pub mod atomic;
 pub mod check;
+pub mod checkpoint;
 pub mod diagnostic;
 pub mod folder;
 pub mod history;

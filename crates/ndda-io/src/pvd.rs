@@ -28,6 +28,22 @@ impl FieldSeries {
         Ok(Self { index: folder.fields_index(), frames, times_s: Vec::new() })
     }
 
+    /// Goes on with a series in `folder` after the frames of these times \[s\]; frames after them are replaced as they
+    /// come, and not listed before.
+    ///
+    /// # Errors
+    /// [`WriteError::Io`] when the index cannot be written.
+    pub fn resume(folder: &OutputFolder, times_s: Vec<f64>) -> Result<Self, WriteError> {
+        let series = Self { times_s, ..Self::create(folder)? };
+        atomic::write(&series.index, series.text().as_bytes())?;
+        Ok(series)
+    }
+
+    /// Times of the frames so far \[s\].
+    pub fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
     /// Writes the frame of `time_s` \[s\] as `fields/frame_000012.vtu` and then the index that lists it.
     ///
     /// # Errors

@@ -403,11 +403,14 @@ pub struct Output {
     pub frames: u32,
     /// Rows of `history.csv` after the first, at most one per step. Default: 1000.
     pub history_rows: u32,
+    /// Wall-clock time between checkpoints [s], which `ndda resume` goes on from; one is written at the start and at
+    /// the end, too. Default: 60.
+    pub checkpoint_wall_s: f64,
 }
 
 impl Default for Output {
     fn default() -> Self {
-        Self { frames: 20, history_rows: 1000 }
+        Self { frames: 20, history_rows: 1000, checkpoint_wall_s: 60.0 }
     }
 }
 

@@ -44,6 +44,8 @@ pub struct Summary {
     pub step_s: f64,
     /// Simulated time reached \[s\].
     pub end_s: f64,
+    /// CRC-32 of the final state, hexadecimal: runs that end in the same bits have the same.
+    pub state_crc32: String,
     /// Wall-clock time of the whole run \[s\].
     pub wall_s: f64,
     /// Threads used.

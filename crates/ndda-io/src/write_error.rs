@@ -47,6 +47,14 @@ pub enum WriteError {
         /// The name.
         column: String,
     },
+    /// A table cannot be gone on with.
+    #[error("{} is not the table that the checkpoint belongs to ({what}): put it back, or run the scene again", path.display())]
+    NotThatTable {
+        /// The table.
+        path: PathBuf,
+        /// What it has.
+        what: String,
+    },
     /// The output folder is a file.
     #[error("the output folder {} is a file: choose another folder with --out", path.display())]
     IsFile {

@@ -2,9 +2,10 @@
 
 use ndda_contact::ContactReport;
 use ndda_mesh::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// Energies and momenta of all blocks at one instant.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// Steps done.
     pub step: u64,
@@ -46,7 +47,7 @@ impl Sample {
 }
 
 /// The worst values of a run so far; the limits are those of the summary.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Invariants {
     /// I2: |momentum − impulses| / max Σ m |v|.
     pub linear_momentum: f64,
@@ -73,7 +74,7 @@ pub struct Invariants {
 }
 
 /// Sums over steps and extremes over samples.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
     start: Option<Sample>,
     impulse: Vec3,

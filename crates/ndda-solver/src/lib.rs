@@ -25,7 +25,7 @@ pub use linear_solver::{Factor, FactorError, LinearSolver, SymmetricMatrix};
 pub use midpoint::Midpoint;
 pub use newmark::Newmark;
 pub use shape::{BodySetup, SetupError};
-pub use simulation::{Setup, Simulation, StageTimes, StepError, StepReport};
+pub use simulation::{RestoreError, Setup, Simulation, Snapshot, StageTimes, StepError, StepReport};
 pub use sink::{RunError, Sink, SinkError, View, run};
 pub use sparse_cholesky::SparseCholesky;
 pub use state::State;

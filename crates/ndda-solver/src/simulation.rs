@@ -8,6 +8,7 @@ use ndda_contact::{
 use ndda_fem::loads::{add_gravity, add_traction};
 use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::block_step::{BlockError, Body, StepContext};
 use crate::for_each_block::{NodeSlices, for_each_block};
@@ -50,7 +51,7 @@ pub struct StepReport {
 }
 
 /// Seconds spent per stage of the step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StageTimes {
     /// Contact forces.
     pub contact_s: f64,
@@ -58,6 +59,27 @@ pub struct StageTimes {
     pub blocks_s: f64,
     /// Bookkeeping and energies.
     pub ledger_s: f64,
+}
+
+/// All that a run has become: what a checkpoint keeps, and a simulation of the same problem can go on from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Snapshot {
+    /// Positions, velocities, what contact remembers.
+    pub state: State,
+    /// The books.
+    pub ledger: Ledger,
+    /// Seconds spent so far.
+    pub stages: StageTimes,
+}
+
+/// A snapshot of another problem.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("it is of {found} nodes, the scene has {expected}: the scene or its meshes have changed")]
+pub struct RestoreError {
+    /// Nodes of the snapshot.
+    pub found: usize,
+    /// Nodes of the problem.
+    pub expected: usize,
 }
 
 /// Why a run stops.
@@ -481,6 +503,33 @@ impl Simulation {
             let displacement = body.displacement_in_frame();
             cauchy_stress(&shape.operator, material, initial, &rotation, displacement, out);
         }
+        Ok(())
+    }
+
+    /// A copy of all that changes.
+    pub fn snapshot(&self) -> Snapshot {
+        Snapshot { state: self.state.clone(), ledger: self.ledger.clone(), stages: self.stages }
+    }
+
+    /// Goes on from a snapshot of the same problem, bit for bit.
+    ///
+    /// # Errors
+    /// [`RestoreError`] when it has another number of nodes.
+    pub fn restore(&mut self, snapshot: Snapshot) -> Result<(), RestoreError> {
+        let expected = self.blocks.rest_position.len();
+        let Snapshot { state, ledger, stages } = snapshot;
+        let internal = self.state.internal_force.len();
+        for (found, expected) in [
+            (state.position.len(), expected),
+            (state.velocity.len(), expected),
+            (state.acceleration.len(), expected),
+            (state.internal_force.len(), internal),
+        ] {
+            if found != expected {
+                return Err(RestoreError { found, expected });
+            }
+        }
+        (self.state, self.ledger, self.stages) = (state, ledger, stages);
         Ok(())
     }
 

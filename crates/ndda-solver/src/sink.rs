@@ -43,12 +43,16 @@ pub trait Sink {
     }
 }
 
-/// Runs `steps` steps and shows each to the sinks; the last one is always sampled.
+/// Runs up to step `steps` and shows each to the sinks; the last one is always sampled. A simulation that begins is
+/// shown as it is; one that goes on has been.
 ///
 /// # Errors
 /// [`RunError`] of the step or sink that failed.
 pub fn run(simulation: &mut Simulation, steps: u64, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
     let mut report = StepReport::default();
+    if (1..steps).contains(&simulation.state().step) {
+        report = simulation.step()?;
+    }
     loop {
         let step = simulation.state().step;
         let wanted = step == 0 || step >= steps || sinks.iter().any(|sink| sink.wants_sample(step));

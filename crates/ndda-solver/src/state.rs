@@ -2,9 +2,10 @@
 
 use ndda_contact::ContactHistory;
 use ndda_mesh::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// The changing state of all blocks; a checkpoint, a rollback and a determinism test all work on it.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// Steps done; the time is `step · Δt`, never summed.
     pub step: u64,

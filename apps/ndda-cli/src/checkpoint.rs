@@ -1,0 +1,109 @@
+//! When a checkpoint is written, and what is in it.
+
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use ndda_io::{OutputFolder, WriteError, checkpoint};
+use ndda_solver::{Sink, SinkError, Snapshot, View};
+use serde::{Deserialize, Serialize};
+
+use crate::progress::Progress;
+use crate::recorder::{FieldWriter, Recorder, SavedFields, SavedRecorder};
+
+/// Which scene a run is of.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Identity {
+    /// Name of the run.
+    pub name: String,
+    /// The scene's text, overrides included.
+    pub text: String,
+    /// The scene's file, from the root of the file system: its meshes are beside it.
+    pub file: PathBuf,
+}
+
+/// Everything that `ndda resume` needs.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SavedRun {
+    /// The scene.
+    pub identity: Identity,
+    /// State and books.
+    pub snapshot: Snapshot,
+    /// The history.
+    pub recorder: SavedRecorder,
+    /// The fields.
+    pub fields: Option<SavedFields>,
+    /// Seconds of wall clock spent, all parts of the run together.
+    pub wall_s: f64,
+}
+
+/// All that watches a run, with a checkpoint from time to time.
+pub struct Outputs<'a> {
+    /// History.
+    pub recorder: Recorder,
+    /// Fields, where they are wanted.
+    pub fields: Option<FieldWriter>,
+    /// Progress.
+    pub progress: Progress,
+    /// The scene.
+    pub identity: Identity,
+    /// Where results go.
+    pub folder: &'a OutputFolder,
+    /// The last step.
+    pub steps: u64,
+    /// Between checkpoints; none between start and end if zero.
+    pub every: Duration,
+    /// When the last one was written.
+    pub last: Instant,
+    /// When this part of the run began.
+    pub started: Instant,
+    /// Seconds that earlier parts took.
+    pub earlier_s: f64,
+    /// Seconds spent on checkpoints.
+    pub spent_s: f64,
+}
+
+impl Outputs<'_> {
+    fn is_due(&self, step: u64) -> bool {
+        let passed = !self.every.is_zero() && self.last.elapsed() >= self.every;
+        step == 0 || step >= self.steps || passed
+    }
+
+    fn write(&mut self, view: &View) -> Result<(), WriteError> {
+        let started = Instant::now();
+        let saved = SavedRun {
+            identity: self.identity.clone(),
+            snapshot: view.simulation.snapshot(),
+            recorder: self.recorder.save()?,
+            fields: self.fields.as_ref().map(FieldWriter::save),
+            wall_s: self.earlier_s + self.started.elapsed().as_secs_f64(),
+        };
+        checkpoint::write(self.folder, &saved)?;
+        self.last = Instant::now();
+        self.spent_s += started.elapsed().as_secs_f64();
+        Ok(())
+    }
+}
+
+impl Sink for Outputs<'_> {
+    fn wants_sample(&self, step: u64) -> bool {
+        self.recorder.wants_sample(step)
+    }
+
+    fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
+        let mut flow = self.recorder.step_done(view)?;
+        if let Some(fields) = &mut self.fields {
+            flow = both(flow, fields.step_done(view)?);
+        }
+        flow = both(flow, self.progress.step_done(view)?);
+        // Last, so that it knows of all rows and frames.
+        if self.is_due(view.simulation.state().step) {
+            self.write(view)?;
+        }
+        Ok(flow)
+    }
+}
+
+fn both(a: ControlFlow<()>, b: ControlFlow<()>) -> ControlFlow<()> {
+    if a.is_break() { a } else { b }
+}
