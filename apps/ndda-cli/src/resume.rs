@@ -50,7 +50,8 @@ fn resume_here(folder: &Path, options: &Options) -> u8 {
         }
     };
     let steps = wiring::steps(&ready.loaded.scene.time);
-    if saved.snapshot.state.step >= steps {
+    // Killed between its last step and its summary, a run still owes the summary.
+    if saved.snapshot.state.step >= steps && folder.summary().exists() {
         say(&format!("{} has run to its end: nothing to resume", folder.path().display()));
         return exit::DONE;
     }

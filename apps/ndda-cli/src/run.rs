@@ -111,6 +111,7 @@ fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
     let (steps, name) = (wiring::steps(&scene.time), identity.name.clone());
     let after_s = scene.reference.as_ref().map_or(0.0, |r| reference::kind(r).1);
     let (rows, frames) = (u64::from(scene.output.history_rows), u64::from(scene.output.frames));
+    let goes_on = saved.is_some();
     let earlier_s = saved.as_ref().map_or(0.0, |saved| saved.wall_s);
     let (saved_recorder, saved_fields) = saved.map_or((None, None), |s| (Some(s.recorder), s.fields));
     let recorder = Recorder::new(&folder, monitors, comparison, after_s, (steps, rows), saved_recorder)?;
@@ -129,7 +130,11 @@ fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
         spent_s: 0.0,
     };
     let setup_s = options.started.elapsed().as_secs_f64();
-    let ended = ndda_solver::run(&mut simulation, steps, &mut [&mut outputs]);
+    let ended = if goes_on {
+        ndda_solver::resume(&mut simulation, steps, &mut [&mut outputs])
+    } else {
+        ndda_solver::run(&mut simulation, steps, &mut [&mut outputs])
+    };
     outputs.progress.finish();
     outputs.recorder.finish()?;
     let stopped_by = match ended {

@@ -23,7 +23,7 @@ const WAITING: &str = "checkpoint.new.ndda";
 pub const FIELDS_FOLDER: &str = "fields";
 
 /// Files at the top of the folder, in the order in which an earlier run is deleted: an index before what it lists.
-const TOP_FILES: [&str; 6] = [FIELDS_INDEX, HISTORY, SUMMARY, CHECKPOINT, PREVIOUS, WAITING];
+const TOP_FILES: [&str; 6] = [CHECKPOINT, PREVIOUS, WAITING, FIELDS_INDEX, HISTORY, SUMMARY];
 const PROBE: &str = "ndda-probe.tmp";
 const PROBE_BYTES: usize = 1 << 20;
 
@@ -150,7 +150,10 @@ fn delete_earlier_run(path: &Path) -> Result<(), WriteError> {
             }
         }
     }
-    delete(&path.join(FIELDS_INDEX))?;
+    // Checkpoints go first: what has lost its rows and frames must not be resumed.
+    for name in [CHECKPOINT, PREVIOUS, WAITING, FIELDS_INDEX] {
+        delete(&path.join(name))?;
+    }
     for file in &frame_files {
         delete(file)?;
     }

@@ -26,7 +26,7 @@ pub use midpoint::Midpoint;
 pub use newmark::Newmark;
 pub use shape::{BodySetup, SetupError};
 pub use simulation::{RestoreError, Setup, Simulation, Snapshot, StageTimes, StepError, StepReport};
-pub use sink::{RunError, Sink, SinkError, View, run};
+pub use sink::{RunError, Sink, SinkError, View, resume, run};
 pub use sparse_cholesky::SparseCholesky;
 pub use state::State;
 pub use time_integrator::{StepWeights, TimeIntegrator};

@@ -43,29 +43,46 @@ pub trait Sink {
     }
 }
 
-/// Runs up to step `steps` and shows each to the sinks; the last one is always sampled. A simulation that begins is
-/// shown as it is; one that goes on has been.
+/// Shows the start to the sinks, then runs up to step `steps` as [`resume`] does.
 ///
 /// # Errors
 /// [`RunError`] of the step or sink that failed.
 pub fn run(simulation: &mut Simulation, steps: u64, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
-    let mut report = StepReport::default();
-    if (1..steps).contains(&simulation.state().step) {
-        report = simulation.step()?;
+    match show(simulation, steps, &StepReport::default(), sinks)? {
+        ControlFlow::Continue(()) => resume(simulation, steps, sinks),
+        ControlFlow::Break(()) => Ok(()),
     }
-    loop {
-        let step = simulation.state().step;
-        let wanted = step == 0 || step >= steps || sinks.iter().any(|sink| sink.wants_sample(step));
-        let sample = if wanted { Some(simulation.sample()?) } else { None };
-        for sink in sinks.iter_mut() {
-            let mut view = View { simulation, report: &report, sample: sample.as_ref() };
-            if sink.step_done(&mut view).map_err(RunError::Sink)?.is_break() {
-                return Ok(());
-            }
+}
+
+/// Runs up to step `steps` and shows each to the sinks; the last one is always sampled. Where the simulation is now has
+/// been shown before.
+///
+/// # Errors
+/// [`RunError`] of the step or sink that failed.
+pub fn resume(simulation: &mut Simulation, steps: u64, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
+    while simulation.state().step < steps {
+        let report = simulation.step()?;
+        if show(simulation, steps, &report, sinks)?.is_break() {
+            break;
         }
-        if step >= steps {
-            return Ok(());
-        }
-        report = simulation.step()?;
     }
+    Ok(())
+}
+
+fn show(
+    simulation: &mut Simulation,
+    steps: u64,
+    report: &StepReport,
+    sinks: &mut [&mut dyn Sink],
+) -> Result<ControlFlow<()>, RunError> {
+    let step = simulation.state().step;
+    let wanted = step == 0 || step >= steps || sinks.iter().any(|sink| sink.wants_sample(step));
+    let sample = if wanted { Some(simulation.sample()?) } else { None };
+    for sink in sinks.iter_mut() {
+        let mut view = View { simulation, report, sample: sample.as_ref() };
+        if sink.step_done(&mut view).map_err(RunError::Sink)?.is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+    }
+    Ok(ControlFlow::Continue(()))
 }

@@ -1,0 +1,106 @@
+//! A run that is killed at any time and resumed, on any threads, ends in the bytes of one that never was.
+//!
+//! `NDDA_KILLS` sets the number of runs that are killed (default 12).
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+fn ndda(arguments: &[&str]) -> Child {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ndda"));
+    command.args(arguments).arg("--quiet").stdout(Stdio::null());
+    command.spawn().expect("the program starts")
+}
+
+fn scene(name: &str) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    root.join("scenes").join(format!("{name}.ron")).display().to_string()
+}
+
+fn run(scene: &str, end_s: &str, out: &Path, threads: &str) -> Child {
+    let (out, end) = (out.display().to_string(), format!("time.end_s={end_s}"));
+    let often = ["--set", "output.checkpoint_wall_s=0.003"];
+    ndda(
+        &[&["run", scene, "--out", &out, "--force", "--threads", threads, "--set", &end], &often[..]]
+            .concat(),
+    )
+}
+
+/// Everything that must come out the same: history, index and frames, and the fingerprint of the final state.
+fn results(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let mut files = vec![folder.join("history.csv"), folder.join("fields.pvd")];
+    files.extend(
+        fs::read_dir(folder.join("fields")).expect("frames").map(|entry| entry.expect("a frame").path()),
+    );
+    files.sort();
+    let named = |path: &PathBuf| {
+        (path.strip_prefix(folder).expect("inside").to_path_buf(), fs::read(path).expect("a file"))
+    };
+    let mut results: Vec<_> = files.iter().map(named).collect();
+    let summary = fs::read_to_string(folder.join("summary.json")).expect("a summary");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+    results.push(("state".into(), summary["state_crc32"].to_string().into_bytes()));
+    results
+}
+
+struct Random(u64);
+
+impl Random {
+    /// From 0 to 1.
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+#[test]
+fn a_killed_run_goes_on_to_the_same_bytes() {
+    let kills: usize = std::env::var("NDDA_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
+    let place = tempfile::tempdir().expect("a folder");
+    let mut random = Random(7);
+    let mut resumed = 0;
+    for (name, end_s) in [
+        ("sliding_30_phi25_velocity", "0.2"),
+        ("sliding_45_phi35_spring", "0.12"),
+        ("collision_equal_free", "0.2"),
+    ] {
+        let (scene, whole) = (scene(name), place.path().join("whole"));
+        let started = Instant::now();
+        assert!(run(&scene, end_s, &whole, "1").wait().expect("an end").success(), "{name}");
+        let (lasts, expected) = (started.elapsed().as_secs_f64(), results(&whole));
+        for kill in 0..kills.div_ceil(3) {
+            let broken = place.path().join("broken");
+            let mut child = run(&scene, end_s, &broken, ["1", "2"][kill % 2]);
+            let out = broken.display().to_string();
+            // Killed once, and often once more while it is being resumed.
+            for _ in 0..1 + kill % 3 {
+                std::thread::sleep(Duration::from_secs_f64(lasts * random.next()));
+                child.kill().expect("a child");
+                child.wait().expect("an end");
+                child = ndda(&["resume", &out, "--threads", ["2", "1"][kill % 2]]);
+            }
+            if child.wait().expect("an end").success() {
+                resumed += 1;
+            } else {
+                // Killed before its first checkpoint.
+                assert!(
+                    !broken.join("checkpoint.ndda").exists()
+                        && !broken.join("checkpoint.previous.ndda").exists()
+                );
+                assert!(run(&scene, end_s, &broken, "1").wait().expect("an end").success());
+            }
+            let found = results(&broken);
+            assert_eq!(found.len(), expected.len(), "{name}: files after kill {kill}");
+            for ((path, bytes), (expected_path, expected)) in found.iter().zip(&expected) {
+                assert!(
+                    path == expected_path && bytes == expected,
+                    "{name}: {} after kill {kill}",
+                    path.display()
+                );
+            }
+        }
+    }
+    println!("{resumed} of {} runs were resumed", 3 * kills.div_ceil(3));
+    assert!(resumed > kills / 2, "hardly a run had a checkpoint");
+}
