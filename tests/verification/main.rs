@@ -1,6 +1,7 @@
 //! Runs against closed forms and against each other: one file per case.
 
 mod bar_under_traction;
+mod bedded_bar;
 mod contact_patch;
 mod one_block_alone;
 mod prescribed_motion;

@@ -10,14 +10,18 @@ use ndda_contact::{
     PotentialContact, SmoothPotential, VelocityCoulomb, VolumePotential,
 };
 use ndda_fem::supports::Motion;
-use ndda_fem::{Hold as FemHold, LinearElastic, NodeSupport, Voigt};
+use ndda_fem::{
+    Bedding, Hold as FemHold, LinearElastic, Material, MaterialError, NodeSupport, TransverselyIsotropic,
+    Voigt,
+};
 use ndda_io::msh;
 use ndda_io::scene::{self, At, By, Contact, Hold, Integrator, Pattern, Region, Scene, Shape};
 use ndda_mesh::generate::{BoxPattern, box_block, prism};
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
 use ndda_solver::{
-    BodySetup, Midpoint, Newmark, Setup, SetupError, Simulation, SparseCholesky, TimeIntegrator,
+    BodySetup, ConjugateGradients, LinearSolver, Midpoint, Newmark, Setup, SetupError, Simulation,
+    SparseCholesky, TimeIntegrator,
 };
 
 use crate::monitor::Monitor;
@@ -153,14 +157,16 @@ pub fn simulation_with(
         step_s: scene.time.step_s,
         integrator: integrator(&scene.time.integrator),
         contact,
-        solver: Box::new(SparseCholesky),
+        solver: linear_solver(scene.time.solver),
     };
     Simulation::new(setup).map_err(|error| {
-        let (SetupError::Support { block, .. } | SetupError::Factor { block, .. }) = &error;
+        let (SetupError::Support { block, .. }
+        | SetupError::Factor { block, .. }
+        | SetupError::Solve { block, .. }) = &error;
         let index = scene.blocks.iter().position(|b| b.name == *block).unwrap_or(0);
         let path = match &error {
             SetupError::Support { .. } => scene.supports.iter().position(|s| s.block == *block),
-            SetupError::Factor { .. } => None,
+            SetupError::Factor { .. } | SetupError::Solve { .. } => None,
         };
         let path = path.map_or(format!("blocks[{index}]"), |i| format!("supports[{i}]"));
         vec![Fault::new(path, error)]
@@ -278,12 +284,31 @@ fn bodies(scene: &Scene, blocks: &BlockSet) -> Result<Vec<BodySetup>, Vec<Fault>
     if faults.is_empty() { Ok(bodies) } else { Err(faults) }
 }
 
-fn materials(scene: &Scene, faults: &mut Vec<Fault>) -> Vec<Option<Arc<LinearElastic>>> {
+fn linear_solver(solver: scene::Solver) -> Box<dyn LinearSolver> {
+    match solver {
+        scene::Solver::Cholesky => Box::new(SparseCholesky),
+        scene::Solver::ConjugateGradients { tolerance } => Box::new(ConjugateGradients { tolerance }),
+    }
+}
+
+fn materials(scene: &Scene, faults: &mut Vec<Fault>) -> Vec<Option<Arc<dyn Material>>> {
     let mut build = |(i, m): (usize, &scene::Material)| {
-        let built = LinearElastic::new(m.young_pa, m.poisson, m.density_kg_m3);
-        built.map_err(|error| faults.push(Fault::new(format!("materials[{i}]"), error))).ok().map(Arc::new)
+        let built = material(m);
+        built.map_err(|error| faults.push(Fault::new(format!("materials[{i}]"), error))).ok()
     };
     scene.materials.iter().enumerate().map(&mut build).collect()
+}
+
+fn material(m: &scene::Material) -> Result<Arc<dyn Material>, MaterialError> {
+    let isotropic = LinearElastic::new(m.young_pa, m.poisson, m.density_kg_m3)?;
+    let Some(bedding) = &m.bedding else { return Ok(Arc::new(isotropic)) };
+    let bedding = Bedding {
+        normal: vec3(bedding.normal),
+        young_across_pa: bedding.young_across_pa,
+        poisson_across: bedding.poisson_across,
+        shear_across_pa: bedding.shear_across_pa,
+    };
+    Ok(Arc::new(TransverselyIsotropic::new(&isotropic, &bedding)?))
 }
 
 fn node_support(

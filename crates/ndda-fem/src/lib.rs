@@ -13,9 +13,11 @@ pub mod stress;
 pub mod supports;
 pub mod testing;
 pub mod tet4;
+pub mod transversely_isotropic;
 
 pub use block_operator::BlockOperator;
 pub use frame::{Frame, FrameError};
 pub use linear_elastic::{LinearElastic, MaterialError};
 pub use material::{Material, Voigt};
 pub use supports::{BlockSupports, Hold, Motion, NodeSupport, SupportError};
+pub use transversely_isotropic::{Bedding, TransverselyIsotropic};

@@ -24,6 +24,23 @@ pub enum MaterialError {
     /// Density must be positive.
     #[error("density_kg_m3 = {0} kg/m³: must be positive")]
     Density(f64),
+    /// Young's modulus across the beds must be positive.
+    #[error("young_across_pa = {0} Pa: must be positive")]
+    YoungAcross(f64),
+    /// The shear modulus across the beds must be positive.
+    #[error("shear_across_pa = {0} Pa: must be positive")]
+    ShearAcross(f64),
+    /// The beds need a normal.
+    #[error("the normal of the beds must have a length")]
+    BeddingNormal,
+    /// Some strain would give energy back.
+    #[error(
+        "poisson_across = {poisson_across}: its square must be below (1 − poisson) young_across_pa / (2 young_pa)"
+    )]
+    Unstable {
+        /// ν′.
+        poisson_across: f64,
+    },
 }
 
 impl LinearElastic {
@@ -47,6 +64,11 @@ impl LinearElastic {
     /// Young's modulus E [Pa].
     pub fn young_pa(&self) -> f64 {
         self.young_pa
+    }
+
+    /// Poisson's ratio ν.
+    pub fn poisson(&self) -> f64 {
+        self.poisson
     }
 }
 

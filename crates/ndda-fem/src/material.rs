@@ -26,6 +26,11 @@ pub trait Material: Send + Sync {
         0.5 * strain.dot(&self.stress(strain))
     }
 
+    /// Whether the moduli are the same in all directions; where they are not, a block that is turned is another block.
+    fn is_isotropic(&self) -> bool {
+        true
+    }
+
     /// Fastest wave, c = √(max Dᵢᵢ / ρ) over the normal components [m/s].
     fn wave_speed_m_s(&self) -> f64 {
         let moduli = self.moduli();

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::read::suggest;
 use crate::scene::{
-    By, Contact, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene, Shape,
+    By, Contact, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene, Shape, Solver,
 };
 
 /// More steps than this are a slip of the keyboard.
@@ -122,6 +122,16 @@ impl Check<'_> {
                 );
             }
         }
+        if let Solver::ConjugateGradients { tolerance } = time.solver
+            && !(1e-16..=1e-3).contains(&tolerance)
+        {
+            let message = format!("{tolerance:e}: must be from 1e-16 to 1e-3");
+            self.error(
+                "time.solver.tolerance",
+                message,
+                "1e-12 costs little more than 1e-6 and leaves no doubt",
+            );
+        }
         match time.integrator {
             Integrator::Midpoint { theta } if !(0.5..=1.0).contains(&theta) => {
                 self.error(
@@ -168,6 +178,14 @@ impl Check<'_> {
                     format!("{density} kg/m³ is not the density of a rock"),
                     help,
                 );
+            }
+            if let Some(bedding) = &material.bedding {
+                self.positive(path("bedding.young_across_pa"), bedding.young_across_pa, "Pa");
+                self.positive(path("bedding.shear_across_pa"), bedding.shear_across_pa, "Pa");
+                if bedding.normal == [0.0; 3] {
+                    let help = "give a direction, such as (0, 0, 1) for level beds";
+                    self.error(path("bedding.normal"), "the normal of the beds has no length", help);
+                }
             }
             if !scene.blocks.iter().any(|b| b.material == material.name) {
                 self.warn(

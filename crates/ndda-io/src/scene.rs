@@ -48,6 +48,24 @@ pub struct Time {
     /// Time integrator. Default: `Midpoint(theta: 0.5)`.
     #[serde(default)]
     pub integrator: Integrator,
+    /// How a block's equations are solved. Default: `Cholesky`.
+    #[serde(default)]
+    pub solver: Solver,
+}
+
+/// How a block's equations are solved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Solver {
+    /// Factored once, LLᵀ: quickest while the factor fits in memory.
+    #[default]
+    Cholesky,
+    /// Iterated anew in every step: little memory, for blocks too large to factor.
+    ConjugateGradients {
+        /// Residual over right-hand side at which to stop [-]. Default: 1e-12.
+        #[serde(default = "fine")]
+        tolerance: f64,
+    },
 }
 
 /// Choice of time integrator.
@@ -77,7 +95,7 @@ impl Default for Integrator {
     }
 }
 
-/// Isotropic linear elastic rock.
+/// Linear elastic rock, isotropic or bedded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
@@ -89,6 +107,23 @@ pub struct Material {
     pub poisson: f64,
     /// Density ρ [kg/m³].
     pub density_kg_m3: f64,
+    /// Beds, across which it is another rock than `young_pa` and `poisson` say. Default: none.
+    #[serde(default)]
+    pub bedding: Option<Bedding>,
+}
+
+/// What a bedded rock is across its beds (transverse isotropy).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bedding {
+    /// Normal of the beds in the scene's axes, whatever turns a block has; its length does not matter.
+    pub normal: [f64; 3],
+    /// Young's modulus E′ across the beds [Pa].
+    pub young_across_pa: f64,
+    /// Poisson's ratio ν′ [-]: strain along the beds over that across, under a stress across.
+    pub poisson_across: f64,
+    /// Shear modulus G′ across the beds [Pa].
+    pub shear_across_pa: f64,
 }
 
 /// One block of rock.
@@ -467,4 +502,8 @@ fn half() -> f64 {
 
 fn one() -> f64 {
     1.0
+}
+
+fn fine() -> f64 {
+    1e-12
 }

@@ -239,6 +239,7 @@ mod tests {
             steps: 10_000,
             step_s: 1e-4,
             end_s: 1.0,
+            state_crc32: "0123abcd".into(),
             wall_s: 2.5,
             threads: 2,
             counts: Counts { blocks: 2, nodes: 100, ..Counts::default() },

@@ -6,7 +6,7 @@ use ndda_fem::{FrameError, Voigt};
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::for_each_block::NodeSlices;
-use crate::linear_solver::Scratch;
+use crate::linear_solver::{Scratch, SolveError};
 use crate::shape::Shape;
 use crate::time_integrator::{StepWeights, TimeIntegrator};
 
@@ -16,6 +16,9 @@ pub enum BlockError {
     /// The shape has no rotation any more.
     #[error(transparent)]
     Frame(#[from] FrameError),
+    /// Its equations were not solved.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
     /// A velocity is beyond what the material can carry, or not a number (invariant I1).
     #[error(
         "node {node} moves at {speed_m_s:e} m/s, more than ten times its wave speed {wave_speed_m_s:e} m/s: \
@@ -127,7 +130,7 @@ impl Body {
             elastic: zeros(),
             rigid: zeros(),
             unknowns: vec![0.0; shape.unknowns.len()],
-            scratch: shape.factor.as_ref().map_or_else(Vec::new, |f| f.new_scratch()),
+            scratch: shape.factor.as_ref().map_or_else(Scratch::default, |f| f.new_scratch()),
             report: BlockReport::default(),
             error: None,
         }
@@ -160,7 +163,7 @@ impl Body {
         self.turn_into_frame(shape, &rotation, &center);
         self.gather_residual(shape, context);
         self.prescribe(shape, context, &rotation, nodes.position);
-        self.solve(shape);
+        self.solve(shape)?;
         self.finish_prescribed(shape, context, &rotation, nodes.position);
         self.update_internal_force(shape, &rotation, nodes.internal_force);
         if !shape.is_free() {
@@ -253,13 +256,14 @@ impl Body {
     }
 
     /// s = K̃⁻¹ r over the unknowns; held components stay zero.
-    fn solve(&mut self, shape: &Shape) {
+    fn solve(&mut self, shape: &Shape) -> Result<(), SolveError> {
         shape.unknowns.gather(&self.correction, &mut self.unknowns);
         if let Some(factor) = &shape.factor {
-            factor.solve_in_place(&mut self.unknowns, &mut self.scratch);
+            factor.solve_in_place(&mut self.unknowns, &mut self.scratch)?;
         }
         self.correction.fill(Vec3::zeros());
         shape.unknowns.scatter(&self.unknowns, &mut self.correction);
+        Ok(())
     }
 
     fn finish_prescribed(

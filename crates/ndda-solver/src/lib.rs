@@ -5,6 +5,7 @@
 //! [`TimeIntegrator`], linear algebra through [`LinearSolver`].
 
 pub mod block_step;
+pub mod conjugate_gradients;
 pub mod for_each_block;
 pub mod ledger;
 pub mod linear_solver;
@@ -20,8 +21,9 @@ pub mod time_integrator;
 pub mod unknowns;
 
 pub use block_step::BlockError;
+pub use conjugate_gradients::ConjugateGradients;
 pub use ledger::{Invariants, Sample};
-pub use linear_solver::{Factor, FactorError, LinearSolver, SymmetricMatrix};
+pub use linear_solver::{Factor, FactorError, LinearSolver, SolveError, SymmetricMatrix};
 pub use midpoint::Midpoint;
 pub use newmark::Newmark;
 pub use shape::{BodySetup, SetupError};

@@ -68,7 +68,23 @@ pub enum FactorError {
 }
 
 /// Memory that a solve may write over; one per block, made once.
-pub type Scratch = Vec<MaybeUninit<u8>>;
+#[derive(Clone, Debug, Default)]
+pub struct Scratch {
+    /// For libraries that lay out their own.
+    pub bytes: Vec<MaybeUninit<u8>>,
+    /// For solvers that are content with numbers.
+    pub numbers: Vec<f64>,
+}
+
+/// A solve that did not reach a solution.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the equations were not solved (residual {residual:e} of the load): use the direct solver, or a shorter step_s"
+)]
+pub struct SolveError {
+    /// Residual over right-hand side.
+    pub residual: f64,
+}
 
 /// Factors symmetric positive definite matrices.
 pub trait LinearSolver: Send + Sync {
@@ -88,5 +104,8 @@ pub trait Factor: Send + Sync {
     fn new_scratch(&self) -> Scratch;
 
     /// Solves A x = b in place; allocates nothing.
-    fn solve_in_place(&self, rhs: &mut [f64], scratch: &mut Scratch);
+    ///
+    /// # Errors
+    /// [`SolveError`] when an iteration does not get there; a factor always does.
+    fn solve_in_place(&self, rhs: &mut [f64], scratch: &mut Scratch) -> Result<(), SolveError>;
 }

@@ -6,7 +6,7 @@ use ndda_fem::frame::polar_rotation;
 use ndda_fem::{BlockOperator, BlockSupports, Frame, Material, NodeSupport, SupportError, Voigt};
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
-use crate::linear_solver::{Factor, FactorError, LinearSolver};
+use crate::linear_solver::{Factor, FactorError, LinearSolver, SolveError};
 use crate::time_integrator::StepWeights;
 use crate::unknowns::Unknowns;
 
@@ -48,6 +48,14 @@ pub enum SetupError {
         block: String,
         /// What is wrong with them.
         source: FactorError,
+    },
+    /// The accelerations at the start of a block cannot be solved for.
+    #[error("block `{block}`: {source}")]
+    Solve {
+        /// Name of the block.
+        block: String,
+        /// How far the solver came.
+        source: SolveError,
     },
 }
 
@@ -141,6 +149,9 @@ impl Shape {
         let weighted = self.operator.node_mass.iter().zip(position).zip(&self.operator.rest);
         let moment = weighted.map(|((&m, x), rest)| m * (x - center) * rest.transpose()).sum::<Mat3>();
         let Ok(rotation) = polar_rotation(&(moment * inverse_moment)) else { return false };
+        if !self.material.is_isotropic() && (rotation - Mat3::identity()).amax() > CONGRUENT {
+            return false;
+        }
         let size = self.operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
         let misfit = |(x, rest): (&Vec3, &Vec3)| (x - center - rotation * rest).norm();
         position.iter().zip(&self.operator.rest).map(misfit).fold(0.0, f64::max) <= CONGRUENT * size

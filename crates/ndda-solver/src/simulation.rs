@@ -272,7 +272,9 @@ impl Simulation {
             })?;
             let mut rhs = vec![0.0; factor.unknowns()];
             shape.unknowns.gather(&load, &mut rhs);
-            factor.solve_in_place(&mut rhs, &mut factor.new_scratch());
+            factor.solve_in_place(&mut rhs, &mut factor.new_scratch()).map_err(|source| {
+                SetupError::Solve { block: self.blocks.names[block.index()].clone(), source }
+            })?;
             shape.unknowns.scatter(&rhs, &mut self.state.acceleration[range]);
         }
         Ok(())

@@ -10,7 +10,7 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side, Spec};
 
-use crate::linear_solver::{Factor, FactorError, LinearSolver, Scratch, SymmetricMatrix};
+use crate::linear_solver::{Factor, FactorError, LinearSolver, Scratch, SolveError, SymmetricMatrix};
 
 /// The default [`LinearSolver`].
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,17 +57,19 @@ impl Factor for SparseFactor {
 
     fn new_scratch(&self) -> Scratch {
         let need = self.symbolic.solve_in_place_scratch::<f64>(1, Par::Seq);
-        vec![MaybeUninit::uninit(); need.unaligned_bytes_required()]
+        let bytes = vec![MaybeUninit::uninit(); need.unaligned_bytes_required()];
+        Scratch { bytes, ..Scratch::default() }
     }
 
-    fn solve_in_place(&self, rhs: &mut [f64], scratch: &mut Scratch) {
+    fn solve_in_place(&self, rhs: &mut [f64], scratch: &mut Scratch) -> Result<(), SolveError> {
         let n = rhs.len();
         LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
             Conj::No,
             MatMut::from_column_major_slice_mut(rhs, n, 1),
             Par::Seq,
-            MemStack::new(scratch),
+            MemStack::new(&mut scratch.bytes),
         );
+        Ok(())
     }
 }
 

@@ -51,7 +51,7 @@ pub fn check_linear_solver(solver: &dyn LinearSolver) {
         let factor = solver.factor(&matrix).expect("the matrix is positive definite");
         assert_eq!(factor.unknowns(), n);
         let mut scratch = factor.new_scratch();
-        factor.solve_in_place(&mut x, &mut scratch);
+        factor.solve_in_place(&mut x, &mut scratch).expect("a solution");
         let error = x.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(error < 1e-13, "n = {n}: error {error}");
     }
