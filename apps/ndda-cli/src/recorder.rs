@@ -138,6 +138,7 @@ fn columns(monitors: &[Monitor], compared: bool) -> Vec<String> {
         "spring_j",
         "friction_work_j",
         "motion_work_j",
+        "load_work_j",
         "balance_j",
         "momentum_x_kg_m_s",
         "momentum_y_kg_m_s",
@@ -181,6 +182,7 @@ impl Sink for Recorder {
             sample.spring_j,
             sample.friction_work_j,
             sample.motion_work_j,
+            sample.load_work_j,
             sample.balance_j,
         ]);
         self.row.extend(sample.momentum.iter().chain(sample.angular_momentum.iter()));

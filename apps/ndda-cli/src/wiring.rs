@@ -11,8 +11,8 @@ use ndda_contact::{
 };
 use ndda_fem::supports::Motion;
 use ndda_fem::{
-    Bedding, Hold as FemHold, LinearElastic, Material, MaterialError, NodeSupport, TransverselyIsotropic,
-    Voigt,
+    Bedding, Hold as FemHold, LinearElastic, Material, MaterialError, NodeSupport, Table,
+    TransverselyIsotropic, Voigt,
 };
 use ndda_io::msh;
 use ndda_io::scene::{self, At, By, Contact, Hold, Integrator, Pattern, Region, Scene, Shape};
@@ -20,8 +20,8 @@ use ndda_mesh::generate::{BoxPattern, box_block, prism};
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
 use ndda_solver::{
-    BodySetup, ConjugateGradients, LinearSolver, Midpoint, Newmark, Setup, SetupError, Simulation,
-    SparseCholesky, TimeIntegrator,
+    BodySetup, ConjugateGradients, ForceSetup, LinearSolver, Midpoint, Newmark, Setup, SetupError,
+    Simulation, SparseCholesky, TimeIntegrator, TractionSetup,
 };
 
 use crate::monitor::Monitor;
@@ -154,6 +154,8 @@ pub fn simulation_with(
         blocks,
         bodies,
         gravity_m_s2: vec3(scene.gravity_m_s2),
+        gravity_factor: (scene.gravity_ramp_s > 0.0)
+            .then(|| Table { rows: vec![(0.0, 0.0), (scene.gravity_ramp_s, 1.0)] }),
         step_s: scene.time.step_s,
         integrator: integrator(&scene.time.integrator),
         contact,
@@ -263,6 +265,7 @@ fn bodies(scene: &Scene, blocks: &BlockSet) -> Result<Vec<BodySetup>, Vec<Fault>
                 .as_ref()
                 .map(|s| Voigt::new(s.xx, s.yy, s.zz, s.xy, s.yz, s.zx)),
             tractions: Vec::new(),
+            forces: Vec::new(),
             velocity_m_s: vec3(block.velocity_m_s),
             spin_rad_s: vec3(block.spin_rad_s),
         });
@@ -276,12 +279,42 @@ fn bodies(scene: &Scene, blocks: &BlockSet) -> Result<Vec<BodySetup>, Vec<Fault>
     for (i, traction) in scene.tractions.iter().enumerate() {
         match loaded_triangles(blocks, traction) {
             Ok((block, triangles)) => {
-                bodies[block.index()].tractions.push((triangles, vec3(traction.traction_pa)));
+                let (traction_pa, factor) = (vec3(traction.traction_pa), table(&traction.factor));
+                bodies[block.index()].tractions.push(TractionSetup { triangles, traction_pa, factor });
             }
             Err(message) => faults.push(Fault::new(format!("tractions[{i}].on"), message)),
         }
     }
+    for (i, force) in scene.forces.iter().enumerate() {
+        match nearest_node(blocks, force) {
+            Ok((block, node)) => {
+                let (force_n, factor) = (vec3(force.force_n), table(&force.factor));
+                bodies[block.index()].forces.push(ForceSetup { node, force_n, factor });
+            }
+            Err(message) => faults.push(Fault::new(format!("forces[{i}].at_m"), message)),
+        }
+    }
     if faults.is_empty() { Ok(bodies) } else { Err(faults) }
+}
+
+/// No table is a constant load.
+fn table(rows: &[scene::FactorRow]) -> Option<Table> {
+    let rows: Vec<_> = rows.iter().map(|row| (row.time_s, row.factor)).collect();
+    (!rows.is_empty()).then_some(Table { rows })
+}
+
+/// The node nearest to where a force acts, which must not be outside of the block's box by more than a tenth of it.
+fn nearest_node(blocks: &BlockSet, force: &scene::Force) -> Result<(BlockId, u32), String> {
+    let block = find(blocks, &force.block)?;
+    let place = vec3(force.at_m) - blocks.origin_m;
+    let nodes = &blocks.rest_position[blocks.nodes_of(block)];
+    let bounds = Aabb::around(nodes);
+    if !bounds.inflated(0.1 * bounds.diagonal()).touches(&Aabb { min: place, max: place }) {
+        return Err(format!("this point is not on block `{}`", force.block));
+    }
+    let distance = |i: usize| (nodes[i] - place).norm_squared();
+    let nearest = (0..nodes.len()).min_by(|&i, &j| distance(i).total_cmp(&distance(j)));
+    Ok((block, nearest.ok_or("the block has no nodes")? as u32))
 }
 
 fn linear_solver(solver: scene::Solver) -> Box<dyn LinearSolver> {

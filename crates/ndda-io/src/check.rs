@@ -23,7 +23,7 @@ pub fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> {
     check.materials();
     check.blocks(folder);
     check.supports();
-    check.tractions();
+    check.loads();
     check.contact();
     check.monitors();
     check.reference();
@@ -317,13 +317,37 @@ impl Check<'_> {
         rows.iter().for_each(|row| self.numbers(path, &row.displacement_m));
     }
 
-    fn tractions(&mut self) {
+    fn loads(&mut self) {
         let scene = self.scene;
         let blocks: Vec<&str> = scene.blocks.iter().map(|b| b.name.as_str()).collect();
+        if !(scene.gravity_ramp_s >= 0.0 && scene.gravity_ramp_s.is_finite()) {
+            let message = format!("{} s: must not be negative", scene.gravity_ramp_s);
+            self.error("gravity_ramp_s", message, "0 applies gravity suddenly");
+        }
+        if scene.gravity_ramp_s > 0.0
+            && matches!(scene.reference, Some(Reference::SlidingBlock { .. } | Reference::FreeFall { .. }))
+        {
+            let help = "leave out the ramp or the reference";
+            self.error("gravity_ramp_s", "the closed form of `reference` has gravity act at once", help);
+        }
+        for (i, force) in scene.forces.iter().enumerate() {
+            self.known(format!("forces[{i}].block"), "block", &force.block, &blocks);
+            self.numbers(&format!("forces[{i}].at_m"), &force.at_m);
+            self.numbers(&format!("forces[{i}].force_n"), &force.force_n);
+            self.factor(&format!("forces[{i}].factor"), &force.factor);
+        }
         for (i, traction) in scene.tractions.iter().enumerate() {
             self.known(format!("tractions[{i}].block"), "block", &traction.block, &blocks);
             self.region(&format!("tractions[{i}].on"), &traction.on);
             self.numbers(&format!("tractions[{i}].traction_pa"), &traction.traction_pa);
+            self.factor(&format!("tractions[{i}].factor"), &traction.factor);
+        }
+    }
+
+    fn factor(&mut self, path: &str, rows: &[crate::scene::FactorRow]) {
+        if let Some(i) = (1..rows.len()).find(|&i| rows[i].time_s <= rows[i - 1].time_s) {
+            let message = format!("{} s does not come after {} s", rows[i].time_s, rows[i - 1].time_s);
+            self.error(format!("{path}[{i}].time_s"), message, "sort the rows by time_s");
         }
     }
 

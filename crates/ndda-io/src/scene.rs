@@ -10,9 +10,12 @@ pub struct Scene {
     pub title: String,
     /// Step, end and integrator.
     pub time: Time,
-    /// Acceleration of gravity [m/s²]; applied suddenly at t = 0. Default: none.
+    /// Acceleration of gravity [m/s²]. Default: none.
     #[serde(default)]
     pub gravity_m_s2: [f64; 3],
+    /// Time over which gravity grows from nothing [s]; 0 applies it suddenly. Default: 0.
+    #[serde(default)]
+    pub gravity_ramp_s: f64,
     /// Materials, referred to by name.
     pub materials: Vec<Material>,
     /// Blocks, in the order of the output.
@@ -23,6 +26,9 @@ pub struct Scene {
     /// Surface tractions. Default: none.
     #[serde(default)]
     pub tractions: Vec<Traction>,
+    /// Forces on points of blocks. Default: none.
+    #[serde(default)]
+    pub forces: Vec<Force>,
     /// Contact between blocks. Must be said when there is more than one block.
     #[serde(default)]
     pub contact: Option<Contact>,
@@ -299,7 +305,7 @@ pub enum By {
     },
 }
 
-/// A traction on part of a block's surface, constant in time and direction, per area at rest.
+/// A traction on part of a block's surface, constant in direction, per area at rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Traction {
@@ -309,6 +315,34 @@ pub struct Traction {
     pub on: Region,
     /// Traction [Pa].
     pub traction_pa: [f64; 3],
+    /// Factor over time, linear between rows and constant outside. Default: 1.
+    #[serde(default)]
+    pub factor: Vec<FactorRow>,
+}
+
+/// A force on the node of a block that is nearest to a point, constant in direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Force {
+    /// Name of the block.
+    pub block: String,
+    /// The point [m].
+    pub at_m: [f64; 3],
+    /// Force [N].
+    pub force_n: [f64; 3],
+    /// Factor over time, linear between rows and constant outside. Default: 1.
+    #[serde(default)]
+    pub factor: Vec<FactorRow>,
+}
+
+/// One row of a load's factor.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FactorRow {
+    /// Time [s].
+    pub time_s: f64,
+    /// Factor [-].
+    pub factor: f64,
 }
 
 /// Contact between blocks.

@@ -21,6 +21,7 @@ fn cubes(count: usize, n: u32) -> Simulation {
         supports: Vec::new(),
         initial_stress_pa: None,
         tractions: Vec::new(),
+        forces: Vec::new(),
         velocity_m_s: Vec3::x(),
         spin_rad_s: Vec3::new(0.1, 0.2, 0.3),
     };
@@ -28,6 +29,7 @@ fn cubes(count: usize, n: u32) -> Simulation {
         blocks: BlockSet::new((0..count).map(cube).collect()).expect("cubes"),
         bodies: (0..count).map(|_| body()).collect(),
         gravity_m_s2: Vec3::new(0.0, 0.0, -9.8),
+        gravity_factor: None,
         step_s: 1e-5,
         integrator: Box::new(Midpoint { theta: 0.5 }),
         contact: None,

@@ -50,8 +50,10 @@ pub struct StepContext<'a> {
     pub contact_position: &'a [Vec3],
     /// Force per node of the block, contact and constant loads [N].
     pub force: &'a [Vec3],
-    /// The constant loads in it [N].
+    /// The loads in it [N].
     pub external: &'a [Vec3],
+    /// Those of them that change over time [N]; empty if none do.
+    pub changing: &'a [Vec3],
     /// Friction's part of it [N]; empty without friction.
     pub friction_force: &'a [Vec3],
     /// Row sums of the contact stiffness [N/m]; empty without contact.
@@ -74,6 +76,8 @@ pub struct BlockReport {
     pub outside_torque: Vec3,
     /// Work of prescribed motions [J].
     pub motion_work_j: f64,
+    /// Work of loads that change over time [J].
+    pub load_work_j: f64,
     /// Work of friction [J].
     pub friction_work_j: f64,
     /// Fastest node [m/s].
@@ -470,6 +474,9 @@ impl Body {
         let report = &mut self.report;
         for (x, f) in context.contact_position.iter().zip(context.external) {
             report.outside_torque += x.cross(f);
+        }
+        for (load, u) in context.changing.iter().zip(&self.correction) {
+            report.load_work_j += load.dot(u);
         }
         for (friction, u) in context.friction_force.iter().zip(&self.correction) {
             report.friction_work_j += friction.dot(u);

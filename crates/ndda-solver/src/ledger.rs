@@ -17,7 +17,7 @@ pub struct Sample {
     pub strain_j: f64,
     /// Potential energy of normal contact [J].
     pub contact_j: f64,
-    /// Potential of constant loads: gravity and tractions, zero at the start [J].
+    /// Potential of constant loads: gravity, tractions and forces, zero at the start [J].
     pub load_j: f64,
     /// Energy of support springs [J].
     pub spring_j: f64,
@@ -25,6 +25,8 @@ pub struct Sample {
     pub friction_work_j: f64,
     /// Work of prescribed motions since the start [J].
     pub motion_work_j: f64,
+    /// Work of loads that change over time since the start [J].
+    pub load_work_j: f64,
     /// Energy that appeared (+) or vanished (−) without a cause since the start [J].
     pub balance_j: f64,
     /// Linear momentum [kg m/s].
@@ -84,6 +86,7 @@ pub struct Ledger {
     load_impulse: f64,
     friction_work_j: f64,
     motion_work_j: f64,
+    load_work_j: f64,
     peak_energy_j: f64,
     peak_momentum: f64,
     peak_angular: f64,
@@ -119,6 +122,7 @@ impl Ledger {
             load_impulse: 0.0,
             friction_work_j: 0.0,
             motion_work_j: 0.0,
+            load_work_j: 0.0,
             peak_energy_j: 0.0,
             peak_momentum: 0.0,
             peak_angular: 0.0,
@@ -139,10 +143,16 @@ impl Ledger {
         self.load_impulse += dt_s * self.load_n;
     }
 
-    /// Books the work of friction and of prescribed motions in a step [J].
-    pub fn add_work(&mut self, friction_j: f64, motion_j: f64) {
+    /// The size of all loads now [N].
+    pub fn watch_load(&mut self, load_n: f64) {
+        self.load_n = load_n;
+    }
+
+    /// Books the work of friction, of prescribed motions and of changing loads in a step [J].
+    pub fn add_work(&mut self, friction_j: f64, motion_j: f64, load_j: f64) {
         self.friction_work_j += friction_j;
         self.motion_work_j += motion_j;
+        self.load_work_j += load_j;
     }
 
     /// Keeps the extremes of a step.
@@ -161,7 +171,9 @@ impl Ledger {
         let start = *self.start.get_or_insert(sample);
         sample.friction_work_j = self.friction_work_j;
         sample.motion_work_j = self.motion_work_j;
-        sample.balance_j = sample.total_j() - start.total_j() - sample.friction_work_j - sample.motion_work_j;
+        sample.load_work_j = self.load_work_j;
+        let work_j = sample.friction_work_j + sample.motion_work_j + sample.load_work_j;
+        sample.balance_j = sample.total_j() - start.total_j() - work_j;
         let stored = sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j;
         self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());
         self.largest_gain_j = self.largest_gain_j.max(sample.balance_j);
@@ -199,7 +211,7 @@ mod tests {
     fn energy_that_friction_took_is_not_a_loss() {
         let mut ledger = Ledger::new((Vec3::zeros(), Vec3::zeros()));
         ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() });
-        ledger.add_work(-4.0, 0.0);
+        ledger.add_work(-4.0, 0.0, 0.0);
         let sample = ledger.balance(Sample { kinetic_j: 5.0, ..Sample::default() });
         assert_eq!(sample.balance_j, -1.0);
         assert_eq!(ledger.invariants().energy_loss, 0.1);

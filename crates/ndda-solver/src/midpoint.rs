@@ -31,6 +31,7 @@ impl TimeIntegrator for Midpoint {
             velocity_per_m: 2.0 / dt_s,
             mean_velocity: true,
             contact_lead: 0.5,
+            load_lead: 0.5,
             new_force: 1.0,
             needs_acceleration: false,
         }

@@ -33,6 +33,7 @@ impl TimeIntegrator for Newmark {
             velocity_per_m: self.delta / (self.alpha * dt_s),
             mean_velocity: self.delta == 2.0 * self.alpha,
             contact_lead: 0.0,
+            load_lead: 1.0,
             new_force: self.delta,
             needs_acceleration: self.alpha != 0.5 || self.delta != 1.0,
         }

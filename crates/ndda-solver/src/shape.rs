@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ndda_fem::frame::polar_rotation;
-use ndda_fem::{BlockOperator, BlockSupports, Frame, Material, NodeSupport, SupportError, Voigt};
+use ndda_fem::{BlockOperator, BlockSupports, Frame, Material, NodeSupport, SupportError, Table, Voigt};
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::linear_solver::{Factor, FactorError, LinearSolver, SolveError};
@@ -22,12 +22,36 @@ pub struct BodySetup {
     pub supports: Vec<NodeSupport>,
     /// Uniform initial stress σ₀ [Pa].
     pub initial_stress_pa: Option<Voigt>,
-    /// Tractions: triangles by nodes counted from the block's first, and the traction [Pa].
-    pub tractions: Vec<(Vec<[u32; 3]>, Vec3)>,
+    /// Tractions on its surface.
+    pub tractions: Vec<TractionSetup>,
+    /// Forces on its nodes.
+    pub forces: Vec<ForceSetup>,
     /// Velocity of the mass centre [m/s].
     pub velocity_m_s: Vec3,
     /// Rate of rotation about the mass centre [rad/s].
     pub spin_rad_s: Vec3,
+}
+
+/// A traction on part of a block.
+#[derive(Clone, Debug)]
+pub struct TractionSetup {
+    /// Triangles by nodes counted from the block's first.
+    pub triangles: Vec<[u32; 3]>,
+    /// Traction [Pa].
+    pub traction_pa: Vec3,
+    /// Factor over time; constant without.
+    pub factor: Option<Table>,
+}
+
+/// A force on a node of a block.
+#[derive(Clone, Debug)]
+pub struct ForceSetup {
+    /// The node, counted from the block's first.
+    pub node: u32,
+    /// Force [N].
+    pub force_n: Vec3,
+    /// Factor over time; constant without.
+    pub factor: Option<Table>,
 }
 
 /// Why a simulation could not be set up.

@@ -5,6 +5,7 @@ use std::time::Instant;
 use ndda_contact::{
     Body as ContactBody, ContactError, ContactInput, ContactModel, ContactOutput, ContactReport,
 };
+use ndda_fem::Table;
 use ndda_fem::loads::{add_gravity, add_traction};
 use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
@@ -14,6 +15,7 @@ use crate::block_step::{BlockError, Body, StepContext};
 use crate::for_each_block::{NodeSlices, for_each_block};
 use crate::ledger::{Invariants, Ledger, Sample};
 use crate::linear_solver::LinearSolver;
+use crate::loads::{Loads, VaryingLoad};
 use crate::shape::{BodySetup, SetupError, Shape};
 use crate::state::State;
 use crate::time_integrator::{StepWeights, TimeIntegrator};
@@ -29,6 +31,8 @@ pub struct Setup {
     pub bodies: Vec<BodySetup>,
     /// g [m/s²].
     pub gravity_m_s2: Vec3,
+    /// Factor of gravity over time; constant without.
+    pub gravity_factor: Option<Table>,
     /// Δt [s].
     pub step_s: f64,
     /// Time integrator.
@@ -149,8 +153,7 @@ pub struct Simulation {
     contact: Option<Box<dyn ContactModel>>,
     ledger: Ledger,
     stages: StageTimes,
-    external: Vec<Vec3>,
-    outside_force: Vec3,
+    loads: Loads,
     force: Vec<Vec3>,
     friction_force: Vec<Vec3>,
     contact_stiffness: Vec<f64>,
@@ -164,7 +167,8 @@ impl Simulation {
     /// # Errors
     /// [`SetupError`] naming the block whose supports or equations are at fault.
     pub fn new(setup: Setup) -> Result<Self, SetupError> {
-        let Setup { blocks, bodies, gravity_m_s2, step_s, integrator, contact, solver } = setup;
+        let Setup { blocks, bodies, gravity_m_s2, gravity_factor, step_s, integrator, contact, solver } =
+            setup;
         let weights = integrator.weights(step_s);
         let mut shapes: Vec<Shape> = Vec::new();
         let mut shape_of = Vec::with_capacity(blocks.len());
@@ -190,8 +194,7 @@ impl Simulation {
                 contact: Default::default(),
             },
             bodies: Vec::with_capacity(blocks.len()),
-            external: vec![Vec3::zeros(); nodes],
-            outside_force: Vec3::zeros(),
+            loads: Loads::new(Vec::new(), Vec::new()),
             force: vec![Vec3::zeros(); nodes],
             friction_force: vec![Vec3::zeros(); friction_nodes],
             contact_stiffness: vec![0.0; contact_nodes],
@@ -207,8 +210,9 @@ impl Simulation {
             contact,
         };
         for (block, body) in simulation.blocks.ids().zip(&bodies) {
-            simulation.add_body(block, shape_of[block.index()], body, &gravity_m_s2);
+            simulation.add_body(block, shape_of[block.index()], body);
         }
+        simulation.add_loads(&bodies, &gravity_m_s2, gravity_factor);
         if simulation.contact.as_ref().is_some_and(|c| c.needs_bodies()) {
             let bodies = simulation.blocks.ids().map(|block| simulation.shape(block).contact_body());
             simulation.contact_bodies = bodies.collect();
@@ -217,15 +221,10 @@ impl Simulation {
         Ok(simulation)
     }
 
-    fn add_body(&mut self, block: BlockId, shape_index: usize, setup: &BodySetup, gravity_m_s2: &Vec3) {
+    fn add_body(&mut self, block: BlockId, shape_index: usize, setup: &BodySetup) {
         let range = self.blocks.nodes_of(block);
         let rest = &self.blocks.rest_position[range.clone()];
         let shape = &self.shapes[shape_index];
-        let external = &mut self.external[range.clone()];
-        add_gravity(&shape.operator, gravity_m_s2, external);
-        for (triangles, traction_pa) in &setup.tractions {
-            add_traction(triangles, rest, traction_pa, external);
-        }
         let center = shape.operator.center(rest);
         for (v, x) in self.state.velocity[range.clone()].iter_mut().zip(rest) {
             *v = setup.velocity_m_s + setup.spin_rad_s.cross(&(x - center));
@@ -244,12 +243,43 @@ impl Simulation {
         }
     }
 
-    /// Total constant load, and accelerations at the start for integrators that need them: M a = f − ∫Bᵀσ₀.
+    /// Gathers gravity, tractions and forces: those that vary each by itself, the others in one sum.
+    fn add_loads(&mut self, bodies: &[BodySetup], gravity_m_s2: &Vec3, gravity_factor: Option<Table>) {
+        let mut constant = vec![Vec3::zeros(); self.blocks.rest_position.len()];
+        let mut weight = constant.clone();
+        let mut varying = Vec::new();
+        for (block, setup) in self.blocks.ids().zip(bodies) {
+            let range = self.blocks.nodes_of(block);
+            let rest = &self.blocks.rest_position[range.clone()];
+            add_gravity(&self.shape(block).operator, gravity_m_s2, &mut weight[range.clone()]);
+            let mut add = |forces: Vec<Vec3>, factor: &Option<Table>| match factor {
+                None => constant[range.clone()].iter_mut().zip(forces).for_each(|(sum, f)| *sum += f),
+                Some(factor) => varying.push(VaryingLoad::new(range.start, &forces, factor.clone())),
+            };
+            for traction in &setup.tractions {
+                let mut forces = vec![Vec3::zeros(); rest.len()];
+                add_traction(&traction.triangles, rest, &traction.traction_pa, &mut forces);
+                add(forces, &traction.factor);
+            }
+            for force in &setup.forces {
+                let mut forces = vec![Vec3::zeros(); rest.len()];
+                forces[force.node as usize] = force.force_n;
+                add(forces, &force.factor);
+            }
+        }
+        match gravity_factor {
+            None => constant.iter_mut().zip(weight).for_each(|(sum, f)| *sum += f),
+            Some(factor) => varying.push(VaryingLoad::new(0, &weight, factor)),
+        }
+        self.loads = Loads::new(constant, varying);
+    }
+
+    /// Total load at the start, and accelerations at the start for integrators that need them: M a = f − ∫Bᵀσ₀.
     fn open_books(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
-        self.outside_force = self.external.iter().sum();
-        let arms = self.state.position.iter().zip(&self.external);
+        let force = self.loads.total().iter().sum();
+        let arms = self.state.position.iter().zip(self.loads.total());
         let torque = arms.map(|(x, f)| x.cross(f)).sum();
-        self.ledger = Ledger::new((self.outside_force, torque));
+        self.ledger = Ledger::new((force, torque));
         if !self.weights.needs_acceleration {
             return Ok(());
         }
@@ -261,7 +291,7 @@ impl Simulation {
                 continue;
             }
             let range = self.blocks.nodes_of(block);
-            let mut load = self.external[range.clone()].to_vec();
+            let mut load = self.loads.total()[range.clone()].to_vec();
             if let Some(initial) = &body.initial_force {
                 load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
             }
@@ -299,9 +329,10 @@ impl Simulation {
         Ok(report)
     }
 
-    /// f ← gravity and tractions.
+    /// f ← gravity, tractions and forces at the time at which the integrator takes them.
     fn gather_loads(&mut self) {
-        self.force.copy_from_slice(&self.external);
+        self.loads.place(self.time_s() + self.weights.load_lead * self.step_s);
+        self.force.copy_from_slice(self.loads.total());
     }
 
     /// x* = x + lead · Δt v.
@@ -328,7 +359,7 @@ impl Simulation {
             body.spin_rad_s = motion.spin_rad_s;
             body.inverse_inertia = motion.inverse_inertia;
             (body.load_n, body.torque_n_m) = (Vec3::zeros(), Vec3::zeros());
-            for (x, load) in position.iter().zip(&self.external[range]) {
+            for (x, load) in position.iter().zip(&self.loads.total()[range]) {
                 body.push(x, load);
             }
         }
@@ -370,7 +401,7 @@ impl Simulation {
     /// Each block alone, in parallel.
     fn solve_blocks(&mut self) -> Result<(), StepError> {
         let (shapes, blocks) = (&self.shapes, &self.blocks);
-        let (force, external, contact_position) = (&self.force, &self.external, &self.contact_position);
+        let (force, loads, contact_position) = (&self.force, &self.loads, &self.contact_position);
         let (friction_force, contact_stiffness) = (&self.friction_force, &self.contact_stiffness);
         let (integrator, weights, dt_s) = (self.integrator.as_ref(), self.weights, self.step_s);
         let (time_s, end_s) = (self.state.step as f64 * dt_s, (self.state.step + 1) as f64 * dt_s);
@@ -391,7 +422,8 @@ impl Simulation {
                 end_s,
                 contact_position: &contact_position[range.clone()],
                 force: &force[range.clone()],
-                external: &external[range.clone()],
+                external: &loads.total()[range.clone()],
+                changing: loads.changing().get(range.clone()).unwrap_or(&[]),
                 friction_force: friction_force.get(range.clone()).unwrap_or(&[]),
                 contact_stiffness: contact_stiffness.get(range).unwrap_or(&[]),
             };
@@ -408,22 +440,24 @@ impl Simulation {
 
     /// Impulses, work and extremes of the step; t advances.
     fn keep_books(&mut self, contact: ContactReport) -> StepReport {
-        let (mut force, mut torque) = (self.outside_force, Vec3::zeros());
+        let (mut force, mut torque) = (self.loads.total().iter().sum::<Vec3>(), Vec3::zeros());
+        self.ledger.watch_load(force.norm());
         let (mut rate2, mut travel_ratio) = (0.0f64, 0.0f64);
-        let (mut friction_j, mut motion_j) = (0.0, 0.0);
+        let (mut friction_j, mut motion_j, mut load_j) = (0.0, 0.0, 0.0);
         for body in &self.bodies {
             let report = &body.report;
             force += report.reaction;
             torque += report.outside_torque;
             friction_j += report.friction_work_j;
             motion_j += report.motion_work_j;
+            load_j += report.load_work_j;
             rate2 = rate2.max(report.contact_rate2);
             let height_m = self.shapes[body.shape].smallest_height_m;
             travel_ratio = travel_ratio.max(report.speed_m_s * self.step_s / height_m);
         }
         let h = self.step_s * rate2.sqrt();
         self.ledger.add_impulse(self.step_s, self.weights.new_force, force, torque);
-        self.ledger.add_work(friction_j, motion_j);
+        self.ledger.add_work(friction_j, motion_j, load_j);
         self.ledger.watch(&contact, h, travel_ratio);
         self.state.step += 1;
         StepReport { contact, h, travel_ratio }
@@ -441,7 +475,7 @@ impl Simulation {
         for block in self.blocks.ids() {
             self.add_block_to(&mut sample, block)?;
         }
-        let loads = self.external.iter().zip(&self.state.position).zip(&self.blocks.rest_position);
+        let loads = self.loads.constant().iter().zip(&self.state.position).zip(&self.blocks.rest_position);
         sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
         if let Some(model) = &mut self.contact {
             let (position, velocity) = (&self.state.position, &self.state.velocity);

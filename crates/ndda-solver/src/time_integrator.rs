@@ -15,6 +15,8 @@ pub struct StepWeights {
     pub mean_velocity: bool,
     /// Contact acts at x* = x + lead · Δt v.
     pub contact_lead: f64,
+    /// Loads that change over time act as they are at start + lead · Δt.
+    pub load_lead: f64,
     /// γ: the momentum changes by Δt [(1 − γ) f_old + γ f_new].
     pub new_force: f64,
     /// Whether the acceleration at the start of a step matters, so that a run must begin with M a = f − K d.

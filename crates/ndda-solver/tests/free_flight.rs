@@ -16,6 +16,7 @@ fn cube(integrator: Box<dyn TimeIntegrator>, step_s: f64, gravity: Vec3, spin: V
         supports: Vec::new(),
         initial_stress_pa: None,
         tractions: Vec::new(),
+        forces: Vec::new(),
         velocity_m_s: Vec3::zeros(),
         spin_rad_s: spin,
     };
@@ -23,6 +24,7 @@ fn cube(integrator: Box<dyn TimeIntegrator>, step_s: f64, gravity: Vec3, spin: V
         blocks,
         bodies: vec![body],
         gravity_m_s2: gravity,
+        gravity_factor: None,
         step_s,
         integrator,
         contact: None,

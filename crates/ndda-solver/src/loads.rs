@@ -1,0 +1,75 @@
+//! What acts on the nodes from outside, at any time of a run.
+
+use ndda_fem::Table;
+use ndda_mesh::Vec3;
+
+/// Nodal forces that grow and shrink together.
+#[derive(Clone, Debug)]
+pub struct VaryingLoad {
+    /// Node, and force at a factor of one [N].
+    pub forces: Vec<(u32, Vec3)>,
+    /// The factor over time.
+    pub factor: Table,
+}
+
+impl VaryingLoad {
+    /// Forces on a run of nodes from `first` on; those that are zero are left out.
+    pub fn new(first: usize, forces: &[Vec3], factor: Table) -> Self {
+        let some = forces.iter().enumerate().filter(|(_, force)| **force != Vec3::zeros());
+        Self { forces: some.map(|(i, force)| ((first + i) as u32, *force)).collect(), factor }
+    }
+}
+
+/// All loads but contact.
+#[derive(Clone, Debug)]
+pub struct Loads {
+    constant: Vec<Vec3>,
+    varying: Vec<VaryingLoad>,
+    /// Sum of the varying ones now; empty if there are none, and so is `total`.
+    changing: Vec<Vec3>,
+    total: Vec<Vec3>,
+}
+
+impl Loads {
+    /// Constant forces per node, and those that vary.
+    pub fn new(constant: Vec<Vec3>, varying: Vec<VaryingLoad>) -> Self {
+        let nodes = if varying.is_empty() { 0 } else { constant.len() };
+        let mut loads = Self {
+            constant,
+            varying,
+            changing: vec![Vec3::zeros(); nodes],
+            total: vec![Vec3::zeros(); nodes],
+        };
+        loads.place(0.0);
+        loads
+    }
+
+    /// Brings the varying ones to a time [s].
+    pub fn place(&mut self, time_s: f64) {
+        if self.varying.is_empty() {
+            return;
+        }
+        self.changing.fill(Vec3::zeros());
+        for load in &self.varying {
+            let factor = load.factor.at(time_s);
+            load.forces.iter().for_each(|(node, force)| self.changing[*node as usize] += factor * force);
+        }
+        let sums = self.constant.iter().zip(&self.changing);
+        self.total.iter_mut().zip(sums).for_each(|(total, (a, b))| *total = a + b);
+    }
+
+    /// What never changes, per node [N].
+    pub fn constant(&self) -> &[Vec3] {
+        &self.constant
+    }
+
+    /// What varies, as last placed [N]; empty if nothing does.
+    pub fn changing(&self) -> &[Vec3] {
+        &self.changing
+    }
+
+    /// Both [N].
+    pub fn total(&self) -> &[Vec3] {
+        if self.varying.is_empty() { &self.constant } else { &self.total }
+    }
+}

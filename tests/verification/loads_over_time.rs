@@ -1,0 +1,74 @@
+//! Loads that change over time: closed forms of ramped gravity, and the energy that they bring.
+
+use ndda_mesh::Vec3;
+
+use crate::{YOUNG_PA, bar, rollers, simulation};
+
+#[test]
+fn under_gravity_that_grows_a_block_falls_by_the_cube_of_time() {
+    // a = g t/T: v = g t²/2T, x = g t³/6T until T.
+    let (step_s, ramp_s, g) = (1e-3, 0.5, 9.8);
+    let mut simulation = simulation(&format!(
+        "(title: \"fall\", time: (step_s: {step_s}, end_s: 1), gravity_m_s2: (0, 0, -{g}), gravity_ramp_s: {ramp_s},
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2500)],
+          blocks: [(name: \"block\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))])"
+    ));
+    simulation.sample().unwrap();
+    for _ in 0..500 {
+        simulation.step().unwrap();
+    }
+    let t = simulation.time_s();
+    let fallen = simulation.blocks().rest_position[0].z - simulation.state().position[0].z;
+    // The middle of each step has its mean force: only the distance within a step is off, by g Δt² t/12T.
+    let exact = g * t.powi(3) / (6.0 * ramp_s);
+    assert!(
+        (fallen - exact).abs() < 1.01 * g * step_s * step_s * t / (12.0 * ramp_s),
+        "{fallen} for {exact}"
+    );
+    let sample = simulation.sample().unwrap();
+    assert!((sample.kinetic_j / sample.load_work_j - 1.0).abs() < 1e-12, "{sample:?}");
+    assert!((sample.momentum.z / (-g * 0.5 * t * t / ramp_s * 2500.0) - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_slow_pull_brings_half_the_force_times_the_way() {
+    // Ramped over twenty periods of the bar it hardly swings; W = ½ F u.
+    let traction_pa = 1e5;
+    let mut simulation = bar(
+        "",
+        &rollers(""),
+        &format!(
+            "tractions: [(block: \"bar\", on: Set(\"x_max\"), traction_pa: ({traction_pa}, 0, 0),
+                          factor: [(time_s: 0, factor: 0), (time_s: 0.08, factor: 1)])]"
+        ),
+    );
+    simulation.sample().unwrap();
+    for _ in 0..600 {
+        simulation.step().unwrap();
+    }
+    let sample = simulation.sample().unwrap();
+    let stored = 0.5 * traction_pa * traction_pa / YOUNG_PA;
+    assert!((sample.strain_j / stored - 1.0).abs() < 1e-3, "{} for {stored}", sample.strain_j);
+    assert!((sample.load_work_j / stored - 1.0).abs() < 2e-2, "{} for {stored}", sample.load_work_j);
+}
+
+#[test]
+fn a_force_that_comes_and_goes_leaves_its_impulse() {
+    // A triangle of 0.1 s and 1 kN on one corner: ½ · 0.1 · 1000 kg m/s, wherever it pushes.
+    let mut simulation = simulation(
+        "(title: \"push\", time: (step_s: 1e-3, end_s: 1),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2500)],
+          blocks: [(name: \"block\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+          forces: [(block: \"block\", at_m: (1, 1, 1), force_n: (0, 1e3, 0),
+                    factor: [(time_s: 0.1, factor: 0), (time_s: 0.15, factor: 1), (time_s: 0.2, factor: 0)])])",
+    );
+    simulation.sample().unwrap();
+    for _ in 0..300 {
+        simulation.step().unwrap();
+    }
+    let sample = simulation.sample().unwrap();
+    assert!((sample.momentum - Vec3::new(0.0, 50.0, 0.0)).norm() < 1e-9, "{:?}", sample.momentum);
+    assert!((sample.kinetic_j / sample.load_work_j - 1.0).abs() < 1e-4, "{sample:?}");
+    let worst = simulation.invariants();
+    assert!(worst.linear_momentum < 1e-12 && worst.angular_momentum < 1e-12, "{worst:?}");
+}
