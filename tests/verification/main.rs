@@ -3,6 +3,7 @@
 mod bar_under_traction;
 mod bedded_bar;
 mod contact_patch;
+mod damping;
 mod loads_over_time;
 mod one_block_alone;
 mod prescribed_motion;

@@ -139,6 +139,7 @@ fn columns(monitors: &[Monitor], compared: bool) -> Vec<String> {
         "friction_work_j",
         "motion_work_j",
         "load_work_j",
+        "damping_work_j",
         "balance_j",
         "momentum_x_kg_m_s",
         "momentum_y_kg_m_s",
@@ -183,6 +184,7 @@ impl Sink for Recorder {
             sample.friction_work_j,
             sample.motion_work_j,
             sample.load_work_j,
+            sample.damping_work_j,
             sample.balance_j,
         ]);
         self.row.extend(sample.momentum.iter().chain(sample.angular_momentum.iter()));

@@ -11,7 +11,7 @@ use ndda_contact::{
 };
 use ndda_fem::supports::Motion;
 use ndda_fem::{
-    Bedding, Hold as FemHold, LinearElastic, Material, MaterialError, NodeSupport, Table,
+    Bedding, Damped, Damping, Hold as FemHold, LinearElastic, Material, MaterialError, NodeSupport, Table,
     TransverselyIsotropic, Voigt,
 };
 use ndda_io::msh;
@@ -333,6 +333,15 @@ fn materials(scene: &Scene, faults: &mut Vec<Fault>) -> Vec<Option<Arc<dyn Mater
 }
 
 fn material(m: &scene::Material) -> Result<Arc<dyn Material>, MaterialError> {
+    let elastic = elastic(m)?;
+    let scene::Damping { mass_per_s, stiffness_s } = m.damping;
+    if (mass_per_s, stiffness_s) == (0.0, 0.0) {
+        return Ok(elastic);
+    }
+    Ok(Arc::new(Damped { material: elastic, damping: Damping { mass_per_s, stiffness_s } }))
+}
+
+fn elastic(m: &scene::Material) -> Result<Arc<dyn Material>, MaterialError> {
     let isotropic = LinearElastic::new(m.young_pa, m.poisson, m.density_kg_m3)?;
     let Some(bedding) = &m.bedding else { return Ok(Arc::new(isotropic)) };
     let bedding = Bedding {

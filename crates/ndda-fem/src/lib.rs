@@ -5,6 +5,7 @@
 //! stresses for output. Nothing here knows of contact or of time.
 
 pub mod block_operator;
+pub mod damped;
 pub mod frame;
 pub mod linear_elastic;
 pub mod loads;
@@ -17,9 +18,10 @@ pub mod tet4;
 pub mod transversely_isotropic;
 
 pub use block_operator::BlockOperator;
+pub use damped::Damped;
 pub use frame::{Frame, FrameError};
 pub use linear_elastic::{LinearElastic, MaterialError};
-pub use material::{Material, Voigt};
+pub use material::{Damping, Material, Voigt};
 pub use supports::{BlockSupports, Hold, Motion, NodeSupport, SupportError};
 pub use table::Table;
 pub use transversely_isotropic::{Bedding, TransverselyIsotropic};

@@ -5,6 +5,15 @@ use nalgebra::{Matrix6, Vector6};
 /// Strain or stress as (xx, yy, zz, xy, yz, zx); shear strains are engineering strains, γ = 2 ε.
 pub type Voigt = Vector6<f64>;
 
+/// Rayleigh damping, C = a M + b K: a mode of frequency ω is damped by ζ = a/2ω + b ω/2 of critical.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Damping {
+    /// a [1/s]: drags on every motion, that of a block as a whole, too.
+    pub mass_per_s: f64,
+    /// b [s]: resists deformation.
+    pub stiffness_s: f64,
+}
+
 /// A hyperelastic law for small strains in the block's frame.
 ///
 /// Contract (checked by [`check_material`](crate::testing::check_material)): stress is the derivative of the
@@ -29,6 +38,11 @@ pub trait Material: Send + Sync {
     /// Whether the moduli are the same in all directions; where they are not, a block that is turned is another block.
     fn is_isotropic(&self) -> bool {
         true
+    }
+
+    /// Its damping.
+    fn damping(&self) -> Damping {
+        Damping::default()
     }
 
     /// Fastest wave, c = √(max Dᵢᵢ / ρ) over the normal components [m/s].

@@ -179,6 +179,14 @@ impl Check<'_> {
                     help,
                 );
             }
+            for (name, value) in
+                [("mass_per_s", material.damping.mass_per_s), ("stiffness_s", material.damping.stiffness_s)]
+            {
+                if !(value >= 0.0 && value.is_finite()) {
+                    let message = format!("{value}: must not be negative");
+                    self.error(path(&format!("damping.{name}")), message, "0 is no damping");
+                }
+            }
             if let Some(bedding) = &material.bedding {
                 self.positive(path("bedding.young_across_pa"), bedding.young_across_pa, "Pa");
                 self.positive(path("bedding.shear_across_pa"), bedding.shear_across_pa, "Pa");

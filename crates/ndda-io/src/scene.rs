@@ -116,6 +116,19 @@ pub struct Material {
     /// Beds, across which it is another rock than `young_pa` and `poisson` say. Default: none.
     #[serde(default)]
     pub bedding: Option<Bedding>,
+    /// Rayleigh damping. Default: none.
+    #[serde(default)]
+    pub damping: Damping,
+}
+
+/// Rayleigh damping: a mode of frequency ω [rad/s] is damped by a/2ω + b ω/2 of critical.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Damping {
+    /// a [1/s], on mass: drags on every motion, that of a block as a whole, too. Default: 0.
+    pub mass_per_s: f64,
+    /// b [s], on stiffness: resists deformation. Default: 0.
+    pub stiffness_s: f64,
 }
 
 /// What a bedded rock is across its beds (transverse isotropy).

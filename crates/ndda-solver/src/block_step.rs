@@ -8,7 +8,7 @@ use ndda_mesh::{Mat3, Vec3};
 use crate::for_each_block::NodeSlices;
 use crate::linear_solver::{Scratch, SolveError};
 use crate::shape::Shape;
-use crate::time_integrator::{StepWeights, TimeIntegrator};
+use crate::time_integrator::{StepDamping, StepWeights, TimeIntegrator};
 
 /// Why a block could not take a step.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -78,6 +78,8 @@ pub struct BlockReport {
     pub motion_work_j: f64,
     /// Work of loads that change over time [J].
     pub load_work_j: f64,
+    /// Work of damping [J].
+    pub damping_work_j: f64,
     /// Work of friction [J].
     pub friction_work_j: f64,
     /// Fastest node [m/s].
@@ -177,7 +179,27 @@ impl Body {
         if shape.is_free() {
             self.balance_momentum(shape, context, &nodes);
         }
+        if !shape.damping.is_none() {
+            self.report_damping(shape, context, &rotation);
+        }
         self.advance(shape, context, &mut nodes)
+    }
+
+    /// Work −u·C u/Δt of damping, and the force and torque on the block as a whole, by which its mass is dragged.
+    fn report_damping(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3) {
+        let StepDamping { stiffness: b, mass_per_s2: a } = shape.damping;
+        let turned = |u: &Vec3| rotation.tr_mul(u);
+        for (i, u) in self.correction.iter().enumerate() {
+            let u = turned(u);
+            for (j, stiffness, mass) in shape.operator.row(i) {
+                let other = turned(&self.correction[j]);
+                self.report.damping_work_j -= u.dot(&(b * (stiffness * other) + a * mass * other));
+            }
+        }
+        let (operator, position) = (&shape.operator, context.contact_position);
+        self.report.reaction -= a * operator.momentum(&self.correction);
+        self.report.outside_torque -=
+            a * operator.angular_momentum(&Vec3::zeros(), position, &self.correction);
     }
 
     /// û and x + û.
@@ -205,6 +227,20 @@ impl Body {
         }
         for load in &mut self.load {
             *load = rotation.tr_mul(load);
+        }
+        if !shape.damping.is_none() {
+            self.drag(shape, rotation);
+        }
+    }
+
+    /// load ← load − C Rᵀ û/Δt; the rest of −C u/Δt is in K̃.
+    fn drag(&mut self, shape: &Shape, rotation: &Mat3) {
+        let StepDamping { stiffness: b, mass_per_s2: a } = shape.damping;
+        for (i, load) in self.load.iter_mut().enumerate() {
+            for (j, stiffness, mass) in shape.operator.row(i) {
+                let along = rotation.tr_mul(&self.predicted[j]);
+                *load -= b * (stiffness * along) + a * mass * along;
+            }
         }
     }
 
@@ -234,11 +270,12 @@ impl Body {
 
     /// Moves the terms of prescribed motion to the right-hand side; nothing to do for supports at rest.
     fn prescribe(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, position: &[Vec3]) {
-        let StepWeights { stiffness: theta, mass_per_s2: c, .. } = context.weights;
+        let on_stiffness = context.weights.stiffness + shape.damping.stiffness;
+        let on_mass = context.weights.mass_per_s2 + shape.damping.mass_per_s2;
         for (k, held) in moved(shape) {
             let goal = self.prescribed_correction(shape, context, rotation, position, k);
             for (i, stiffness, mass) in shape.operator.row(held.node as usize) {
-                self.correction[i] -= theta * stiffness.tr_mul(&goal) + c * mass * goal;
+                self.correction[i] -= on_stiffness * stiffness.tr_mul(&goal) + on_mass * mass * goal;
             }
         }
     }
@@ -308,7 +345,11 @@ impl Body {
         for held in &shape.supports.held {
             let i = held.node as usize;
             let row = shape.operator.row(i);
-            let inertia = row.fold(Vec3::zeros(), |sum, (j, _, mass)| sum + c * mass * self.correction[j]);
+            let (a, b) = (c + shape.damping.mass_per_s2, shape.damping.stiffness);
+            let inertia = row.fold(Vec3::zeros(), |sum, (j, stiffness, mass)| {
+                let drag = if b > 0.0 { b * (stiffness * self.correction[j]) } else { Vec3::zeros() };
+                sum + a * mass * self.correction[j] + drag
+            });
             let unbalanced = inertia + theta * self.elastic[i] - self.load[i];
             let reaction = rotation * onto(&held.held, &unbalanced);
             let increment = self.predicted[i] + rotation * self.correction[i];
@@ -362,12 +403,17 @@ impl Body {
         let (operator, c) = (&shape.operator, context.weights.mass_per_s2);
         let total: Vec3 = context.force.iter().sum();
         let had = operator.momentum(&self.correction) - operator.momentum(&self.predicted);
-        let shift = (total - c * had) / (c * operator.mass_kg);
+        let drag = shape.damping.mass_per_s2;
+        let missing = total - c * had - drag * operator.momentum(&self.correction);
+        let shift = missing / ((c + drag) * operator.mass_kg);
         self.correction.iter_mut().for_each(|u| *u += shift);
 
         let center = operator.center(context.contact_position);
         let arms = context.contact_position.iter().zip(context.force);
-        let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
+        let mut torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
+        if drag > 0.0 {
+            torque -= drag * operator.angular_momentum(&center, context.contact_position, &self.correction);
+        }
         self.rigid.fill(Vec3::zeros());
         let mut inverse_inertia = None;
         // Two passes: the first changes the arms of the second by its own small size.

@@ -27,6 +27,8 @@ pub struct Sample {
     pub motion_work_j: f64,
     /// Work of loads that change over time since the start [J].
     pub load_work_j: f64,
+    /// Work of damping since the start, never positive [J].
+    pub damping_work_j: f64,
     /// Energy that appeared (+) or vanished (−) without a cause since the start [J].
     pub balance_j: f64,
     /// Linear momentum [kg m/s].
@@ -87,6 +89,7 @@ pub struct Ledger {
     friction_work_j: f64,
     motion_work_j: f64,
     load_work_j: f64,
+    damping_work_j: f64,
     peak_energy_j: f64,
     peak_momentum: f64,
     peak_angular: f64,
@@ -123,6 +126,7 @@ impl Ledger {
             friction_work_j: 0.0,
             motion_work_j: 0.0,
             load_work_j: 0.0,
+            damping_work_j: 0.0,
             peak_energy_j: 0.0,
             peak_momentum: 0.0,
             peak_angular: 0.0,
@@ -155,6 +159,11 @@ impl Ledger {
         self.load_work_j += load_j;
     }
 
+    /// Books the work of damping in a step [J].
+    pub fn add_damping(&mut self, damping_j: f64) {
+        self.damping_work_j += damping_j;
+    }
+
     /// Keeps the extremes of a step.
     pub fn watch(&mut self, contact: &ContactReport, h: f64, travel_ratio: f64) {
         let worst = &mut self.worst;
@@ -172,7 +181,9 @@ impl Ledger {
         sample.friction_work_j = self.friction_work_j;
         sample.motion_work_j = self.motion_work_j;
         sample.load_work_j = self.load_work_j;
-        let work_j = sample.friction_work_j + sample.motion_work_j + sample.load_work_j;
+        sample.damping_work_j = self.damping_work_j;
+        let work_j =
+            sample.friction_work_j + sample.motion_work_j + sample.load_work_j + sample.damping_work_j;
         sample.balance_j = sample.total_j() - start.total_j() - work_j;
         let stored = sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j;
         self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());

@@ -32,4 +32,4 @@ pub use simulation::{RestoreError, Setup, Simulation, Snapshot, StageTimes, Step
 pub use sink::{RunError, Sink, SinkError, View, resume, run};
 pub use sparse_cholesky::SparseCholesky;
 pub use state::State;
-pub use time_integrator::{StepWeights, TimeIntegrator};
+pub use time_integrator::{StepDamping, StepWeights, TimeIntegrator};

@@ -7,7 +7,7 @@ use ndda_fem::{BlockOperator, BlockSupports, Frame, Material, NodeSupport, Suppo
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::linear_solver::{Factor, FactorError, LinearSolver, SolveError};
-use crate::time_integrator::StepWeights;
+use crate::time_integrator::{StepDamping, StepWeights};
 use crate::unknowns::Unknowns;
 
 /// Shapes that agree to this fraction of their size share one factor; a false strain of this size is the price.
@@ -95,6 +95,8 @@ pub struct Shape {
     pub factor: Option<Box<dyn Factor>>,
     /// Material of its elements.
     pub material: Arc<dyn Material>,
+    /// Its damping.
+    pub damping: StepDamping,
     /// Smallest height of its elements at rest [m].
     pub smallest_height_m: f64,
 }
@@ -108,9 +110,10 @@ impl Shape {
         blocks: &BlockSet,
         block: BlockId,
         setup: &BodySetup,
-        weights: &StepWeights,
+        (dt_s, weights): (f64, &StepWeights),
         solver: &dyn LinearSolver,
     ) -> Result<Self, SetupError> {
+        let damping = StepDamping::new(&setup.material.damping(), dt_s);
         let name = || blocks.names[block.index()].clone();
         let position = &blocks.rest_position[blocks.nodes_of(block)];
         let tets: Vec<[u32; 4]> = blocks.local_tets(block).collect();
@@ -121,7 +124,7 @@ impl Shape {
         let factor = if unknowns.is_empty() {
             None
         } else {
-            let matrix = unknowns.matrix(&operator, &supports, weights);
+            let matrix = unknowns.matrix(&operator, &supports, weights, &damping);
             let factor = solver.factor(&matrix);
             Some(factor.map_err(|source| SetupError::Factor { block: name(), source })?)
         };
@@ -131,7 +134,7 @@ impl Shape {
             .flat_map(|tet| ndda_mesh::geometry::tet_heights(&tet.map(|n| operator.rest[n as usize])));
         let smallest_height_m = heights.fold(f64::INFINITY, f64::min);
         let material = setup.material.clone();
-        Ok(Self { operator, supports, unknowns, factor, material, smallest_height_m })
+        Ok(Self { operator, supports, unknowns, factor, material, damping, smallest_height_m })
     }
 
     /// Whether nothing holds the block, so that its momentum changes by outside forces only.

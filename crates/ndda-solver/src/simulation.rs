@@ -18,7 +18,7 @@ use crate::linear_solver::LinearSolver;
 use crate::loads::{Loads, VaryingLoad};
 use crate::shape::{BodySetup, SetupError, Shape};
 use crate::state::State;
-use crate::time_integrator::{StepWeights, TimeIntegrator};
+use crate::time_integrator::{StepDamping, StepWeights, TimeIntegrator};
 
 /// Nodes per half below which a second thread costs more than it brings.
 const GRAIN_NODES: usize = 400;
@@ -176,7 +176,7 @@ impl Simulation {
             let known = shapes.iter().position(|shape| shape.fits(&blocks, block, body));
             shape_of.push(known.unwrap_or(shapes.len()));
             if known.is_none() {
-                shapes.push(Shape::new(&blocks, block, body, &weights, solver.as_ref())?);
+                shapes.push(Shape::new(&blocks, block, body, (step_s, &weights), solver.as_ref())?);
             }
         }
         let nodes = blocks.rest_position.len();
@@ -295,7 +295,8 @@ impl Simulation {
             if let Some(initial) = &body.initial_force {
                 load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
             }
-            let matrix = shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only);
+            let matrix =
+                shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, &StepDamping::default());
             let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor {
                 block: self.blocks.names[block.index()].clone(),
                 source,
@@ -443,7 +444,7 @@ impl Simulation {
         let (mut force, mut torque) = (self.loads.total().iter().sum::<Vec3>(), Vec3::zeros());
         self.ledger.watch_load(force.norm());
         let (mut rate2, mut travel_ratio) = (0.0f64, 0.0f64);
-        let (mut friction_j, mut motion_j, mut load_j) = (0.0, 0.0, 0.0);
+        let (mut friction_j, mut motion_j, mut load_j, mut damping_j) = (0.0, 0.0, 0.0, 0.0);
         for body in &self.bodies {
             let report = &body.report;
             force += report.reaction;
@@ -451,6 +452,7 @@ impl Simulation {
             friction_j += report.friction_work_j;
             motion_j += report.motion_work_j;
             load_j += report.load_work_j;
+            damping_j += report.damping_work_j;
             rate2 = rate2.max(report.contact_rate2);
             let height_m = self.shapes[body.shape].smallest_height_m;
             travel_ratio = travel_ratio.max(report.speed_m_s * self.step_s / height_m);
@@ -458,6 +460,7 @@ impl Simulation {
         let h = self.step_s * rate2.sqrt();
         self.ledger.add_impulse(self.step_s, self.weights.new_force, force, torque);
         self.ledger.add_work(friction_j, motion_j, load_j);
+        self.ledger.add_damping(damping_j);
         self.ledger.watch(&contact, h, travel_ratio);
         self.state.step += 1;
         StepReport { contact, h, travel_ratio }

@@ -1,5 +1,6 @@
 //! What a time integrator must say.
 
+use ndda_fem::Damping;
 use ndda_mesh::Vec3;
 
 /// The numbers by which one step is weighted.
@@ -21,6 +22,27 @@ pub struct StepWeights {
     pub new_force: f64,
     /// Whether the acceleration at the start of a step matters, so that a run must begin with M a = f − K d.
     pub needs_acceleration: bool,
+}
+
+/// Rayleigh damping in a step: the force −C u/Δt, C/Δt = stiffness · K + mass_per_s2 · M.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct StepDamping {
+    /// b/Δt.
+    pub stiffness: f64,
+    /// a/Δt [1/s²].
+    pub mass_per_s2: f64,
+}
+
+impl StepDamping {
+    /// Of a material in a step Δt [s].
+    pub fn new(damping: &Damping, dt_s: f64) -> Self {
+        Self { stiffness: damping.stiffness_s / dt_s, mass_per_s2: damping.mass_per_s / dt_s }
+    }
+
+    /// Whether there is none.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// A one-step integrator for M a + K d = f, solved per block as

@@ -4,7 +4,7 @@ use ndda_fem::{BlockOperator, BlockSupports};
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::linear_solver::SymmetricMatrix;
-use crate::time_integrator::StepWeights;
+use crate::time_integrator::{StepDamping, StepWeights};
 
 /// Numbering of the free components of a block; a held direction has no unknown.
 #[derive(Clone, Debug)]
@@ -74,13 +74,16 @@ impl Unknowns {
         }
     }
 
-    /// K̃ = θ (K + S) + c M over the unknowns (eq 12), S being the springs.
+    /// K̃ = θ (K + S) + c M + C/Δt over the unknowns (eq 12), S being the springs and C the damping.
     pub fn matrix(
         &self,
         operator: &BlockOperator,
         supports: &BlockSupports,
         weights: &StepWeights,
+        damping: &StepDamping,
     ) -> SymmetricMatrix {
+        let (on_stiffness, on_mass) =
+            (weights.stiffness + damping.stiffness, weights.mass_per_s2 + damping.mass_per_s2);
         let mut springs = vec![Mat3::zeros(); operator.nodes()];
         for spring in &supports.springs {
             let projector = spring.along.map_or(Mat3::identity(), |n| n * n.transpose());
@@ -91,8 +94,7 @@ impl Unknowns {
         SymmetricMatrix::from_lower(self.len(), |j, out| {
             let node = node_of[j] as usize;
             for (other, stiffness, mass) in operator.row(node) {
-                let mut block =
-                    weights.stiffness * stiffness + Mat3::from_diagonal_element(weights.mass_per_s2 * mass);
+                let mut block = on_stiffness * stiffness + Mat3::from_diagonal_element(on_mass * mass);
                 if other == node {
                     block += weights.stiffness * springs[node];
                 }

@@ -1,0 +1,86 @@
+//! Rayleigh damping against closed forms, and its place in the ledger.
+
+use ndda_mesh::Vec3;
+
+use crate::{POISSON, YOUNG_PA, assert_uniform_strain, rollers, simulation};
+
+/// A unit cube in free space; `more` goes into the scene.
+fn cube(step_s: f64, damping: &str, more: &str) -> ndda_solver::Simulation {
+    simulation(&format!(
+        "(title: \"cube\", time: (step_s: {step_s}, end_s: 10),
+          materials: [(name: \"rock\", young_pa: 1e9, poisson: 0, density_kg_m3: 2500, damping: ({damping}))],
+          blocks: [(name: \"cube\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), spin_rad_s: (0, 0, 1))],
+          {more})"
+    ))
+}
+
+#[test]
+fn mass_damping_lets_a_block_fall_no_faster_than_g_over_a_and_stops_its_spin() {
+    let (g, a) = (9.8, 4.0);
+    let mut simulation = cube(1e-3, "mass_per_s: 4", "gravity_m_s2: (0, 0, -9.8)");
+    let start = simulation.sample().unwrap();
+    for _ in 0..500 {
+        simulation.step().unwrap();
+    }
+    // v = g/a (1 − e^{−at}), L = L₀ e^{−at}; the step's mean velocity makes it second order.
+    let (sample, decay) = (simulation.sample().unwrap(), (-a * simulation.time_s()).exp());
+    let speed = -sample.momentum.z / 2500.0;
+    assert!((speed / (g / a * (1.0 - decay)) - 1.0).abs() < 1e-5, "{speed}");
+    let spin = sample.angular_momentum.z / start.angular_momentum.z;
+    assert!((spin / decay - 1.0).abs() < 1e-5, "{spin} for {decay}");
+    assert!(sample.damping_work_j < 0.0);
+    // Momentum is what weight and drag leave of it, to rounding; energy is accounted for.
+    let worst = simulation.invariants();
+    assert!(worst.linear_momentum < 1e-12, "{worst:?}");
+    assert!(worst.energy_gain < 1e-5 && worst.energy_loss < 1e-5, "{worst:?}");
+    for _ in 0..4500 {
+        simulation.step().unwrap();
+    }
+    let speed = -simulation.sample().unwrap().momentum.z / 2500.0;
+    assert!((speed / (g / a) - 1.0).abs() < 1e-8, "{speed}");
+}
+
+#[test]
+fn a_bar_of_much_stiffness_damping_creeps_to_its_strain_as_an_exponential() {
+    // K d + b K ḋ = F with next to no inertia: d = F/K (1 − e^{−t/b}), uniform.
+    let (b, step_s, strain) = (0.05, 1e-3, 1e5 / YOUNG_PA);
+    let mut simulation = simulation(&format!(
+        "(title: \"bar\", time: (step_s: {step_s}, end_s: 1),
+          materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: {POISSON}, density_kg_m3: 2500, damping: (stiffness_s: {b}))],
+          blocks: [(name: \"bar\", material: \"rock\", shape: Box(size_m: (2, 1, 0.5), cells: (4, 2, 1)))],
+          supports: [{}],
+          tractions: [(block: \"bar\", on: Set(\"x_max\"), traction_pa: (1e5, 0, 0))])",
+        rollers("")
+    ));
+    simulation.sample().unwrap();
+    for _ in 0..75 {
+        simulation.step().unwrap();
+    }
+    let reached = strain * (1.0 - (-simulation.time_s() / b).exp());
+    let sideways = -POISSON * reached;
+    assert_uniform_strain(&simulation, Vec3::new(reached, sideways, sideways), 1e-3);
+    // The load has done twice the work that is stored at the end; here it is known at any time, too.
+    let sample = simulation.sample().unwrap();
+    let lost = sample.load_j + sample.strain_j;
+    assert!((sample.damping_work_j / lost - 1.0).abs() < 1e-3, "{sample:?}");
+    assert!(simulation.invariants().energy_gain < 1e-3, "{:?}", simulation.invariants());
+}
+
+#[test]
+fn stiffness_damping_leaves_rigid_motion_alone() {
+    let mut simulation = cube(1e-3, "stiffness_s: 1e-3", "");
+    let start = simulation.sample().unwrap();
+    for _ in 0..1000 {
+        simulation.step().unwrap();
+    }
+    let sample = simulation.sample().unwrap();
+    assert!(
+        (sample.kinetic_j / start.kinetic_j - 1.0).abs() < 1e-6,
+        "{} of {}",
+        sample.kinetic_j,
+        start.kinetic_j
+    );
+    assert!(
+        (sample.angular_momentum - start.angular_momentum).norm() < 1e-12 * start.angular_momentum.norm()
+    );
+}
