@@ -8,6 +8,7 @@ mod loads_over_time;
 mod one_block_alone;
 mod prescribed_motion;
 mod release_of_initial_stress;
+mod settling;
 mod sliding_over_element_borders;
 mod springs_and_elimination;
 mod sticking_plate;

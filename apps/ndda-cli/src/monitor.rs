@@ -49,8 +49,8 @@ impl Monitor {
 
     /// Displacement since the start [m].
     pub fn displacement(&self, simulation: &Simulation) -> Vec3 {
-        let (position, rest) = (&simulation.state().position, &simulation.blocks().rest_position);
-        self.mean(|n| position[n] - rest[n])
+        let (position, start) = (&simulation.state().position, simulation.start_position());
+        self.mean(|n| position[n] - start[n])
     }
 
     /// Velocity [m/s].

@@ -255,7 +255,7 @@ impl Sink for FieldWriter {
         let started = Instant::now();
         view.simulation.recover_stress(&mut self.stress_pa)?;
         let (state, blocks) = (view.simulation.state(), view.simulation.blocks());
-        let moved = state.position.iter().zip(&blocks.rest_position);
+        let moved = state.position.iter().zip(view.simulation.start_position());
         self.displacement.iter_mut().zip(moved).for_each(|(d, (x, rest))| *d = x - rest);
         let frame = Frame {
             blocks,

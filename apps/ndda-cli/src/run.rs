@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use ndda_io::{OutputFolder, WriteError, checkpoint, summary};
-use ndda_solver::{RunError, StepError};
+use ndda_solver::{RunError, Settle, StepError};
 
 use crate::args::RunArgs;
 use crate::check::{Ready, prepare};
@@ -108,6 +108,17 @@ pub fn execute(job: Job, options: &Options) -> u8 {
 fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
     let Job { ready: Ready { loaded, mut simulation, monitors }, comparison, identity, folder, saved } = job;
     let scene = &loaded.scene;
+    if let (Some(settle), None) = (&scene.settle, &saved) {
+        let settle = Settle { tolerance: settle.tolerance, most_steps: settle.most_steps };
+        match simulation.settle(&settle) {
+            Ok(settled) if !options.quiet => complain(&format!("settled in {} steps", settled.steps)),
+            Ok(_) => {}
+            Err(error) => {
+                complain(&format!("error: stopped {error}"));
+                return Ok(exit::STOPPED);
+            }
+        }
+    }
     let (steps, name) = (wiring::steps(&scene.time), identity.name.clone());
     let after_s = scene.reference.as_ref().map_or(0.0, |r| reference::kind(r).1);
     let (rows, frames) = (u64::from(scene.output.history_rows), u64::from(scene.output.frames));

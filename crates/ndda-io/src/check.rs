@@ -338,6 +338,16 @@ impl Check<'_> {
             let help = "leave out the ramp or the reference";
             self.error("gravity_ramp_s", "the closed form of `reference` has gravity act at once", help);
         }
+        if let Some(settle) = scene.settle {
+            if !(0.0 < settle.tolerance && settle.tolerance < 1.0) {
+                let message = format!("{}: must be between 0 and 1", settle.tolerance);
+                self.error("settle.tolerance", message, "1e-4 leaves a ten-thousandth of the largest speed");
+            }
+            if scene.gravity_ramp_s > 0.0 {
+                let help = "leave out one of the two";
+                self.error("gravity_ramp_s", "a scene settles under its full weight", help);
+            }
+        }
         for (i, force) in scene.forces.iter().enumerate() {
             self.known(format!("forces[{i}].block"), "block", &force.block, &blocks);
             self.numbers(&format!("forces[{i}].at_m"), &force.at_m);

@@ -16,6 +16,9 @@ pub struct Scene {
     /// Time over which gravity grows from nothing [s]; 0 applies it suddenly. Default: 0.
     #[serde(default)]
     pub gravity_ramp_s: f64,
+    /// Brings the scene to rest before time begins. Default: it begins as it is written.
+    #[serde(default)]
+    pub settle: Option<Settle>,
     /// Materials, referred to by name.
     pub materials: Vec<Material>,
     /// Blocks, in the order of the output.
@@ -57,6 +60,23 @@ pub struct Time {
     /// How a block's equations are solved. Default: `Cholesky`.
     #[serde(default)]
     pub solver: Solver,
+}
+
+/// A phase before time begins: loads, initial stress and contact are brought to equilibrium, then displacements are set
+/// to zero; initial velocities come after it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct Settle {
+    /// Speed left over the largest speed on the way [-]. Default: 1e-4.
+    pub tolerance: f64,
+    /// Steps after which it is given up. Default: 1000000.
+    pub most_steps: u64,
+}
+
+impl Default for Settle {
+    fn default() -> Self {
+        Self { tolerance: 1e-4, most_steps: 1_000_000 }
+    }
 }
 
 /// How a block's equations are solved.

@@ -124,6 +124,17 @@ pub enum StepError {
         /// The cause.
         source: BlockError,
     },
+    /// A scene that was to settle first does not.
+    #[error(
+        "the scene has not settled in {steps} steps (speed {speed_ratio:e} of the largest): raise settle.most_steps or \
+         settle.tolerance, or see whether anything holds it"
+    )]
+    NotSettled {
+        /// Steps done.
+        steps: u64,
+        /// Speed left over the largest speed.
+        speed_ratio: f64,
+    },
     /// An element is inside out (invariant I7).
     #[error(
         "at t = {time_s} s: tet {} of block `{block}` is inverted (det F = {volume_ratio:e}): reduce step_s or the load",
@@ -146,7 +157,7 @@ pub struct Simulation {
     blocks: BlockSet,
     shapes: Vec<Shape>,
     bodies: Vec<Body>,
-    state: State,
+    pub(crate) state: State,
     step_s: f64,
     integrator: Box<dyn TimeIntegrator>,
     weights: StepWeights,
@@ -187,6 +198,7 @@ impl Simulation {
         let mut simulation = Self {
             state: State {
                 step: 0,
+                start: Vec::new(),
                 position: blocks.rest_position.clone(),
                 velocity: vec![Vec3::zeros(); nodes],
                 acceleration: vec![Vec3::zeros(); nodes],
@@ -478,7 +490,7 @@ impl Simulation {
         for block in self.blocks.ids() {
             self.add_block_to(&mut sample, block)?;
         }
-        let loads = self.loads.constant().iter().zip(&self.state.position).zip(&self.blocks.rest_position);
+        let loads = self.loads.constant().iter().zip(&self.state.position).zip(self.start_position());
         sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
         if let Some(model) = &mut self.contact {
             let (position, velocity) = (&self.state.position, &self.state.velocity);
@@ -543,6 +555,23 @@ impl Simulation {
             cauchy_stress(&shape.operator, material, initial, &rotation, displacement, out);
         }
         Ok(())
+    }
+
+    /// Where each node was when time began [m].
+    pub fn start_position(&self) -> &[Vec3] {
+        if self.state.start.is_empty() { &self.blocks.rest_position } else { &self.state.start }
+    }
+
+    /// Time begins where the blocks are, with these velocities.
+    pub(crate) fn begin_at_rest(&mut self, velocity: Vec<Vec3>) {
+        self.state.start = self.state.position.clone();
+        self.state.velocity = velocity;
+        self.state.acceleration.fill(Vec3::zeros());
+        self.state.step = 0;
+        self.loads.place(0.0);
+        let force = self.loads.total().iter().sum();
+        let arms = self.state.position.iter().zip(self.loads.total());
+        self.ledger = Ledger::new((force, arms.map(|(x, f)| x.cross(f)).sum()));
     }
 
     /// A copy of all that changes.

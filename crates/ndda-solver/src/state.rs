@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 pub struct State {
     /// Steps done; the time is `step · Δt`, never summed.
     pub step: u64,
+    /// Where each node was when time began [m]; empty while that is its place at rest.
+    pub start: Vec<Vec3>,
     /// Position x per node [m], relative to the origin of the block set.
     pub position: Vec<Vec3>,
     /// Velocity v per node [m/s].

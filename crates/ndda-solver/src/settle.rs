@@ -1,0 +1,96 @@
+//! Bringing a scene to rest before it begins.
+//!
+//! Kinetic damping (Cundall 1976; Barnes 1999): a block moves freely until its kinetic energy begins to fall, which is
+//! where its forces balance on the way; there it is stopped, and starts again from nearer to equilibrium.
+
+use ndda_mesh::{BlockId, Vec3};
+use serde::{Deserialize, Serialize};
+
+use crate::simulation::{Simulation, StepError};
+
+/// How far a scene is to settle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settle {
+    /// Largest speed left over the largest speed on the way, by the kinetic energies of blocks.
+    pub tolerance: f64,
+    /// Steps after which it is given up.
+    pub most_steps: u64,
+}
+
+/// How a scene settled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Settled {
+    /// Steps that it took.
+    pub steps: u64,
+    /// Speed left over the largest speed on the way.
+    pub speed_ratio: f64,
+}
+
+/// The swings of one block.
+#[derive(Clone, Copy, Debug, Default)]
+struct Swing {
+    energy_j: f64,
+    /// Largest energy at which it was stopped, older ones counting less; none before the first time.
+    peak_j: Option<f64>,
+}
+
+/// What the peak before counts: a small one may be chance, many in a row are not.
+const REMEMBERED: f64 = 0.7;
+
+impl Swing {
+    /// Takes the energy after a step; true when the block is past its peak.
+    fn is_past_peak(&mut self, energy_j: f64) -> bool {
+        let past = energy_j < self.energy_j;
+        if past {
+            self.peak_j = Some(self.energy_j.max(REMEMBERED * self.peak_j.unwrap_or(0.0)));
+        }
+        self.energy_j = if past { 0.0 } else { energy_j };
+        past
+    }
+
+    /// Energy that it may still have: what it has, and what its last swings had.
+    fn left_j(&self) -> f64 {
+        match self.peak_j {
+            Some(peak_j) => peak_j.max(self.energy_j),
+            None if self.energy_j > 0.0 => f64::INFINITY,
+            None => 0.0,
+        }
+    }
+}
+
+impl Simulation {
+    /// Runs with kinetic damping until all blocks are at rest, then sets time and displacements to zero; initial
+    /// velocities come after it. What contact remembers stays.
+    ///
+    /// # Errors
+    /// [`StepError::NotSettled`] when the steps do not suffice, or as [`step`](Self::step).
+    pub fn settle(&mut self, settle: &Settle) -> Result<Settled, StepError> {
+        let start = std::mem::take(&mut self.state.velocity);
+        self.state.velocity = vec![Vec3::zeros(); start.len()];
+        let mut swings = vec![Swing::default(); self.blocks().len()];
+        let (mut highest_j, mut settled) =
+            (0.0f64, Settled { speed_ratio: f64::INFINITY, ..Settled::default() });
+        while settled.speed_ratio > settle.tolerance {
+            if settled.steps == settle.most_steps {
+                return Err(StepError::NotSettled { steps: settled.steps, speed_ratio: settled.speed_ratio });
+            }
+            self.step()?;
+            settled.steps += 1;
+            let mut left_j = 0.0f64;
+            for (index, swing) in swings.iter_mut().enumerate() {
+                let block = BlockId(index as u32);
+                let nodes = self.blocks().nodes_of(block);
+                let energy_j =
+                    self.shape(block).operator.kinetic_energy_j(&self.state.velocity[nodes.clone()]);
+                highest_j = highest_j.max(energy_j);
+                if swing.is_past_peak(energy_j) {
+                    self.state.velocity[nodes].fill(Vec3::zeros());
+                }
+                left_j = left_j.max(swing.left_j());
+            }
+            settled.speed_ratio = if highest_j > 0.0 { (left_j / highest_j).sqrt() } else { 0.0 };
+        }
+        self.begin_at_rest(start);
+        Ok(settled)
+    }
+}
