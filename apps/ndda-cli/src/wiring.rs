@@ -20,8 +20,8 @@ use ndda_mesh::generate::{BoxPattern, box_block, prism};
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
 use ndda_solver::{
-    BodySetup, ConjugateGradients, ForceSetup, LinearSolver, Midpoint, Newmark, Setup, SetupError,
-    Simulation, SparseCholesky, TimeIntegrator, TractionSetup,
+    BodySetup, ConjugateGradients, Direct, ForceSetup, LinearSolver, Midpoint, Newmark, Setup, SetupError,
+    Simulation, TimeIntegrator, TractionSetup,
 };
 
 use crate::monitor::Monitor;
@@ -319,7 +319,7 @@ fn nearest_node(blocks: &BlockSet, force: &scene::Force) -> Result<(BlockId, u32
 
 fn linear_solver(solver: scene::Solver) -> Box<dyn LinearSolver> {
     match solver {
-        scene::Solver::Cholesky => Box::new(SparseCholesky),
+        scene::Solver::Cholesky => Box::new(Direct),
         scene::Solver::ConjugateGradients { tolerance } => Box::new(ConjugateGradients { tolerance }),
     }
 }

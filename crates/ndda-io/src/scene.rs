@@ -83,7 +83,7 @@ impl Default for Settle {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Solver {
-    /// Factored once, LLᵀ: quickest while the factor fits in memory.
+    /// Factored once (up to 200 unknowns inverted): quickest while the factor fits in memory.
     #[default]
     Cholesky,
     /// Iterated anew in every step: little memory, for blocks too large to factor.

@@ -7,7 +7,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use ndda_fem::LinearElastic;
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockSet, Mat3, Vec3};
-use ndda_solver::{BodySetup, Midpoint, Setup, Simulation, SparseCholesky};
+use ndda_solver::{BodySetup, Direct, Midpoint, Setup, Simulation};
 
 /// `count` equal cubes of n³ cells, spinning freely.
 fn cubes(count: usize, n: u32) -> Simulation {
@@ -33,7 +33,7 @@ fn cubes(count: usize, n: u32) -> Simulation {
         step_s: 1e-5,
         integrator: Box::new(Midpoint { theta: 0.5 }),
         contact: None,
-        solver: Box::new(SparseCholesky),
+        solver: Box::new(Direct),
     })
     .expect("a simulation")
 }

@@ -6,6 +6,8 @@
 
 pub mod block_step;
 pub mod conjugate_gradients;
+pub mod dense_inverse;
+pub mod direct;
 pub mod for_each_block;
 pub mod ledger;
 pub mod linear_solver;
@@ -24,6 +26,8 @@ pub mod unknowns;
 
 pub use block_step::BlockError;
 pub use conjugate_gradients::ConjugateGradients;
+pub use dense_inverse::DenseInverse;
+pub use direct::Direct;
 pub use ledger::{Invariants, Sample};
 pub use linear_solver::{Factor, FactorError, LinearSolver, SolveError, SymmetricMatrix};
 pub use midpoint::Midpoint;

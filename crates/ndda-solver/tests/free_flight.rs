@@ -6,7 +6,7 @@ use ndda_fem::LinearElastic;
 use ndda_fem::stress::volume_m3;
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
-use ndda_solver::{BodySetup, Midpoint, Newmark, Setup, Simulation, SparseCholesky, TimeIntegrator};
+use ndda_solver::{BodySetup, Direct, Midpoint, Newmark, Setup, Simulation, TimeIntegrator};
 
 fn cube(integrator: Box<dyn TimeIntegrator>, step_s: f64, gravity: Vec3, spin: Vec3) -> Simulation {
     let mesh = box_block([0.3, 0.2, 0.1], [2, 2, 1], BoxPattern::Six).unwrap();
@@ -28,7 +28,7 @@ fn cube(integrator: Box<dyn TimeIntegrator>, step_s: f64, gravity: Vec3, spin: V
         step_s,
         integrator,
         contact: None,
-        solver: Box::new(SparseCholesky),
+        solver: Box::new(Direct),
     })
     .unwrap()
 }
