@@ -107,7 +107,7 @@ def runner():
     place = TARGET / "tools" / f"gungraun-{version}"
     binary = place / "bin" / "gungraun-runner"
     if not binary.exists():
-        run("cargo", "install", "--locked", "--quiet", "--root", place, "--version", version, "gungraun-runner")
+        run("cargo", "install", "--debug", "--locked", "--quiet", "--root", place, "--version", version, "gungraun-runner")
     if not shutil.which("valgrind"):
         sys.exit("valgrind is not installed")
     return binary
