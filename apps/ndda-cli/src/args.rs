@@ -10,7 +10,7 @@ use clap::{Args, Parser, Subcommand};
     version,
     after_help = "Examples:\n  ndda run scenes/sliding_45.ron\n  ndda run scenes/sliding_45.ron --set time.step_s=1e-3 \
                   --out out/coarse\n  ndda check scenes/sliding_45.ron\n\nExit codes: 0 done · 1 ran, a criterion \
-                  failed · 2 usage · 3 bad input · 4 numerical stop · 5 input/output · 6 resources"
+                  failed · 2 usage · 3 bad input · 4 numerical stop · 5 input/output · 6 resources · 130 interrupted"
 )]
 pub struct Cli {
     /// What to do.

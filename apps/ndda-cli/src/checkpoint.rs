@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use ndda_io::{OutputFolder, WriteError, checkpoint};
@@ -61,6 +63,8 @@ pub struct Outputs<'a> {
     pub earlier_s: f64,
     /// Seconds spent on checkpoints.
     pub spent_s: f64,
+    /// Raised when somebody asks the run to end.
+    pub asked_to_end: Arc<AtomicBool>,
 }
 
 impl Outputs<'_> {
@@ -96,11 +100,12 @@ impl Sink for Outputs<'_> {
             flow = both(flow, fields.step_done(view)?);
         }
         flow = both(flow, self.progress.step_done(view)?);
+        let asked = self.asked_to_end.load(Ordering::Relaxed);
         // Last, so that it knows of all rows and frames.
-        if self.is_due(view.simulation.state().step) {
+        if asked || self.is_due(view.simulation.state().step) {
             self.write(view)?;
         }
-        Ok(flow)
+        Ok(if asked { ControlFlow::Break(()) } else { flow })
     }
 }
 

@@ -12,3 +12,5 @@ pub const STOPPED: u8 = 4;
 pub const INPUT_OUTPUT: u8 = 5;
 /// Threads or memory could not be had.
 pub const RESOURCE: u8 = 6;
+/// Somebody asked the run to end; it can be resumed.
+pub const INTERRUPTED: u8 = 130;

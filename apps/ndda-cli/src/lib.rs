@@ -5,6 +5,7 @@ pub mod check;
 pub mod checkpoint;
 pub mod console;
 pub mod exit;
+pub mod interrupt;
 pub mod monitor;
 pub mod progress;
 pub mod recorder;

@@ -21,6 +21,8 @@ pub struct Outcome<'a> {
     pub name: &'a str,
     /// Why the run stopped early.
     pub stopped_by: Option<String>,
+    /// Whether it ended before its end because somebody asked it to.
+    pub interrupted: bool,
     /// Wall time [s].
     pub wall_s: f64,
     /// Threads.
@@ -42,6 +44,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, outcome: Outcome)
     let failed = outcome.strict && verdicts.0.iter().any(|(_, v)| v.verdict == Judgement::Fail);
     let status = match (&outcome.stopped_by, failed) {
         (Some(_), _) => Status::Stopped,
+        (None, _) if outcome.interrupted => Status::Interrupted,
         (None, true) => Status::Failed,
         (None, false) => Status::Done,
     };

@@ -14,7 +14,7 @@ use crate::progress::Progress;
 use crate::recorder::{FieldWriter, Recorder};
 use crate::reference::{self, Comparison};
 use crate::report::{self, Outcome};
-use crate::{exit, wiring};
+use crate::{exit, interrupt, wiring};
 
 /// Runs a scene and reports; the result is the exit code.
 pub fn run(args: &RunArgs) -> u8 {
@@ -139,6 +139,7 @@ fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
         started: options.started,
         earlier_s,
         spent_s: 0.0,
+        asked_to_end: interrupt::watch(),
     };
     let setup_s = options.started.elapsed().as_secs_f64();
     let ended = if goes_on {
@@ -158,6 +159,7 @@ fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
         scene,
         name: &name,
         stopped_by,
+        interrupted: simulation.state().step < steps,
         wall_s: earlier_s + options.started.elapsed().as_secs_f64(),
         threads: options.threads,
         stages: vec![("output".into(), output_s), ("setup".into(), setup_s)],
@@ -181,7 +183,11 @@ fn conclude(summary: &summary::Summary) -> u8 {
     match summary.status {
         summary::Status::Done => exit::DONE,
         summary::Status::Failed => exit::FAILED,
-        summary::Status::Stopped | summary::Status::Interrupted => {
+        summary::Status::Interrupted => {
+            complain(&format!("interrupted at t = {} s: `ndda resume` goes on from here", summary.end_s));
+            exit::INTERRUPTED
+        }
+        summary::Status::Stopped => {
             if let Some(cause) = &summary.stopped_by {
                 complain(&format!("error: stopped {cause}"));
             }

@@ -104,3 +104,23 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
     println!("{resumed} of {} runs were resumed", 3 * kills.div_ceil(3));
     assert!(resumed > kills / 2, "hardly a run had a checkpoint");
 }
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_leaves_a_summary_and_goes_on() {
+    let place = tempfile::tempdir().expect("a folder");
+    let (scene, out) = (scene("sliding_45_phi35_spring"), place.path().join("out"));
+    let (whole, end_s) = (place.path().join("whole"), "0.2");
+    assert!(run(&scene, end_s, &whole, "1").wait().expect("an end").success());
+    let mut child = run(&scene, end_s, &out, "1");
+    while !out.join("checkpoint.ndda").exists() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &id]).status().expect("kill").success());
+    assert_eq!(child.wait().expect("an end").code(), Some(130));
+    let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
+    assert!(summary.contains("\"interrupted\""), "{summary}");
+    assert!(ndda(&["resume", &out.display().to_string()]).wait().expect("an end").success());
+    assert!(results(&out) == results(&whole), "an interrupted run ends otherwise");
+}
