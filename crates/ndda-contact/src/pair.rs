@@ -70,6 +70,11 @@ impl TetFrame {
         frame
     }
 
+    /// Whether none of its heights is lost to rounding; without one there is no λ.
+    pub fn has_heights(&self) -> bool {
+        self.per_height.iter().all(|h| h.is_finite())
+    }
+
     /// All λ at a point.
     #[inline(always)]
     pub fn lambda_at(&self, x: &Vec3) -> [f64; 4] {
@@ -225,11 +230,12 @@ pub fn is_outside(lambda: &[[f64; 3]; 4]) -> bool {
     lambda.iter().any(|at| at.iter().all(|&l| l <= 0.0))
 }
 
-/// The integrals of one pair; `None` when the triangle is outside. `area_vector` is the triangle's, outward [m²].
+/// The integrals of one pair; `None` when the triangle is outside, or a height of the tetrahedron is lost to rounding
+/// (the model stops at such a tetrahedron before it gets here). `area_vector` is the triangle's, outward [m²].
 pub fn pair_moments(triangle: &[Vec3; 3], area_vector: &Vec3, tet: &TetFrame) -> Option<PairMoments> {
     let lambda = tet.lambda(triangle);
     let area = area_vector.norm();
-    if area == 0.0 || is_outside(&lambda) {
+    if area == 0.0 || !tet.has_heights() || is_outside(&lambda) {
         return None;
     }
     let moments = element_moments(&lambda, &tet.slopes(&(area_vector / area)), area);

@@ -114,7 +114,7 @@ impl PotentialContact {
         self.frames.clear();
         for (&tet, order) in self.candidates.tets.iter().zip(&self.candidates.order) {
             let frame = TetFrame::in_order(&blocks.tet_corners(tet, input.position), order);
-            if frame.volume_m3.is_nan() || frame.volume_m3 <= 0.0 {
+            if frame.volume_m3.is_nan() || frame.volume_m3 <= 0.0 || !frame.has_heights() {
                 let block = blocks.tet_block[tet.index()];
                 return Err(ContactError::CollapsedTet { tet, block, volume_m3: frame.volume_m3 });
             }

@@ -209,3 +209,18 @@ fn each_kind_of_bad_line_has_its_error() {
     let error = calculator::answer(3, b"{\"contactor\":\xff}")["error"].to_string();
     assert!(error.contains("not UTF-8"), "{error}");
 }
+
+#[test]
+fn a_tetrahedron_whose_height_is_lost_to_rounding_has_no_integrals() {
+    // Found among a million: an edge of one ulp, so two faces of zero height beside a volume that is not zero.
+    let t = [
+        [1.5, -4e-160, -0.5000000000000002],
+        [-1e-160, -1.0, -4.0],
+        [1.5, 0.0, -0.5000000000000001],
+        [-4.0, 2.0, 0.5000000000000002],
+    ];
+    let frame = TetFrame::new(&t.map(Vec3::from));
+    assert!(frame.volume_m3 != 0.0 && !frame.has_heights());
+    let triangle = [[2.5, 2.0, 2.5], [2.0, 3.0, -1.5], [2.5, -3.5, -1.5]].map(Vec3::from);
+    assert_eq!(pair_moments(&triangle, &triangle_area_vector(&triangle), &frame), None);
+}
