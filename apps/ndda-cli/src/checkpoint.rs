@@ -31,6 +31,13 @@ pub struct SavedRun {
     pub identity: Identity,
     /// State and books.
     pub snapshot: Snapshot,
+    /// How far the outputs had come.
+    pub earlier: Earlier,
+}
+
+/// What the outputs of a run that goes on have to know.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Earlier {
     /// The history.
     pub recorder: SavedRecorder,
     /// The fields.
@@ -78,9 +85,11 @@ impl Outputs<'_> {
         let saved = SavedRun {
             identity: self.identity.clone(),
             snapshot: view.simulation.snapshot(),
-            recorder: self.recorder.save()?,
-            fields: self.fields.as_ref().map(FieldWriter::save),
-            wall_s: self.earlier_s + self.started.elapsed().as_secs_f64(),
+            earlier: Earlier {
+                recorder: self.recorder.save()?,
+                fields: self.fields.as_ref().map(FieldWriter::save),
+                wall_s: self.earlier_s + self.started.elapsed().as_secs_f64(),
+            },
         };
         checkpoint::write(self.folder, &saved)?;
         self.last = Instant::now();

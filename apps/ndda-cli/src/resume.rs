@@ -60,10 +60,10 @@ fn resume_here(folder: &Path, options: &Options) -> u8 {
     }
     // What is compared with the start must see the start.
     let comparison = ready.comparison();
-    if let Err(error) = ready.simulation.restore(saved.snapshot.clone()) {
+    let SavedRun { identity, snapshot, earlier } = saved;
+    if let Err(error) = ready.simulation.restore(snapshot) {
         complain(&format!("error: the checkpoint does not fit: {error}"));
         return exit::BAD_INPUT;
     }
-    let identity = saved.identity.clone();
-    execute(Job { ready, comparison, identity, folder, saved: Some(saved) }, options)
+    execute(Job { ready, comparison, identity, folder, earlier: Some(earlier) }, options)
 }

@@ -8,7 +8,7 @@ use ndda_solver::{RunError, Settle, StepError};
 
 use crate::args::RunArgs;
 use crate::check::{Ready, prepare};
-use crate::checkpoint::{Identity, Outputs, SavedRun};
+use crate::checkpoint::{Earlier, Identity, Outputs};
 use crate::console::{colour, complain, say};
 use crate::progress::Progress;
 use crate::recorder::{FieldWriter, Recorder};
@@ -61,7 +61,7 @@ pub struct Job {
     /// Where results go.
     pub folder: OutputFolder,
     /// Where it goes on from.
-    pub saved: Option<SavedRun>,
+    pub earlier: Option<Earlier>,
 }
 
 fn run_here(args: &RunArgs, options: &Options) -> u8 {
@@ -87,7 +87,7 @@ fn run_here(args: &RunArgs, options: &Options) -> u8 {
     let file = std::path::absolute(&args.scene).unwrap_or_else(|_| args.scene.clone());
     let identity = Identity { name, text: ready.loaded.text.clone(), file };
     let comparison = ready.comparison();
-    execute(Job { ready, comparison, identity, folder, saved: None }, options)
+    execute(Job { ready, comparison, identity, folder, earlier: None }, options)
 }
 
 fn scene_name(scene: &Path) -> String {
@@ -106,9 +106,10 @@ pub fn execute(job: Job, options: &Options) -> u8 {
 }
 
 fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
-    let Job { ready: Ready { loaded, mut simulation, monitors }, comparison, identity, folder, saved } = job;
+    let Job { ready: Ready { loaded, mut simulation, monitors }, comparison, identity, folder, earlier } =
+        job;
     let scene = &loaded.scene;
-    if let (Some(settle), None) = (&scene.settle, &saved) {
+    if let (Some(settle), None) = (&scene.settle, &earlier) {
         let settle = Settle { tolerance: settle.tolerance, most_steps: settle.most_steps };
         match simulation.settle(&settle) {
             Ok(settled) if !options.quiet => complain(&format!("settled in {} steps", settled.steps)),
@@ -122,9 +123,9 @@ fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
     let (steps, name) = (wiring::steps(&scene.time), identity.name.clone());
     let after_s = scene.reference.as_ref().map_or(0.0, |r| reference::kind(r).1);
     let (rows, frames) = (u64::from(scene.output.history_rows), u64::from(scene.output.frames));
-    let goes_on = saved.is_some();
-    let earlier_s = saved.as_ref().map_or(0.0, |saved| saved.wall_s);
-    let (saved_recorder, saved_fields) = saved.map_or((None, None), |s| (Some(s.recorder), s.fields));
+    let goes_on = earlier.is_some();
+    let earlier_s = earlier.as_ref().map_or(0.0, |earlier| earlier.wall_s);
+    let (saved_recorder, saved_fields) = earlier.map_or((None, None), |e| (Some(e.recorder), e.fields));
     let recorder = Recorder::new(&folder, monitors, comparison, after_s, (steps, rows), saved_recorder)?;
     let fields = || FieldWriter::new(&folder, &simulation, (steps, frames), saved_fields);
     let mut outputs = Outputs {

@@ -70,12 +70,13 @@ impl Chunk {
 
     fn integrate(&mut self, arch: Arch, scene: &Scene, scratch: &mut Scratch) {
         let facets = &scene.candidates.facets[self.facets.clone()];
+        let pairs = facets.iter().map(|facet| facet.pairs.len()).sum::<usize>();
         self.hits.clear();
         // A contact that closes further rarely asks for more than a quarter.
-        self.hits.reserve(facets.iter().map(|facet| facet.pairs.len()).sum::<usize>() / 4);
+        self.hits.reserve(pairs / 4);
         self.ends.clear();
         self.ends.reserve(facets.len());
-        scratch.make_room(facets.iter().map(|facet| facet.pairs.len()).sum());
+        scratch.make_room(pairs);
         for facet in facets {
             self.add_facet(arch, scene, facet, scratch);
             self.ends.push(self.hits.len());

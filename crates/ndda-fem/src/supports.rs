@@ -5,6 +5,7 @@ use ndda_mesh::{Mat3, Vec3};
 
 use crate::block_operator::BlockOperator;
 use crate::frame::Frame;
+use crate::table::interpolated;
 
 /// Two directions closer than this (sine of the angle) are the same; far above round-off, far below any joint.
 const SAME_DIRECTION: f64 = 1e-6;
@@ -30,15 +31,7 @@ pub struct Motion {
 impl Motion {
     /// Displacement at a time [m].
     pub fn displacement(&self, time_s: f64) -> Vec3 {
-        let after = self.rows.partition_point(|row| row.0 <= time_s);
-        if after == 0 {
-            return self.rows.first().map_or(Vec3::zeros(), |row| row.1);
-        }
-        let (t0, d0) = self.rows[after - 1];
-        match self.rows.get(after) {
-            Some(&(t1, d1)) => d0 + (d1 - d0) * ((time_s - t0) / (t1 - t0)),
-            None => d0,
-        }
+        interpolated(&self.rows, time_s).unwrap_or_else(Vec3::zeros)
     }
 }
 

@@ -1,4 +1,6 @@
-//! A number over time.
+//! Values over time, linear between rows and constant outside.
+
+use std::ops::{Add, Mul, Sub};
 
 /// Linear between rows, constant before the first and after the last.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,15 +12,24 @@ pub struct Table {
 impl Table {
     /// The value at a time [s].
     pub fn at(&self, time_s: f64) -> f64 {
-        let after = self.rows.partition_point(|row| row.0 <= time_s);
-        let Some(&(t0, y0)) = after.checked_sub(1).and_then(|before| self.rows.get(before)) else {
-            return self.rows.first().map_or(0.0, |row| row.1);
-        };
-        match self.rows.get(after) {
-            Some(&(t1, y1)) => y0 + (y1 - y0) * ((time_s - t0) / (t1 - t0)),
-            None => y0,
-        }
+        interpolated(&self.rows, time_s).unwrap_or(0.0)
     }
+}
+
+/// The value of a table of (time [s], value) at a time; none without rows.
+pub(crate) fn interpolated<T>(rows: &[(f64, T)], time_s: f64) -> Option<T>
+where
+    T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T>,
+{
+    let after = rows.partition_point(|row| row.0 <= time_s);
+    if after == 0 {
+        return rows.first().map(|row| row.1);
+    }
+    let (t0, y0) = rows[after - 1];
+    Some(match rows.get(after) {
+        Some(&(t1, y1)) => y0 + (y1 - y0) * ((time_s - t0) / (t1 - t0)),
+        None => y0,
+    })
 }
 
 #[cfg(test)]

@@ -152,15 +152,11 @@ impl Ledger {
         self.load_n = load_n;
     }
 
-    /// Books the work of friction, of prescribed motions and of changing loads in a step [J].
-    pub fn add_work(&mut self, friction_j: f64, motion_j: f64, load_j: f64) {
+    /// Books the work of friction, of prescribed motions, of changing loads and of damping in a step [J].
+    pub fn add_work(&mut self, friction_j: f64, motion_j: f64, load_j: f64, damping_j: f64) {
         self.friction_work_j += friction_j;
         self.motion_work_j += motion_j;
         self.load_work_j += load_j;
-    }
-
-    /// Books the work of damping in a step [J].
-    pub fn add_damping(&mut self, damping_j: f64) {
         self.damping_work_j += damping_j;
     }
 
@@ -222,7 +218,7 @@ mod tests {
     fn energy_that_friction_took_is_not_a_loss() {
         let mut ledger = Ledger::new((Vec3::zeros(), Vec3::zeros()));
         ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() });
-        ledger.add_work(-4.0, 0.0, 0.0);
+        ledger.add_work(-4.0, 0.0, 0.0, 0.0);
         let sample = ledger.balance(Sample { kinetic_j: 5.0, ..Sample::default() });
         assert_eq!(sample.balance_j, -1.0);
         assert_eq!(ledger.invariants().energy_loss, 0.1);

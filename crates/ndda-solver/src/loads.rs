@@ -28,17 +28,21 @@ pub struct Loads {
     /// Sum of the varying ones now; empty if there are none, and so is `total`.
     changing: Vec<Vec3>,
     total: Vec<Vec3>,
+    /// Sum over the nodes of all of them [N].
+    force: Vec3,
 }
 
 impl Loads {
     /// Constant forces per node, and those that vary.
     pub fn new(constant: Vec<Vec3>, varying: Vec<VaryingLoad>) -> Self {
+        let force = constant.iter().sum();
         let nodes = if varying.is_empty() { 0 } else { constant.len() };
         let mut loads = Self {
             constant,
             varying,
             changing: vec![Vec3::zeros(); nodes],
             total: vec![Vec3::zeros(); nodes],
+            force,
         };
         loads.place(0.0);
         loads
@@ -56,6 +60,7 @@ impl Loads {
         }
         let sums = self.constant.iter().zip(&self.changing);
         self.total.iter_mut().zip(sums).for_each(|(total, (a, b))| *total = a + b);
+        self.force = self.total.iter().sum();
     }
 
     /// What never changes, per node [N].
@@ -71,5 +76,14 @@ impl Loads {
     /// Both [N].
     pub fn total(&self) -> &[Vec3] {
         if self.varying.is_empty() { &self.constant } else { &self.total }
+    }
+    /// Their sum over all nodes [N].
+    pub fn force(&self) -> Vec3 {
+        self.force
+    }
+
+    /// Force and torque about the origin of all of them at these positions [N, N m].
+    pub fn resultant(&self, position: &[Vec3]) -> (Vec3, Vec3) {
+        (self.force, position.iter().zip(self.total()).map(|(x, f)| x.cross(f)).sum())
     }
 }

@@ -288,10 +288,7 @@ impl Simulation {
 
     /// Total load at the start, and accelerations at the start for integrators that need them: M a = f − ∫Bᵀσ₀.
     fn open_books(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
-        let force = self.loads.total().iter().sum();
-        let arms = self.state.position.iter().zip(self.loads.total());
-        let torque = arms.map(|(x, f)| x.cross(f)).sum();
-        self.ledger = Ledger::new((force, torque));
+        self.ledger = Ledger::new(self.loads.resultant(&self.state.position));
         if !self.weights.needs_acceleration {
             return Ok(());
         }
@@ -453,7 +450,7 @@ impl Simulation {
 
     /// Impulses, work and extremes of the step; t advances.
     fn keep_books(&mut self, contact: ContactReport) -> StepReport {
-        let (mut force, mut torque) = (self.loads.total().iter().sum::<Vec3>(), Vec3::zeros());
+        let (mut force, mut torque) = (self.loads.force(), Vec3::zeros());
         self.ledger.watch_load(force.norm());
         let (mut rate2, mut travel_ratio) = (0.0f64, 0.0f64);
         let (mut friction_j, mut motion_j, mut load_j, mut damping_j) = (0.0, 0.0, 0.0, 0.0);
@@ -471,8 +468,7 @@ impl Simulation {
         }
         let h = self.step_s * rate2.sqrt();
         self.ledger.add_impulse(self.step_s, self.weights.new_force, force, torque);
-        self.ledger.add_work(friction_j, motion_j, load_j);
-        self.ledger.add_damping(damping_j);
+        self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
         self.ledger.watch(&contact, h, travel_ratio);
         self.state.step += 1;
         StepReport { contact, h, travel_ratio }
@@ -569,9 +565,7 @@ impl Simulation {
         self.state.acceleration.fill(Vec3::zeros());
         self.state.step = 0;
         self.loads.place(0.0);
-        let force = self.loads.total().iter().sum();
-        let arms = self.state.position.iter().zip(self.loads.total());
-        self.ledger = Ledger::new((force, arms.map(|(x, f)| x.cross(f)).sum()));
+        self.ledger = Ledger::new(self.loads.resultant(&self.state.position));
     }
 
     /// A copy of all that changes.

@@ -12,7 +12,7 @@ use faer::{Conj, MatMut, Par, Side, Spec};
 
 use crate::linear_solver::{Factor, FactorError, LinearSolver, Scratch, SolveError, SymmetricMatrix};
 
-/// The default [`LinearSolver`].
+/// The [`LinearSolver`] for blocks too large to invert.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SparseCholesky;
 
