@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda_cli::args::RunArgs;
+use ndda_cli::args::{HowArgs, RunArgs};
 use ndda_cli::{exit, run};
 
 /// Scenes with contact, friction and spin, cut short.
@@ -21,9 +21,7 @@ fn history(scene: &str, overrides: &[&str], threads: u16) -> Vec<u8> {
         out: Some(out.path().join("results")),
         force: false,
         overrides: overrides.iter().chain(&["output.frames=0"]).map(ToString::to_string).collect(),
-        threads: Some(threads),
-        strict: false,
-        quiet: true,
+        how: HowArgs { threads: Some(threads), strict: false, quiet: true },
     };
     assert_eq!(run::run(&args), exit::DONE, "{scene}");
     std::fs::read(out.path().join("results/history.csv")).unwrap()

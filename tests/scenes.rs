@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_cli::args::RunArgs;
+use ndda_cli::args::{HowArgs, RunArgs};
 use ndda_cli::{exit, run};
 use serde_json::Value;
 
@@ -39,9 +39,7 @@ fn args(scene: &str, out: &Path) -> RunArgs {
         out: Some(out.join(scene)),
         force: false,
         overrides: vec!["output.frames=2".into()],
-        threads: None,
-        strict: false,
-        quiet: true,
+        how: HowArgs { quiet: true, ..HowArgs::default() },
     }
 }
 

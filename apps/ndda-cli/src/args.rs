@@ -48,6 +48,14 @@ pub struct RunArgs {
     /// `time.step_s=1e-3`, `materials.rock.young_pa=20e9`, `blocks[0].at_m[2]=0.5`.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub overrides: Vec<String>,
+    /// How to run it.
+    #[command(flatten)]
+    pub how: HowArgs,
+}
+
+/// What does not depend on the scene.
+#[derive(Debug, Default, Args)]
+pub struct HowArgs {
     /// Threads; results do not depend on it [default: all cores].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -64,15 +72,9 @@ pub struct RunArgs {
 pub struct ResumeArgs {
     /// Output folder of the run.
     pub folder: PathBuf,
-    /// Number of threads; the results do not depend on it. Default: all processors.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Option<u16>,
-    /// Exit code 1 when an invariant is beyond its limit.
-    #[arg(long)]
-    pub strict: bool,
-    /// No progress and no table.
-    #[arg(long, short)]
-    pub quiet: bool,
+    /// How to run it.
+    #[command(flatten)]
+    pub how: HowArgs,
 }
 
 /// Arguments of `ndda check`.

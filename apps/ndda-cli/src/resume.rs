@@ -1,7 +1,6 @@
 //! `ndda resume`: a run from its last checkpoint to its end.
 
 use std::path::Path;
-use std::time::Instant;
 
 use ndda_io::{OutputFolder, checkpoint, read};
 
@@ -15,10 +14,7 @@ use crate::wiring;
 
 /// Goes on with a run and reports; the result is the exit code.
 pub fn resume(args: &ResumeArgs) -> u8 {
-    in_pool(args.threads, |threads| {
-        let options = Options { threads, strict: args.strict, quiet: args.quiet, started: Instant::now() };
-        resume_here(&args.folder, &options)
-    })
+    in_pool(&args.how, |options| resume_here(&args.folder, options))
 }
 
 fn resume_here(folder: &Path, options: &Options) -> u8 {

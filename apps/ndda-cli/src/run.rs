@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use ndda_io::{OutputFolder, WriteError, checkpoint, summary};
 use ndda_solver::{RunError, Settle, StepError};
 
-use crate::args::RunArgs;
+use crate::args::{HowArgs, RunArgs};
 use crate::check::{Ready, prepare};
 use crate::checkpoint::{Earlier, Identity, Outputs};
 use crate::console::{colour, complain, say};
@@ -18,15 +18,13 @@ use crate::{exit, interrupt, wiring};
 
 /// Runs a scene and reports; the result is the exit code.
 pub fn run(args: &RunArgs) -> u8 {
-    in_pool(args.threads, |threads| {
-        let started = Instant::now();
-        run_here(args, &Options { threads, strict: args.strict, quiet: args.quiet, started })
-    })
+    in_pool(&args.how, |options| run_here(args, options))
 }
 
-/// Does `work` on so many threads.
-pub fn in_pool(threads: Option<u16>, work: impl FnOnce(usize) -> u8 + Send) -> u8 {
-    let threads = threads.map_or(0, usize::from);
+/// Does `work` on as many threads as are asked for.
+pub fn in_pool(how: &HowArgs, work: impl FnOnce(&Options) -> u8 + Send) -> u8 {
+    let started = Instant::now();
+    let threads = how.threads.map_or(0, usize::from);
     let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool,
         Err(error) => {
@@ -35,7 +33,8 @@ pub fn in_pool(threads: Option<u16>, work: impl FnOnce(usize) -> u8 + Send) -> u
         }
     };
     // Everything runs inside the pool: a step handed in from outside would allocate.
-    pool.install(|| work(pool.current_num_threads()))
+    let threads = pool.current_num_threads();
+    pool.install(|| work(&Options { threads, strict: how.strict, quiet: how.quiet, started }))
 }
 
 /// How to run, whatever the scene.

@@ -7,6 +7,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
+use ndda_contact::testing::Random;
+
 fn ndda(arguments: &[&str]) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_ndda"));
     command.args(arguments).arg("--quiet").stdout(Stdio::null());
@@ -44,16 +46,6 @@ fn results(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     results
 }
 
-struct Random(u64);
-
-impl Random {
-    /// From 0 to 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-}
-
 #[test]
 fn a_killed_run_goes_on_to_the_same_bytes() {
     let kills: usize = std::env::var("NDDA_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
@@ -75,7 +67,7 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
             let out = broken.display().to_string();
             // Killed once, and often once more while it is being resumed.
             for _ in 0..1 + kill % 3 {
-                std::thread::sleep(Duration::from_secs_f64(lasts * random.next()));
+                std::thread::sleep(Duration::from_secs_f64(lasts * random.unit()));
                 child.kill().expect("a child");
                 child.wait().expect("an end");
                 child = ndda(&["resume", &out, "--threads", ["2", "1"][kill % 2]]);

@@ -8,7 +8,7 @@ mod twins;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use ndda_contact::candidates::Candidates;
-use ndda_contact::testing::test_set;
+use ndda_contact::testing::{Random, test_set};
 use ndda_contact::{ContactHistory, ContactInput, ContactModel, ContactOutput, PotentialContact};
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::geometry::Aabb;
@@ -103,11 +103,8 @@ fn contact_stage(c: &mut Criterion) {
 /// n³ boxes of blocks in a pile: about 26 neighbours each; with `mixed`, sizes from 1 to 1000 at random places instead,
 /// as many of each decade.
 fn boxes(n: usize, mixed: bool) -> Vec<Aabb> {
-    let mut seed = 1u64;
-    let mut random = move || {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut random = Random(1);
+    let mut random = move || random.unit();
     let one = |k: usize| {
         let cell = Vec3::new((k % n) as f64, (k / n % n) as f64, (k / (n * n)) as f64);
         let size = if mixed { 10f64.powf(0.5 - 3.0 * random()) } else { 1.0 };

@@ -4,7 +4,7 @@ use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 
 use crate::broad_phase::{AllPairs, BroadPhase, BroadScene};
 use crate::pair::{TetFrame, is_outside};
-use crate::testing::{test_box, test_horseshoe, test_set};
+use crate::testing::{Random, test_box, test_horseshoe, test_set};
 
 /// Scenes of [`check_broad_phase`].
 const SCENES: usize = 10_000;
@@ -115,38 +115,29 @@ impl Place {
                 let arm = turn * (*x - center);
                 *x = center + shift + arm + strain * arm.norm();
             }
-            self.margin_m[block.index()] = 0.02 * random.next();
+            self.margin_m[block.index()] = 0.02 * random.unit();
         }
     }
 }
 
-/// Knuth's MMIX generator: tests need numbers that are the same everywhere, no more.
-struct Random(u64);
-
 impl Random {
-    /// From 0 to 1.
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     /// Each coordinate from −1/2 to 1/2.
     fn vector(&mut self) -> Vec3 {
-        Vec3::new(self.next() - 0.5, self.next() - 0.5, self.next() - 0.5)
+        Vec3::new(self.unit() - 0.5, self.unit() - 0.5, self.unit() - 0.5)
     }
 
     /// One to five blocks, with a horseshoe or without.
     fn blocks(&mut self, horseshoe: bool) -> BlockSet {
-        let count = 2 + (4.0 * self.next()) as usize - usize::from(horseshoe);
+        let count = 2 + (4.0 * self.unit()) as usize - usize::from(horseshoe);
         let mut meshes = Vec::new();
         for _ in 0..count {
-            let size = [1.0, 1.0, 0.1, 0.001][(4.0 * self.next()) as usize];
-            let cells = [1, 1 + (2.0 * self.next()) as u32, 1 + (2.0 * self.next()) as u32];
-            let corner = [self.next(), self.next(), self.next()];
-            meshes.push(test_box(corner, [size, size * (0.5 + self.next()), size], cells));
+            let size = [1.0, 1.0, 0.1, 0.001][(4.0 * self.unit()) as usize];
+            let cells = [1, 1 + (2.0 * self.unit()) as u32, 1 + (2.0 * self.unit()) as u32];
+            let corner = [self.unit(), self.unit(), self.unit()];
+            meshes.push(test_box(corner, [size, size * (0.5 + self.unit()), size], cells));
         }
         if horseshoe {
-            meshes.push(test_horseshoe([self.next(), self.next(), self.next()], 1.0 + self.next()));
+            meshes.push(test_horseshoe([self.unit(), self.unit(), self.unit()], 1.0 + self.unit()));
         }
         test_set(meshes)
     }
@@ -158,7 +149,7 @@ impl Random {
             let nodes = &mut position[blocks.nodes_of(block)];
             let bounds = ndda_mesh::geometry::Aabb::around(nodes.iter());
             let (center, size) = (bounds.center(), bounds.max - bounds.min);
-            let closing = 0.8 * self.next() * size.x / size.z;
+            let closing = 0.8 * self.unit() * size.x / size.z;
             nodes.iter_mut().for_each(|x| x.x -= (x.x - center.x).signum() * closing * (x.z - bounds.min.z));
         }
         position
@@ -176,8 +167,8 @@ impl Random {
 
     /// None, some or all of the blocks.
     fn choose(&mut self, blocks: &BlockSet, chosen: &mut Vec<BlockId>) {
-        let share = 1.5 * self.next();
+        let share = 1.5 * self.unit();
         chosen.clear();
-        chosen.extend(blocks.ids().filter(|_| self.next() < share));
+        chosen.extend(blocks.ids().filter(|_| self.unit() < share));
     }
 }

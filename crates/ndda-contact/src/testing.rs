@@ -9,6 +9,18 @@ use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
 pub use crate::broad_scenes::{BroadCounts, check_broad_phase};
 use crate::model::{ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport};
 
+/// Knuth's MMIX generator: tests and benches need numbers that are the same everywhere, no more.
+#[derive(Clone, Debug)]
+pub struct Random(pub u64);
+
+impl Random {
+    /// From 0 to 1.
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
 /// A box with one corner at `corner`, cut into six tetrahedra per cell.
 pub fn test_box(corner: [f64; 3], size_m: [f64; 3], cells: [u32; 3]) -> BlockMesh {
     let mesh = box_block(size_m, cells, BoxPattern::Six).expect("positive sizes");

@@ -6,7 +6,7 @@ pub mod frictionless;
 
 use ndda_contact::batch::Batches;
 use ndda_contact::pair::TetFrame;
-use ndda_contact::testing::{test_box, test_set};
+use ndda_contact::testing::{Random, test_box, test_set};
 use ndda_contact::{
     ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, Coulomb, ElementPotential,
     PotentialContact, SmoothPotential, VelocityCoulomb, VolumePotential,
@@ -18,11 +18,8 @@ use pulp::Arch;
 
 /// 1024 pairs of random tetrahedra in the unit cube that overlap; `benches/peers/r3d.c` takes the same.
 pub fn random_pairs() -> Vec<[[Vec3; 4]; 2]> {
-    let mut seed = 1u64;
-    let mut random = move || {
-        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (seed >> 11) as f64 / (1u64 << 53) as f64
-    };
+    let mut random = Random(1);
+    let mut random = move || random.unit();
     let mut tet = move || loop {
         let mut corners = [[0.0; 3]; 4].map(|x| Vec3::from(x.map(|_| random())));
         let volume = tet_volume(&corners);
