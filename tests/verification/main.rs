@@ -2,8 +2,10 @@
 
 mod bar_under_traction;
 mod bedded_bar;
+mod bouncing_block;
 mod contact_patch;
 mod damping;
+mod glancing_collision;
 mod loads_over_time;
 mod one_block_alone;
 mod prescribed_motion;

@@ -40,7 +40,7 @@ pub struct Outcome<'a> {
 /// The summary of a run.
 pub fn summarise(simulation: &Simulation, recorder: &Recorder, outcome: Outcome) -> Summary {
     let worst = simulation.invariants();
-    let verdicts = verdicts(simulation, outcome.scene);
+    let verdicts = verdicts(simulation);
     let failed = outcome.strict && verdicts.0.iter().any(|(_, v)| v.verdict == Judgement::Fail);
     let status = match (&outcome.stopped_by, failed) {
         (Some(_), _) => Status::Stopped,
@@ -121,15 +121,15 @@ fn shown(value: f64) -> Verdict {
 }
 
 /// The invariants I1–I8 against their limits.
-fn verdicts(simulation: &Simulation, scene: &Scene) -> Named<Verdict> {
+fn verdicts(simulation: &Simulation) -> Named<Verdict> {
     let worst = simulation.invariants();
     // Held blocks exchange angular momentum with their supports through strains that the books do not see.
     let closed = simulation.is_closed();
     let angular =
         if closed { judged(worst.angular_momentum, 1e-8, 1e-4) } else { shown(worst.angular_momentum) };
-    let h = match (&scene.time.integrator, simulation.contact_bound()) {
-        (Integrator::Midpoint { .. }, Some(bound)) => judged(worst.max_h, bound, f64::INFINITY),
-        _ => shown(worst.max_h),
+    let h = match simulation.contact_bound() {
+        Some(bound) => judged(worst.max_h, bound, f64::INFINITY),
+        None => shown(worst.max_h),
     };
     // How far a block moves in a step matters only where it may jump through another.
     let travel = match simulation.has_contact() {

@@ -20,8 +20,8 @@ use ndda_mesh::generate::{BoxPattern, box_block, prism};
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
 use ndda_solver::{
-    BodySetup, ConjugateGradients, Direct, ForceSetup, LinearSolver, Midpoint, Newmark, Setup, SetupError,
-    Simulation, TimeIntegrator, TractionSetup,
+    BodySetup, ConjugateGradients, Direct, ForceSetup, GeneralizedAlpha, LinearSolver, Midpoint, Newmark,
+    Setup, SetupError, Simulation, TimeIntegrator, TractionSetup,
 };
 
 use crate::monitor::Monitor;
@@ -161,18 +161,20 @@ pub fn simulation_with(
         contact,
         solver: linear_solver(scene.time.solver),
     };
-    Simulation::new(setup).map_err(|error| {
-        let (SetupError::Support { block, .. }
-        | SetupError::Factor { block, .. }
-        | SetupError::Solve { block, .. }) = &error;
-        let index = scene.blocks.iter().position(|b| b.name == *block).unwrap_or(0);
-        let path = match &error {
-            SetupError::Support { .. } => scene.supports.iter().position(|s| s.block == *block),
-            SetupError::Factor { .. } | SetupError::Solve { .. } => None,
-        };
-        let path = path.map_or(format!("blocks[{index}]"), |i| format!("supports[{i}]"));
-        vec![Fault::new(path, error)]
-    })
+    Simulation::new(setup).map_err(|error| vec![setup_fault(scene, error)])
+}
+
+/// Where in the scene a simulation could not be set up.
+fn setup_fault(scene: &Scene, error: SetupError) -> Fault {
+    let (block, supported) = match &error {
+        SetupError::Support { block, .. } => (block, true),
+        SetupError::Factor { block, .. } | SetupError::Solve { block, .. } => (block, false),
+        SetupError::Contact(_) => return Fault::new("contact", error),
+    };
+    let support = scene.supports.iter().position(|s| supported && s.block == *block);
+    let index = scene.blocks.iter().position(|b| b.name == *block).unwrap_or(0);
+    let path = support.map_or(format!("blocks[{index}]"), |i| format!("supports[{i}]"));
+    Fault::new(path, error)
 }
 
 /// The contact model that a scene names: a fork adds its own arm here.
@@ -246,6 +248,7 @@ fn friction_law(friction: &scene::Friction) -> Box<dyn FrictionLaw> {
 pub fn integrator(choice: &Integrator) -> Box<dyn TimeIntegrator> {
     match choice {
         Integrator::Midpoint { theta } => Box::new(Midpoint { theta: *theta }),
+        Integrator::GeneralizedAlpha { radius } => Box::new(GeneralizedAlpha { radius: *radius }),
         Integrator::Newmark { alpha, delta } => Box::new(Newmark { alpha: *alpha, delta: *delta }),
     }
 }

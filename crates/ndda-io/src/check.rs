@@ -140,6 +140,13 @@ impl Check<'_> {
                     "0.5 damps nothing",
                 );
             }
+            Integrator::GeneralizedAlpha { radius } if !(0.0..=1.0).contains(&radius) => {
+                self.error(
+                    "time.integrator.radius",
+                    format!("ρ = {radius}: must be from 0 to 1"),
+                    "1 damps nothing, 0.8 a little",
+                );
+            }
             Integrator::Newmark { alpha, delta } if !(delta >= 0.5 && 2.0 * alpha >= delta) => {
                 let message = format!("α = {alpha}, δ = {delta}: unstable, must be 2 α ≥ δ ≥ ½");
                 self.error("time.integrator", message, "the paper has α = 0.5, δ = 1");

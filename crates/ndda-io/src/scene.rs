@@ -104,6 +104,12 @@ pub enum Integrator {
         #[serde(default = "half")]
         theta: f64,
     },
+    /// Second order; damps elastic modes far above 1/Δt, contact neither way.
+    GeneralizedAlpha {
+        /// What is left of the highest modes after a step, 0 to 1 (no damping). Default: 0.8.
+        #[serde(default = "radius")]
+        radius: f64,
+    },
     /// The paper's eqs (7)–(13); contact at the positions of the previous step.
     Newmark {
         /// The paper's α (β elsewhere). Default: 0.5.
@@ -561,6 +567,10 @@ pub enum Reference {
         /// The block.
         block: String,
     },
+}
+
+fn radius() -> f64 {
+    0.8
 }
 
 fn half() -> f64 {

@@ -8,7 +8,7 @@ use ndda_mesh::{Mat3, Vec3};
 use crate::for_each_block::NodeSlices;
 use crate::linear_solver::{Scratch, SolveError};
 use crate::shape::Shape;
-use crate::time_integrator::{StepDamping, StepWeights, TimeIntegrator};
+use crate::time_integrator::{Inertia, StepDamping, StepWeights, TimeIntegrator};
 
 /// Why a block could not take a step.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -58,6 +58,8 @@ pub struct StepContext<'a> {
     pub friction_force: &'a [Vec3],
     /// Row sums of the contact stiffness [N/m]; empty without contact.
     pub contact_stiffness: &'a [f64],
+    /// M a of the block as a whole at the start; zero where it does not matter.
+    pub inertia: Inertia,
 }
 
 impl StepContext<'_> {
@@ -86,6 +88,8 @@ pub struct BlockReport {
     pub speed_m_s: f64,
     /// Largest Σ|k| / m over the nodes [1/s²]: a bound of ω_c².
     pub contact_rate2: f64,
+    /// M a of the block as a whole at the end; for free blocks only.
+    pub inertia: Inertia,
 }
 
 /// Memory of one block: sized once, written every step.
@@ -211,12 +215,18 @@ impl Body {
         }
     }
 
-    /// Rᵀ (f + springs at x + θ û − (1 − θ) f_int).
+    /// Rᵀ (f + springs at x + θ û − (1 − θ) f_int − α_m M a).
     fn gather_load(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, nodes: &NodeSlices) {
         let theta = context.weights.stiffness;
         self.load.copy_from_slice(context.force);
         for (load, internal) in self.load.iter_mut().zip(&*nodes.internal_force) {
             *load -= (1.0 - theta) * internal;
+        }
+        if context.weights.old_inertia != 0.0 {
+            for (i, load) in self.load.iter_mut().enumerate() {
+                let inertia = shape.operator.mass_row_times(i, nodes.acceleration);
+                *load -= context.weights.old_inertia * inertia;
+            }
         }
         let anchors = &self.anchor[shape.supports.held.len()..];
         for (spring, anchor) in shape.supports.springs.iter().zip(anchors) {
@@ -395,16 +405,20 @@ impl Body {
     /// Gives a free block exactly the momentum and angular momentum that outside forces bring.
     ///
     /// Internal forces of a corotated frame have no resultant but, to second order in the strain, a torque. It is
-    /// taken out by a rigid part of u, t + ω × z, such that c Σ m (u − û) = Σ f and
+    /// taken out by a rigid part of u, t + ω × z, such that c Σ m (u − û) = Σ f − α_m Σ M a₀ and
     /// Σ y × M (v₁ − v₀) + Σ u × M (½ (v₀ + v₁) − u/Δt) = Δt Σ y* × f,
     /// y at mid-step, z at its end and y* at x*, all from their mass centre. The left side is the change of angular momentum;
-    /// arms at x* keep the total of all blocks exact, since contact forces have no torque there.
+    /// arms at x* keep the total of all blocks exact, since contact forces have no torque there. What the right side is
+    /// where contact is not taken in the middle of the step, see [`whole_torque`](Self::whole_torque).
     fn balance_momentum(&mut self, shape: &Shape, context: &StepContext, nodes: &NodeSlices) {
         let (operator, c) = (&shape.operator, context.weights.mass_per_s2);
         let total: Vec3 = context.force.iter().sum();
         let had = operator.momentum(&self.correction) - operator.momentum(&self.predicted);
         let drag = shape.damping.mass_per_s2;
-        let missing = total - c * had - drag * operator.momentum(&self.correction);
+        let missing = total
+            - context.weights.old_inertia * context.inertia.force
+            - c * had
+            - drag * operator.momentum(&self.correction);
         let shift = missing / ((c + drag) * operator.mass_kg);
         self.correction.iter_mut().for_each(|u| *u += shift);
 
@@ -414,10 +428,14 @@ impl Body {
         if drag > 0.0 {
             torque -= drag * operator.angular_momentum(&center, context.contact_position, &self.correction);
         }
+        if !context.weights.contact_in_the_middle() {
+            torque = self.whole_torque(shape, context, nodes, &(total, torque));
+        }
         self.rigid.fill(Vec3::zeros());
         let mut inverse_inertia = None;
-        // Two passes: the first changes the arms of the second by its own small size.
-        for _ in 0..2 {
+        // A pass changes the arms of the next by its own small size.
+        let passes = if context.weights.mean_velocity { 2 } else { 4 };
+        for _ in 0..passes {
             let missing = context.dt_s * torque - self.angular_gain(shape, context, nodes);
             self.place_end_arms(shape);
             let inertia = || operator.inertia(&self.displacement, &self.elastic).try_inverse();
@@ -428,6 +446,35 @@ impl Body {
                 *r += turn.cross(z);
             }
         }
+    }
+
+    /// The torque about the mass centre that changes the angular momentum as the integrator weights M a, F and T being
+    /// force and torque about x*'s mass centre r; also keeps the block's M a of this step.
+    ///
+    /// ```text
+    /// Δt [(1 − γ) T₀ + γ T₁] − (c₁ − r) × p₁ + (c₀ − r) × p₀        F₁ = (F − α_m F₀)/(1 − α_m), T₁ alike
+    /// ```
+    fn whole_torque(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        nodes: &NodeSlices,
+        (force, torque): &(Vec3, Vec3),
+    ) -> Vec3 {
+        let (operator, weights, old) = (&shape.operator, &context.weights, &context.inertia);
+        let mark = operator.center(context.contact_position);
+        let force = force - shape.damping.mass_per_s2 * operator.momentum(&self.correction);
+        let new = weights.inertia(&force, &old.force);
+        let old_torque = old.torque - mark.cross(&old.force);
+        let new_torque = weights.inertia(torque, &old_torque);
+        self.report.inertia = Inertia { force: new, torque: new_torque + mark.cross(&new) };
+
+        let before = operator.momentum(nodes.velocity);
+        let after = before + context.dt_s * weights.mean_inertia(&old.force, &new);
+        let center = operator.center(nodes.position) - mark;
+        let moved = center + operator.momentum(&self.correction) / operator.mass_kg;
+        let moment = moved.cross(&after) - center.cross(&before);
+        weights.mean_inertia(&old_torque, &new_torque) - moment / context.dt_s
     }
 
     /// elastic ← z, the arms at the end of the step: a turn about them stretches nothing.
@@ -458,7 +505,9 @@ impl Body {
                 let mean = (u + self.rigid[i]) / context.dt_s;
                 self.elastic[i] = nodes.velocity[i] + 0.5 * self.load[i] - mean;
             }
-            gained += operator.angular_momentum(&Vec3::zeros(), &self.correction, &self.elastic);
+            let center = operator.momentum(&self.correction) / operator.mass_kg;
+            gained += operator.angular_momentum(&center, &self.correction, &self.elastic);
+            gained += operator.angular_momentum(&Vec3::zeros(), &self.rigid, &self.elastic);
         }
         gained
     }

@@ -4,6 +4,8 @@ use ndda_contact::ContactReport;
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::time_integrator::StepWeights;
+
 /// Energies and momenta of all blocks at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
@@ -138,11 +140,12 @@ impl Ledger {
         }
     }
 
-    /// Books force and torque from outside over a step, Δt [(1 − γ) old + γ new].
-    pub fn add_impulse(&mut self, dt_s: f64, new_weight: f64, force: Vec3, torque: Vec3) {
+    /// Books force and torque from outside over a step, as the integrator weights them.
+    pub fn add_impulse(&mut self, dt_s: f64, weights: &StepWeights, force: Vec3, torque: Vec3) {
         let (old_force, old_torque) = self.last_force;
-        self.impulse += dt_s * ((1.0 - new_weight) * old_force + new_weight * force);
-        self.angular_impulse += dt_s * ((1.0 - new_weight) * old_torque + new_weight * torque);
+        let (force, torque) = (weights.inertia(&force, &old_force), weights.inertia(&torque, &old_torque));
+        self.impulse += dt_s * weights.mean_inertia(&old_force, &force);
+        self.angular_impulse += dt_s * weights.mean_inertia(&old_torque, &torque);
         self.last_force = (force, torque);
         self.load_impulse += dt_s * self.load_n;
     }
@@ -213,6 +216,8 @@ impl Ledger {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::midpoint::Midpoint;
+    use crate::time_integrator::TimeIntegrator;
 
     #[test]
     fn energy_that_friction_took_is_not_a_loss() {
@@ -229,7 +234,8 @@ mod tests {
     fn an_impulse_from_outside_explains_momentum() {
         let mut ledger = Ledger::new((Vec3::zeros(), Vec3::zeros()));
         ledger.balance(Sample::default());
-        ledger.add_impulse(0.5, 1.0, Vec3::x(), Vec3::zeros());
+        let weights = Midpoint { theta: 0.5 }.weights(0.5);
+        ledger.add_impulse(0.5, &weights, Vec3::x(), Vec3::zeros());
         let momentum = Vec3::new(0.5, 0.0, 0.1);
         ledger.balance(Sample { momentum, momentum_scale: 0.5, ..Sample::default() });
         assert!((ledger.invariants().linear_momentum - 0.2).abs() < 1e-15);

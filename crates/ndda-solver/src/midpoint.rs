@@ -31,8 +31,10 @@ impl TimeIntegrator for Midpoint {
             velocity_per_m: 2.0 / dt_s,
             mean_velocity: true,
             contact_lead: 0.5,
+            contact_lead_acceleration: 0.0,
             load_lead: 0.5,
             new_force: 1.0,
+            old_inertia: 0.0,
             needs_acceleration: false,
         }
     }

@@ -33,8 +33,10 @@ impl TimeIntegrator for Newmark {
             velocity_per_m: self.delta / (self.alpha * dt_s),
             mean_velocity: self.delta == 2.0 * self.alpha,
             contact_lead: 0.0,
+            contact_lead_acceleration: 0.0,
             load_lead: 1.0,
             new_force: self.delta,
+            old_inertia: 0.0,
             needs_acceleration: self.alpha != 0.5 || self.delta != 1.0,
         }
     }

@@ -7,6 +7,7 @@ use ndda_fem::{BlockOperator, BlockSupports, Frame, Material, NodeSupport, Suppo
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::linear_solver::{Factor, FactorError, LinearSolver, SolveError};
+use crate::simulation::StepError;
 use crate::time_integrator::{StepDamping, StepWeights};
 use crate::unknowns::Unknowns;
 
@@ -73,6 +74,9 @@ pub enum SetupError {
         /// What is wrong with them.
         source: FactorError,
     },
+    /// Contact at the start cannot be computed.
+    #[error(transparent)]
+    Contact(#[from] Box<StepError>),
     /// The accelerations at the start of a block cannot be solved for.
     #[error("block `{block}`: {source}")]
     Solve {

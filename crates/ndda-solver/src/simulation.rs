@@ -18,7 +18,7 @@ use crate::linear_solver::LinearSolver;
 use crate::loads::{Loads, VaryingLoad};
 use crate::shape::{BodySetup, SetupError, Shape};
 use crate::state::State;
-use crate::time_integrator::{StepDamping, StepWeights, TimeIntegrator};
+use crate::time_integrator::{Inertia, StepDamping, StepWeights, TimeIntegrator};
 
 /// Nodes per half below which a second thread costs more than it brings.
 const GRAIN_NODES: usize = 400;
@@ -203,6 +203,7 @@ impl Simulation {
                 velocity: vec![Vec3::zeros(); nodes],
                 acceleration: vec![Vec3::zeros(); nodes],
                 internal_force: vec![Vec3::zeros(); if weights.stiffness < 1.0 { nodes } else { 0 }],
+                inertia: vec![Inertia::default(); if weights.needs_acceleration { blocks.len() } else { 0 }],
                 contact: Default::default(),
             },
             bodies: Vec::with_capacity(blocks.len()),
@@ -286,12 +287,17 @@ impl Simulation {
         self.loads = Loads::new(constant, varying);
     }
 
-    /// Total load at the start, and accelerations at the start for integrators that need them: M a = f − ∫Bᵀσ₀.
+    /// Total load at the start, and accelerations at the start for integrators that need them: M a = f − ∫Bᵀσ₀, contact
+    /// being part of f.
     fn open_books(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
         self.ledger = Ledger::new(self.loads.resultant(&self.state.position));
         if !self.weights.needs_acceleration {
             return Ok(());
         }
+        let untouched = self.state.contact.clone();
+        self.force.copy_from_slice(self.loads.total());
+        self.gather_contact_forces().map_err(Box::new)?;
+        self.state.contact = untouched;
         let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
         for block in self.blocks.ids() {
             let body = &self.bodies[block.index()];
@@ -300,7 +306,7 @@ impl Simulation {
                 continue;
             }
             let range = self.blocks.nodes_of(block);
-            let mut load = self.loads.total()[range.clone()].to_vec();
+            let mut load = self.force[range.clone()].to_vec();
             if let Some(initial) = &body.initial_force {
                 load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
             }
@@ -315,7 +321,13 @@ impl Simulation {
             factor.solve_in_place(&mut rhs, &mut factor.new_scratch()).map_err(|source| {
                 SetupError::Solve { block: self.blocks.names[block.index()].clone(), source }
             })?;
-            shape.unknowns.scatter(&rhs, &mut self.state.acceleration[range]);
+            shape.unknowns.scatter(&rhs, &mut self.state.acceleration[range.clone()]);
+            let (position, acceleration) =
+                (&self.state.position[range.clone()], &self.state.acceleration[range]);
+            self.state.inertia[block.index()] = Inertia {
+                force: shape.operator.momentum(acceleration),
+                torque: shape.operator.angular_momentum(&Vec3::zeros(), position, acceleration),
+            };
         }
         Ok(())
     }
@@ -345,12 +357,17 @@ impl Simulation {
         self.force.copy_from_slice(self.loads.total());
     }
 
-    /// x* = x + lead · Δt v.
+    /// x* = x + lead · Δt v + lead₂ · Δt² a.
     fn place_contact(&mut self) {
         let lead = self.weights.contact_lead * self.step_s;
         let moving = self.state.position.iter().zip(&self.state.velocity);
         for (place, (x, v)) in self.contact_position.iter_mut().zip(moving) {
             *place = x + lead * v;
+        }
+        let lead = self.weights.contact_lead_acceleration * self.step_s * self.step_s;
+        if lead != 0.0 {
+            let accelerations = self.contact_position.iter_mut().zip(&self.state.acceleration);
+            accelerations.for_each(|(place, a)| *place += lead * a);
         }
     }
 
@@ -415,6 +432,7 @@ impl Simulation {
         let (friction_force, contact_stiffness) = (&self.friction_force, &self.contact_stiffness);
         let (integrator, weights, dt_s) = (self.integrator.as_ref(), self.weights, self.step_s);
         let (time_s, end_s) = (self.state.step as f64 * dt_s, (self.state.step + 1) as f64 * dt_s);
+        let inertia = &self.state.inertia;
         let slices = NodeSlices {
             position: &mut self.state.position,
             velocity: &mut self.state.velocity,
@@ -436,9 +454,13 @@ impl Simulation {
                 changing: loads.changing().get(range.clone()).unwrap_or(&[]),
                 friction_force: friction_force.get(range.clone()).unwrap_or(&[]),
                 contact_stiffness: contact_stiffness.get(range).unwrap_or(&[]),
+                inertia: inertia.get(index).copied().unwrap_or_default(),
             };
             body.error = body.step(&shapes[body.shape], &context, nodes).err();
         });
+        for (inertia, body) in self.state.inertia.iter_mut().zip(&self.bodies) {
+            *inertia = body.report.inertia;
+        }
         for (index, body) in self.bodies.iter_mut().enumerate() {
             if let Some(source) = body.error.take() {
                 let block = self.blocks.names[index].clone();
@@ -467,7 +489,7 @@ impl Simulation {
             travel_ratio = travel_ratio.max(report.speed_m_s * self.step_s / height_m);
         }
         let h = self.step_s * rate2.sqrt();
-        self.ledger.add_impulse(self.step_s, self.weights.new_force, force, torque);
+        self.ledger.add_impulse(self.step_s, &self.weights, force, torque);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
         self.ledger.watch(&contact, h, travel_ratio);
         self.state.step += 1;
@@ -563,6 +585,7 @@ impl Simulation {
         self.state.start = self.state.position.clone();
         self.state.velocity = velocity;
         self.state.acceleration.fill(Vec3::zeros());
+        self.state.inertia.fill(Inertia::default());
         self.state.step = 0;
         self.loads.place(0.0);
         self.ledger = Ledger::new(self.loads.resultant(&self.state.position));
@@ -586,6 +609,7 @@ impl Simulation {
             (state.velocity.len(), expected),
             (state.acceleration.len(), expected),
             (state.internal_force.len(), internal),
+            (state.inertia.len(), self.state.inertia.len()),
         ] {
             if found != expected {
                 return Err(RestoreError { found, expected });

@@ -4,6 +4,8 @@ use ndda_contact::ContactHistory;
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::time_integrator::Inertia;
+
 /// The changing state of all blocks; a checkpoint, a rollback and a determinism test all work on it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct State {
@@ -19,6 +21,8 @@ pub struct State {
     pub acceleration: Vec<Vec3>,
     /// Internal force R (K w + ∫Bᵀσ₀) per node [N]; empty for integrators that take elasticity at the end only.
     pub internal_force: Vec<Vec3>,
+    /// M a of each block as a whole; empty for integrators to which the start's acceleration does not matter.
+    pub inertia: Vec<Inertia>,
     /// What contact remembers.
     pub contact: ContactHistory,
 }

@@ -1,6 +1,6 @@
 //! Contract suites that a fork can run on its own integrator or linear solver.
 
-use ndda_mesh::Vec3;
+use ndda_mesh::{Mat3, Vec3};
 
 use crate::linear_solver::{LinearSolver, SymmetricMatrix};
 use crate::time_integrator::TimeIntegrator;
@@ -18,7 +18,7 @@ pub fn check_integrator(integrator: &dyn TimeIntegrator) {
     let (start, steps) = (v, 1000);
     for _ in 0..steps {
         let predicted = integrator.predict(dt_s, &v, &a);
-        let u = predicted + gravity / weights.mass_per_s2;
+        let u = predicted + (gravity - weights.old_inertia * a) / weights.mass_per_s2;
         integrator.correct(dt_s, &u, &predicted, &mut v, &mut a);
         x += u;
     }
@@ -30,6 +30,22 @@ pub fn check_integrator(integrator: &dyn TimeIntegrator) {
     let predicted = integrator.predict(dt_s, &v, &a);
     integrator.correct(dt_s, &predicted.clone(), &predicted, &mut v, &mut a);
     assert_eq!((v, a), (Vec3::x(), Vec3::zeros()), "a step without force changes the velocity");
+}
+
+/// Spectral radius of a step of a mass that contact holds as a spring of frequency ω_c, by h = ω_c Δt.
+pub fn contact_radius(integrator: &dyn TimeIntegrator, h: f64) -> f64 {
+    let weights = integrator.weights(1.0);
+    let mut map = Mat3::zeros();
+    for (k, mut column) in map.column_iter_mut().enumerate() {
+        let start = [0, 1, 2].map(|i| if i == k { Vec3::x() } else { Vec3::zeros() });
+        let [x, mut v, mut a] = start;
+        let place = x + weights.contact_lead * v + weights.contact_lead_acceleration * a;
+        let predicted = integrator.predict(1.0, &v, &a);
+        let u = predicted + (-h * h * place - weights.old_inertia * a) / weights.mass_per_s2;
+        integrator.correct(1.0, &u, &predicted, &mut v, &mut a);
+        column.copy_from_slice(&[x.x + u.x, v.x, if weights.needs_acceleration { a.x } else { 0.0 }]);
+    }
+    map.complex_eigenvalues().iter().map(|value| value.norm()).fold(0.0, f64::max)
 }
 
 /// Panics unless `solver` keeps the contract of [`LinearSolver`]: it solves positive definite systems to round-off

@@ -2,26 +2,57 @@
 
 use ndda_fem::Damping;
 use ndda_mesh::Vec3;
+use serde::{Deserialize, Serialize};
 
 /// The numbers by which one step is weighted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepWeights {
     /// θ: elasticity acts as (1 − θ) of its value at the start plus θ of that at the end.
     pub stiffness: f64,
-    /// c = 1/(β Δt²) [1/s²]: the mean acceleration of the step is c (u − û).
+    /// c = (1 − α_m)/(β Δt²) [1/s²]: what accelerates at the end of the step is c M (u − û).
     pub mass_per_s2: f64,
     /// ∂v₁/∂u [1/s].
     pub velocity_per_m: f64,
     /// Whether u = Δt (v₀ + v₁)/2.
     pub mean_velocity: bool,
-    /// Contact acts at x* = x + lead · Δt v.
+    /// Contact acts at x* = x + lead · Δt v + lead₂ · Δt² a.
     pub contact_lead: f64,
+    /// lead₂.
+    pub contact_lead_acceleration: f64,
     /// Loads that change over time act as they are at start + lead · Δt.
     pub load_lead: f64,
     /// γ: the momentum changes by Δt [(1 − γ) f_old + γ f_new].
     pub new_force: f64,
+    /// α_m: inertia acts as α_m of its value at the start plus (1 − α_m) of that at the end.
+    pub old_inertia: f64,
     /// Whether the acceleration at the start of a step matters, so that a run must begin with M a = f − K d.
     pub needs_acceleration: bool,
+}
+
+impl StepWeights {
+    /// Whether the arms of contact are those of the middle of the step, so that a block's momentum has no moment.
+    pub fn contact_in_the_middle(&self) -> bool {
+        self.contact_lead == 0.5 && self.mean_velocity
+    }
+
+    /// M a at the end of a step that `force` drives from M a = `old` at its start; the same holds for torques.
+    pub fn inertia(&self, force: &Vec3, old: &Vec3) -> Vec3 {
+        (force - self.old_inertia * old) / (1.0 - self.old_inertia)
+    }
+
+    /// The mean of M a by which momentum changes in a step.
+    pub fn mean_inertia(&self, old: &Vec3, new: &Vec3) -> Vec3 {
+        (1.0 - self.new_force) * old + self.new_force * new
+    }
+}
+
+/// What moves a block as a whole at the end of a step: M a summed over its nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Inertia {
+    /// Σ M a [N].
+    pub force: Vec3,
+    /// Its torque about the origin [N m].
+    pub torque: Vec3,
 }
 
 /// Rayleigh damping in a step: the force −C u/Δt, C/Δt = stiffness · K + mass_per_s2 · M.
@@ -46,7 +77,7 @@ impl StepDamping {
 }
 
 /// A one-step integrator for M a + K d = f, solved per block as
-/// (θ K + c M)(u − û) = f − (1 − θ) K d − θ K (d + û).
+/// (θ K + c M)(u − û) = f − α_m M a − (1 − θ) K d − θ K (d + û).
 ///
 /// Contract (checked by [`check_integrator`](crate::testing::check_integrator)): exact for constant acceleration,
 /// keeps constant velocity, `correct` undoes `predict` when the step brings no acceleration.

@@ -1,0 +1,106 @@
+//! V18: a block that bounces on a held one, by integrator and step. Speeds before and after tell how contact treats
+//! energy; the theory is that of a mass on a spring, ω_c Δt = h.
+
+use ndda_mesh::Vec3;
+
+use crate::simulation;
+
+const SPEED_M_S: f64 = 0.5;
+
+/// Speed after over speed before, gain of the books over the energy at most, and h.
+fn bounce(integrator: &str, step_s: f64) -> (f64, f64, f64) {
+    // A tall block hits flat, fast enough to be gone before anything else happens.
+    let mut simulation = simulation(&format!(
+        "(title: \"bounce\", time: (step_s: {step_s}, end_s: 1, integrator: {integrator}),
+          materials: [(name: \"rock\", young_pa: 1e12, poisson: 0, density_kg_m3: 2500)],
+          blocks: [
+            (name: \"base\", material: \"rock\", shape: Box(size_m: (1, 1, 0.25), cells: (2, 2, 1))),
+            (name: \"ball\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (2, 2, 2)), at_m: (0, 0, 0.251),
+             velocity_m_s: (0, 0, -{SPEED_M_S})),
+          ],
+          supports: [(block: \"base\", on: All, hold: Fixed)],
+          contact: Potential(penalty_pa: 4e6, potential: Smooth(reference_m: 1)))"
+    ));
+    simulation.sample().unwrap();
+    let (mut touched, mut h) = (false, 0.0f64);
+    loop {
+        let report = simulation.step().unwrap();
+        touched |= report.contact.contact_pairs > 0;
+        h = h.max(report.h);
+        if touched && report.contact.contact_pairs == 0 {
+            break;
+        }
+    }
+    let momentum = simulation.sample().unwrap().momentum;
+    (momentum.z / (2500.0 * SPEED_M_S), simulation.invariants().energy_gain, h)
+}
+
+/// ω_c of the block as one mass on the patch: two smooth fields of slope 1 over the reference length, 4 k A in all.
+fn contact_rate() -> f64 {
+    (2.0 * 4e6 / 2500.0f64).sqrt()
+}
+
+#[test]
+fn the_papers_scheme_throws_back_faster_and_by_as_much_as_theory_says() {
+    for step_s in [2e-3, 1e-3, 5e-4] {
+        let (restitution, ..) = bounce("Newmark(alpha: 0.5, delta: 1)", step_s);
+        let theory = (std::f64::consts::FRAC_PI_4 * contact_rate() * step_s).exp();
+        println!("Newmark, Δt = {step_s:e}: {restitution:.5}, exp(πh/4) = {theory:.5}");
+        assert!(((restitution - 1.0) / (theory - 1.0) - 1.0).abs() < 0.2, "{restitution} for {theory}");
+    }
+}
+
+#[test]
+fn midpoint_and_generalised_alpha_give_back_what_they_get() {
+    for integrator in ["Midpoint(theta: 0.5)", "GeneralizedAlpha(radius: 0.8)", "GeneralizedAlpha(radius: 0)"]
+    {
+        for step_s in [2e-3, 1e-3, 5e-4] {
+            let (restitution, gain, h) = bounce(integrator, step_s);
+            println!(
+                "{integrator}, Δt = {step_s:e}: restitution − 1 = {:.2e}, gain {gain:.1e}, h {h:.3}",
+                restitution - 1.0
+            );
+            assert!((restitution - 1.0).abs() < 0.5 * h * h, "{integrator}: {restitution}");
+        }
+    }
+}
+
+/// Largest distance of the centre's height from that of a run with a step sixteen times shorter, in mid-contact.
+fn error(integrator: &str, step_s: f64) -> f64 {
+    let end_s = 0.02;
+    let height = |step_s: f64| {
+        let mut simulation = simulation(&format!(
+            "(title: \"pressed\", time: (step_s: {step_s}, end_s: 1, integrator: {integrator}),
+              materials: [(name: \"rock\", young_pa: 1e8, poisson: 0.2, density_kg_m3: 2500)],
+              blocks: [
+                (name: \"base\", material: \"rock\", shape: Box(size_m: (1, 1, 0.25), cells: (1, 1, 1))),
+                (name: \"ball\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 0.24),
+                 velocity_m_s: (0, 0, -{SPEED_M_S})),
+              ],
+              supports: [(block: \"base\", on: All, hold: Fixed)],
+              contact: Potential(penalty_pa: 4e6))"
+        ));
+        for _ in 0..(end_s / step_s).round() as usize {
+            simulation.step().unwrap();
+        }
+        simulation.state().position[8..].to_vec()
+    };
+    let (rough, fine) = (height(step_s), height(step_s / 16.0));
+    rough.iter().zip(&fine).map(|(a, b): (&Vec3, &Vec3)| (a - b).norm()).fold(0.0, f64::max)
+}
+
+#[test]
+fn midpoint_and_generalised_alpha_are_of_second_order_in_contact_and_the_papers_scheme_of_first() {
+    let cases = [
+        ("Midpoint(theta: 0.5)", 2.0),
+        ("GeneralizedAlpha(radius: 0.8)", 2.0),
+        ("GeneralizedAlpha(radius: 0.3)", 2.0),
+        ("Newmark(alpha: 0.5, delta: 1)", 1.0),
+    ];
+    for (integrator, expected) in cases {
+        let errors = [2e-4, 1e-4, 5e-5].map(|step_s| error(integrator, step_s));
+        let order = (errors[1] / errors[2]).log2();
+        println!("{integrator}: errors {errors:?}, order {order:.2}");
+        assert!((order - expected).abs() < 0.15, "{integrator}: {errors:?}, order {order}");
+    }
+}
