@@ -1,5 +1,7 @@
 //! A contact model of a fork: blocks as points on linear springs. See docs/swapping-a-crate.md.
 
+use std::path::Path;
+
 use ndda_cli::wiring;
 use ndda_contact::testing::check_model;
 use ndda_contact::{ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport};
@@ -73,7 +75,8 @@ fn two_blocks_on_the_model_of_a_fork_exchange_their_velocities() {
     let loaded = ndda_io::read::load(&scene, &["time.step_s=1e-4".into()]).unwrap();
     let blocks = wiring::blocks(&loaded.scene, scene.parent().unwrap()).unwrap();
     let model = LinearSprings { stiffness_n_m: 1e8, reach_m: 1.0 };
-    let mut simulation = wiring::simulation_with(&loaded.scene, blocks, Some(Box::new(model))).unwrap();
+    let mut simulation =
+        wiring::simulation_with(&loaded.scene, blocks, Path::new("."), Some(Box::new(model))).unwrap();
     // Met after 20 ms, apart half a period π √(m/2k) = 11 ms later.
     for _ in 0..400 {
         simulation.step().unwrap();

@@ -39,7 +39,7 @@ fn the_example_of_the_reference_is_a_scene_without_warnings_that_runs() {
         ndda_io::read::load_text("docs/scene.md", example, &[], None).unwrap_or_else(|e| panic!("{e}"));
     assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
     let blocks = ndda_cli::wiring::blocks(&loaded.scene, Path::new(".")).unwrap();
-    let mut simulation = ndda_cli::wiring::simulation(&loaded.scene, blocks).unwrap();
+    let mut simulation = ndda_cli::wiring::simulation(&loaded.scene, blocks, Path::new(".")).unwrap();
     assert_eq!(ndda_cli::wiring::monitors(&loaded.scene, &simulation).unwrap().len(), 1);
     simulation.step().unwrap();
 }

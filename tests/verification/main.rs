@@ -2,15 +2,19 @@
 
 mod bar_under_traction;
 mod bedded_bar;
+mod body_kinds;
 mod bouncing_block;
 mod contact_patch;
 mod damping;
 mod glancing_collision;
+mod ground_stress;
 mod loads_over_time;
+mod lumped_mass;
 mod one_block_alone;
 mod prescribed_motion;
 mod release_of_initial_stress;
 mod settling;
+mod shaken_base;
 mod sliding_over_element_borders;
 mod springs_and_elimination;
 mod sticking_plate;
@@ -24,7 +28,7 @@ fn simulation(text: &str) -> Simulation {
     let loaded = ndda_io::read::load_text("case.ron", text, &[], None).unwrap_or_else(|e| panic!("{e}"));
     let folder = std::path::Path::new(".");
     let blocks = wiring::blocks(&loaded.scene, folder).unwrap_or_else(|faults| panic!("{faults:?}"));
-    wiring::simulation(&loaded.scene, blocks).unwrap_or_else(|faults| panic!("{faults:?}"))
+    wiring::simulation(&loaded.scene, blocks, folder).unwrap_or_else(|faults| panic!("{faults:?}"))
 }
 
 /// A bar of 2 × 1 × 0.5 m on rollers at its lower faces, damped as the paper's integrator damps at ω Δt ≈ 1; `more`

@@ -49,7 +49,7 @@ pub fn prepare_loaded(loaded: LoadedScene, folder: &Path) -> Result<Ready, Scene
         loaded.errors(diagnostics)
     };
     let blocks = wiring::blocks(&loaded.scene, folder).map_err(located)?;
-    let simulation = wiring::simulation(&loaded.scene, blocks).map_err(located)?;
+    let simulation = wiring::simulation(&loaded.scene, blocks, folder).map_err(located)?;
     let monitors = wiring::monitors(&loaded.scene, &simulation).map_err(located)?;
     Ok(Ready { loaded, simulation, monitors })
 }

@@ -9,19 +9,18 @@ use ndda_contact::{
     ContactModel, ContactPotential, Coulomb, ElementPotential, FrictionLaw, Joints, Memory, MohrCoulomb,
     PotentialContact, SmoothPotential, VelocityCoulomb, VolumePotential,
 };
-use ndda_fem::supports::Motion;
 use ndda_fem::{
-    Bedding, Damped, Damping, Hold as FemHold, LinearElastic, Material, MaterialError, NodeSupport, Table,
-    TransverselyIsotropic, Voigt,
+    Bedding, Damped, Damping, Hold as FemHold, InitialStress, LinearElastic, Material, MaterialError, Motion,
+    NodeSupport, Record, Table, TransverselyIsotropic, Voigt,
 };
-use ndda_io::msh;
 use ndda_io::scene::{self, At, By, Contact, Hold, Integrator, Pattern, Region, Scene, Shape};
+use ndda_io::{msh, record};
 use ndda_mesh::generate::{BoxPattern, box_block, prism};
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
 use ndda_solver::{
-    BodySetup, ConjugateGradients, Direct, ForceSetup, GeneralizedAlpha, LinearSolver, Midpoint, Newmark,
-    Setup, SetupError, Simulation, TimeIntegrator, TractionSetup,
+    BodyKind, BodySetup, ConjugateGradients, Direct, ForceSetup, GeneralizedAlpha, LinearSolver, Mass,
+    Midpoint, Newmark, Setup, SetupError, Simulation, TimeIntegrator, TractionSetup,
 };
 
 use crate::monitor::Monitor;
@@ -135,9 +134,9 @@ fn vec3(v: [f64; 3]) -> Vec3 {
 ///
 /// # Errors
 /// All supports, tractions and materials that cannot be built.
-pub fn simulation(scene: &Scene, blocks: BlockSet) -> Result<Simulation, Vec<Fault>> {
+pub fn simulation(scene: &Scene, blocks: BlockSet, folder: &Path) -> Result<Simulation, Vec<Fault>> {
     let contact = contact_model(scene, &blocks).map_err(|fault| vec![fault])?;
-    simulation_with(scene, blocks, contact)
+    simulation_with(scene, blocks, folder, contact)
 }
 
 /// The simulation of a scene with a contact model of one's own.
@@ -147,15 +146,20 @@ pub fn simulation(scene: &Scene, blocks: BlockSet) -> Result<Simulation, Vec<Fau
 pub fn simulation_with(
     scene: &Scene,
     blocks: BlockSet,
+    folder: &Path,
     contact: Option<Box<dyn ContactModel>>,
 ) -> Result<Simulation, Vec<Fault>> {
-    let bodies = bodies(scene, &blocks)?;
+    let bodies = bodies(scene, &blocks, folder)?;
     let setup = Setup {
         blocks,
         bodies,
         gravity_m_s2: vec3(scene.gravity_m_s2),
         gravity_factor: (scene.gravity_ramp_s > 0.0)
             .then(|| Table { rows: vec![(0.0, 0.0), (scene.gravity_ramp_s, 1.0)] }),
+        mass: match scene.time.mass {
+            scene::Mass::Consistent => Mass::Consistent,
+            scene::Mass::Lumped => Mass::Lumped,
+        },
         step_s: scene.time.step_s,
         integrator: integrator(&scene.time.integrator),
         contact,
@@ -167,7 +171,7 @@ pub fn simulation_with(
 /// Where in the scene a simulation could not be set up.
 fn setup_fault(scene: &Scene, error: SetupError) -> Fault {
     let (block, supported) = match &error {
-        SetupError::Support { block, .. } => (block, true),
+        SetupError::Support { block, .. } | SetupError::Kind { block, .. } => (block, true),
         SetupError::Factor { block, .. } | SetupError::Solve { block, .. } => (block, false),
         SetupError::Contact(_) => return Fault::new("contact", error),
     };
@@ -253,7 +257,7 @@ pub fn integrator(choice: &Integrator) -> Box<dyn TimeIntegrator> {
     }
 }
 
-fn bodies(scene: &Scene, blocks: &BlockSet) -> Result<Vec<BodySetup>, Vec<Fault>> {
+fn bodies(scene: &Scene, blocks: &BlockSet, folder: &Path) -> Result<Vec<BodySetup>, Vec<Fault>> {
     let mut faults = Vec::new();
     let materials = materials(scene, &mut faults);
     let mut bodies = Vec::new();
@@ -261,12 +265,15 @@ fn bodies(scene: &Scene, blocks: &BlockSet) -> Result<Vec<BodySetup>, Vec<Fault>
         let used = scene.materials.iter().position(|m| m.name == block.material);
         let Some(material) = used.and_then(|i| materials[i].clone()) else { continue };
         bodies.push(BodySetup {
+            kind: match block.body {
+                scene::Body::Elastic => BodyKind::Elastic,
+                scene::Body::Affine => BodyKind::Affine,
+                scene::Body::Rigid => BodyKind::Rigid,
+                scene::Body::Fixed => BodyKind::Fixed,
+            },
             material,
             supports: Vec::new(),
-            initial_stress_pa: block
-                .initial_stress_pa
-                .as_ref()
-                .map(|s| Voigt::new(s.xx, s.yy, s.zz, s.xy, s.yz, s.zx)),
+            initial_stress: initial_stress(scene, block, blocks),
             tractions: Vec::new(),
             forces: Vec::new(),
             velocity_m_s: vec3(block.velocity_m_s),
@@ -274,7 +281,7 @@ fn bodies(scene: &Scene, blocks: &BlockSet) -> Result<Vec<BodySetup>, Vec<Fault>
         });
     }
     for (i, support) in scene.supports.iter().enumerate() {
-        match node_support(scene, blocks, support) {
+        match node_support(scene, blocks, folder, support) {
             Ok((block, held)) => bodies[block.index()].supports.push(held),
             Err(message) => faults.push(Fault::new(format!("supports[{i}].on"), message)),
         }
@@ -298,6 +305,28 @@ fn bodies(scene: &Scene, blocks: &BlockSet) -> Result<Vec<BodySetup>, Vec<Fault>
         }
     }
     if faults.is_empty() { Ok(bodies) } else { Err(faults) }
+}
+
+/// The block's own initial stress, or that of the ground where the block can have one.
+fn initial_stress(scene: &Scene, block: &scene::Block, blocks: &BlockSet) -> Option<InitialStress> {
+    if let Some(own) = &block.initial_stress_pa {
+        return Some(InitialStress::uniform(voigt(own)));
+    }
+    let deforms = matches!(block.body, scene::Body::Elastic | scene::Body::Affine);
+    let ground = scene.in_situ.as_ref().filter(|_| deforms)?;
+    let mut gradient_pa_m = [Voigt::zeros(); 3];
+    for gradient in &ground.gradients {
+        let along = vec3(gradient.along).normalize();
+        for (sum, part) in gradient_pa_m.iter_mut().zip(along.iter()) {
+            *sum += *part * voigt(&gradient.stress_pa_m);
+        }
+    }
+    let at = vec3(ground.at_m) - blocks.origin_m;
+    Some(InitialStress { stress_pa: voigt(&ground.stress_pa), at, gradient_pa_m })
+}
+
+fn voigt(s: &scene::Stress) -> Voigt {
+    Voigt::new(s.xx, s.yy, s.zz, s.xy, s.yz, s.zx)
 }
 
 /// No table is a constant load.
@@ -359,6 +388,7 @@ fn elastic(m: &scene::Material) -> Result<Arc<dyn Material>, MaterialError> {
 fn node_support(
     scene: &Scene,
     blocks: &BlockSet,
+    folder: &Path,
     support: &scene::Support,
 ) -> Result<(BlockId, NodeSupport), String> {
     let block = find(blocks, &support.block)?;
@@ -370,7 +400,12 @@ fn node_support(
         (Hold::Normal, _) => return Err("`Normal` needs a region that is a plane; use `Direction(…)`".into()),
         (Hold::Motion(rows), _) => {
             let rows = rows.iter().map(|row| (row.time_s, vec3(row.displacement_m))).collect();
-            FemHold::Motion(Motion { rows })
+            FemHold::Motion(Motion::Rows(rows))
+        }
+        (Hold::Acceleration { file, direction, factor }, _) => {
+            let rows = record::read(&folder.join(file)).map_err(|e| e.to_string())?;
+            let direction = *factor * vec3(*direction).normalize();
+            FemHold::Motion(Motion::Record(Record::new(direction, &rows)))
         }
     };
     let young_pa = || {

@@ -1,5 +1,6 @@
 //! K and M of one block in its rest frame.
 
+use nalgebra::Matrix6;
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::material::Material;
@@ -27,32 +28,58 @@ pub struct BlockOperator {
 impl BlockOperator {
     /// Assembles K and M over the elements of a validated block; `position` is per node [m].
     pub fn new(position: &[Vec3], tets: Vec<[u32; 4]>, material: &dyn Material) -> Self {
+        Self::assembled(position, tets, material.density_kg_m3(), Some(&material.moduli()))
+    }
+
+    /// M alone, for a block that does not deform: K is zero and takes no room.
+    pub fn rigid(position: &[Vec3], tets: Vec<[u32; 4]>, density_kg_m3: f64) -> Self {
+        Self::assembled(position, tets, density_kg_m3, None)
+    }
+
+    /// The same with all of a row's mass on its node.
+    pub fn with_lumped_mass(mut self) -> Self {
+        self.mass.fill(0.0);
+        for node in 0..self.nodes() as u32 {
+            let slot = self.slot(node, node);
+            self.mass[slot] = self.node_mass[node as usize];
+        }
+        self
+    }
+
+    fn assembled(
+        position: &[Vec3],
+        tets: Vec<[u32; 4]>,
+        density: f64,
+        moduli: Option<&Matrix6<f64>>,
+    ) -> Self {
         let (row_start, column) = neighbours(position.len(), &tets);
+        let blocks = if moduli.is_some() { column.len() } else { 0 };
         let mut operator = Self {
             rest: position.to_vec(),
             node_mass: vec![0.0; position.len()],
             mass_kg: 0.0,
-            stiffness: vec![Mat3::zeros(); column.len()],
+            stiffness: vec![Mat3::zeros(); blocks],
             mass: vec![0.0; column.len()],
             tets,
             row_start,
             column,
         };
-        operator.assemble(material);
+        operator.assemble(density, moduli);
         let center = operator.center(position);
         operator.rest.iter_mut().for_each(|x| *x -= center);
         operator
     }
 
-    fn assemble(&mut self, material: &dyn Material) {
-        let (moduli, density) = (material.moduli(), material.density_kg_m3());
+    fn assemble(&mut self, density: f64, moduli: Option<&Matrix6<f64>>) {
         for tet in self.tets.clone() {
             let element = Tet4::new(&tet.map(|n| self.rest[n as usize]));
             for (a, &row) in tet.iter().enumerate() {
                 for (b, &column) in tet.iter().enumerate() {
                     let slot = self.slot(row, column);
                     let mass = element.mass(density, a, b);
-                    self.stiffness[slot] += element.stiffness(&moduli, a, b);
+                    if let Some(moduli) = moduli {
+                        self.stiffness[slot] += element.stiffness(moduli, a, b);
+                    }
                     self.mass[slot] += mass;
                     self.node_mass[row as usize] += mass;
                 }
@@ -71,10 +98,10 @@ impl BlockOperator {
         self.rest.len()
     }
 
-    /// Neighbours of a node in ascending order, itself included: (node, K_ij [N/m], M_ij [kg]).
+    /// Neighbours of a node in ascending order, itself included: (node, K_ij [N/m], M_ij [kg]); none if rigid.
     pub fn row(&self, node: usize) -> impl Iterator<Item = (usize, &Mat3, f64)> {
         let range = self.row_start[node] as usize..self.row_start[node + 1] as usize;
-        let stiffness = self.stiffness[range.clone()].iter();
+        let stiffness = self.stiffness.get(range.clone()).unwrap_or(&[]).iter();
         let columns = self.column[range.clone()].iter();
         columns.zip(stiffness).zip(&self.mass[range]).map(|((&j, k), &m)| (j as usize, k, m))
     }
@@ -97,7 +124,7 @@ impl BlockOperator {
         pairs.fold(Vec3::zeros(), |sum, (&j, &m)| sum + m * w[j as usize])
     }
 
-    /// Mass centre of positions [m].
+    /// Mass centre of positions [m], and mean of any field: a uniform one comes out to the last bit.
     pub fn center(&self, position: &[Vec3]) -> Vec3 {
         let first = position[0];
         let offset: Vec3 = self.node_mass.iter().zip(position).map(|(&m, x)| m * (x - first)).sum();

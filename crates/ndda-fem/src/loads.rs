@@ -24,13 +24,40 @@ pub fn add_traction(triangles: &[[u32; 3]], rest: &[Vec3], traction_pa: &Vec3, f
     }
 }
 
-/// ∫ Bᵀ σ₀ dV per node in the block's frame [N].
+/// A stress that is there before anything moves, σ₀ = σ + G (x − at).
+#[derive(Clone, Debug, PartialEq)]
+pub struct InitialStress {
+    /// σ [Pa].
+    pub stress_pa: Voigt,
+    /// Where it is that [m].
+    pub at: Vec3,
+    /// Its change per metre along x, y and z [Pa/m].
+    pub gradient_pa_m: [Voigt; 3],
+}
+
+impl InitialStress {
+    /// The same stress everywhere.
+    pub fn uniform(stress_pa: Voigt) -> Self {
+        Self { stress_pa, at: Vec3::zeros(), gradient_pa_m: [Voigt::zeros(); 3] }
+    }
+
+    /// Its value in each element of a block, at the centroid: exact in the mean.
+    pub fn of_elements(&self, operator: &BlockOperator, position: &[Vec3]) -> Vec<Voigt> {
+        let stress = |tet: &[u32; 4]| {
+            let x = tet.iter().map(|&n| position[n as usize]).sum::<Vec3>() / 4.0 - self.at;
+            (0..3).fold(self.stress_pa, |sum, i| sum + self.gradient_pa_m[i] * x[i])
+        };
+        operator.tets.iter().map(stress).collect()
+    }
+}
+
+/// ∫ Bᵀ σ₀ dV per node in the block's frame [N], σ₀ being one stress per element.
 ///
 /// With σ = D ε + σ₀ (tension positive) it stands on the side of K d, so the load is its negative: the sign that
 /// eq (6) prints is wrong.
-pub fn initial_stress_force(operator: &BlockOperator, stress_pa: &Voigt) -> Vec<Vec3> {
+pub fn initial_stress_force(operator: &BlockOperator, stress_pa: &[Voigt]) -> Vec<Vec3> {
     let mut force = vec![Vec3::zeros(); operator.nodes()];
-    for tet in &operator.tets {
+    for (tet, stress_pa) in operator.tets.iter().zip(stress_pa) {
         let element = Tet4::new(&tet.map(|n| operator.rest[n as usize]));
         for (a, &n) in tet.iter().enumerate() {
             force[n as usize] += element.stress_force(stress_pa, a);
@@ -59,7 +86,7 @@ mod tests {
     #[test]
     fn a_tensile_initial_stress_pulls_the_faces_together() {
         // Free of supports, a block under tension σ₀ contracts: the load −∫Bᵀσ₀ points inward.
-        let force = initial_stress_force(&corner(), &Voigt::new(6.0, 0.0, 0.0, 0.0, 0.0, 0.0));
+        let force = initial_stress_force(&corner(), &[Voigt::new(6.0, 0.0, 0.0, 0.0, 0.0, 0.0)]);
         assert!((-force[1] - Vec3::new(-1.0, 0.0, 0.0)).norm() < 1e-15);
         assert!(force.iter().sum::<Vec3>().norm() < 1e-15);
     }

@@ -9,19 +9,19 @@ use crate::tet4::Tet4;
 
 /// Cauchy stress per element in global axes, σ = R (D ε + σ₀) Rᵀ as (xx, yy, zz, xy, yz, zx) [Pa].
 ///
-/// `displacement` is w = Rᵀ (x − c) − X per node, in the block's frame [m].
+/// `displacement` is w = Rᵀ (x − c) − X per node, in the block's frame [m]; σ₀ is per element, or empty.
 pub fn cauchy_stress(
     operator: &BlockOperator,
     material: &dyn Material,
-    initial_pa: Option<&Voigt>,
+    initial_pa: &[Voigt],
     rotation: &Mat3,
     displacement: &[Vec3],
     out: &mut [[f64; 6]],
 ) {
-    for (tet, out) in operator.tets.iter().zip(out) {
+    for (e, (tet, out)) in operator.tets.iter().zip(out).enumerate() {
         let element = Tet4::new(&tet.map(|n| operator.rest[n as usize]));
         let mut stress = material.stress(&element.strain(&tet.map(|n| displacement[n as usize])));
-        if let Some(initial) = initial_pa {
+        if let Some(initial) = initial_pa.get(e) {
             stress += initial;
         }
         *out = rotated(&stress, rotation);
@@ -66,7 +66,7 @@ mod tests {
         let quarter = Mat3::new(0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
         let mut stress = [[0.0; 6]];
         let initial = Voigt::new(0.0, 0.0, 5.0, 0.0, 0.0, 0.0);
-        cauchy_stress(&operator, &rock, Some(&initial), &quarter, &w, &mut stress);
+        cauchy_stress(&operator, &rock, &[initial], &quarter, &w, &mut stress);
         assert!((stress[0][1] - 1e6).abs() < 1e-6 && stress[0][0].abs() < 1e-6 && stress[0][2] == 5.0);
 
         let half: Vec<Vec3> = nodes.iter().map(|x| Vec3::new(x.x, 0.5 * x.y, x.z)).collect();

@@ -5,7 +5,7 @@ use ndda_mesh::{Mat3, Vec3};
 
 use crate::block_operator::BlockOperator;
 use crate::frame::Frame;
-use crate::table::interpolated;
+use crate::motion::Motion;
 
 /// Two directions closer than this (sine of the angle) are the same; far above round-off, far below any joint.
 const SAME_DIRECTION: f64 = 1e-6;
@@ -19,20 +19,6 @@ pub enum Hold {
     Along(Vec3),
     /// A prescribed displacement.
     Motion(Motion),
-}
-
-/// A displacement over time, linear between rows, constant before the first and after the last.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
-    /// Time [s], ascending, and displacement [m].
-    pub rows: Vec<(f64, Vec3)>,
-}
-
-impl Motion {
-    /// Displacement at a time [m].
-    pub fn displacement(&self, time_s: f64) -> Vec3 {
-        interpolated(&self.rows, time_s).unwrap_or_else(Vec3::zeros)
-    }
 }
 
 /// One support of a block as asked for.
@@ -176,14 +162,8 @@ impl BlockSupports {
         motion: Option<usize>,
     ) -> Result<(), SupportError> {
         let entry = slot.get_or_insert(HeldNode { node, held: Vec::new(), free: Vec::new(), motion: None });
-        let moves = |index: Option<usize>, along: Option<&Vec3>| {
-            index.is_some_and(|i| {
-                self.motions[i]
-                    .rows
-                    .iter()
-                    .any(|row| along.map_or(row.1.norm(), |n| row.1.dot(n).abs()) > 0.0)
-            })
-        };
+        let moves =
+            |index: Option<usize>, along: Option<&Vec3>| index.is_some_and(|i| self.motions[i].moves(along));
         let along = direction(hold);
         if !entry.held.is_empty() {
             let same = entry.motion.map(|i| &self.motions[i]) == motion.map(|i| &self.motions[i]);
@@ -346,18 +326,10 @@ mod tests {
 
     #[test]
     fn a_motion_against_a_roller_is_a_conflict() {
-        let motion = Motion { rows: vec![(0.0, Vec3::zeros()), (1.0, Vec3::z())] };
+        let motion = Motion::Rows(vec![(0.0, Vec3::zeros()), (1.0, Vec3::z())]);
         let moved = NodeSupport { nodes: vec![0, 1, 2], hold: Hold::Motion(motion), spring_n_m: None };
         let clash = BlockSupports::new(&corner(), &[moved.clone(), along(&[0], Vec3::z())]);
         assert_eq!(clash, Err(SupportError::Conflict { node: 0 }));
         assert!(BlockSupports::new(&corner(), &[moved, along(&[0], Vec3::x())]).is_ok());
-    }
-
-    #[test]
-    fn a_motion_is_linear_between_rows_and_constant_outside() {
-        let motion = Motion { rows: vec![(1.0, Vec3::zeros()), (3.0, Vec3::x())] };
-        assert_eq!(motion.displacement(0.0), Vec3::zeros());
-        assert_eq!(motion.displacement(2.0), 0.5 * Vec3::x());
-        assert_eq!(motion.displacement(9.0), Vec3::x());
     }
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::read::suggest;
 use crate::scene::{
-    By, Contact, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene, Shape, Solver,
+    Body, By, Contact, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene, Shape, Solver,
 };
 
 /// More steps than this are a slip of the keyboard.
@@ -22,7 +22,7 @@ pub fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> {
     check.numbers("gravity_m_s2", &scene.gravity_m_s2);
     check.materials();
     check.blocks(folder);
-    check.supports();
+    check.supports(folder);
     check.loads();
     check.contact();
     check.monitors();
@@ -232,6 +232,14 @@ impl Check<'_> {
                 self.error(path("velocity_m_s"), "is faster than light", "the unit is metres per second");
             }
             self.numbers(&path("spin_rad_s"), &block.spin_rad_s);
+            if matches!(block.body, Body::Rigid | Body::Fixed) && block.initial_stress_pa.is_some() {
+                let help = "leave it out, or make the body Elastic or Affine";
+                self.error(path("initial_stress_pa"), "a block that does not deform has no stress", help);
+            }
+            if block.body == Body::Fixed && (block.velocity_m_s, block.spin_rad_s) != ([0.0; 3], [0.0; 3]) {
+                let help = "leave it out, or give the block a support with a Motion";
+                self.error(path("velocity_m_s"), "a fixed block does not start with a velocity", help);
+            }
             self.shape(&path("shape"), &block.shape, folder);
         }
     }
@@ -258,13 +266,17 @@ impl Check<'_> {
             }
             Shape::Mesh { file, unit_m, .. } => {
                 self.positive(format!("{path}.unit_m"), *unit_m, "m");
-                if let Some(folder) = folder
-                    && !folder.join(file).is_file()
-                {
-                    let message = format!("there is no file {}", folder.join(file).display());
-                    self.error(format!("{path}.file"), message, "the path counts from the scene file");
-                }
+                self.file(format!("{path}.file"), file, folder);
             }
+        }
+    }
+
+    fn file(&mut self, path: String, file: &str, folder: Option<&Path>) {
+        if let Some(folder) = folder
+            && !folder.join(file).is_file()
+        {
+            let message = format!("there is no file {}", folder.join(file).display());
+            self.error(path, message, "the path counts from the scene file");
         }
     }
 
@@ -285,7 +297,7 @@ impl Check<'_> {
         }
     }
 
-    fn supports(&mut self) {
+    fn supports(&mut self, folder: Option<&Path>) {
         let scene = self.scene;
         let blocks: Vec<&str> = scene.blocks.iter().map(|b| b.name.as_str()).collect();
         for (i, support) in scene.supports.iter().enumerate() {
@@ -299,6 +311,11 @@ impl Check<'_> {
                 }
                 Hold::Direction(n) => self.direction(path("hold"), n),
                 Hold::Motion(rows) => self.motion(&path("hold"), rows),
+                Hold::Acceleration { file, direction, factor } => {
+                    self.direction(path("hold.direction"), direction);
+                    self.numbers(&path("hold.factor"), &[*factor]);
+                    self.file(path("hold.file"), file, folder);
+                }
                 _ => {}
             }
             if let By::Springs { stiffness_n_m: Some(stiffness) } = support.by {
@@ -334,6 +351,12 @@ impl Check<'_> {
 
     fn loads(&mut self) {
         let scene = self.scene;
+        if let Some(in_situ) = &scene.in_situ {
+            self.numbers("in_situ.at_m", &in_situ.at_m);
+            for (i, gradient) in in_situ.gradients.iter().enumerate() {
+                self.direction(format!("in_situ.gradients[{i}].along"), &gradient.along);
+            }
+        }
         let blocks: Vec<&str> = scene.blocks.iter().map(|b| b.name.as_str()).collect();
         if !(scene.gravity_ramp_s >= 0.0 && scene.gravity_ramp_s.is_finite()) {
             let message = format!("{} s: must not be negative", scene.gravity_ramp_s);

@@ -11,6 +11,7 @@ pub mod msh;
 pub mod overrides;
 pub mod pvd;
 pub mod read;
+pub mod record;
 pub mod scene;
 pub mod summary;
 pub mod vtu;

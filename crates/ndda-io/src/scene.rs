@@ -16,6 +16,9 @@ pub struct Scene {
     /// Time over which gravity grows from nothing [s]; 0 applies it suddenly. Default: 0.
     #[serde(default)]
     pub gravity_ramp_s: f64,
+    /// Stress in the ground before anything moves, for blocks that have no `initial_stress_pa` and can deform. Default: none.
+    #[serde(default)]
+    pub in_situ: Option<InSitu>,
     /// Brings the scene to rest before time begins. Default: it begins as it is written.
     #[serde(default)]
     pub settle: Option<Settle>,
@@ -57,6 +60,9 @@ pub struct Time {
     /// Time integrator. Default: `Midpoint(theta: 0.5)`.
     #[serde(default)]
     pub integrator: Integrator,
+    /// How mass is shared among the nodes of an element. Default: `Consistent`.
+    #[serde(default)]
+    pub mass: Mass,
     /// How a block's equations are solved. Default: `Cholesky`.
     #[serde(default)]
     pub solver: Solver,
@@ -92,6 +98,16 @@ pub enum Solver {
         #[serde(default = "fine")]
         tolerance: f64,
     },
+}
+
+/// How mass is shared among nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Mass {
+    /// By the shape functions: the most accurate.
+    #[default]
+    Consistent,
+    /// A quarter of an element to each of its nodes: waves a little slower, no overshoot beside a loaded node.
+    Lumped,
 }
 
 /// Choice of time integrator.
@@ -171,6 +187,20 @@ pub struct Bedding {
     pub shear_across_pa: f64,
 }
 
+/// How a block may move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Body {
+    /// Deforms as its mesh lets it.
+    #[default]
+    Elastic,
+    /// Deforms uniformly, 12 unknowns: the first-order block of classic DDA.
+    Affine,
+    /// Does not deform, 6 unknowns.
+    Rigid,
+    /// Stays where it is, or goes where one support with a `Motion` takes it as a whole; no unknowns.
+    Fixed,
+}
+
 /// One block of rock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -181,6 +211,9 @@ pub struct Block {
     pub material: String,
     /// Its shape and mesh.
     pub shape: Shape,
+    /// How it may move. Default: `Elastic`.
+    #[serde(default)]
+    pub body: Body,
     /// Turns applied one after the other about the shape's own origin, before `at_m`. Default: none.
     #[serde(default)]
     pub turns: Vec<Turn>,
@@ -206,6 +239,30 @@ pub struct Turn {
     pub axis: [f64; 3],
     /// Angle, right-handed [°].
     pub angle_deg: f64,
+}
+
+/// A stress that changes linearly over the scene.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InSitu {
+    /// The stress at `at_m` [Pa], tension positive.
+    pub stress_pa: Stress,
+    /// Where it is that [m]. Default: (0, 0, 0).
+    #[serde(default)]
+    pub at_m: [f64; 3],
+    /// How it changes along directions; several add up. Default: not at all.
+    #[serde(default)]
+    pub gradients: Vec<StressGradient>,
+}
+
+/// A change of stress along a direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StressGradient {
+    /// The direction; its length does not matter.
+    pub along: [f64; 3],
+    /// Change per metre along it [Pa/m].
+    pub stress_pa_m: Stress,
 }
 
 /// A symmetric stress [Pa], tension positive.
@@ -317,6 +374,16 @@ pub enum Hold {
     Direction([f64; 3]),
     /// All three components follow a displacement, linear between rows and constant after the last.
     Motion(Vec<MotionRow>),
+    /// All three components follow a record of accelerations, from rest: a shaken base.
+    Acceleration {
+        /// CSV file with the columns `time_s` and `acceleration_m_s2`; its path counts from the scene file.
+        file: String,
+        /// Direction of the motion; its length does not matter.
+        direction: [f64; 3],
+        /// Factor on the accelerations. Default: 1.
+        #[serde(default = "one")]
+        factor: f64,
+    },
 }
 
 /// One row of a prescribed motion.

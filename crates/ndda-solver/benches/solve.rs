@@ -17,7 +17,12 @@ fn matrix(n: u32) -> SymmetricMatrix {
     let operator = BlockOperator::new(&mesh.nodes, mesh.tets, &rock);
     let supports = BlockSupports::new(&operator, &[]).expect("no supports");
     let weights = Midpoint { theta: 0.5 }.weights(1e-4);
-    Unknowns::new(operator.nodes(), &supports).matrix(&operator, &supports, &weights, &StepDamping::default())
+    Unknowns::nodal(operator.nodes(), &supports).matrix(
+        &operator,
+        &supports,
+        &weights,
+        &StepDamping::default(),
+    )
 }
 
 fn solve(c: &mut Criterion) {

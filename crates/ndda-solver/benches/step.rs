@@ -7,7 +7,7 @@ use criterion::{Criterion, criterion_group, criterion_main};
 use ndda_fem::LinearElastic;
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockSet, Mat3, Vec3};
-use ndda_solver::{BodySetup, Direct, Midpoint, Setup, Simulation};
+use ndda_solver::{BodyKind, BodySetup, Direct, Mass, Midpoint, Setup, Simulation};
 
 /// `count` equal cubes of n³ cells, spinning freely.
 fn cubes(count: usize, n: u32) -> Simulation {
@@ -17,9 +17,10 @@ fn cubes(count: usize, n: u32) -> Simulation {
     };
     let material = Arc::new(LinearElastic::new(20e9, 0.25, 2650.0).expect("rock"));
     let body = || BodySetup {
+        kind: BodyKind::Elastic,
         material: material.clone(),
         supports: Vec::new(),
-        initial_stress_pa: None,
+        initial_stress: None,
         tractions: Vec::new(),
         forces: Vec::new(),
         velocity_m_s: Vec3::x(),
@@ -31,6 +32,7 @@ fn cubes(count: usize, n: u32) -> Simulation {
         gravity_m_s2: Vec3::new(0.0, 0.0, -9.8),
         gravity_factor: None,
         step_s: 1e-5,
+        mass: Mass::Consistent,
         integrator: Box::new(Midpoint { theta: 0.5 }),
         contact: None,
         solver: Box::new(Direct),

@@ -4,10 +4,12 @@
 //! page. Contact is known only through [`ContactModel`](ndda_contact::ContactModel), time through
 //! [`TimeIntegrator`], linear algebra through [`LinearSolver`].
 
-pub mod block_step;
+pub mod body;
 pub mod conjugate_gradients;
 pub mod dense_inverse;
 pub mod direct;
+pub mod elastic_body;
+pub mod fixed_body;
 pub mod for_each_block;
 pub mod generalized_alpha;
 pub mod ledger;
@@ -15,6 +17,7 @@ pub mod linear_solver;
 pub mod loads;
 pub mod midpoint;
 pub mod newmark;
+pub mod rigid_body;
 pub mod settle;
 pub mod shape;
 pub mod simulation;
@@ -25,7 +28,7 @@ pub mod testing;
 pub mod time_integrator;
 pub mod unknowns;
 
-pub use block_step::BlockError;
+pub use body::{BlockError, BodyKind};
 pub use conjugate_gradients::ConjugateGradients;
 pub use dense_inverse::DenseInverse;
 pub use direct::Direct;
@@ -35,7 +38,7 @@ pub use linear_solver::{Factor, FactorError, LinearSolver, SolveError, Symmetric
 pub use midpoint::Midpoint;
 pub use newmark::Newmark;
 pub use settle::{Settle, Settled};
-pub use shape::{BodySetup, ForceSetup, SetupError, TractionSetup};
+pub use shape::{BodySetup, ForceSetup, Mass, SetupError, TractionSetup};
 pub use simulation::{RestoreError, Setup, Simulation, Snapshot, StageTimes, StepError, StepReport};
 pub use sink::{RunError, Sink, SinkError, View, resume, run};
 pub use sparse_cholesky::SparseCholesky;

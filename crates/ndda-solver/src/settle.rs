@@ -60,11 +60,12 @@ impl Swing {
 
 impl Simulation {
     /// Runs with kinetic damping until all blocks are at rest, then sets time and displacements to zero; initial
-    /// velocities come after it. What contact remembers stays.
+    /// velocities come after it. What contact remembers stays; loads and prescribed motions are those of the start.
     ///
     /// # Errors
     /// [`StepError::NotSettled`] when the steps do not suffice, or as [`step`](Self::step).
     pub fn settle(&mut self, settle: &Settle) -> Result<Settled, StepError> {
+        self.settling = true;
         let start = std::mem::take(&mut self.state.velocity);
         self.state.velocity = vec![Vec3::zeros(); start.len()];
         let mut swings = vec![Swing::default(); self.blocks().len()];

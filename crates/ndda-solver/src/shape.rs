@@ -3,10 +3,14 @@
 use std::sync::Arc;
 
 use ndda_fem::frame::polar_rotation;
-use ndda_fem::{BlockOperator, BlockSupports, Frame, Material, NodeSupport, SupportError, Table, Voigt};
+use ndda_fem::{
+    BlockOperator, BlockSupports, Frame, Hold, InitialStress, Material, NodeSupport, SupportError, Table,
+};
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
+use crate::body::BodyKind;
 use crate::linear_solver::{Factor, FactorError, LinearSolver, SolveError};
+use crate::rigid_body::RigidInertia;
 use crate::simulation::StepError;
 use crate::time_integrator::{StepDamping, StepWeights};
 use crate::unknowns::Unknowns;
@@ -17,12 +21,14 @@ const CONGRUENT: f64 = 1e-12;
 /// What one block brings besides its mesh.
 #[derive(Clone)]
 pub struct BodySetup {
+    /// How it may move.
+    pub kind: BodyKind,
     /// Its material; blocks that share the `Arc` can share a factor.
     pub material: Arc<dyn Material>,
     /// Its supports.
     pub supports: Vec<NodeSupport>,
-    /// Uniform initial stress σ₀ [Pa].
-    pub initial_stress_pa: Option<Voigt>,
+    /// Initial stress σ₀.
+    pub initial_stress: Option<InitialStress>,
     /// Tractions on its surface.
     pub tractions: Vec<TractionSetup>,
     /// Forces on its nodes.
@@ -55,6 +61,16 @@ pub struct ForceSetup {
     pub factor: Option<Table>,
 }
 
+/// How the mass of an element is shared among its nodes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Mass {
+    /// By its shape functions.
+    #[default]
+    Consistent,
+    /// A quarter to each.
+    Lumped,
+}
+
 /// Why a simulation could not be set up.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SetupError {
@@ -74,6 +90,14 @@ pub enum SetupError {
         /// What is wrong with them.
         source: FactorError,
     },
+    /// Supports that a body of this kind cannot have.
+    #[error("block `{block}`: {reason}")]
+    Kind {
+        /// Name of the block.
+        block: String,
+        /// What does not go together, and what to do.
+        reason: &'static str,
+    },
     /// Contact at the start cannot be computed.
     #[error(transparent)]
     Contact(#[from] Box<StepError>),
@@ -89,6 +113,8 @@ pub enum SetupError {
 
 /// One distinct block: all blocks congruent to it, of the same material, use its operator and factor.
 pub struct Shape {
+    /// How it may move.
+    pub kind: BodyKind,
     /// K, M and rest shape.
     pub operator: BlockOperator,
     /// Supports and frame.
@@ -101,6 +127,8 @@ pub struct Shape {
     pub material: Arc<dyn Material>,
     /// Its damping.
     pub damping: StepDamping,
+    /// Inertia in the rest frame, for rigid blocks.
+    pub rigid: Option<RigidInertia>,
     /// Smallest height of its elements at rest [m].
     pub smallest_height_m: f64,
 }
@@ -114,6 +142,7 @@ impl Shape {
         blocks: &BlockSet,
         block: BlockId,
         setup: &BodySetup,
+        mass: Mass,
         (dt_s, weights): (f64, &StepWeights),
         solver: &dyn LinearSolver,
     ) -> Result<Self, SetupError> {
@@ -121,10 +150,28 @@ impl Shape {
         let name = || blocks.names[block.index()].clone();
         let position = &blocks.rest_position[blocks.nodes_of(block)];
         let tets: Vec<[u32; 4]> = blocks.local_tets(block).collect();
-        let operator = BlockOperator::new(position, tets, setup.material.as_ref());
+        check_kind(setup).map_err(|reason| SetupError::Kind { block: name(), reason })?;
+        let kind = setup.kind;
+        let operator = match kind {
+            BodyKind::Elastic | BodyKind::Affine => {
+                BlockOperator::new(position, tets, setup.material.as_ref())
+            }
+            BodyKind::Rigid | BodyKind::Fixed => {
+                BlockOperator::rigid(position, tets, setup.material.density_kg_m3())
+            }
+        };
+        let operator = match mass {
+            Mass::Consistent => operator,
+            Mass::Lumped => operator.with_lumped_mass(),
+        };
         let supports = BlockSupports::new(&operator, &setup.supports)
             .map_err(|source| SetupError::Support { block: name(), source })?;
-        let unknowns = Unknowns::new(operator.nodes(), &supports);
+        let unknowns = match kind {
+            BodyKind::Elastic => Unknowns::nodal(operator.nodes(), &supports),
+            BodyKind::Affine => Unknowns::affine(&operator, &supports),
+            BodyKind::Rigid | BodyKind::Fixed => Unknowns::none(),
+        };
+        let rigid = (kind == BodyKind::Rigid).then(|| RigidInertia::new(&operator));
         let factor = if unknowns.is_empty() {
             None
         } else {
@@ -138,17 +185,17 @@ impl Shape {
             .flat_map(|tet| ndda_mesh::geometry::tet_heights(&tet.map(|n| operator.rest[n as usize])));
         let smallest_height_m = heights.fold(f64::INFINITY, f64::min);
         let material = setup.material.clone();
-        Ok(Self { operator, supports, unknowns, factor, material, damping, smallest_height_m })
+        Ok(Self { kind, operator, supports, unknowns, factor, material, damping, rigid, smallest_height_m })
     }
 
     /// Whether nothing holds the block, so that its momentum changes by outside forces only.
     pub fn is_free(&self) -> bool {
-        self.supports.held.is_empty() && self.supports.springs.is_empty()
+        self.kind != BodyKind::Fixed && self.supports.held.is_empty() && self.supports.springs.is_empty()
     }
 
     /// What contact may know of the block's inertia. Supports that leave no rigid motion make it immovable.
     pub fn contact_body(&self) -> ndda_contact::Body {
-        let immovable = self.supports.hold_all_rigid_motions(&self.operator);
+        let immovable = self.kind == BodyKind::Fixed || self.supports.hold_all_rigid_motions(&self.operator);
         let density = self.material.density_kg_m3();
         let moduli = self.material.moduli();
         let softest = (3..6).map(|i| moduli[(i, i)]).fold(f64::INFINITY, f64::min);
@@ -168,6 +215,7 @@ impl Shape {
     pub fn fits(&self, blocks: &BlockSet, block: BlockId, setup: &BodySetup) -> bool {
         let position = &blocks.rest_position[blocks.nodes_of(block)];
         if !self.is_free()
+            || self.kind != setup.kind
             || !setup.supports.is_empty()
             || !Arc::ptr_eq(&self.material, &setup.material)
             || position.len() != self.operator.nodes()
@@ -186,5 +234,25 @@ impl Shape {
         let size = self.operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
         let misfit = |(x, rest): (&Vec3, &Vec3)| (x - center - rotation * rest).norm();
         position.iter().zip(&self.operator.rest).map(misfit).fold(0.0, f64::max) <= CONGRUENT * size
+    }
+}
+
+/// Whether a body of its kind can have the supports that are asked for.
+fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
+    let moves = |s: &NodeSupport| matches!(s.hold, Hold::Motion(_)) && s.spring_n_m.is_none();
+    match setup.kind {
+        BodyKind::Elastic => Ok(()),
+        BodyKind::Affine if setup.supports.iter().any(moves) => {
+            Err("parts of an affine block cannot be moved: make it Elastic, or Fixed to move it as a whole")
+        }
+        BodyKind::Affine => Ok(()),
+        BodyKind::Rigid if !setup.supports.is_empty() => {
+            Err("a rigid block cannot be held in parts: make it Fixed, Affine or Elastic")
+        }
+        BodyKind::Rigid => Ok(()),
+        BodyKind::Fixed if setup.supports.len() > 1 || !setup.supports.iter().all(moves) => {
+            Err("a fixed block is held as a whole: leave out its supports, but for one motion")
+        }
+        BodyKind::Fixed => Ok(()),
     }
 }

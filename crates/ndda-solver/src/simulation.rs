@@ -11,12 +11,15 @@ use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::block_step::{BlockError, Body, StepContext};
+use crate::body::{BlockError, BlockReport, Body, BodyKind, Motion, StepContext};
+use crate::elastic_body::ElasticBody;
+use crate::fixed_body::FixedBody;
 use crate::for_each_block::{NodeSlices, for_each_block};
 use crate::ledger::{Invariants, Ledger, Sample};
 use crate::linear_solver::LinearSolver;
 use crate::loads::{Loads, VaryingLoad};
-use crate::shape::{BodySetup, SetupError, Shape};
+use crate::rigid_body::RigidBody;
+use crate::shape::{BodySetup, Mass, SetupError, Shape};
 use crate::state::State;
 use crate::time_integrator::{Inertia, StepDamping, StepWeights, TimeIntegrator};
 
@@ -33,6 +36,8 @@ pub struct Setup {
     pub gravity_m_s2: Vec3,
     /// Factor of gravity over time; constant without.
     pub gravity_factor: Option<Table>,
+    /// How mass is shared among nodes.
+    pub mass: Mass,
     /// Δt [s].
     pub step_s: f64,
     /// Time integrator.
@@ -159,6 +164,7 @@ pub struct Simulation {
     bodies: Vec<Body>,
     pub(crate) state: State,
     step_s: f64,
+    pub(crate) settling: bool,
     integrator: Box<dyn TimeIntegrator>,
     weights: StepWeights,
     contact: Option<Box<dyn ContactModel>>,
@@ -178,7 +184,7 @@ impl Simulation {
     /// # Errors
     /// [`SetupError`] naming the block whose supports or equations are at fault.
     pub fn new(setup: Setup) -> Result<Self, SetupError> {
-        let Setup { blocks, bodies, gravity_m_s2, gravity_factor, step_s, integrator, contact, solver } =
+        let Setup { blocks, bodies, gravity_m_s2, gravity_factor, mass, step_s, integrator, contact, solver } =
             setup;
         let weights = integrator.weights(step_s);
         let mut shapes: Vec<Shape> = Vec::new();
@@ -187,7 +193,7 @@ impl Simulation {
             let known = shapes.iter().position(|shape| shape.fits(&blocks, block, body));
             shape_of.push(known.unwrap_or(shapes.len()));
             if known.is_none() {
-                shapes.push(Shape::new(&blocks, block, body, (step_s, &weights), solver.as_ref())?);
+                shapes.push(Shape::new(&blocks, block, body, mass, (step_s, &weights), solver.as_ref())?);
             }
         }
         let nodes = blocks.rest_position.len();
@@ -218,6 +224,7 @@ impl Simulation {
             blocks,
             shapes,
             step_s,
+            settling: false,
             integrator,
             weights,
             contact,
@@ -242,12 +249,28 @@ impl Simulation {
         for (v, x) in self.state.velocity[range.clone()].iter_mut().zip(rest) {
             *v = setup.velocity_m_s + setup.spin_rad_s.cross(&(x - center));
         }
-        let body = Body::new(shape_index, shape, setup.initial_stress_pa, rest);
-        let internal = self.state.internal_force.get_mut(range).unwrap_or_default();
-        if let Some(initial) = &body.initial_force {
-            internal.iter_mut().zip(initial).for_each(|(f, initial)| *f = *initial);
+        let motion = match shape.kind {
+            BodyKind::Elastic | BodyKind::Affine => {
+                let body = ElasticBody::new(shape, setup.initial_stress.as_ref(), rest);
+                let internal = self.state.internal_force.get_mut(range.clone()).unwrap_or_default();
+                if let Some(initial) = &body.initial_force {
+                    internal.iter_mut().zip(initial).for_each(|(f, initial)| *f = *initial);
+                }
+                Motion::Elastic(body)
+            }
+            BodyKind::Rigid => Motion::Rigid(RigidBody::new(shape)),
+            BodyKind::Fixed => {
+                self.state.velocity[range].fill(Vec3::zeros());
+                Motion::Fixed(FixedBody::new(shape, rest))
+            }
+        };
+        let report = BlockReport::default();
+        self.bodies.push(Body { shape: shape_index, motion, report, error: None });
+        if shape.kind == BodyKind::Affine && !shape.is_free() {
+            let velocity = &mut self.state.velocity[self.blocks.nodes_of(block)];
+            shape.unknowns.restrict(&shape.operator.node_mass, velocity);
+            return;
         }
-        self.bodies.push(body);
         for held in &shape.supports.held {
             let v = &mut self.state.velocity[self.blocks.nodes_of(block).start + held.node as usize];
             for n in &held.held {
@@ -300,14 +323,19 @@ impl Simulation {
         self.state.contact = untouched;
         let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
         for block in self.blocks.ids() {
-            let body = &self.bodies[block.index()];
+            let body = &mut self.bodies[block.index()];
             let shape = &self.shapes[body.shape];
-            if shape.unknowns.is_empty() {
-                continue;
-            }
             let range = self.blocks.nodes_of(block);
             let mut load = self.force[range.clone()].to_vec();
-            if let Some(initial) = &body.initial_force {
+            if shape.kind == BodyKind::Rigid {
+                let force: Vec3 = load.iter().sum();
+                self.state.acceleration[range.clone()].fill(force / shape.operator.mass_kg);
+                let torque = load.iter().zip(&self.state.position[range]).map(|(f, x)| x.cross(f)).sum();
+                self.state.inertia[block.index()] = Inertia { force, torque };
+                continue;
+            }
+            let Some(elastic) = body.elastic().filter(|_| !shape.unknowns.is_empty()) else { continue };
+            if let Some(initial) = &elastic.initial_force {
                 load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
             }
             let matrix =
@@ -353,7 +381,7 @@ impl Simulation {
 
     /// f ← gravity, tractions and forces at the time at which the integrator takes them.
     fn gather_loads(&mut self) {
-        self.loads.place(self.time_s() + self.weights.load_lead * self.step_s);
+        self.loads.place(self.clock_s(self.weights.load_lead));
         self.force.copy_from_slice(self.loads.total());
     }
 
@@ -373,17 +401,28 @@ impl Simulation {
 
     /// Rigid motion and loads of the blocks, where contact asks for them.
     fn place_bodies(&mut self) {
+        let (step, step_s, settling) = (self.state.step, self.step_s, self.settling);
+        let now_s = |ahead: f64| if settling { 0.0 } else { (step as f64 + ahead) * step_s };
         for (index, body) in self.contact_bodies.iter_mut().enumerate() {
-            if body.mass_kg.is_infinite() {
+            let (held, shape) = (body.mass_kg.is_infinite(), &self.shapes[self.bodies[index].shape]);
+            if held && shape.supports.motions.is_empty() {
                 continue;
             }
             let range = self.blocks.nodes_of(BlockId(index as u32));
             let (position, velocity) =
                 (&self.contact_position[range.clone()], &self.state.velocity[range.clone()]);
-            let motion = self.shapes[self.bodies[index].shape].operator.rigid_motion(position, velocity);
+            let motion = shape.operator.rigid_motion(position, velocity);
             body.center = motion.center;
             body.velocity_m_s = motion.velocity_m_s;
             body.spin_rad_s = motion.spin_rad_s;
+            if held {
+                if shape.kind == BodyKind::Fixed {
+                    // Where it goes in this step is known already.
+                    let at = |ahead: f64| shape.supports.motions[0].displacement(now_s(ahead));
+                    body.velocity_m_s = (at(1.0) - at(0.0)) / self.step_s;
+                }
+                continue;
+            }
             body.inverse_inertia = motion.inverse_inertia;
             (body.load_n, body.torque_n_m) = (Vec3::zeros(), Vec3::zeros());
             for (x, load) in position.iter().zip(&self.loads.total()[range]) {
@@ -431,7 +470,7 @@ impl Simulation {
         let (force, loads, contact_position) = (&self.force, &self.loads, &self.contact_position);
         let (friction_force, contact_stiffness) = (&self.friction_force, &self.contact_stiffness);
         let (integrator, weights, dt_s) = (self.integrator.as_ref(), self.weights, self.step_s);
-        let (time_s, end_s) = (self.state.step as f64 * dt_s, (self.state.step + 1) as f64 * dt_s);
+        let (time_s, end_s) = (self.clock_s(0.0), self.clock_s(1.0));
         let inertia = &self.state.inertia;
         let slices = NodeSlices {
             position: &mut self.state.position,
@@ -456,7 +495,7 @@ impl Simulation {
                 contact_stiffness: contact_stiffness.get(range).unwrap_or(&[]),
                 inertia: inertia.get(index).copied().unwrap_or_default(),
             };
-            body.error = body.step(&shapes[body.shape], &context, nodes).err();
+            body.step(&shapes[body.shape], &context, nodes);
         });
         for (inertia, body) in self.state.inertia.iter_mut().zip(&self.bodies) {
             *inertia = body.report.inertia;
@@ -526,6 +565,14 @@ impl Simulation {
         let body = &mut self.bodies[block.index()];
         let shape = &self.shapes[body.shape];
         let (position, velocity) = (&self.state.position[range.clone()], &self.state.velocity[range]);
+        sample.kinetic_j += shape.operator.kinetic_energy_j(velocity);
+        sample.momentum += shape.operator.momentum(velocity);
+        sample.angular_momentum += shape.operator.angular_momentum(&Vec3::zeros(), position, velocity);
+        for ((x, v), &m) in position.iter().zip(velocity).zip(&shape.operator.node_mass) {
+            sample.momentum_scale += m * v.norm();
+            sample.angular_scale += m * x.norm() * v.norm();
+        }
+        let Some(elastic) = body.elastic() else { return Ok(()) };
         let name = || self.blocks.names[block.index()].clone();
         let (volume_ratio, tet) = smallest_volume_ratio(&shape.operator, position);
         let tet = self.blocks.tets_of(block).start + tet;
@@ -536,19 +583,12 @@ impl Simulation {
         if volume_ratio < sample.smallest_volume_ratio.0 {
             sample.smallest_volume_ratio = (volume_ratio, tet);
         }
-        sample.strain_j += body.strain_energy_j(shape, position).map_err(|source| StepError::Block {
+        sample.strain_j += elastic.strain_energy_j(shape, position).map_err(|source| StepError::Block {
             time_s,
             block: name(),
             source: source.into(),
         })?;
-        sample.spring_j += body.spring_energy_j(shape, position, time_s);
-        sample.kinetic_j += shape.operator.kinetic_energy_j(velocity);
-        sample.momentum += shape.operator.momentum(velocity);
-        sample.angular_momentum += shape.operator.angular_momentum(&Vec3::zeros(), position, velocity);
-        for ((x, v), &m) in position.iter().zip(velocity).zip(&shape.operator.node_mass) {
-            sample.momentum_scale += m * v.norm();
-            sample.angular_scale += m * x.norm() * v.norm();
-        }
+        sample.spring_j += elastic.spring_energy_j(shape, position, time_s);
         Ok(())
     }
 
@@ -562,13 +602,17 @@ impl Simulation {
             let body = &mut self.bodies[block.index()];
             let shape = &self.shapes[body.shape];
             let position = &self.state.position[self.blocks.nodes_of(block)];
+            let out = &mut out[self.blocks.tets_of(block)];
+            let Some(body) = body.elastic() else {
+                out.fill([0.0; 6]);
+                continue;
+            };
             let rotation = body.recover_displacement(shape, position).map_err(|source| StepError::Block {
                 time_s,
                 block: self.blocks.names[block.index()].clone(),
                 source: source.into(),
             })?;
-            let (material, initial) = (shape.material.as_ref(), body.initial_stress_pa.as_ref());
-            let out = &mut out[self.blocks.tets_of(block)];
+            let (material, initial) = (shape.material.as_ref(), &body.initial_stress_pa);
             let displacement = body.displacement_in_frame();
             cauchy_stress(&shape.operator, material, initial, &rotation, displacement, out);
         }
@@ -587,6 +631,7 @@ impl Simulation {
         self.state.acceleration.fill(Vec3::zeros());
         self.state.inertia.fill(Inertia::default());
         self.state.step = 0;
+        self.settling = false;
         self.loads.place(0.0);
         self.ledger = Ledger::new(self.loads.resultant(&self.state.position));
     }
@@ -622,6 +667,11 @@ impl Simulation {
     /// Time [s]: steps done times Δt, never summed.
     pub fn time_s(&self) -> f64 {
         self.state.step as f64 * self.step_s
+    }
+
+    /// Time that loads and prescribed motions see, some steps ahead [s]: it stands still while a scene settles.
+    fn clock_s(&self, ahead: f64) -> f64 {
+        if self.settling { 0.0 } else { (self.state.step as f64 + ahead) * self.step_s }
     }
 
     /// Δt [s].

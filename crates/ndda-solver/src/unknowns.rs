@@ -1,76 +1,159 @@
-//! Which components of a block's nodes are unknowns.
+//! What a block is solved for: components of its nodes, or the few motions that it may make.
 
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use ndda_fem::{BlockOperator, BlockSupports};
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::linear_solver::SymmetricMatrix;
 use crate::time_integrator::{StepDamping, StepWeights};
 
-/// Numbering of the free components of a block; a held direction has no unknown.
+/// Motions held with less than this part of the stiffness of the best held one are free.
+const HELD: f64 = 1e-12;
+
+/// The unknowns of a block, and how its nodes move with them.
 #[derive(Clone, Debug)]
-pub struct Unknowns {
-    /// First unknown of each node (`nodes + 1` values).
-    start: Vec<u32>,
-    /// Directions of the unknowns.
-    direction: Vec<Vec3>,
+pub enum Unknowns {
+    /// Free components of nodes; a held direction has no unknown.
+    Nodal {
+        /// First unknown of each node (`nodes + 1` values).
+        start: Vec<u32>,
+        /// Directions of the unknowns.
+        direction: Vec<Vec3>,
+    },
+    /// Amplitudes of motions.
+    Modes {
+        /// How many.
+        modes: usize,
+        /// Displacement of each node by each motion, node by node [m].
+        shape: Vec<Vec3>,
+    },
 }
 
 impl Unknowns {
-    /// Numbers the free components of a block.
-    pub fn new(nodes: usize, supports: &BlockSupports) -> Self {
-        let mut numbering = Self { start: vec![0], direction: Vec::with_capacity(3 * nodes) };
+    /// The free components of a block.
+    pub fn nodal(nodes: usize, supports: &BlockSupports) -> Self {
+        let (mut start, mut direction) = (vec![0], Vec::with_capacity(3 * nodes));
         let mut held = supports.held.iter().peekable();
         for node in 0..nodes as u32 {
             match held.next_if(|h| h.node == node) {
-                Some(h) => numbering.direction.extend(&h.free),
-                None => numbering.direction.extend([Vec3::x(), Vec3::y(), Vec3::z()]),
+                Some(h) => direction.extend(&h.free),
+                None => direction.extend([Vec3::x(), Vec3::y(), Vec3::z()]),
             }
-            numbering.start.push(numbering.direction.len() as u32);
+            start.push(direction.len() as u32);
         }
-        numbering
+        Self::Nodal { start, direction }
+    }
+
+    /// Affine motions, u = a + A X (Shi 1988): those of twelve that the supports leave.
+    pub fn affine(operator: &BlockOperator, supports: &BlockSupports) -> Self {
+        let size = operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
+        // Motion 4 i + j moves along axis i, by 1 or in proportion to the j-th coordinate.
+        let factors = |node: usize| {
+            let x = operator.rest[node] / size;
+            [1.0, x.x, x.y, x.z]
+        };
+        let mut stiffness = DMatrix::<f64>::zeros(12, 12);
+        for held in &supports.held {
+            let f = factors(held.node as usize);
+            for n in &held.held {
+                let row = DVector::from_fn(12, |k, _| n[k / 4] * f[k % 4]);
+                stiffness += &row * row.transpose();
+            }
+        }
+        let eigen = SymmetricEigen::new(stiffness);
+        let most = eigen.eigenvalues.max();
+        let free: Vec<usize> = (0..12).filter(|&k| eigen.eigenvalues[k] <= HELD * most).collect();
+        let mut shape = Vec::with_capacity(operator.nodes() * free.len());
+        for node in 0..operator.nodes() {
+            let f = factors(node);
+            for &k in &free {
+                let q = eigen.eigenvectors.column(k);
+                shape.push(Vec3::from_fn(|i, _| (0..4).map(|j| q[4 * i + j] * f[j]).sum()));
+            }
+        }
+        Self::Modes { modes: free.len(), shape }
+    }
+
+    /// Nothing to solve for.
+    pub fn none() -> Self {
+        Self::Modes { modes: 0, shape: Vec::new() }
     }
 
     /// Number of unknowns.
     pub fn len(&self) -> usize {
-        self.direction.len()
+        match self {
+            Self::Nodal { direction, .. } => direction.len(),
+            Self::Modes { modes, .. } => *modes,
+        }
     }
 
     /// Whether nothing is left to solve for.
     pub fn is_empty(&self) -> bool {
-        self.direction.is_empty()
+        self.len() == 0
     }
 
-    fn of(&self, node: usize) -> std::ops::Range<usize> {
-        self.start[node] as usize..self.start[node + 1] as usize
-    }
-
-    /// Components of nodal vectors along the unknowns.
+    /// What nodal forces do along the unknowns.
     pub fn gather(&self, nodal: &[Vec3], out: &mut [f64]) {
-        if out.len() == 3 * nodal.len() {
-            for (three, v) in out.chunks_exact_mut(3).zip(nodal) {
-                three.copy_from_slice(v.as_slice());
+        match self {
+            Self::Nodal { .. } if out.len() == 3 * nodal.len() => {
+                for (three, v) in out.chunks_exact_mut(3).zip(nodal) {
+                    three.copy_from_slice(v.as_slice());
+                }
             }
-            return;
-        }
-        for (node, v) in nodal.iter().enumerate() {
-            for k in self.of(node) {
-                out[k] = v.dot(&self.direction[k]);
+            Self::Nodal { start, direction } => {
+                for (v, ends) in nodal.iter().zip(start.windows(2)) {
+                    for k in ends[0] as usize..ends[1] as usize {
+                        out[k] = v.dot(&direction[k]);
+                    }
+                }
             }
+            Self::Modes { modes, shape } if *modes > 0 => {
+                out.fill(0.0);
+                for (v, moves) in nodal.iter().zip(shape.chunks_exact(*modes)) {
+                    out.iter_mut().zip(moves).for_each(|(q, u)| *q += u.dot(v));
+                }
+            }
+            Self::Modes { .. } => {}
         }
     }
 
-    /// Adds the unknowns to nodal vectors.
+    /// Adds the motion of the unknowns to nodal vectors.
     pub fn scatter(&self, unknowns: &[f64], nodal: &mut [Vec3]) {
-        if unknowns.len() == 3 * nodal.len() {
-            for (three, v) in unknowns.chunks_exact(3).zip(nodal) {
-                *v += Vec3::new(three[0], three[1], three[2]);
+        match self {
+            Self::Nodal { .. } if unknowns.len() == 3 * nodal.len() => {
+                for (three, v) in unknowns.chunks_exact(3).zip(nodal) {
+                    *v += Vec3::new(three[0], three[1], three[2]);
+                }
             }
-            return;
+            Self::Nodal { start, direction } => {
+                for (v, ends) in nodal.iter_mut().zip(start.windows(2)) {
+                    for k in ends[0] as usize..ends[1] as usize {
+                        *v += unknowns[k] * direction[k];
+                    }
+                }
+            }
+            Self::Modes { modes, shape } if *modes > 0 => {
+                for (v, moves) in nodal.iter_mut().zip(shape.chunks_exact(*modes)) {
+                    *v += unknowns.iter().zip(moves).map(|(q, u)| *q * u).sum::<Vec3>();
+                }
+            }
+            Self::Modes { .. } => {}
         }
-        for (node, v) in nodal.iter_mut().enumerate() {
-            for k in self.of(node) {
-                *v += unknowns[k] * self.direction[k];
-            }
+    }
+
+    /// The nearest field that the unknowns can make, by node masses.
+    pub fn restrict(&self, node_mass: &[f64], field: &mut [Vec3]) {
+        let Self::Modes { modes, shape } = self else { return };
+        let rows = || node_mass.iter().zip(shape.chunks_exact((*modes).max(1)));
+        let gram = DMatrix::from_fn(*modes, *modes, |i, j| {
+            rows().map(|(&m, moves)| m * moves[i].dot(&moves[j])).sum::<f64>()
+        });
+        let side = DVector::from_fn(*modes, |i, _| {
+            rows().zip(&*field).map(|((&m, moves), v)| m * moves[i].dot(v)).sum::<f64>()
+        });
+        field.fill(Vec3::zeros());
+        if let Some(amplitudes) = gram.cholesky().map(|g| g.solve(&side)) {
+            self.scatter(amplitudes.as_slice(), field);
         }
     }
 
@@ -87,23 +170,59 @@ impl Unknowns {
         let mut springs = vec![Mat3::zeros(); operator.nodes()];
         for spring in &supports.springs {
             let projector = spring.along.map_or(Mat3::identity(), |n| n * n.transpose());
-            springs[spring.node as usize] += spring.stiffness_n_m * projector;
+            springs[spring.node as usize] += weights.stiffness * spring.stiffness_n_m * projector;
         }
-        let node_of: Vec<u32> =
-            (0..operator.nodes()).flat_map(|n| self.of(n).map(move |_| n as u32)).collect();
-        SymmetricMatrix::from_lower(self.len(), |j, out| {
-            let node = node_of[j] as usize;
-            for (other, stiffness, mass) in operator.row(node) {
+        let row = |node: usize| {
+            let springs = &springs;
+            operator.row(node).map(move |(other, stiffness, mass)| {
                 let mut block = on_stiffness * stiffness + Mat3::from_diagonal_element(on_mass * mass);
                 if other == node {
-                    block += weights.stiffness * springs[node];
+                    block += springs[node];
                 }
-                // Row `node` of K gives column j of the lower triangle by symmetry.
-                let along_other = block.transpose() * self.direction[j];
-                out.extend(
-                    self.of(other).filter(|&i| i >= j).map(|i| (i, self.direction[i].dot(&along_other))),
-                );
-            }
-        })
+                (other, block)
+            })
+        };
+        match self {
+            Self::Nodal { start, direction } => nodal_matrix(start, direction, row),
+            Self::Modes { modes, shape } => modal_matrix(*modes, shape, row),
+        }
     }
+}
+
+/// The matrix between free components; `row` gives the blocks of a node.
+fn nodal_matrix<I: Iterator<Item = (usize, Mat3)>>(
+    start: &[u32],
+    direction: &[Vec3],
+    row: impl Fn(usize) -> I,
+) -> SymmetricMatrix {
+    let of = |node: usize| start[node] as usize..start[node + 1] as usize;
+    let node_of: Vec<u32> = (0..start.len() - 1).flat_map(|n| of(n).map(move |_| n as u32)).collect();
+    SymmetricMatrix::from_lower(direction.len(), |j, out| {
+        for (other, block) in row(node_of[j] as usize) {
+            // Row `node` of K gives column j of the lower triangle by symmetry.
+            let along_other = block.transpose() * direction[j];
+            out.extend(of(other).filter(|&i| i >= j).map(|i| (i, direction[i].dot(&along_other))));
+        }
+    })
+}
+
+/// The matrix between motions, PᵀK̃P.
+fn modal_matrix<I: Iterator<Item = (usize, Mat3)>>(
+    modes: usize,
+    shape: &[Vec3],
+    row: impl Fn(usize) -> I,
+) -> SymmetricMatrix {
+    let nodes = shape.len() / modes.max(1);
+    SymmetricMatrix::from_lower(modes, |j, out| {
+        let mut column = vec![0.0; modes];
+        for node in 0..nodes {
+            let mut force = Vec3::zeros();
+            for (other, block) in row(node) {
+                force += block * shape[other * modes + j];
+            }
+            let moves = &shape[node * modes..(node + 1) * modes];
+            column.iter_mut().zip(moves).for_each(|(sum, u)| *sum += u.dot(&force));
+        }
+        out.extend((j..modes).map(|i| (i, column[i])));
+    })
 }

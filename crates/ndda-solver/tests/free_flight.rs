@@ -6,15 +6,16 @@ use ndda_fem::LinearElastic;
 use ndda_fem::stress::volume_m3;
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
-use ndda_solver::{BodySetup, Direct, Midpoint, Newmark, Setup, Simulation, TimeIntegrator};
+use ndda_solver::{BodyKind, BodySetup, Direct, Mass, Midpoint, Newmark, Setup, Simulation, TimeIntegrator};
 
 fn cube(integrator: Box<dyn TimeIntegrator>, step_s: f64, gravity: Vec3, spin: Vec3) -> Simulation {
     let mesh = box_block([0.3, 0.2, 0.1], [2, 2, 1], BoxPattern::Six).unwrap();
     let blocks = BlockSet::new(vec![("block".into(), mesh)]).unwrap();
     let body = BodySetup {
+        kind: BodyKind::Elastic,
         material: Arc::new(LinearElastic::new(200e9, 0.25, 2650.0).unwrap()),
         supports: Vec::new(),
-        initial_stress_pa: None,
+        initial_stress: None,
         tractions: Vec::new(),
         forces: Vec::new(),
         velocity_m_s: Vec3::zeros(),
@@ -24,6 +25,7 @@ fn cube(integrator: Box<dyn TimeIntegrator>, step_s: f64, gravity: Vec3, spin: V
         blocks,
         bodies: vec![body],
         gravity_m_s2: gravity,
+        mass: Mass::Consistent,
         gravity_factor: None,
         step_s,
         integrator,

@@ -1,105 +1,22 @@
-//! One step of one block, alone: predict, turn into its frame, solve, correct.
+//! The step of a block that deforms: predict, turn into its frame, solve, correct.
 
-use ndda_fem::loads::initial_stress_force;
+use ndda_fem::loads::{InitialStress, initial_stress_force};
 use ndda_fem::supports::HeldNode;
 use ndda_fem::{FrameError, Voigt};
 use ndda_mesh::{Mat3, Vec3};
 
+use crate::body::{BlockError, BlockReport, StepContext, checked_speed, displacement_at, whole_torque};
 use crate::for_each_block::NodeSlices;
 use crate::linear_solver::{Scratch, SolveError};
 use crate::shape::Shape;
-use crate::time_integrator::{Inertia, StepDamping, StepWeights, TimeIntegrator};
+use crate::time_integrator::{StepDamping, StepWeights};
 
-/// Why a block could not take a step.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum BlockError {
-    /// The shape has no rotation any more.
-    #[error(transparent)]
-    Frame(#[from] FrameError),
-    /// Its equations were not solved.
-    #[error(transparent)]
-    Solve(#[from] SolveError),
-    /// A velocity is beyond what the material can carry, or not a number (invariant I1).
-    #[error(
-        "node {node} moves at {speed_m_s:e} m/s, more than ten times its wave speed {wave_speed_m_s:e} m/s: \
-         reduce step_s, or the penalty if contact is stiff"
-    )]
-    TooFast {
-        /// The node, counted from the block's first.
-        node: usize,
-        /// Its speed [m/s].
-        speed_m_s: f64,
-        /// Wave speed of the material [m/s].
-        wave_speed_m_s: f64,
-    },
-}
-
-/// What a block step needs besides the block itself.
-pub struct StepContext<'a> {
-    /// The integrator.
-    pub integrator: &'a dyn TimeIntegrator,
-    /// Its weights for this step.
-    pub weights: StepWeights,
-    /// Δt [s].
-    pub dt_s: f64,
-    /// Time at the start of the step [s].
-    pub time_s: f64,
-    /// Time at the end of the step [s].
-    pub end_s: f64,
-    /// Where contact was evaluated, x* per node of the block [m].
-    pub contact_position: &'a [Vec3],
-    /// Force per node of the block, contact and constant loads [N].
-    pub force: &'a [Vec3],
-    /// The loads in it [N].
-    pub external: &'a [Vec3],
-    /// Those of them that change over time [N]; empty if none do.
-    pub changing: &'a [Vec3],
-    /// Friction's part of it [N]; empty without friction.
-    pub friction_force: &'a [Vec3],
-    /// Row sums of the contact stiffness [N/m]; empty without contact.
-    pub contact_stiffness: &'a [f64],
-    /// M a of the block as a whole at the start; zero where it does not matter.
-    pub inertia: Inertia,
-}
-
-impl StepContext<'_> {
-    /// Time at which supports pull: (1 − θ) start + θ end [s].
-    fn theta_time_s(&self) -> f64 {
-        self.time_s + self.weights.stiffness * (self.end_s - self.time_s)
-    }
-}
-
-/// What a block reports of its step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct BlockReport {
-    /// Force that supports exerted on the block [N].
-    pub reaction: Vec3,
-    /// Torque about the origin of that force, at mid-step, and of the constant loads, at x* [N m].
-    pub outside_torque: Vec3,
-    /// Work of prescribed motions [J].
-    pub motion_work_j: f64,
-    /// Work of loads that change over time [J].
-    pub load_work_j: f64,
-    /// Work of damping [J].
-    pub damping_work_j: f64,
-    /// Work of friction [J].
-    pub friction_work_j: f64,
-    /// Fastest node [m/s].
-    pub speed_m_s: f64,
-    /// Largest Σ|k| / m over the nodes [1/s²]: a bound of ω_c².
-    pub contact_rate2: f64,
-    /// M a of the block as a whole at the end; for free blocks only.
-    pub inertia: Inertia,
-}
-
-/// Memory of one block: sized once, written every step.
-pub struct Body {
-    /// Index of its shape.
-    pub shape: usize,
+/// Memory of one block that deforms: sized once, written every step.
+pub struct ElasticBody {
     /// ∫ Bᵀ σ₀ in the block's frame [N].
     pub initial_force: Option<Vec<Vec3>>,
-    /// σ₀ [Pa].
-    pub initial_stress_pa: Option<Voigt>,
+    /// σ₀ of each element [Pa]; empty without.
+    pub initial_stress_pa: Vec<Voigt>,
     /// Where the held nodes started [m], one entry per held node, then one per spring.
     anchor: Vec<Vec3>,
     /// û [m].
@@ -116,22 +33,20 @@ pub struct Body {
     rigid: Vec<Vec3>,
     unknowns: Vec<f64>,
     scratch: Scratch,
-    /// What it reports of the last step.
-    pub report: BlockReport,
-    /// Why the last step failed.
-    pub error: Option<BlockError>,
+    report: BlockReport,
 }
 
-impl Body {
+impl ElasticBody {
     /// Memory for a block of this shape that rests at `position`.
-    pub fn new(index: usize, shape: &Shape, initial: Option<Voigt>, position: &[Vec3]) -> Self {
+    pub fn new(shape: &Shape, initial: Option<&InitialStress>, position: &[Vec3]) -> Self {
+        let initial_stress_pa = initial.map_or(Vec::new(), |s| s.of_elements(&shape.operator, position));
+        let initial_force = initial.map(|_| initial_stress_force(&shape.operator, &initial_stress_pa));
         let zeros = || vec![Vec3::zeros(); shape.operator.nodes()];
         let held = shape.supports.held.iter().map(|h| position[h.node as usize]);
         let sprung = shape.supports.springs.iter().map(|s| position[s.node as usize]);
         Self {
-            shape: index,
-            initial_force: initial.map(|stress| initial_stress_force(&shape.operator, &stress)),
-            initial_stress_pa: initial,
+            initial_force,
+            initial_stress_pa,
             anchor: held.chain(sprung).collect(),
             predicted: zeros(),
             load: zeros(),
@@ -142,7 +57,6 @@ impl Body {
             unknowns: vec![0.0; shape.unknowns.len()],
             scratch: shape.factor.as_ref().map_or_else(Scratch::default, |f| f.new_scratch()),
             report: BlockReport::default(),
-            error: None,
         }
     }
 
@@ -163,7 +77,7 @@ impl Body {
         shape: &Shape,
         context: &StepContext,
         mut nodes: NodeSlices,
-    ) -> Result<(), BlockError> {
+    ) -> Result<BlockReport, BlockError> {
         self.report = BlockReport::default();
         self.predict(context, &nodes);
         // x + û is kept in `displacement` until w replaces it.
@@ -186,7 +100,8 @@ impl Body {
         if !shape.damping.is_none() {
             self.report_damping(shape, context, &rotation);
         }
-        self.advance(shape, context, &mut nodes)
+        self.advance(shape, context, &mut nodes)?;
+        Ok(self.report)
     }
 
     /// Work −u·C u/Δt of damping, and the force and torque on the block as a whole, by which its mass is dragged.
@@ -409,7 +324,7 @@ impl Body {
     /// Σ y × M (v₁ − v₀) + Σ u × M (½ (v₀ + v₁) − u/Δt) = Δt Σ y* × f,
     /// y at mid-step, z at its end and y* at x*, all from their mass centre. The left side is the change of angular momentum;
     /// arms at x* keep the total of all blocks exact, since contact forces have no torque there. What the right side is
-    /// where contact is not taken in the middle of the step, see [`whole_torque`](Self::whole_torque).
+    /// where contact is not taken in the middle of the step, see [`whole_torque`].
     fn balance_momentum(&mut self, shape: &Shape, context: &StepContext, nodes: &NodeSlices) {
         let (operator, c) = (&shape.operator, context.weights.mass_per_s2);
         let total: Vec3 = context.force.iter().sum();
@@ -429,7 +344,10 @@ impl Body {
             torque -= drag * operator.angular_momentum(&center, context.contact_position, &self.correction);
         }
         if !context.weights.contact_in_the_middle() {
-            torque = self.whole_torque(shape, context, nodes, &(total, torque));
+            let drive = total - drag * operator.momentum(&self.correction);
+            let gone = operator.momentum(&self.correction) / operator.mass_kg;
+            (torque, self.report.inertia) =
+                whole_torque(shape, context, (nodes.position, nodes.velocity), &gone, (&drive, &torque));
         }
         self.rigid.fill(Vec3::zeros());
         let mut inverse_inertia = None;
@@ -446,35 +364,6 @@ impl Body {
                 *r += turn.cross(z);
             }
         }
-    }
-
-    /// The torque about the mass centre that changes the angular momentum as the integrator weights M a, F and T being
-    /// force and torque about x*'s mass centre r; also keeps the block's M a of this step.
-    ///
-    /// ```text
-    /// Δt [(1 − γ) T₀ + γ T₁] − (c₁ − r) × p₁ + (c₀ − r) × p₀        F₁ = (F − α_m F₀)/(1 − α_m), T₁ alike
-    /// ```
-    fn whole_torque(
-        &mut self,
-        shape: &Shape,
-        context: &StepContext,
-        nodes: &NodeSlices,
-        (force, torque): &(Vec3, Vec3),
-    ) -> Vec3 {
-        let (operator, weights, old) = (&shape.operator, &context.weights, &context.inertia);
-        let mark = operator.center(context.contact_position);
-        let force = force - shape.damping.mass_per_s2 * operator.momentum(&self.correction);
-        let new = weights.inertia(&force, &old.force);
-        let old_torque = old.torque - mark.cross(&old.force);
-        let new_torque = weights.inertia(torque, &old_torque);
-        self.report.inertia = Inertia { force: new, torque: new_torque + mark.cross(&new) };
-
-        let before = operator.momentum(nodes.velocity);
-        let after = before + context.dt_s * weights.mean_inertia(&old.force, &new);
-        let center = operator.center(nodes.position) - mark;
-        let moved = center + operator.momentum(&self.correction) / operator.mass_kg;
-        let moment = moved.cross(&after) - center.cross(&before);
-        weights.mean_inertia(&old_torque, &new_torque) - moment / context.dt_s
     }
 
     /// elastic ← z, the arms at the end of the step: a turn about them stretches nothing.
@@ -535,50 +424,14 @@ impl Body {
             self.load[i] += onto(&held.held, &(mean - v));
             self.elastic[i] -= onto(&held.held, &a);
         }
-        self.check_speed(shape)?;
+        self.report.speed_m_s = checked_speed(shape, &self.load)?;
         for (i, u) in self.correction.iter().enumerate() {
             nodes.position[i] += u;
         }
         nodes.velocity.copy_from_slice(&self.load);
         nodes.acceleration.copy_from_slice(&self.elastic);
-        self.report_step(shape, context);
+        self.report.book(shape, context, &self.correction);
         Ok(())
-    }
-
-    /// Invariant I1: finite, and slower than ten waves.
-    fn check_speed(&mut self, shape: &Shape) -> Result<(), BlockError> {
-        let mut fastest = (0.0, 0);
-        for (i, v) in self.load.iter().enumerate() {
-            let speed = v.norm_squared();
-            // A NaN speed must win, too.
-            if speed > fastest.0 || speed.is_nan() {
-                fastest = (speed, i);
-            }
-        }
-        let (speed_m_s, node) = (fastest.0.sqrt(), fastest.1);
-        self.report.speed_m_s = speed_m_s;
-        let wave_speed_m_s = shape.material.wave_speed_m_s();
-        if speed_m_s.is_nan() || speed_m_s >= 10.0 * wave_speed_m_s {
-            return Err(BlockError::TooFast { node, speed_m_s, wave_speed_m_s });
-        }
-        Ok(())
-    }
-
-    /// Torque of constant loads, work of friction, and the contact rate of the step.
-    fn report_step(&mut self, shape: &Shape, context: &StepContext) {
-        let report = &mut self.report;
-        for (x, f) in context.contact_position.iter().zip(context.external) {
-            report.outside_torque += x.cross(f);
-        }
-        for (load, u) in context.changing.iter().zip(&self.correction) {
-            report.load_work_j += load.dot(u);
-        }
-        for (friction, u) in context.friction_force.iter().zip(&self.correction) {
-            report.friction_work_j += friction.dot(u);
-        }
-        for (stiffness, mass) in context.contact_stiffness.iter().zip(&shape.operator.node_mass) {
-            report.contact_rate2 = report.contact_rate2.max(stiffness / mass);
-        }
     }
 
     /// Elastic energy at `position`, ½ wᵀ K w + wᵀ ∫Bᵀσ₀ [J].
@@ -637,9 +490,4 @@ fn onto(directions: &[Vec3], v: &Vec3) -> Vec3 {
 /// Held nodes whose motion is prescribed, with their place in the list.
 fn moved(shape: &Shape) -> impl Iterator<Item = (usize, &HeldNode)> {
     shape.supports.held.iter().enumerate().filter(|(_, held)| held.motion.is_some())
-}
-
-/// Displacement of a prescribed motion, zero where there is none [m].
-fn displacement_at(shape: &Shape, motion: Option<usize>, time_s: f64) -> Vec3 {
-    motion.map_or(Vec3::zeros(), |m| shape.supports.motions[m].displacement(time_s))
 }

@@ -1,0 +1,104 @@
+//! Prescribed motions over time.
+
+use ndda_mesh::Vec3;
+
+use crate::table::interpolated;
+
+/// A displacement over time.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Motion {
+    /// Time [s], ascending, and displacement [m]: linear between rows, constant before the first and after the last.
+    Rows(Vec<(f64, Vec3)>),
+    /// What a record of accelerations comes to.
+    Record(Record),
+}
+
+impl Motion {
+    /// Displacement at a time [m].
+    pub fn displacement(&self, time_s: f64) -> Vec3 {
+        match self {
+            Self::Rows(rows) => interpolated(rows, time_s).unwrap_or_else(Vec3::zeros),
+            Self::Record(record) => record.displacement(time_s),
+        }
+    }
+
+    /// Whether anything ever moves, or moves along a direction.
+    pub fn moves(&self, along: Option<&Vec3>) -> bool {
+        let part = |v: &Vec3| along.map_or(v.norm(), |n| v.dot(n).abs()) > 0.0;
+        match self {
+            Self::Rows(rows) => rows.iter().any(|row| part(&row.1)),
+            Self::Record(record) => part(&record.direction),
+        }
+    }
+}
+
+/// A motion along one direction whose acceleration is linear between the rows of a record and zero outside of it.
+///
+/// Integrated exactly from rest: velocity is quadratic, displacement cubic between rows. After the record it goes on at
+/// the velocity that the record ends with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Record {
+    /// Displacement per metre of the record.
+    pub direction: Vec3,
+    /// Time [s], acceleration [m/s²], velocity [m/s], displacement [m].
+    rows: Vec<[f64; 4]>,
+}
+
+impl Record {
+    /// From times [s], ascending, and accelerations along `direction` [m/s²].
+    pub fn new(direction: Vec3, accelerations: &[(f64, f64)]) -> Self {
+        let mut rows: Vec<[f64; 4]> = Vec::with_capacity(accelerations.len());
+        for &(t, a) in accelerations {
+            let (v, u) = match rows.last() {
+                None => (0.0, 0.0),
+                Some(&row) => after(&row, a, t - row[0], t - row[0]),
+            };
+            rows.push([t, a, v, u]);
+        }
+        Self { direction, rows }
+    }
+
+    /// Displacement at a time [m].
+    pub fn displacement(&self, time_s: f64) -> Vec3 {
+        let next = self.rows.partition_point(|row| row[0] <= time_s);
+        let Some(&row) = next.checked_sub(1).and_then(|i| self.rows.get(i)) else { return Vec3::zeros() };
+        let tau = time_s - row[0];
+        let along = match self.rows.get(next) {
+            Some(&[t, a, ..]) => after(&row, a, t - row[0], tau).1,
+            None => row[3] + row[2] * tau,
+        };
+        along * self.direction
+    }
+}
+
+/// Velocity and displacement τ after a row, the acceleration going to `a` over h:
+/// v + a₀ τ + (a − a₀) τ²/2h and u + v τ + a₀ τ²/2 + (a − a₀) τ³/6h.
+fn after(&[_, a0, v, u]: &[f64; 4], a: f64, h: f64, tau: f64) -> (f64, f64) {
+    let jerk = (a - a0) / h;
+    let velocity = v + tau * (a0 + 0.5 * tau * jerk);
+    (velocity, u + tau * (v + tau * (0.5 * a0 + tau * jerk / 6.0)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_linear_between_and_constant_outside() {
+        let motion = Motion::Rows(vec![(1.0, Vec3::zeros()), (3.0, Vec3::x())]);
+        assert_eq!(motion.displacement(0.0), Vec3::zeros());
+        assert_eq!(motion.displacement(2.0), 0.5 * Vec3::x());
+        assert_eq!(motion.displacement(9.0), Vec3::x());
+    }
+
+    #[test]
+    fn a_linear_acceleration_gives_a_cubic_and_the_record_is_left_at_its_last_velocity() {
+        // a = 6 t: v = 3 t², u = t³.
+        let record = Record::new(Vec3::z(), &[(0.0, 0.0), (0.3, 1.8), (1.0, 6.0)]);
+        for t in [0.0f64, 0.1, 0.3, 0.7, 1.0] {
+            assert!((record.displacement(t).z - t.powi(3)).abs() < 1e-15, "{t}");
+        }
+        assert!((record.displacement(2.0).z - (1.0 + 3.0)).abs() < 1e-15);
+        assert_eq!(record.displacement(-1.0), Vec3::zeros());
+    }
+}

@@ -1,0 +1,102 @@
+//! Records of ground motion: a CSV file with the columns `time_s` and `acceleration_m_s2`.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+/// Why a record cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// The file cannot be read, or a row of it is not two numbers.
+    #[error("{}: {source}", file.display())]
+    Csv {
+        /// The file.
+        file: PathBuf,
+        /// What is wrong, with the line.
+        source: csv::Error,
+    },
+    /// Values that are no record.
+    #[error("{}, row {row}: {reason}", file.display())]
+    Row {
+        /// The file.
+        file: PathBuf,
+        /// Row of data, the first being 1.
+        row: usize,
+        /// What is wrong with it.
+        reason: &'static str,
+    },
+}
+
+#[derive(Deserialize)]
+struct Row {
+    time_s: f64,
+    acceleration_m_s2: f64,
+}
+
+/// Times [s] and accelerations [m/s²] of a record.
+///
+/// # Errors
+/// [`RecordError`] naming file and row.
+pub fn read(file: &Path) -> Result<Vec<(f64, f64)>, RecordError> {
+    let broken = |source| RecordError::Csv { file: file.to_path_buf(), source };
+    let mut reader =
+        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_path(file).map_err(broken)?;
+    let mut rows: Vec<(f64, f64)> = Vec::new();
+    let wrong = |row: usize, reason| RecordError::Row { file: file.to_path_buf(), row, reason };
+    for row in reader.deserialize() {
+        let Row { time_s, acceleration_m_s2 } = row.map_err(broken)?;
+        if !(time_s.is_finite() && acceleration_m_s2.is_finite()) {
+            return Err(wrong(rows.len() + 1, "a value is not a number"));
+        }
+        match rows.last() {
+            None if time_s < 0.0 => {
+                return Err(wrong(1, "is before the start of the run: begin at 0 s or later"));
+            }
+            Some(last) if time_s <= last.0 => {
+                return Err(wrong(
+                    rows.len() + 1,
+                    "is not later than the row before: sort the rows by time_s",
+                ));
+            }
+            _ => rows.push((time_s, acceleration_m_s2)),
+        }
+    }
+    if rows.len() < 2 {
+        return Err(wrong(rows.len(), "is the last: a record has at least two rows"));
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read_text(text: &str) -> Result<Vec<(f64, f64)>, String> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("quake.csv");
+        std::fs::write(&file, text).unwrap();
+        read(&file).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_record_is_read_with_comments_and_spaces() {
+        let text = "# Somewhere, 1 January\ntime_s, acceleration_m_s2\n0, 0.5\n0.01, -1e-1\n";
+        assert_eq!(read_text(text), Ok(vec![(0.0, 0.5), (0.01, -0.1)]));
+    }
+
+    #[test]
+    fn what_is_no_record_is_refused_with_its_row() {
+        for (text, word) in [
+            ("time_s,acceleration_m_s2\n0,1\n0,2\n", "row 2"),
+            ("time_s,acceleration_m_s2\n-1,1\n0,2\n", "row 1"),
+            ("time_s,acceleration_m_s2\n0,1\n", "two rows"),
+            ("time_s,acceleration_m_s2\n0,NaN\n1,1\n", "row 1"),
+            ("time_s,acceleration_m_s2\n0,x\n", "line"),
+            ("t,a\n0,1\n1,1\n", "time_s"),
+        ] {
+            let message = read_text(text).unwrap_err();
+            assert!(message.contains(word), "{text:?}: {message}");
+        }
+        assert!(read(Path::new("no/such.csv")).is_err());
+    }
+}

@@ -1,0 +1,225 @@
+//! One step of one block, alone, whatever kind of body it is.
+
+use ndda_fem::FrameError;
+use ndda_mesh::Vec3;
+
+use crate::elastic_body::ElasticBody;
+use crate::fixed_body::FixedBody;
+use crate::for_each_block::NodeSlices;
+use crate::linear_solver::SolveError;
+use crate::rigid_body::RigidBody;
+use crate::shape::Shape;
+use crate::time_integrator::{Inertia, StepWeights, TimeIntegrator};
+
+/// How a block may move.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BodyKind {
+    /// Each node by itself: linear tetrahedra.
+    #[default]
+    Elastic,
+    /// All nodes by one affine map, 12 unknowns: the first-order block of classic DDA (Shi 1988).
+    Affine,
+    /// Without deformation, 6 unknowns.
+    Rigid,
+    /// Not at all, or as prescribed: no unknowns.
+    Fixed,
+}
+
+/// Why a block could not take a step.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BlockError {
+    /// The shape has no rotation any more.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// Its equations were not solved.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// A velocity is beyond what the material can carry, or not a number (invariant I1).
+    #[error(
+        "node {node} moves at {speed_m_s:e} m/s, more than ten times its wave speed {wave_speed_m_s:e} m/s: \
+         reduce step_s, or the penalty if contact is stiff"
+    )]
+    TooFast {
+        /// The node, counted from the block's first.
+        node: usize,
+        /// Its speed [m/s].
+        speed_m_s: f64,
+        /// Wave speed of the material [m/s].
+        wave_speed_m_s: f64,
+    },
+}
+
+/// What a block step needs besides the block itself.
+pub struct StepContext<'a> {
+    /// The integrator.
+    pub integrator: &'a dyn TimeIntegrator,
+    /// Its weights for this step.
+    pub weights: StepWeights,
+    /// Δt [s].
+    pub dt_s: f64,
+    /// Time at the start of the step [s].
+    pub time_s: f64,
+    /// Time at the end of the step [s].
+    pub end_s: f64,
+    /// Where contact was evaluated, x* per node of the block [m].
+    pub contact_position: &'a [Vec3],
+    /// Force per node of the block, contact and constant loads [N].
+    pub force: &'a [Vec3],
+    /// The loads in it [N].
+    pub external: &'a [Vec3],
+    /// Those of them that change over time [N]; empty if none do.
+    pub changing: &'a [Vec3],
+    /// Friction's part of it [N]; empty without friction.
+    pub friction_force: &'a [Vec3],
+    /// Row sums of the contact stiffness [N/m]; empty without contact.
+    pub contact_stiffness: &'a [f64],
+    /// M a of the block as a whole at the start; zero where it does not matter.
+    pub inertia: Inertia,
+}
+
+impl StepContext<'_> {
+    /// Time at which supports pull: (1 − θ) start + θ end [s].
+    pub(crate) fn theta_time_s(&self) -> f64 {
+        self.time_s + self.weights.stiffness * (self.end_s - self.time_s)
+    }
+}
+
+/// What a block reports of its step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct BlockReport {
+    /// Force that supports exerted on the block [N].
+    pub reaction: Vec3,
+    /// Torque about the origin of that force, at mid-step, and of the constant loads, at x* [N m].
+    pub outside_torque: Vec3,
+    /// Work of prescribed motions [J].
+    pub motion_work_j: f64,
+    /// Work of loads that change over time [J].
+    pub load_work_j: f64,
+    /// Work of damping [J].
+    pub damping_work_j: f64,
+    /// Work of friction [J].
+    pub friction_work_j: f64,
+    /// Fastest node [m/s].
+    pub speed_m_s: f64,
+    /// Largest Σ|k| / m over the nodes [1/s²]: a bound of ω_c².
+    pub contact_rate2: f64,
+    /// M a of the block as a whole at the end; for free blocks only.
+    pub inertia: Inertia,
+}
+
+/// One block on its way: memory sized once, written every step.
+pub struct Body {
+    /// Index of its shape.
+    pub shape: usize,
+    /// How it moves.
+    pub motion: Motion,
+    /// What it reports of the last step.
+    pub report: BlockReport,
+    /// Why the last step failed.
+    pub error: Option<BlockError>,
+}
+
+/// The ways in which a block moves.
+pub enum Motion {
+    /// Elastic and affine blocks.
+    Elastic(ElasticBody),
+    /// Rigid blocks.
+    Rigid(RigidBody),
+    /// Blocks that stay, or go where they are told to.
+    Fixed(FixedBody),
+}
+
+impl Body {
+    /// Advances the block by one step and keeps what it reports, or why it could not.
+    pub fn step(&mut self, shape: &Shape, context: &StepContext, nodes: NodeSlices) {
+        let report = match &mut self.motion {
+            Motion::Elastic(body) => body.step(shape, context, nodes),
+            Motion::Rigid(body) => body.step(shape, context, nodes),
+            Motion::Fixed(body) => Ok(body.step(shape, context, nodes)),
+        };
+        match report {
+            Ok(report) => self.report = report,
+            Err(error) => self.error = Some(error),
+        }
+    }
+
+    /// The deforming part, where there is one.
+    pub fn elastic(&mut self) -> Option<&mut ElasticBody> {
+        match &mut self.motion {
+            Motion::Elastic(body) => Some(body),
+            Motion::Rigid(_) | Motion::Fixed(_) => None,
+        }
+    }
+}
+
+impl BlockReport {
+    /// Torque of loads, work of friction and of changing loads, and the contact rate of a step u [m].
+    pub(crate) fn book(&mut self, shape: &Shape, context: &StepContext, increment: &[Vec3]) {
+        for (x, f) in context.contact_position.iter().zip(context.external) {
+            self.outside_torque += x.cross(f);
+        }
+        for (load, u) in context.changing.iter().zip(increment) {
+            self.load_work_j += load.dot(u);
+        }
+        for (friction, u) in context.friction_force.iter().zip(increment) {
+            self.friction_work_j += friction.dot(u);
+        }
+        for (stiffness, mass) in context.contact_stiffness.iter().zip(&shape.operator.node_mass) {
+            self.contact_rate2 = self.contact_rate2.max(stiffness / mass);
+        }
+    }
+}
+
+/// The fastest of a block's velocities [m/s], which must be finite and slower than ten waves (invariant I1).
+///
+/// # Errors
+/// [`BlockError::TooFast`] naming the node.
+pub(crate) fn checked_speed(shape: &Shape, velocity: &[Vec3]) -> Result<f64, BlockError> {
+    let mut fastest = (0.0, 0);
+    for (i, v) in velocity.iter().enumerate() {
+        let speed = v.norm_squared();
+        // A NaN speed must win, too.
+        if speed > fastest.0 || speed.is_nan() {
+            fastest = (speed, i);
+        }
+    }
+    let (speed_m_s, node) = (fastest.0.sqrt(), fastest.1);
+    let wave_speed_m_s = shape.material.wave_speed_m_s();
+    if speed_m_s.is_nan() || speed_m_s >= 10.0 * wave_speed_m_s {
+        return Err(BlockError::TooFast { node, speed_m_s, wave_speed_m_s });
+    }
+    Ok(speed_m_s)
+}
+
+/// The torque about the mass centre that changes the spin as the integrator weights M a, and M a at the end of the step.
+///
+/// F and T are force and torque about the mass centre r of x*, `gone` is how far the mass centre goes:
+///
+/// ```text
+/// (1 − γ) T₀ + γ T₁ − [(c₁ − r) × p₁ − (c₀ − r) × p₀]/Δt        F₁ = (F − α_m F₀)/(1 − α_m), T₁ alike
+/// ```
+pub(crate) fn whole_torque(
+    shape: &Shape,
+    context: &StepContext,
+    (position, velocity): (&[Vec3], &[Vec3]),
+    gone: &Vec3,
+    (force, torque): (&Vec3, &Vec3),
+) -> (Vec3, Inertia) {
+    let (operator, weights, old) = (&shape.operator, &context.weights, &context.inertia);
+    let mark = operator.center(context.contact_position);
+    let new = weights.inertia(force, &old.force);
+    let old_torque = old.torque - mark.cross(&old.force);
+    let new_torque = weights.inertia(torque, &old_torque);
+    let inertia = Inertia { force: new, torque: new_torque + mark.cross(&new) };
+
+    let before = operator.momentum(velocity);
+    let after = before + context.dt_s * weights.mean_inertia(&old.force, &new);
+    let center = operator.center(position) - mark;
+    let moment = (center + gone).cross(&after) - center.cross(&before);
+    (weights.mean_inertia(&old_torque, &new_torque) - moment / context.dt_s, inertia)
+}
+
+/// Displacement of a prescribed motion, zero where there is none [m].
+pub(crate) fn displacement_at(shape: &Shape, motion: Option<usize>, time_s: f64) -> Vec3 {
+    motion.map_or(Vec3::zeros(), |m| shape.supports.motions[m].displacement(time_s))
+}

@@ -1,0 +1,49 @@
+//! Blocks without unknowns: they stay where they are, or go where they are told to.
+
+use ndda_mesh::Vec3;
+
+use crate::body::{BlockReport, StepContext, displacement_at};
+use crate::for_each_block::NodeSlices;
+use crate::shape::Shape;
+
+/// A block that is held as a whole.
+pub struct FixedBody {
+    /// Where its nodes started [m]; empty while nothing moves it.
+    anchor: Vec<Vec3>,
+}
+
+impl FixedBody {
+    /// A block of this shape that starts at `position`.
+    pub fn new(shape: &Shape, position: &[Vec3]) -> Self {
+        let moves = !shape.supports.motions.is_empty();
+        Self { anchor: if moves { position.to_vec() } else { Vec::new() } }
+    }
+
+    /// Takes the place that is prescribed for the end of the step, and reports what that took.
+    pub fn step(&mut self, shape: &Shape, context: &StepContext, nodes: NodeSlices) -> BlockReport {
+        let mut report = BlockReport::default();
+        let total: Vec3 = context.force.iter().sum();
+        for (x, f) in context.contact_position.iter().zip(context.force) {
+            report.outside_torque -= x.cross(f);
+        }
+        for (x, f) in context.contact_position.iter().zip(context.external) {
+            report.outside_torque += x.cross(f);
+        }
+        report.reaction = -total;
+        if self.anchor.is_empty() {
+            return report;
+        }
+        let motion = Some(shape.supports.motions.len() - 1);
+        let to = displacement_at(shape, motion, context.end_s);
+        let increment = to - displacement_at(shape, motion, context.time_s);
+        let (old, velocity) = (nodes.velocity[0], increment / context.dt_s);
+        report.reaction += shape.operator.mass_kg / context.dt_s * (velocity - old);
+        report.motion_work_j = report.reaction.dot(&increment);
+        report.speed_m_s = velocity.norm();
+        for (x, anchor) in nodes.position.iter_mut().zip(&self.anchor) {
+            *x = anchor + to;
+        }
+        nodes.velocity.fill(velocity);
+        report
+    }
+}

@@ -1,0 +1,273 @@
+//! Blocks that do not deform.
+//!
+//! The nodes are the state: they are where a rigid motion puts them, so place, turn, momentum and spin follow from them,
+//! and nothing else has to be remembered, saved or rolled back.
+
+use ndda_fem::FrameError;
+use ndda_mesh::{Mat3, Vec3};
+
+use crate::body::{BlockError, BlockReport, StepContext, checked_speed, whole_torque};
+use crate::for_each_block::NodeSlices;
+use crate::shape::Shape;
+
+/// Newton steps for the turn of a step: it converges quadratically from a turn at constant spin.
+const MOST_ITERATIONS: usize = 20;
+
+/// Inertia of a rigid block in its rest frame.
+#[derive(Clone, Debug)]
+pub struct RigidInertia {
+    /// J about the mass centre [kg m²].
+    inertia: Mat3,
+    inverse: Mat3,
+    /// Inverse of the inertia of lumped masses: gives the spin of a rigid field of velocities from their moment.
+    inverse_lumped: Mat3,
+}
+
+impl RigidInertia {
+    /// Of a block with these node masses and rest positions.
+    pub fn new(operator: &ndda_fem::BlockOperator) -> Self {
+        let inertia = operator.inertia(&operator.rest, &operator.rest);
+        let weighted = operator.node_mass.iter().zip(&operator.rest);
+        let moment: Mat3 = weighted.map(|(&m, x)| m * x * x.transpose()).sum();
+        let lumped = Mat3::identity() * moment.trace() - moment;
+        let inverse = |m: Mat3| m.try_inverse().expect("a validated block is not flat");
+        Self { inertia, inverse: inverse(inertia), inverse_lumped: inverse(lumped) }
+    }
+}
+
+/// Memory of one rigid block.
+pub struct RigidBody {
+    /// u [m].
+    increment: Vec<Vec3>,
+    /// v₁ [m/s].
+    velocity: Vec<Vec3>,
+}
+
+/// Place and motion of a rigid block at the start of a step.
+struct Start {
+    center: Vec3,
+    rotation: Mat3,
+    velocity_m_s: Vec3,
+    /// In the block's frame [rad/s].
+    spin: Vec3,
+}
+
+impl RigidBody {
+    /// Memory for a block of this shape.
+    pub fn new(shape: &Shape) -> Self {
+        let zeros = vec![Vec3::zeros(); shape.operator.nodes()];
+        Self { increment: zeros.clone(), velocity: zeros }
+    }
+
+    /// Advances the block by one step: its mass centre by the integrator, its turn by an energy and momentum conserving
+    /// rule (see [`turn`]).
+    ///
+    /// # Errors
+    /// [`BlockError`] when the block has lost its speed.
+    pub fn step(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        mut nodes: NodeSlices,
+    ) -> Result<BlockReport, BlockError> {
+        let mut report = BlockReport::default();
+        let start = start(shape, &nodes)?;
+        let (gone, drive) = self.shift(shape, context, &nodes, &start);
+        let torque = self.torque(shape, context, &nodes, (&gone, &drive), &mut report);
+        let local = start.rotation.tr_mul(&torque);
+        let inertia = shape.rigid.as_ref().expect("a rigid shape");
+        let drag = turn_drag(shape, context);
+        let angle = turn(inertia, &start.spin, &local, context.dt_s, drag)
+            .ok_or_else(|| BlockError::Frame(FrameError { determinant: f64::NAN }))?;
+        let momentum = inertia.inertia * start.spin + context.dt_s * local
+            - drag * context.dt_s * (inertia.inertia * angle);
+        let turned = cayley(&angle);
+        let rotation = start.rotation * turned;
+        let spin = rotation * (inertia.inverse * turned.tr_mul(&momentum));
+        self.place(shape, context, &nodes, &start, (&gone, &rotation, &spin));
+        report.speed_m_s = checked_speed(shape, &self.velocity)?;
+        self.book_drag(shape, context, &start, &mut report);
+        self.advance(context, &mut nodes);
+        report.book(shape, context, &self.increment);
+        Ok(report)
+    }
+
+    /// How far the mass centre goes, and the force that drives it: c m (u − û) + a m u/Δt = F − α_m F₀.
+    fn shift(&self, shape: &Shape, context: &StepContext, nodes: &NodeSlices, start: &Start) -> (Vec3, Vec3) {
+        let (weights, mass) = (&context.weights, shape.operator.mass_kg);
+        let force: Vec3 = context.force.iter().sum();
+        let acceleration = shape.operator.center(nodes.acceleration);
+        let predicted = context.integrator.predict(context.dt_s, &start.velocity_m_s, &acceleration);
+        let (c, drag) = (weights.mass_per_s2, shape.damping.mass_per_s2);
+        let push = force - weights.old_inertia * context.inertia.force;
+        let gone = (push / mass + c * predicted) / (c + drag);
+        (gone, force - drag * mass * gone)
+    }
+
+    /// Torque about the mass centre in this step, without drag.
+    fn torque(
+        &self,
+        shape: &Shape,
+        context: &StepContext,
+        nodes: &NodeSlices,
+        (gone, drive): (&Vec3, &Vec3),
+        report: &mut BlockReport,
+    ) -> Vec3 {
+        let center = shape.operator.center(context.contact_position);
+        let arms = context.contact_position.iter().zip(context.force);
+        let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
+        if context.weights.contact_in_the_middle() {
+            return torque;
+        }
+        let (torque, inertia) =
+            whole_torque(shape, context, (nodes.position, nodes.velocity), gone, (drive, &torque));
+        report.inertia = inertia;
+        torque
+    }
+
+    /// u and v₁ of every node.
+    fn place(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        nodes: &NodeSlices,
+        start: &Start,
+        (gone, rotation, spin): (&Vec3, &Mat3, &Vec3),
+    ) {
+        let (mut velocity, mut acceleration) =
+            (start.velocity_m_s, shape.operator.center(nodes.acceleration));
+        let predicted = context.integrator.predict(context.dt_s, &velocity, &acceleration);
+        context.integrator.correct(context.dt_s, gone, &predicted, &mut velocity, &mut acceleration);
+        let center = start.center + gone;
+        for (i, rest) in shape.operator.rest.iter().enumerate() {
+            let arm = rotation * rest;
+            self.increment[i] = center + arm - nodes.position[i];
+            self.velocity[i] = velocity + spin.cross(&arm);
+        }
+    }
+
+    /// Work, force and torque of damping on mass.
+    fn book_drag(&self, shape: &Shape, context: &StepContext, start: &Start, report: &mut BlockReport) {
+        let drag = shape.damping.mass_per_s2;
+        if drag == 0.0 {
+            return;
+        }
+        let operator = &shape.operator;
+        for (i, u) in self.increment.iter().enumerate() {
+            report.damping_work_j -= drag * u.dot(&operator.mass_row_times(i, &self.increment));
+        }
+        report.reaction -= drag * operator.momentum(&self.increment);
+        let about = start.center;
+        let torque = operator.angular_momentum(&about, context.contact_position, &self.increment);
+        report.outside_torque -= drag * (torque + about.cross(&operator.momentum(&self.increment)));
+    }
+
+    /// Velocities, accelerations and positions at the end of the step.
+    fn advance(&self, context: &StepContext, nodes: &mut NodeSlices) {
+        for (i, u) in self.increment.iter().enumerate() {
+            let (mut v, mut a) = (nodes.velocity[i], nodes.acceleration[i]);
+            let predicted = context.integrator.predict(context.dt_s, &v, &a);
+            context.integrator.correct(context.dt_s, u, &predicted, &mut v, &mut a);
+            nodes.acceleration[i] = a;
+            nodes.velocity[i] = self.velocity[i];
+            nodes.position[i] += u;
+        }
+    }
+}
+
+/// The rigid motion that the nodes are in.
+fn start(shape: &Shape, nodes: &NodeSlices) -> Result<Start, FrameError> {
+    let operator = &shape.operator;
+    let center = operator.center(nodes.position);
+    let rotation = shape.supports.frame.rotation(operator, nodes.position, &center)?;
+    let velocity_m_s = operator.center(nodes.velocity);
+    let moving = operator.node_mass.iter().zip(&*nodes.position).zip(&*nodes.velocity);
+    let moment: Vec3 = moving.map(|((&m, x), v)| m * (x - center).cross(&(v - velocity_m_s))).sum();
+    let inertia = shape.rigid.as_ref().expect("a rigid shape");
+    let spin = inertia.inverse_lumped * rotation.tr_mul(&moment);
+    Ok(Start { center, rotation, velocity_m_s, spin })
+}
+
+/// What a turn is dragged by, as part of its own inertia [1/s].
+fn turn_drag(shape: &Shape, context: &StepContext) -> f64 {
+    shape.damping.mass_per_s2 * context.weights.new_force / (1.0 - context.weights.old_inertia)
+}
+
+/// The turn θ of a step, as a Cayley vector in the block's frame, under a torque T there (Simo & Wong 1991, with
+/// Cayley's map for the exponential):
+///
+/// ```text
+/// (I + ½ θ̂) J (2 θ/Δt − ω₀) = (I − ½ θ̂) p        p = J ω₀ + Δt (T − d J θ)
+/// ```
+///
+/// The spin at the end is J ω₁ = cay(θ)ᵀ p, so angular momentum changes by Δt T exactly; ω₀ + ω₁ = 2 θ/Δt, so energy
+/// changes by the work of T exactly. Nothing where no turn fits: spin times Δt is far beyond what a step resolves.
+fn turn(inertia: &RigidInertia, spin: &Vec3, torque: &Vec3, dt_s: f64, drag: f64) -> Option<Vec3> {
+    let j = &inertia.inertia;
+    let old = j * spin;
+    let driven = old + dt_s * torque;
+    let mut angle = dt_s * (spin + 0.5 * dt_s * (inertia.inverse * torque));
+    let mut last = f64::INFINITY;
+    for _ in 0..MOST_ITERATIONS {
+        let (mean, p) = (2.0 / dt_s * (j * angle) - old, driven - drag * dt_s * (j * angle));
+        let misfit = mean + 0.5 * angle.cross(&mean) - p + 0.5 * angle.cross(&p);
+        let cross = angle.cross_matrix();
+        let slope = (Mat3::identity() + 0.5 * cross) * (2.0 / dt_s * j) - 0.5 * (mean + p).cross_matrix()
+            + (Mat3::identity() - 0.5 * cross) * (drag * dt_s * j);
+        let change = slope.try_inverse()? * misfit;
+        angle -= change;
+        let (size, scale) = (change.norm(), angle.norm() + dt_s * spin.norm());
+        // Quadratic convergence: once the change stops shrinking it is round-off.
+        if size <= f64::EPSILON * scale || (size < 1e-8 * scale && size >= 0.5 * last) {
+            return Some(angle);
+        }
+        last = size;
+    }
+    None
+}
+
+/// Cayley's map, cay(θ) = I + (θ̂ + ½ θ̂²)/(1 + ¼ θ²): a turn by 2 atan(½ |θ|).
+fn cayley(angle: &Vec3) -> Mat3 {
+    let cross = angle.cross_matrix();
+    Mat3::identity() + (cross + 0.5 * cross * cross) / (1.0 + 0.25 * angle.norm_squared())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn slab() -> RigidInertia {
+        let inertia = Mat3::new(3.0, 0.2, 0.1, 0.2, 2.0, -0.1, 0.1, -0.1, 1.5);
+        let inverse = inertia.try_inverse().expect("regular");
+        RigidInertia { inertia, inverse, inverse_lumped: inverse }
+    }
+
+    #[test]
+    fn cayley_turns_without_stretching() {
+        let turned = cayley(&Vec3::new(0.3, -2.0, 1.1));
+        assert!((turned.transpose() * turned - Mat3::identity()).amax() < 1e-15);
+        assert!((turned.determinant() - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_free_turn_keeps_energy_and_a_torque_does_its_work() {
+        let (block, dt_s) = (slab(), 0.05);
+        let energy = |spin: &Vec3| 0.5 * spin.dot(&(block.inertia * spin));
+        for torque in [Vec3::zeros(), Vec3::new(1.0, -2.0, 0.5)] {
+            let spin = Vec3::new(1.0, 3.0, -2.0);
+            let angle = turn(&block, &spin, &torque, dt_s, 0.0).expect("a turn");
+            let end = block.inverse * cayley(&angle).tr_mul(&(block.inertia * spin + dt_s * torque));
+            let gain = energy(&end) - energy(&spin) - torque.dot(&angle);
+            assert!(gain.abs() < 1e-14 * energy(&spin), "{gain}");
+            assert!((0.5 * dt_s * (spin + end) - angle).norm() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_spin_beyond_all_measure_is_refused_or_bounded() {
+        for spin in [1e3, 1e9, 1e200, f64::NAN] {
+            let angle = turn(&slab(), &Vec3::new(spin, 1.0, -spin), &Vec3::zeros(), 1.0, 0.0);
+            assert!(angle.is_none_or(|a| a.iter().all(|x| x.is_finite())), "{angle:?}");
+        }
+    }
+}
