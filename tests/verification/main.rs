@@ -6,6 +6,7 @@ mod body_kinds;
 mod bouncing_block;
 mod contact_patch;
 mod damping;
+mod end_contact;
 mod glancing_collision;
 mod ground_stress;
 mod loads_over_time;

@@ -5,12 +5,13 @@
 //! facet's area for each side. Past σ_t S it is gone for good, and so is the facet's cohesion.
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{TriangleId, Vec3};
+use ndda_mesh::{Mat3, TriangleId, Vec3};
 
 use crate::candidates::Candidates;
 use crate::joints::Joints;
 use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput};
 use crate::pair::TetFrame;
+use crate::pair_stiffness::PairStiffness;
 
 /// A facet touches when its centroid is no further outside than this part of the tetrahedron.
 const TOUCHING: f64 = 1e-6;
@@ -86,6 +87,32 @@ fn pull(joints: &Joints, input: &ContactInput, bond: &Bond, output: &mut Contact
         output.stiffness[node.index()] += 2.0 * law.bond_stiffness_pa_m() * half_area * lambda.abs();
     }
     true
+}
+
+/// Adds the stiffness of bonds that are stretched.
+pub fn add_stiffness(
+    joints: &Joints,
+    input: &ContactInput,
+    bonds: &[Bond],
+    stiffness: &mut Vec<PairStiffness>,
+) {
+    let blocks = input.blocks;
+    for bond in bonds {
+        let (triangle, tet) = (&blocks.triangles[bond.facet.index()], &blocks.tets[bond.tet.index()]);
+        let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
+        let area_vector = triangle_area_vector(&blocks.triangle_corners(bond.facet, input.position));
+        let pair = (blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]);
+        let Some(law) = joints.law(pair.0, pair.1) else { continue };
+        if (anchor - centroid(input, bond.facet)).dot(&area_vector) <= 0.0 {
+            continue;
+        }
+        let [a, b, c, d] = bond.lambda;
+        let weights = [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, -a, -b, -c, -d];
+        let mut spring = PairStiffness::new(triangle, tet);
+        let half_area = 0.5 * area_vector.norm();
+        spring.add_spring(&weights, &Mat3::from_diagonal_element(law.bond_stiffness_pa_m() * half_area));
+        stiffness.push(spring);
+    }
 }
 
 fn centroid(input: &ContactInput, facet: TriangleId) -> Vec3 {

@@ -9,6 +9,9 @@ use crate::integrals::Hit;
 use crate::joints::{Joints, Memory};
 use crate::model::{Body, ContactHistory, ContactInput, FacetMemory};
 
+/// Friction below this part of what it may be holds like a spring.
+const STICKS: f64 = 1.0 - 1e-9;
+
 /// The forces of one facet per unit of ∫ φ N dA, and what it remembers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FacetForce {
@@ -18,6 +21,8 @@ pub struct FacetForce {
     pub shear: Vec3,
     /// ½ k_s S / ∫ φ dA: what a shift of the facet adds to `shear` [Pa/m].
     pub shear_slope: f64,
+    /// Whether its friction is below what it may be.
+    pub sticks: bool,
     /// Memory to keep, where there is friction and contact.
     pub memory: Option<ShearMemory>,
     /// Whether there is a force at all.
@@ -71,6 +76,8 @@ impl FacetScene<'_> {
         let mut memory = self.remembered(facet);
         let slip = self.slip(facet, hits, &basis, pressure, penalty_pa);
         law.advance(&slip, &mut memory);
+        let [x, y] = memory.shear_n;
+        force.sticks = x.hypot(y) < STICKS * law.capacity_n(&slip, &memory);
         force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / pressure;
         force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / pressure;
         force.memory = Some(memory);

@@ -5,6 +5,7 @@
 
 pub mod element_pairs;
 pub mod model;
+pub mod pair_stiffness;
 pub mod testing;
 
 #[cfg(feature = "potential")]
@@ -78,6 +79,8 @@ pub use model::{
     Body, Bond, ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport,
     FaceMemory, FacetMemory,
 };
+
+pub use pair_stiffness::PairStiffness;
 
 #[cfg(feature = "potential")]
 pub use {

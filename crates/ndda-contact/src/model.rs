@@ -3,6 +3,8 @@
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 use serde::{Deserialize, Serialize};
 
+use crate::pair_stiffness::PairStiffness;
+
 /// What a contact model sees of the blocks: positions and velocities, nothing of materials or integrators.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactInput<'a> {
@@ -112,6 +114,9 @@ pub enum ContactError {
     /// The potential cannot serve a block.
     #[error("{0}")]
     Potential(String),
+    /// The model cannot say how its forces change.
+    #[error("this contact model has no stiffness to solve with: take contact at predicted positions")]
+    NoTangent,
     /// A force came out infinite or not a number.
     #[error(
         "the force between triangle {triangle:?} and tet {tet:?} is not finite: reduce step_s or the penalty"
@@ -182,7 +187,7 @@ pub struct ContactHistory {
 }
 
 /// A law of contact between blocks. `&mut self` is scratch only; memory that matters is in [`ContactHistory`].
-pub trait ContactModel: Send {
+pub trait ContactModel: Send + Sync {
     /// Adds the contact forces at `input.position` to `output` and advances `history` by one step.
     ///
     /// Forces sum to zero and exert no net torque.
@@ -201,6 +206,20 @@ pub trait ContactModel: Send {
     /// # Errors
     /// As [`add_forces`](Self::add_forces).
     fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError>;
+
+    /// ∂f/∂x where forces were added last, for steps that solve for contact: symmetric blocks of seven nodes, some of
+    /// which may be in several. It need not be exact; the closer it is, the fewer iterations a step takes.
+    ///
+    /// # Errors
+    /// [`ContactError::NoTangent`] unless a model has one, or as [`add_forces`](Self::add_forces).
+    fn add_stiffness(
+        &mut self,
+        _input: &ContactInput,
+        _history: &ContactHistory,
+        _stiffness: &mut Vec<PairStiffness>,
+    ) -> Result<(), ContactError> {
+        Err(ContactError::NoTangent)
+    }
 
     /// Whether [`ContactInput::bodies`] is read; `false` lets the solver leave them out.
     fn needs_bodies(&self) -> bool {

@@ -1,5 +1,6 @@
 //! The default contact model: a contact potential, and friction on top of it.
 
+use ndda_mesh::Mat3;
 use rayon::prelude::*;
 
 use crate::bonds;
@@ -15,9 +16,10 @@ use crate::model::{
     ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetMemory,
 };
 use crate::pair::TetFrame;
+use crate::pair_stiffness::PairStiffness;
 use crate::potential::{ContactPotential, Field, OverlapLaw};
 use crate::report::Reporter;
-use crate::tangent::{self, PairStiffness};
+use crate::tangent;
 
 /// Facets below which a second thread costs more than it brings.
 const GRAIN_FACETS: usize = 128;
@@ -181,36 +183,33 @@ impl PotentialContact {
         history.begun = true;
     }
 
-    /// ∂f/∂x of normal contact at `input.position`: blocks of seven nodes each, symmetric, for a solver that iterates.
-    /// Where the law of the overlap is not linear, the rank-one part of its curvature is not among them.
-    ///
-    /// # Errors
-    /// As [`add_forces`](ContactModel::add_forces).
-    pub fn stiffness(
-        &mut self,
-        input: &ContactInput,
-        stiffness: &mut Vec<PairStiffness>,
-    ) -> Result<(), ContactError> {
-        self.integrate(input)?;
-        self.place_penalties(input);
-        stiffness.clear();
-        for (f, facet) in self.candidates.facets.iter().enumerate() {
-            let corners = input.blocks.triangle_corners(facet.triangle, input.position);
-            for hit in self.integrals.hits_of(f).iter().filter(|hit| hit.moments.area > 0.0) {
-                let tet = self.candidates.tet_of(hit.pair);
-                let pieces = match &self.field {
-                    Some((_, Field::Pieces(table))) => Some(table.of(tet)),
-                    _ => None,
-                };
-                let frame = &self.frames[self.candidates.pairs[hit.pair as usize].tet as usize];
-                let nodes =
-                    (&input.blocks.triangles[facet.triangle.index()], &input.blocks.tets[tet.index()]);
-                let mut pair = PairStiffness::new(nodes.0, nodes.1);
-                tangent::add_pair(&mut pair, &corners, frame, pieces, self.penalty_of_facet[f]);
-                stiffness.push(pair);
+    /// Stiffness of one facet's hits: normal contact, and the shear spring of a facet that sticks.
+    fn add_facet_stiffness(&self, f: usize, input: &ContactInput, stiffness: &mut Vec<PairStiffness>) {
+        let facet = &self.candidates.facets[f];
+        let corners = input.blocks.triangle_corners(facet.triangle, input.position);
+        for hit in self.integrals.hits_of(f).iter().filter(|hit| hit.moments.area > 0.0) {
+            let tet = self.candidates.tet_of(hit.pair);
+            let pieces = match &self.field {
+                Some((_, Field::Pieces(table))) => Some(table.of(tet)),
+                _ => None,
+            };
+            let frame = &self.frames[self.candidates.pairs[hit.pair as usize].tet as usize];
+            let triangle = &input.blocks.triangles[facet.triangle.index()];
+            let mut pair = PairStiffness::new(triangle, &input.blocks.tets[tet.index()]);
+            tangent::add_pair(&mut pair, &corners, frame, pieces, self.penalty_of_facet[f]);
+            let force = &self.forces[f];
+            if force.shear_slope > 0.0 && force.sticks {
+                let normal = force.push.normalize();
+                let across = Mat3::identity() - normal * normal.transpose();
+                // The spring of a facet, shared among its hits by their pressure.
+                let total = hit.moments.total();
+                let [a, b, c] = hit.moments.pressure;
+                let [d, e, g, h] = hit.moments.target_pressure;
+                let weights = [a, b, c, -d, -e, -g, -h].map(|w| w / total);
+                pair.add_spring(&weights, &(force.shear_slope * total * across));
             }
+            stiffness.push(pair);
         }
-        Ok(())
     }
 }
 
@@ -257,6 +256,26 @@ impl ContactModel for PotentialContact {
         self.overlaps.integrate(input, &self.candidates, &self.integrals, &self.frames, field, law);
         let bonds = self.joints.as_ref().map_or(0.0, |joints| bonds::energy_j(joints, input, &history.bonds));
         Ok(self.penalty_pa * self.overlaps.energy_m3(law) + bonds)
+    }
+
+    /// The turning and stretching of triangles under their own pressure is left out, and so is what friction owes to
+    /// changes of pressure; where the law of the overlap is not linear, the rank-one part of its curvature, too.
+    fn add_stiffness(
+        &mut self,
+        input: &ContactInput,
+        history: &ContactHistory,
+        stiffness: &mut Vec<PairStiffness>,
+    ) -> Result<(), ContactError> {
+        self.integrate(input)?;
+        self.place_penalties(input);
+        self.forces.resize(self.candidates.facets.len(), FacetForce::default());
+        for f in 0..self.candidates.facets.len() {
+            self.add_facet_stiffness(f, input, stiffness);
+        }
+        if let Some(joints) = &self.joints {
+            bonds::add_stiffness(joints, input, &history.bonds, stiffness);
+        }
+        Ok(())
     }
 
     fn needs_bodies(&self) -> bool {
@@ -476,7 +495,8 @@ mod tests {
         let (ahead, behind) = (force_at(1.0), force_at(-1.0));
         let mut pairs = Vec::new();
         let input = ContactInput::new(&blocks, &blocks.rest_position, &velocity, 1.0);
-        model.stiffness(&input, &mut pairs).expect("sound blocks");
+        let history = ContactHistory::default();
+        model.add_stiffness(&input, &history, &mut pairs).expect("sound blocks");
         let mut change = vec![Vec3::zeros(); shift.len()];
         for pair in &pairs {
             pair.add_times(&shift, &mut change);

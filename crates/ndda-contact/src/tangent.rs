@@ -13,46 +13,27 @@
 //! order of the depth over the size of the triangle.
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{Mat3, NodeId, Vec3};
+use ndda_mesh::{Mat3, Vec3};
 
 use crate::clip::Polygon;
 use crate::pair::TetFrame;
+use crate::pair_stiffness::PairStiffness;
 use crate::region::{Region, element_outside};
 
-/// Stiffness between the seven nodes of a pair: the triangle's three, then the tetrahedron's four.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PairStiffness {
-    /// The nodes.
-    pub nodes: [NodeId; 7],
-    /// (S H Sᵀ)_pq for each part of the pair, summed with its −k sym(n ⊗ ∇φ): ∂f_p/∂x_q [N/m].
-    pub block: [[Mat3; 7]; 7],
-}
-
-impl PairStiffness {
-    /// No stiffness between these nodes.
-    pub fn new(triangle: &[NodeId; 3], tet: &[NodeId; 4]) -> Self {
-        let ([a, b, c], [d, e, f, g]) = (*triangle, *tet);
-        Self { nodes: [a, b, c, d, e, f, g], block: [[Mat3::zeros(); 7]; 7] }
-    }
-
-    /// out ← out + (∂f/∂x) u.
-    pub fn add_times(&self, u: &[Vec3], out: &mut [Vec3]) {
-        for (row, p) in self.block.iter().zip(self.nodes) {
-            for (k, q) in row.iter().zip(self.nodes) {
-                out[p.index()] += k * u[q.index()];
-            }
-        }
-    }
-
-    /// Adds the part of the pair where φ is one linear function with this gradient.
-    fn add(&mut self, part: &Polygon, shapes: &[[f64; 3]; 7], tensor: &Mat3, area_m2: f64) {
-        let h = second_moments(part, area_m2);
-        let times_h = |s: &[f64; 3]| h.map(|row| row[0] * s[0] + row[1] * s[1] + row[2] * s[2]);
-        for (s_p, row) in shapes.iter().zip(&mut self.block) {
-            let left = times_h(s_p);
-            for (s_q, block) in shapes.iter().zip(row) {
-                *block += tensor * (left[0] * s_q[0] + left[1] * s_q[1] + left[2] * s_q[2]);
-            }
+/// Adds the part of the pair where φ is one linear function with this gradient.
+fn add_part(
+    stiffness: &mut PairStiffness,
+    part: &Polygon,
+    shapes: &[[f64; 3]; 7],
+    tensor: &Mat3,
+    area_m2: f64,
+) {
+    let h = second_moments(part, area_m2);
+    let times_h = |s: &[f64; 3]| h.map(|row| row[0] * s[0] + row[1] * s[1] + row[2] * s[2]);
+    for (s_p, row) in shapes.iter().zip(&mut stiffness.block) {
+        let left = times_h(s_p);
+        for (s_q, block) in shapes.iter().zip(row) {
+            *block += tensor * (left[0] * s_q[0] + left[1] * s_q[1] + left[2] * s_q[2]);
         }
     }
 }
@@ -106,7 +87,7 @@ pub fn add_pair(
             }
         };
         if somewhere {
-            stiffness.add(&region.polygon(), &shapes, &tensor(&gradient), area);
+            add_part(stiffness, &region.polygon(), &shapes, &tensor(&gradient), area);
         }
     }
 }

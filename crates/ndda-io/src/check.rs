@@ -5,7 +5,8 @@ use std::path::Path;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::read::suggest;
 use crate::scene::{
-    Body, By, Contact, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene, Shape, Solver,
+    Body, By, Contact, ContactAt, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene,
+    Shape, Solver,
 };
 
 /// More steps than this are a slip of the keyboard.
@@ -131,6 +132,16 @@ impl Check<'_> {
                 message,
                 "1e-12 costs little more than 1e-6 and leaves no doubt",
             );
+        }
+        if let ContactAt::End { tolerance, most_iterations } = time.contact_at {
+            if !(1e-13..=1e-2).contains(&tolerance) {
+                let message = format!("{tolerance:e}: must be from 1e-13 to 1e-2");
+                self.error("time.contact_at.tolerance", message, "1e-8 is a step more than 1e-4");
+            }
+            if most_iterations == 0 {
+                let message = "no evaluation of contact at all";
+                self.error("time.contact_at.most_iterations", message, "100 is seldom reached");
+            }
         }
         match time.integrator {
             Integrator::Midpoint { theta } if !(0.5..=1.0).contains(&theta) => {

@@ -60,6 +60,9 @@ pub struct Time {
     /// Time integrator. Default: `Midpoint(theta: 0.5)`.
     #[serde(default)]
     pub integrator: Integrator,
+    /// Where in a step contact is taken. Default: `Predicted`.
+    #[serde(default)]
+    pub contact_at: ContactAt,
     /// How mass is shared among the nodes of an element. Default: `Consistent`.
     #[serde(default)]
     pub mass: Mass,
@@ -97,6 +100,24 @@ pub enum Solver {
         /// Residual over right-hand side at which to stop [-]. Default: 1e-12.
         #[serde(default = "fine")]
         tolerance: f64,
+    },
+}
+
+/// Where in a step contact is taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum ContactAt {
+    /// Where the integrator predicts blocks to be; a step must be short: ω_c Δt < 2.
+    #[default]
+    Predicted,
+    /// Where blocks are at the end, solved for: stable for any step, and damps what a step does not resolve.
+    End {
+        /// Largest misfit of contact forces over the largest of contact forces and loads. Default: 1e-8.
+        #[serde(default = "newton_tolerance")]
+        tolerance: f64,
+        /// Evaluations of contact after which a run stops. Default: 100.
+        #[serde(default = "newton_iterations")]
+        most_iterations: u32,
     },
 }
 
@@ -634,6 +655,14 @@ pub enum Reference {
         /// The block.
         block: String,
     },
+}
+
+fn newton_tolerance() -> f64 {
+    1e-8
+}
+
+fn newton_iterations() -> u32 {
+    100
 }
 
 fn radius() -> f64 {

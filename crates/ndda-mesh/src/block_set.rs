@@ -127,6 +127,11 @@ impl BlockSet {
         range(&self.triangle_start, block)
     }
 
+    /// The block that a node belongs to.
+    pub fn block_of(&self, node: NodeId) -> BlockId {
+        BlockId(self.node_starts().partition_point(|&start| start <= node.0) as u32 - 1)
+    }
+
     /// First node of each block, and the node count at the end (`len() + 1` entries).
     pub fn node_starts(&self) -> &[u32] {
         &self.node_start

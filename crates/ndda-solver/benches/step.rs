@@ -35,6 +35,7 @@ fn cubes(count: usize, n: u32) -> Simulation {
         mass: Mass::Consistent,
         integrator: Box::new(Midpoint { theta: 0.5 }),
         contact: None,
+        end_contact: None,
         solver: Box::new(Direct),
     })
     .expect("a simulation")

@@ -5,7 +5,7 @@ use ndda_mesh::Vec3;
 
 use crate::elastic_body::ElasticBody;
 use crate::fixed_body::FixedBody;
-use crate::for_each_block::NodeSlices;
+use crate::for_each_block::{NodeSlices, Nodes};
 use crate::linear_solver::SolveError;
 use crate::rigid_body::RigidBody;
 use crate::shape::Shape;
@@ -140,6 +140,41 @@ impl Body {
         match report {
             Ok(report) => self.report = report,
             Err(error) => self.error = Some(error),
+        }
+    }
+
+    /// Finds where the block would go; [`place_end`](Self::place_end) then says it.
+    pub fn try_step(&mut self, shape: &Shape, context: &StepContext, nodes: &Nodes) {
+        let tried = match &mut self.motion {
+            Motion::Elastic(body) => body.try_step(shape, context, nodes),
+            Motion::Rigid(body) => body.try_step(shape, context, nodes),
+            Motion::Fixed(_) => Ok(()),
+        };
+        self.error = tried.err();
+    }
+
+    /// out ← x + u as last tried [m].
+    pub fn place_end(&self, shape: &Shape, end_s: f64, position: &[Vec3], out: &mut [Vec3]) {
+        let increment = match &self.motion {
+            Motion::Elastic(body) => body.increment(),
+            Motion::Rigid(body) => body.increment(),
+            Motion::Fixed(body) => return body.end_position(shape, end_s, position, out),
+        };
+        for ((end, x), u) in out.iter_mut().zip(position).zip(increment) {
+            *end = x + u;
+        }
+    }
+
+    /// out ← how u as last tried changes with the force, linearised.
+    pub fn respond(&mut self, shape: &Shape, weights: &StepWeights, force: &[Vec3], out: &mut [Vec3]) {
+        match &mut self.motion {
+            Motion::Elastic(body) => {
+                if let Err(error) = body.respond(shape, force, out) {
+                    self.error = Some(error);
+                }
+            }
+            Motion::Rigid(body) => body.respond(shape, weights, force, out),
+            Motion::Fixed(_) => out.fill(Vec3::zeros()),
         }
     }
 

@@ -6,7 +6,7 @@ use ndda_fem::{FrameError, Voigt};
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::body::{BlockError, BlockReport, StepContext, checked_speed, displacement_at, whole_torque};
-use crate::for_each_block::NodeSlices;
+use crate::for_each_block::{NodeSlices, Nodes};
 use crate::linear_solver::{Scratch, SolveError};
 use crate::shape::Shape;
 use crate::time_integrator::{StepDamping, StepWeights};
@@ -31,6 +31,8 @@ pub struct ElasticBody {
     elastic: Vec<Vec3>,
     /// Rigid part of u that keeps the books of momentum [m]; zero for supported blocks.
     rigid: Vec<Vec3>,
+    /// R of the last step.
+    rotation: Mat3,
     unknowns: Vec<f64>,
     scratch: Scratch,
     report: BlockReport,
@@ -54,6 +56,7 @@ impl ElasticBody {
             correction: zeros(),
             elastic: zeros(),
             rigid: zeros(),
+            rotation: Mat3::identity(),
             unknowns: vec![0.0; shape.unknowns.len()],
             scratch: shape.factor.as_ref().map_or_else(Scratch::default, |f| f.new_scratch()),
             report: BlockReport::default(),
@@ -79,29 +82,84 @@ impl ElasticBody {
         mut nodes: NodeSlices,
     ) -> Result<BlockReport, BlockError> {
         self.report = BlockReport::default();
-        self.predict(context, &nodes);
-        // x + û is kept in `displacement` until w replaces it.
-        let center = shape.operator.center(&self.displacement);
-        let rotation = shape.supports.frame.rotation(&shape.operator, &self.displacement, &center)?;
-        self.gather_load(shape, context, &rotation, &nodes);
-        self.turn_into_frame(shape, &rotation, &center);
-        self.gather_residual(shape, context);
-        self.prescribe(shape, context, &rotation, nodes.position);
+        self.prepare(shape, context, &nodes.view())?;
         self.solve(shape)?;
-        self.finish_prescribed(shape, context, &rotation, nodes.position);
+        self.place_correction(shape, context, &nodes.view());
+        let rotation = self.rotation;
         self.update_internal_force(shape, &rotation, nodes.internal_force);
         if !shape.is_free() {
-            self.collect_reactions(shape, context, &rotation, &nodes);
+            self.collect_reactions(shape, context, &rotation, &nodes.view());
         }
         self.turn_back(&rotation);
         if shape.is_free() {
-            self.balance_momentum(shape, context, &nodes);
+            self.balance_momentum(shape, context, &nodes.view());
         }
         if !shape.damping.is_none() {
             self.report_damping(shape, context, &rotation);
         }
         self.advance(shape, context, &mut nodes)?;
         Ok(self.report)
+    }
+
+    /// u as a step would have it but for the balance of momentum, which changes it in the last digits; nothing else
+    /// is written.
+    ///
+    /// # Errors
+    /// [`BlockError`] when the block has lost its shape.
+    pub fn try_step(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        nodes: &Nodes,
+    ) -> Result<(), BlockError> {
+        self.prepare(shape, context, nodes)?;
+        self.solve(shape)?;
+        self.place_correction(shape, context, nodes);
+        self.turn_back(&self.rotation.clone());
+        Ok(())
+    }
+
+    /// u as last tried [m].
+    pub fn increment(&self) -> &[Vec3] {
+        &self.correction
+    }
+
+    /// out ← R K̃⁻¹ Rᵀ f: how u as last tried changes with the force.
+    ///
+    /// # Errors
+    /// [`BlockError::Solve`] when the solver does not get there.
+    pub fn respond(&mut self, shape: &Shape, force: &[Vec3], out: &mut [Vec3]) -> Result<(), BlockError> {
+        for (turned, f) in self.correction.iter_mut().zip(force) {
+            *turned = self.rotation.tr_mul(f);
+        }
+        shape.unknowns.gather(&self.correction, &mut self.unknowns);
+        self.solve(shape)?;
+        out.fill(Vec3::zeros());
+        shape.unknowns.scatter(&self.unknowns, out);
+        out.iter_mut().for_each(|u| *u = self.rotation * *u);
+        Ok(())
+    }
+
+    /// The right-hand side of the block's equations, in `unknowns`.
+    fn prepare(&mut self, shape: &Shape, context: &StepContext, nodes: &Nodes) -> Result<(), BlockError> {
+        self.predict(context, nodes);
+        // x + û is kept in `displacement` until w replaces it.
+        let center = shape.operator.center(&self.displacement);
+        let rotation = shape.supports.frame.rotation(&shape.operator, &self.displacement, &center)?;
+        self.rotation = rotation;
+        self.gather_load(shape, context, &rotation, nodes);
+        self.turn_into_frame(shape, &rotation, &center);
+        self.gather_residual(shape, context);
+        self.prescribe(shape, context, &rotation, nodes.position);
+        shape.unknowns.gather(&self.correction, &mut self.unknowns);
+        Ok(())
+    }
+
+    /// s from `unknowns` as solved, prescribed motions included; held components stay zero.
+    fn place_correction(&mut self, shape: &Shape, context: &StepContext, nodes: &Nodes) {
+        self.correction.fill(Vec3::zeros());
+        shape.unknowns.scatter(&self.unknowns, &mut self.correction);
+        self.finish_prescribed(shape, context, &self.rotation.clone(), nodes.position);
     }
 
     /// Work −u·C u/Δt of damping, and the force and torque on the block as a whole, by which its mass is dragged.
@@ -122,7 +180,7 @@ impl ElasticBody {
     }
 
     /// û and x + û.
-    fn predict(&mut self, context: &StepContext, nodes: &NodeSlices) {
+    fn predict(&mut self, context: &StepContext, nodes: &Nodes) {
         for (i, x) in nodes.position.iter().enumerate() {
             let (v, a) = (&nodes.velocity[i], &nodes.acceleration[i]);
             self.predicted[i] = context.integrator.predict(context.dt_s, v, a);
@@ -131,10 +189,10 @@ impl ElasticBody {
     }
 
     /// Rᵀ (f + springs at x + θ û − (1 − θ) f_int − α_m M a).
-    fn gather_load(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, nodes: &NodeSlices) {
+    fn gather_load(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, nodes: &Nodes) {
         let theta = context.weights.stiffness;
         self.load.copy_from_slice(context.force);
-        for (load, internal) in self.load.iter_mut().zip(&*nodes.internal_force) {
+        for (load, internal) in self.load.iter_mut().zip(nodes.internal_force) {
             *load -= (1.0 - theta) * internal;
         }
         if context.weights.old_inertia != 0.0 {
@@ -221,15 +279,12 @@ impl ElasticBody {
         onto(&held.held, &goal)
     }
 
-    /// s = K̃⁻¹ r over the unknowns; held components stay zero.
+    /// unknowns ← K̃⁻¹ unknowns.
     fn solve(&mut self, shape: &Shape) -> Result<(), SolveError> {
-        shape.unknowns.gather(&self.correction, &mut self.unknowns);
-        if let Some(factor) = &shape.factor {
-            factor.solve_in_place(&mut self.unknowns, &mut self.scratch)?;
+        match &shape.factor {
+            Some(factor) => factor.solve_in_place(&mut self.unknowns, &mut self.scratch),
+            None => Ok(()),
         }
-        self.correction.fill(Vec3::zeros());
-        shape.unknowns.scatter(&self.unknowns, &mut self.correction);
-        Ok(())
     }
 
     fn finish_prescribed(
@@ -258,13 +313,7 @@ impl ElasticBody {
     }
 
     /// What supports must exert for held components and springs to do as they do.
-    fn collect_reactions(
-        &mut self,
-        shape: &Shape,
-        context: &StepContext,
-        rotation: &Mat3,
-        nodes: &NodeSlices,
-    ) {
+    fn collect_reactions(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, nodes: &Nodes) {
         let StepWeights { stiffness: theta, mass_per_s2: c, .. } = context.weights;
         self.collect_springs(shape, context, rotation, nodes);
         for held in &shape.supports.held {
@@ -286,7 +335,7 @@ impl ElasticBody {
     }
 
     /// Forces of the springs at x + θ u; what u adds to them also goes to `load`, for nodes that are held, too.
-    fn collect_springs(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, nodes: &NodeSlices) {
+    fn collect_springs(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, nodes: &Nodes) {
         let theta = context.weights.stiffness;
         for (k, spring) in shape.supports.springs.iter().enumerate() {
             let i = spring.node as usize;
@@ -325,7 +374,7 @@ impl ElasticBody {
     /// y at mid-step, z at its end and y* at x*, all from their mass centre. The left side is the change of angular momentum;
     /// arms at x* keep the total of all blocks exact, since contact forces have no torque there. What the right side is
     /// where contact is not taken in the middle of the step, see [`whole_torque`].
-    fn balance_momentum(&mut self, shape: &Shape, context: &StepContext, nodes: &NodeSlices) {
+    fn balance_momentum(&mut self, shape: &Shape, context: &StepContext, nodes: &Nodes) {
         let (operator, c) = (&shape.operator, context.weights.mass_per_s2);
         let total: Vec3 = context.force.iter().sum();
         let had = operator.momentum(&self.correction) - operator.momentum(&self.predicted);
@@ -377,7 +426,7 @@ impl ElasticBody {
 
     /// Change of angular momentum about the mass centre that u brings [kg m²/s]; leaves y in `displacement` and
     /// v₁ − v₀ in `load`.
-    fn angular_gain(&mut self, shape: &Shape, context: &StepContext, nodes: &NodeSlices) -> Vec3 {
+    fn angular_gain(&mut self, shape: &Shape, context: &StepContext, nodes: &Nodes) -> Vec3 {
         let (operator, rate) = (&shape.operator, context.weights.velocity_per_m);
         for (i, u) in self.correction.iter().enumerate() {
             let (mut velocity, mut acceleration) = (nodes.velocity[i], nodes.acceleration[i]);

@@ -19,6 +19,16 @@ impl FixedBody {
         Self { anchor: if moves { position.to_vec() } else { Vec::new() } }
     }
 
+    /// Where the nodes are at the end of a step [m], `position` being where they are before it.
+    pub fn end_position(&self, shape: &Shape, end_s: f64, position: &[Vec3], out: &mut [Vec3]) {
+        if self.anchor.is_empty() {
+            out.copy_from_slice(position);
+            return;
+        }
+        let to = displacement_at(shape, Some(shape.supports.motions.len() - 1), end_s);
+        out.iter_mut().zip(&self.anchor).for_each(|(x, anchor)| *x = anchor + to);
+    }
+
     /// Takes the place that is prescribed for the end of the step, and reports what that took.
     pub fn step(&mut self, shape: &Shape, context: &StepContext, nodes: NodeSlices) -> BlockReport {
         let mut report = BlockReport::default();

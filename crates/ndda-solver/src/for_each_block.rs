@@ -14,13 +14,41 @@ pub struct NodeSlices<'a> {
     pub internal_force: &'a mut [Vec3],
 }
 
+/// The same to read.
+#[derive(Clone, Copy)]
+pub struct Nodes<'a> {
+    /// x [m].
+    pub position: &'a [Vec3],
+    /// v [m/s].
+    pub velocity: &'a [Vec3],
+    /// a [m/s²].
+    pub acceleration: &'a [Vec3],
+    /// f_int [N]; empty when the integrator does not need it.
+    pub internal_force: &'a [Vec3],
+}
+
 impl<'a> NodeSlices<'a> {
+    /// Slices of one array alone.
+    pub fn only_positions(position: &'a mut [Vec3]) -> Self {
+        Self { position, velocity: &mut [], acceleration: &mut [], internal_force: &mut [] }
+    }
+
+    /// To read.
+    pub fn view(&self) -> Nodes<'_> {
+        Nodes {
+            position: self.position,
+            velocity: self.velocity,
+            acceleration: self.acceleration,
+            internal_force: self.internal_force,
+        }
+    }
+
     fn split_at(self, node: usize) -> (Self, Self) {
         let (p0, p1) = self.position.split_at_mut(node);
-        let (v0, v1) = self.velocity.split_at_mut(node);
-        let (a0, a1) = self.acceleration.split_at_mut(node);
-        let kept = node.min(self.internal_force.len());
-        let (f0, f1) = self.internal_force.split_at_mut(kept);
+        // Arrays that nobody needs are empty.
+        let (v0, v1) = self.velocity.split_at_mut(node.min(self.velocity.len()));
+        let (a0, a1) = self.acceleration.split_at_mut(node.min(self.acceleration.len()));
+        let (f0, f1) = self.internal_force.split_at_mut(node.min(self.internal_force.len()));
         let head = Self { position: p0, velocity: v0, acceleration: a0, internal_force: f0 };
         (head, Self { position: p1, velocity: v1, acceleration: a1, internal_force: f1 })
     }

@@ -7,8 +7,9 @@ use ndda_fem::FrameError;
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::body::{BlockError, BlockReport, StepContext, checked_speed, whole_torque};
-use crate::for_each_block::NodeSlices;
+use crate::for_each_block::{NodeSlices, Nodes};
 use crate::shape::Shape;
+use crate::time_integrator::StepWeights;
 
 /// Newton steps for the turn of a step: it converges quadratically from a turn at constant spin.
 const MOST_ITERATIONS: usize = 20;
@@ -41,6 +42,8 @@ pub struct RigidBody {
     increment: Vec<Vec3>,
     /// v₁ [m/s].
     velocity: Vec<Vec3>,
+    /// R at the start of the step last tried.
+    rotation: Mat3,
 }
 
 /// Place and motion of a rigid block at the start of a step.
@@ -56,7 +59,7 @@ impl RigidBody {
     /// Memory for a block of this shape.
     pub fn new(shape: &Shape) -> Self {
         let zeros = vec![Vec3::zeros(); shape.operator.nodes()];
-        Self { increment: zeros.clone(), velocity: zeros }
+        Self { increment: zeros.clone(), velocity: zeros, rotation: Mat3::identity() }
     }
 
     /// Advances the block by one step: its mass centre by the integrator, its turn by an energy and momentum conserving
@@ -71,9 +74,56 @@ impl RigidBody {
         mut nodes: NodeSlices,
     ) -> Result<BlockReport, BlockError> {
         let mut report = BlockReport::default();
-        let start = start(shape, &nodes)?;
-        let (gone, drive) = self.shift(shape, context, &nodes, &start);
-        let torque = self.torque(shape, context, &nodes, (&gone, &drive), &mut report);
+        let start = self.place_increment(shape, context, &nodes.view(), &mut report)?;
+        report.speed_m_s = checked_speed(shape, &self.velocity)?;
+        self.book_drag(shape, context, &start, &mut report);
+        self.advance(context, &mut nodes);
+        report.book(shape, context, &self.increment);
+        Ok(report)
+    }
+
+    /// u as a step would have it; nothing else is written.
+    ///
+    /// # Errors
+    /// [`BlockError`] when no turn fits.
+    pub fn try_step(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        nodes: &Nodes,
+    ) -> Result<(), BlockError> {
+        let start = self.place_increment(shape, context, nodes, &mut BlockReport::default())?;
+        self.rotation = start.rotation;
+        Ok(())
+    }
+
+    /// u as last tried [m].
+    pub fn increment(&self) -> &[Vec3] {
+        &self.increment
+    }
+
+    /// out ← how u as last tried changes with the force: a shift F/c m, a turn J⁻¹ T/c.
+    pub fn respond(&self, shape: &Shape, weights: &StepWeights, force: &[Vec3], out: &mut [Vec3]) {
+        let (operator, inertia) = (&shape.operator, shape.rigid.as_ref().expect("a rigid shape"));
+        let rate = weights.mass_per_s2 + shape.damping.mass_per_s2;
+        let arms = || operator.rest.iter().map(|rest| self.rotation * rest);
+        let shift = force.iter().sum::<Vec3>() / (rate * operator.mass_kg);
+        let torque: Vec3 = arms().zip(force).map(|(arm, f)| arm.cross(f)).sum();
+        let turn = self.rotation * (inertia.inverse * self.rotation.tr_mul(&torque)) / rate;
+        out.iter_mut().zip(arms()).for_each(|(u, arm)| *u = shift + turn.cross(&arm));
+    }
+
+    /// u and v₁.
+    fn place_increment(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        nodes: &Nodes,
+        report: &mut BlockReport,
+    ) -> Result<Start, BlockError> {
+        let start = start(shape, nodes)?;
+        let (gone, drive) = self.shift(shape, context, nodes, &start);
+        let torque = self.torque(shape, context, nodes, (&gone, &drive), report);
         let local = start.rotation.tr_mul(&torque);
         let inertia = shape.rigid.as_ref().expect("a rigid shape");
         let drag = turn_drag(shape, context);
@@ -84,16 +134,12 @@ impl RigidBody {
         let turned = cayley(&angle);
         let rotation = start.rotation * turned;
         let spin = rotation * (inertia.inverse * turned.tr_mul(&momentum));
-        self.place(shape, context, &nodes, &start, (&gone, &rotation, &spin));
-        report.speed_m_s = checked_speed(shape, &self.velocity)?;
-        self.book_drag(shape, context, &start, &mut report);
-        self.advance(context, &mut nodes);
-        report.book(shape, context, &self.increment);
-        Ok(report)
+        self.place(shape, context, nodes, &start, (&gone, &rotation, &spin));
+        Ok(start)
     }
 
     /// How far the mass centre goes, and the force that drives it: c m (u − û) + a m u/Δt = F − α_m F₀.
-    fn shift(&self, shape: &Shape, context: &StepContext, nodes: &NodeSlices, start: &Start) -> (Vec3, Vec3) {
+    fn shift(&self, shape: &Shape, context: &StepContext, nodes: &Nodes, start: &Start) -> (Vec3, Vec3) {
         let (weights, mass) = (&context.weights, shape.operator.mass_kg);
         let force: Vec3 = context.force.iter().sum();
         let acceleration = shape.operator.center(nodes.acceleration);
@@ -109,7 +155,7 @@ impl RigidBody {
         &self,
         shape: &Shape,
         context: &StepContext,
-        nodes: &NodeSlices,
+        nodes: &Nodes,
         (gone, drive): (&Vec3, &Vec3),
         report: &mut BlockReport,
     ) -> Vec3 {
@@ -130,7 +176,7 @@ impl RigidBody {
         &mut self,
         shape: &Shape,
         context: &StepContext,
-        nodes: &NodeSlices,
+        nodes: &Nodes,
         start: &Start,
         (gone, rotation, spin): (&Vec3, &Mat3, &Vec3),
     ) {
@@ -176,12 +222,12 @@ impl RigidBody {
 }
 
 /// The rigid motion that the nodes are in.
-fn start(shape: &Shape, nodes: &NodeSlices) -> Result<Start, FrameError> {
+fn start(shape: &Shape, nodes: &Nodes) -> Result<Start, FrameError> {
     let operator = &shape.operator;
     let center = operator.center(nodes.position);
     let rotation = shape.supports.frame.rotation(operator, nodes.position, &center)?;
     let velocity_m_s = operator.center(nodes.velocity);
-    let moving = operator.node_mass.iter().zip(&*nodes.position).zip(&*nodes.velocity);
+    let moving = operator.node_mass.iter().zip(nodes.position).zip(nodes.velocity);
     let moment: Vec3 = moving.map(|((&m, x), v)| m * (x - center).cross(&(v - velocity_m_s))).sum();
     let inertia = shape.rigid.as_ref().expect("a rigid shape");
     let spin = inertia.inverse_lumped * rotation.tr_mul(&moment);

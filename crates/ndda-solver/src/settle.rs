@@ -11,7 +11,8 @@ use crate::simulation::{Simulation, StepError};
 /// How far a scene is to settle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settle {
-    /// Largest speed left over the largest speed on the way, by the kinetic energies of blocks.
+    /// Largest speed left over the largest speed on the way, by the kinetic energies of blocks; on the way is also what
+    /// loads alone would bring in the first step, where a scene is at rest from the start.
     pub tolerance: f64,
     /// Steps after which it is given up.
     pub most_steps: u64,
@@ -32,16 +33,22 @@ struct Swing {
     energy_j: f64,
     /// Largest energy at which it was stopped, older ones counting less; none before the first time.
     peak_j: Option<f64>,
+    /// Steps since it was stopped, and between the last two stops.
+    since: u64,
+    between: u64,
 }
 
-/// What the peak before counts: a small one may be chance, many in a row are not.
+/// What the peak before counts a swing later: a small one may be chance, many in a row are not.
 const REMEMBERED: f64 = 0.7;
 
 impl Swing {
     /// Takes the energy after a step; true when the block is past its peak.
     fn is_past_peak(&mut self, energy_j: f64) -> bool {
-        let past = energy_j < self.energy_j;
+        // One that no longer gains any is where nothing drives it.
+        let past = energy_j <= self.energy_j;
+        self.since += 1;
         if past {
+            (self.between, self.since) = (self.since, 0);
             self.peak_j = Some(self.energy_j.max(REMEMBERED * self.peak_j.unwrap_or(0.0)));
         }
         self.energy_j = if past { 0.0 } else { energy_j };
@@ -51,7 +58,11 @@ impl Swing {
     /// Energy that it may still have: what it has, and what its last swings had.
     fn left_j(&self) -> f64 {
         match self.peak_j {
-            Some(peak_j) => peak_j.max(self.energy_j),
+            // A swing that does not come back is over.
+            Some(peak_j) => {
+                let swings = self.since as f64 / self.between as f64;
+                (peak_j * REMEMBERED.powf(swings)).max(self.energy_j)
+            }
             None if self.energy_j > 0.0 => f64::INFINITY,
             None => 0.0,
         }
@@ -59,6 +70,15 @@ impl Swing {
 }
 
 impl Simulation {
+    /// Kinetic energy that its loads would give a free block in a step, the largest of all blocks [J].
+    fn load_energy_j(&self) -> f64 {
+        let of_block = |block: BlockId| {
+            let load: Vec3 = self.loads.total()[self.blocks().nodes_of(block)].iter().sum();
+            0.5 * (self.step_s * load).norm_squared() / self.shape(block).operator.mass_kg
+        };
+        self.blocks().ids().map(of_block).fold(0.0, f64::max)
+    }
+
     /// Runs with kinetic damping until all blocks are at rest, then sets time and displacements to zero; initial
     /// velocities come after it. What contact remembers stays; loads and prescribed motions are those of the start.
     ///
@@ -70,7 +90,7 @@ impl Simulation {
         self.state.velocity = vec![Vec3::zeros(); start.len()];
         let mut swings = vec![Swing::default(); self.blocks().len()];
         let (mut highest_j, mut settled) =
-            (0.0f64, Settled { speed_ratio: f64::INFINITY, ..Settled::default() });
+            (self.load_energy_j(), Settled { speed_ratio: f64::INFINITY, ..Settled::default() });
         while settled.speed_ratio > settle.tolerance {
             if settled.steps == settle.most_steps {
                 return Err(StepError::NotSettled { steps: settled.steps, speed_ratio: settled.speed_ratio });

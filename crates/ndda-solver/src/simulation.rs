@@ -1,5 +1,6 @@
 //! The problem, the state, and the step that joins them.
 
+use std::mem::take;
 use std::time::Instant;
 
 use ndda_contact::{
@@ -13,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::body::{BlockError, BlockReport, Body, BodyKind, Motion, StepContext};
 use crate::elastic_body::ElasticBody;
+use crate::end_contact::{EndContact, Iterations, Newton};
 use crate::fixed_body::FixedBody;
 use crate::for_each_block::{NodeSlices, for_each_block};
 use crate::ledger::{Invariants, Ledger, Sample};
@@ -24,7 +26,7 @@ use crate::state::State;
 use crate::time_integrator::{Inertia, StepDamping, StepWeights, TimeIntegrator};
 
 /// Nodes per half below which a second thread costs more than it brings.
-const GRAIN_NODES: usize = 400;
+pub(crate) const GRAIN_NODES: usize = 400;
 
 /// Everything a simulation is made of.
 pub struct Setup {
@@ -44,6 +46,8 @@ pub struct Setup {
     pub integrator: Box<dyn TimeIntegrator>,
     /// Contact; `None` where blocks do not feel each other.
     pub contact: Option<Box<dyn ContactModel>>,
+    /// Contact at the end of the step, solved for; at predicted positions without.
+    pub end_contact: Option<EndContact>,
     /// Linear solver.
     pub solver: Box<dyn LinearSolver>,
 }
@@ -57,6 +61,8 @@ pub struct StepReport {
     pub h: f64,
     /// Travel of the step over the smallest tet height of the block, largest over the blocks.
     pub travel_ratio: f64,
+    /// What solving for contact took; none where it is taken at predicted positions.
+    pub iterations: Iterations,
 }
 
 /// Seconds spent per stage of the step.
@@ -101,6 +107,19 @@ pub enum StepError {
         time_s: f64,
         /// The cause.
         source: ContactError,
+    },
+    /// Newton's method did not find the contact forces at the end of a step.
+    #[error(
+        "at t = {time_s} s: contact at the end of the step is not solved for after {iterations} evaluations \
+         (residual {residual:e}): reduce step_s, or raise the tolerance"
+    )]
+    ContactNotSolved {
+        /// Time [s].
+        time_s: f64,
+        /// Evaluations of contact.
+        iterations: u32,
+        /// Misfit of contact forces over the largest of contact forces and loads.
+        residual: f64,
     },
     /// A block is past the depth at which contact pushes it out (invariant I5).
     #[error(
@@ -159,23 +178,24 @@ pub enum StepError {
 
 /// A problem on its way through time.
 pub struct Simulation {
-    blocks: BlockSet,
-    shapes: Vec<Shape>,
-    bodies: Vec<Body>,
+    pub(crate) blocks: BlockSet,
+    pub(crate) shapes: Vec<Shape>,
+    pub(crate) bodies: Vec<Body>,
     pub(crate) state: State,
-    step_s: f64,
+    pub(crate) step_s: f64,
     pub(crate) settling: bool,
     integrator: Box<dyn TimeIntegrator>,
-    weights: StepWeights,
-    contact: Option<Box<dyn ContactModel>>,
+    pub(crate) weights: StepWeights,
+    pub(crate) contact: Option<Box<dyn ContactModel>>,
+    newton: Option<Box<Newton>>,
     ledger: Ledger,
     stages: StageTimes,
-    loads: Loads,
-    force: Vec<Vec3>,
+    pub(crate) loads: Loads,
+    pub(crate) force: Vec<Vec3>,
     friction_force: Vec<Vec3>,
-    contact_stiffness: Vec<f64>,
-    contact_position: Vec<Vec3>,
-    contact_bodies: Vec<ContactBody>,
+    pub(crate) contact_stiffness: Vec<f64>,
+    pub(crate) contact_position: Vec<Vec3>,
+    pub(crate) contact_bodies: Vec<ContactBody>,
 }
 
 impl Simulation {
@@ -184,9 +204,22 @@ impl Simulation {
     /// # Errors
     /// [`SetupError`] naming the block whose supports or equations are at fault.
     pub fn new(setup: Setup) -> Result<Self, SetupError> {
-        let Setup { blocks, bodies, gravity_m_s2, gravity_factor, mass, step_s, integrator, contact, solver } =
-            setup;
-        let weights = integrator.weights(step_s);
+        let Setup {
+            blocks,
+            bodies,
+            gravity_m_s2,
+            gravity_factor,
+            mass,
+            step_s,
+            integrator,
+            contact,
+            end_contact,
+            solver,
+        } = setup;
+        let mut weights = integrator.weights(step_s);
+        if end_contact.is_some() {
+            weights.contact_lead = 1.0;
+        }
         let mut shapes: Vec<Shape> = Vec::new();
         let mut shape_of = Vec::with_capacity(blocks.len());
         for (block, body) in blocks.ids().zip(&bodies) {
@@ -200,6 +233,8 @@ impl Simulation {
         // Contact between fewer than two blocks is left out altogether.
         let contact = contact.filter(|_| blocks.len() > 1);
         let friction_nodes = if contact.as_ref().is_some_and(|c| c.has_friction()) { nodes } else { 0 };
+        let end_contact = end_contact.filter(|_| contact.is_some());
+        let newton_nodes = if end_contact.is_some() { nodes } else { 0 };
         let contact_nodes = if contact.is_some() { nodes } else { 0 };
         let mut simulation = Self {
             state: State {
@@ -210,8 +245,10 @@ impl Simulation {
                 acceleration: vec![Vec3::zeros(); nodes],
                 internal_force: vec![Vec3::zeros(); if weights.stiffness < 1.0 { nodes } else { 0 }],
                 inertia: vec![Inertia::default(); if weights.needs_acceleration { blocks.len() } else { 0 }],
+                contact_force: vec![Vec3::zeros(); newton_nodes],
                 contact: Default::default(),
             },
+            newton: end_contact.map(|settings| Box::new(Newton::new(settings, nodes, blocks.len()))),
             bodies: Vec::with_capacity(blocks.len()),
             loads: Loads::new(Vec::new(), Vec::new()),
             force: vec![Vec3::zeros(); nodes],
@@ -319,7 +356,7 @@ impl Simulation {
         }
         let untouched = self.state.contact.clone();
         self.force.copy_from_slice(self.loads.total());
-        self.gather_contact_forces().map_err(Box::new)?;
+        self.add_contact_forces(None).map_err(Box::new)?;
         self.state.contact = untouched;
         let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
         for block in self.blocks.ids() {
@@ -367,12 +404,11 @@ impl Simulation {
     pub fn step(&mut self) -> Result<StepReport, StepError> {
         let started = Instant::now();
         self.gather_loads();
-        self.place_contact();
-        let contact = self.gather_contact_forces()?;
+        let (contact, iterations) = self.gather_contact()?;
         let contact_done = Instant::now();
         self.solve_blocks()?;
         let solved = Instant::now();
-        let report = self.keep_books(contact);
+        let report = self.keep_books(contact, iterations);
         self.stages.contact_s += (contact_done - started).as_secs_f64();
         self.stages.blocks_s += (solved - contact_done).as_secs_f64();
         self.stages.ledger_s += solved.elapsed().as_secs_f64();
@@ -383,6 +419,20 @@ impl Simulation {
     fn gather_loads(&mut self) {
         self.loads.place(self.clock_s(self.weights.load_lead));
         self.force.copy_from_slice(self.loads.total());
+    }
+
+    /// f ← loads and contact, at predicted positions or at the end of the step.
+    fn gather_contact(&mut self) -> Result<(ContactReport, Iterations), StepError> {
+        let Some(mut newton) = self.newton.take() else {
+            self.place_contact();
+            let report = self.add_contact_forces(None)?;
+            self.stop_past_centroid(&report)?;
+            return Ok((report, Iterations::default()));
+        };
+        let report = self.solve_contact(&mut newton);
+        let iterations = newton.iterations;
+        self.newton = Some(newton);
+        Ok((report?, iterations))
     }
 
     /// x* = x + lead · Δt v + lead₂ · Δt² a.
@@ -431,16 +481,20 @@ impl Simulation {
         }
     }
 
-    /// f ± contact at x*; stops where contact has lost its grip.
-    fn gather_contact_forces(&mut self) -> Result<ContactReport, StepError> {
+    /// force ← force + contact at x*; slip is by the velocities of the nodes, or by others where laws of facets ask.
+    pub(crate) fn add_contact_forces(
+        &mut self,
+        facet_velocity: Option<&[Vec3]>,
+    ) -> Result<ContactReport, StepError> {
         self.place_bodies();
+        let time_s = self.time_s();
         let Some(model) = &mut self.contact else { return Ok(ContactReport::default()) };
         self.friction_force.fill(Vec3::zeros());
         self.contact_stiffness.fill(0.0);
         let input = ContactInput {
             blocks: &self.blocks,
             position: &self.contact_position,
-            velocity: &self.state.velocity,
+            velocity: facet_velocity.filter(|_| !model.needs_bodies()).unwrap_or(&self.state.velocity),
             dt_s: self.step_s,
             bodies: &self.contact_bodies,
         };
@@ -450,67 +504,87 @@ impl Simulation {
             stiffness: &mut self.contact_stiffness,
         };
         let report = model.add_forces(&input, &mut self.state.contact, &mut output);
-        let report = report.map_err(|source| StepError::Contact { time_s: self.time_s(), source })?;
-        if let Some((triangle, tet)) = report.past_centroid {
-            let name = |block: BlockId| self.blocks.names[block.index()].clone();
-            return Err(StepError::PastCentroid {
-                time_s: self.time_s(),
-                contactor: name(self.blocks.triangle_block[triangle.index()]),
-                triangle,
-                target: name(self.blocks.tet_block[tet.index()]),
-                tet,
-            });
+        report.map_err(|source| StepError::Contact { time_s, source })
+    }
+
+    /// Stops where contact has lost its grip.
+    pub(crate) fn stop_past_centroid(&self, report: &ContactReport) -> Result<(), StepError> {
+        let Some((triangle, tet)) = report.past_centroid else { return Ok(()) };
+        let name = |block: BlockId| self.blocks.names[block.index()].clone();
+        Err(StepError::PastCentroid {
+            time_s: self.time_s(),
+            contactor: name(self.blocks.triangle_block[triangle.index()]),
+            triangle,
+            target: name(self.blocks.tet_block[tet.index()]),
+            tet,
+        })
+    }
+
+    /// What block `index` needs to know of a step.
+    pub(crate) fn context(&self, index: usize) -> StepContext<'_> {
+        let range = self.blocks.nodes_of(BlockId(index as u32));
+        StepContext {
+            integrator: self.integrator.as_ref(),
+            weights: self.weights,
+            dt_s: self.step_s,
+            time_s: self.clock_s(0.0),
+            end_s: self.clock_s(1.0),
+            contact_position: &self.contact_position[range.clone()],
+            force: &self.force[range.clone()],
+            external: &self.loads.total()[range.clone()],
+            changing: self.loads.changing().get(range.clone()).unwrap_or(&[]),
+            friction_force: self.friction_force.get(range.clone()).unwrap_or(&[]),
+            contact_stiffness: self.contact_stiffness.get(range).unwrap_or(&[]),
+            inertia: self.state.inertia.get(index).copied().unwrap_or_default(),
         }
-        Ok(report)
+    }
+
+    /// Works on blocks and their nodes while the rest is read.
+    pub(crate) fn with_bodies(&mut self, work: impl FnOnce(&Self, &mut [Body], NodeSlices)) {
+        let mut bodies = take(&mut self.bodies);
+        let (mut position, mut velocity) = (take(&mut self.state.position), take(&mut self.state.velocity));
+        let mut acceleration = take(&mut self.state.acceleration);
+        let mut internal_force = take(&mut self.state.internal_force);
+        let slices = NodeSlices {
+            position: &mut position,
+            velocity: &mut velocity,
+            acceleration: &mut acceleration,
+            internal_force: &mut internal_force,
+        };
+        work(self, &mut bodies, slices);
+        self.bodies = bodies;
+        (self.state.position, self.state.velocity) = (position, velocity);
+        (self.state.acceleration, self.state.internal_force) = (acceleration, internal_force);
     }
 
     /// Each block alone, in parallel.
     fn solve_blocks(&mut self) -> Result<(), StepError> {
-        let (shapes, blocks) = (&self.shapes, &self.blocks);
-        let (force, loads, contact_position) = (&self.force, &self.loads, &self.contact_position);
-        let (friction_force, contact_stiffness) = (&self.friction_force, &self.contact_stiffness);
-        let (integrator, weights, dt_s) = (self.integrator.as_ref(), self.weights, self.step_s);
-        let (time_s, end_s) = (self.clock_s(0.0), self.clock_s(1.0));
-        let inertia = &self.state.inertia;
-        let slices = NodeSlices {
-            position: &mut self.state.position,
-            velocity: &mut self.state.velocity,
-            acceleration: &mut self.state.acceleration,
-            internal_force: &mut self.state.internal_force,
-        };
-        let starts = blocks.node_starts();
-        for_each_block(0, &mut self.bodies, starts, slices, GRAIN_NODES, &|index, body: &mut Body, nodes| {
-            let range = blocks.nodes_of(BlockId(index as u32));
-            let context = StepContext {
-                integrator,
-                weights,
-                dt_s,
-                time_s,
-                end_s,
-                contact_position: &contact_position[range.clone()],
-                force: &force[range.clone()],
-                external: &loads.total()[range.clone()],
-                changing: loads.changing().get(range.clone()).unwrap_or(&[]),
-                friction_force: friction_force.get(range.clone()).unwrap_or(&[]),
-                contact_stiffness: contact_stiffness.get(range).unwrap_or(&[]),
-                inertia: inertia.get(index).copied().unwrap_or_default(),
-            };
-            body.step(&shapes[body.shape], &context, nodes);
+        self.with_bodies(|simulation, bodies, slices| {
+            let starts = simulation.blocks.node_starts();
+            for_each_block(0, bodies, starts, slices, GRAIN_NODES, &|index, body: &mut Body, nodes| {
+                body.step(&simulation.shapes[body.shape], &simulation.context(index), nodes);
+            });
         });
         for (inertia, body) in self.state.inertia.iter_mut().zip(&self.bodies) {
             *inertia = body.report.inertia;
         }
+        self.stop_if_a_block_failed()
+    }
+
+    /// The first error of a block, if there is any.
+    pub(crate) fn stop_if_a_block_failed(&mut self) -> Result<(), StepError> {
+        let time_s = self.clock_s(1.0);
         for (index, body) in self.bodies.iter_mut().enumerate() {
             if let Some(source) = body.error.take() {
                 let block = self.blocks.names[index].clone();
-                return Err(StepError::Block { time_s: end_s, block, source });
+                return Err(StepError::Block { time_s, block, source });
             }
         }
         Ok(())
     }
 
     /// Impulses, work and extremes of the step; t advances.
-    fn keep_books(&mut self, contact: ContactReport) -> StepReport {
+    fn keep_books(&mut self, contact: ContactReport, iterations: Iterations) -> StepReport {
         let (mut force, mut torque) = (self.loads.force(), Vec3::zeros());
         self.ledger.watch_load(force.norm());
         let (mut rate2, mut travel_ratio) = (0.0f64, 0.0f64);
@@ -532,7 +606,7 @@ impl Simulation {
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
         self.ledger.watch(&contact, h, travel_ratio);
         self.state.step += 1;
-        StepReport { contact, h, travel_ratio }
+        StepReport { contact, h, travel_ratio, iterations }
     }
 
     /// Energies and momenta now, balanced against the books.
@@ -655,6 +729,7 @@ impl Simulation {
             (state.acceleration.len(), expected),
             (state.internal_force.len(), internal),
             (state.inertia.len(), self.state.inertia.len()),
+            (state.contact_force.len(), self.state.contact_force.len()),
         ] {
             if found != expected {
                 return Err(RestoreError { found, expected });
@@ -670,7 +745,7 @@ impl Simulation {
     }
 
     /// Time that loads and prescribed motions see, some steps ahead [s]: it stands still while a scene settles.
-    fn clock_s(&self, ahead: f64) -> f64 {
+    pub(crate) fn clock_s(&self, ahead: f64) -> f64 {
         if self.settling { 0.0 } else { (self.state.step as f64 + ahead) * self.step_s }
     }
 
@@ -714,9 +789,9 @@ impl Simulation {
         self.contact.is_some()
     }
 
-    /// Largest stable h = ω_c Δt of the integrator.
+    /// Largest stable h = ω_c Δt; none where contact is solved for, or never stable.
     pub fn contact_bound(&self) -> Option<f64> {
-        self.integrator.contact_bound()
+        if self.newton.is_some() { None } else { self.integrator.contact_bound() }
     }
 
     /// The worst of the run so far.

@@ -23,6 +23,8 @@ pub struct State {
     pub internal_force: Vec<Vec3>,
     /// M a of each block as a whole; empty for integrators to which the start's acceleration does not matter.
     pub inertia: Vec<Inertia>,
+    /// Contact force per node at the end of the last step [N]; empty where contact is taken at predicted positions.
+    pub contact_force: Vec<Vec3>,
     /// What contact remembers.
     pub contact: ContactHistory,
 }

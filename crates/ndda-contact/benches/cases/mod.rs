@@ -200,9 +200,10 @@ impl Evaluation {
     }
 
     /// The tangent of normal contact.
-    pub fn tangent(&mut self, pairs: &mut Vec<ndda_contact::tangent::PairStiffness>) {
+    pub fn tangent(&mut self, pairs: &mut Vec<ndda_contact::PairStiffness>) {
         let input = ContactInput::new(&self.blocks, &self.blocks.rest_position, &self.velocity, 1e-5);
-        self.model.stiffness(&input, pairs).expect("sound blocks");
+        pairs.clear();
+        self.model.add_stiffness(&input, &self.history, pairs).expect("sound blocks");
     }
 
     /// The paper's sum over all pairs of elements.

@@ -1,0 +1,174 @@
+//! Contact at the end of the step, solved for: stiff contact and long steps.
+
+use ndda_mesh::BlockId;
+use ndda_solver::{Iterations, Settle, Simulation, StepError};
+
+use crate::simulation;
+
+/// The paper's steel-like rock: at k_n = 1e-5 E a metre of it sinks by 6 mm.
+const YOUNG_PA: f64 = 200e9;
+
+/// A cube that falls 1 mm on a fixed slab, and comes to rest there, with k_n = `ratio` E.
+fn falling(ratio: f64, body: &str) -> Simulation {
+    simulation(&format!(
+        "(title: \"falling\", time: (step_s: 1e-3, end_s: 1, contact_at: End()), gravity_m_s2: (0, 0, -9.8),
+          materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: 0.2, density_kg_m3: 2500)],
+          blocks: [
+            (name: \"slab\", material: \"rock\", shape: Box(size_m: (3, 3, 1), cells: (3, 3, 1)), body: Fixed),
+            (name: \"cube\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (2, 2, 2)), body: {body}, at_m: (0.9, 1.1, 1.001)),
+          ],
+          contact: Potential(penalty_pa: {:e}, potential: Smooth(reference_m: 1)))",
+        ratio * YOUNG_PA
+    ))
+}
+
+#[test]
+fn stiff_contact_converges_at_long_steps_without_gaining_energy_and_rests_as_deep_as_statics_say() {
+    for body in ["Elastic", "Rigid"] {
+        'ratios: for ratio in [1e-5, 1e-4, 1e-3, 1e-2, 0.1, 1.0, 10.0] {
+            let mut simulation = falling(ratio, body);
+            simulation.sample().unwrap();
+            let mut most = Iterations::default();
+            for step in 0..400 {
+                let report = match simulation.step() {
+                    Ok(report) => report,
+                    // Stiffer than the rock itself by its own height: a clean stop will do.
+                    Err(StepError::ContactNotSolved { iterations, residual, .. }) if ratio >= 10.0 => {
+                        println!(
+                            "{body}, k_n = {ratio:e} E: stops after {iterations}, residual {residual:.1e}"
+                        );
+                        continue 'ratios;
+                    }
+                    Err(error) => panic!("{body}, {ratio}: {error}"),
+                };
+                most.newton = most.newton.max(report.iterations.newton);
+                most.krylov = most.krylov.max(report.iterations.krylov);
+                if step % 10 == 0 {
+                    simulation.sample().unwrap();
+                }
+            }
+            let sample = simulation.sample().unwrap();
+            let worst = simulation.invariants();
+            simulation
+                .settle(&Settle { tolerance: 1e-3, most_steps: 50_000 })
+                .unwrap_or_else(|error| panic!("{body}, {ratio}: {error}"));
+            // The lowest face of the cube: two fields of slope one over a metre meet, p = 2 k h.
+            let cube = simulation.blocks().nodes_of(BlockId(1));
+            let lowest = &simulation.state().position[cube.clone()][..9];
+            let top = 1.0 - simulation.blocks().origin_m.z;
+            // The mean over the face, which stiff contact bends: corners count once, edges twice, the middle four times.
+            let weights = [1.0, 2.0, 1.0, 2.0, 4.0, 2.0, 1.0, 2.0, 1.0];
+            let depth = top - lowest.iter().zip(weights).map(|(x, w)| w * x.z).sum::<f64>() / 16.0;
+            let expected = 2500.0 * 9.8 / (2.0 * ratio * YOUNG_PA);
+            println!(
+                "{body}, k_n = {ratio:e} E: depth {depth:.3e} m ({:+.1e}), kinetic {:.1e} J, gain {:.1e}, at most {} Newton, {} Krylov",
+                depth / expected - 1.0,
+                sample.kinetic_j,
+                worst.energy_gain,
+                most.newton,
+                most.krylov
+            );
+            assert!(worst.energy_gain < 0.01, "{body}, {ratio}: {worst:?}");
+            assert!((depth / expected - 1.0).abs() < 0.01, "{body}, {ratio}: {depth:e} for {expected:e}");
+        }
+    }
+}
+
+#[test]
+fn a_bounce_gives_back_what_theory_says() {
+    // Contact at the end of the step damps: restitution exp(−πh/4) as h → 0.
+    for step_s in [4e-3, 2e-3, 1e-3] {
+        let mut simulation = simulation(&format!(
+            "(title: \"bounce\", time: (step_s: {step_s}, end_s: 1, contact_at: End()),
+              materials: [(name: \"rock\", young_pa: 1e12, poisson: 0, density_kg_m3: 2500)],
+              blocks: [
+                (name: \"base\", material: \"rock\", shape: Box(size_m: (1, 1, 0.25), cells: (2, 2, 1)), body: Fixed),
+                (name: \"ball\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (2, 2, 2)), at_m: (0, 0, 0.251),
+                 velocity_m_s: (0, 0, -0.5)),
+              ],
+              contact: Potential(penalty_pa: 4e6, potential: Smooth(reference_m: 1)))"
+        ));
+        simulation.sample().unwrap();
+        let mut touched = false;
+        loop {
+            let pairs = simulation.step().unwrap().contact.contact_pairs;
+            if touched && pairs == 0 {
+                break;
+            }
+            touched |= pairs > 0;
+        }
+        let restitution = simulation.sample().unwrap().momentum.z / (2500.0 * 0.5);
+        let h = (2.0 * 4e6 / 2500.0f64).sqrt() * step_s;
+        let theory = (-std::f64::consts::FRAC_PI_4 * h).exp();
+        println!("h = {h:.3}: restitution {restitution:.4}, exp(−πh/4) = {theory:.4}");
+        assert!(((1.0 - restitution) / (1.0 - theory) - 1.0).abs() < 0.2, "{restitution} for {theory}");
+    }
+}
+
+#[test]
+fn a_glancing_collision_keeps_momenta_however_far_newton_got() {
+    for tolerance in ["1e-2", "1e-10"] {
+        let mut simulation = simulation(&format!(
+            "(title: \"glancing\", time: (step_s: 2e-4, end_s: 1, contact_at: End(tolerance: {tolerance})),
+              materials: [(name: \"rock\", young_pa: 1e9, poisson: 0.2, density_kg_m3: 2500)],
+              blocks: [
+                (name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (2, 1, 1)), velocity_m_s: (2, 0, 0.3),
+                 spin_rad_s: (0.5, 2, -1)),
+                (name: \"b\", material: \"rock\", shape: Box(size_m: (1, 0.5, 1), cells: (1, 1, 1)), body: Rigid, at_m: (1.01, 0.6, 0.7)),
+                (name: \"c\", material: \"rock\", shape: Box(size_m: (1, 0.5, 1), cells: (1, 1, 1)), body: Affine, at_m: (2.02, 0.3, 0.5)),
+              ],
+              contact: Potential(penalty_pa: 1e7, friction: (friction_deg: 30, shear_penalty_pa_m: 1e8)))"
+        ));
+        simulation.sample().unwrap();
+        let mut pairs = 0;
+        for _ in 0..2500 {
+            pairs += simulation.step().unwrap().contact.contact_pairs;
+        }
+        simulation.sample().unwrap();
+        let worst = simulation.invariants();
+        assert!(pairs > 100, "they do not meet");
+        assert!(worst.linear_momentum < 1e-12 && worst.angular_momentum < 1e-12, "{tolerance}: {worst:?}");
+        assert!(worst.energy_gain < 1e-3, "{tolerance}: {worst:?}");
+    }
+}
+
+#[test]
+fn a_flat_block_sticks_or_slides_on_a_ramp_by_either_law_of_friction_at_a_long_step() {
+    // 30° by tilted gravity; steps of 1 ms where contact at predicted positions needs 0.02 ms.
+    for (friction, slides) in [
+        ("friction_deg: 35", false),
+        ("friction_deg: 35, shear_penalty_pa_m: 2e11", false),
+        ("friction_deg: 25", true),
+        ("friction_deg: 25, shear_penalty_pa_m: 2e11", true),
+    ] {
+        let mut simulation = simulation(&format!(
+            "(title: \"ramp\", time: (step_s: 1e-3, end_s: 1, contact_at: End()), gravity_m_s2: (4.9, 0, -8.487048957),
+              materials: [(name: \"rock\", young_pa: 200e9, poisson: 0.25, density_kg_m3: 2650)],
+              blocks: [
+                (name: \"ramp\", material: \"rock\", shape: Box(size_m: (4, 1, 0.5), cells: (8, 2, 1)), body: Fixed),
+                (name: \"block\", material: \"rock\", shape: Box(size_m: (0.2, 0.2, 0.06), cells: (2, 2, 1)), at_m: (0.5, 0.4, 0.5)),
+              ],
+              contact: Potential(penalty_pa: 2e10, potential: Smooth(reference_m: 1), friction: ({friction})))"
+        ));
+        simulation.sample().unwrap();
+        let mut worst_h = 0.0f64;
+        for _ in 0..500 {
+            let report = simulation.step().unwrap_or_else(|error| panic!("{friction}: {error}"));
+            worst_h = worst_h.max(report.h);
+        }
+        simulation.sample().unwrap();
+        let block = &crate::displacements(&simulation)[simulation.blocks().nodes_of(BlockId(1))];
+        let slip = block.iter().map(|u| u.x).sum::<f64>() / block.len() as f64;
+        let free = 0.5 * (4.9 - 25f64.to_radians().tan() * 8.487048957) * 0.25;
+        println!(
+            "{friction}: slips {slip:.3e} m, closed form {:.3e} m, h = {worst_h:.0}",
+            if slides { free } else { 0.0 }
+        );
+        if slides {
+            assert!((slip / free - 1.0).abs() < 0.01, "{friction}: {slip} for {free}");
+        } else {
+            assert!(slip.abs() < 1e-5, "{friction}: {slip}");
+        }
+        assert!(simulation.invariants().energy_gain < 0.01, "{friction}: {:?}", simulation.invariants());
+    }
+}
