@@ -34,6 +34,12 @@ pub enum BlockError {
     /// Its equations were not solved.
     #[error(transparent)]
     Solve(#[from] SolveError),
+    /// A rigid block spins faster than a step can follow.
+    #[error("it spins at {spin_rad_s:e} rad/s, more than a step can follow: reduce step_s")]
+    TooQuick {
+        /// Its spin [rad/s].
+        spin_rad_s: f64,
+    },
     /// A velocity is beyond what the material can carry, or not a number (invariant I1).
     #[error(
         "node {node} moves at {speed_m_s:e} m/s, more than ten times its wave speed {wave_speed_m_s:e} m/s: \
@@ -122,7 +128,7 @@ pub struct Body {
 /// The ways in which a block moves.
 pub enum Motion {
     /// Elastic and affine blocks.
-    Elastic(ElasticBody),
+    Elastic(Box<ElasticBody>),
     /// Rigid blocks.
     Rigid(RigidBody),
     /// Blocks that stay, or go where they are told to.

@@ -128,7 +128,7 @@ impl RigidBody {
         let inertia = shape.rigid.as_ref().expect("a rigid shape");
         let drag = turn_drag(shape, context);
         let angle = turn(inertia, &start.spin, &local, context.dt_s, drag)
-            .ok_or_else(|| BlockError::Frame(FrameError { determinant: f64::NAN }))?;
+            .ok_or(BlockError::TooQuick { spin_rad_s: start.spin.norm() })?;
         let momentum = inertia.inertia * start.spin + context.dt_s * local
             - drag * context.dt_s * (inertia.inertia * angle);
         let turned = cayley(&angle);

@@ -293,7 +293,7 @@ impl Simulation {
                 if let Some(initial) = &body.initial_force {
                     internal.iter_mut().zip(initial).for_each(|(f, initial)| *f = *initial);
                 }
-                Motion::Elastic(body)
+                Motion::Elastic(Box::new(body))
             }
             BodyKind::Rigid => Motion::Rigid(RigidBody::new(shape)),
             BodyKind::Fixed => {
