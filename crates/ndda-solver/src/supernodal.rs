@@ -7,7 +7,7 @@ mod panels;
 mod separator;
 mod symbolic;
 
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
 use crate::linear_solver::{
     EIGHT, Eight, Factor, FactorError, LinearSolver, Scratch, SolveError, SymmetricMatrix,
@@ -60,6 +60,38 @@ impl SupernodalFactor {
     }
 }
 
+/// A solve, compiled for each kind of processor.
+struct One<'a> {
+    panels: &'a Panels,
+    x: &'a mut [f64],
+    local: &'a mut [Eight],
+}
+
+impl WithSimd for One<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        self.panels.solve(self.x, self.local);
+    }
+}
+
+/// A solve for eight right-hand sides, compiled for each kind of processor.
+struct AllEight<'a> {
+    panels: &'a Panels,
+    x: &'a mut [Eight],
+    local: &'a mut [[Eight; EIGHT]],
+}
+
+impl WithSimd for AllEight<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.panels.solve_eight(simd, self.x, self.local);
+    }
+}
+
 impl Factor for SupernodalFactor {
     fn unknowns(&self) -> usize {
         self.unknown.len()
@@ -77,7 +109,7 @@ impl Factor for SupernodalFactor {
     fn solve_in_place(&self, rhs: &mut [f64], scratch: &mut Scratch) -> Result<(), SolveError> {
         let x = &mut scratch.numbers;
         x.iter_mut().zip(&self.unknown).for_each(|(x, &u)| *x = rhs[u as usize]);
-        self.arch.dispatch(|| self.panels.solve(x, &mut scratch.lines));
+        self.arch.dispatch(One { panels: &self.panels, x, local: &mut scratch.lines });
         x.iter().zip(&self.unknown).for_each(|(x, &u)| rhs[u as usize] = *x);
         Ok(())
     }
@@ -92,7 +124,7 @@ impl Factor for SupernodalFactor {
         }
         let (x, local) = scratch.lines.split_at_mut(self.unknowns() + 1);
         x.iter_mut().zip(&self.unknown).for_each(|(x, &u)| x.0 = rhs[u as usize]);
-        self.arch.dispatch(|| self.panels.solve_eight(x, local.as_chunks_mut().0));
+        self.arch.dispatch(AllEight { panels: &self.panels, x, local: local.as_chunks_mut().0 });
         x.iter().zip(&self.unknown).for_each(|(x, &u)| rhs[u as usize] = x.0);
         Ok(())
     }

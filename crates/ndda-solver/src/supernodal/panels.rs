@@ -7,6 +7,8 @@
 //!
 //! The sums are taken in one order on every processor, and in the same one for eight right-hand sides as for one.
 
+use pulp::Simd;
+
 use crate::linear_solver::{EIGHT, Eight};
 
 /// Columns of the factor that are kept together.
@@ -49,6 +51,18 @@ impl Panel {
 
 /// Calls a function with the number of columns as a constant.
 macro_rules! by_columns {
+    ($columns:expr, $function:ident :: <$simd:ident> ( $($argument:expr),* )) => {
+        match $columns {
+            1 => $function::<$simd, 1>($($argument),*),
+            2 => $function::<$simd, 2>($($argument),*),
+            3 => $function::<$simd, 3>($($argument),*),
+            4 => $function::<$simd, 4>($($argument),*),
+            5 => $function::<$simd, 5>($($argument),*),
+            6 => $function::<$simd, 6>($($argument),*),
+            7 => $function::<$simd, 7>($($argument),*),
+            _ => $function::<$simd, 8>($($argument),*),
+        }
+    };
     ($columns:expr, $function:ident ( $($argument:expr),* )) => {
         match $columns {
             1 => $function::<1>($($argument),*),
@@ -118,24 +132,25 @@ impl Panels {
 
     /// [`solve`](Self::solve) for eight right-hand sides, each as if it were alone; `local` is of eight times the size.
     #[inline(always)]
-    pub fn solve_eight(&self, x: &mut [Eight], local: &mut [[Eight; EIGHT]]) {
+    pub fn solve_eight<S: Simd>(&self, simd: S, x: &mut [Eight], local: &mut [[Eight; EIGHT]]) {
         let mut tiles = self.tiles.as_slice();
         for panel in &self.panels {
             let (own, rest) = tiles.split_at(panel.len());
             tiles = rest;
-            self.forward_eight(panel, own, x, &mut local[..panel.height]);
+            self.forward_eight(simd, panel, own, x, &mut local[..panel.height]);
         }
         let mut tiles = self.tiles.as_slice();
         for panel in self.panels.iter().rev() {
             let (rest, own) = tiles.split_at(tiles.len() - panel.len());
             tiles = rest;
-            self.backward_eight(panel, own, x, &mut local[..panel.height]);
+            self.backward_eight(simd, panel, own, x, &mut local[..panel.height]);
         }
     }
 
     #[inline(always)]
-    fn forward_eight(
+    fn forward_eight<S: Simd>(
         &self,
+        simd: S,
         panel: &Panel,
         mut tiles: &[Eight],
         x: &mut [Eight],
@@ -146,7 +161,7 @@ impl Panels {
         for (g, (columns, height)) in panel.groups().enumerate() {
             let (group, rest) = tiles.split_at(columns * height);
             tiles = rest;
-            by_columns!(columns, add_tiles_eight(group, &own[EIGHT * g..], &mut local[g..]));
+            by_columns!(columns, add_tiles_eight::<S>(simd, group, &own[EIGHT * g..], &mut local[g..]));
         }
         own.fill(Eight::default());
         for (rows, local) in self.row[panel.rows..].iter().zip(&*local) {
@@ -157,8 +172,9 @@ impl Panels {
     }
 
     #[inline(always)]
-    fn backward_eight(
+    fn backward_eight<S: Simd>(
         &self,
+        simd: S,
         panel: &Panel,
         mut tiles: &[Eight],
         x: &mut [Eight],
@@ -171,7 +187,7 @@ impl Panels {
         for (g, (columns, height)) in panel.groups().enumerate() {
             let (group, rest) = tiles.split_at(columns * height);
             tiles = rest;
-            by_columns!(columns, tiles_times_eight(group, &local[g..], &mut own[EIGHT * g..]));
+            by_columns!(columns, tiles_times_eight::<S>(simd, group, &local[g..], &mut own[EIGHT * g..]));
         }
     }
 }
@@ -180,18 +196,6 @@ impl Panels {
 #[inline(always)]
 fn add(a: &mut Eight, b: &Eight) {
     a.0.iter_mut().zip(&b.0).for_each(|(a, b)| *a += b);
-}
-
-/// The sum of eight numbers, or of as many rows of eight, in one order.
-#[inline(always)]
-fn sum(values: [Eight; EIGHT]) -> Eight {
-    let plus = |a: Eight, b: Eight| {
-        let mut c = a;
-        add(&mut c, &b);
-        c
-    };
-    let [a, b, c, d, e, f, g, h] = values;
-    plus(plus(plus(a, e), plus(c, g)), plus(plus(b, f), plus(d, h)))
 }
 
 /// out ← out + tiles x, for one column of tiles.
@@ -227,34 +231,75 @@ fn tiles_times<const C: usize>(tiles: &[Eight], x: &[Eight], out: &mut [f64]) {
 
 /// [`add_tiles`] for eight right-hand sides.
 #[inline(always)]
-fn add_tiles_eight<const C: usize>(tiles: &[Eight], x: &[Eight], out: &mut [[Eight; EIGHT]]) {
-    let x: [Eight; C] = std::array::from_fn(|c| x[c]);
-    for (tile, out) in tiles.as_chunks::<C>().0.iter().zip(out) {
-        for r in 0..EIGHT {
-            let mut sum = out[r].0;
-            for c in 0..C {
-                for lane in 0..EIGHT {
-                    sum[lane] += tile[c].0[r] * x[c].0[lane];
+fn add_tiles_eight<S: Simd, const C: usize>(
+    simd: S,
+    tiles: &[Eight],
+    x: &[Eight],
+    out: &mut [[Eight; EIGHT]],
+) {
+    for v in 0..EIGHT / S::F64_LANES {
+        let mut own = [simd.splat_f64s(0.0); C];
+        for c in 0..C {
+            own[c] = S::as_simd_f64s(&x[c].0).0[v];
+        }
+        for (tile, out) in tiles.as_chunks::<C>().0.iter().zip(&mut *out) {
+            for r in 0..EIGHT {
+                let out = &mut S::as_mut_simd_f64s(&mut out[r].0).0[v];
+                let mut sum = *out;
+                for c in 0..C {
+                    sum = simd.add_f64s(sum, simd.mul_f64s(simd.splat_f64s(tile[c].0[r]), own[c]));
                 }
+                *out = sum;
             }
-            out[r].0 = sum;
         }
     }
 }
 
 /// [`tiles_times`] for eight right-hand sides.
 #[inline(always)]
-fn tiles_times_eight<const C: usize>(tiles: &[Eight], x: &[[Eight; EIGHT]], out: &mut [Eight]) {
-    for (c, out) in out.iter_mut().enumerate().take(C) {
-        let mut sums = [[0.0; EIGHT]; EIGHT];
-        for (tile, x) in tiles.as_chunks::<C>().0.iter().zip(x) {
-            let tile = &tile[c].0;
-            for r in 0..EIGHT {
-                for lane in 0..EIGHT {
-                    sums[r][lane] += tile[r] * x[r].0[lane];
-                }
+fn tiles_times_eight<S: Simd, const C: usize>(
+    simd: S,
+    tiles: &[Eight],
+    x: &[[Eight; EIGHT]],
+    out: &mut [Eight],
+) {
+    for v in 0..EIGHT / S::F64_LANES {
+        for c in (0..C - C % 2).step_by(2) {
+            let sums = columns_times::<S, C, 2>(simd, tiles, x, c, v);
+            S::as_mut_simd_f64s(&mut out[c].0).0[v] = sums[0];
+            S::as_mut_simd_f64s(&mut out[c + 1].0).0[v] = sums[1];
+        }
+        if C % 2 == 1 {
+            let [sum] = columns_times::<S, C, 1>(simd, tiles, x, C - 1, v);
+            S::as_mut_simd_f64s(&mut out[C - 1].0).0[v] = sum;
+        }
+    }
+}
+
+/// N columns of tilesᵀ x from `first` on, for the v-th of the vectors that eight right-hand sides make.
+#[inline(always)]
+fn columns_times<S: Simd, const C: usize, const N: usize>(
+    simd: S,
+    tiles: &[Eight],
+    x: &[[Eight; EIGHT]],
+    first: usize,
+    v: usize,
+) -> [S::f64s; N] {
+    let mut sums = [[simd.splat_f64s(0.0); EIGHT]; N];
+    for (tile, x) in tiles.as_chunks::<C>().0.iter().zip(x) {
+        for r in 0..EIGHT {
+            let x = S::as_simd_f64s(&x[r].0).0[v];
+            for k in 0..N {
+                let entry = simd.splat_f64s(tile[first + k].0[r]);
+                sums[k][r] = simd.add_f64s(sums[k][r], simd.mul_f64s(entry, x));
             }
         }
-        *out = sum(sums.map(Eight));
     }
+    let mut out = [simd.splat_f64s(0.0); N];
+    for (out, s) in out.iter_mut().zip(&sums) {
+        let (even, odd) = (simd.add_f64s(s[0], s[4]), simd.add_f64s(s[1], s[5]));
+        let even = simd.add_f64s(even, simd.add_f64s(s[2], s[6]));
+        *out = simd.add_f64s(even, simd.add_f64s(odd, simd.add_f64s(s[3], s[7])));
+    }
+    out
 }
