@@ -71,8 +71,8 @@ impl WithSimd for One<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        self.panels.solve(self.x, self.local);
+    fn with_simd<S: Simd>(self, simd: S) {
+        self.panels.solve(simd, self.x, self.local);
     }
 }
 

@@ -63,18 +63,6 @@ macro_rules! by_columns {
             _ => $function::<$simd, 8>($($argument),*),
         }
     };
-    ($columns:expr, $function:ident ( $($argument:expr),* )) => {
-        match $columns {
-            1 => $function::<1>($($argument),*),
-            2 => $function::<2>($($argument),*),
-            3 => $function::<3>($($argument),*),
-            4 => $function::<4>($($argument),*),
-            5 => $function::<5>($($argument),*),
-            6 => $function::<6>($($argument),*),
-            7 => $function::<7>($($argument),*),
-            _ => $function::<8>($($argument),*),
-        }
-    };
 }
 
 impl Panels {
@@ -85,29 +73,36 @@ impl Panels {
 
     /// x ← (L Lᵀ)⁻¹ x; `x` has one number more than there are unknowns, and that is 0.
     #[inline(always)]
-    pub fn solve(&self, x: &mut [f64], local: &mut [Eight]) {
+    pub fn solve<S: Simd>(&self, simd: S, x: &mut [f64], local: &mut [Eight]) {
         let mut tiles = self.tiles.as_slice();
         for panel in &self.panels {
             let (own, rest) = tiles.split_at(panel.len());
             tiles = rest;
-            self.forward(panel, own, x, &mut local[..panel.height]);
+            self.forward(simd, panel, own, x, &mut local[..panel.height]);
         }
         let mut tiles = self.tiles.as_slice();
         for panel in self.panels.iter().rev() {
             let (rest, own) = tiles.split_at(tiles.len() - panel.len());
             tiles = rest;
-            self.backward(panel, own, x, &mut local[..panel.height]);
+            self.backward(simd, panel, own, x, &mut local[..panel.height]);
         }
     }
 
     #[inline(always)]
-    fn forward(&self, panel: &Panel, mut tiles: &[Eight], x: &mut [f64], local: &mut [Eight]) {
+    fn forward<S: Simd>(
+        &self,
+        simd: S,
+        panel: &Panel,
+        mut tiles: &[Eight],
+        x: &mut [f64],
+        local: &mut [Eight],
+    ) {
         local.fill(Eight::default());
         let own = &mut x[panel.first..panel.first + panel.width];
         for (g, (columns, height)) in panel.groups().enumerate() {
             let (group, rest) = tiles.split_at(columns * height);
             tiles = rest;
-            by_columns!(columns, add_tiles(group, &own[EIGHT * g..], &mut local[g..]));
+            by_columns!(columns, add_tiles::<S>(simd, group, &own[EIGHT * g..], &mut local[g..]));
         }
         own.fill(0.0);
         for (rows, local) in self.row[panel.rows..].iter().zip(&*local) {
@@ -118,7 +113,14 @@ impl Panels {
     }
 
     #[inline(always)]
-    fn backward(&self, panel: &Panel, mut tiles: &[Eight], x: &mut [f64], local: &mut [Eight]) {
+    fn backward<S: Simd>(
+        &self,
+        simd: S,
+        panel: &Panel,
+        mut tiles: &[Eight],
+        x: &mut [f64],
+        local: &mut [Eight],
+    ) {
         for (rows, local) in self.row[panel.rows..].iter().zip(&mut *local) {
             *local = Eight(rows.map(|row| x[row as usize]));
         }
@@ -126,7 +128,7 @@ impl Panels {
         for (g, (columns, height)) in panel.groups().enumerate() {
             let (group, rest) = tiles.split_at(columns * height);
             tiles = rest;
-            by_columns!(columns, tiles_times(group, &local[g..], &mut own[EIGHT * g..]));
+            by_columns!(columns, tiles_times::<S>(simd, group, &local[g..], &mut own[EIGHT * g..]));
         }
     }
 
@@ -200,32 +202,44 @@ fn add(a: &mut Eight, b: &Eight) {
 
 /// out ← out + tiles x, for one column of tiles.
 #[inline(always)]
-fn add_tiles<const C: usize>(tiles: &[Eight], x: &[f64], out: &mut [Eight]) {
-    let x: [f64; C] = std::array::from_fn(|c| x[c]);
+fn add_tiles<S: Simd, const C: usize>(simd: S, tiles: &[Eight], x: &[f64], out: &mut [Eight]) {
+    let mut own = [simd.splat_f64s(0.0); C];
+    for c in 0..C {
+        own[c] = simd.splat_f64s(x[c]);
+    }
     for (tile, out) in tiles.as_chunks::<C>().0.iter().zip(out) {
-        let mut sum = out.0;
-        for c in 0..C {
-            for r in 0..EIGHT {
-                sum[r] += tile[c].0[r] * x[c];
+        for v in 0..EIGHT / S::F64_LANES {
+            let out = &mut S::as_mut_simd_f64s(&mut out.0).0[v];
+            let mut sum = *out;
+            for c in 0..C {
+                sum = simd.add_f64s(sum, simd.mul_f64s(S::as_simd_f64s(&tile[c].0).0[v], own[c]));
             }
+            *out = sum;
         }
-        out.0 = sum;
     }
 }
 
 /// out ← tilesᵀ x, for one column of tiles.
 #[inline(always)]
-fn tiles_times<const C: usize>(tiles: &[Eight], x: &[Eight], out: &mut [f64]) {
-    let mut sums = [[0.0; EIGHT]; C];
+fn tiles_times<S: Simd, const C: usize>(simd: S, tiles: &[Eight], x: &[Eight], out: &mut [f64]) {
+    // As many of the eight as the vectors of a line are used.
+    let mut sums = [[simd.splat_f64s(0.0); EIGHT]; C];
     for (tile, x) in tiles.as_chunks::<C>().0.iter().zip(x) {
-        for c in 0..C {
-            for r in 0..EIGHT {
-                sums[c][r] += tile[c].0[r] * x.0[r];
+        for v in 0..EIGHT / S::F64_LANES {
+            let x = S::as_simd_f64s(&x.0).0[v];
+            for c in 0..C {
+                let product = simd.mul_f64s(S::as_simd_f64s(&tile[c].0).0[v], x);
+                sums[c][v] = simd.add_f64s(sums[c][v], product);
             }
         }
     }
-    for (out, s) in out.iter_mut().zip(sums) {
-        *out = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
+    for c in 0..C {
+        let mut line = Eight::default();
+        for v in 0..EIGHT / S::F64_LANES {
+            S::as_mut_simd_f64s(&mut line.0).0[v] = sums[c][v];
+        }
+        let s = line.0;
+        out[c] = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
     }
 }
 
