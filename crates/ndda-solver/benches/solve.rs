@@ -1,7 +1,7 @@
 //! One block's equations, solved: dense, sparse and iterated, by size, for one and for eight right-hand sides.
 //!
-//! With a directory in `NDDA_PEER`, instead writes the matrices there and prints a line for each [JSON], for
-//! benches/peers/cholmod.sh.
+//! With a directory in `NDDA_PEER`, instead writes the matrices there and prints for each: unknowns, bytes of the factor,
+//! milliseconds to make it, microseconds of a solve, of one of eight at once, and of both with the inverse.
 
 use std::io::Write;
 use std::path::Path;
@@ -12,7 +12,7 @@ use ndda_fem::{BlockOperator, BlockSupports, LinearElastic};
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_solver::unknowns::Unknowns;
 use ndda_solver::{
-    ConjugateGradients, DenseInverse, Direct, Factor, LinearSolver, Midpoint, StepDamping, Supernodal,
+    ConjugateGradients, DenseInverse, Factor, LinearSolver, Midpoint, StepDamping, Supernodal,
     SymmetricMatrix, TimeIntegrator,
 };
 
@@ -78,20 +78,19 @@ fn least_us(mut run: impl FnMut()) -> f64 {
 /// Times of one solve and of eight at once, per block [µs].
 fn times(factor: &dyn Factor) -> [f64; 2] {
     let mut scratch = factor.new_scratch_of_eight();
-    let mut x: Vec<f64> = (0..factor.unknowns()).map(|i| (i as f64).sin()).collect();
-    let mut eight: Vec<[f64; 8]> = x.iter().map(|&b| [b; 8]).collect();
-    // The solution is the next load; scaled, lest the numbers vanish.
+    let load: Vec<f64> = (0..factor.unknowns()).map(|i| (i as f64).sin()).collect();
+    let mut x = load.clone();
     let one = least_us(|| {
+        x.copy_from_slice(&load);
         factor.solve_in_place(&mut x, &mut scratch).expect("a solution");
-        let largest = x.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        x.iter_mut().for_each(|x| *x /= largest);
     });
-    let all = least_us(|| {
-        factor.solve_eight_in_place(&mut eight, &mut scratch).expect("a solution");
-        let largest = eight.as_flattened().iter().fold(0.0, |a: f64, b| a.max(b.abs()));
-        eight.as_flattened_mut().iter_mut().for_each(|x| *x /= largest);
+    let load: Vec<[f64; 8]> = load.iter().map(|&b| [b; 8]).collect();
+    let mut x = load.clone();
+    let eight = least_us(|| {
+        x.copy_from_slice(&load);
+        factor.solve_eight_in_place(&mut x, &mut scratch).expect("a solution");
     });
-    [one, all / 8.0]
+    [one, eight / 8.0]
 }
 
 /// Size, number of entries, column starts, rows [each i64] and values.
@@ -108,9 +107,8 @@ fn write(matrix: &SymmetricMatrix, path: &Path) -> std::io::Result<()> {
 }
 
 fn peer(directory: &Path) {
-    let cells = std::env::var("NDDA_PEER_CELLS").map_or(CELLS.to_vec(), |list| {
-        list.split(',').map(|cells| cells.parse().expect("cells along an edge")).collect()
-    });
+    let listed = |list: String| list.split(',').map(|n| n.parse().expect("cells along an edge")).collect();
+    let cells: Vec<u32> = std::env::var("NDDA_PEER_CELLS").map_or(CELLS.to_vec(), listed);
     for matrix in cells.into_iter().map(matrix) {
         let path = directory.join(format!("{}.matrix", matrix.n));
         write(&matrix, &path).expect("the directory can be written to");
@@ -119,17 +117,19 @@ fn peer(directory: &Path) {
         let factor_ms = 1e3 * start.elapsed().as_secs_f64();
         let [one, eight] = times(&factor);
         // An inverse of more would only take long to make.
-        let direct: Box<dyn LinearSolver> =
-            if matrix.n <= 400 { Box::new(DenseInverse) } else { Box::new(Direct) };
-        let direct = times(direct.factor(&matrix).expect("positive definite").as_ref());
+        let dense = if matrix.n > 400 { [f64::NAN; 2] } else { inverse_times(&matrix) };
         println!(
-            r#"{{"unknowns": {}, "bytes": {}, "factor_ms": {factor_ms:.1}, "us": {one:.3}, "us_of_eight": {eight:.3}, "direct_us": {:.3}, "direct_us_of_eight": {:.3}}}"#,
+            "{} {} {factor_ms:.1} {one:.3} {eight:.3} {:.3} {:.3}",
             matrix.n,
             factor.bytes(),
-            direct[0],
-            direct[1],
+            dense[0],
+            dense[1]
         );
     }
+}
+
+fn inverse_times(matrix: &SymmetricMatrix) -> [f64; 2] {
+    times(DenseInverse.factor(matrix).expect("positive definite").as_ref())
 }
 
 criterion_group!(benches, solve);

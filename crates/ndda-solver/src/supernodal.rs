@@ -133,10 +133,121 @@ impl Factor for SupernodalFactor {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::check_linear_solver;
+    use crate::dense_inverse::DenseInverse;
+    use crate::testing::{check_eight, check_linear_solver};
+    use ndda_contact::testing::Random;
 
     #[test]
     fn it_keeps_the_contract_of_a_linear_solver() {
         check_linear_solver(&Supernodal);
+    }
+
+    /// A matrix with −1 at these pairs, and a diagonal that exceeds the sum of its row by one.
+    fn dominant(n: usize, pairs: &[(usize, usize)]) -> SymmetricMatrix {
+        let mut pairs: Vec<_> = pairs.iter().map(|&(i, j)| (i.min(j), i.max(j))).collect();
+        pairs.retain(|(i, j)| i != j);
+        pairs.sort_unstable();
+        pairs.dedup();
+        let mut diagonal = vec![1.0; n];
+        pairs.iter().for_each(|&(i, j)| [i, j].into_iter().for_each(|k| diagonal[k] += 1.0));
+        SymmetricMatrix::from_lower(n, |j, out| {
+            out.push((j, diagonal[j]));
+            out.extend(pairs.iter().filter(|pair| pair.0 == j).map(|pair| (pair.1, -1.0)));
+        })
+    }
+
+    /// Panics unless A x = b holds to rounding, with the same bits for eight right-hand sides.
+    fn check(matrix: &SymmetricMatrix) {
+        let factor = Supernodal.factor(matrix).expect("the matrix is positive definite");
+        let load: Vec<f64> = (0..matrix.n).map(|i| (1.3 * i as f64).cos()).collect();
+        let mut x = load.clone();
+        factor.solve_in_place(&mut x, &mut factor.new_scratch()).expect("a solution");
+        let size = matrix.value.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        for (product, b) in matrix.times(&x).iter().zip(&load) {
+            assert!((product - b).abs() < 1e-14 * size, "n = {}: {product} for {b}", matrix.n);
+        }
+        check_eight(factor.as_ref());
+    }
+
+    #[test]
+    fn random_patterns_are_solved_to_rounding_and_as_the_inverse_does() {
+        let mut random = Random(7);
+        for round in 0..40 {
+            let n = 1 + (random.unit() * 300.0) as usize;
+            let at = |random: &mut Random| (random.unit() * n as f64) as usize;
+            let count = n * (round % 5);
+            let pairs: Vec<_> = (0..count).map(|_| (at(&mut random), at(&mut random))).collect();
+            let matrix = dominant(n, &pairs);
+            check(&matrix);
+            let solve = |solver: &dyn LinearSolver| {
+                let factor = solver.factor(&matrix).expect("the matrix is positive definite");
+                let mut x = vec![1.0; n];
+                factor.solve_in_place(&mut x, &mut factor.new_scratch()).expect("a solution");
+                x
+            };
+            for (a, b) in solve(&Supernodal).iter().zip(solve(&DenseInverse)) {
+                assert!((a - b).abs() < 1e-13, "{a} and {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn arrows_chains_stars_and_unconnected_unknowns_are_solved() {
+        let n = 1000;
+        let to_last: Vec<_> = (0..n - 1).map(|i| (i, n - 1)).collect();
+        let to_first: Vec<_> = (1..n).map(|i| (0, i)).collect();
+        let chain: Vec<_> = (1..n).map(|i| (i - 1, i)).collect();
+        let rings: Vec<_> = (0..n).map(|i| (i, i / 50 * 50 + (i + 1) % 50)).collect();
+        for pairs in [vec![], to_last, to_first, chain, rings] {
+            check(&dominant(n, &pairs));
+        }
+    }
+
+    #[test]
+    fn a_full_matrix_wider_than_a_panel_is_solved() {
+        for n in [127, 128, 129, 300] {
+            let all: Vec<_> = (0..n).flat_map(|i| (0..i).map(move |j| (i, j))).collect();
+            check(&dominant(n, &all));
+        }
+    }
+
+    #[test]
+    fn a_grid_of_three_unknowns_a_node_is_solved() {
+        let side = 12;
+        let node = |x: usize, y: usize, z: usize| x + side * (y + side * z);
+        let mut pairs = Vec::new();
+        for (x, y, z) in (0..side.pow(3)).map(|k| (k % side, k / side % side, k / side / side)) {
+            let ahead =
+                [(1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 0), (0, 1, 1), (1, 0, 1), (1, 1, 1), (0, 0, 0)];
+            for (u, v, w) in ahead.map(|(u, v, w)| (x + u, y + v, z + w)) {
+                if u.max(v).max(w) < side {
+                    let [a, b] = [3 * node(x, y, z), 3 * node(u, v, w)];
+                    pairs.extend((0..9).map(|k| (a + k / 3, b + k % 3)));
+                }
+            }
+        }
+        check(&dominant(3 * side.pow(3), &pairs));
+    }
+
+    #[test]
+    fn no_unknowns_are_solved() {
+        check(&dominant(0, &[]));
+    }
+
+    #[test]
+    fn what_is_not_definite_or_no_number_is_refused_wherever_it_is() {
+        for at in [0, 17, 199] {
+            for wrong in [-1.0, 0.0, f64::NAN] {
+                let mut matrix = dominant(200, &(1..200).map(|i| (i - 1, i)).collect::<Vec<_>>());
+                let k = matrix.column_start[at];
+                matrix.value[k] = wrong;
+                let refused = Supernodal.factor(&matrix).err();
+                assert_eq!(
+                    refused,
+                    Some(FactorError::NotPositiveDefinite { unknowns: 200 }),
+                    "{wrong} at {at}"
+                );
+            }
+        }
     }
 }

@@ -63,7 +63,7 @@ pub fn check_linear_solver(solver: &dyn LinearSolver) {
 }
 
 /// Panics unless eight right-hand sides get the bits that each gets alone, with a scratch that was used before too.
-fn check_eight(factor: &dyn Factor) {
+pub(crate) fn check_eight(factor: &dyn Factor) {
     let n = factor.unknowns();
     let mut scratch = factor.new_scratch_of_eight();
     for round in 0..2 {
