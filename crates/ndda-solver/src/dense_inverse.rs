@@ -105,14 +105,14 @@ impl Inverse {
             let x = simd.splat_f64s(*x);
             for k in 0..N {
                 let tile = S::as_simd_f64s(&rows[k][j].0).0;
-                for v in 0..EIGHT / S::F64_LANES {
-                    sums[k][v] = simd.add_f64s(sums[k][v], simd.mul_f64s(tile[v], x));
+                for (sum, &entries) in sums[k].iter_mut().zip(tile) {
+                    *sum = simd.add_f64s(*sum, simd.mul_f64s(entries, x));
                 }
             }
         }
-        for k in 0..N {
-            for v in 0..EIGHT / S::F64_LANES {
-                S::as_mut_simd_f64s(&mut out[k].0).0[v] = sums[k][v];
+        for (out, sums) in out.iter_mut().zip(&sums) {
+            for (out, sum) in S::as_mut_simd_f64s(&mut out.0).0.iter_mut().zip(sums) {
+                *out = *sum;
             }
         }
     }
@@ -124,12 +124,12 @@ impl Inverse {
             let mut sums = [simd.splat_f64s(0.0); EIGHT];
             for (tile, x) in tiles.iter().zip(x) {
                 let x = S::as_simd_f64s(x).0[v];
-                for r in 0..EIGHT {
-                    sums[r] = simd.add_f64s(sums[r], simd.mul_f64s(simd.splat_f64s(tile.0[r]), x));
+                for (sum, &entry) in sums.iter_mut().zip(&tile.0) {
+                    *sum = simd.add_f64s(*sum, simd.mul_f64s(simd.splat_f64s(entry), x));
                 }
             }
-            for r in 0..EIGHT {
-                S::as_mut_simd_f64s(&mut out[r].0).0[v] = sums[r];
+            for (out, sum) in out.iter_mut().zip(&sums) {
+                S::as_mut_simd_f64s(&mut out.0).0[v] = *sum;
             }
         }
     }

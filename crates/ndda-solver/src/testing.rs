@@ -74,8 +74,8 @@ pub(crate) fn check_eight(factor: &dyn Factor) {
         for lane in 0..EIGHT {
             let mut one: Vec<f64> = (0..n).map(|i| load(i, lane)).collect();
             factor.solve_in_place(&mut one, &mut scratch).expect("a solution");
-            let differs = (0..n).find(|&i| one[i].to_bits() != eight[i][lane].to_bits());
-            assert_eq!(differs, None, "n = {n}: lane {lane} of eight has other bits than alone");
+            let same = one.iter().zip(&eight).all(|(x, lanes)| x.to_bits() == lanes[lane].to_bits());
+            assert!(same, "n = {n}: lane {lane} of eight has other bits than alone");
         }
     }
 }

@@ -208,8 +208,7 @@ fn add_tiles<S: Simd, const C: usize>(simd: S, tiles: &[Eight], x: &[f64], out: 
         own[c] = simd.splat_f64s(x[c]);
     }
     for (tile, out) in tiles.as_chunks::<C>().0.iter().zip(out) {
-        for v in 0..EIGHT / S::F64_LANES {
-            let out = &mut S::as_mut_simd_f64s(&mut out.0).0[v];
+        for (v, out) in S::as_mut_simd_f64s(&mut out.0).0.iter_mut().enumerate() {
             let mut sum = *out;
             for c in 0..C {
                 sum = simd.add_f64s(sum, simd.mul_f64s(S::as_simd_f64s(&tile[c].0).0[v], own[c]));
@@ -225,8 +224,7 @@ fn tiles_times<S: Simd, const C: usize>(simd: S, tiles: &[Eight], x: &[Eight], o
     // As many of the eight as the vectors of a line are used.
     let mut sums = [[simd.splat_f64s(0.0); EIGHT]; C];
     for (tile, x) in tiles.as_chunks::<C>().0.iter().zip(x) {
-        for v in 0..EIGHT / S::F64_LANES {
-            let x = S::as_simd_f64s(&x.0).0[v];
+        for (v, &x) in S::as_simd_f64s(&x.0).0.iter().enumerate() {
             for c in 0..C {
                 let product = simd.mul_f64s(S::as_simd_f64s(&tile[c].0).0[v], x);
                 sums[c][v] = simd.add_f64s(sums[c][v], product);
@@ -235,8 +233,8 @@ fn tiles_times<S: Simd, const C: usize>(simd: S, tiles: &[Eight], x: &[Eight], o
     }
     for c in 0..C {
         let mut line = Eight::default();
-        for v in 0..EIGHT / S::F64_LANES {
-            S::as_mut_simd_f64s(&mut line.0).0[v] = sums[c][v];
+        for (line, sum) in S::as_mut_simd_f64s(&mut line.0).0.iter_mut().zip(&sums[c]) {
+            *line = *sum;
         }
         let s = line.0;
         out[c] = ((s[0] + s[4]) + (s[2] + s[6])) + ((s[1] + s[5]) + (s[3] + s[7]));
