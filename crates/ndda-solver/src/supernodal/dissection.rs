@@ -6,7 +6,7 @@ use super::separator::{SEPARATOR, separate};
 /// Vertices of a part that is not dissected further.
 const LEAF: usize = 100;
 /// Separators that are tried for each part.
-const ATTEMPTS: u64 = 4;
+const ATTEMPTS: u64 = 3;
 
 /// Vertices in the order in which to eliminate them.
 pub fn dissect(graph: &Graph) -> Vec<u32> {

@@ -8,11 +8,11 @@ use super::graph::Graph;
 /// Vertices at which coarsening stops.
 const COARSEST: usize = 80;
 /// Splits of the coarsest graph that are tried.
-const TRIALS: u64 = 12;
+const TRIALS: u64 = 6;
 /// Most that one side may have of the whole.
 const MOST_OF_WHOLE: f64 = 0.6;
 /// Moves without a better separator after which a pass ends.
-const PATIENCE: usize = 120;
+const PATIENCE: usize = 80;
 /// Passes of refinement at each level.
 const PASSES: usize = 8;
 /// Label of the separator; 0 and 1 are the sides.

@@ -9,9 +9,9 @@ struct Cost;
 
 impl Cost {
     /// For each row: an index, a number gathered and one scattered.
-    const ROW: f64 = 6.0;
+    const ROW: f64 = 4.0;
     /// For each supernode: loops that begin and end.
-    const SUPERNODE: f64 = 120.0;
+    const SUPERNODE: f64 = 80.0;
     /// Rows that are taken together.
     const TILE: f64 = 8.0;
 
