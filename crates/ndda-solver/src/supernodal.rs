@@ -230,6 +230,25 @@ mod tests {
     }
 
     #[test]
+    fn every_kind_of_processor_gives_the_same_bits() {
+        let pairs: Vec<_> = (0..500).flat_map(|i| [(i, (i * 7 + 3) % 500), (i, (i + 25) % 500)]).collect();
+        let SupernodalFactor { panels, .. } =
+            Supernodal::factor_panels(&dominant(500, &pairs)).expect("definite");
+        let solve = |solve: &dyn Fn(One)| {
+            let mut x: Vec<f64> = (0..501).map(|i| if i < 500 { (i as f64).sin() } else { 0.0 }).collect();
+            let mut local = vec![Eight::default(); panels.most_height()];
+            solve(One { panels: &panels, x: &mut x, local: &mut local });
+            x.into_iter().map(f64::to_bits).collect::<Vec<_>>()
+        };
+        let one_by_one = solve(&|one| pulp::Scalar::new().vectorize(one));
+        assert_eq!(solve(&|one| Arch::new().dispatch(one)), one_by_one);
+        #[cfg(target_arch = "x86_64")]
+        if let Some(four_by_four) = pulp::x86::V3::try_new() {
+            assert_eq!(solve(&|one| Simd::vectorize(four_by_four, one)), one_by_one);
+        }
+    }
+
+    #[test]
     fn no_unknowns_are_solved() {
         check(&dominant(0, &[]));
     }
