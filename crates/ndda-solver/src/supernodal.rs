@@ -107,7 +107,8 @@ impl Factor for SupernodalFactor {
     }
 
     fn solve_in_place(&self, rhs: &mut [f64], scratch: &mut Scratch) -> Result<(), SolveError> {
-        let x = &mut scratch.numbers;
+        let x = &mut scratch.numbers[..=self.unknowns()];
+        x[self.unknowns()] = 0.0;
         x.iter_mut().zip(&self.unknown).for_each(|(x, &u)| *x = rhs[u as usize]);
         self.arch.dispatch(One { panels: &self.panels, x, local: &mut scratch.lines });
         x.iter().zip(&self.unknown).for_each(|(x, &u)| rhs[u as usize] = *x);
@@ -123,6 +124,7 @@ impl Factor for SupernodalFactor {
             scratch.lines.resize(self.lines_of_eight(), Eight::default());
         }
         let (x, local) = scratch.lines.split_at_mut(self.unknowns() + 1);
+        x[self.unknowns()] = Eight::default();
         x.iter_mut().zip(&self.unknown).for_each(|(x, &u)| x.0 = rhs[u as usize]);
         self.arch.dispatch(AllEight { panels: &self.panels, x, local: local.as_chunks_mut().0 });
         x.iter().zip(&self.unknown).for_each(|(x, &u)| rhs[u as usize] = x.0);
@@ -245,6 +247,19 @@ mod tests {
         #[cfg(target_arch = "x86_64")]
         if let Some(four_by_four) = pulp::x86::V3::try_new() {
             assert_eq!(solve(&|one| Simd::vectorize(four_by_four, one)), one_by_one);
+        }
+    }
+
+    #[test]
+    fn a_load_that_is_no_number_leaves_nothing_for_the_next() {
+        let factor = Supernodal.factor(&dominant(30, &[(0, 1), (3, 29)])).expect("definite");
+        let mut scratch = factor.new_scratch_of_eight();
+        for value in [f64::NAN, f64::INFINITY, 1.0] {
+            let (mut x, mut eight) = ([value; 30], [[value; EIGHT]; 30]);
+            factor.solve_in_place(&mut x, &mut scratch).expect("a solution");
+            factor.solve_eight_in_place(&mut eight, &mut scratch).expect("a solution");
+            let finite = x.iter().chain(eight.as_flattened()).all(|x| x.is_finite());
+            assert_eq!(finite, value.is_finite());
         }
     }
 
