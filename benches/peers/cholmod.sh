@@ -22,9 +22,9 @@ unknowns, bytes_read = int(sys.argv[1]), int(sys.argv[2])
 factor_ms, one, eight, dense, dense_eight = map(float, sys.argv[3].split())
 amd, amd_eight, amd_ms, amd_bytes, metis, metis_eight, metis_ms, metis_bytes, gb_s = map(float, sys.argv[4].split())
 print(f"{unknowns} unknowns: CHOLMOD {amd:.2f} µs (AMD), {metis:.2f} µs (METIS); ndda {one:.2f} µs, {one / min(amd, metis):.2f} of it; "
-      f"inverse {dense:.2f} µs\n"
+      f"{f'inverse {dense:.2f} µs, {dense_eight:.2f} of eight' if dense == dense else 'no inverse'}\n"
       f"    eight at once, per block: CHOLMOD {amd_eight:.2f} µs, {metis_eight:.2f} µs; ndda {eight:.2f} µs, "
-      f"{eight / min(amd_eight, metis_eight):.2f} of it and {eight / one:.2f} of one alone; inverse {dense_eight:.2f} µs\n"
+      f"{eight / min(amd_eight, metis_eight):.2f} of it and {eight / one:.2f} of one alone\n"
       f"    L: CHOLMOD {amd_bytes / 1e6:.2f} MB, {metis_bytes / 1e6:.2f} MB; ndda {bytes_read / 1e6:.2f} MB, read at "
       f"{2e-3 * bytes_read / one:.1f} GB/s, {2e-3 * bytes_read / one / gb_s:.2f} of the {gb_s:.1f} GB/s of a bare read\n"
       f"    factor: CHOLMOD {amd_ms:.1f} ms, {metis_ms:.1f} ms; ndda {factor_ms:.1f} ms")
