@@ -4,8 +4,8 @@ use crate::dense_inverse::DenseInverse;
 use crate::linear_solver::{Factor, FactorError, LinearSolver, SymmetricMatrix};
 use crate::supernodal::Supernodal;
 
-/// Unknowns up to which an inverse is quicker than a factor (`cargo bench -p ndda-solver --bench solve`: 0.05 µs against
-/// 0.14 µs at 24 unknowns, 2.7 µs against 2.0 µs at 192).
+/// Unknowns up to which an inverse is quicker than a factor (`benches/peers/cholmod.sh`: 0.05 µs against
+/// 0.14 µs at 24 unknowns, 3.0 µs against 2.0 µs at 192).
 const MOST_DENSE: usize = 100;
 
 /// [`DenseInverse`] for small blocks, [`Supernodal`] for others.
