@@ -1,11 +1,13 @@
 //! Small blocks: the inverse, once, and a product with it in every step.
 
 use nalgebra::DMatrix;
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 
-use crate::linear_solver::{Factor, FactorError, LinearSolver, Scratch, SolveError, SymmetricMatrix};
+use crate::linear_solver::{
+    EIGHT, Eight, Factor, FactorError, LinearSolver, Scratch, SolveError, SymmetricMatrix,
+};
 
-/// Columns of a product taken together, so that the sums are loaded a quarter as often.
+/// Eights of rows taken together, so that sums need not wait for each other.
 const TOGETHER: usize = 4;
 
 /// Inverts by Cholesky. A product has no order in it that a substitution would have: for a few unknowns it is several
@@ -13,9 +15,9 @@ const TOGETHER: usize = 4;
 #[derive(Clone, Copy, Debug, Default)]
 pub struct DenseInverse;
 
-/// A⁻¹, column by column.
+/// A⁻¹ by eights of rows, each column by column; zeros fill up the last.
 struct Inverse {
-    columns: Vec<f64>,
+    tiles: Vec<Eight>,
     n: usize,
     arch: Arch,
 }
@@ -38,8 +40,12 @@ impl LinearSolver for DenseInverse {
         let factor = scaled.cholesky().ok_or(FactorError::NotPositiveDefinite { unknowns: n })?;
         let inverse = factor.inverse();
         let entry = |i: usize, j: usize| 0.5 * (inverse[(i, j)] + inverse[(j, i)]) * scale[i] * scale[j];
-        let columns = (0..n * n).map(|k| entry(k % n, k / n)).collect();
-        Ok(Box::new(Inverse { columns, n, arch: Arch::new() }))
+        let tile = |k: usize| {
+            let (first, j) = (EIGHT * (k / n), k % n);
+            Eight(std::array::from_fn(|r| if first + r < n { entry(first + r, j) } else { 0.0 }))
+        };
+        let tiles = (0..n.div_ceil(EIGHT) * n).map(tile).collect();
+        Ok(Box::new(Inverse { tiles, n, arch: Arch::new() }))
     }
 }
 
@@ -49,34 +55,125 @@ impl Factor for Inverse {
     }
 
     fn new_scratch(&self) -> Scratch {
-        Scratch { numbers: vec![0.0; self.n], ..Scratch::default() }
+        Scratch { lines: vec![Eight::default(); self.n.div_ceil(EIGHT)], ..Scratch::default() }
+    }
+
+    fn new_scratch_of_eight(&self) -> Scratch {
+        Scratch { lines: vec![Eight::default(); self.lines_of_eight()], ..Scratch::default() }
     }
 
     fn solve_in_place(&self, rhs: &mut [f64], scratch: &mut Scratch) -> Result<(), SolveError> {
-        let product = &mut scratch.numbers;
-        self.arch.dispatch(|| times(&self.columns, rhs, product));
-        rhs.copy_from_slice(product);
+        let out = &mut scratch.lines[..self.n.div_ceil(EIGHT)];
+        self.arch.dispatch(One { inverse: self, x: rhs, out });
+        for (rhs, out) in rhs.chunks_mut(EIGHT).zip(out) {
+            rhs.copy_from_slice(&out.0[..rhs.len()]);
+        }
+        Ok(())
+    }
+
+    fn solve_eight_in_place(
+        &self,
+        rhs: &mut [[f64; EIGHT]],
+        scratch: &mut Scratch,
+    ) -> Result<(), SolveError> {
+        if scratch.lines.len() < self.lines_of_eight() {
+            scratch.lines.resize(self.lines_of_eight(), Eight::default());
+        }
+        let out = scratch.lines.as_chunks_mut().0;
+        self.arch.dispatch(AllEight { inverse: self, x: rhs, out });
+        rhs.iter_mut().zip(out.as_flattened()).for_each(|(rhs, out)| *rhs = out.0);
         Ok(())
     }
 }
 
-/// out ← Σ_j column_j x_j, each sum in the order of columns whatever the processor.
-#[inline(always)]
-fn times(columns: &[f64], x: &[f64], out: &mut [f64]) {
-    let n = out.len();
-    out.fill(0.0);
-    let (mut columns, mut x) = (columns.chunks_exact(TOGETHER * n), x.chunks_exact(TOGETHER));
-    for (block, x) in (&mut columns).zip(&mut x) {
-        let (a, rest) = block.split_at(n);
-        let (b, rest) = rest.split_at(n);
-        let (c, d) = rest.split_at(n);
-        for i in 0..n {
-            out[i] = out[i] + a[i] * x[0] + b[i] * x[1] + c[i] * x[2] + d[i] * x[3];
+impl Inverse {
+    /// Lines of scratch for eight right-hand sides.
+    fn lines_of_eight(&self) -> usize {
+        self.n.next_multiple_of(EIGHT)
+    }
+
+    /// out ← A⁻¹ x for N eights of rows, each sum in the order of columns whatever the processor.
+    #[inline(always)]
+    fn times<S: Simd, const N: usize>(&self, simd: S, tiles: &[Eight], x: &[f64], out: &mut [Eight]) {
+        let mut rows: [&[Eight]; N] = [&[]; N];
+        for k in 0..N {
+            rows[k] = &tiles[self.n * k..self.n * (k + 1)];
+        }
+        // As many of the eight as the vectors of a line are used.
+        let mut sums = [[simd.splat_f64s(0.0); EIGHT]; N];
+        for (j, x) in x.iter().enumerate() {
+            let x = simd.splat_f64s(*x);
+            for k in 0..N {
+                let tile = S::as_simd_f64s(&rows[k][j].0).0;
+                for (sum, &entries) in sums[k].iter_mut().zip(tile) {
+                    *sum = simd.add_f64s(*sum, simd.mul_f64s(entries, x));
+                }
+            }
+        }
+        for (out, sums) in out.iter_mut().zip(&sums) {
+            for (out, sum) in S::as_mut_simd_f64s(&mut out.0).0.iter_mut().zip(sums) {
+                *out = *sum;
+            }
         }
     }
-    for (column, x) in columns.remainder().chunks_exact(n).zip(x.remainder()) {
-        for i in 0..n {
-            out[i] += column[i] * x;
+
+    /// The same for one eight of rows and eight right-hand sides.
+    #[inline(always)]
+    fn times_eight<S: Simd>(&self, simd: S, tiles: &[Eight], x: &[[f64; EIGHT]], out: &mut [Eight; EIGHT]) {
+        for v in 0..EIGHT / S::F64_LANES {
+            let mut sums = [simd.splat_f64s(0.0); EIGHT];
+            for (tile, x) in tiles.iter().zip(x) {
+                let x = S::as_simd_f64s(x).0[v];
+                for (sum, &entry) in sums.iter_mut().zip(&tile.0) {
+                    *sum = simd.add_f64s(*sum, simd.mul_f64s(simd.splat_f64s(entry), x));
+                }
+            }
+            for (out, sum) in out.iter_mut().zip(&sums) {
+                S::as_mut_simd_f64s(&mut out.0).0[v] = *sum;
+            }
+        }
+    }
+}
+
+/// A product, compiled for each kind of processor.
+struct One<'a> {
+    inverse: &'a Inverse,
+    x: &'a [f64],
+    out: &'a mut [Eight],
+}
+
+impl WithSimd for One<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { inverse, x, out } = self;
+        let tiles = inverse.tiles.chunks(TOGETHER * inverse.n.max(1));
+        for (tiles, out) in tiles.zip(out.chunks_mut(TOGETHER)) {
+            match out.len() {
+                1 => inverse.times::<S, 1>(simd, tiles, x, out),
+                2 => inverse.times::<S, 2>(simd, tiles, x, out),
+                3 => inverse.times::<S, 3>(simd, tiles, x, out),
+                _ => inverse.times::<S, TOGETHER>(simd, tiles, x, out),
+            }
+        }
+    }
+}
+
+/// A product with eight right-hand sides, compiled for each kind of processor.
+struct AllEight<'a> {
+    inverse: &'a Inverse,
+    x: &'a [[f64; EIGHT]],
+    out: &'a mut [[Eight; EIGHT]],
+}
+
+impl WithSimd for AllEight<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for (tiles, out) in self.inverse.tiles.chunks(self.inverse.n.max(1)).zip(self.out) {
+            self.inverse.times_eight(simd, tiles, self.x, out);
         }
     }
 }

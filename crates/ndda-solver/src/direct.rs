@@ -2,19 +2,19 @@
 
 use crate::dense_inverse::DenseInverse;
 use crate::linear_solver::{Factor, FactorError, LinearSolver, SymmetricMatrix};
-use crate::sparse_cholesky::SparseCholesky;
+use crate::supernodal::Supernodal;
 
-/// Unknowns up to which an inverse is quicker than a factor (`cargo bench -p ndda-solver --bench solve`: 0.16 µs against
-/// 0.60 µs at 24 unknowns, 6 µs against 12 µs at 192, 28 µs against 34 µs at 375) and still fits the second-level cache.
-const MOST_DENSE: usize = 200;
+/// Unknowns up to which an inverse is quicker than a factor (`benches/peers/cholmod.sh`: 0.05 µs against
+/// 0.14 µs at 24 unknowns, 3.0 µs against 2.0 µs at 192).
+const MOST_DENSE: usize = 100;
 
-/// [`DenseInverse`] for small blocks, [`SparseCholesky`] for others.
+/// [`DenseInverse`] for small blocks, [`Supernodal`] for others.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Direct;
 
 impl LinearSolver for Direct {
     fn factor(&self, matrix: &SymmetricMatrix) -> Result<Box<dyn Factor>, FactorError> {
-        if matrix.n <= MOST_DENSE { DenseInverse.factor(matrix) } else { SparseCholesky.factor(matrix) }
+        if matrix.n <= MOST_DENSE { DenseInverse.factor(matrix) } else { Supernodal.factor(matrix) }
     }
 }
 

@@ -1,7 +1,5 @@
 //! What a linear solver must do, and the matrix that it is given.
 
-use std::mem::MaybeUninit;
-
 /// A symmetric matrix by its lower triangle in compressed columns, rows ascending, diagonal first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SymmetricMatrix {
@@ -67,13 +65,23 @@ pub enum FactorError {
     },
 }
 
-/// Memory that a solve may write over; one per block, made once.
+/// Right-hand sides of [`Factor::solve_eight_in_place`].
+pub const EIGHT: usize = 8;
+
+/// Eight numbers in one line of the cache.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(64))]
+pub struct Eight(pub [f64; EIGHT]);
+
+/// Memory that a solve may write over; made once, for one factor.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
-    /// For libraries that lay out their own.
-    pub bytes: Vec<MaybeUninit<u8>>,
-    /// For solvers that are content with numbers.
+    /// Numbers one by one.
     pub numbers: Vec<f64>,
+    /// Numbers by eights.
+    pub lines: Vec<Eight>,
+    /// One of eight right-hand sides, for solvers that take them one by one.
+    pub lane: Vec<f64>,
 }
 
 /// A solve that did not reach a solution.
@@ -108,4 +116,32 @@ pub trait Factor: Send + Sync {
     /// # Errors
     /// [`SolveError`] when an iteration does not get there; a factor always does.
     fn solve_in_place(&self, rhs: &mut [f64], scratch: &mut Scratch) -> Result<(), SolveError>;
+
+    /// Scratch for [`solve_eight_in_place`](Self::solve_eight_in_place), and as good for the other.
+    fn new_scratch_of_eight(&self) -> Scratch {
+        Scratch { lane: vec![0.0; self.unknowns()], ..self.new_scratch() }
+    }
+
+    /// Solves for eight right-hand sides in place, `rhs[unknown][lane]`; each gets the bits that
+    /// [`solve_in_place`](Self::solve_in_place) gives it. Allocates nothing if the scratch is for eight.
+    ///
+    /// # Errors
+    /// [`SolveError`] of the first lane whose iteration does not get there; a factor always does.
+    fn solve_eight_in_place(
+        &self,
+        rhs: &mut [[f64; EIGHT]],
+        scratch: &mut Scratch,
+    ) -> Result<(), SolveError> {
+        let mut one = std::mem::take(&mut scratch.lane);
+        one.resize(self.unknowns(), 0.0);
+        let mut solve = |lane: usize| {
+            one.iter_mut().zip(&*rhs).for_each(|(x, b)| *x = b[lane]);
+            self.solve_in_place(&mut one, scratch)?;
+            rhs.iter_mut().zip(&one).for_each(|(b, x)| b[lane] = *x);
+            Ok(())
+        };
+        let outcome = (0..EIGHT).try_for_each(&mut solve);
+        scratch.lane = one;
+        outcome
+    }
 }
