@@ -3,6 +3,7 @@
 use ndda_fem::FrameError;
 use ndda_mesh::Vec3;
 
+use crate::batch::Batch;
 use crate::elastic_body::ElasticBody;
 use crate::fixed_body::FixedBody;
 use crate::for_each_block::{NodeSlices, Nodes};
@@ -123,6 +124,8 @@ pub struct Body {
     pub report: BlockReport,
     /// Why the last step failed.
     pub error: Option<BlockError>,
+    /// Room to solve for the run of congruent blocks that it leads.
+    pub batch: Option<Box<Batch>>,
 }
 
 /// The ways in which a block moves.
@@ -146,6 +149,26 @@ impl Body {
         match report {
             Ok(report) => self.report = report,
             Err(error) => self.error = Some(error),
+        }
+    }
+
+    /// The right-hand side of a block with a factor, to be solved for together with others.
+    pub fn prepare(&mut self, shape: &Shape, context: &StepContext, nodes: &Nodes) {
+        if let Some(body) = self.elastic() {
+            self.error = body.prepare(shape, context, nodes).err();
+        }
+    }
+
+    /// The rest of a step that is prepared and solved for.
+    pub fn finish(&mut self, shape: &Shape, context: &StepContext, nodes: NodeSlices) {
+        if self.error.is_some() {
+            return;
+        }
+        if let Some(body) = self.elastic() {
+            match body.finish(shape, context, nodes) {
+                Ok(report) => self.report = report,
+                Err(error) => self.error = Some(error),
+            }
         }
     }
 

@@ -33,7 +33,7 @@ pub struct ElasticBody {
     rigid: Vec<Vec3>,
     /// R of the last step.
     rotation: Mat3,
-    unknowns: Vec<f64>,
+    pub(crate) unknowns: Vec<f64>,
     scratch: Scratch,
     report: BlockReport,
 }
@@ -79,11 +79,24 @@ impl ElasticBody {
         &mut self,
         shape: &Shape,
         context: &StepContext,
+        nodes: NodeSlices,
+    ) -> Result<BlockReport, BlockError> {
+        self.prepare(shape, context, &nodes.view())?;
+        self.solve(shape)?;
+        self.finish(shape, context, nodes)
+    }
+
+    /// The rest of a step whose right-hand side is prepared and solved for.
+    ///
+    /// # Errors
+    /// [`BlockError`] when the block has lost its speed.
+    pub fn finish(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
         mut nodes: NodeSlices,
     ) -> Result<BlockReport, BlockError> {
         self.report = BlockReport::default();
-        self.prepare(shape, context, &nodes.view())?;
-        self.solve(shape)?;
         self.place_correction(shape, context, &nodes.view());
         let rotation = self.rotation;
         self.update_internal_force(shape, &rotation, nodes.internal_force);
@@ -141,7 +154,10 @@ impl ElasticBody {
     }
 
     /// The right-hand side of the block's equations, in `unknowns`.
-    fn prepare(&mut self, shape: &Shape, context: &StepContext, nodes: &Nodes) -> Result<(), BlockError> {
+    ///
+    /// # Errors
+    /// [`BlockError`] when the block has lost its shape.
+    pub fn prepare(&mut self, shape: &Shape, context: &StepContext, nodes: &Nodes) -> Result<(), BlockError> {
         self.predict(context, nodes);
         // x + û is kept in `displacement` until w replaces it.
         let center = shape.operator.center(&self.displacement);

@@ -16,7 +16,7 @@ use ndda_contact::{ContactHistory, ContactInput, ContactReport, PairStiffness};
 use ndda_mesh::{BlockId, Vec3};
 
 use crate::body::Body;
-use crate::for_each_block::{NodeSlices, for_each_block};
+use crate::for_each_block::{NodeSlices, each_of_run, for_each_run};
 use crate::simulation::{GRAIN_NODES, Simulation, StepError};
 
 /// How well contact at the end of the step is solved for.
@@ -227,8 +227,10 @@ impl Simulation {
     fn try_blocks(&mut self) -> Result<(), StepError> {
         self.with_bodies(|simulation, bodies, slices| {
             let starts = simulation.blocks().node_starts();
-            for_each_block(0, bodies, starts, slices, GRAIN_NODES, &|index, body: &mut Body, nodes| {
-                body.try_step(&simulation.shapes[body.shape], &simulation.context(index), &nodes.view());
+            for_each_run(&simulation.runs, bodies, starts, slices, GRAIN_NODES, &|first, run, slices| {
+                each_of_run(first, run, starts, slices, |index, body: &mut Body, nodes| {
+                    body.try_step(&simulation.shapes[body.shape], &simulation.context(index), &nodes.view());
+                });
             });
         });
         self.stop_if_a_block_failed()?;
@@ -313,7 +315,10 @@ impl Simulation {
                 out.position.fill(Vec3::zeros());
             }
         };
-        for_each_block(0, &mut self.bodies, blocks.node_starts(), slices, GRAIN_NODES, &respond);
+        let starts = blocks.node_starts();
+        for_each_run(&self.runs, &mut self.bodies, starts, slices, GRAIN_NODES, &|first, run, slices| {
+            each_of_run(first, run, starts, slices, respond);
+        });
         self.stop_if_a_block_failed()
     }
 }

@@ -4,6 +4,7 @@
 //! page. Contact is known only through [`ContactModel`](ndda_contact::ContactModel), time through
 //! [`TimeIntegrator`], linear algebra through [`LinearSolver`].
 
+pub mod batch;
 pub mod body;
 pub mod conjugate_gradients;
 pub mod dense_inverse;

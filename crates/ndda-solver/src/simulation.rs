@@ -12,13 +12,14 @@ use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 use serde::{Deserialize, Serialize};
 
+use crate::batch::{Batch, ENOUGH_TOGETHER, solve_together};
 use crate::body::{BlockError, BlockReport, Body, BodyKind, Motion, StepContext};
 use crate::elastic_body::ElasticBody;
 use crate::end_contact::{EndContact, Iterations, Newton};
 use crate::fixed_body::FixedBody;
-use crate::for_each_block::{NodeSlices, for_each_block};
+use crate::for_each_block::{NodeSlices, Runs, each_of_run, for_each_run};
 use crate::ledger::{Invariants, Ledger, Sample};
-use crate::linear_solver::LinearSolver;
+use crate::linear_solver::{EIGHT, LinearSolver};
 use crate::loads::{Loads, VaryingLoad};
 use crate::rigid_body::RigidBody;
 use crate::shape::{BodySetup, Mass, SetupError, Shape};
@@ -181,6 +182,7 @@ pub struct Simulation {
     pub(crate) blocks: BlockSet,
     pub(crate) shapes: Vec<Shape>,
     pub(crate) bodies: Vec<Body>,
+    pub(crate) runs: Runs,
     pub(crate) state: State,
     pub(crate) step_s: f64,
     pub(crate) settling: bool,
@@ -250,6 +252,7 @@ impl Simulation {
             },
             newton: end_contact.map(|settings| Box::new(Newton::new(settings, nodes, blocks.len()))),
             bodies: Vec::with_capacity(blocks.len()),
+            runs: Runs::single(0),
             loads: Loads::new(Vec::new(), Vec::new()),
             force: vec![Vec3::zeros(); nodes],
             friction_force: vec![Vec3::zeros(); friction_nodes],
@@ -268,6 +271,14 @@ impl Simulation {
         };
         for (block, body) in simulation.blocks.ids().zip(&bodies) {
             simulation.add_body(block, shape_of[block.index()], body);
+        }
+        let shapes = &simulation.shapes;
+        let solved = |block: usize| shapes[shape_of[block]].factor.is_some();
+        let alike = |a: usize, b: usize| shape_of[a] == shape_of[b] && solved(a);
+        simulation.runs = Runs::of_alike(shape_of.len(), EIGHT, alike);
+        for run in simulation.runs.ranges().filter(|run| run.len() >= ENOUGH_TOGETHER) {
+            let factor = shapes[shape_of[run.start]].factor.as_deref();
+            simulation.bodies[run.start].batch = factor.map(|factor| Box::new(Batch::new(factor)));
         }
         simulation.add_loads(&bodies, &gravity_m_s2, gravity_factor);
         if simulation.contact.as_ref().is_some_and(|c| c.needs_bodies()) {
@@ -302,7 +313,7 @@ impl Simulation {
             }
         };
         let report = BlockReport::default();
-        self.bodies.push(Body { shape: shape_index, motion, report, error: None });
+        self.bodies.push(Body { shape: shape_index, motion, report, error: None, batch: None });
         if shape.kind == BodyKind::Affine && !shape.is_free() {
             let velocity = &mut self.state.velocity[self.blocks.nodes_of(block)];
             shape.unknowns.restrict(&shape.operator.node_mass, velocity);
@@ -561,14 +572,30 @@ impl Simulation {
     fn solve_blocks(&mut self) -> Result<(), StepError> {
         self.with_bodies(|simulation, bodies, slices| {
             let starts = simulation.blocks.node_starts();
-            for_each_block(0, bodies, starts, slices, GRAIN_NODES, &|index, body: &mut Body, nodes| {
-                body.step(&simulation.shapes[body.shape], &simulation.context(index), nodes);
+            for_each_run(&simulation.runs, bodies, starts, slices, GRAIN_NODES, &|first, run, slices| {
+                simulation.step_run(first, run, slices);
             });
         });
         for (inertia, body) in self.state.inertia.iter_mut().zip(&self.bodies) {
             *inertia = body.report.inertia;
         }
         self.stop_if_a_block_failed()
+    }
+
+    /// The step of a run: congruent blocks are solved for together, others one by one; the bits are the same.
+    fn step_run(&self, first: usize, run: &mut [Body], mut slices: NodeSlices) {
+        let starts = self.blocks.node_starts();
+        let together = run[0].batch.is_some();
+        if together {
+            each_of_run(first, run, starts, slices.again(), |index, body: &mut Body, nodes| {
+                body.prepare(&self.shapes[body.shape], &self.context(index), &nodes.view());
+            });
+            solve_together(&self.shapes[run[0].shape], run);
+        }
+        each_of_run(first, run, starts, slices, |index, body: &mut Body, nodes| {
+            let (shape, context) = (&self.shapes[body.shape], self.context(index));
+            if together { body.finish(shape, &context, nodes) } else { body.step(shape, &context, nodes) }
+        });
     }
 
     /// The first error of a block, if there is any.
