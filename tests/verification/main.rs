@@ -18,6 +18,7 @@ mod settling;
 mod shaken_base;
 mod sliding_over_element_borders;
 mod springs_and_elimination;
+mod step_control;
 mod sticking_plate;
 
 use ndda_cli::wiring;

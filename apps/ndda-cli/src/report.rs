@@ -8,7 +8,7 @@ use ndda_io::summary::{
     BlockEnd, Counts, Invariants, Judgement, MonitorEnd, Named, ReferenceError, Status, Summary, Verdict,
 };
 use ndda_mesh::Vec3;
-use ndda_solver::Simulation;
+use ndda_solver::{Simulation, StepCounts};
 
 use crate::recorder::Recorder;
 use crate::reference;
@@ -164,6 +164,20 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
         advice.push(format!(
             "h = ω_c Δt reached {:.2}, bound {bound}: contact may be unstable; step_s = {step_s:.1e} would be safe",
             worst.max_h
+        ));
+    }
+    if worst.control.rejected > 0 {
+        let StepCounts { rejected, most_halvings } = worst.control;
+        let shortest_s = simulation.step_s() * 0.5f64.powi(most_halvings as i32);
+        advice.push(format!(
+            "steps went from {:.1e} s down to {shortest_s:.1e} s; {rejected} were taken back and done again",
+            simulation.step_s()
+        ));
+    }
+    if worst.iterations_max > 0 {
+        advice.push(format!(
+            "contact was solved for with at most {} evaluations in a step",
+            worst.iterations_max
         ));
     }
     if matches!(scene.time.integrator, Integrator::Newmark { .. }) && worst.max_h > 0.0 {

@@ -19,8 +19,8 @@ use ndda_mesh::generate::{BoxPattern, box_block, prism};
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
 use ndda_solver::{
-    BodyKind, BodySetup, ConjugateGradients, Direct, EndContact, ForceSetup, GeneralizedAlpha, LinearSolver,
-    Mass, Midpoint, Newmark, Setup, SetupError, Simulation, TimeIntegrator, TractionSetup,
+    AutoStep, BodyKind, BodySetup, ConjugateGradients, Direct, EndContact, ForceSetup, GeneralizedAlpha,
+    LinearSolver, Mass, Midpoint, Newmark, Setup, SetupError, Simulation, TimeIntegrator, TractionSetup,
 };
 
 use crate::monitor::Monitor;
@@ -163,6 +163,12 @@ pub fn simulation_with(
         step_s: scene.time.step_s,
         integrator: integrator(&scene.time.integrator),
         contact,
+        auto_step: match scene.time.step {
+            scene::Step::Fixed => None,
+            scene::Step::Auto { safety, energy, most_halvings } => {
+                Some(AutoStep { safety, energy, most_halvings })
+            }
+        },
         end_contact: match scene.time.contact_at {
             scene::ContactAt::Predicted => None,
             scene::ContactAt::End { tolerance, most_iterations } => {

@@ -6,7 +6,7 @@ use crate::diagnostic::{Diagnostic, Severity};
 use crate::read::suggest;
 use crate::scene::{
     Body, By, Contact, ContactAt, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene,
-    Shape, Solver,
+    Shape, Solver, Step,
 };
 
 /// More steps than this are a slip of the keyboard.
@@ -132,6 +132,21 @@ impl Check<'_> {
                 message,
                 "1e-12 costs little more than 1e-6 and leaves no doubt",
             );
+        }
+        if let Step::Auto { safety, energy, most_halvings } = time.step {
+            self.positive("time.step.safety".into(), safety, "");
+            self.positive("time.step.energy".into(), energy, "");
+            if safety > 1.0 {
+                self.error(
+                    "time.step.safety",
+                    format!("{safety}: is beyond the bound"),
+                    "0.5 is a good choice",
+                );
+            }
+            if most_halvings > 30 {
+                let message = format!("{most_halvings} halvings are a billionth of a step");
+                self.error("time.step.most_halvings", message, "at most 30");
+            }
         }
         if let ContactAt::End { tolerance, most_iterations } = time.contact_at {
             if !(1e-13..=1e-2).contains(&tolerance) {

@@ -60,6 +60,9 @@ pub struct Time {
     /// Time integrator. Default: `Midpoint(theta: 0.5)`.
     #[serde(default)]
     pub integrator: Integrator,
+    /// Whether steps may be shorter than `step_s`. Default: `Fixed`.
+    #[serde(default)]
+    pub step: Step,
     /// Where in a step contact is taken. Default: `Predicted`.
     #[serde(default)]
     pub contact_at: ContactAt,
@@ -100,6 +103,27 @@ pub enum Solver {
         /// Residual over right-hand side at which to stop [-]. Default: 1e-12.
         #[serde(default = "fine")]
         tolerance: f64,
+    },
+}
+
+/// Whether steps may be shorter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Step {
+    /// All are `step_s`.
+    #[default]
+    Fixed,
+    /// Each is done in as many parts, 1, 2, 4, …, as contact, speed and energy ask for.
+    Auto {
+        /// Part of the integrator's bound on ω_c Δt that may be used. Default: 0.5.
+        #[serde(default = "half")]
+        safety: f64,
+        /// Energy that a step may gain, over the largest energy so far. Default: 1e-4.
+        #[serde(default = "step_energy")]
+        energy: f64,
+        /// Halvings beyond which a run stops. Default: 12.
+        #[serde(default = "halvings")]
+        most_halvings: u32,
     },
 }
 
@@ -655,6 +679,14 @@ pub enum Reference {
         /// The block.
         block: String,
     },
+}
+
+fn step_energy() -> f64 {
+    1e-4
+}
+
+fn halvings() -> u32 {
+    12
 }
 
 fn newton_tolerance() -> f64 {

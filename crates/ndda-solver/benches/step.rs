@@ -37,6 +37,7 @@ fn cubes(count: usize, n: u32) -> Simulation {
         contact: None,
         end_contact: None,
         solver: Box::new(Direct),
+        auto_step: None,
     })
     .expect("a simulation")
 }

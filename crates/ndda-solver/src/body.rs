@@ -7,7 +7,7 @@ use crate::batch::Batch;
 use crate::elastic_body::ElasticBody;
 use crate::fixed_body::FixedBody;
 use crate::for_each_block::{NodeSlices, Nodes};
-use crate::linear_solver::SolveError;
+use crate::linear_solver::{Factor, SolveError};
 use crate::rigid_body::RigidBody;
 use crate::shape::Shape;
 use crate::time_integrator::{Inertia, StepWeights, TimeIntegrator};
@@ -149,6 +149,16 @@ impl Body {
         match report {
             Ok(report) => self.report = report,
             Err(error) => self.error = Some(error),
+        }
+    }
+
+    /// Memory of solves for another factor of the same matrix structure.
+    pub fn renew_scratch(&mut self, factor: &dyn Factor) {
+        if let Some(batch) = &mut self.batch {
+            **batch = Batch::new(factor);
+        }
+        if let Some(body) = self.elastic() {
+            body.scratch = factor.new_scratch();
         }
     }
 

@@ -34,7 +34,7 @@ pub struct ElasticBody {
     /// R of the last step.
     rotation: Mat3,
     pub(crate) unknowns: Vec<f64>,
-    scratch: Scratch,
+    pub(crate) scratch: Scratch,
     report: BlockReport,
 }
 

@@ -4,6 +4,7 @@ use ndda_contact::ContactReport;
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::step_control::StepCounts;
 use crate::time_integrator::StepWeights;
 
 /// Energies and momenta of all blocks at one instant.
@@ -77,6 +78,10 @@ pub struct Invariants {
     pub candidate_pairs_max: usize,
     /// Most pairs in contact in a step.
     pub contact_pairs_max: usize,
+    /// Most evaluations of contact that a step was solved with.
+    pub iterations_max: u32,
+    /// What controlling the step took.
+    pub control: StepCounts,
 }
 
 /// Sums over steps and extremes over samples.
@@ -117,6 +122,8 @@ impl Ledger {
             max_travel_ratio: 0.0,
             candidate_pairs_max: 0,
             contact_pairs_max: 0,
+            iterations_max: 0,
+            control: StepCounts::default(),
         };
         Self {
             start: None,
@@ -148,6 +155,27 @@ impl Ledger {
         self.angular_impulse += dt_s * weights.mean_inertia(&old_torque, &torque);
         self.last_force = (force, torque);
         self.load_impulse += dt_s * self.load_n;
+    }
+
+    /// Counts a step that is taken back.
+    pub fn note_rejected(&mut self) {
+        self.worst.control.rejected += 1;
+    }
+
+    /// Keeps the most halvings of a step.
+    pub fn note_halvings(&mut self, halvings: u32) {
+        let control = &mut self.worst.control;
+        control.most_halvings = control.most_halvings.max(halvings);
+    }
+
+    /// Keeps the most evaluations of contact in a step.
+    pub fn note_iterations(&mut self, iterations: u32) {
+        self.worst.iterations_max = self.worst.iterations_max.max(iterations);
+    }
+
+    /// The largest energy so far [J].
+    pub fn peak_energy_j(&self) -> f64 {
+        self.peak_energy_j
     }
 
     /// The size of all loads now [N].

@@ -188,6 +188,18 @@ impl Shape {
         Ok(Self { kind, operator, supports, unknowns, factor, material, damping, rigid, smallest_height_m })
     }
 
+    /// K̃ of a step with these weights, factored.
+    ///
+    /// # Errors
+    /// [`FactorError`] when it is not positive definite or too large.
+    pub fn factored(
+        &self,
+        weights: &StepWeights,
+        solver: &dyn LinearSolver,
+    ) -> Result<Box<dyn Factor>, FactorError> {
+        solver.factor(&self.unknowns.matrix(&self.operator, &self.supports, weights, &self.damping))
+    }
+
     /// Whether nothing holds the block, so that its momentum changes by outside forces only.
     pub fn is_free(&self) -> bool {
         self.kind != BodyKind::Fixed && self.supports.held.is_empty() && self.supports.springs.is_empty()

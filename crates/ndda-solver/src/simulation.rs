@@ -19,11 +19,12 @@ use crate::end_contact::{EndContact, Iterations, Newton};
 use crate::fixed_body::FixedBody;
 use crate::for_each_block::{NodeSlices, Runs, each_of_run, for_each_run};
 use crate::ledger::{Invariants, Ledger, Sample};
-use crate::linear_solver::{EIGHT, LinearSolver};
+use crate::linear_solver::{EIGHT, FactorError, LinearSolver};
 use crate::loads::{Loads, VaryingLoad};
 use crate::rigid_body::RigidBody;
 use crate::shape::{BodySetup, Mass, SetupError, Shape};
 use crate::state::State;
+use crate::step_control::{AutoStep, Control, StepState};
 use crate::time_integrator::{Inertia, StepDamping, StepWeights, TimeIntegrator};
 
 /// Nodes per half below which a second thread costs more than it brings.
@@ -51,6 +52,8 @@ pub struct Setup {
     pub end_contact: Option<EndContact>,
     /// Linear solver.
     pub solver: Box<dyn LinearSolver>,
+    /// Steps as short as they have to be, `step_s` being the longest; always `step_s` without.
+    pub auto_step: Option<AutoStep>,
 }
 
 /// What one step found.
@@ -108,6 +111,25 @@ pub enum StepError {
         time_s: f64,
         /// The cause.
         source: ContactError,
+    },
+    /// However short a step, it asks for more than it may.
+    #[error(
+        "at t = {time_s} s: contact is too stiff or too fast even for steps of {step_s:e} s: reduce the penalty, refine \
+         the mesh less, or allow more halvings"
+    )]
+    NoStepIsShortEnough {
+        /// Time [s].
+        time_s: f64,
+        /// Δt [s].
+        step_s: f64,
+    },
+    /// The equations of a shorter step cannot be factored.
+    #[error("for steps of {step_s:e} s: {source}")]
+    Factor {
+        /// Δt [s].
+        step_s: f64,
+        /// What is wrong with them.
+        source: FactorError,
     },
     /// Newton's method did not find the contact forces at the end of a step.
     #[error(
@@ -184,13 +206,16 @@ pub struct Simulation {
     pub(crate) bodies: Vec<Body>,
     pub(crate) runs: Runs,
     pub(crate) state: State,
+    /// Δt of a whole step, and of the parts that it is done in.
+    pub(crate) base_step_s: f64,
     pub(crate) step_s: f64,
+    control: Option<Box<Control>>,
     pub(crate) settling: bool,
     integrator: Box<dyn TimeIntegrator>,
     pub(crate) weights: StepWeights,
     pub(crate) contact: Option<Box<dyn ContactModel>>,
     newton: Option<Box<Newton>>,
-    ledger: Ledger,
+    pub(crate) ledger: Ledger,
     stages: StageTimes,
     pub(crate) loads: Loads,
     pub(crate) force: Vec<Vec3>,
@@ -217,11 +242,9 @@ impl Simulation {
             contact,
             end_contact,
             solver,
+            auto_step,
         } = setup;
-        let mut weights = integrator.weights(step_s);
-        if end_contact.is_some() {
-            weights.contact_lead = 1.0;
-        }
+        let weights = step_weights(integrator.as_ref(), step_s, end_contact.is_some());
         let mut shapes: Vec<Shape> = Vec::new();
         let mut shape_of = Vec::with_capacity(blocks.len());
         for (block, body) in blocks.ids().zip(&bodies) {
@@ -241,6 +264,7 @@ impl Simulation {
         let mut simulation = Self {
             state: State {
                 step: 0,
+                control: StepState::default(),
                 start: Vec::new(),
                 position: blocks.rest_position.clone(),
                 velocity: vec![Vec3::zeros(); nodes],
@@ -263,7 +287,9 @@ impl Simulation {
             stages: StageTimes::default(),
             blocks,
             shapes,
+            base_step_s: step_s,
             step_s,
+            control: None,
             settling: false,
             integrator,
             weights,
@@ -286,6 +312,10 @@ impl Simulation {
             simulation.contact_bodies = bodies.collect();
         }
         simulation.open_books(solver.as_ref())?;
+        if let Some(settings) = auto_step {
+            let control = Control::new(settings, solver, &simulation.state, &simulation.ledger);
+            simulation.control = Some(Box::new(control));
+        }
         Ok(simulation)
     }
 
@@ -413,6 +443,14 @@ impl Simulation {
     /// # Errors
     /// [`StepError`] naming time, block and element; the state is then not to be used.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
+        let Some(mut control) = self.control.take() else { return self.part_step() };
+        let report = self.controlled_step(&mut control);
+        self.control = Some(control);
+        report
+    }
+
+    /// One step, or one part of a step that is done in several.
+    pub(crate) fn part_step(&mut self) -> Result<StepReport, StepError> {
         let started = Instant::now();
         self.gather_loads();
         let (contact, iterations) = self.gather_contact()?;
@@ -462,8 +500,7 @@ impl Simulation {
 
     /// Rigid motion and loads of the blocks, where contact asks for them.
     fn place_bodies(&mut self) {
-        let (step, step_s, settling) = (self.state.step, self.step_s, self.settling);
-        let now_s = |ahead: f64| if settling { 0.0 } else { (step as f64 + ahead) * step_s };
+        let (now_s, end_s) = (self.clock_s(0.0), self.clock_s(1.0));
         for (index, body) in self.contact_bodies.iter_mut().enumerate() {
             let (held, shape) = (body.mass_kg.is_infinite(), &self.shapes[self.bodies[index].shape]);
             if held && shape.supports.motions.is_empty() {
@@ -479,8 +516,8 @@ impl Simulation {
             if held {
                 if shape.kind == BodyKind::Fixed {
                     // Where it goes in this step is known already.
-                    let at = |ahead: f64| shape.supports.motions[0].displacement(now_s(ahead));
-                    body.velocity_m_s = (at(1.0) - at(0.0)) / self.step_s;
+                    let at = |time_s: f64| shape.supports.motions[0].displacement(time_s);
+                    body.velocity_m_s = (at(end_s) - at(now_s)) / self.step_s;
                 }
                 continue;
             }
@@ -632,7 +669,8 @@ impl Simulation {
         self.ledger.add_impulse(self.step_s, &self.weights, force, torque);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
         self.ledger.watch(&contact, h, travel_ratio);
-        self.state.step += 1;
+        self.ledger.note_iterations(iterations.newton);
+        self.advance_clock();
         StepReport { contact, h, travel_ratio, iterations }
     }
 
@@ -768,17 +806,37 @@ impl Simulation {
 
     /// Time [s]: steps done times Δt, never summed.
     pub fn time_s(&self) -> f64 {
-        self.state.step as f64 * self.step_s
+        self.steps_done(0.0) * self.base_step_s
+    }
+
+    /// Steps done, parts of the present one and some parts ahead included.
+    fn steps_done(&self, ahead: f64) -> f64 {
+        let StepState { halvings, part, .. } = self.state.control;
+        self.state.step as f64 + (f64::from(part) + ahead) * 0.5f64.powi(halvings as i32)
+    }
+
+    fn advance_clock(&mut self) {
+        let control = &mut self.state.control;
+        control.part += 1;
+        if control.part == 1 << control.halvings {
+            control.part = 0;
+            self.state.step += 1;
+        }
+    }
+
+    /// The integrator's weights for a step Δt [s].
+    pub(crate) fn weights_of(&self, dt_s: f64) -> StepWeights {
+        step_weights(self.integrator.as_ref(), dt_s, self.newton.is_some())
     }
 
     /// Time that loads and prescribed motions see, some steps ahead [s]: it stands still while a scene settles.
     pub(crate) fn clock_s(&self, ahead: f64) -> f64 {
-        if self.settling { 0.0 } else { (self.state.step as f64 + ahead) * self.step_s }
+        if self.settling { 0.0 } else { self.steps_done(ahead) * self.base_step_s }
     }
 
-    /// Δt [s].
+    /// Δt [s], the longest where it is controlled.
     pub fn step_s(&self) -> f64 {
-        self.step_s
+        self.base_step_s
     }
 
     /// Topology and rest shape.
@@ -830,4 +888,9 @@ impl Simulation {
     pub fn stages(&self) -> StageTimes {
         self.stages
     }
+}
+
+fn step_weights(integrator: &dyn TimeIntegrator, dt_s: f64, solves_contact: bool) -> StepWeights {
+    let weights = integrator.weights(dt_s);
+    if solves_contact { StepWeights { contact_lead: 1.0, ..weights } } else { weights }
 }

@@ -4,6 +4,7 @@ use ndda_contact::ContactHistory;
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::step_control::StepState;
 use crate::time_integrator::Inertia;
 
 /// The changing state of all blocks; a checkpoint, a rollback and a determinism test all work on it.
@@ -11,6 +12,8 @@ use crate::time_integrator::Inertia;
 pub struct State {
     /// Steps done; the time is `step · Δt`, never summed.
     pub step: u64,
+    /// How steps are divided.
+    pub control: StepState,
     /// Where each node was when time began [m]; empty while that is its place at rest.
     pub start: Vec<Vec3>,
     /// Position x per node [m], relative to the origin of the block set.

@@ -32,6 +32,7 @@ fn cube(integrator: Box<dyn TimeIntegrator>, step_s: f64, gravity: Vec3, spin: V
         contact: None,
         end_contact: None,
         solver: Box::new(Direct),
+        auto_step: None,
     })
     .unwrap()
 }
