@@ -6,6 +6,7 @@
 
 pub mod block_mesh;
 pub mod block_set;
+pub mod cut;
 pub mod generate;
 pub mod geometry;
 pub mod ids;
