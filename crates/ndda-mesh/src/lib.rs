@@ -10,8 +10,10 @@ pub mod cut;
 pub mod generate;
 pub mod geometry;
 pub mod ids;
+pub mod quality;
 pub mod stats;
 pub mod surface;
+pub mod tetrahedralise;
 pub mod validate;
 
 pub use block_mesh::BlockMesh;

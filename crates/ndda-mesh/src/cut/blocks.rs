@@ -99,9 +99,10 @@ impl Blocks {
     pub(super) fn finish(mut self, tolerance_m: f64, sliver_width_m: f64) -> Self {
         self.neighbours = neighbours(&self.blocks, &self.surfaces, tolerance_m);
         let mut slivers = Vec::new();
+        let mut volumes = Vec::with_capacity(self.blocks.len());
         for (block, polyhedron) in (0..).zip(&self.blocks) {
             let volume_m3 = polyhedron.volume_m3();
-            self.report.volume_m3 += volume_m3;
+            volumes.push(volume_m3);
             let width_m = polyhedron.width_m();
             if width_m < sliver_width_m {
                 slivers.push(Sliver { block, width_m, volume_m3 });
@@ -109,6 +110,16 @@ impl Blocks {
         }
         slivers.sort_by(|a, b| a.width_m.total_cmp(&b.width_m));
         self.report.slivers = slivers;
+        self.report.volume_m3 = pairwise_sum(&volumes);
         self
     }
+}
+
+/// Sum by halves: rounding grows with the logarithm of the number of terms, not with the number.
+fn pairwise_sum(terms: &[f64]) -> f64 {
+    if terms.len() <= 8 {
+        return terms.iter().sum();
+    }
+    let (low, high) = terms.split_at(terms.len() / 2);
+    pairwise_sum(low) + pairwise_sum(high)
 }

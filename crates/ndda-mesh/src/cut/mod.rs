@@ -25,6 +25,7 @@ pub use error::CutError;
 pub use joints::{Disc, DiscRule, Discontinuity, JointSet, OrientationScatter, SpacingScatter};
 pub use plane::Plane;
 pub use polyhedron::{Face, Polyhedron};
+pub(crate) use random::frame as plane_frame;
 pub use split::{Split, Tolerance, split};
 pub use system::{CutOptions, cut_blocks};
 pub use voronoi::{VoronoiOptions, random_seeds, voronoi_blocks};

@@ -1,0 +1,196 @@
+//! Convex blocks filled with tetrahedra.
+//!
+//! The coarse fills are a fan from a vertex or a star from the centroid. The fine one starts from the star and is
+//! refined in place: edges too long for the size are split, edges too short collapse, and flips and smoothing raise
+//! the smallest dihedral angle, each step only if all volumes stay positive (Freitag & Ollivier-Gooch 1997). Nodes on
+//! a face or edge of the block stay on it, so the surface is that of the block at any size.
+
+mod improve;
+mod pool;
+mod refine;
+mod size;
+mod star;
+mod weld;
+
+pub use size::{Grading, Towards};
+
+use std::collections::BTreeMap;
+
+use crate::cut::{Blocks, Polyhedron};
+use crate::validate::MAX_TETS;
+use crate::{BlockMesh, Vec3, validate};
+use size::SizeField;
+
+/// How a block is filled.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Fill {
+    /// As few tetrahedra as a fan from one of the vertices gives, unless they would be slivers; no interior node.
+    #[default]
+    Fewest,
+    /// A star from one node at the centroid.
+    Centre,
+    /// Edges of about `size_m`, finer where `finer` says so and near features of the block smaller than that.
+    Size {
+        /// Target length of edges [m].
+        size_m: f64,
+        /// Where to be finer.
+        finer: Vec<Grading>,
+    },
+}
+
+/// Why a block cannot be filled.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FillError {
+    /// A length is not positive and finite.
+    #[error("{what} is {value:?}: give a number above 0")]
+    Number {
+        /// Which number.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A face that the block has not.
+    #[error("the block has {faces} faces, no face {face}: count from 0")]
+    NoSuchFace {
+        /// The face asked for.
+        face: usize,
+        /// Number of faces.
+        faces: usize,
+    },
+    /// A block that the system has not.
+    #[error("there are {blocks} blocks, no block {block}: count from 0")]
+    NoSuchBlock {
+        /// The block asked for.
+        block: usize,
+        /// Number of blocks.
+        blocks: usize,
+    },
+    /// The polyhedron is not closed, not convex, or has no volume.
+    #[error(
+        "the polyhedron of {vertices} vertices and {faces} faces is not closed and convex: face {face} fails"
+    )]
+    NotConvex {
+        /// Number of vertices.
+        vertices: usize,
+        /// Number of faces.
+        faces: usize,
+        /// A face that is open, bent, or has a vertex in front of it.
+        face: usize,
+    },
+    /// The block is too thin for tetrahedra of positive volume.
+    #[error(
+        "the block is {width_m:e} m thin and {length_m:e} m long: its tetrahedra are lost in rounding; drop it"
+    )]
+    TooThin {
+        /// Smallest extent [m].
+        width_m: f64,
+        /// Diagonal of its box [m].
+        length_m: f64,
+    },
+    /// The size asks for more tetrahedra than can be counted or held.
+    #[error(
+        "edges of {size_m:e} m would need about {tets:e} tetrahedra; the most are {MOST_TETS}: use a larger size"
+    )]
+    TooFine {
+        /// Size asked for [m].
+        size_m: f64,
+        /// Tetrahedra expected.
+        tets: f64,
+    },
+}
+
+/// Most tetrahedra of one block.
+const MOST_TETS: usize = if MAX_TETS < 50_000_000 { MAX_TETS } else { 50_000_000 };
+/// Vertices nearer to each other than this fraction of the block's diagonal are one.
+const WELD_RATIO: f64 = 1e-8;
+/// Faces may be bent, and the block concave, by this fraction of its diagonal.
+const CONVEX_RATIO: f64 = 1e-7;
+
+impl Blocks {
+    /// Tetrahedra of one block, with a node set per name of its faces: joints, domain faces, `cells`.
+    ///
+    /// # Errors
+    /// [`FillError`] when there is no such block, it is too thin, or the fill is no sensible one.
+    pub fn mesh(&self, block: usize, fill: &Fill) -> Result<BlockMesh, FillError> {
+        let blocks = self.blocks.len();
+        let polyhedron = self.blocks.get(block).ok_or(FillError::NoSuchBlock { block, blocks })?;
+        let names: Vec<&str> = polyhedron.faces.iter().map(|face| self.name_of(face)).collect();
+        tetrahedralise(polyhedron, &names, fill)
+    }
+}
+
+/// Fills a convex polyhedron. `face_names` names the node set of each face; several faces may share one, and faces
+/// beyond its end are `face_i`.
+///
+/// Vertices nearer than 1e-8 of the diagonal are joined first; then all faces are met exactly.
+///
+/// # Errors
+/// [`FillError`] when the polyhedron is not closed and convex or too thin, or the fill is no sensible one.
+pub fn tetrahedralise(block: &Polyhedron, face_names: &[&str], fill: &Fill) -> Result<BlockMesh, FillError> {
+    check_convex(block)?;
+    let too_thin = || FillError::TooThin { width_m: block.width_m(), length_m: block.bounds().diagonal() };
+    let welded = weld::weld(block, WELD_RATIO * block.bounds().diagonal()).ok_or_else(too_thin)?;
+    let mut filled = match fill {
+        Fill::Fewest => star::fewest(&welded.block),
+        Fill::Centre => star::centre(&welded.block),
+        Fill::Size { size_m, finer } => {
+            let size = SizeField::new(&welded, block, *size_m, finer)?;
+            refine::refine(&welded.block, star::centre(&welded.block), &size)
+        }
+    };
+    let mut node_sets: BTreeMap<String, Vec<u32>> = BTreeMap::new();
+    for (node, faces) in (0..).zip(&filled.on) {
+        for &face in faces {
+            let face = welded.old_face[face as usize];
+            let name = face_names.get(face).map_or_else(|| format!("face_{face}"), |name| name.to_string());
+            let set = node_sets.entry(name).or_default();
+            if set.last() != Some(&node) {
+                set.push(node);
+            }
+        }
+    }
+    let nodes = std::mem::take(&mut filled.nodes);
+    let mesh = BlockMesh { nodes, tets: filled.tets, node_sets };
+    if validate::problems(&mesh).is_empty() { Ok(mesh) } else { Err(too_thin()) }
+}
+
+/// Nodes, the faces of the block that each lies on (sorted), and tetrahedra.
+#[derive(Clone, Debug, Default)]
+struct Filled {
+    nodes: Vec<Vec3>,
+    on: Vec<Vec<u32>>,
+    tets: Vec<[u32; 4]>,
+}
+
+fn check_convex(block: &Polyhedron) -> Result<(), FillError> {
+    let count = block.vertices.len();
+    let bad = |face| FillError::NotConvex { vertices: count, faces: block.faces.len(), face };
+    for (index, face) in block.faces.iter().enumerate() {
+        if face.vertices.len() < 3 || face.vertices.iter().any(|&v| v as usize >= count) {
+            return Err(bad(index));
+        }
+    }
+    if block.euler() != Some(2) || !block.vertices.iter().all(|x| x.iter().all(|c| c.is_finite())) {
+        return Err(bad(0));
+    }
+    let tolerance_m = CONVEX_RATIO * block.bounds().diagonal();
+    for (index, face) in block.faces.iter().enumerate() {
+        let area = block.area_vector(face);
+        let Some(normal) = area.try_normalize(0.0) else { continue };
+        let mean = block.ring(face).sum::<Vec3>() / face.vertices.len() as f64;
+        // A face narrower than the tolerance has no normal worth the name.
+        let longest = block.ring(face).map(|x| (x - mean).norm()).fold(0.0, f64::max);
+        if area.norm() > tolerance_m * longest
+            && block
+                .vertices
+                .iter()
+                .any(|x| normal.dot(&(x - mean)) > tolerance_m * (longest * longest / area.norm()).max(1.0))
+        {
+            return Err(bad(index));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests;
