@@ -11,6 +11,7 @@ pub mod generate;
 pub mod geometry;
 pub mod ids;
 pub mod quality;
+pub mod repair;
 pub mod stats;
 pub mod surface;
 pub mod tetrahedralise;

@@ -81,6 +81,7 @@ pub(super) fn remove_edge(pool: &mut Pool, a: u32, b: u32) -> bool {
 
 /// Triangles of the ring, each with a tetrahedron to either end of the edge, the worst of them as good as can be;
 /// `None` if that is not above `least`.
+#[expect(clippy::needless_range_loop, reason = "k counts in a row and in a column of the table")]
 fn best_filling(pool: &Pool, ring: &[u32], [a, b]: [u32; 2], least: f64) -> Option<Vec<[u32; 4]>> {
     let n = ring.len();
     let pair = |[i, k, j]: [usize; 3]| [[ring[i], ring[k], ring[j], b], [ring[j], ring[k], ring[i], a]];
@@ -89,8 +90,7 @@ fn best_filling(pool: &Pool, ring: &[u32], [a, b]: [u32; 2], least: f64) -> Opti
         for i in 0..n - span {
             let j = i + span;
             let mut choice = (f64::NEG_INFINITY, i + 1);
-            let mut k = i + 1;
-            while k < j {
+            for k in i + 1..j {
                 let bound = best[i][k].0.min(best[k][j].0);
                 if bound > choice.0.max(least) {
                     let [upper, lower] = pair([i, k, j]);
@@ -100,7 +100,6 @@ fn best_filling(pool: &Pool, ring: &[u32], [a, b]: [u32; 2], least: f64) -> Opti
                         choice = (value, k);
                     }
                 }
-                k += 1;
             }
             best[i][j] = choice;
         }

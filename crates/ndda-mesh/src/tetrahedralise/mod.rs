@@ -29,7 +29,7 @@ pub enum Fill {
     Fewest,
     /// A star from one node at the centroid.
     Centre,
-    /// Edges of about `size_m`, finer where `finer` says so and near features of the block smaller than that.
+    /// Edges of about `size_m`, finer where `finer` says so, and down to a quarter near smaller features of the block.
     Size {
         /// Target length of edges [m].
         size_m: f64,
@@ -103,6 +103,8 @@ pub enum FillError {
 const MOST_TETS: usize = if MAX_TETS < 50_000_000 { MAX_TETS } else { 50_000_000 };
 /// Vertices nearer to each other than this fraction of the block's diagonal are one.
 const WELD_RATIO: f64 = 1e-8;
+/// Coordinates beyond this leave the range of f64 in volumes [m].
+const LARGEST_M: f64 = 1e50;
 /// Faces may be bent, and the block concave, by this fraction of its diagonal.
 const CONVEX_RATIO: f64 = 1e-7;
 
@@ -135,7 +137,8 @@ pub fn tetrahedralise(block: &Polyhedron, face_names: &[&str], fill: &Fill) -> R
         Fill::Centre => star::centre(&welded.block),
         Fill::Size { size_m, finer } => {
             let size = SizeField::new(&welded, block, *size_m, finer)?;
-            refine::refine(&welded.block, star::centre(&welded.block), &size)
+            let too_fine = |tets| FillError::TooFine { size_m: *size_m, tets: tets as f64 };
+            refine::refine(&welded.block, star::centre(&welded.block), &size).map_err(too_fine)?
         }
     };
     let mut node_sets: BTreeMap<String, Vec<u32>> = BTreeMap::new();
@@ -170,7 +173,8 @@ fn check_convex(block: &Polyhedron) -> Result<(), FillError> {
             return Err(bad(index));
         }
     }
-    if block.euler() != Some(2) || !block.vertices.iter().all(|x| x.iter().all(|c| c.is_finite())) {
+    let in_range = block.vertices.iter().all(|x| x.amax() <= LARGEST_M && x.iter().all(|c| c.is_finite()));
+    if block.euler() != Some(2) || !in_range || block.volume_m3().is_nan() || block.volume_m3() <= 0.0 {
         return Err(bad(0));
     }
     let tolerance_m = CONVEX_RATIO * block.bounds().diagonal();

@@ -19,11 +19,14 @@ const FINAL_SINE: f64 = 0.57;
 const COLLAPSE_SINE: f64 = 0.34;
 /// Tetrahedra below this get a node of their own as a last resort: sin 15°.
 const POOR_SINE: f64 = 0.26;
+/// Refining stops with an error at this many times the tetrahedra expected.
+const MOST_PER_EXPECTED: f64 = 30.0;
 /// Most sweeps at the end.
 const SWEEPS: usize = 12;
 
-/// Refines `filled` until its edges have the length of `size`.
-pub(super) fn refine(block: &Polyhedron, filled: Filled, size: &SizeField) -> Filled {
+/// Refines `filled` until its edges have the length of `size`; the number of tetrahedra if they get out of hand.
+pub(super) fn refine(block: &Polyhedron, filled: Filled, size: &SizeField) -> Result<Filled, usize> {
+    let filled_tets = filled.tets.len() as f64;
     let mut pool = Pool::new(block, filled);
     let ratio = |pool: &Pool, (a, b): (u32, u32)| {
         let (x, y) = (pool.nodes[a as usize], pool.nodes[b as usize]);
@@ -37,6 +40,10 @@ pub(super) fn refine(block: &Polyhedron, filled: Filled, size: &SizeField) -> Fi
         let Some(&(longest, _)) = long.first() else { break };
         for &(_, (a, b)) in long.iter().take_while(|(ratio, _)| *ratio >= ROUND * longest) {
             split_edge(&mut pool, a, b);
+        }
+        let tets = pool.alive().count();
+        if tets as f64 > MOST_PER_EXPECTED * (size.tets + filled_tets) {
+            return Err(tets);
         }
         for _ in 0..2 {
             improve::sweep(&mut pool, WANTED_SINE);
@@ -58,7 +65,7 @@ pub(super) fn refine(block: &Polyhedron, filled: Filled, size: &SizeField) -> Fi
             break;
         }
     }
-    pool.finish()
+    Ok(pool.finish())
 }
 
 /// All edges, sorted.

@@ -9,6 +9,8 @@ use crate::cut::{Face, Polyhedron};
 const FEATURE_GROWTH: f64 = 1.0;
 /// Edges are at most this many times as long as the block is wide, or tetrahedra would be flat.
 const LENGTH_PER_WIDTH: f64 = 2.0;
+/// Small features and thin blocks refine the mesh down to this fraction of the size, not further.
+const FINEST: f64 = 0.25;
 /// Volume of a tetrahedron over its edge cubed, for a good mixture.
 const TET_VOLUME: f64 = 0.1;
 
@@ -38,6 +40,8 @@ pub(super) struct SizeField {
     points: Vec<(Vec3, f64, f64)>,
     /// Inward plane: point, normal, size, growth.
     faces: Vec<(Vec3, Vec3, f64, f64)>,
+    /// Tetrahedra to expect.
+    pub tets: f64,
 }
 
 fn positive(what: &'static str, value: f64) -> Result<(), FillError> {
@@ -53,8 +57,8 @@ impl SizeField {
     ) -> Result<Self, FillError> {
         positive("size_m", size_m)?;
         let block = &welded.block;
-        let largest_m = size_m.min(LENGTH_PER_WIDTH * block.width_m());
-        let mut size = Self { largest_m, points: Vec::new(), faces: Vec::new() };
+        let largest_m = size_m.min((LENGTH_PER_WIDTH * block.width_m()).max(FINEST * size_m));
+        let mut size = Self { largest_m, points: Vec::new(), faces: Vec::new(), tets: 0.0 };
         for grading in finer {
             positive("size_m of a grading", grading.size_m)?;
             positive("growth of a grading", grading.growth)?;
@@ -70,12 +74,13 @@ impl SizeField {
             }
         }
         for vertex in 0..block.vertices.len() as u32 {
-            let feature_m = feature_size(block, vertex);
+            let feature_m = feature_size(block, vertex).max(FINEST * size_m);
             if feature_m < largest_m {
                 size.points.push((block.vertices[vertex as usize], feature_m, FEATURE_GROWTH));
             }
         }
-        let tets = size.count(block);
+        size.tets = size.count(block);
+        let tets = size.tets;
         if tets <= MOST_TETS as f64 { Ok(size) } else { Err(FillError::TooFine { size_m, tets }) }
     }
 
