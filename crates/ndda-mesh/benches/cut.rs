@@ -1,4 +1,4 @@
-//! A hundred thousand blocks from three joint sets, and Voronoi cells.
+//! A hundred thousand blocks from three joint sets, Voronoi cells, and tetrahedra in blocks.
 #![allow(missing_docs)] // criterion's macro makes public functions
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -7,6 +7,8 @@ use ndda_mesh::cut::{
     CutOptions, Discontinuity, Domain, JointSet, OrientationScatter, VoronoiOptions, cut_blocks,
     random_seeds, voronoi_blocks,
 };
+use ndda_mesh::quality::quality;
+use ndda_mesh::tetrahedralise::Fill;
 
 /// Three oblique sets, about `per_side`³ blocks in a cube of 100 m.
 fn sets(per_side: f64, orientation: OrientationScatter) -> Vec<Discontinuity> {
@@ -46,14 +48,42 @@ fn cut(c: &mut Criterion) {
 
 fn voronoi(c: &mut Criterion) {
     let domain = Domain::cuboid(Vec3::zeros(), Vec3::repeat(100.0)).expect("a cube");
-    let seeds = random_seeds(&domain, 10_000, 2.0, 1);
     let mut group = c.benchmark_group("voronoi");
     group.sample_size(10);
-    group.bench_function("10 000 cells", |b| {
-        b.iter(|| voronoi_blocks(&domain, &seeds, &VoronoiOptions::default()).expect("cells"))
-    });
+    for (name, cells, apart_m) in [("10 000 cells", 10_000, 2.0), ("100 000 cells", 100_000, 1.0)] {
+        let seeds = random_seeds(&domain, cells, apart_m, 1);
+        let cut = || voronoi_blocks(&domain, &seeds, &VoronoiOptions::default()).expect("cells");
+        let report = cut().report;
+        println!("{name}: volume off by {:.1e}", report.volume_m3 / report.domain_m3 - 1.0);
+        group.bench_function(name, |b| b.iter(cut));
+    }
     group.finish();
 }
 
-criterion_group!(benches, cut, voronoi);
+/// Prints how many tetrahedra a fill gives a block and how good they are.
+fn fill(c: &mut Criterion) {
+    let domain = Domain::cuboid(Vec3::zeros(), Vec3::repeat(100.0)).expect("a cube");
+    let sets = sets(7.0, OrientationScatter::Fisher { kappa: 200.0 });
+    let by_joints = cut_blocks(&domain, &sets, &CutOptions::default()).expect("blocks");
+    let seeds = random_seeds(&domain, 400, 5.0, 1);
+    let by_seeds = voronoi_blocks(&domain, &seeds, &VoronoiOptions::default()).expect("cells");
+    let mut group = c.benchmark_group("fill");
+    group.sample_size(10);
+    for (system, blocks) in [("joints", &by_joints), ("Voronoi", &by_seeds)] {
+        for (name, fill) in [
+            ("fewest", Fill::Fewest),
+            ("centre", Fill::Centre),
+            ("4 m", Fill::Size { size_m: 4.0, finer: Vec::new() }),
+        ] {
+            let (meshes, failed) = blocks.meshes(&fill);
+            let report = quality(meshes.iter().map(|(name, mesh)| (name.as_str(), mesh)));
+            println!("{system}, {name}: {} blocks filled, {} not; {report}", meshes.len(), failed.len());
+            let title = format!("{} blocks of {system}, {name}", meshes.len());
+            group.bench_function(title, |b| b.iter(|| blocks.meshes(&fill)));
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, cut, voronoi, fill);
 criterion_main!(benches);

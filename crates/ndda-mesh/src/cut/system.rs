@@ -278,6 +278,29 @@ mod tests {
     }
 
     #[test]
+    fn map_coordinates_change_nothing() {
+        let at = Vec3::new(4.5e6, 5.4e6, 300.0);
+        let domain = Domain::cuboid(at, at.add_scalar(10.0)).unwrap();
+        let sets = [(60.0, 40.0), (35.0, 170.0), (80.0, 290.0)].map(|(dip, direction)| {
+            Discontinuity::Set(JointSet { origin_m: at, ..JointSet::new("set", dip, direction, 2.0) })
+        });
+        let blocks = cut_blocks(&domain, &sets, &CutOptions::default()).unwrap();
+        let near = Domain::cuboid(Vec3::zeros(), Vec3::repeat(10.0)).unwrap();
+        let sets = sets.map(|mut set| {
+            if let Discontinuity::Set(set) = &mut set {
+                set.origin_m = Vec3::zeros();
+            }
+            set
+        });
+        assert_eq!(
+            cut_blocks(&near, &sets, &CutOptions::default()).unwrap().blocks.len(),
+            blocks.blocks.len()
+        );
+        assert!((blocks.report.volume_m3 / 1000.0 - 1.0).abs() < 1e-9);
+        assert!(blocks.report.refused.is_empty() && blocks.blocks.iter().all(|b| b.euler() == Some(2)));
+    }
+
+    #[test]
     fn too_many_blocks_are_an_error() {
         let options = CutOptions { most_blocks: 100, ..CutOptions::default() };
         let error = cut_blocks(&cube(), &[set(0.0, 0.0, 0.001)], &options).unwrap_err();

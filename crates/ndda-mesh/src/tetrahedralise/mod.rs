@@ -20,6 +20,7 @@ use crate::cut::{Blocks, Polyhedron};
 use crate::validate::MAX_TETS;
 use crate::{BlockMesh, Vec3, validate};
 use size::SizeField;
+use weld::Welded;
 
 /// How a block is filled.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -101,8 +102,8 @@ pub enum FillError {
 
 /// Most tetrahedra of one block.
 const MOST_TETS: usize = if MAX_TETS < 50_000_000 { MAX_TETS } else { 50_000_000 };
-/// Vertices nearer to each other than this fraction of the block's diagonal are one.
-const WELD_RATIO: f64 = 1e-8;
+/// Edges shorter than this fraction of the block's diagonal become a vertex; the next is tried if one fails.
+const WELD_RATIOS: [f64; 5] = [1e-8, 1e-7, 1e-6, 1e-5, 1e-4];
 /// Coordinates beyond this leave the range of f64 in volumes [m].
 const LARGEST_M: f64 = 1e50;
 /// Faces may be bent, and the block concave, by this fraction of its diagonal.
@@ -119,28 +120,58 @@ impl Blocks {
         let names: Vec<&str> = polyhedron.faces.iter().map(|face| self.name_of(face)).collect();
         tetrahedralise(polyhedron, &names, fill)
     }
+
+    /// Tetrahedra of all blocks, named `block_0`, `block_1`, …, and the blocks that could not be filled with the
+    /// reason: usually slivers, for the caller to drop or to complain about.
+    pub fn meshes(&self, fill: &Fill) -> (Vec<(String, BlockMesh)>, Vec<(usize, FillError)>) {
+        let (mut meshes, mut failed) = (Vec::new(), Vec::new());
+        for block in 0..self.blocks.len() {
+            match self.mesh(block, fill) {
+                Ok(mesh) => meshes.push((format!("block_{block}"), mesh)),
+                Err(error) => failed.push((block, error)),
+            }
+        }
+        (meshes, failed)
+    }
 }
 
 /// Fills a convex polyhedron. `face_names` names the node set of each face; several faces may share one, and faces
 /// beyond its end are `face_i`.
 ///
-/// Vertices nearer than 1e-8 of the diagonal are joined first; then all faces are met exactly.
+/// Vertices joined by edges shorter than 1e-8 of the diagonal become one first. Only if features of about that size
+/// still leave a tetrahedron without volume does the length grow, to 1e-4 at most; faces are met within it.
 ///
 /// # Errors
 /// [`FillError`] when the polyhedron is not closed and convex or too thin, or the fill is no sensible one.
 pub fn tetrahedralise(block: &Polyhedron, face_names: &[&str], fill: &Fill) -> Result<BlockMesh, FillError> {
     check_convex(block)?;
-    let too_thin = || FillError::TooThin { width_m: block.width_m(), length_m: block.bounds().diagonal() };
-    let welded = weld::weld(block, WELD_RATIO * block.bounds().diagonal()).ok_or_else(too_thin)?;
-    let mut filled = match fill {
-        Fill::Fewest => star::fewest(&welded.block),
-        Fill::Centre => star::centre(&welded.block),
-        Fill::Size { size_m, finer } => {
-            let size = SizeField::new(&welded, block, *size_m, finer)?;
-            let too_fine = |tets| FillError::TooFine { size_m: *size_m, tets: tets as f64 };
-            refine::refine(&welded.block, star::centre(&welded.block), &size).map_err(too_fine)?
+    let length_m = block.bounds().diagonal();
+    for ratio in WELD_RATIOS {
+        if let Some(welded) = weld::weld(block, ratio * length_m) {
+            let filled = filled(block, &welded, fill)?;
+            let mesh = named(filled, &welded, face_names);
+            if validate::problems(&mesh).is_empty() {
+                return Ok(mesh);
+            }
         }
-    };
+    }
+    Err(FillError::TooThin { width_m: block.width_m(), length_m })
+}
+
+fn filled(block: &Polyhedron, welded: &Welded, fill: &Fill) -> Result<Filled, FillError> {
+    match fill {
+        Fill::Fewest => Ok(star::fewest(&welded.block)),
+        Fill::Centre => Ok(star::centre(&welded.block)),
+        Fill::Size { size_m, finer } => {
+            let size = SizeField::new(welded, block, *size_m, finer)?;
+            let too_fine = |tets| FillError::TooFine { size_m: *size_m, tets: tets as f64 };
+            refine::refine(&welded.block, star::centre(&welded.block), &size).map_err(too_fine)
+        }
+    }
+}
+
+/// The mesh with a node set for each name.
+fn named(filled: Filled, welded: &Welded, face_names: &[&str]) -> BlockMesh {
     let mut node_sets: BTreeMap<String, Vec<u32>> = BTreeMap::new();
     for (node, faces) in (0..).zip(&filled.on) {
         for &face in faces {
@@ -152,9 +183,7 @@ pub fn tetrahedralise(block: &Polyhedron, face_names: &[&str], fill: &Fill) -> R
             }
         }
     }
-    let nodes = std::mem::take(&mut filled.nodes);
-    let mesh = BlockMesh { nodes, tets: filled.tets, node_sets };
-    if validate::problems(&mesh).is_empty() { Ok(mesh) } else { Err(too_thin()) }
+    BlockMesh { nodes: filled.nodes, tets: filled.tets, node_sets }
 }
 
 /// Nodes, the faces of the block that each lies on (sorted), and tetrahedra.

