@@ -8,7 +8,7 @@ use ndda_mesh::cut::{
     random_seeds, voronoi_blocks,
 };
 use ndda_mesh::quality::quality;
-use ndda_mesh::tetrahedralise::Fill;
+use ndda_mesh::tetrahedralise::{Fill, Meshed};
 
 /// Three oblique sets, about `per_side`³ blocks in a cube of 100 m.
 fn sets(per_side: f64, orientation: OrientationScatter) -> Vec<Discontinuity> {
@@ -75,7 +75,7 @@ fn fill(c: &mut Criterion) {
             ("centre", Fill::Centre),
             ("4 m", Fill::Size { size_m: 4.0, finer: Vec::new() }),
         ] {
-            let (meshes, failed) = blocks.meshes(&fill);
+            let Meshed { meshes, failed } = blocks.meshes(&fill);
             let report = quality(meshes.iter().map(|(name, mesh)| (name.as_str(), mesh)));
             println!("{system}, {name}: {} blocks filled, {} not; {report}", meshes.len(), failed.len());
             let title = format!("{} blocks of {system}, {name}", meshes.len());

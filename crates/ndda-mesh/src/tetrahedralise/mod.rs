@@ -121,18 +121,26 @@ impl Blocks {
         tetrahedralise(polyhedron, &names, fill)
     }
 
-    /// Tetrahedra of all blocks, named `block_0`, `block_1`, …, and the blocks that could not be filled with the
-    /// reason: usually slivers, for the caller to drop or to complain about.
-    pub fn meshes(&self, fill: &Fill) -> (Vec<(String, BlockMesh)>, Vec<(usize, FillError)>) {
-        let (mut meshes, mut failed) = (Vec::new(), Vec::new());
+    /// Tetrahedra of all blocks.
+    pub fn meshes(&self, fill: &Fill) -> Meshed {
+        let mut meshed = Meshed::default();
         for block in 0..self.blocks.len() {
             match self.mesh(block, fill) {
-                Ok(mesh) => meshes.push((format!("block_{block}"), mesh)),
-                Err(error) => failed.push((block, error)),
+                Ok(mesh) => meshed.meshes.push((format!("block_{block}"), mesh)),
+                Err(error) => meshed.failed.push((block, error)),
             }
         }
-        (meshes, failed)
+        meshed
     }
+}
+
+/// Blocks that were filled, and those that could not be.
+#[derive(Clone, Debug, Default)]
+pub struct Meshed {
+    /// Meshes under the names `block_0`, `block_1`, …, which count all blocks.
+    pub meshes: Vec<(String, BlockMesh)>,
+    /// Index of each block that was not filled and the reason: usually slivers, for the caller to drop or report.
+    pub failed: Vec<(usize, FillError)>,
 }
 
 /// Fills a convex polyhedron. `face_names` names the node set of each face; several faces may share one, and faces
