@@ -92,7 +92,42 @@ pub struct Blocks {
 impl Blocks {
     /// Name of what made a face: of a joint, a face of the domain, or `cells`.
     pub fn name_of(&self, face: &Face) -> &str {
-        &self.names[self.surfaces[face.surface as usize].name as usize]
+        self.surface_name(face.surface)
+    }
+
+    /// Name of a surface, as of a [`Neighbour`].
+    pub fn surface_name(&self, surface: u32) -> &str {
+        &self.names[self.surfaces[surface as usize].name as usize]
+    }
+
+    /// Takes blocks out, slivers for instance; later blocks move up. The report keeps what the cut amounted to, with
+    /// the slivers that are left under their new indices. Returns the volume taken out [m³].
+    pub fn remove(&mut self, blocks: &[u32]) -> f64 {
+        let mut index: Vec<Option<u32>> = vec![Some(0); self.blocks.len()];
+        for &block in blocks {
+            if let Some(index) = index.get_mut(block as usize) {
+                *index = None;
+            }
+        }
+        let mut removed_m3 = 0.0;
+        let mut kept = Vec::with_capacity(self.blocks.len());
+        for (index, block) in index.iter_mut().zip(std::mem::take(&mut self.blocks)) {
+            if index.is_some() {
+                *index = Some(kept.len() as u32);
+                kept.push(block);
+            } else {
+                removed_m3 += block.volume_m3();
+            }
+        }
+        self.blocks = kept;
+        self.neighbours.retain_mut(|neighbour| {
+            let [a, b] = neighbour.blocks.map(|block| index[block as usize]);
+            a.zip(b).map(|(a, b)| neighbour.blocks = [a, b]).is_some()
+        });
+        self.report
+            .slivers
+            .retain_mut(|sliver| index[sliver.block as usize].map(|block| sliver.block = block).is_some());
+        removed_m3
     }
 
     /// Finds neighbours and slivers of finished blocks and completes the report.

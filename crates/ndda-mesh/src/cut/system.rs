@@ -225,7 +225,7 @@ mod tests {
         let on_bed: Vec<f64> = blocks
             .neighbours
             .iter()
-            .filter(|n| blocks.names[blocks.surfaces[n.surface as usize].name as usize] == "bed")
+            .filter(|n| blocks.surface_name(n.surface) == "bed")
             .map(|n| n.area_m2)
             .collect();
         assert_eq!(on_bed.len(), 2);
@@ -275,6 +275,24 @@ mod tests {
         let twice = cut(&[set(30.0, 90.0, 0.2), set(30.0, 90.0, 0.2), set(30.0, 90.0, 0.1)]);
         assert_eq!(twice.blocks.len(), cut(&[set(30.0, 90.0, 0.1)]).blocks.len());
         assert!(once.blocks.len() < twice.blocks.len());
+    }
+
+    #[test]
+    fn removed_blocks_take_their_neighbours_along() {
+        let mut blocks = cut(&[set(90.0, 90.0, 0.25), set(0.0, 0.0, 0.5)]);
+        let all = blocks.clone();
+        let gone = 3;
+        assert!((blocks.remove(&[gone, gone, 99]) - 0.125).abs() < 1e-15);
+        assert_eq!(blocks.blocks.len(), 7);
+        let with = all.neighbours.iter().filter(|n| n.blocks.contains(&gone)).count();
+        assert_eq!(blocks.neighbours.len(), all.neighbours.len() - with);
+        for n in &blocks.neighbours {
+            let [a, b] = [0, 1].map(|i| {
+                let block = &blocks.blocks[n.blocks[i] as usize];
+                block.area_vector(&block.faces[n.faces[i] as usize])
+            });
+            assert!((a + b).norm() < 1e-14);
+        }
     }
 
     #[test]
