@@ -177,6 +177,11 @@ fn blocks_of_degenerate_cuts_are_filled_unless_they_are_slivers() {
     let (mut filled, mut refused) = (0, 0);
     for seed in 0..2000 {
         let blocks = degenerate_blocks(seed);
+        assert!((blocks.report.volume_m3 - 1.0).abs() < 1e-12);
+        let sections = blocks.blocks.iter().flat_map(|b| b.faces.iter().map(move |f| (b, f)));
+        let sections = sections.filter(|(_, f)| f.surface >= 6).map(|(b, f)| b.area_vector(f).norm());
+        let met: f64 = blocks.neighbours.iter().map(|n| n.area_m2).sum();
+        assert!((sections.sum::<f64>() - 2.0 * met).abs() < 1e-6, "{seed}");
         let slivers: Vec<u32> = blocks.report.slivers.iter().map(|sliver| sliver.block).collect();
         for index in 0..blocks.blocks.len() {
             let size = Fill::Size { size_m: 0.5, finer: vec![] };
