@@ -1,9 +1,11 @@
 //! A closed surface into convex parts: a tree of cuts along the planes of its faces (Fuchs, Kedem & Naylor 1980).
 
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 use super::CutError;
 use super::blocks::Surface;
+use super::neighbours::neighbours;
 use super::plane::Plane;
 use super::polyhedron::Polyhedron;
 use super::split::{Split, Tolerance, split};
@@ -14,6 +16,10 @@ use crate::geometry::Aabb;
 const CANDIDATES: usize = 24;
 /// Parts and surface must agree in volume to this fraction.
 const SAME_VOLUME: f64 = 1e-6;
+/// Faces of two parts are the same if they differ by less than this fraction of their area from what they share.
+const SAME_AREA: f64 = 1e-9;
+/// Rounds after which parts are left as they are, should rounding keep them from meeting face to face.
+const MOST_ROUNDS: usize = 20;
 /// Marks faces of the box around the domain; none survives in a closed surface.
 const OUTSIDE: u32 = u32::MAX;
 
@@ -61,10 +67,49 @@ pub(super) fn convex_parts(
     }
     let parts_m3: f64 = parts.iter().map(Polyhedron::volume_m3).sum();
     if (parts_m3 - surface_m3).abs() <= SAME_VOLUME * surface_m3 {
-        Ok(parts)
+        Ok(face_to_face(parts, surfaces, tolerance))
     } else {
         Err(CutError::Inconsistent { surface_m3, parts_m3 })
     }
+}
+
+/// Cuts parts until two that meet share a whole face: each is cut by the planes beside the face of the other.
+fn face_to_face(mut parts: Vec<Polyhedron>, surfaces: &[Surface], tolerance: Tolerance) -> Vec<Polyhedron> {
+    for _ in 0..MOST_ROUNDS {
+        let mut knives: BTreeSet<(u32, u32)> = BTreeSet::new();
+        for pair in neighbours(&parts, surfaces, tolerance.least_depth_m) {
+            for (own, other) in [(0, 1), (1, 0)] {
+                let part = &parts[pair.blocks[own] as usize];
+                let face = &part.faces[pair.faces[own] as usize];
+                let other = &parts[pair.blocks[other] as usize].faces;
+                if part.area_vector(face).norm() > (1.0 + SAME_AREA) * pair.area_m2 {
+                    knives.extend(other.iter().map(|beside| (pair.blocks[own], beside.surface)));
+                }
+            }
+        }
+        let mut changed = false;
+        let mut cut: Vec<Polyhedron> = Vec::new();
+        for (index, part) in (0..).zip(parts) {
+            let mut pieces = vec![part];
+            for &(_, surface) in knives.range((index, 0)..=(index, u32::MAX)) {
+                let plane = &surfaces[surface as usize].plane;
+                for piece in std::mem::take(&mut pieces) {
+                    if let Split::Both { above, below } = split(&piece, plane, surface, tolerance) {
+                        changed = true;
+                        pieces.extend([above, below]);
+                    } else {
+                        pieces.push(piece);
+                    }
+                }
+            }
+            cut.extend(pieces);
+        }
+        parts = cut;
+        if !changed {
+            break;
+        }
+    }
+    parts
 }
 
 /// The surface whose plane divides the fewest polygons; of those, the one that has most on its lower side.

@@ -60,8 +60,9 @@ pub fn cut_blocks(
         refused: BTreeMap::new(),
         report: CutReport { domain_m3: domain.volume_m3(), ..CutReport::default() },
     };
-    for (part, block) in (0..).zip(&domain.parts) {
-        carving.carve(block.clone(), part)?;
+    // Glued parts start with one history, so that persistence treats them alike where it can.
+    for part in &domain.parts {
+        carving.carve(part.clone(), 0)?;
     }
     let mut report = carving.report;
     report.refused = carving.refused.into_iter().collect();

@@ -295,7 +295,7 @@ mod tests {
         let blocks = voronoi_blocks(&domain, &seeds, &VoronoiOptions::default()).unwrap();
         assert!((blocks.report.volume_m3 - 3.0).abs() < 1e-12);
         let glued: f64 = blocks.neighbours.iter().filter(|n| n.glued).map(|n| n.area_m2).sum();
-        assert!((glued - 1.0).abs() < 1e-9, "{glued}");
+        assert!((glued - 2.0).abs() < 1e-9, "{glued}");
     }
 
     #[test]

@@ -5,6 +5,7 @@
 //! the smallest dihedral angle, each step only if all volumes stay positive (Freitag & Ollivier-Gooch 1997). Nodes on
 //! a face or edge of the block stay on it, so the surface is that of the block at any size.
 
+mod glued;
 mod improve;
 mod pool;
 mod refine;
@@ -88,6 +89,16 @@ pub enum FillError {
         /// Diagonal of its box [m].
         length_m: f64,
     },
+    /// Parts of a concave block that touch over parts of their faces.
+    #[error(
+        "the {parts} parts of block {block} do not meet face to face: cut them by planes without persistence or discs"
+    )]
+    NotFaceToFace {
+        /// Index of the first part.
+        block: usize,
+        /// Number of parts.
+        parts: usize,
+    },
     /// The size asks for more tetrahedra than can be counted or held.
     #[error(
         "edges of {size_m:e} m would need about {tets:e} tetrahedra; the most are {MOST_TETS}: use a larger size"
@@ -121,13 +132,14 @@ impl Blocks {
         tetrahedralise(polyhedron, &names, fill)
     }
 
-    /// Tetrahedra of all blocks.
+    /// Tetrahedra of all blocks, glued ones as one.
     pub fn meshes(&self, fill: &Fill) -> Meshed {
         let mut meshed = Meshed::default();
-        for block in 0..self.blocks.len() {
-            match self.mesh(block, fill) {
-                Ok(mesh) => meshed.meshes.push((format!("block_{block}"), mesh)),
-                Err(error) => meshed.failed.push((block, error)),
+        for group in self.groups() {
+            let first = group[0] as usize;
+            match self.mesh_glued(&group, fill) {
+                Ok(mesh) => meshed.meshes.push((format!("block_{first}"), mesh)),
+                Err(error) => meshed.failed.push((first, error)),
             }
         }
         meshed
@@ -137,7 +149,7 @@ impl Blocks {
 /// Blocks that were filled, and those that could not be.
 #[derive(Clone, Debug, Default)]
 pub struct Meshed {
-    /// Meshes under the names `block_0`, `block_1`, …, which count all blocks.
+    /// Meshes under the names `block_0`, `block_1`, … of the first or only block in each.
     pub meshes: Vec<(String, BlockMesh)>,
     /// Index of each block that was not filled and the reason: usually slivers, for the caller to drop or report.
     pub failed: Vec<(usize, FillError)>,
@@ -157,7 +169,10 @@ pub fn tetrahedralise(block: &Polyhedron, face_names: &[&str], fill: &Fill) -> R
     for ratio in WELD_RATIOS {
         if let Some(welded) = weld::weld(block, ratio * length_m) {
             let filled = filled(block, &welded, fill)?;
-            let mesh = named(filled, &welded, face_names);
+            let mesh = named(filled, |face| {
+                let face = welded.old_face[face as usize];
+                Some(face_names.get(face).map_or_else(|| format!("face_{face}"), |name| name.to_string()))
+            });
             if validate::problems(&mesh).is_empty() {
                 return Ok(mesh);
             }
@@ -171,20 +186,20 @@ fn filled(block: &Polyhedron, welded: &Welded, fill: &Fill) -> Result<Filled, Fi
         Fill::Fewest => Ok(star::fewest(&welded.block)),
         Fill::Centre => Ok(star::centre(&welded.block)),
         Fill::Size { size_m, finer } => {
-            let size = SizeField::new(welded, block, *size_m, finer)?;
+            let size = SizeField::new(&welded.block, block, *size_m, finer)?;
+            let normals =
+                welded.block.faces.iter().map(|f| welded.block.area_vector(f).normalize()).collect();
             let too_fine = |tets| FillError::TooFine { size_m: *size_m, tets: tets as f64 };
-            refine::refine(&welded.block, star::centre(&welded.block), &size).map_err(too_fine)
+            refine::refine(normals, star::centre(&welded.block), &size).map_err(too_fine)
         }
     }
 }
 
-/// The mesh with a node set for each name.
-fn named(filled: Filled, welded: &Welded, face_names: &[&str]) -> BlockMesh {
+/// The mesh with a node set for each name of a face.
+fn named(filled: Filled, name_of: impl Fn(u32) -> Option<String>) -> BlockMesh {
     let mut node_sets: BTreeMap<String, Vec<u32>> = BTreeMap::new();
     for (node, faces) in (0..).zip(&filled.on) {
-        for &face in faces {
-            let face = welded.old_face[face as usize];
-            let name = face_names.get(face).map_or_else(|| format!("face_{face}"), |name| name.to_string());
+        for name in faces.iter().filter_map(|&face| name_of(face)) {
             let set = node_sets.entry(name).or_default();
             if set.last() != Some(&node) {
                 set.push(node);

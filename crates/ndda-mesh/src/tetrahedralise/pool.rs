@@ -2,7 +2,6 @@
 
 use super::Filled;
 use crate::Vec3;
-use crate::cut::Polyhedron;
 use crate::quality::least_sine;
 
 /// A mesh under change. Dead tetrahedra are skipped and their slots used again.
@@ -27,8 +26,7 @@ pub(super) struct Ring {
 }
 
 impl Pool {
-    pub fn new(block: &Polyhedron, filled: Filled) -> Self {
-        let normals = block.faces.iter().map(|face| block.area_vector(face).normalize()).collect();
+    pub fn new(normals: Vec<Vec3>, filled: Filled) -> Self {
         let around = vec![Vec::new(); filled.nodes.len()];
         let (nodes, on) = (filled.nodes, filled.on);
         let mut pool =

@@ -3,7 +3,7 @@
 use super::pool::Pool;
 use super::size::SizeField;
 use super::{Filled, improve};
-use crate::cut::Polyhedron;
+use crate::Vec3;
 
 /// Edges longer than this many times the size are split.
 const TOO_LONG: f64 = 1.35;
@@ -26,9 +26,9 @@ const FEW_TETS: f64 = 1000.0;
 /// Most sweeps at the end.
 const SWEEPS: usize = 12;
 
-/// Refines `filled` until its edges have the length of `size`; the number of tetrahedra if they get out of hand.
-pub(super) fn refine(block: &Polyhedron, filled: Filled, size: &SizeField) -> Result<Filled, usize> {
-    let mut pool = Pool::new(block, filled);
+/// Refines `filled`, a mesh between faces of these `normals`, until its edges have the length of `size`; the number of tetrahedra if they get out of hand.
+pub(super) fn refine(normals: Vec<Vec3>, filled: Filled, size: &SizeField) -> Result<Filled, usize> {
+    let mut pool = Pool::new(normals, filled);
     let ratio = |pool: &Pool, (a, b): (u32, u32)| {
         let (x, y) = (pool.nodes[a as usize], pool.nodes[b as usize]);
         (x - y).norm() / size.at(&((x + y) * 0.5))

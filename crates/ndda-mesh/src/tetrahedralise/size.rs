@@ -1,6 +1,5 @@
 //! How long edges should be, and where.
 
-use super::weld::Welded;
 use super::{FillError, MOST_TETS};
 use crate::Vec3;
 use crate::cut::{Face, Polyhedron};
@@ -50,13 +49,12 @@ fn positive(what: &'static str, value: f64) -> Result<(), FillError> {
 
 impl SizeField {
     pub fn new(
-        welded: &Welded,
+        block: &Polyhedron,
         original: &Polyhedron,
         size_m: f64,
         finer: &[Grading],
     ) -> Result<Self, FillError> {
         positive("size_m", size_m)?;
-        let block = &welded.block;
         let largest_m = size_m.min((LENGTH_PER_WIDTH * block.width_m()).max(FINEST * size_m));
         let mut size = Self { largest_m, points: Vec::new(), faces: Vec::new(), tets: 0.0 };
         for grading in finer {
@@ -80,6 +78,22 @@ impl SizeField {
             }
         }
         size.tets = size.count(block);
+        let tets = size.tets;
+        if tets <= MOST_TETS as f64 { Ok(size) } else { Err(FillError::TooFine { size_m, tets }) }
+    }
+
+    /// The field of a concave block in parts; faces of gradings are those of the first part.
+    pub fn of_parts(parts: &[&Polyhedron], size_m: f64, finer: &[Grading]) -> Result<Self, FillError> {
+        let mut size = Self { largest_m: 0.0, points: Vec::new(), faces: Vec::new(), tets: 0.0 };
+        let points: Vec<Grading> =
+            finer.iter().filter(|g| matches!(g.towards, Towards::Point(_))).copied().collect();
+        for (index, part) in parts.iter().enumerate() {
+            let own = Self::new(part, part, size_m, if index == 0 { finer } else { &points })?;
+            size.largest_m = size.largest_m.max(own.largest_m);
+            size.tets += own.tets;
+            size.points.extend(own.points);
+            size.faces.extend(own.faces);
+        }
         let tets = size.tets;
         if tets <= MOST_TETS as f64 { Ok(size) } else { Err(FillError::TooFine { size_m, tets }) }
     }

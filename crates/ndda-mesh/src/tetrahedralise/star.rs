@@ -67,7 +67,7 @@ fn triangles(block: &Polyhedron) -> Vec<Vec<[u32; 3]>> {
 }
 
 /// Triangles of a convex polygon with the largest smallest angle: Klincsek (1980). Long rings are cut as a fan.
-fn best_triangles(ring: &[Vec3]) -> Vec<[usize; 3]> {
+pub(super) fn best_triangles(ring: &[Vec3]) -> Vec<[usize; 3]> {
     let n = ring.len();
     if n > 64 {
         return (1..n - 1).map(|i| [0, i, i + 1]).collect();
