@@ -7,7 +7,7 @@ use super::CutError;
 use super::blocks::Surface;
 use super::neighbours::neighbours;
 use super::plane::Plane;
-use super::polyhedron::Polyhedron;
+use super::polyhedron::{Face, Polyhedron};
 use super::split::{Split, Tolerance, split};
 use crate::Vec3;
 use crate::geometry::Aabb;
@@ -18,6 +18,8 @@ const CANDIDATES: usize = 24;
 const SAME_VOLUME: f64 = 1e-6;
 /// Faces of two parts are the same if they differ by less than this fraction of their area from what they share.
 const SAME_AREA: f64 = 1e-9;
+/// Most convex parts of a domain.
+const MOST_PARTS: usize = 10_000;
 /// Rounds after which parts are left as they are, should rounding keep them from meeting face to face.
 const MOST_ROUNDS: usize = 20;
 /// Marks faces of the box around the domain; none survives in a closed surface.
@@ -40,6 +42,9 @@ pub(super) fn convex_parts(
     let mut parts = Vec::new();
     let mut stack = vec![(cell, triangles.clone())];
     while let Some((cell, polygons)) = stack.pop() {
+        if parts.len() + stack.len() > MOST_PARTS {
+            return Err(CutError::TooManyParts { most: MOST_PARTS });
+        }
         if polygons.is_empty() {
             let is_closed = cell.faces.iter().all(|face| face.surface != OUTSIDE);
             if is_closed && winding(&triangles, &cell.volume_and_centroid().1) > 0.5 {
@@ -67,23 +72,27 @@ pub(super) fn convex_parts(
     }
     let parts_m3: f64 = parts.iter().map(Polyhedron::volume_m3).sum();
     if (parts_m3 - surface_m3).abs() <= SAME_VOLUME * surface_m3 {
-        Ok(face_to_face(parts, surfaces, tolerance))
+        face_to_face(parts, surfaces, tolerance)
     } else {
         Err(CutError::Inconsistent { surface_m3, parts_m3 })
     }
 }
 
 /// Cuts parts until two that meet share a whole face: each is cut by the planes beside the face of the other.
-fn face_to_face(mut parts: Vec<Polyhedron>, surfaces: &[Surface], tolerance: Tolerance) -> Vec<Polyhedron> {
+fn face_to_face(
+    mut parts: Vec<Polyhedron>,
+    surfaces: &[Surface],
+    tolerance: Tolerance,
+) -> Result<Vec<Polyhedron>, CutError> {
     for _ in 0..MOST_ROUNDS {
         let mut knives: BTreeSet<(u32, u32)> = BTreeSet::new();
         for pair in neighbours(&parts, surfaces, tolerance.least_depth_m) {
             for (own, other) in [(0, 1), (1, 0)] {
                 let part = &parts[pair.blocks[own] as usize];
-                let face = &part.faces[pair.faces[own] as usize];
-                let other = &parts[pair.blocks[other] as usize].faces;
-                if part.area_vector(face).norm() > (1.0 + SAME_AREA) * pair.area_m2 {
-                    knives.extend(other.iter().map(|beside| (pair.blocks[own], beside.surface)));
+                let area = part.area_vector(&part.faces[pair.faces[own] as usize]).norm();
+                if area > (1.0 + SAME_AREA) * pair.area_m2 {
+                    let beside = beside(&parts[pair.blocks[other] as usize], pair.faces[other]);
+                    knives.extend(beside.map(|surface| (pair.blocks[own], surface)));
                 }
             }
         }
@@ -105,11 +114,22 @@ fn face_to_face(mut parts: Vec<Polyhedron>, surfaces: &[Surface], tolerance: Tol
             cut.extend(pieces);
         }
         parts = cut;
+        if parts.len() > MOST_PARTS {
+            return Err(CutError::TooManyParts { most: MOST_PARTS });
+        }
         if !changed {
             break;
         }
     }
-    parts
+    Ok(parts)
+}
+
+/// Surfaces of the faces that share an edge with a face.
+fn beside(part: &Polyhedron, face: u32) -> impl Iterator<Item = u32> + '_ {
+    let ring = &part.faces[face as usize].vertices;
+    let shares_an_edge =
+        |other: &&Face| other.vertices.iter().filter(|vertex| ring.contains(vertex)).count() == 2;
+    part.faces.iter().filter(shares_an_edge).map(|other| other.surface)
 }
 
 /// The surface whose plane divides the fewest polygons; of those, the one that has most on its lower side.

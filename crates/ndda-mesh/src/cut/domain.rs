@@ -111,6 +111,9 @@ impl Domain {
 
     /// A solid under a closed surface of flat faces, convex or not; triangles or polygons.
     ///
+    /// Made for shapes with a few dozen reflex edges, whose planes cut all the parts that they meet. A rough surface
+    /// falls into too many parts: use [`terrain`](Self::terrain) for one.
+    ///
     /// # Errors
     /// [`CutError`] when the surface is open, inside out, cuts itself, or a face is not flat.
     pub fn polyhedral(vertices_m: &[Vec3], faces: &[DomainFace]) -> Result<Self, CutError> {
@@ -160,7 +163,7 @@ impl Domain {
 }
 
 /// Fractions of the diagonal, or what rounding of coordinates far from the origin needs.
-fn tolerance(bounds: &Aabb) -> Tolerance {
+pub(super) fn tolerance(bounds: &Aabb) -> Tolerance {
     let rounding_m = 16.0 * f64::EPSILON * bounds.min.amax().max(bounds.max.amax());
     Tolerance {
         on_plane_m: rounding_m.max(ON_PLANE_RATIO * bounds.diagonal()),
@@ -168,7 +171,7 @@ fn tolerance(bounds: &Aabb) -> Tolerance {
     }
 }
 
-fn check_extent(bounds: &Aabb) -> Result<(), CutError> {
+pub(super) fn check_extent(bounds: &Aabb) -> Result<(), CutError> {
     let size = bounds.max - bounds.min;
     let good = bounds.min.amax().max(bounds.max.amax()) <= LARGEST_M
         && bounds.min.iter().chain(bounds.max.iter()).all(|x| x.is_finite())

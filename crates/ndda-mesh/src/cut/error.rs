@@ -111,6 +111,24 @@ pub enum CutError {
         /// Volume of the parts [m³].
         parts_m3: f64,
     },
+    /// More convex parts than a concave domain should have.
+    #[error(
+        "the surface falls into more than {most} convex parts: simplify it, or use a terrain with columns"
+    )]
+    TooManyParts {
+        /// Most parts.
+        most: usize,
+    },
+    /// No column stands under a triangle of a terrain.
+    #[error(
+        "triangle {face} of the terrain must be counter-clockwise from above, not upright, and above the base at {base_m} m"
+    )]
+    Column {
+        /// Index of the triangle.
+        face: usize,
+        /// Level of the base [m].
+        base_m: f64,
+    },
     /// Too few, coinciding or non-finite seeds of Voronoi cells.
     #[error("seed {seed} at {at_m:?} m is not finite or coincides with another: give distinct points")]
     Seed {

@@ -17,6 +17,7 @@ mod polyhedron;
 mod random;
 mod split;
 mod system;
+mod terrain;
 mod voronoi;
 
 pub use blocks::{Blocks, CutReport, Neighbour, Sliver, Surface, SurfaceKind};
