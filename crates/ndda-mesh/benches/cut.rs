@@ -73,7 +73,7 @@ fn fill(c: &mut Criterion) {
         for (name, fill) in [
             ("fewest", Fill::Fewest),
             ("centre", Fill::Centre),
-            ("4 m", Fill::Size { size_m: 4.0, finer: Vec::new() }),
+            ("8 m", Fill::Size { size_m: 8.0, finer: Vec::new() }),
         ] {
             let Meshed { meshes, failed } = blocks.meshes(&fill);
             let report = quality(meshes.iter().map(|(name, mesh)| (name.as_str(), mesh)));
