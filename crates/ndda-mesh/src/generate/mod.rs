@@ -1,14 +1,18 @@
-//! Structured generators: boxes and triangular prisms.
+//! Structured generators: boxes, triangular prisms, hexahedra, voussoirs, cylinders and spheres.
 
 use std::ops::RangeInclusive;
 
 mod box_block;
+mod mapped;
 mod prism;
+mod round;
 #[cfg(test)]
 mod testing;
 
 pub use box_block::{BoxPattern, box_block};
+pub use mapped::{Voussoir, hexahedron, voussoir};
 pub use prism::prism;
+pub use round::{cylinder, sphere};
 
 use crate::validate::MAX_TETS;
 
@@ -55,6 +59,36 @@ pub enum GenerateError {
         area_m2: f64,
         /// Longest edge [m].
         edge_m: f64,
+    },
+    /// A corner in space is not finite or extreme.
+    #[error("corner {corner} is at {at_m:?} m: give coordinates up to {:e} m", LENGTHS_M.end())]
+    Place {
+        /// Index of the corner.
+        corner: usize,
+        /// Its place [m].
+        at_m: [f64; 3],
+    },
+    /// An angle outside its range.
+    #[error("{what} is {value_deg:?}°: give {least} to {most}°")]
+    Angle {
+        /// Which angle.
+        what: &'static str,
+        /// Its value [°].
+        value_deg: f64,
+        /// Least value [°].
+        least: f64,
+        /// Largest value [°].
+        most: f64,
+    },
+    /// The shape is folded, inside out, or too coarse for its curve.
+    #[error(
+        "tetrahedron {tet} of the shape has {volume_m3:e} m³: reorder the corners, or use more cells along an arc"
+    )]
+    Folded {
+        /// Index of the tetrahedron.
+        tet: usize,
+        /// Its volume [m³].
+        volume_m3: f64,
     },
     /// More nodes or tetrahedra than 32-bit indices can hold.
     #[error(

@@ -10,28 +10,36 @@ use crate::geometry::Aabb;
 const CELL: f64 = 4.0;
 
 /// Each node that lies within `tolerance_m` of an earlier one, after that one.
+pub(super) fn pairs(nodes: &[Vec3], tolerance_m: f64) -> Found<(u32, u32)> {
+    let twins = first_twins(nodes, tolerance_m);
+    ids(&twins).filter_map(|(id, twin)| twin.map(|other| (other, id))).collect()
+}
+
+/// The earlier node within `tolerance_m` of each node, if any; only nodes without one are compared with.
 ///
 /// Nodes are hashed into cells of a few tolerances. Only the first node of a place is kept, so a cell stays small
 /// even if all nodes are at one place, and the work is linear in the number of nodes.
-pub(super) fn pairs(nodes: &[Vec3], tolerance_m: f64) -> Found<(u32, u32)> {
+pub(crate) fn first_twins(nodes: &[Vec3], tolerance_m: f64) -> Vec<Option<u32>> {
     let corner = Aabb::around(nodes).min;
-    let cell_m = CELL * tolerance_m;
+    // A tolerance of 0 must not put all nodes in one cell.
+    let cell_m = (CELL * tolerance_m).max(f64::EPSILON * Aabb::around(nodes).diagonal());
     // A block without extent has tolerance 0: 0 / 0 is then cell 0, as the cast of NaN is.
     let cell =
         |x: &Vec3| -> [i64; 3] { std::array::from_fn(|axis| ((x - corner)[axis] / cell_m).floor() as i64) };
     let mut kept: HashMap<[i64; 3], Vec<u32>> = HashMap::with_capacity(nodes.len());
-    let mut found = Found::default();
+    let mut twins = Vec::with_capacity(nodes.len());
     for (id, node) in ids(nodes) {
         let from = cell(&node.add_scalar(-tolerance_m));
         let to = cell(&node.add_scalar(tolerance_m));
         let is_near = |&other: &u32| (nodes[other as usize] - node).norm() <= tolerance_m;
-        match cells(from, to).filter_map(|key| kept.get(&key)).flatten().copied().find(|other| is_near(other))
-        {
-            Some(other) => found.add((other, id)),
-            None => kept.entry(cell(node)).or_default().push(id),
+        let twin =
+            cells(from, to).filter_map(|key| kept.get(&key)).flatten().copied().find(|other| is_near(other));
+        if twin.is_none() {
+            kept.entry(cell(node)).or_default().push(id);
         }
+        twins.push(twin);
     }
-    found
+    twins
 }
 
 fn cells(from: [i64; 3], to: [i64; 3]) -> impl Iterator<Item = [i64; 3]> {

@@ -1,5 +1,7 @@
 //! What can be wrong with a mesh, with the ids of what is wrong.
 
+pub(crate) use coincident::first_twins;
+
 mod coincident;
 mod problem;
 mod topology;

@@ -1,0 +1,160 @@
+//! The result of a cut: blocks, what made their faces, who meets whom.
+
+use super::neighbours::neighbours;
+use super::plane::Plane;
+use super::polyhedron::{Face, Polyhedron};
+
+/// What kind of surface made a face.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SurfaceKind {
+    /// A face of the domain. Where blocks meet across it (a concave domain in convex parts), they are glued.
+    Domain,
+    /// Plane `number` of discontinuity `joint`, both counted from 0.
+    Joint {
+        /// Index in the list of discontinuities.
+        joint: u32,
+        /// Number of the plane in its set, rising along the normal; 0 for a single plane or disc.
+        number: u32,
+    },
+    /// The border of two Voronoi cells.
+    Cell,
+}
+
+/// The plane behind faces of blocks, and what it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// Its plane.
+    pub plane: Plane,
+    /// What it is.
+    pub kind: SurfaceKind,
+    /// Index of its name in [`Blocks::names`].
+    pub name: u32,
+}
+
+/// Two faces that meet over an area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Neighbour {
+    /// The block below the surface, and the one above.
+    pub blocks: [u32; 2],
+    /// Their faces.
+    pub faces: [u32; 2],
+    /// The surface between them.
+    pub surface: u32,
+    /// Area over which they meet [m²].
+    pub area_m2: f64,
+    /// Whether the two are parts of one rock: they meet across a face of the domain, not of a joint.
+    pub glued: bool,
+}
+
+/// A block thinner than asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sliver {
+    /// Index of the block.
+    pub block: u32,
+    /// Smallest extent over the directions of its faces [m].
+    pub width_m: f64,
+    /// Volume [m³].
+    pub volume_m3: f64,
+}
+
+/// What a cut amounted to.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CutReport {
+    /// Cuts made.
+    pub cuts: usize,
+    /// Cuts refused because they would make a needle thinner than rounding, as pairs of surface and number.
+    pub refused: Vec<(u32, usize)>,
+    /// Cuts left out by persistence.
+    pub bridged: usize,
+    /// Blocks thinner than `sliver_width_m`, thinnest first.
+    pub slivers: Vec<Sliver>,
+    /// Volume of all blocks [m³].
+    pub volume_m3: f64,
+    /// Volume of the domain [m³].
+    pub domain_m3: f64,
+}
+
+/// Convex blocks with their surfaces and neighbours.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Blocks {
+    /// The blocks.
+    pub blocks: Vec<Polyhedron>,
+    /// What made their faces; [`Face::surface`] counts in this list.
+    pub surfaces: Vec<Surface>,
+    /// Names of the surfaces: those of the domain's faces, then of the joints.
+    pub names: Vec<String>,
+    /// Pairs of faces that meet.
+    pub neighbours: Vec<Neighbour>,
+    /// What the cut amounted to.
+    pub report: CutReport,
+}
+
+impl Blocks {
+    /// Name of what made a face: of a joint, a face of the domain, or `cells`.
+    pub fn name_of(&self, face: &Face) -> &str {
+        self.surface_name(face.surface)
+    }
+
+    /// Name of a surface, as of a [`Neighbour`].
+    pub fn surface_name(&self, surface: u32) -> &str {
+        &self.names[self.surfaces[surface as usize].name as usize]
+    }
+
+    /// Takes blocks out, slivers for instance; later blocks move up. The report keeps what the cut amounted to, with
+    /// the slivers that are left under their new indices. Returns the volume taken out [m³].
+    pub fn remove(&mut self, blocks: &[u32]) -> f64 {
+        let mut index: Vec<Option<u32>> = vec![Some(0); self.blocks.len()];
+        for &block in blocks {
+            if let Some(index) = index.get_mut(block as usize) {
+                *index = None;
+            }
+        }
+        let mut removed_m3 = 0.0;
+        let mut kept = Vec::with_capacity(self.blocks.len());
+        for (index, block) in index.iter_mut().zip(std::mem::take(&mut self.blocks)) {
+            if index.is_some() {
+                *index = Some(kept.len() as u32);
+                kept.push(block);
+            } else {
+                removed_m3 += block.volume_m3();
+            }
+        }
+        self.blocks = kept;
+        self.neighbours.retain_mut(|neighbour| {
+            let [a, b] = neighbour.blocks.map(|block| index[block as usize]);
+            a.zip(b).map(|(a, b)| neighbour.blocks = [a, b]).is_some()
+        });
+        self.report
+            .slivers
+            .retain_mut(|sliver| index[sliver.block as usize].map(|block| sliver.block = block).is_some());
+        removed_m3
+    }
+
+    /// Finds neighbours and slivers of finished blocks and completes the report.
+    pub(super) fn finish(mut self, tolerance_m: f64, sliver_width_m: f64) -> Self {
+        self.neighbours = neighbours(&self.blocks, &self.surfaces, tolerance_m);
+        let mut slivers = Vec::new();
+        let mut volumes = Vec::with_capacity(self.blocks.len());
+        for (block, polyhedron) in (0..).zip(&self.blocks) {
+            let volume_m3 = polyhedron.volume_m3();
+            volumes.push(volume_m3);
+            let width_m = polyhedron.width_m();
+            if width_m < sliver_width_m {
+                slivers.push(Sliver { block, width_m, volume_m3 });
+            }
+        }
+        slivers.sort_by(|a, b| a.width_m.total_cmp(&b.width_m));
+        self.report.slivers = slivers;
+        self.report.volume_m3 = pairwise_sum(&volumes);
+        self
+    }
+}
+
+/// Sum by halves: rounding grows with the logarithm of the number of terms, not with the number.
+fn pairwise_sum(terms: &[f64]) -> f64 {
+    if terms.len() <= 8 {
+        return terms.iter().sum();
+    }
+    let (low, high) = terms.split_at(terms.len() / 2);
+    pairwise_sum(low) + pairwise_sum(high)
+}

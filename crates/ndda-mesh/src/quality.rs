@@ -1,0 +1,241 @@
+//! How good tetrahedra are, and how a mesh of many blocks is doing.
+
+use std::fmt;
+
+use crate::geometry::{TET_FACES, tet_heights, tet_volume, triangle_area_vector};
+use crate::validate::longest_edge;
+use crate::{BlockMesh, Vec3};
+
+/// The six edges and the faces (opposite to which corner) that meet at each.
+const EDGES: [([usize; 2], [usize; 2]); 6] = [
+    ([0, 1], [2, 3]),
+    ([0, 2], [1, 3]),
+    ([0, 3], [1, 2]),
+    ([1, 2], [0, 3]),
+    ([1, 3], [0, 2]),
+    ([2, 3], [0, 1]),
+];
+/// How many of the worst tetrahedra a report lists.
+const LISTED: usize = 10;
+/// Width of a bar of the histogram of smallest dihedral angles [°]; the regular tetrahedron has 70.5°.
+const BAR_DEG: f64 = 5.0;
+/// Longest bar, in characters.
+const LONGEST_BAR: usize = 40;
+
+/// Smallest sine of the six dihedral angles, with the sign of the volume: sin θ = 3 V l / (2 A₁ A₂).
+///
+/// 0 for a flat tetrahedron, 0.943 for the regular one. What is not finite counts as flat.
+pub fn least_sine(corners: &[Vec3; 4]) -> f64 {
+    let volume = tet_volume(corners);
+    let area = TET_FACES.map(|face| triangle_area_vector(&face.map(|i| corners[i])).norm());
+    let mut least = f64::INFINITY;
+    for ([i, j], [k, l]) in EDGES {
+        least = least.min((corners[i] - corners[j]).norm() / (area[k] * area[l]));
+    }
+    let sine = 1.5 * volume * least;
+    if sine.is_finite() { sine } else { 0.0 }
+}
+
+/// The six dihedral angles [°], in the order of edges 01, 02, 03, 12, 13, 23.
+pub fn dihedral_angles_deg(corners: &[Vec3; 4]) -> [f64; 6] {
+    let outward = TET_FACES.map(|face| triangle_area_vector(&face.map(|i| corners[i])));
+    EDGES.map(|(_, [k, l])| {
+        let (a, b) = (outward[k], outward[l]);
+        a.cross(&b).norm().atan2(-a.dot(&b)).to_degrees()
+    })
+}
+
+/// One tetrahedron in numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TetQuality {
+    /// Name of the block.
+    pub block: String,
+    /// Index in the block.
+    pub tet: u32,
+    /// Centroid [m].
+    pub at_m: Vec3,
+    /// Smallest dihedral angle [°].
+    pub dihedral_deg: f64,
+    /// Largest dihedral angle [°].
+    pub largest_dihedral_deg: f64,
+    /// Longest edge over smallest height: 1.22 for the regular tetrahedron.
+    pub aspect: f64,
+    /// Smallest height [m].
+    pub height_m: f64,
+}
+
+/// A histogram by fixed borders: bar i counts values from border i up to border i + 1, the last one all from there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Histogram {
+    /// Lower borders, rising.
+    pub borders: Vec<f64>,
+    /// Values per bar; those below the first border are in the first bar.
+    pub counts: Vec<usize>,
+}
+
+impl Histogram {
+    fn new(borders: Vec<f64>) -> Self {
+        let counts = vec![0; borders.len()];
+        Self { borders, counts }
+    }
+
+    fn add(&mut self, value: f64) {
+        let bar = self.borders.partition_point(|border| *border <= value);
+        self.counts[bar.saturating_sub(1)] += 1;
+    }
+
+    fn show(&self, f: &mut fmt::Formatter<'_>, title: &str) -> fmt::Result {
+        let most = self.counts.iter().copied().max().unwrap_or(0).max(1);
+        writeln!(f, "{title}")?;
+        for (border, count) in self.borders.iter().zip(&self.counts).filter(|(_, count)| **count > 0) {
+            let bar = "#".repeat((count * LONGEST_BAR).div_ceil(most));
+            writeln!(f, "  from {border:>9.3e} {count:>9} {bar}")?;
+        }
+        Ok(())
+    }
+}
+
+/// Quality of the tetrahedra of many blocks; printed, it is a table of histograms and the worst ten.
+#[derive(Clone, Debug, PartialEq)]
+pub struct QualityReport {
+    /// Number of tetrahedra.
+    pub tets: usize,
+    /// Smallest dihedral angle of each [°], in bars of 5°.
+    pub dihedral_deg: Histogram,
+    /// Longest edge over smallest height, in bars that double.
+    pub aspect: Histogram,
+    /// Smallest height [m], in bars that double, from that of the worst up.
+    pub height_m: Histogram,
+    /// Up to ten with the smallest dihedral angles, worst first.
+    pub worst: Vec<TetQuality>,
+}
+
+/// Measures named blocks. Tetrahedra that name missing nodes are left out; `validate` names them.
+pub fn quality<'a>(blocks: impl IntoIterator<Item = (&'a str, &'a BlockMesh)>) -> QualityReport {
+    let mut heights = Vec::new();
+    let bars = (0..15).map(|i| BAR_DEG * f64::from(i)).collect();
+    let doubling = |first: f64, bars: i32| (0..bars).map(|i| first * 2f64.powi(i)).collect();
+    let mut report = QualityReport {
+        tets: 0,
+        dihedral_deg: Histogram::new(bars),
+        aspect: Histogram::new(doubling(1.0, 20)),
+        height_m: Histogram::new(vec![0.0]),
+        worst: Vec::new(),
+    };
+    for (block, mesh) in blocks {
+        for (tet, nodes) in (0..).zip(&mesh.tets) {
+            let Some(measured) = measure(block, tet, mesh, nodes) else { continue };
+            report.tets += 1;
+            report.dihedral_deg.add(measured.dihedral_deg);
+            report.aspect.add(measured.aspect);
+            heights.push(measured.height_m);
+            let at = report.worst.partition_point(|w| w.dihedral_deg <= measured.dihedral_deg);
+            if at < LISTED {
+                report.worst.insert(at, measured);
+                report.worst.truncate(LISTED);
+            }
+        }
+    }
+    let positive = heights.iter().copied().filter(|h| *h > 0.0);
+    let (least, most) = positive.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), h| (a.min(h), b.max(h)));
+    if least.is_finite() && most.is_finite() {
+        let bars = ((most / least).log2().floor() as i32 + 1).clamp(1, 64);
+        report.height_m = Histogram::new(doubling(least, bars));
+    }
+    heights.into_iter().for_each(|h| report.height_m.add(h));
+    report
+}
+
+fn measure(block: &str, tet: u32, mesh: &BlockMesh, nodes: &[u32; 4]) -> Option<TetQuality> {
+    let mut corners = [Vec3::zeros(); 4];
+    for (corner, node) in corners.iter_mut().zip(nodes) {
+        *corner = *mesh.nodes.get(*node as usize)?;
+    }
+    let angles = dihedral_angles_deg(&corners);
+    let height_m = tet_heights(&corners).into_iter().fold(f64::INFINITY, f64::min);
+    let height_m = if height_m.is_finite() { height_m } else { 0.0 };
+    let (least, most) = angles.into_iter().fold((180.0, 0.0), |(a, b): (f64, f64), x| (a.min(x), b.max(x)));
+    let is_inverted = tet_volume(&corners) < 0.0;
+    Some(TetQuality {
+        block: block.into(),
+        tet,
+        at_m: corners.iter().sum::<Vec3>() / 4.0,
+        dihedral_deg: if is_inverted { -least } else { least },
+        largest_dihedral_deg: most,
+        aspect: longest_edge(&corners) / height_m,
+        height_m,
+    })
+}
+
+impl fmt::Display for QualityReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{} tetrahedra", self.tets)?;
+        self.dihedral_deg.show(f, "smallest dihedral angle [°]")?;
+        self.aspect.show(f, "longest edge over smallest height")?;
+        self.height_m.show(f, "smallest height [m]")?;
+        writeln!(f, "worst")?;
+        for w in &self.worst {
+            let [x, y, z]: [f64; 3] = w.at_m.into();
+            writeln!(
+                f,
+                "  tet {} of {:?} at ({x:.4}, {y:.4}, {z:.4}) m: {:.2}° to {:.2}°, aspect {:.1}, height {:.3e} m",
+                w.tet, w.block, w.dihedral_deg, w.largest_dihedral_deg, w.aspect, w.height_m
+            )?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generate::{BoxPattern, box_block};
+
+    fn regular() -> [Vec3; 4] {
+        [[1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, 1.0]].map(Vec3::from)
+    }
+
+    #[test]
+    fn the_regular_tetrahedron_has_its_known_numbers() {
+        let corners = regular();
+        assert!((least_sine(&corners) - 8f64.sqrt() / 3.0).abs() < 1e-14);
+        let exact = (1f64 / 3.0).acos().to_degrees();
+        assert!(dihedral_angles_deg(&corners).iter().all(|angle| (angle - exact).abs() < 1e-12));
+        let mesh = BlockMesh { nodes: corners.to_vec(), tets: vec![[0, 1, 2, 3]], ..BlockMesh::default() };
+        let report = quality([("a", &mesh)]);
+        assert!((report.worst[0].aspect - 1.5f64.sqrt()).abs() < 1e-14);
+        assert_eq!(report.dihedral_deg.counts[14], 1);
+    }
+
+    #[test]
+    fn the_sine_is_that_of_the_angles() {
+        let corners = [[0.0, 0.0, 0.0], [2.0, 0.1, 0.0], [0.3, 1.0, 0.2], [0.4, 0.3, 0.7]].map(Vec3::from);
+        let least = dihedral_angles_deg(&corners).map(|angle| angle.to_radians().sin());
+        assert!((least_sine(&corners) - least.into_iter().fold(1.0, f64::min)).abs() < 1e-14);
+        let [a, b, c, d] = corners;
+        assert!(least_sine(&[b, a, c, d]) < 0.0);
+    }
+
+    #[test]
+    fn the_worst_ten_are_listed_with_their_block_and_place() {
+        let good = box_block([1.0; 3], [2; 3], BoxPattern::TwentyFour).unwrap();
+        let thin = box_block([1.0, 1.0, 0.01], [1; 3], BoxPattern::Six).unwrap();
+        let report = quality([("good", &good), ("thin", &thin)]);
+        assert_eq!((report.tets, report.worst.len()), (198, 10));
+        assert!(report.worst[..6].iter().all(|w| w.block == "thin") && report.worst[9].block == "good");
+        assert_eq!(report.height_m.counts.iter().sum::<usize>(), 198);
+        assert!(report.to_string().contains("tet 0 of \"thin\""));
+    }
+
+    #[test]
+    fn flat_inverted_and_broken_tetrahedra_are_measured_without_panic() {
+        let mut mesh = box_block([1.0; 3], [1; 3], BoxPattern::Six).unwrap();
+        mesh.tets[0].swap(0, 1);
+        mesh.tets[1] = [0, 0, 1, 2];
+        mesh.tets[2] = [0, 1, 2, 99];
+        mesh.nodes[6].x = f64::NAN;
+        let report = quality([("a", &mesh)]);
+        assert_eq!(report.tets, 5);
+        assert!(!report.to_string().is_empty());
+    }
+}
