@@ -11,6 +11,7 @@ use crate::console::{colour, complain, say};
 use crate::exit;
 use crate::monitor::Monitor;
 use crate::reference::Comparison;
+use crate::step_advice;
 use crate::wiring::{self, Fault};
 
 /// A scene that is ready to run.
@@ -79,5 +80,8 @@ pub fn check(args: &CheckArgs) -> u8 {
         simulation.factors(),
         wiring::steps(&scene.time),
     ));
+    if let Some(advice) = step_advice::advise(scene, simulation) {
+        say(&advice.to_string());
+    }
     exit::DONE
 }

@@ -13,4 +13,5 @@ pub mod reference;
 pub mod report;
 pub mod resume;
 pub mod run;
+pub mod step_advice;
 pub mod wiring;

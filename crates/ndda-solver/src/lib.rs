@@ -42,7 +42,7 @@ pub use linear_solver::{Factor, FactorError, LinearSolver, SolveError, Symmetric
 pub use midpoint::Midpoint;
 pub use newmark::Newmark;
 pub use settle::{Settle, Settled};
-pub use shape::{BodySetup, ForceSetup, Mass, SetupError, TractionSetup};
+pub use shape::{BodySetup, ForceSetup, Mass, SetupError, Shape, TractionSetup};
 pub use simulation::{RestoreError, Setup, Simulation, Snapshot, StageTimes, StepError, StepReport};
 pub use sink::{RunError, Sink, SinkError, View, resume, run};
 pub use state::State;
