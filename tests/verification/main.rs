@@ -20,6 +20,7 @@ mod sliding_over_element_borders;
 mod springs_and_elimination;
 mod step_control;
 mod sticking_plate;
+mod tall_stack;
 
 use ndda_cli::wiring;
 use ndda_mesh::Vec3;

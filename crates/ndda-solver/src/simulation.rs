@@ -61,7 +61,7 @@ pub struct Setup {
 pub struct StepReport {
     /// Contact at x*.
     pub contact: ContactReport,
-    /// h = ω_c Δt, bounded from above.
+    /// h = ω_c Δt, ω_c² taken as the largest row sum of contact's stiffness over the node's lumped mass.
     pub h: f64,
     /// Travel of the step over the smallest tet height of the block, largest over the blocks.
     pub travel_ratio: f64,
@@ -847,6 +847,11 @@ impl Simulation {
     /// The changing state.
     pub fn state(&self) -> &State {
         &self.state
+    }
+
+    /// Force of the supports on a block in the last step [N]; that of what holds it, for a fixed block.
+    pub fn reaction_n(&self, block: BlockId) -> Vec3 {
+        self.bodies[block.index()].report.reaction
     }
 
     /// The shape of a block: operator, supports, factor.

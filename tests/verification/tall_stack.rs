@@ -1,0 +1,64 @@
+//! X12: a tall stack at rest stays at rest and weighs what it weighs. `NDDA_LARGE=1` makes it 100 slabs and 60 s.
+
+use std::fmt::Write;
+
+use ndda_mesh::BlockId;
+
+use crate::simulation;
+
+const DENSITY: f64 = 2600.0;
+const GRAVITY: f64 = 9.8;
+const PENALTY_PA: f64 = 1e9;
+
+#[test]
+fn a_tall_stack_at_rest_neither_gains_energy_nor_loses_weight() {
+    let large = std::env::var_os("NDDA_LARGE").is_some();
+    let (slabs, end_s) = if large { (100, 60.0) } else { (20, 1.0) };
+    // Slabs of 10 × 10 × 1 m, each as deep in the next as the weight above asks for: p = 8 k d for elements a metre high.
+    let mut blocks = String::new();
+    let mut sunk = 0.0;
+    for i in 0..slabs {
+        sunk += DENSITY * GRAVITY * f64::from(slabs - i) / (8.0 * PENALTY_PA);
+        let z = f64::from(i) - sunk;
+        writeln!(
+            blocks,
+            "(name: \"slab_{i}\", material: \"rock\", body: Rigid, shape: Box(size_m: (10, 10, 1), cells: (1, 1, 1)), at_m: (0, 0, {z})),"
+        )
+        .unwrap();
+    }
+    let mut simulation = simulation(&format!(
+        "(title: \"stack\", time: (step_s: 2.5e-4, end_s: 1), gravity_m_s2: (0, 0, -{GRAVITY}),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: {DENSITY})],
+          blocks: [
+            (name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (12, 12, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
+            {blocks}
+          ],
+          contact: Potential(penalty_pa: {PENALTY_PA:e}, friction: (friction_deg: 30)))"
+    ));
+    let start = simulation.sample().unwrap();
+    let weight = DENSITY * 100.0 * GRAVITY * f64::from(slabs);
+    let steps = (end_s / simulation.step_s()) as usize;
+    let (mut force, mut kinetic) = (0.0, [0.0f64; 2]);
+    for step in 0..steps {
+        simulation.step().unwrap();
+        // What the slabs press on the base with; its own weight is not theirs.
+        force += simulation.reaction_n(BlockId(0)).z - DENSITY * 144.0 * GRAVITY;
+        if step % 50 == 0 {
+            let half = usize::from(step > steps / 2);
+            kinetic[half] = kinetic[half].max(simulation.sample().unwrap().kinetic_j);
+        }
+    }
+    let worst = simulation.invariants();
+    println!(
+        "{slabs} slabs, {end_s} s: mean force on the base over weight − 1 = {:.1e}; kinetic energy at most {:.1e} J, then {:.1e} J, \
+         of {:.1e} J in contact; gain {:.1e}",
+        force / steps as f64 / weight - 1.0,
+        kinetic[0],
+        kinetic[1],
+        start.contact_j,
+        worst.energy_gain
+    );
+    assert!((force / steps as f64 / weight - 1.0).abs() < 1e-3);
+    assert!(kinetic[1] <= 2.0 * kinetic[0] && kinetic[0] < 1e-4 * start.contact_j, "{kinetic:?}");
+    assert!(worst.energy_gain < 1e-4, "{worst:?}");
+}
