@@ -17,7 +17,8 @@ use ndda_mesh::{BlockId, Vec3};
 
 use crate::body::Body;
 use crate::for_each_block::{NodeSlices, each_of_run, for_each_run};
-use crate::simulation::{GRAIN_NODES, Simulation, StepError};
+use crate::simulation::{GRAIN_NODES, Simulation};
+use crate::step_error::StepError;
 
 /// How well contact at the end of the step is solved for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -212,7 +213,7 @@ impl Simulation {
         }
         self.try_blocks()?;
         let moved = self.contact_position.iter().zip(&self.state.position);
-        let step_s = self.step_s;
+        let step_s = self.part_s;
         newton.velocity.iter_mut().zip(moved).for_each(|(v, (end, x))| *v = (end - x) / step_s);
         self.state.contact.clone_from(&newton.history);
         self.force.fill(Vec3::zeros());
@@ -291,7 +292,7 @@ impl Simulation {
             blocks: &self.blocks,
             position: &self.contact_position,
             velocity: &newton.velocity,
-            dt_s: self.step_s,
+            dt_s: self.part_s,
             bodies: &self.contact_bodies,
         };
         let found = model.add_stiffness(&input, &self.state.contact, &mut newton.pairs);

@@ -63,7 +63,7 @@ impl RigidBody {
     }
 
     /// Advances the block by one step: its mass centre by the integrator, its turn by an energy and momentum conserving
-    /// rule (see [`turn`]).
+    /// rule (see `turn` below).
     ///
     /// # Errors
     /// [`BlockError`] when the block has lost its speed.

@@ -8,7 +8,8 @@
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::simulation::{Simulation, StepError};
+use crate::simulation::Simulation;
+use crate::step_error::StepError;
 
 /// How far a scene is to settle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +77,7 @@ impl Simulation {
     fn load_energy_j(&self) -> f64 {
         let of_block = |block: BlockId| {
             let load: Vec3 = self.loads.total()[self.blocks().nodes_of(block)].iter().sum();
-            0.5 * (self.step_s * load).norm_squared() / self.shape(block).operator.mass_kg
+            0.5 * (self.part_s * load).norm_squared() / self.shape(block).operator.mass_kg
         };
         self.blocks().ids().map(of_block).sum()
     }

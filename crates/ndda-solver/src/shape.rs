@@ -11,7 +11,7 @@ use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use crate::body::BodyKind;
 use crate::linear_solver::{Factor, FactorError, LinearSolver, SolveError};
 use crate::rigid_body::RigidInertia;
-use crate::simulation::StepError;
+use crate::step_error::StepError;
 use crate::time_integrator::{StepDamping, StepWeights};
 use crate::unknowns::Unknowns;
 

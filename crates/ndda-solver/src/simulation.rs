@@ -3,58 +3,24 @@
 use std::mem::take;
 use std::time::Instant;
 
-use ndda_contact::{
-    Body as ContactBody, ContactError, ContactInput, ContactModel, ContactOutput, ContactReport,
-};
-use ndda_fem::Table;
-use ndda_fem::loads::{add_gravity, add_traction};
-use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
-use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
+use ndda_contact::{Body as ContactBody, ContactInput, ContactModel, ContactOutput, ContactReport};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::batch::{Batch, ENOUGH_TOGETHER, solve_together};
-use crate::body::{BlockError, BlockReport, Body, BodyKind, Motion, StepContext};
-use crate::elastic_body::ElasticBody;
-use crate::end_contact::{EndContact, Iterations, Newton};
-use crate::fixed_body::FixedBody;
+use crate::batch::solve_together;
+use crate::body::{Body, BodyKind, StepContext};
+use crate::end_contact::{Iterations, Newton};
 use crate::for_each_block::{NodeSlices, Runs, each_of_run, for_each_run};
-use crate::ledger::{Invariants, Ledger, Sample};
-use crate::linear_solver::{EIGHT, FactorError, LinearSolver};
-use crate::loads::{Loads, VaryingLoad};
-use crate::rigid_body::RigidBody;
-use crate::shape::{BodySetup, Mass, SetupError, Shape};
+use crate::ledger::{Invariants, Ledger};
+use crate::loads::Loads;
+use crate::shape::Shape;
 use crate::state::State;
-use crate::step_control::{AutoStep, Control, StepState};
-use crate::time_integrator::{Inertia, StepDamping, StepWeights, TimeIntegrator};
+use crate::step_control::{Control, StepState};
+use crate::step_error::StepError;
+use crate::time_integrator::{Inertia, StepWeights, TimeIntegrator};
 
 /// Nodes per half below which a second thread costs more than it brings.
 pub(crate) const GRAIN_NODES: usize = 400;
-
-/// Everything a simulation is made of.
-pub struct Setup {
-    /// Topology and rest shape.
-    pub blocks: BlockSet,
-    /// One entry per block.
-    pub bodies: Vec<BodySetup>,
-    /// g [m/s²].
-    pub gravity_m_s2: Vec3,
-    /// Factor of gravity over time; constant without.
-    pub gravity_factor: Option<Table>,
-    /// How mass is shared among nodes.
-    pub mass: Mass,
-    /// Δt [s].
-    pub step_s: f64,
-    /// Time integrator.
-    pub integrator: Box<dyn TimeIntegrator>,
-    /// Contact; `None` where blocks do not feel each other.
-    pub contact: Option<Box<dyn ContactModel>>,
-    /// Contact at the end of the step, solved for; at predicted positions without.
-    pub end_contact: Option<EndContact>,
-    /// Linear solver.
-    pub solver: Box<dyn LinearSolver>,
-    /// Steps as short as they have to be, `step_s` being the longest; always `step_s` without.
-    pub auto_step: Option<AutoStep>,
-}
 
 /// What one step found.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -101,104 +67,6 @@ pub struct RestoreError {
     pub expected: usize,
 }
 
-/// Why a run stops.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum StepError {
-    /// Contact could not be computed.
-    #[error("at t = {time_s} s: {source}")]
-    Contact {
-        /// Time [s].
-        time_s: f64,
-        /// The cause.
-        source: ContactError,
-    },
-    /// However short a step, it asks for more than it may.
-    #[error(
-        "at t = {time_s} s: contact is too stiff or too fast even for steps of {step_s:e} s: reduce the penalty, refine \
-         the mesh less, or allow more halvings"
-    )]
-    NoStepIsShortEnough {
-        /// Time [s].
-        time_s: f64,
-        /// Δt [s].
-        step_s: f64,
-    },
-    /// The equations of a shorter step cannot be factored.
-    #[error("for steps of {step_s:e} s: {source}")]
-    Factor {
-        /// Δt [s].
-        step_s: f64,
-        /// What is wrong with them.
-        source: FactorError,
-    },
-    /// Newton's method did not find the contact forces at the end of a step.
-    #[error(
-        "at t = {time_s} s: contact at the end of the step is not solved for after {iterations} evaluations \
-         (residual {residual:e}): reduce step_s, or raise the tolerance"
-    )]
-    ContactNotSolved {
-        /// Time [s].
-        time_s: f64,
-        /// Evaluations of contact.
-        iterations: u32,
-        /// Misfit of contact forces over the largest of contact forces and loads.
-        residual: f64,
-    },
-    /// A block is past the depth at which contact pushes it out (invariant I5).
-    #[error(
-        "at t = {time_s} s: triangle {} of block `{contactor}` is past the centroid of tet {} of block `{target}`, \
-         where the contact potential no longer pushes it out: raise penalty_pa or reduce step_s", triangle.0, tet.0
-    )]
-    PastCentroid {
-        /// Time [s].
-        time_s: f64,
-        /// Name of the block that went in.
-        contactor: String,
-        /// Its boundary triangle.
-        triangle: TriangleId,
-        /// Name of the block that it went into.
-        target: String,
-        /// The tetrahedron.
-        tet: TetId,
-    },
-    /// A block could not take the step.
-    #[error("at t = {time_s} s: block `{block}`: {source}")]
-    Block {
-        /// Time [s].
-        time_s: f64,
-        /// Name of the block.
-        block: String,
-        /// The cause.
-        source: BlockError,
-    },
-    /// A scene that was to settle first does not.
-    #[error(
-        "the scene has not settled in {steps} steps (speed {speed_ratio:e} of the largest): raise settle.most_steps or \
-         settle.tolerance, or see whether anything holds it"
-    )]
-    NotSettled {
-        /// Steps done.
-        steps: u64,
-        /// Speed left over the largest speed.
-        speed_ratio: f64,
-    },
-    /// An element is inside out (invariant I7).
-    #[error(
-        "at t = {time_s} s: tet {} of block `{block}` is inverted (det F = {volume_ratio:e}): reduce step_s or the load",
-        tet.0
-    )]
-    Inverted {
-        /// Time [s].
-        time_s: f64,
-        /// Name of the block.
-        block: String,
-        /// The tetrahedron.
-        tet: TetId,
-        /// det F.
-        volume_ratio: f64,
-    },
-}
-
 /// A problem on its way through time.
 pub struct Simulation {
     pub(crate) blocks: BlockSet,
@@ -208,236 +76,24 @@ pub struct Simulation {
     pub(crate) state: State,
     /// Δt of a whole step, and of the parts that it is done in.
     pub(crate) base_step_s: f64,
-    pub(crate) step_s: f64,
-    control: Option<Box<Control>>,
+    pub(crate) part_s: f64,
+    pub(crate) control: Option<Box<Control>>,
     pub(crate) settling: bool,
-    integrator: Box<dyn TimeIntegrator>,
+    pub(crate) integrator: Box<dyn TimeIntegrator>,
     pub(crate) weights: StepWeights,
     pub(crate) contact: Option<Box<dyn ContactModel>>,
-    newton: Option<Box<Newton>>,
+    pub(crate) newton: Option<Box<Newton>>,
     pub(crate) ledger: Ledger,
-    stages: StageTimes,
+    pub(crate) stages: StageTimes,
     pub(crate) loads: Loads,
     pub(crate) force: Vec<Vec3>,
-    friction_force: Vec<Vec3>,
+    pub(crate) friction_force: Vec<Vec3>,
     pub(crate) contact_stiffness: Vec<f64>,
     pub(crate) contact_position: Vec<Vec3>,
     pub(crate) contact_bodies: Vec<ContactBody>,
 }
 
 impl Simulation {
-    /// Assembles, factors each distinct block once, and sets the state at t = 0.
-    ///
-    /// # Errors
-    /// [`SetupError`] naming the block whose supports or equations are at fault.
-    pub fn new(setup: Setup) -> Result<Self, SetupError> {
-        let Setup {
-            blocks,
-            bodies,
-            gravity_m_s2,
-            gravity_factor,
-            mass,
-            step_s,
-            integrator,
-            contact,
-            end_contact,
-            solver,
-            auto_step,
-        } = setup;
-        let weights = step_weights(integrator.as_ref(), step_s, end_contact.is_some());
-        let mut shapes: Vec<Shape> = Vec::new();
-        let mut shape_of = Vec::with_capacity(blocks.len());
-        for (block, body) in blocks.ids().zip(&bodies) {
-            let known = shapes.iter().position(|shape| shape.fits(&blocks, block, body));
-            shape_of.push(known.unwrap_or(shapes.len()));
-            if known.is_none() {
-                shapes.push(Shape::new(&blocks, block, body, mass, (step_s, &weights), solver.as_ref())?);
-            }
-        }
-        let nodes = blocks.rest_position.len();
-        // Contact between fewer than two blocks is left out altogether.
-        let contact = contact.filter(|_| blocks.len() > 1);
-        let friction_nodes = if contact.as_ref().is_some_and(|c| c.has_friction()) { nodes } else { 0 };
-        let end_contact = end_contact.filter(|_| contact.is_some());
-        let newton_nodes = if end_contact.is_some() { nodes } else { 0 };
-        let contact_nodes = if contact.is_some() { nodes } else { 0 };
-        let mut simulation = Self {
-            state: State {
-                step: 0,
-                control: StepState::default(),
-                start: Vec::new(),
-                position: blocks.rest_position.clone(),
-                velocity: vec![Vec3::zeros(); nodes],
-                acceleration: vec![Vec3::zeros(); nodes],
-                internal_force: vec![Vec3::zeros(); if weights.stiffness < 1.0 { nodes } else { 0 }],
-                inertia: vec![Inertia::default(); if weights.needs_acceleration { blocks.len() } else { 0 }],
-                contact_force: vec![Vec3::zeros(); newton_nodes],
-                contact: Default::default(),
-            },
-            newton: end_contact.map(|settings| Box::new(Newton::new(settings, nodes, blocks.len()))),
-            bodies: Vec::with_capacity(blocks.len()),
-            runs: Runs::single(0),
-            loads: Loads::new(Vec::new(), Vec::new()),
-            force: vec![Vec3::zeros(); nodes],
-            friction_force: vec![Vec3::zeros(); friction_nodes],
-            contact_stiffness: vec![0.0; contact_nodes],
-            contact_position: blocks.rest_position.clone(),
-            contact_bodies: Vec::new(),
-            ledger: Ledger::new((Vec3::zeros(), Vec3::zeros())),
-            stages: StageTimes::default(),
-            blocks,
-            shapes,
-            base_step_s: step_s,
-            step_s,
-            control: None,
-            settling: false,
-            integrator,
-            weights,
-            contact,
-        };
-        for (block, body) in simulation.blocks.ids().zip(&bodies) {
-            simulation.add_body(block, shape_of[block.index()], body);
-        }
-        let shapes = &simulation.shapes;
-        let solved = |block: usize| shapes[shape_of[block]].factor.is_some();
-        let alike = |a: usize, b: usize| shape_of[a] == shape_of[b] && solved(a);
-        simulation.runs = Runs::of_alike(shape_of.len(), EIGHT, alike);
-        for run in simulation.runs.ranges().filter(|run| run.len() >= ENOUGH_TOGETHER) {
-            let factor = shapes[shape_of[run.start]].factor.as_deref();
-            simulation.bodies[run.start].batch = factor.map(|factor| Box::new(Batch::new(factor)));
-        }
-        simulation.add_loads(&bodies, &gravity_m_s2, gravity_factor);
-        if simulation.contact.as_ref().is_some_and(|c| c.needs_bodies()) {
-            let bodies = simulation.blocks.ids().map(|block| simulation.shape(block).contact_body());
-            simulation.contact_bodies = bodies.collect();
-        }
-        simulation.open_books(solver.as_ref())?;
-        if let Some(settings) = auto_step {
-            let control = Control::new(settings, solver, &simulation.state, &simulation.ledger);
-            simulation.control = Some(Box::new(control));
-        }
-        Ok(simulation)
-    }
-
-    fn add_body(&mut self, block: BlockId, shape_index: usize, setup: &BodySetup) {
-        let range = self.blocks.nodes_of(block);
-        let rest = &self.blocks.rest_position[range.clone()];
-        let shape = &self.shapes[shape_index];
-        let center = shape.operator.center(rest);
-        for (v, x) in self.state.velocity[range.clone()].iter_mut().zip(rest) {
-            *v = setup.velocity_m_s + setup.spin_rad_s.cross(&(x - center));
-        }
-        let motion = match shape.kind {
-            BodyKind::Elastic | BodyKind::Affine => {
-                let body = ElasticBody::new(shape, setup.initial_stress.as_ref(), rest);
-                let internal = self.state.internal_force.get_mut(range.clone()).unwrap_or_default();
-                if let Some(initial) = &body.initial_force {
-                    internal.iter_mut().zip(initial).for_each(|(f, initial)| *f = *initial);
-                }
-                Motion::Elastic(Box::new(body))
-            }
-            BodyKind::Rigid => Motion::Rigid(RigidBody::new(shape)),
-            BodyKind::Fixed => {
-                self.state.velocity[range].fill(Vec3::zeros());
-                Motion::Fixed(FixedBody::new(shape, rest))
-            }
-        };
-        let report = BlockReport::default();
-        self.bodies.push(Body { shape: shape_index, motion, report, error: None, batch: None });
-        if shape.kind == BodyKind::Affine && !shape.is_free() {
-            let velocity = &mut self.state.velocity[self.blocks.nodes_of(block)];
-            shape.unknowns.restrict(&shape.operator.node_mass, velocity);
-            return;
-        }
-        for held in &shape.supports.held {
-            let v = &mut self.state.velocity[self.blocks.nodes_of(block).start + held.node as usize];
-            for n in &held.held {
-                *v -= n * n.dot(v);
-            }
-        }
-    }
-
-    /// Gathers gravity, tractions and forces: those that vary each by itself, the others in one sum.
-    fn add_loads(&mut self, bodies: &[BodySetup], gravity_m_s2: &Vec3, gravity_factor: Option<Table>) {
-        let mut constant = vec![Vec3::zeros(); self.blocks.rest_position.len()];
-        let mut weight = constant.clone();
-        let mut varying = Vec::new();
-        for (block, setup) in self.blocks.ids().zip(bodies) {
-            let range = self.blocks.nodes_of(block);
-            let rest = &self.blocks.rest_position[range.clone()];
-            add_gravity(&self.shape(block).operator, gravity_m_s2, &mut weight[range.clone()]);
-            let mut add = |forces: Vec<Vec3>, factor: &Option<Table>| match factor {
-                None => constant[range.clone()].iter_mut().zip(forces).for_each(|(sum, f)| *sum += f),
-                Some(factor) => varying.push(VaryingLoad::new(range.start, &forces, factor.clone())),
-            };
-            for traction in &setup.tractions {
-                let mut forces = vec![Vec3::zeros(); rest.len()];
-                add_traction(&traction.triangles, rest, &traction.traction_pa, &mut forces);
-                add(forces, &traction.factor);
-            }
-            for force in &setup.forces {
-                let mut forces = vec![Vec3::zeros(); rest.len()];
-                forces[force.node as usize] = force.force_n;
-                add(forces, &force.factor);
-            }
-        }
-        match gravity_factor {
-            None => constant.iter_mut().zip(weight).for_each(|(sum, f)| *sum += f),
-            Some(factor) => varying.push(VaryingLoad::new(0, &weight, factor)),
-        }
-        self.loads = Loads::new(constant, varying);
-    }
-
-    /// Total load at the start, and accelerations at the start for integrators that need them: M a = f − ∫Bᵀσ₀, contact
-    /// being part of f.
-    fn open_books(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
-        self.ledger = Ledger::new(self.loads.resultant(&self.state.position));
-        if !self.weights.needs_acceleration {
-            return Ok(());
-        }
-        let untouched = self.state.contact.clone();
-        self.force.copy_from_slice(self.loads.total());
-        self.add_contact_forces(None).map_err(Box::new)?;
-        self.state.contact = untouched;
-        let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
-        for block in self.blocks.ids() {
-            let body = &mut self.bodies[block.index()];
-            let shape = &self.shapes[body.shape];
-            let range = self.blocks.nodes_of(block);
-            let mut load = self.force[range.clone()].to_vec();
-            if shape.kind == BodyKind::Rigid {
-                let force: Vec3 = load.iter().sum();
-                self.state.acceleration[range.clone()].fill(force / shape.operator.mass_kg);
-                let torque = load.iter().zip(&self.state.position[range]).map(|(f, x)| x.cross(f)).sum();
-                self.state.inertia[block.index()] = Inertia { force, torque };
-                continue;
-            }
-            let Some(elastic) = body.elastic().filter(|_| !shape.unknowns.is_empty()) else { continue };
-            if let Some(initial) = &elastic.initial_force {
-                load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
-            }
-            let matrix =
-                shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, &StepDamping::default());
-            let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor {
-                block: self.blocks.names[block.index()].clone(),
-                source,
-            })?;
-            let mut rhs = vec![0.0; factor.unknowns()];
-            shape.unknowns.gather(&load, &mut rhs);
-            factor.solve_in_place(&mut rhs, &mut factor.new_scratch()).map_err(|source| {
-                SetupError::Solve { block: self.blocks.names[block.index()].clone(), source }
-            })?;
-            shape.unknowns.scatter(&rhs, &mut self.state.acceleration[range.clone()]);
-            let (position, acceleration) =
-                (&self.state.position[range.clone()], &self.state.acceleration[range]);
-            self.state.inertia[block.index()] = Inertia {
-                force: shape.operator.momentum(acceleration),
-                torque: shape.operator.angular_momentum(&Vec3::zeros(), position, acceleration),
-            };
-        }
-        Ok(())
-    }
-
     /// One step. The order is the paper's; what differs is where contact and rotation are taken.
     ///
     /// # Errors
@@ -486,12 +142,12 @@ impl Simulation {
 
     /// x* = x + lead · Δt v + lead₂ · Δt² a.
     fn place_contact(&mut self) {
-        let lead = self.weights.contact_lead * self.step_s;
+        let lead = self.weights.contact_lead * self.part_s;
         let moving = self.state.position.iter().zip(&self.state.velocity);
         for (place, (x, v)) in self.contact_position.iter_mut().zip(moving) {
             *place = x + lead * v;
         }
-        let lead = self.weights.contact_lead_acceleration * self.step_s * self.step_s;
+        let lead = self.weights.contact_lead_acceleration * self.part_s * self.part_s;
         if lead != 0.0 {
             let accelerations = self.contact_position.iter_mut().zip(&self.state.acceleration);
             accelerations.for_each(|(place, a)| *place += lead * a);
@@ -517,7 +173,7 @@ impl Simulation {
                 if shape.kind == BodyKind::Fixed {
                     // Where it goes in this step is known already.
                     let at = |time_s: f64| shape.supports.motions[0].displacement(time_s);
-                    body.velocity_m_s = (at(end_s) - at(now_s)) / self.step_s;
+                    body.velocity_m_s = (at(end_s) - at(now_s)) / self.part_s;
                 }
                 continue;
             }
@@ -543,7 +199,7 @@ impl Simulation {
             blocks: &self.blocks,
             position: &self.contact_position,
             velocity: facet_velocity.filter(|_| !model.needs_bodies()).unwrap_or(&self.state.velocity),
-            dt_s: self.step_s,
+            dt_s: self.part_s,
             bodies: &self.contact_bodies,
         };
         let mut output = ContactOutput {
@@ -574,7 +230,7 @@ impl Simulation {
         StepContext {
             integrator: self.integrator.as_ref(),
             weights: self.weights,
-            dt_s: self.step_s,
+            dt_s: self.part_s,
             time_s: self.clock_s(0.0),
             end_s: self.clock_s(1.0),
             contact_position: &self.contact_position[range.clone()],
@@ -663,99 +319,15 @@ impl Simulation {
             damping_j += report.damping_work_j;
             rate2 = rate2.max(report.contact_rate2);
             let height_m = self.shapes[body.shape].smallest_height_m;
-            travel_ratio = travel_ratio.max(report.speed_m_s * self.step_s / height_m);
+            travel_ratio = travel_ratio.max(report.speed_m_s * self.part_s / height_m);
         }
-        let h = self.step_s * rate2.sqrt();
-        self.ledger.add_impulse(self.step_s, &self.weights, force, torque);
+        let h = self.part_s * rate2.sqrt();
+        self.ledger.add_impulse(self.part_s, &self.weights, force, torque);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
         self.ledger.watch(&contact, h, travel_ratio);
         self.ledger.note_iterations(iterations.newton);
         self.advance_clock();
         StepReport { contact, h, travel_ratio, iterations }
-    }
-
-    /// Energies and momenta now, balanced against the books.
-    ///
-    /// # Errors
-    /// [`StepError::Inverted`] when an element is inside out (invariant I7), or as [`step`](Self::step).
-    pub fn sample(&mut self) -> Result<Sample, StepError> {
-        let started = Instant::now();
-        let time_s = self.time_s();
-        let mut sample = Sample { step: self.state.step, time_s, ..Sample::default() };
-        sample.smallest_volume_ratio = (f64::INFINITY, 0);
-        for block in self.blocks.ids() {
-            self.add_block_to(&mut sample, block)?;
-        }
-        let loads = self.loads.constant().iter().zip(&self.state.position).zip(self.start_position());
-        sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
-        if let Some(model) = &mut self.contact {
-            let (position, velocity) = (&self.state.position, &self.state.velocity);
-            let input = ContactInput::new(&self.blocks, position, velocity, self.step_s);
-            let energy_j = model.energy_j(&input, &self.state.contact);
-            sample.contact_j = energy_j.map_err(|source| StepError::Contact { time_s, source })?;
-        }
-        let sample = self.ledger.balance(sample);
-        self.stages.ledger_s += started.elapsed().as_secs_f64();
-        Ok(sample)
-    }
-
-    fn add_block_to(&mut self, sample: &mut Sample, block: BlockId) -> Result<(), StepError> {
-        let (range, time_s) = (self.blocks.nodes_of(block), sample.time_s);
-        let body = &mut self.bodies[block.index()];
-        let shape = &self.shapes[body.shape];
-        let (position, velocity) = (&self.state.position[range.clone()], &self.state.velocity[range]);
-        sample.kinetic_j += shape.operator.kinetic_energy_j(velocity);
-        sample.momentum += shape.operator.momentum(velocity);
-        sample.angular_momentum += shape.operator.angular_momentum(&Vec3::zeros(), position, velocity);
-        for ((x, v), &m) in position.iter().zip(velocity).zip(&shape.operator.node_mass) {
-            sample.momentum_scale += m * v.norm();
-            sample.angular_scale += m * x.norm() * v.norm();
-        }
-        let Some(elastic) = body.elastic() else { return Ok(()) };
-        let name = || self.blocks.names[block.index()].clone();
-        let (volume_ratio, tet) = smallest_volume_ratio(&shape.operator, position);
-        let tet = self.blocks.tets_of(block).start + tet;
-        if volume_ratio.is_nan() || volume_ratio <= 0.0 {
-            let tet = TetId(tet as u32);
-            return Err(StepError::Inverted { time_s, block: name(), tet, volume_ratio });
-        }
-        if volume_ratio < sample.smallest_volume_ratio.0 {
-            sample.smallest_volume_ratio = (volume_ratio, tet);
-        }
-        sample.strain_j += elastic.strain_energy_j(shape, position).map_err(|source| StepError::Block {
-            time_s,
-            block: name(),
-            source: source.into(),
-        })?;
-        sample.spring_j += elastic.spring_energy_j(shape, position, time_s);
-        Ok(())
-    }
-
-    /// Cauchy stress per tetrahedron, global axes, (xx, yy, zz, xy, yz, zx) [Pa].
-    ///
-    /// # Errors
-    /// [`StepError::Block`] when a block has no rotation any more.
-    pub fn recover_stress(&mut self, out: &mut [[f64; 6]]) -> Result<(), StepError> {
-        let time_s = self.time_s();
-        for block in self.blocks.ids() {
-            let body = &mut self.bodies[block.index()];
-            let shape = &self.shapes[body.shape];
-            let position = &self.state.position[self.blocks.nodes_of(block)];
-            let out = &mut out[self.blocks.tets_of(block)];
-            let Some(body) = body.elastic() else {
-                out.fill([0.0; 6]);
-                continue;
-            };
-            let rotation = body.recover_displacement(shape, position).map_err(|source| StepError::Block {
-                time_s,
-                block: self.blocks.names[block.index()].clone(),
-                source: source.into(),
-            })?;
-            let (material, initial) = (shape.material.as_ref(), &body.initial_stress_pa);
-            let displacement = body.displacement_in_frame();
-            cauchy_stress(&shape.operator, material, initial, &rotation, displacement, out);
-        }
-        Ok(())
     }
 
     /// Where each node was when time began [m].
@@ -895,7 +467,8 @@ impl Simulation {
     }
 }
 
-fn step_weights(integrator: &dyn TimeIntegrator, dt_s: f64, solves_contact: bool) -> StepWeights {
+/// The integrator's weights for a step, contact being taken at its end where it is solved for.
+pub(crate) fn step_weights(integrator: &dyn TimeIntegrator, dt_s: f64, solves_contact: bool) -> StepWeights {
     let weights = integrator.weights(dt_s);
     if solves_contact { StepWeights { contact_lead: 1.0, ..weights } } else { weights }
 }

@@ -3,7 +3,8 @@
 use std::ops::ControlFlow;
 
 use crate::ledger::Sample;
-use crate::simulation::{Simulation, StepError, StepReport};
+use crate::simulation::{Simulation, StepReport};
+use crate::step_error::StepError;
 
 /// What a sink is shown.
 pub struct View<'a> {

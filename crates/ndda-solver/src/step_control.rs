@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::ledger::Ledger;
 use crate::linear_solver::{Factor, LinearSolver};
-use crate::simulation::{Simulation, StepError, StepReport};
+use crate::simulation::{Simulation, StepReport};
 use crate::state::State;
+use crate::step_error::StepError;
 use crate::time_integrator::StepDamping;
 
 /// When a step is too long.
@@ -129,7 +130,7 @@ impl Simulation {
                 return Err(match rejection {
                     Rejection::Failed(error) => error,
                     Rejection::TooLong(_) | Rejection::Energy(_) => {
-                        StepError::NoStepIsShortEnough { time_s: self.time_s(), step_s: self.step_s }
+                        StepError::NoStepIsShortEnough { time_s: self.time_s(), step_s: self.part_s }
                     }
                 });
             }
@@ -190,18 +191,18 @@ impl Simulation {
         if control.halvings == halvings {
             return Ok(());
         }
-        self.step_s = self.base_step_s * 0.5f64.powi(halvings as i32);
-        self.weights = self.weights_of(self.step_s);
+        self.part_s = self.base_step_s * 0.5f64.powi(halvings as i32);
+        self.weights = self.weights_of(self.part_s);
         let most = control.settings.most_halvings as usize + 1;
         control.spare.resize_with(self.shapes.len(), || (0..most).map(|_| None).collect());
         for (index, spare) in control.spare.iter_mut().enumerate() {
             let shape = &mut self.shapes[index];
-            shape.damping = StepDamping::new(&shape.material.damping(), self.step_s);
+            shape.damping = StepDamping::new(&shape.material.damping(), self.part_s);
             spare[control.halvings as usize] = shape.factor.take();
             shape.factor = match spare[halvings as usize].take() {
                 None if !shape.unknowns.is_empty() => {
                     let factor = shape.factored(&self.weights, control.solver.as_ref());
-                    Some(factor.map_err(|source| StepError::Factor { step_s: self.step_s, source })?)
+                    Some(factor.map_err(|source| StepError::Factor { step_s: self.part_s, source })?)
                 }
                 known => known,
             };

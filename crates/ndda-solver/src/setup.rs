@@ -1,0 +1,286 @@
+//! From what a scene brings to a simulation at t = 0.
+
+use std::collections::HashMap;
+
+use ndda_contact::ContactModel;
+use ndda_fem::Table;
+use ndda_fem::loads::{add_gravity, add_traction};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
+
+use crate::batch::{Batch, ENOUGH_TOGETHER};
+use crate::body::{BlockReport, Body, BodyKind, Motion};
+use crate::elastic_body::ElasticBody;
+use crate::end_contact::{EndContact, Newton};
+use crate::fixed_body::FixedBody;
+use crate::for_each_block::Runs;
+use crate::ledger::Ledger;
+use crate::linear_solver::{EIGHT, LinearSolver};
+use crate::loads::{Loads, VaryingLoad};
+use crate::rigid_body::RigidBody;
+use crate::shape::{BodySetup, Mass, SetupError, Shape};
+use crate::simulation::{Simulation, StageTimes, step_weights};
+use crate::state::State;
+use crate::step_control::{AutoStep, Control, StepState};
+use crate::time_integrator::{Inertia, StepDamping, StepWeights, TimeIntegrator};
+
+/// Everything a simulation is made of.
+pub struct Setup {
+    /// Topology and rest shape.
+    pub blocks: BlockSet,
+    /// One entry per block.
+    pub bodies: Vec<BodySetup>,
+    /// g [m/s²].
+    pub gravity_m_s2: Vec3,
+    /// Factor of gravity over time; constant without.
+    pub gravity_factor: Option<Table>,
+    /// How mass is shared among nodes.
+    pub mass: Mass,
+    /// Δt [s].
+    pub step_s: f64,
+    /// Time integrator.
+    pub integrator: Box<dyn TimeIntegrator>,
+    /// Contact; `None` where blocks do not feel each other.
+    pub contact: Option<Box<dyn ContactModel>>,
+    /// Contact at the end of the step, solved for; at predicted positions without.
+    pub end_contact: Option<EndContact>,
+    /// Linear solver.
+    pub solver: Box<dyn LinearSolver>,
+    /// Steps as short as they have to be, `step_s` being the longest; always `step_s` without.
+    pub auto_step: Option<AutoStep>,
+}
+
+impl Simulation {
+    /// Assembles, factors each distinct block once, and sets the state at t = 0.
+    ///
+    /// # Errors
+    /// [`SetupError`] naming the block whose supports or equations are at fault.
+    pub fn new(setup: Setup) -> Result<Self, SetupError> {
+        let Setup {
+            blocks,
+            bodies,
+            gravity_m_s2,
+            gravity_factor,
+            mass,
+            step_s,
+            integrator,
+            contact,
+            end_contact,
+            solver,
+            auto_step,
+        } = setup;
+        let weights = step_weights(integrator.as_ref(), step_s, end_contact.is_some());
+        let (shapes, shape_of) =
+            distinct_shapes(&blocks, &bodies, mass, (step_s, &weights), solver.as_ref())?;
+        let nodes = blocks.rest_position.len();
+        // Contact between fewer than two blocks is left out altogether.
+        let contact = contact.filter(|_| blocks.len() > 1);
+        let friction_nodes = if contact.as_ref().is_some_and(|c| c.has_friction()) { nodes } else { 0 };
+        let end_contact = end_contact.filter(|_| contact.is_some());
+        let newton_nodes = if end_contact.is_some() { nodes } else { 0 };
+        let contact_nodes = if contact.is_some() { nodes } else { 0 };
+        let mut simulation = Self {
+            state: State {
+                step: 0,
+                control: StepState::default(),
+                start: Vec::new(),
+                position: blocks.rest_position.clone(),
+                velocity: vec![Vec3::zeros(); nodes],
+                acceleration: vec![Vec3::zeros(); nodes],
+                internal_force: vec![Vec3::zeros(); if weights.stiffness < 1.0 { nodes } else { 0 }],
+                inertia: vec![Inertia::default(); if weights.needs_acceleration { blocks.len() } else { 0 }],
+                contact_force: vec![Vec3::zeros(); newton_nodes],
+                contact: Default::default(),
+            },
+            newton: end_contact.map(|settings| Box::new(Newton::new(settings, nodes, blocks.len()))),
+            bodies: Vec::with_capacity(blocks.len()),
+            runs: Runs::single(0),
+            loads: Loads::new(Vec::new(), Vec::new()),
+            force: vec![Vec3::zeros(); nodes],
+            friction_force: vec![Vec3::zeros(); friction_nodes],
+            contact_stiffness: vec![0.0; contact_nodes],
+            contact_position: blocks.rest_position.clone(),
+            contact_bodies: Vec::new(),
+            ledger: Ledger::new((Vec3::zeros(), Vec3::zeros())),
+            stages: StageTimes::default(),
+            blocks,
+            shapes,
+            base_step_s: step_s,
+            part_s: step_s,
+            control: None,
+            settling: false,
+            integrator,
+            weights,
+            contact,
+        };
+        for (block, body) in simulation.blocks.ids().zip(&bodies) {
+            simulation.add_body(block, shape_of[block.index()], body);
+        }
+        simulation.group_congruent(&shape_of);
+        simulation.add_loads(&bodies, &gravity_m_s2, gravity_factor);
+        if simulation.contact.as_ref().is_some_and(|c| c.needs_bodies()) {
+            let bodies = simulation.blocks.ids().map(|block| simulation.shape(block).contact_body());
+            simulation.contact_bodies = bodies.collect();
+        }
+        simulation.open_books(solver.as_ref())?;
+        if let Some(settings) = auto_step {
+            let control = Control::new(settings, solver, &simulation.state, &simulation.ledger);
+            simulation.control = Some(Box::new(control));
+        }
+        Ok(simulation)
+    }
+
+    /// Runs of congruent neighbours, solved for together.
+    fn group_congruent(&mut self, shape_of: &[usize]) {
+        let shapes = &self.shapes;
+        let alike = |a: usize, b: usize| shape_of[a] == shape_of[b] && shapes[shape_of[a]].factor.is_some();
+        self.runs = Runs::of_alike(shape_of.len(), EIGHT, alike);
+        for run in self.runs.ranges().filter(|run| run.len() >= ENOUGH_TOGETHER) {
+            let factor = shapes[shape_of[run.start]].factor.as_deref();
+            self.bodies[run.start].batch = factor.map(|factor| Box::new(Batch::new(factor)));
+        }
+    }
+
+    /// A block at its start.
+    fn add_body(&mut self, block: BlockId, shape_index: usize, setup: &BodySetup) {
+        let range = self.blocks.nodes_of(block);
+        let rest = &self.blocks.rest_position[range.clone()];
+        let shape = &self.shapes[shape_index];
+        let center = shape.operator.center(rest);
+        for (v, x) in self.state.velocity[range.clone()].iter_mut().zip(rest) {
+            *v = setup.velocity_m_s + setup.spin_rad_s.cross(&(x - center));
+        }
+        let motion = match shape.kind {
+            BodyKind::Elastic | BodyKind::Affine => {
+                let body = ElasticBody::new(shape, setup.initial_stress.as_ref(), rest);
+                let internal = self.state.internal_force.get_mut(range.clone()).unwrap_or_default();
+                if let Some(initial) = &body.initial_force {
+                    internal.iter_mut().zip(initial).for_each(|(f, initial)| *f = *initial);
+                }
+                Motion::Elastic(Box::new(body))
+            }
+            BodyKind::Rigid => Motion::Rigid(RigidBody::new(shape)),
+            BodyKind::Fixed => {
+                self.state.velocity[range].fill(Vec3::zeros());
+                Motion::Fixed(FixedBody::new(shape, rest))
+            }
+        };
+        let report = BlockReport::default();
+        self.bodies.push(Body { shape: shape_index, motion, report, error: None, batch: None });
+        if shape.kind == BodyKind::Affine && !shape.is_free() {
+            let velocity = &mut self.state.velocity[self.blocks.nodes_of(block)];
+            shape.unknowns.restrict(&shape.operator.node_mass, velocity);
+            return;
+        }
+        for held in &shape.supports.held {
+            let v = &mut self.state.velocity[self.blocks.nodes_of(block).start + held.node as usize];
+            for n in &held.held {
+                *v -= n * n.dot(v);
+            }
+        }
+    }
+
+    /// Gathers gravity, tractions and forces: those that vary each by itself, the others in one sum.
+    fn add_loads(&mut self, bodies: &[BodySetup], gravity_m_s2: &Vec3, gravity_factor: Option<Table>) {
+        let mut constant = vec![Vec3::zeros(); self.blocks.rest_position.len()];
+        let mut weight = constant.clone();
+        let mut varying = Vec::new();
+        for (block, setup) in self.blocks.ids().zip(bodies) {
+            let range = self.blocks.nodes_of(block);
+            let rest = &self.blocks.rest_position[range.clone()];
+            add_gravity(&self.shape(block).operator, gravity_m_s2, &mut weight[range.clone()]);
+            let mut add = |forces: Vec<Vec3>, factor: &Option<Table>| match factor {
+                None => constant[range.clone()].iter_mut().zip(forces).for_each(|(sum, f)| *sum += f),
+                Some(factor) => varying.push(VaryingLoad::new(range.start, &forces, factor.clone())),
+            };
+            for traction in &setup.tractions {
+                let mut forces = vec![Vec3::zeros(); rest.len()];
+                add_traction(&traction.triangles, rest, &traction.traction_pa, &mut forces);
+                add(forces, &traction.factor);
+            }
+            for force in &setup.forces {
+                let mut forces = vec![Vec3::zeros(); rest.len()];
+                forces[force.node as usize] = force.force_n;
+                add(forces, &force.factor);
+            }
+        }
+        match gravity_factor {
+            None => constant.iter_mut().zip(weight).for_each(|(sum, f)| *sum += f),
+            Some(factor) => varying.push(VaryingLoad::new(0, &weight, factor)),
+        }
+        self.loads = Loads::new(constant, varying);
+    }
+
+    /// Total load at the start, and accelerations at the start for integrators that need them: M a = f − ∫Bᵀσ₀, contact
+    /// being part of f.
+    fn open_books(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
+        self.ledger = Ledger::new(self.loads.resultant(&self.state.position));
+        if !self.weights.needs_acceleration {
+            return Ok(());
+        }
+        let untouched = self.state.contact.clone();
+        self.force.copy_from_slice(self.loads.total());
+        self.add_contact_forces(None).map_err(Box::new)?;
+        self.state.contact = untouched;
+        let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
+        for block in self.blocks.ids() {
+            let body = &mut self.bodies[block.index()];
+            let shape = &self.shapes[body.shape];
+            let range = self.blocks.nodes_of(block);
+            let mut load = self.force[range.clone()].to_vec();
+            if shape.kind == BodyKind::Rigid {
+                let force: Vec3 = load.iter().sum();
+                self.state.acceleration[range.clone()].fill(force / shape.operator.mass_kg);
+                let torque = load.iter().zip(&self.state.position[range]).map(|(f, x)| x.cross(f)).sum();
+                self.state.inertia[block.index()] = Inertia { force, torque };
+                continue;
+            }
+            let Some(elastic) = body.elastic().filter(|_| !shape.unknowns.is_empty()) else { continue };
+            if let Some(initial) = &elastic.initial_force {
+                load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
+            }
+            let matrix =
+                shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, &StepDamping::default());
+            let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor {
+                block: self.blocks.names[block.index()].clone(),
+                source,
+            })?;
+            let mut rhs = vec![0.0; factor.unknowns()];
+            shape.unknowns.gather(&load, &mut rhs);
+            factor.solve_in_place(&mut rhs, &mut factor.new_scratch()).map_err(|source| {
+                SetupError::Solve { block: self.blocks.names[block.index()].clone(), source }
+            })?;
+            shape.unknowns.scatter(&rhs, &mut self.state.acceleration[range.clone()]);
+            let (position, acceleration) =
+                (&self.state.position[range.clone()], &self.state.acceleration[range]);
+            self.state.inertia[block.index()] = Inertia {
+                force: shape.operator.momentum(acceleration),
+                torque: shape.operator.angular_momentum(&Vec3::zeros(), position, acceleration),
+            };
+        }
+        Ok(())
+    }
+}
+
+/// The distinct blocks, and which of them each block is.
+fn distinct_shapes(
+    blocks: &BlockSet,
+    bodies: &[BodySetup],
+    mass: Mass,
+    step: (f64, &StepWeights),
+    solver: &dyn LinearSolver,
+) -> Result<(Vec<Shape>, Vec<usize>), SetupError> {
+    let (mut shapes, mut shape_of): (Vec<Shape>, Vec<usize>) = (Vec::new(), Vec::new());
+    // Blocks can only be congruent if they have the same number of nodes and elements.
+    let mut by_size: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
+    for (block, body) in blocks.ids().zip(bodies) {
+        let size = (blocks.nodes_of(block).len(), blocks.tets_of(block).len());
+        let known = by_size.entry(size).or_default();
+        let found = known.iter().copied().find(|&index| shapes[index].fits(blocks, block, body));
+        shape_of.push(found.unwrap_or(shapes.len()));
+        if found.is_none() {
+            known.push(shapes.len());
+            shapes.push(Shape::new(blocks, block, body, mass, step, solver)?);
+        }
+    }
+    Ok((shapes, shape_of))
+}

@@ -1,0 +1,105 @@
+//! Why a run stops.
+
+use ndda_contact::ContactError;
+use ndda_mesh::{TetId, TriangleId};
+
+use crate::body::BlockError;
+use crate::linear_solver::FactorError;
+
+/// Why a run stops.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// Contact could not be computed.
+    #[error("at t = {time_s} s: {source}")]
+    Contact {
+        /// Time [s].
+        time_s: f64,
+        /// The cause.
+        source: ContactError,
+    },
+    /// However short a step, it asks for more than it may.
+    #[error(
+        "at t = {time_s} s: contact is too stiff or too fast even for steps of {step_s:e} s: reduce the penalty, refine \
+         the mesh less, or allow more halvings"
+    )]
+    NoStepIsShortEnough {
+        /// Time [s].
+        time_s: f64,
+        /// Δt [s].
+        step_s: f64,
+    },
+    /// The equations of a shorter step cannot be factored.
+    #[error("for steps of {step_s:e} s: {source}")]
+    Factor {
+        /// Δt [s].
+        step_s: f64,
+        /// What is wrong with them.
+        source: FactorError,
+    },
+    /// Newton's method did not find the contact forces at the end of a step.
+    #[error(
+        "at t = {time_s} s: contact at the end of the step is not solved for after {iterations} evaluations \
+         (residual {residual:e}): reduce step_s, or raise the tolerance"
+    )]
+    ContactNotSolved {
+        /// Time [s].
+        time_s: f64,
+        /// Evaluations of contact.
+        iterations: u32,
+        /// Misfit of contact forces over the largest of contact forces and loads.
+        residual: f64,
+    },
+    /// A block is past the depth at which contact pushes it out (invariant I5).
+    #[error(
+        "at t = {time_s} s: triangle {} of block `{contactor}` is past the centroid of tet {} of block `{target}`, \
+         where the contact potential no longer pushes it out: raise penalty_pa or reduce step_s", triangle.0, tet.0
+    )]
+    PastCentroid {
+        /// Time [s].
+        time_s: f64,
+        /// Name of the block that went in.
+        contactor: String,
+        /// Its boundary triangle.
+        triangle: TriangleId,
+        /// Name of the block that it went into.
+        target: String,
+        /// The tetrahedron.
+        tet: TetId,
+    },
+    /// A block could not take the step.
+    #[error("at t = {time_s} s: block `{block}`: {source}")]
+    Block {
+        /// Time [s].
+        time_s: f64,
+        /// Name of the block.
+        block: String,
+        /// The cause.
+        source: BlockError,
+    },
+    /// A scene that was to settle first does not.
+    #[error(
+        "the scene has not settled in {steps} steps (speed {speed_ratio:e} of the largest): raise settle.most_steps or \
+         settle.tolerance, or see whether anything holds it"
+    )]
+    NotSettled {
+        /// Steps done.
+        steps: u64,
+        /// Speed left over the largest speed.
+        speed_ratio: f64,
+    },
+    /// An element is inside out (invariant I7).
+    #[error(
+        "at t = {time_s} s: tet {} of block `{block}` is inverted (det F = {volume_ratio:e}): reduce step_s or the load",
+        tet.0
+    )]
+    Inverted {
+        /// Time [s].
+        time_s: f64,
+        /// Name of the block.
+        block: String,
+        /// The tetrahedron.
+        tet: TetId,
+        /// det F.
+        volume_ratio: f64,
+    },
+}
