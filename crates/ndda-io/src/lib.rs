@@ -1,5 +1,6 @@
-//! Files in and out: RON scenes with their diagnostics, Gmsh meshes, VTU fields, history, summary and checkpoints.
+//! Files in and out: RON scenes with their diagnostics, meshes of other programs, VTU fields, history, summary and checkpoints.
 
+pub mod abaqus;
 pub mod atomic;
 pub mod check;
 pub mod checkpoint;
@@ -7,6 +8,7 @@ pub mod diagnostic;
 pub mod folder;
 pub mod history;
 pub mod locate;
+pub mod mesh_file;
 pub mod msh;
 pub mod overrides;
 pub mod pvd;
@@ -14,6 +16,7 @@ pub mod read;
 pub mod record;
 pub mod scene;
 pub mod summary;
+pub mod tetgen;
 pub mod vtu;
 pub mod write_error;
 
