@@ -17,6 +17,7 @@ pub mod record;
 pub mod scene;
 pub mod summary;
 pub mod tetgen;
+pub mod vtk_file;
 pub mod vtu;
 pub mod write_error;
 

@@ -19,7 +19,7 @@ use std::path::Path;
 use ndda_mesh::BlockMesh;
 
 use crate::write_error::WriteError;
-use crate::{abaqus, msh, tetgen};
+use crate::{abaqus, msh, tetgen, vtk_file};
 use error::{Fault, ending};
 
 pub use error::{FileProblem, MeshFileError};
@@ -47,6 +47,7 @@ pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
         "msh" => Ok(msh::read(path)?),
         "node" | "ele" | "face" => tetgen::read(path),
         "inp" => abaqus::read(path),
+        "vtu" | "vtk" => vtk_file::read(path),
         _ => Err(Fault::from(FileProblem::Extension { found: ending(path), known: ENDINGS }).of(path)),
     }
 }
@@ -63,6 +64,7 @@ pub fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteErr
         "msh" => msh::write(path, bodies),
         "node" | "ele" | "face" => tetgen::write(path, bodies),
         "inp" => abaqus::write(path, bodies),
+        "vtu" => vtk_file::write(path, bodies),
         found => {
             let reason =
                 format!("`.{found}` is no format that is written here: give .msh, .node, .ele, .vtu or .inp");

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 use proptest::sample::Index;
 
 /// Endings of the formats that are read and written.
-const ENDINGS: [&str; 3] = ["msh", "ele", "inp"];
+const ENDINGS: [&str; 4] = ["msh", "ele", "inp", "vtu"];
 
 /// Two boxes that touch, with sets of the same names.
 fn two_boxes() -> Vec<(String, BlockMesh)> {
@@ -45,6 +45,27 @@ fn what_is_written_is_read_back_bit_by_bit_in_every_format() {
         write(&path, &two_boxes()).unwrap();
         assert_eq!(read(&path).unwrap().bodies, two_boxes(), "{ending}");
     }
+}
+
+const LEGACY: &str = "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n\
+    0 0 0 1 0 0 0 1 0 0 0 1 0 0 -1\nCELLS 3 14\n4 0 1 2 3\n4 0 2 1 4\n3 0 1 2\nCELL_TYPES 3\n10 10 5\n\
+    CELL_DATA 3\nVECTORS v float\n0 0 0 0 0 0 0 0 0\nSCALARS Material int 1\nLOOKUP_TABLE default\n1 1 1\n\
+    SCALARS block int\nLOOKUP_TABLE default\n7 5 5\nPOINT_DATA 5\nFIELD FieldData 1\nset:tip 1 5 int\n0 0 0 1 0\n";
+
+#[test]
+fn legacy_files_of_vtk_are_read_with_bodies_and_sets() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.vtk");
+    fs::write(&path, LEGACY).unwrap();
+    let bodies = read(&path).unwrap().bodies;
+    assert_eq!(bodies.iter().map(|b| b.0.as_str()).collect::<Vec<_>>(), ["block_5", "block_7"]);
+    assert_eq!((bodies[0].1.node_sets.len(), &bodies[1].1.node_sets["tip"]), (0, &vec![3]));
+    fs::write(&path, LEGACY.replace("4 0 2 1 4", "4 0 2 1 5")).unwrap();
+    assert!(matches!(fault(&path).1, FileProblem::NoSuchNode { node: 5, .. }));
+    fs::write(&path, LEGACY.replace("10 10 5", "10 12 5")).unwrap();
+    assert!(matches!(fault(&path).1, FileProblem::NotRead { .. }));
+    fs::write(&path, LEGACY.replace("4 0 2 1 4", "4 0 x 1 4")).unwrap();
+    assert!(matches!(fault(&path), (Some(9), FileProblem::Unexpected { .. })));
 }
 
 #[test]
@@ -149,6 +170,7 @@ static FILES: LazyLock<Vec<(String, Vec<u8>)>> = LazyLock::new(|| {
         let path = folder.path().join("a").with_extension(ending);
         write(&path, &[("a".into(), mesh.clone()), ("b".into(), mesh.clone())]).unwrap();
     }
+    fs::write(folder.path().join("b.vtk"), LEGACY).unwrap();
     let entries = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap());
     let content = |e: fs::DirEntry| (e.file_name().into_string().unwrap(), fs::read(e.path()).unwrap());
     let mut files: Vec<_> = entries.map(content).collect();
