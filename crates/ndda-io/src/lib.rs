@@ -6,6 +6,7 @@ pub mod check;
 pub mod checkpoint;
 pub mod diagnostic;
 pub mod folder;
+pub mod gmsh_program;
 pub mod history;
 pub mod locate;
 pub mod mesh_file;
@@ -16,7 +17,10 @@ pub mod read;
 pub mod record;
 pub mod scene;
 pub mod summary;
+pub mod surface_file;
 pub mod tetgen;
+#[cfg(feature = "tetgen")]
+pub mod tetgen_fill;
 pub mod vtk_file;
 pub mod vtu;
 pub mod write_error;

@@ -6,6 +6,7 @@
 //! | `.node` `.ele` `.face` | TetGen | region attribute | markers of faces |
 //! | `.vtu`, `.vtk` | VTK, ParaView | cell data `body`, `block`, `block_id` or `material` | point data `set:name` |
 //! | `.inp` | Abaqus | `*SOLID SECTION`, or `ELSET`s of C3D4 | `NSET`s, `ELSET`s of surface elements |
+//! | `.geo` `.step` `.stp` `.brep` | meshed by an installed Gmsh | as `.msh` | as `.msh` |
 //!
 //! Coordinates are as in the file. Whether a mesh can be computed with is not looked at: see [`ndda_mesh::validate`].
 
@@ -19,13 +20,13 @@ use std::path::Path;
 use ndda_mesh::BlockMesh;
 
 use crate::write_error::WriteError;
-use crate::{abaqus, msh, tetgen, vtk_file};
+use crate::{abaqus, gmsh_program, msh, tetgen, vtk_file};
 use error::{Fault, ending};
 
 pub use error::{FileProblem, MeshFileError};
 
 /// Endings that [`read`] knows, for messages.
-const ENDINGS: &str = ".msh, .node, .ele, .face, .vtu, .vtk, .inp";
+const ENDINGS: &str = ".msh, .node, .ele, .face, .vtu, .vtk, .inp, .geo, .step, .stp, .brep";
 
 /// What a file of a mesh holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +49,7 @@ pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
         "node" | "ele" | "face" => tetgen::read(path),
         "inp" => abaqus::read(path),
         "vtu" | "vtk" => vtk_file::read(path),
+        "geo" | "step" | "stp" | "brep" => gmsh_program::mesh(path, None, None),
         _ => Err(Fault::from(FileProblem::Extension { found: ending(path), known: ENDINGS }).of(path)),
     }
 }

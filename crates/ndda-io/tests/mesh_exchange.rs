@@ -93,7 +93,8 @@ fn meshio_and_gmsh_read_the_same_meshes_and_write_them_back() {
         let all = joined(&found);
         assert_eq!(all.tets, expected.tets, "{name}");
         let largest = all.nodes.iter().zip(&expected.nodes).map(|(a, b)| (a - b).amax()).fold(0.0, f64::max);
-        assert!(largest <= 1e-15, "{name}: nodes are off by {largest:e}");
+        // meshio's texts have twelve digits.
+        assert!(largest <= 1e-11, "{name}: nodes are off by {largest:e}");
         println!("ndda reads {name}: {} nodes, {} tetrahedra", all.nodes.len(), all.tets.len());
     }
 }
