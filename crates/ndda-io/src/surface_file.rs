@@ -27,6 +27,19 @@ pub struct Surface {
     pub faces: Vec<DomainFace>,
 }
 
+impl Surface {
+    /// Volume under it, from tetrahedra to its first vertex [unit of the file, cubed]; negative if inside out.
+    pub fn volume(&self) -> f64 {
+        let Some(origin) = self.vertices.first() else { return 0.0 };
+        let at = |v: u32| self.vertices[v as usize] - origin;
+        let fan = |vertices: &[u32]| -> f64 {
+            let corners = vertices.get(1..).unwrap_or_default();
+            corners.windows(2).map(|w| at(vertices[0]).dot(&at(w[0]).cross(&at(w[1])))).sum()
+        };
+        self.faces.iter().map(|face| fan(&face.vertices)).sum::<f64>() / 6.0
+    }
+}
+
 /// Reads a closed surface: STL (ASCII or binary), OBJ, VTK's `.vtp` or legacy `.vtk`, by the ending of `path`.
 ///
 /// Vertices nearer to each other than `tolerance` times the diagonal are one; 0 joins those that are equal. Faces

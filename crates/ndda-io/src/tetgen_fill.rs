@@ -14,6 +14,9 @@ use crate::surface_file::Surface;
 /// TetGen keeps state of its own for all threads.
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
 
+/// Volumes of a surface and its tetrahedra that differ by less, relatively, are one.
+const SAME_VOLUME: f64 = 1e-9;
+
 /// Why a surface could not be filled.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TetgenError {
@@ -26,6 +29,16 @@ pub enum TetgenError {
     /// What TetGen says.
     #[error("TetGen cannot fill the surface: {0}; check that it is closed and does not cut itself")]
     Tetgen(String),
+    /// The tetrahedra do not add up to the surface.
+    #[error(
+        "the surface encloses {surface:e} but its tetrahedra have {tets:e}: it is inside out or cuts itself"
+    )]
+    Inconsistent {
+        /// Volume under the surface [unit cubed].
+        surface: f64,
+        /// Volume of the tetrahedra [unit cubed].
+        tets: f64,
+    },
     /// TetGen made no tetrahedra.
     #[error("TetGen made no tetrahedra: check that the surface is closed")]
     Nothing,
@@ -54,7 +67,14 @@ pub fn fill(surface: &Surface, size: f64) -> Result<BlockMesh, TetgenError> {
     if tetgen.out_ncell() == 0 {
         return Err(TetgenError::Nothing);
     }
-    Ok(block(&tetgen, &names))
+    let mesh = block(&tetgen, &names);
+    let volume = |tet: &[u32; 4]| tet_volume(&tet.map(|i| mesh.nodes[i as usize]));
+    let (surface, tets) = (surface.volume(), mesh.tets.iter().map(volume).sum::<f64>());
+    if (surface - tets).abs() <= SAME_VOLUME * tets {
+        Ok(mesh)
+    } else {
+        Err(TetgenError::Inconsistent { surface, tets })
+    }
 }
 
 /// The marker of a face is the index of its name, from 1.

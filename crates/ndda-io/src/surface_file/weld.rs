@@ -22,7 +22,7 @@ pub(super) fn closed(raw: Surface, tolerance: f64) -> Result<Surface, Fault> {
         return Err(FileProblem::NoFaces.into());
     }
     check_closed(&surface)?;
-    if volume(&surface) < 0.0 {
+    if surface.volume() < 0.0 {
         surface.faces.iter_mut().for_each(|face| face.vertices.reverse());
     }
     Ok(surface)
@@ -100,14 +100,4 @@ fn check_closed(surface: &Surface) -> Result<(), Fault> {
     };
     let named: Vec<String> = open.iter().take(NAMED).map(|&(a, b)| format!("{}–{}", at(a), at(b))).collect();
     Err(FileProblem::Open { count: open.len(), edges: named.join(", ") }.into())
-}
-
-/// Volume under the surface, from tetrahedra to its first vertex.
-fn volume(surface: &Surface) -> f64 {
-    let origin = surface.vertices[0];
-    let at = |v: u32| surface.vertices[v as usize] - origin;
-    let fan = |vertices: &[u32]| -> f64 {
-        vertices[1..].windows(2).map(|w| at(vertices[0]).dot(&at(w[0]).cross(&at(w[1])))).sum()
-    };
-    surface.faces.iter().map(|face| fan(&face.vertices)).sum::<f64>() / 6.0
 }
