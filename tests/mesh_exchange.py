@@ -46,6 +46,16 @@ def meshio_agrees(folder, points, tets):
         print(f"meshio {meshio.__version__} reads {name}: {len(points)} nodes, {len(tets)} tetrahedra")
 
 
+def meshio_finds_polyhedra(folder):
+    """The three blocks of a cut are cells with the volumes of their own."""
+    mesh = meshio.read(folder / "blocks.vtu")
+    kinds = [cells.type for cells in mesh.cells for _ in cells.data]
+    require(len(kinds) == 3 and all(kind.startswith("polyhedron") for kind in kinds), f"blocks.vtu holds {kinds}")
+    volume = sum(values.sum() for values in mesh.cell_data["volume_m3"])
+    require(abs(volume - 6.0) < 1e-12, f"the blocks have {volume} m³, not 6")
+    print(f"meshio reads blocks.vtu: {', '.join(kinds)}")
+
+
 def gmsh_agrees(folder, bodies, sets):
     """Gmsh finds the bodies and sets, and writes the mesh again."""
     gmsh.initialize()
@@ -81,6 +91,7 @@ def main():
     points = numpy.loadtxt(folder / "points.txt")
     tets = numpy.loadtxt(folder / "tets.txt", dtype=int)
     meshio_agrees(folder, points, tets)
+    meshio_finds_polyhedra(folder)
     gmsh_agrees(folder, counted(folder / "bodies.txt"), counted(folder / "sets.txt"))
     body = numpy.loadtxt(folder / "body_of_tets.txt", dtype=int)
     for name, form, options in AGAIN:

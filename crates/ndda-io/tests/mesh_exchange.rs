@@ -9,6 +9,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use ndda_io::mesh_file::{read, write};
+use ndda_io::vtk_file::write_polyhedra;
+use ndda_mesh::cut::{Domain, VoronoiOptions, voronoi_blocks};
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockMesh, Mat3, Vec3};
 
@@ -57,6 +59,11 @@ fn folder() -> PathBuf {
     for ending in ["msh", "vtu", "inp", "node"] {
         write(&folder.join("a").with_extension(ending), &bodies).unwrap();
     }
+    let domain = Domain::cuboid(Vec3::zeros(), Vec3::new(1.0, 2.0, 3.0)).unwrap();
+    let seeds = [0.5, 1.0, 2.5].map(|z| Vec3::new(0.5, 1.0 + 0.1 * z, z));
+    let cells = voronoi_blocks(&domain, &seeds, &VoronoiOptions::default()).unwrap();
+    assert_eq!(cells.blocks.len(), 3);
+    write_polyhedra(&folder.join("blocks.vtu"), &cells).unwrap();
     let all = joined(&bodies);
     let put = |name: &str, lines: Vec<String>| fs::write(folder.join(name), lines.join("\n") + "\n").unwrap();
     put("points.txt", all.nodes.iter().map(|x| format!("{:?} {:?} {:?}", x.x, x.y, x.z)).collect());
