@@ -14,7 +14,7 @@ use ndda_fem::{
     NodeSupport, Record, Table, TransverselyIsotropic, Voigt,
 };
 use ndda_io::scene::{self, At, By, Contact, Hold, Integrator, Pattern, Region, Scene, Shape};
-use ndda_io::{msh, record};
+use ndda_io::{mesh_file, record};
 use ndda_mesh::generate::{BoxPattern, box_block, prism};
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
@@ -92,7 +92,7 @@ fn mesh(shape: &Shape, folder: &Path) -> Result<BlockMesh, String> {
 }
 
 fn body_of(file: &Path, body: Option<&str>) -> Result<BlockMesh, String> {
-    let bodies = msh::read(file).map_err(|e| e.to_string())?.bodies;
+    let bodies = mesh_file::read(file).map_err(|e| e.to_string())?.bodies;
     let names = bodies.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
     match body {
         None if bodies.len() > 1 => {

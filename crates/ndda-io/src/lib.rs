@@ -1,12 +1,15 @@
-//! Files in and out: RON scenes with their diagnostics, Gmsh meshes, VTU fields, history, summary and checkpoints.
+//! Files in and out: RON scenes with their diagnostics, meshes of other programs, VTU fields, history, summary and checkpoints.
 
+pub mod abaqus;
 pub mod atomic;
 pub mod check;
 pub mod checkpoint;
 pub mod diagnostic;
 pub mod folder;
+pub mod gmsh_program;
 pub mod history;
 pub mod locate;
+pub mod mesh_file;
 pub mod msh;
 pub mod overrides;
 pub mod pvd;
@@ -14,6 +17,11 @@ pub mod read;
 pub mod record;
 pub mod scene;
 pub mod summary;
+pub mod surface_file;
+pub mod tetgen;
+#[cfg(feature = "tetgen")]
+pub mod tetgen_fill;
+pub mod vtk_file;
 pub mod vtu;
 pub mod write_error;
 

@@ -11,19 +11,13 @@ mod mesh;
 mod sections;
 mod v2;
 mod v4;
+mod write;
 
 use std::path::Path;
 
-use ndda_mesh::BlockMesh;
-
+pub use crate::mesh_file::MeshFile as MshFile;
 pub use error::{MshError, MshProblem, Place};
-
-/// What a `.msh` file holds.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MshFile {
-    /// Name and mesh of each physical volume, by rising tag; coordinates as in the file.
-    pub bodies: Vec<(String, BlockMesh)>,
-}
+pub use write::write;
 
 /// Reads a Gmsh mesh.
 ///

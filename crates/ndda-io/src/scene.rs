@@ -352,11 +352,12 @@ pub enum Shape {
         /// Cells along each edge of the triangle, and along the height.
         cells: [u32; 2],
     },
-    /// A tetrahedral mesh in a Gmsh file (`.msh` 2.2 or 4.1).
+    /// A tetrahedral mesh in a file: Gmsh `.msh`, TetGen `.ele`, VTK `.vtu` and `.vtk`, Abaqus `.inp`; or a geometry,
+    /// `.geo` or `.step`, that an installed Gmsh meshes.
     Mesh {
         /// Path, relative to the scene file.
         file: String,
-        /// Physical volume that is this block; may be left out when the file holds one body. Default: none.
+        /// Body of the file that is this block; may be left out when the file holds one body. Default: none.
         #[serde(default)]
         body: Option<String>,
         /// Metres per unit of the file. Default: 1.
