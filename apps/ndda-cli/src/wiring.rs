@@ -2,6 +2,10 @@
 //!
 //! A fork that brings its own contact model changes [`contact_model`], one match arm.
 
+mod regions;
+mod rock;
+mod shapes;
+
 use std::path::Path;
 use std::sync::Arc;
 
@@ -13,17 +17,18 @@ use ndda_fem::{
     Bedding, Damped, Damping, Hold as FemHold, InitialStress, LinearElastic, Material, MaterialError, Motion,
     NodeSupport, Record, Table, TransverselyIsotropic, Voigt,
 };
-use ndda_io::scene::{self, At, By, Contact, Hold, Integrator, Pattern, Region, Scene, Shape};
-use ndda_io::{msh, record};
-use ndda_mesh::generate::{BoxPattern, box_block, prism};
+use ndda_io::record;
+use ndda_io::scene::{self, At, By, Contact, Hold, Integrator, Region, Scene};
 use ndda_mesh::geometry::Aabb;
-use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{
     AutoStep, BodyKind, BodySetup, ConjugateGradients, Direct, EndContact, ForceSetup, GeneralizedAlpha,
     LinearSolver, Mass, Midpoint, Newmark, Setup, SetupError, Simulation, TimeIntegrator, TractionSetup,
 };
 
 use crate::monitor::Monitor;
+use regions::{find, find_all, in_region, loaded_triangles, region_nodes};
+pub use rock::{CutRock, cut_rock};
 
 /// A node is on a plane when it is nearer than this part of its block's size.
 const ON_PLANE: f64 = 1e-6;
@@ -53,77 +58,60 @@ pub fn blocks(scene: &Scene, folder: &Path) -> Result<BlockSet, Vec<Fault>> {
     let mut faults = Vec::new();
     let mut meshes = Vec::new();
     for (i, block) in scene.blocks.iter().enumerate() {
-        match mesh(&block.shape, folder) {
+        match shapes::mesh(&block.shape, folder) {
             Ok(mesh) => {
-                meshes.push((block.name.clone(), mesh.placed(&turned(&block.turns), &vec3(block.at_m))))
+                let placed = mesh.placed(&shapes::turned(&block.turns), &vec3(block.at_m));
+                meshes.push((block.name.clone(), placed));
             }
             Err(message) => faults.push(Fault::new(format!("blocks[{i}].shape"), message)),
+        }
+    }
+    for index in 0..scene.rock.len() {
+        match cut_rock(scene, index) {
+            Ok(cut) => meshes.extend(cut.meshes),
+            Err(found) => faults.extend(found),
         }
     }
     if !faults.is_empty() {
         return Err(faults);
     }
     BlockSet::new(meshes).map_err(|error| {
-        let index = |name: &str| scene.blocks.iter().position(|b| b.name == name).unwrap_or(0);
-        let fault =
-            |(name, problem): (String, _)| Fault::new(format!("blocks[{}].shape", index(&name)), problem);
+        let fault = |(name, problem): (String, _)| Fault::new(path_of(scene, &name, ".shape"), problem);
         error.problems.into_iter().map(fault).collect()
     })
 }
 
-fn mesh(shape: &Shape, folder: &Path) -> Result<BlockMesh, String> {
-    match shape {
-        Shape::Box { size_m, cells, pattern } => {
-            let pattern = match pattern {
-                Pattern::Six => BoxPattern::Six,
-                Pattern::TwentyFour => BoxPattern::TwentyFour,
-            };
-            box_block(*size_m, *cells, pattern).map_err(|e| e.to_string())
-        }
-        Shape::Prism { outline_m, height_m, cells } => {
-            prism(*outline_m, *height_m, *cells).map_err(|e| e.to_string())
-        }
-        Shape::Mesh { file, body, unit_m } => {
-            let mut mesh = body_of(&folder.join(file), body.as_deref())?;
-            mesh.nodes.iter_mut().for_each(|x| *x *= *unit_m);
-            Ok(mesh)
+/// Where in the scene a block comes from.
+enum Source<'a> {
+    Block(&'a scene::Block),
+    Rock(&'a scene::Rock),
+}
+
+impl Source<'_> {
+    fn material(&self) -> &str {
+        match self {
+            Self::Block(block) => &block.material,
+            Self::Rock(rock) => &rock.material,
         }
     }
 }
 
-fn body_of(file: &Path, body: Option<&str>) -> Result<BlockMesh, String> {
-    let bodies = msh::read(file).map_err(|e| e.to_string())?.bodies;
-    let names = bodies.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
-    match body {
-        None if bodies.len() > 1 => {
-            Err(format!("{} holds the bodies {names}: say which with `body`", file.display()))
+/// Where each block comes from; `None` for blocks that the scene does not name.
+fn sources<'a>(scene: &'a Scene, blocks: &BlockSet) -> Vec<Option<Source<'a>>> {
+    let rock = |name: &String| scene.rock.iter().find(|rock| rock.makes(name)).map(Source::Rock);
+    let written = scene.blocks.iter().map(|block| Some(Source::Block(block)));
+    written.chain(blocks.names.iter().skip(scene.blocks.len()).map(rock)).collect()
+}
+
+/// Path of what makes a block; `field` is that of an explicit one.
+fn path_of(scene: &Scene, block: &str, field: &str) -> String {
+    match scene.rock.iter().position(|rock| rock.makes(block)) {
+        Some(index) => format!("rock[{index}]"),
+        None => {
+            let index = scene.blocks.iter().position(|b| b.name == *block).unwrap_or(0);
+            format!("blocks[{index}]{field}")
         }
-        _ => bodies
-            .into_iter()
-            .find(|(name, _)| body.is_none_or(|wanted| wanted == name))
-            .map(|(_, mesh)| mesh)
-            .ok_or_else(|| {
-                format!("{} has no body `{}`; it has {names}", file.display(), body.unwrap_or(""))
-            }),
     }
-}
-
-/// The product of turns; whole quarters are exact.
-fn turned(turns: &[scene::Turn]) -> Mat3 {
-    turns.iter().fold(Mat3::identity(), |before, turn| rotation(turn) * before)
-}
-
-/// Rodrigues' formula, R = cos θ I + sin θ [n]× + (1 − cos θ) n nᵀ.
-fn rotation(turn: &scene::Turn) -> Mat3 {
-    let axis = vec3(turn.axis).normalize();
-    let (sin, cos) = match turn.angle_deg.rem_euclid(360.0) {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        angle => angle.to_radians().sin_cos(),
-    };
-    cos * Mat3::identity() + sin * axis.cross_matrix() + (1.0 - cos) * axis * axis.transpose()
 }
 
 fn vec3(v: [f64; 3]) -> Vec3 {
@@ -187,9 +175,8 @@ fn setup_fault(scene: &Scene, error: SetupError) -> Fault {
         SetupError::Factor { block, .. } | SetupError::Solve { block, .. } => (block, false),
         SetupError::Contact(_) => return Fault::new("contact", error),
     };
-    let support = scene.supports.iter().position(|s| supported && s.block == *block);
-    let index = scene.blocks.iter().position(|b| b.name == *block).unwrap_or(0);
-    let path = support.map_or(format!("blocks[{index}]"), |i| format!("supports[{i}]"));
+    let support = scene.supports.iter().position(|s| supported && scene::matches(&s.block, block));
+    let path = support.map_or(path_of(scene, block, ""), |i| format!("supports[{i}]"));
     Fault::new(path, error)
 }
 
@@ -204,7 +191,7 @@ pub fn contact_model(scene: &Scene, blocks: &BlockSet) -> Result<Option<Box<dyn 
             let potential = contact_potential(potential);
             potential.field(blocks).map_err(|e| Fault::new("contact.potential", e))?;
             let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);
-            if let Some(joints) = friction_table(scene, friction.as_ref(), joints, *memory) {
+            if let Some(joints) = friction_table(scene, blocks, friction.as_ref(), joints, *memory) {
                 model = model.with_joints(joints);
             }
             Ok(Some(Box::new(model)))
@@ -226,13 +213,15 @@ fn contact_potential(potential: &scene::Potential) -> Box<dyn ContactPotential> 
 /// Laws between materials; `None` where nothing rubs, so that no shear spring and no memory is made.
 fn friction_table(
     scene: &Scene,
+    blocks: &BlockSet,
     everywhere: Option<&scene::Friction>,
     special: &[scene::Joint],
     memory: scene::Memory,
 ) -> Option<Joints> {
     let rubs = |f: &&scene::Friction| f.friction_deg > 0.0 || f.cohesion_pa > 0.0 || f.tension_pa > 0.0;
     let index = |name: &str| scene.materials.iter().position(|m| m.name == name).unwrap_or(0) as u32;
-    let material = scene.blocks.iter().map(|block| index(&block.material)).collect();
+    let sources = sources(scene, blocks);
+    let material = sources.iter().map(|s| s.as_ref().map_or(0, |s| index(s.material()))).collect();
     let mut joints = Joints::between(material, scene.materials.len());
     let all = || 0..scene.materials.len() as u32;
     let pairs: Vec<(u32, u32)> = all().flat_map(|a| all().map(move |b| (a, b))).collect();
@@ -273,36 +262,29 @@ fn bodies(scene: &Scene, blocks: &BlockSet, folder: &Path) -> Result<Vec<BodySet
     let mut faults = Vec::new();
     let materials = materials(scene, &mut faults);
     let mut bodies = Vec::new();
-    for block in &scene.blocks {
-        let used = scene.materials.iter().position(|m| m.name == block.material);
+    for (id, source) in blocks.ids().zip(sources(scene, blocks)) {
+        let Some(source) = source else { continue };
+        let used = scene.materials.iter().position(|m| m.name == source.material());
         let Some(material) = used.and_then(|i| materials[i].clone()) else { continue };
-        bodies.push(BodySetup {
-            kind: match block.body {
-                scene::Body::Elastic => BodyKind::Elastic,
-                scene::Body::Affine => BodyKind::Affine,
-                scene::Body::Rigid => BodyKind::Rigid,
-                scene::Body::Fixed => BodyKind::Fixed,
-            },
-            material,
-            supports: Vec::new(),
-            initial_stress: initial_stress(scene, block, blocks),
-            tractions: Vec::new(),
-            forces: Vec::new(),
-            velocity_m_s: vec3(block.velocity_m_s),
-            spin_rad_s: vec3(block.spin_rad_s),
-        });
+        bodies.push(body(scene, blocks, id, &source, material));
+    }
+    if !faults.is_empty() {
+        return Err(faults);
     }
     for (i, support) in scene.supports.iter().enumerate() {
-        match node_support(scene, blocks, folder, support) {
-            Ok((block, held)) => bodies[block.index()].supports.push(held),
+        match node_supports(scene, blocks, folder, support) {
+            Ok(held) => held.into_iter().for_each(|(block, held)| bodies[block.index()].supports.push(held)),
             Err(message) => faults.push(Fault::new(format!("supports[{i}].on"), message)),
         }
     }
     for (i, traction) in scene.tractions.iter().enumerate() {
-        match loaded_triangles(blocks, traction) {
-            Ok((block, triangles)) => {
-                let (traction_pa, factor) = (vec3(traction.traction_pa), table(&traction.factor));
-                bodies[block.index()].tractions.push(TractionSetup { triangles, traction_pa, factor });
+        let part = |block| loaded_triangles(blocks, block, &traction.on);
+        match in_region(blocks, &traction.block, part) {
+            Ok(parts) => {
+                for (block, triangles) in parts {
+                    let (traction_pa, factor) = (vec3(traction.traction_pa), table(&traction.factor));
+                    bodies[block.index()].tractions.push(TractionSetup { triangles, traction_pa, factor });
+                }
             }
             Err(message) => faults.push(Fault::new(format!("tractions[{i}].on"), message)),
         }
@@ -319,12 +301,46 @@ fn bodies(scene: &Scene, blocks: &BlockSet, folder: &Path) -> Result<Vec<BodySet
     if faults.is_empty() { Ok(bodies) } else { Err(faults) }
 }
 
+/// A body as yet without supports and loads.
+fn body(
+    scene: &Scene,
+    blocks: &BlockSet,
+    id: BlockId,
+    source: &Source<'_>,
+    material: Arc<dyn Material>,
+) -> BodySetup {
+    let (body, own_stress, velocity, spin) = match source {
+        Source::Block(b) => (b.body, b.initial_stress_pa.as_ref(), b.velocity_m_s, b.spin_rad_s),
+        Source::Rock(rock) => (rock::body(rock, blocks, id), None, [0.0; 3], [0.0; 3]),
+    };
+    BodySetup {
+        kind: match body {
+            scene::Body::Elastic => BodyKind::Elastic,
+            scene::Body::Affine => BodyKind::Affine,
+            scene::Body::Rigid => BodyKind::Rigid,
+            scene::Body::Fixed => BodyKind::Fixed,
+        },
+        material,
+        supports: Vec::new(),
+        initial_stress: initial_stress(scene, body, own_stress, blocks),
+        tractions: Vec::new(),
+        forces: Vec::new(),
+        velocity_m_s: vec3(velocity),
+        spin_rad_s: vec3(spin),
+    }
+}
+
 /// The block's own initial stress, or that of the ground where the block can have one.
-fn initial_stress(scene: &Scene, block: &scene::Block, blocks: &BlockSet) -> Option<InitialStress> {
-    if let Some(own) = &block.initial_stress_pa {
+fn initial_stress(
+    scene: &Scene,
+    body: scene::Body,
+    own: Option<&scene::Stress>,
+    blocks: &BlockSet,
+) -> Option<InitialStress> {
+    if let Some(own) = own {
         return Some(InitialStress::uniform(voigt(own)));
     }
-    let deforms = matches!(block.body, scene::Body::Elastic | scene::Body::Affine);
+    let deforms = matches!(body, scene::Body::Elastic | scene::Body::Affine);
     let ground = scene.in_situ.as_ref().filter(|_| deforms)?;
     let mut gradient_pa_m = [Voigt::zeros(); 3];
     for gradient in &ground.gradients {
@@ -397,14 +413,13 @@ fn elastic(m: &scene::Material) -> Result<Arc<dyn Material>, MaterialError> {
     Ok(Arc::new(TransverselyIsotropic::new(&isotropic, &bedding)?))
 }
 
-fn node_support(
+fn node_supports(
     scene: &Scene,
     blocks: &BlockSet,
     folder: &Path,
     support: &scene::Support,
-) -> Result<(BlockId, NodeSupport), String> {
-    let block = find(blocks, &support.block)?;
-    let nodes = region_nodes(blocks, block, &support.on)?;
+) -> Result<Vec<(BlockId, NodeSupport)>, String> {
+    let parts = in_region(blocks, &support.block, |block| region_nodes(blocks, block, &support.on))?;
     let hold = match (&support.hold, &support.on) {
         (Hold::Fixed, _) => FemHold::Fixed,
         (Hold::Direction(n), _) => FemHold::Along(vec3(*n)),
@@ -420,74 +435,21 @@ fn node_support(
             FemHold::Motion(Motion::Record(Record::new(direction, &rows)))
         }
     };
-    let young_pa = || {
-        let material = &scene.blocks[block.index()].material;
+    let sources = sources(scene, blocks);
+    let young_pa = |block: BlockId| {
+        let material = sources[block.index()].as_ref().map_or("", |source| source.material());
         scene.materials.iter().find(|m| m.name == *material).map_or(0.0, |m| m.young_pa)
     };
-    let spring_n_m = match support.by {
-        By::Elimination => None,
-        By::Springs { stiffness_n_m } => {
-            Some(stiffness_n_m.unwrap_or_else(|| SPRING_PER_YOUNG_M * young_pa()))
-        }
+    let held = |(block, nodes): (BlockId, Vec<u32>)| {
+        let spring_n_m = match support.by {
+            By::Elimination => None,
+            By::Springs { stiffness_n_m } => {
+                Some(stiffness_n_m.unwrap_or_else(|| SPRING_PER_YOUNG_M * young_pa(block)))
+            }
+        };
+        (block, NodeSupport { nodes, hold: hold.clone(), spring_n_m })
     };
-    Ok((block, NodeSupport { nodes, hold, spring_n_m }))
-}
-
-fn find(blocks: &BlockSet, name: &str) -> Result<BlockId, String> {
-    blocks.find(name).ok_or_else(|| format!("there is no block `{name}`"))
-}
-
-/// Nodes of a region, counted from the block's first, ascending.
-fn region_nodes(blocks: &BlockSet, block: BlockId, region: &Region) -> Result<Vec<u32>, String> {
-    let range = blocks.nodes_of(block);
-    let name = &blocks.names[block.index()];
-    let nodes: Vec<u32> = match region {
-        Region::All => (0..range.len() as u32).collect(),
-        Region::Set(set) => {
-            let sets = &blocks.node_sets[block.index()];
-            let known = sets.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-            let found =
-                sets.get(set).ok_or_else(|| format!("block `{name}` has no set `{set}`; it has {known}"))?;
-            found.iter().map(|n| n.0 - range.start as u32).collect()
-        }
-        Region::Plane { point_m, normal } => {
-            let size = Aabb::around(&blocks.rest_position[range.clone()]).diagonal();
-            let (point, normal) = (vec3(*point_m) - blocks.origin_m, vec3(*normal).normalize());
-            let near = |n: &u32| {
-                let x = blocks.rest_position[range.start + *n as usize];
-                (x - point).dot(&normal).abs() <= ON_PLANE * size
-            };
-            boundary_nodes(blocks, block).into_iter().filter(near).collect()
-        }
-    };
-    if nodes.is_empty() {
-        return Err(format!("no node of block `{name}` is in this region: check its place"));
-    }
-    Ok(nodes)
-}
-
-fn boundary_nodes(blocks: &BlockSet, block: BlockId) -> Vec<u32> {
-    let first = blocks.nodes_of(block).start as u32;
-    let triangles = &blocks.triangles[blocks.triangles_of(block)];
-    let mut nodes: Vec<u32> = triangles.iter().flatten().map(|n| n.0 - first).collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    nodes
-}
-
-type Loaded = (BlockId, Vec<[u32; 3]>);
-
-fn loaded_triangles(blocks: &BlockSet, traction: &scene::Traction) -> Result<Loaded, String> {
-    let block = find(blocks, &traction.block)?;
-    let nodes = region_nodes(blocks, block, &traction.on)?;
-    let first = blocks.nodes_of(block).start as u32;
-    let local = blocks.triangles[blocks.triangles_of(block)].iter().map(|t| t.map(|n| n.0 - first));
-    let inside = |t: &[u32; 3]| t.iter().all(|n| nodes.binary_search(n).is_ok());
-    let triangles: Vec<[u32; 3]> = local.filter(inside).collect();
-    if triangles.is_empty() {
-        return Err(format!("no boundary triangle of block `{}` lies in this region", traction.block));
-    }
-    Ok((block, triangles))
+    Ok(parts.into_iter().map(held).collect())
 }
 
 /// The monitors of a scene.
@@ -495,25 +457,34 @@ fn loaded_triangles(blocks: &BlockSet, traction: &scene::Traction) -> Result<Loa
 /// # Errors
 /// All monitors whose point is outside their block.
 pub fn monitors(scene: &Scene, simulation: &Simulation) -> Result<Vec<Monitor>, Vec<Fault>> {
-    let blocks = simulation.blocks();
     let mut faults = Vec::new();
     let mut monitors = Vec::new();
     for (i, monitor) in scene.monitors.iter().enumerate() {
         let path = || format!("monitors[{i}].at");
-        let built = match (find(blocks, &monitor.block), &monitor.at) {
-            (Err(message), _) => Err(message),
-            (Ok(block), At::Centre) => Ok(Monitor::centre(&monitor.name, simulation, block)),
-            (Ok(block), At::Point(place)) => {
-                let point = Monitor::point(&monitor.name, blocks, block, &(vec3(*place) - blocks.origin_m));
-                point.ok_or_else(|| format!("this point is outside block `{}` at the start", monitor.block))
-            }
-        };
+        let built = one_monitor(monitor, simulation);
         match built {
             Ok(monitor) => monitors.push(monitor),
             Err(message) => faults.push(Fault::new(path(), message)),
         }
     }
     if faults.is_empty() { Ok(monitors) } else { Err(faults) }
+}
+
+fn one_monitor(monitor: &scene::Monitor, simulation: &Simulation) -> Result<Monitor, String> {
+    let blocks = simulation.blocks();
+    match &monitor.at {
+        At::Centre => Ok(Monitor::centre(&monitor.name, simulation, find(blocks, &monitor.block)?)),
+        At::Point(place) => {
+            let block = find(blocks, &monitor.block)?;
+            let point = Monitor::point(&monitor.name, blocks, block, &(vec3(*place) - blocks.origin_m));
+            point.ok_or_else(|| format!("this point is outside block `{}` at the start", monitor.block))
+        }
+        At::Largest(direction) => {
+            let found = find_all(blocks, &monitor.block)?;
+            let nodes = found.into_iter().map(|block| blocks.nodes_of(block)).collect();
+            Ok(Monitor::largest(&monitor.name, nodes, vec3(*direction).normalize()))
+        }
+    }
 }
 
 /// Steps of a run: its end rounded to whole steps, at least one.
