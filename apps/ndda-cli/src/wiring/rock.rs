@@ -1,5 +1,7 @@
 //! Rock of a scene as blocks.
 
+use std::fmt;
+
 use ndda_io::scene::{self, Rock, Scene, Whereabouts};
 use ndda_mesh::cut::{
     self, Axis, Blocks, CutOptions, Disc, DiscRule, Discontinuity, Domain, DomainFace, JointSet,
@@ -7,28 +9,47 @@ use ndda_mesh::cut::{
 };
 use ndda_mesh::geometry::tet_volume;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
+use serde::Serialize;
 
 use super::{Fault, shapes, vec3};
 
-/// A rock in blocks, with what was left out.
-pub struct CutRock {
-    /// Names and meshes.
-    pub meshes: Vec<(String, BlockMesh)>,
-    /// Volume of the rock [m³].
+/// What a rock was cut into, and what was left out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RockReport {
+    /// Name of the rock.
+    pub name: String,
+    /// Blocks that are left.
+    pub blocks: usize,
+    /// Volume of the rock before it was cut [m³].
     pub domain_m3: f64,
     /// Slivers left out, and their volume [m³].
     pub slivers: (usize, f64),
-    /// Blocks taken out by `removed`, and their volume [m³].
+    /// Parts taken out by `removed`, and their volume [m³].
     pub removed: (usize, f64),
     /// Cuts that would have left a needle thinner than rounding, and were not made.
     pub refused: usize,
 }
 
+impl fmt::Display for RockReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, blocks, domain_m3, slivers, removed, refused } = self;
+        write!(f, "rock {name}: {domain_m3:.6e} m³ in {blocks} block(s)")?;
+        for (what, (count, volume)) in [("sliver(s) left out", slivers), ("part(s) removed", removed)] {
+            if *count > 0 {
+                write!(f, ", {count} {what} ({volume:.3e} m³)")?;
+            }
+        }
+        if *refused > 0 { write!(f, ", {refused} cut(s) refused as needles") } else { Ok(()) }
+    }
+}
+
+type Meshes = Vec<(String, BlockMesh)>;
+
 /// Cuts and fills rock `index` of a scene.
 ///
 /// # Errors
 /// What cannot be cut or filled.
-pub fn cut_rock(scene: &Scene, index: usize) -> Result<CutRock, Vec<Fault>> {
+pub(super) fn cut_rock(scene: &Scene, index: usize) -> Result<(Meshes, RockReport), Vec<Fault>> {
     let rock = &scene.rock[index];
     let at = |field: &str| format!("rock[{index}]{field}");
     let domain = domain(&rock.domain).map_err(|m| vec![Fault::new(at(".domain"), m)])?;
@@ -39,8 +60,10 @@ pub fn cut_rock(scene: &Scene, index: usize) -> Result<CutRock, Vec<Fault>> {
     let sliver_m3 = blocks.remove(&slivers);
     let removed = chosen(&blocks, &rock.removed);
     let removed_m3 = blocks.remove(&removed);
-    let mut meshed = CutRock {
-        meshes: Vec::new(),
+    let mut meshes = Meshes::new();
+    let mut report = RockReport {
+        name: rock.name.clone(),
+        blocks: 0,
         domain_m3: domain.volume_m3(),
         slivers: (slivers.len(), sliver_m3),
         removed: (removed.len(), removed_m3),
@@ -50,7 +73,7 @@ pub fn cut_rock(scene: &Scene, index: usize) -> Result<CutRock, Vec<Fault>> {
     let mut faults = Vec::new();
     for (number, group) in (1..).zip(blocks.groups()) {
         match blocks.mesh_glued(&group, &fill) {
-            Ok(mesh) => meshed.meshes.push((format!("{}_{number:04}", rock.name), mesh)),
+            Ok(mesh) => meshes.push((format!("{}_{number:04}", rock.name), mesh)),
             Err(error) => faults.push(Fault::new(
                 at(".fill"),
                 format!(
@@ -60,10 +83,11 @@ pub fn cut_rock(scene: &Scene, index: usize) -> Result<CutRock, Vec<Fault>> {
             )),
         }
     }
-    if meshed.meshes.is_empty() && faults.is_empty() {
+    if meshes.is_empty() && faults.is_empty() {
         faults.push(Fault::new(at(".removed"), "no block is left: take out fewer"));
     }
-    if faults.is_empty() { Ok(meshed) } else { Err(faults) }
+    report.blocks = meshes.len();
+    if faults.is_empty() { Ok((meshes, report)) } else { Err(faults) }
 }
 
 /// Slivers that are blocks of their own, not parts of a concave one.
