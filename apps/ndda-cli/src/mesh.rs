@@ -10,17 +10,17 @@ use std::path::{Path, PathBuf};
 use ndda_io::read::load;
 use ndda_io::vtu::{self, Frame};
 use ndda_io::{OutputFolder, WriteError, msh};
-use ndda_mesh::{BlockMesh, BlockSet, MeshError, Vec3, repair};
+use ndda_mesh::{BlockSet, MeshError, Vec3, repair};
 
 use crate::args::{Fix, MeshArgs};
 use crate::console::{colour, complain, say};
 use crate::exit;
-use crate::wiring::{self, RockReport};
+use crate::wiring::{self, Meshes, RockReport};
 use report::MeshReport;
 
 /// Blocks before they are checked.
 struct Input {
-    meshes: Vec<(String, BlockMesh)>,
+    meshes: Meshes,
     rock: Vec<RockReport>,
     fixes: Vec<String>,
 }

@@ -15,7 +15,7 @@ use ndda_contact::{
 };
 use ndda_fem::Table;
 use ndda_io::scene::{self, At, Contact, Integrator, Scene};
-use ndda_mesh::{BlockMesh, BlockSet, Vec3};
+use ndda_mesh::{BlockSet, Vec3};
 use ndda_solver::{
     AutoStep, ConjugateGradients, Direct, EndContact, GeneralizedAlpha, LinearSolver, Mass, Midpoint,
     Newmark, Setup, SetupError, Simulation, TimeIntegrator,
@@ -23,7 +23,7 @@ use ndda_solver::{
 
 use crate::monitor::Monitor;
 use regions::{find, find_all};
-pub use rock::RockReport;
+pub use rock::{Meshes, RockReport};
 
 /// A node is on a plane when it is nearer than this part of its block's size.
 const ON_PLANE: f64 = 1e-6;
@@ -58,11 +58,8 @@ pub fn blocks(scene: &Scene, folder: &Path) -> Result<BlockSet, Vec<Fault>> {
 ///
 /// # Errors
 /// All shapes that cannot be built.
-pub fn meshes(
-    scene: &Scene,
-    folder: &Path,
-) -> Result<(Vec<(String, BlockMesh)>, Vec<RockReport>), Vec<Fault>> {
-    let (mut meshes, mut reports, mut faults) = (Vec::new(), Vec::new(), Vec::new());
+pub fn meshes(scene: &Scene, folder: &Path) -> Result<(Meshes, Vec<RockReport>), Vec<Fault>> {
+    let (mut meshes, mut reports, mut faults) = (Meshes::new(), Vec::new(), Vec::new());
     for (i, block) in scene.blocks.iter().enumerate() {
         match shapes::mesh(&block.shape, folder) {
             Ok(mesh) => {

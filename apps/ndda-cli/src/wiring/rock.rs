@@ -43,7 +43,8 @@ impl fmt::Display for RockReport {
     }
 }
 
-type Meshes = Vec<(String, BlockMesh)>;
+/// Names and meshes of blocks.
+pub type Meshes = Vec<(String, BlockMesh)>;
 
 /// Cuts and fills rock `index` of a scene.
 ///
