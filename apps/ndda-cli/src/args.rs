@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Rock blocks that slide, topple, collide and fall: 3D discontinuous deformation analysis with contact potential.
 #[derive(Debug, Parser)]
 #[command(
     version,
     after_help = "Examples:\n  ndda run scenes/sliding_45.ron\n  ndda run scenes/sliding_45.ron --set time.step_s=1e-3 \
-                  --out out/coarse\n  ndda check scenes/sliding_45.ron\n\nExit codes: 0 done · 1 ran, a criterion \
+                  --out out/coarse\n  ndda check scenes/sliding_45.ron\n  ndda mesh scenes/column_phi0.ron\n\nExit codes: 0 done · 1 ran, a criterion \
                   failed · 2 usage · 3 bad input · 4 numerical stop · 5 input/output · 6 resources · 130 interrupted"
 )]
 pub struct Cli {
@@ -30,6 +30,49 @@ pub enum Verb {
     Resume(ResumeArgs),
     /// Read and check a scene without running it: all errors at once, each with its place.
     Check(CheckArgs),
+    /// Build or read the blocks of a scene or a mesh file, check and measure them, and draw them.
+    ///
+    /// Prints counts, volumes, how large blocks are, how good their tetrahedra are (histograms, and the worst ten with
+    /// their places), and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg.
+    /// Tetrahedra with dihedral angles of a few degrees or an aspect above 50 make runs inexact or short of steps:
+    /// use larger spacings, another `fill`, or `sliver_width_m`.
+    Mesh(MeshArgs),
+}
+
+/// Arguments of `ndda mesh`.
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:\n  ndda mesh scenes/column_phi0.ron\n  ndda mesh scenes/pile_125.ron \
+                        --set rock.cube.fill='Size(size_m: 0.4)'\n  ndda mesh block.msh --fix orient,merge --json")]
+pub struct MeshArgs {
+    /// Scene file (RON), or mesh file (Gmsh, TetGen, VTK, Abaqus) with coordinates in metres.
+    pub input: PathBuf,
+    /// Repairs of a mesh file, in this order: inverted tetrahedra turned round, coincident nodes merged.
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "FIX")]
+    pub fix: Vec<Fix>,
+    /// Nodes nearer than this part of a body's size are merged by `--fix merge`.
+    #[arg(long, default_value_t = 1e-9, value_name = "RATIO")]
+    pub within: f64,
+    /// Output folder [default: out/ and the name of the input with _mesh].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Replace the results of an earlier call in the output folder.
+    #[arg(long)]
+    pub force: bool,
+    /// Print the report as JSON.
+    #[arg(long)]
+    pub json: bool,
+    /// Override a value of the scene by its path; may be repeated.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub overrides: Vec<String>,
+}
+
+/// A repair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Fix {
+    /// Turn inverted tetrahedra round.
+    Orient,
+    /// Merge coincident nodes.
+    Merge,
 }
 
 /// Arguments of `ndda run`.

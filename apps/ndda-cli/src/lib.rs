@@ -6,6 +6,7 @@ pub mod checkpoint;
 pub mod console;
 pub mod exit;
 pub mod interrupt;
+pub mod mesh;
 pub mod monitor;
 pub mod progress;
 pub mod recorder;

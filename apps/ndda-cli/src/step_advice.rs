@@ -69,7 +69,8 @@ pub fn advise(scene: &Scene, simulation: &Simulation) -> Option<Advice> {
     distinct.sort_by(|a, b| height(a).total_cmp(&height(b)));
     distinct.truncate(MOST_SHAPES);
     let rates = distinct.iter().filter_map(|&block| {
-        let rate2 = contact_rate2(scene, simulation.shape(block), block)?;
+        let name = &simulation.blocks().names[block.index()];
+        let rate2 = contact_rate2(scene, simulation.shape(block), (block, name))?;
         Some((rate2.sqrt(), block))
     });
     let (rate, block) = rates.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(rate, _)| *rate > 0.0)?;
@@ -78,16 +79,14 @@ pub fn advise(scene: &Scene, simulation: &Simulation) -> Option<Advice> {
 }
 
 /// ω_c² of a block against its like [1/s²]; none if the scene's contact model cannot serve the two.
-fn contact_rate2(scene: &Scene, shape: &Shape, block: BlockId) -> Option<f64> {
+fn contact_rate2(scene: &Scene, shape: &Shape, (block, name): (BlockId, &str)) -> Option<f64> {
     let mesh = BlockMesh {
         nodes: shape.operator.rest.clone(),
         tets: shape.operator.tets.clone(),
         ..BlockMesh::default()
     };
     let alone = BlockSet::new(vec![("it".into(), mesh.clone())]).ok()?;
-    let mut pair = scene.clone();
-    let own = scene.blocks.get(block.index()).or(scene.blocks.first())?;
-    pair.blocks = vec![own.clone(), own.clone()];
+    let pair = alone_with_its_like(scene, block, name);
     let mut largest = 0.0f64;
     for (centroid, normal) in largest_faces(&alone) {
         let depth = DEPTH * shape.smallest_height_m;
@@ -107,6 +106,22 @@ fn contact_rate2(scene: &Scene, shape: &Shape, block: BlockId) -> Option<f64> {
         largest = stiffness.iter().zip(masses).map(|(k, m)| k / m).fold(largest, f64::max);
     }
     Some(largest)
+}
+
+/// The scene with nothing in it but a block and its like, for the laws of contact between them.
+fn alone_with_its_like(scene: &Scene, block: BlockId, name: &str) -> Scene {
+    let mut pair = Scene { rock: Vec::new(), ..scene.clone() };
+    match scene.blocks.get(block.index()) {
+        Some(own) => pair.blocks = vec![own.clone(), own.clone()],
+        // Blocks of rock are of its material, which is all that counts here.
+        None => {
+            pair.blocks.clear();
+            let material = scene.rock.iter().find(|rock| rock.makes(name)).map(|rock| &rock.material);
+            let index = scene.materials.iter().position(|m| Some(&m.name) == material);
+            pair.materials.swap(0, index.unwrap_or(0));
+        }
+    }
+    pair
 }
 
 /// Centroids and normals of a block's largest faces.

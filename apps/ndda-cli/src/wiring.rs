@@ -2,33 +2,31 @@
 //!
 //! A fork that brings its own contact model changes [`contact_model`], one match arm.
 
+mod bodies;
+mod regions;
+mod rock;
+mod shapes;
+
 use std::path::Path;
-use std::sync::Arc;
 
 use ndda_contact::{
     ContactModel, ContactPotential, Coulomb, ElementPotential, FrictionLaw, Joints, Memory, MohrCoulomb,
     PotentialContact, SmoothPotential, VelocityCoulomb, VolumePotential,
 };
-use ndda_fem::{
-    Bedding, Damped, Damping, Hold as FemHold, InitialStress, LinearElastic, Material, MaterialError, Motion,
-    NodeSupport, Record, Table, TransverselyIsotropic, Voigt,
-};
-use ndda_io::scene::{self, At, By, Contact, Hold, Integrator, Pattern, Region, Scene, Shape};
-use ndda_io::{mesh_file, record};
-use ndda_mesh::generate::{BoxPattern, box_block, prism};
-use ndda_mesh::geometry::Aabb;
-use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
+use ndda_fem::Table;
+use ndda_io::scene::{self, At, Contact, Integrator, Scene};
+use ndda_mesh::{BlockSet, Vec3};
 use ndda_solver::{
-    AutoStep, BodyKind, BodySetup, ConjugateGradients, Direct, EndContact, ForceSetup, GeneralizedAlpha,
-    LinearSolver, Mass, Midpoint, Newmark, Setup, SetupError, Simulation, TimeIntegrator, TractionSetup,
+    AutoStep, ConjugateGradients, Direct, EndContact, GeneralizedAlpha, LinearSolver, Mass, Midpoint,
+    Newmark, Setup, SetupError, Simulation, TimeIntegrator,
 };
 
 use crate::monitor::Monitor;
+use regions::{find, find_all};
+pub use rock::{Meshes, RockReport};
 
 /// A node is on a plane when it is nearer than this part of its block's size.
 const ON_PLANE: f64 = 1e-6;
-/// The paper's support springs: 10⁶ E per metre of reference length.
-const SPRING_PER_YOUNG_M: f64 = 1e6;
 
 /// Something in the scene that cannot be built, with its path in the scene.
 #[derive(Clone, Debug, PartialEq)]
@@ -50,80 +48,70 @@ impl Fault {
 /// # Errors
 /// All shapes that cannot be built, and all defects of their meshes.
 pub fn blocks(scene: &Scene, folder: &Path) -> Result<BlockSet, Vec<Fault>> {
-    let mut faults = Vec::new();
-    let mut meshes = Vec::new();
-    for (i, block) in scene.blocks.iter().enumerate() {
-        match mesh(&block.shape, folder) {
-            Ok(mesh) => {
-                meshes.push((block.name.clone(), mesh.placed(&turned(&block.turns), &vec3(block.at_m))))
-            }
-            Err(message) => faults.push(Fault::new(format!("blocks[{i}].shape"), message)),
-        }
-    }
-    if !faults.is_empty() {
-        return Err(faults);
-    }
-    BlockSet::new(meshes).map_err(|error| {
-        let index = |name: &str| scene.blocks.iter().position(|b| b.name == name).unwrap_or(0);
-        let fault =
-            |(name, problem): (String, _)| Fault::new(format!("blocks[{}].shape", index(&name)), problem);
+    BlockSet::new(meshes(scene, folder)?.0).map_err(|error| {
+        let fault = |(name, problem): (String, _)| Fault::new(path_of(scene, &name, ".shape"), problem);
         error.problems.into_iter().map(fault).collect()
     })
 }
 
-fn mesh(shape: &Shape, folder: &Path) -> Result<BlockMesh, String> {
-    match shape {
-        Shape::Box { size_m, cells, pattern } => {
-            let pattern = match pattern {
-                Pattern::Six => BoxPattern::Six,
-                Pattern::TwentyFour => BoxPattern::TwentyFour,
-            };
-            box_block(*size_m, *cells, pattern).map_err(|e| e.to_string())
+/// The meshes of a scene before they are checked, and what its rock was cut into.
+///
+/// # Errors
+/// All shapes that cannot be built.
+pub fn meshes(scene: &Scene, folder: &Path) -> Result<(Meshes, Vec<RockReport>), Vec<Fault>> {
+    let (mut meshes, mut reports, mut faults) = (Meshes::new(), Vec::new(), Vec::new());
+    for (i, block) in scene.blocks.iter().enumerate() {
+        match shapes::mesh(&block.shape, folder) {
+            Ok(mesh) => {
+                let placed = mesh.placed(&shapes::turned(&block.turns), &vec3(block.at_m));
+                meshes.push((block.name.clone(), placed));
+            }
+            Err(message) => faults.push(Fault::new(format!("blocks[{i}].shape"), message)),
         }
-        Shape::Prism { outline_m, height_m, cells } => {
-            prism(*outline_m, *height_m, *cells).map_err(|e| e.to_string())
+    }
+    for index in 0..scene.rock.len() {
+        match rock::cut_rock(scene, index) {
+            Ok((cut, report)) => {
+                meshes.extend(cut);
+                reports.push(report);
+            }
+            Err(found) => faults.extend(found),
         }
-        Shape::Mesh { file, body, unit_m } => {
-            let mut mesh = body_of(&folder.join(file), body.as_deref())?;
-            mesh.nodes.iter_mut().for_each(|x| *x *= *unit_m);
-            Ok(mesh)
+    }
+    if faults.is_empty() { Ok((meshes, reports)) } else { Err(faults) }
+}
+
+/// Where in the scene a block comes from.
+enum Source<'a> {
+    Block(&'a scene::Block),
+    Rock(&'a scene::Rock),
+}
+
+impl Source<'_> {
+    fn material(&self) -> &str {
+        match self {
+            Self::Block(block) => &block.material,
+            Self::Rock(rock) => &rock.material,
         }
     }
 }
 
-fn body_of(file: &Path, body: Option<&str>) -> Result<BlockMesh, String> {
-    let bodies = mesh_file::read(file).map_err(|e| e.to_string())?.bodies;
-    let names = bodies.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
-    match body {
-        None if bodies.len() > 1 => {
-            Err(format!("{} holds the bodies {names}: say which with `body`", file.display()))
+/// Where each block comes from; `None` for blocks that the scene does not name.
+fn sources<'a>(scene: &'a Scene, blocks: &BlockSet) -> Vec<Option<Source<'a>>> {
+    let rock = |name: &String| scene.rock.iter().find(|rock| rock.makes(name)).map(Source::Rock);
+    let written = scene.blocks.iter().map(|block| Some(Source::Block(block)));
+    written.chain(blocks.names.iter().skip(scene.blocks.len()).map(rock)).collect()
+}
+
+/// Path of what makes a block; `field` is that of an explicit one.
+fn path_of(scene: &Scene, block: &str, field: &str) -> String {
+    match scene.rock.iter().position(|rock| rock.makes(block)) {
+        Some(index) => format!("rock[{index}]"),
+        None => {
+            let index = scene.blocks.iter().position(|b| b.name == *block).unwrap_or(0);
+            format!("blocks[{index}]{field}")
         }
-        _ => bodies
-            .into_iter()
-            .find(|(name, _)| body.is_none_or(|wanted| wanted == name))
-            .map(|(_, mesh)| mesh)
-            .ok_or_else(|| {
-                format!("{} has no body `{}`; it has {names}", file.display(), body.unwrap_or(""))
-            }),
     }
-}
-
-/// The product of turns; whole quarters are exact.
-fn turned(turns: &[scene::Turn]) -> Mat3 {
-    turns.iter().fold(Mat3::identity(), |before, turn| rotation(turn) * before)
-}
-
-/// Rodrigues' formula, R = cos θ I + sin θ [n]× + (1 − cos θ) n nᵀ.
-fn rotation(turn: &scene::Turn) -> Mat3 {
-    let axis = vec3(turn.axis).normalize();
-    let (sin, cos) = match turn.angle_deg.rem_euclid(360.0) {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        angle => angle.to_radians().sin_cos(),
-    };
-    cos * Mat3::identity() + sin * axis.cross_matrix() + (1.0 - cos) * axis * axis.transpose()
 }
 
 fn vec3(v: [f64; 3]) -> Vec3 {
@@ -149,7 +137,7 @@ pub fn simulation_with(
     folder: &Path,
     contact: Option<Box<dyn ContactModel>>,
 ) -> Result<Simulation, Vec<Fault>> {
-    let bodies = bodies(scene, &blocks, folder)?;
+    let bodies = bodies::bodies(scene, &blocks, folder)?;
     let setup = Setup {
         blocks,
         bodies,
@@ -187,9 +175,8 @@ fn setup_fault(scene: &Scene, error: SetupError) -> Fault {
         SetupError::Factor { block, .. } | SetupError::Solve { block, .. } => (block, false),
         SetupError::Contact(_) => return Fault::new("contact", error),
     };
-    let support = scene.supports.iter().position(|s| supported && s.block == *block);
-    let index = scene.blocks.iter().position(|b| b.name == *block).unwrap_or(0);
-    let path = support.map_or(format!("blocks[{index}]"), |i| format!("supports[{i}]"));
+    let support = scene.supports.iter().position(|s| supported && scene::matches(&s.block, block));
+    let path = support.map_or(path_of(scene, block, ""), |i| format!("supports[{i}]"));
     Fault::new(path, error)
 }
 
@@ -204,7 +191,7 @@ pub fn contact_model(scene: &Scene, blocks: &BlockSet) -> Result<Option<Box<dyn 
             let potential = contact_potential(potential);
             potential.field(blocks).map_err(|e| Fault::new("contact.potential", e))?;
             let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);
-            if let Some(joints) = friction_table(scene, friction.as_ref(), joints, *memory) {
+            if let Some(joints) = friction_table(scene, blocks, friction.as_ref(), joints, *memory) {
                 model = model.with_joints(joints);
             }
             Ok(Some(Box::new(model)))
@@ -226,13 +213,15 @@ fn contact_potential(potential: &scene::Potential) -> Box<dyn ContactPotential> 
 /// Laws between materials; `None` where nothing rubs, so that no shear spring and no memory is made.
 fn friction_table(
     scene: &Scene,
+    blocks: &BlockSet,
     everywhere: Option<&scene::Friction>,
     special: &[scene::Joint],
     memory: scene::Memory,
 ) -> Option<Joints> {
     let rubs = |f: &&scene::Friction| f.friction_deg > 0.0 || f.cohesion_pa > 0.0 || f.tension_pa > 0.0;
     let index = |name: &str| scene.materials.iter().position(|m| m.name == name).unwrap_or(0) as u32;
-    let material = scene.blocks.iter().map(|block| index(&block.material)).collect();
+    let sources = sources(scene, blocks);
+    let material = sources.iter().map(|s| s.as_ref().map_or(0, |s| index(s.material()))).collect();
     let mut joints = Joints::between(material, scene.materials.len());
     let all = || 0..scene.materials.len() as u32;
     let pairs: Vec<(u32, u32)> = all().flat_map(|a| all().map(move |b| (a, b))).collect();
@@ -269,98 +258,6 @@ pub fn integrator(choice: &Integrator) -> Box<dyn TimeIntegrator> {
     }
 }
 
-fn bodies(scene: &Scene, blocks: &BlockSet, folder: &Path) -> Result<Vec<BodySetup>, Vec<Fault>> {
-    let mut faults = Vec::new();
-    let materials = materials(scene, &mut faults);
-    let mut bodies = Vec::new();
-    for block in &scene.blocks {
-        let used = scene.materials.iter().position(|m| m.name == block.material);
-        let Some(material) = used.and_then(|i| materials[i].clone()) else { continue };
-        bodies.push(BodySetup {
-            kind: match block.body {
-                scene::Body::Elastic => BodyKind::Elastic,
-                scene::Body::Affine => BodyKind::Affine,
-                scene::Body::Rigid => BodyKind::Rigid,
-                scene::Body::Fixed => BodyKind::Fixed,
-            },
-            material,
-            supports: Vec::new(),
-            initial_stress: initial_stress(scene, block, blocks),
-            tractions: Vec::new(),
-            forces: Vec::new(),
-            velocity_m_s: vec3(block.velocity_m_s),
-            spin_rad_s: vec3(block.spin_rad_s),
-        });
-    }
-    for (i, support) in scene.supports.iter().enumerate() {
-        match node_support(scene, blocks, folder, support) {
-            Ok((block, held)) => bodies[block.index()].supports.push(held),
-            Err(message) => faults.push(Fault::new(format!("supports[{i}].on"), message)),
-        }
-    }
-    for (i, traction) in scene.tractions.iter().enumerate() {
-        match loaded_triangles(blocks, traction) {
-            Ok((block, triangles)) => {
-                let (traction_pa, factor) = (vec3(traction.traction_pa), table(&traction.factor));
-                bodies[block.index()].tractions.push(TractionSetup { triangles, traction_pa, factor });
-            }
-            Err(message) => faults.push(Fault::new(format!("tractions[{i}].on"), message)),
-        }
-    }
-    for (i, force) in scene.forces.iter().enumerate() {
-        match nearest_node(blocks, force) {
-            Ok((block, node)) => {
-                let (force_n, factor) = (vec3(force.force_n), table(&force.factor));
-                bodies[block.index()].forces.push(ForceSetup { node, force_n, factor });
-            }
-            Err(message) => faults.push(Fault::new(format!("forces[{i}].at_m"), message)),
-        }
-    }
-    if faults.is_empty() { Ok(bodies) } else { Err(faults) }
-}
-
-/// The block's own initial stress, or that of the ground where the block can have one.
-fn initial_stress(scene: &Scene, block: &scene::Block, blocks: &BlockSet) -> Option<InitialStress> {
-    if let Some(own) = &block.initial_stress_pa {
-        return Some(InitialStress::uniform(voigt(own)));
-    }
-    let deforms = matches!(block.body, scene::Body::Elastic | scene::Body::Affine);
-    let ground = scene.in_situ.as_ref().filter(|_| deforms)?;
-    let mut gradient_pa_m = [Voigt::zeros(); 3];
-    for gradient in &ground.gradients {
-        let along = vec3(gradient.along).normalize();
-        for (sum, part) in gradient_pa_m.iter_mut().zip(along.iter()) {
-            *sum += *part * voigt(&gradient.stress_pa_m);
-        }
-    }
-    let at = vec3(ground.at_m) - blocks.origin_m;
-    Some(InitialStress { stress_pa: voigt(&ground.stress_pa), at, gradient_pa_m })
-}
-
-fn voigt(s: &scene::Stress) -> Voigt {
-    Voigt::new(s.xx, s.yy, s.zz, s.xy, s.yz, s.zx)
-}
-
-/// No table is a constant load.
-fn table(rows: &[scene::FactorRow]) -> Option<Table> {
-    let rows: Vec<_> = rows.iter().map(|row| (row.time_s, row.factor)).collect();
-    (!rows.is_empty()).then_some(Table { rows })
-}
-
-/// The node nearest to where a force acts, which must not be outside of the block's box by more than a tenth of it.
-fn nearest_node(blocks: &BlockSet, force: &scene::Force) -> Result<(BlockId, u32), String> {
-    let block = find(blocks, &force.block)?;
-    let place = vec3(force.at_m) - blocks.origin_m;
-    let nodes = &blocks.rest_position[blocks.nodes_of(block)];
-    let bounds = Aabb::around(nodes);
-    if !bounds.inflated(0.1 * bounds.diagonal()).touches(&Aabb { min: place, max: place }) {
-        return Err(format!("this point is not on block `{}`", force.block));
-    }
-    let distance = |i: usize| (nodes[i] - place).norm_squared();
-    let nearest = (0..nodes.len()).min_by(|&i, &j| distance(i).total_cmp(&distance(j)));
-    Ok((block, nearest.ok_or("the block has no nodes")? as u32))
-}
-
 fn linear_solver(solver: scene::Solver) -> Box<dyn LinearSolver> {
     match solver {
         scene::Solver::Cholesky => Box::new(Direct),
@@ -368,152 +265,39 @@ fn linear_solver(solver: scene::Solver) -> Box<dyn LinearSolver> {
     }
 }
 
-fn materials(scene: &Scene, faults: &mut Vec<Fault>) -> Vec<Option<Arc<dyn Material>>> {
-    let mut build = |(i, m): (usize, &scene::Material)| {
-        let built = material(m);
-        built.map_err(|error| faults.push(Fault::new(format!("materials[{i}]"), error))).ok()
-    };
-    scene.materials.iter().enumerate().map(&mut build).collect()
-}
-
-fn material(m: &scene::Material) -> Result<Arc<dyn Material>, MaterialError> {
-    let elastic = elastic(m)?;
-    let scene::Damping { mass_per_s, stiffness_s } = m.damping;
-    if (mass_per_s, stiffness_s) == (0.0, 0.0) {
-        return Ok(elastic);
-    }
-    Ok(Arc::new(Damped { material: elastic, damping: Damping { mass_per_s, stiffness_s } }))
-}
-
-fn elastic(m: &scene::Material) -> Result<Arc<dyn Material>, MaterialError> {
-    let isotropic = LinearElastic::new(m.young_pa, m.poisson, m.density_kg_m3)?;
-    let Some(bedding) = &m.bedding else { return Ok(Arc::new(isotropic)) };
-    let bedding = Bedding {
-        normal: vec3(bedding.normal),
-        young_across_pa: bedding.young_across_pa,
-        poisson_across: bedding.poisson_across,
-        shear_across_pa: bedding.shear_across_pa,
-    };
-    Ok(Arc::new(TransverselyIsotropic::new(&isotropic, &bedding)?))
-}
-
-fn node_support(
-    scene: &Scene,
-    blocks: &BlockSet,
-    folder: &Path,
-    support: &scene::Support,
-) -> Result<(BlockId, NodeSupport), String> {
-    let block = find(blocks, &support.block)?;
-    let nodes = region_nodes(blocks, block, &support.on)?;
-    let hold = match (&support.hold, &support.on) {
-        (Hold::Fixed, _) => FemHold::Fixed,
-        (Hold::Direction(n), _) => FemHold::Along(vec3(*n)),
-        (Hold::Normal, Region::Plane { normal, .. }) => FemHold::Along(vec3(*normal)),
-        (Hold::Normal, _) => return Err("`Normal` needs a region that is a plane; use `Direction(…)`".into()),
-        (Hold::Motion(rows), _) => {
-            let rows = rows.iter().map(|row| (row.time_s, vec3(row.displacement_m))).collect();
-            FemHold::Motion(Motion::Rows(rows))
-        }
-        (Hold::Acceleration { file, direction, factor }, _) => {
-            let rows = record::read(&folder.join(file)).map_err(|e| e.to_string())?;
-            let direction = *factor * vec3(*direction).normalize();
-            FemHold::Motion(Motion::Record(Record::new(direction, &rows)))
-        }
-    };
-    let young_pa = || {
-        let material = &scene.blocks[block.index()].material;
-        scene.materials.iter().find(|m| m.name == *material).map_or(0.0, |m| m.young_pa)
-    };
-    let spring_n_m = match support.by {
-        By::Elimination => None,
-        By::Springs { stiffness_n_m } => {
-            Some(stiffness_n_m.unwrap_or_else(|| SPRING_PER_YOUNG_M * young_pa()))
-        }
-    };
-    Ok((block, NodeSupport { nodes, hold, spring_n_m }))
-}
-
-fn find(blocks: &BlockSet, name: &str) -> Result<BlockId, String> {
-    blocks.find(name).ok_or_else(|| format!("there is no block `{name}`"))
-}
-
-/// Nodes of a region, counted from the block's first, ascending.
-fn region_nodes(blocks: &BlockSet, block: BlockId, region: &Region) -> Result<Vec<u32>, String> {
-    let range = blocks.nodes_of(block);
-    let name = &blocks.names[block.index()];
-    let nodes: Vec<u32> = match region {
-        Region::All => (0..range.len() as u32).collect(),
-        Region::Set(set) => {
-            let sets = &blocks.node_sets[block.index()];
-            let known = sets.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-            let found =
-                sets.get(set).ok_or_else(|| format!("block `{name}` has no set `{set}`; it has {known}"))?;
-            found.iter().map(|n| n.0 - range.start as u32).collect()
-        }
-        Region::Plane { point_m, normal } => {
-            let size = Aabb::around(&blocks.rest_position[range.clone()]).diagonal();
-            let (point, normal) = (vec3(*point_m) - blocks.origin_m, vec3(*normal).normalize());
-            let near = |n: &u32| {
-                let x = blocks.rest_position[range.start + *n as usize];
-                (x - point).dot(&normal).abs() <= ON_PLANE * size
-            };
-            boundary_nodes(blocks, block).into_iter().filter(near).collect()
-        }
-    };
-    if nodes.is_empty() {
-        return Err(format!("no node of block `{name}` is in this region: check its place"));
-    }
-    Ok(nodes)
-}
-
-fn boundary_nodes(blocks: &BlockSet, block: BlockId) -> Vec<u32> {
-    let first = blocks.nodes_of(block).start as u32;
-    let triangles = &blocks.triangles[blocks.triangles_of(block)];
-    let mut nodes: Vec<u32> = triangles.iter().flatten().map(|n| n.0 - first).collect();
-    nodes.sort_unstable();
-    nodes.dedup();
-    nodes
-}
-
-type Loaded = (BlockId, Vec<[u32; 3]>);
-
-fn loaded_triangles(blocks: &BlockSet, traction: &scene::Traction) -> Result<Loaded, String> {
-    let block = find(blocks, &traction.block)?;
-    let nodes = region_nodes(blocks, block, &traction.on)?;
-    let first = blocks.nodes_of(block).start as u32;
-    let local = blocks.triangles[blocks.triangles_of(block)].iter().map(|t| t.map(|n| n.0 - first));
-    let inside = |t: &[u32; 3]| t.iter().all(|n| nodes.binary_search(n).is_ok());
-    let triangles: Vec<[u32; 3]> = local.filter(inside).collect();
-    if triangles.is_empty() {
-        return Err(format!("no boundary triangle of block `{}` lies in this region", traction.block));
-    }
-    Ok((block, triangles))
-}
-
 /// The monitors of a scene.
 ///
 /// # Errors
 /// All monitors whose point is outside their block.
 pub fn monitors(scene: &Scene, simulation: &Simulation) -> Result<Vec<Monitor>, Vec<Fault>> {
-    let blocks = simulation.blocks();
     let mut faults = Vec::new();
     let mut monitors = Vec::new();
     for (i, monitor) in scene.monitors.iter().enumerate() {
         let path = || format!("monitors[{i}].at");
-        let built = match (find(blocks, &monitor.block), &monitor.at) {
-            (Err(message), _) => Err(message),
-            (Ok(block), At::Centre) => Ok(Monitor::centre(&monitor.name, simulation, block)),
-            (Ok(block), At::Point(place)) => {
-                let point = Monitor::point(&monitor.name, blocks, block, &(vec3(*place) - blocks.origin_m));
-                point.ok_or_else(|| format!("this point is outside block `{}` at the start", monitor.block))
-            }
-        };
+        let built = one_monitor(monitor, simulation);
         match built {
             Ok(monitor) => monitors.push(monitor),
             Err(message) => faults.push(Fault::new(path(), message)),
         }
     }
     if faults.is_empty() { Ok(monitors) } else { Err(faults) }
+}
+
+fn one_monitor(monitor: &scene::Monitor, simulation: &Simulation) -> Result<Monitor, String> {
+    let blocks = simulation.blocks();
+    match &monitor.at {
+        At::Centre => Ok(Monitor::centre(&monitor.name, simulation, find(blocks, &monitor.block)?)),
+        At::Point(place) => {
+            let block = find(blocks, &monitor.block)?;
+            let point = Monitor::point(&monitor.name, blocks, block, &(vec3(*place) - blocks.origin_m));
+            point.ok_or_else(|| format!("this point is outside block `{}` at the start", monitor.block))
+        }
+        At::Largest(direction) => {
+            let found = find_all(blocks, &monitor.block)?;
+            let nodes = found.into_iter().map(|block| blocks.nodes_of(block)).collect();
+            Ok(Monitor::largest(&monitor.name, nodes, vec3(*direction).normalize()))
+        }
+    }
 }
 
 /// Steps of a run: its end rounded to whole steps, at least one.

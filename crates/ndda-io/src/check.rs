@@ -1,12 +1,15 @@
 //! What the types of a scene cannot say: ranges, names, and what fits together. All of it in one pass.
 
+mod rock;
+mod shape;
+
 use std::path::Path;
 
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::read::suggest;
 use crate::scene::{
-    Body, By, Contact, ContactAt, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene,
-    Shape, Solver, Step,
+    At, Body, By, Contact, ContactAt, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene,
+    Solver, Step, matches,
 };
 
 /// More steps than this are a slip of the keyboard.
@@ -23,6 +26,7 @@ pub fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> {
     check.numbers("gravity_m_s2", &scene.gravity_m_s2);
     check.materials();
     check.blocks(folder);
+    check.rock();
     check.supports(folder);
     check.loads();
     check.contact();
@@ -81,6 +85,23 @@ impl Check<'_> {
     fn known(&mut self, path: String, what: &str, name: &str, known: &[&str]) {
         if !known.contains(&name) {
             self.error(path, format!("there is no {what} `{name}`"), suggest(name, known));
+        }
+    }
+
+    /// The name of one block; those of a rock are looked for once it is cut.
+    fn known_block(&mut self, path: String, name: &str) {
+        if !self.scene.rock.iter().any(|rock| rock.makes(name)) {
+            let blocks: Vec<&str> = self.scene.blocks.iter().map(|b| b.name.as_str()).collect();
+            self.known(path, "block", name, &blocks);
+        }
+    }
+
+    /// The name of a block, or a pattern that stands for some.
+    fn known_blocks(&mut self, path: String, pattern: &str) {
+        if !pattern.contains('*') {
+            self.known_block(path, pattern);
+        } else if self.scene.rock.is_empty() && !self.scene.blocks.iter().any(|b| matches(pattern, &b.name)) {
+            self.error(path, format!("no block is named `{pattern}`"), "`*` stands for anything");
         }
     }
 
@@ -228,7 +249,8 @@ impl Check<'_> {
                     self.error(path("bedding.normal"), "the normal of the beds has no length", help);
                 }
             }
-            if !scene.blocks.iter().any(|b| b.material == material.name) {
+            let of_rock = scene.rock.iter().any(|rock| rock.material == material.name);
+            if !of_rock && !scene.blocks.iter().any(|b| b.material == material.name) {
                 self.warn(
                     path("name"),
                     format!("no block is made of `{}`", material.name),
@@ -240,8 +262,8 @@ impl Check<'_> {
 
     fn blocks(&mut self, folder: Option<&Path>) {
         let scene = self.scene;
-        if scene.blocks.is_empty() {
-            self.error("blocks", "there is no block", "a scene has at least one");
+        if scene.blocks.is_empty() && scene.rock.is_empty() {
+            self.error("blocks", "there is no block", "a scene has `blocks` or `rock`");
         }
         self.names("blocks", &scene.blocks.iter().map(|b| b.name.as_str()).collect::<Vec<_>>());
         let materials: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
@@ -267,33 +289,6 @@ impl Check<'_> {
                 self.error(path("velocity_m_s"), "a fixed block does not start with a velocity", help);
             }
             self.shape(&path("shape"), &block.shape, folder);
-        }
-    }
-
-    fn shape(&mut self, path: &str, shape: &Shape, folder: Option<&Path>) {
-        match shape {
-            Shape::Box { size_m, cells, .. } => {
-                for (i, size) in size_m.iter().enumerate() {
-                    self.positive(format!("{path}.size_m[{i}]"), *size, "m");
-                }
-                self.cells(path, cells);
-            }
-            Shape::Prism { outline_m: [a, b, c], height_m, cells } => {
-                self.positive(format!("{path}.height_m"), *height_m, "m");
-                let twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-                if twice_area < 0.0 {
-                    let help = "swap two corners";
-                    self.error(format!("{path}.outline_m"), "the corners run clockwise", help);
-                } else if twice_area.is_nan() || twice_area == 0.0 {
-                    let help = "give three corners that span an area";
-                    self.error(format!("{path}.outline_m"), "the triangle has no area", help);
-                }
-                self.cells(path, cells);
-            }
-            Shape::Mesh { file, unit_m, .. } => {
-                self.positive(format!("{path}.unit_m"), *unit_m, "m");
-                self.file(format!("{path}.file"), file, folder);
-            }
         }
     }
 
@@ -325,10 +320,9 @@ impl Check<'_> {
 
     fn supports(&mut self, folder: Option<&Path>) {
         let scene = self.scene;
-        let blocks: Vec<&str> = scene.blocks.iter().map(|b| b.name.as_str()).collect();
         for (i, support) in scene.supports.iter().enumerate() {
             let path = |field: &str| format!("supports[{i}].{field}");
-            self.known(path("block"), "block", &support.block, &blocks);
+            self.known_blocks(path("block"), &support.block);
             self.region(&path("on"), &support.on);
             match &support.hold {
                 Hold::Normal if !matches!(support.on, Region::Plane { .. }) => {
@@ -383,7 +377,6 @@ impl Check<'_> {
                 self.direction(format!("in_situ.gradients[{i}].along"), &gradient.along);
             }
         }
-        let blocks: Vec<&str> = scene.blocks.iter().map(|b| b.name.as_str()).collect();
         if !(scene.gravity_ramp_s >= 0.0 && scene.gravity_ramp_s.is_finite()) {
             let message = format!("{} s: must not be negative", scene.gravity_ramp_s);
             self.error("gravity_ramp_s", message, "0 applies gravity suddenly");
@@ -405,13 +398,13 @@ impl Check<'_> {
             }
         }
         for (i, force) in scene.forces.iter().enumerate() {
-            self.known(format!("forces[{i}].block"), "block", &force.block, &blocks);
+            self.known_block(format!("forces[{i}].block"), &force.block);
             self.numbers(&format!("forces[{i}].at_m"), &force.at_m);
             self.numbers(&format!("forces[{i}].force_n"), &force.force_n);
             self.factor(&format!("forces[{i}].factor"), &force.factor);
         }
         for (i, traction) in scene.tractions.iter().enumerate() {
-            self.known(format!("tractions[{i}].block"), "block", &traction.block, &blocks);
+            self.known_blocks(format!("tractions[{i}].block"), &traction.block);
             self.region(&format!("tractions[{i}].on"), &traction.on);
             self.numbers(&format!("tractions[{i}].traction_pa"), &traction.traction_pa);
             self.factor(&format!("tractions[{i}].factor"), &traction.factor);
@@ -479,7 +472,7 @@ impl Check<'_> {
     }
 
     fn contact(&mut self) {
-        let several = self.scene.blocks.len() > 1;
+        let several = self.scene.blocks.len() > 1 || !self.scene.rock.is_empty();
         match &self.scene.contact {
             None if several => {
                 let help = "write `contact: Potential(penalty_pa: …)` or `contact: Off`";
@@ -503,18 +496,24 @@ impl Check<'_> {
     fn monitors(&mut self) {
         let scene = self.scene;
         self.names("monitors", &scene.monitors.iter().map(|m| m.name.as_str()).collect::<Vec<_>>());
-        let blocks: Vec<&str> = scene.blocks.iter().map(|b| b.name.as_str()).collect();
         for (i, monitor) in scene.monitors.iter().enumerate() {
-            self.known(format!("monitors[{i}].block"), "block", &monitor.block, &blocks);
-            if let crate::scene::At::Point(place) = &monitor.at {
-                self.numbers(&format!("monitors[{i}].at"), place);
+            let path = format!("monitors[{i}].block");
+            match &monitor.at {
+                At::Largest(direction) => {
+                    self.known_blocks(path, &monitor.block);
+                    self.direction(format!("monitors[{i}].at"), direction);
+                }
+                At::Point(place) => {
+                    self.known_block(path, &monitor.block);
+                    self.numbers(&format!("monitors[{i}].at"), place);
+                }
+                At::Centre => self.known_block(path, &monitor.block),
             }
         }
     }
 
     fn reference(&mut self) {
         let scene = self.scene;
-        let blocks: Vec<&str> = scene.blocks.iter().map(|b| b.name.as_str()).collect();
         let monitors: Vec<&str> = scene.monitors.iter().map(|m| m.name.as_str()).collect();
         let path = |field: &str| format!("reference.{field}");
         match &scene.reference {
@@ -549,8 +548,8 @@ impl Check<'_> {
                 self.after(*after_s);
             }
             Some(Reference::Collision { first, second, along, after_s }) => {
-                self.known(path("first"), "block", first, &blocks);
-                self.known(path("second"), "block", second, &blocks);
+                self.known_block(path("first"), first);
+                self.known_block(path("second"), second);
                 self.direction(path("along"), along);
                 self.after(*after_s);
             }
@@ -558,7 +557,7 @@ impl Check<'_> {
                 self.known(path("monitor"), "monitor", monitor, &monitors);
                 self.after(*after_s);
             }
-            Some(Reference::FreeSpin { block }) => self.known(path("block"), "block", block, &blocks),
+            Some(Reference::FreeSpin { block }) => self.known_block(path("block"), block),
             None => {}
         }
     }

@@ -1,6 +1,13 @@
 //! The scene: everything a run needs, as a person writes it in RON. Every quantity is SI with its unit in the key.
 
+mod rock;
+mod shape;
+
 use serde::{Deserialize, Serialize};
+
+pub use rock::{Axis, DiscRule, Discontinuity, Domain, OrientationScatter};
+pub use rock::{Rock, SpacingScatter, Voronoi, Whereabouts};
+pub use shape::{Fill, Pattern, Shape};
 
 /// A complete scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,8 +31,12 @@ pub struct Scene {
     pub settle: Option<Settle>,
     /// Materials, referred to by name.
     pub materials: Vec<Material>,
-    /// Blocks, in the order of the output.
+    /// Blocks, in the order of the output. Default: none.
+    #[serde(default)]
     pub blocks: Vec<Block>,
+    /// Rock that is cut into more blocks, which come after `blocks`. Default: none.
+    #[serde(default)]
+    pub rock: Vec<Rock>,
     /// Where blocks are held or moved. Default: nowhere.
     #[serde(default)]
     pub supports: Vec<Support>,
@@ -329,53 +340,6 @@ pub struct Stress {
     pub zx: f64,
 }
 
-/// Shape and mesh of a block.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum Shape {
-    /// A box with one corner at the origin.
-    Box {
-        /// Edge lengths [m].
-        size_m: [f64; 3],
-        /// Cells along each edge.
-        cells: [u32; 3],
-        /// How a cell is cut into tetrahedra. Default: `Six`.
-        #[serde(default)]
-        pattern: Pattern,
-    },
-    /// A triangle in the x-y plane extruded along z.
-    Prism {
-        /// Corners of the triangle, counter-clockwise [m].
-        outline_m: [[f64; 2]; 3],
-        /// Length of the extrusion [m].
-        height_m: f64,
-        /// Cells along each edge of the triangle, and along the height.
-        cells: [u32; 2],
-    },
-    /// A tetrahedral mesh in a file: Gmsh `.msh`, TetGen `.ele`, VTK `.vtu` and `.vtk`, Abaqus `.inp`; or a geometry,
-    /// `.geo` or `.step`, that an installed Gmsh meshes.
-    Mesh {
-        /// Path, relative to the scene file.
-        file: String,
-        /// Body of the file that is this block; may be left out when the file holds one body. Default: none.
-        #[serde(default)]
-        body: Option<String>,
-        /// Metres per unit of the file. Default: 1.
-        #[serde(default = "one")]
-        unit_m: f64,
-    },
-}
-
-/// How a box cell is cut into tetrahedra.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub enum Pattern {
-    /// Six tetrahedra around one diagonal: fewest elements.
-    #[default]
-    Six,
-    /// Twenty-four around the centre: as symmetric as the cell.
-    TwentyFour,
-}
-
 /// Part of a block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -397,7 +361,7 @@ pub enum Region {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Support {
-    /// Name of the block.
+    /// Name of the block; in `base_*` the star stands for anything, and all such blocks with a part in the region count.
     pub block: String,
     /// Which part of it.
     pub on: Region,
@@ -461,7 +425,7 @@ pub enum By {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Traction {
-    /// Name of the block.
+    /// Name of the block, or of many as in `supports`.
     pub block: String,
     /// Which part of its surface: triangles whose three nodes are all in the region.
     pub on: Region,
@@ -598,7 +562,7 @@ fn two() -> f64 {
 pub struct Monitor {
     /// Name, unique in the scene.
     pub name: String,
-    /// Name of the block.
+    /// Name of the block; with `Largest`, of many blocks as in `supports`.
     pub block: String,
     /// Where on the block. Default: `Centre`.
     #[serde(default)]
@@ -614,6 +578,15 @@ pub enum At {
     Centre,
     /// The material point that is here at the start [m].
     Point([f64; 3]),
+    /// Whichever node has moved farthest in a direction: another one at any time.
+    Largest([f64; 3]),
+}
+
+/// Whether a name is that of a pattern, in which `*` stands for anything.
+pub fn matches(pattern: &str, name: &str) -> bool {
+    let Some((head, tail)) = pattern.split_once('*') else { return pattern == name };
+    let Some(rest) = name.strip_prefix(head) else { return false };
+    rest.char_indices().map(|(i, _)| i).chain([rest.len()]).any(|i| matches(tail, &rest[i..]))
 }
 
 /// What is written and how often.

@@ -1,0 +1,140 @@
+//! `ndda mesh`: the blocks of a scene or of a mesh file, counted, measured and drawn without running anything.
+
+#[cfg(feature = "plots")]
+mod plot;
+mod report;
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use ndda_io::read::load;
+use ndda_io::vtu::{self, Frame};
+use ndda_io::{OutputFolder, WriteError, mesh_file};
+use ndda_mesh::{BlockSet, MeshError, Vec3, repair};
+
+use crate::args::{Fix, MeshArgs};
+use crate::console::{colour, complain, say};
+use crate::exit;
+use crate::wiring::{self, Meshes, RockReport};
+use report::MeshReport;
+
+/// Blocks before they are checked.
+struct Input {
+    meshes: Meshes,
+    rock: Vec<RockReport>,
+    fixes: Vec<String>,
+}
+
+/// Runs `ndda mesh`; returns the exit code.
+pub fn mesh(args: &MeshArgs) -> u8 {
+    let input = if is_scene(&args.input) { from_scene(args) } else { from_file(args) };
+    let input = match input {
+        Ok(input) => input,
+        Err(message) => {
+            complain(&message);
+            return exit::BAD_INPUT;
+        }
+    };
+    let measured = MeshReport::new(&input.meshes, input.rock, input.fixes);
+    match BlockSet::new(input.meshes) {
+        Ok(blocks) => finish(args, &measured, &blocks),
+        Err(error) => {
+            say(&if args.json { measured.json() } else { measured.to_string() });
+            complain(&refusal(&args.input, &error));
+            exit::BAD_INPUT
+        }
+    }
+}
+
+fn is_scene(path: &Path) -> bool {
+    path.extension().is_none_or(|ending| ending.eq_ignore_ascii_case("ron"))
+}
+
+/// All defects, and what may cure them.
+fn refusal(input: &Path, error: &MeshError) -> String {
+    let mut text = format!("error: {} is not fit to run:", input.display());
+    for (block, problem) in &error.problems {
+        let _ = write!(text, "\n  {block}: {problem}");
+    }
+    text + "\n  --fix orient turns inverted tetrahedra round, --fix merge joins coincident nodes"
+}
+
+fn from_scene(args: &MeshArgs) -> Result<Input, String> {
+    if !args.fix.is_empty() {
+        return Err("error: --fix is for mesh files: correct a scene where it is written".into());
+    }
+    let loaded = load(&args.input, &args.overrides).map_err(|errors| errors.render(colour()))?;
+    let folder = args.input.parent().unwrap_or(Path::new("."));
+    let (meshes, rock) = wiring::meshes(&loaded.scene, folder).map_err(|faults| {
+        let diagnostics = faults.into_iter().map(|f| loaded.diagnose(&f.path, f.message)).collect();
+        loaded.errors(diagnostics).render(colour())
+    })?;
+    Ok(Input { meshes, rock, fixes: Vec::new() })
+}
+
+fn from_file(args: &MeshArgs) -> Result<Input, String> {
+    if !args.overrides.is_empty() {
+        return Err("error: --set is for scenes".into());
+    }
+    let mut meshes = mesh_file::read(&args.input).map_err(|e| format!("error: {e}"))?.bodies;
+    let mut fixes = Vec::new();
+    for fix in &args.fix {
+        for (name, mesh) in &mut meshes {
+            let done = match fix {
+                Fix::Orient => format!("{} tetrahedra turned round", repair::orient(mesh).flipped.len()),
+                Fix::Merge => {
+                    let merged =
+                        repair::merge(mesh, args.within).map_err(|e| format!("error: body `{name}`: {e}"))?;
+                    let (nodes, tets) = (merged.nodes.len(), merged.dropped_tets.len());
+                    format!(
+                        "{nodes} nodes merged within {:e} m, {tets} flat tetrahedra dropped",
+                        merged.tolerance_m
+                    )
+                }
+            };
+            fixes.push(format!("{name}: {done}"));
+        }
+    }
+    Ok(Input { meshes, rock: Vec::new(), fixes })
+}
+
+fn finish(args: &MeshArgs, measured: &MeshReport, blocks: &BlockSet) -> u8 {
+    let folder = args.out.clone().unwrap_or_else(|| {
+        let stem = args.input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned());
+        PathBuf::from("out").join(stem + "_mesh")
+    });
+    match write(&folder, args.force, measured, blocks) {
+        Ok(files) => {
+            if args.json {
+                say(&measured.json());
+            } else {
+                say(&format!("{}: no errors\n{measured}{files}", args.input.display()));
+            }
+            exit::DONE
+        }
+        Err(error) => {
+            complain(&format!("error: {error}"));
+            exit::INPUT_OUTPUT
+        }
+    }
+}
+
+/// Writes the picture and the blocks; returns a line that says where.
+fn write(folder: &Path, force: bool, measured: &MeshReport, blocks: &BlockSet) -> Result<String, WriteError> {
+    let folder = OutputFolder::create(folder, force)?;
+    let folder = folder.path();
+    let still = vec![Vec3::zeros(); blocks.rest_position.len()];
+    let frame = Frame {
+        blocks,
+        position: &blocks.rest_position,
+        displacement: &still,
+        velocity: &still,
+        stress_pa: &vec![[0.0; 6]; blocks.tets.len()],
+    };
+    vtu::write(&folder.join("blocks.vtu"), &frame)?;
+    ndda_io::atomic::write(&folder.join("mesh.json"), measured.json().as_bytes())?;
+    #[cfg(feature = "plots")]
+    ndda_io::atomic::write(&folder.join("mesh.svg"), plot::svg(measured).as_bytes())?;
+    let picture = if cfg!(feature = "plots") { ", mesh.svg (histograms)" } else { "" };
+    Ok(format!("{}: blocks.vtu (open it in ParaView), mesh.json{picture}", folder.display()))
+}

@@ -1,0 +1,69 @@
+//! `ndda mesh` measures scenes and files, and repairs files when asked to.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use ndda_cli::args::{Fix, MeshArgs};
+use ndda_cli::{exit, mesh};
+use serde_json::Value;
+
+const SCENE: &str = "(
+    title: \"t\", time: (step_s: 1e-4, end_s: 0.01), contact: Off,
+    materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2650)],
+    rock: [(material: \"rock\", domain: Box(min_m: (0, 0, 0), max_m: (2, 2, 2)),
+            joints: [Plane(name: \"j\", dip_deg: 0, dip_direction_deg: 0, point_m: (0, 0, 0.5))])],
+)";
+
+/// Two tetrahedra over one face; the second is inverted, and has its own copies of the nodes of the face.
+const GMSH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0 0 0\n6 1 0 0\n\
+                    7 0 1 0\n8 0 0 -1\n$EndNodes\n$Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 5 6 7 8\n$EndElements\n";
+
+fn args(input: PathBuf, fix: &[Fix]) -> MeshArgs {
+    let out = Some(input.with_extension("out"));
+    MeshArgs { input, fix: fix.to_vec(), within: 1e-9, out, force: true, json: true, overrides: Vec::new() }
+}
+
+fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
+    let path = folder.join(name);
+    fs::write(&path, text).unwrap();
+    path
+}
+
+#[test]
+fn a_scene_is_measured_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = written(folder.path(), "s.ron", SCENE);
+    assert_eq!(mesh::mesh(&args(scene, &[])), exit::DONE);
+    let out = folder.path().join("s.out");
+    let report: Value = serde_json::from_str(&fs::read_to_string(out.join("mesh.json")).unwrap()).unwrap();
+    assert_eq!(report["blocks"], 2);
+    assert!((report["volume_m3"].as_f64().unwrap() - 8.0).abs() < 1e-12);
+    assert_eq!(report["block_size"]["smallest_m3"][1], "rock_0001");
+    assert_eq!(report["rock"][0]["blocks"], 2);
+    assert!(fs::metadata(out.join("blocks.vtu")).unwrap().len() > 0);
+    if cfg!(feature = "plots") {
+        let picture = fs::read_to_string(out.join("mesh.svg")).unwrap();
+        assert!(picture.starts_with("<svg") && picture.contains("volume of blocks"), "{picture}");
+    }
+}
+
+#[test]
+fn a_file_is_repaired_only_when_asked() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = written(folder.path(), "f.msh", GMSH);
+    assert_eq!(mesh::mesh(&args(file.clone(), &[])), exit::BAD_INPUT);
+    assert_eq!(mesh::mesh(&args(file.clone(), &[Fix::Orient, Fix::Merge])), exit::DONE);
+    let text = fs::read_to_string(folder.path().join("f.out/mesh.json")).unwrap();
+    let report: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!((&report["nodes"], &report["tets"]), (&Value::from(5), &Value::from(2)));
+    assert_eq!(report["fixes"].as_array().unwrap().len(), 2);
+    assert_eq!(fs::read_to_string(&file).unwrap(), GMSH);
+}
+
+#[test]
+fn a_scene_is_not_repaired_and_a_missing_file_is_no_panic() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = written(folder.path(), "s.ron", SCENE);
+    assert_eq!(mesh::mesh(&args(scene, &[Fix::Orient])), exit::BAD_INPUT);
+    assert_eq!(mesh::mesh(&args(folder.path().join("no.msh"), &[])), exit::BAD_INPUT);
+}

@@ -1,0 +1,251 @@
+//! Rock that is cut into blocks.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Body, Fill, one};
+
+/// A piece of rock that is cut into blocks. They are named `rock_0001`, `rock_0002`, … after its name.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rock {
+    /// Name, unique in the scene, that the names of the blocks begin with. Default: `rock`.
+    #[serde(default = "rock")]
+    pub name: String,
+    /// Name of its material.
+    pub material: String,
+    /// The rock before it is cut.
+    pub domain: Domain,
+    /// What cuts it, in this order: later ones meet smaller blocks. Default: nothing.
+    #[serde(default)]
+    pub joints: Vec<Discontinuity>,
+    /// Cuts it into Voronoi cells instead. Default: none.
+    #[serde(default)]
+    pub voronoi: Option<Voronoi>,
+    /// Seed of scatter, persistence and cells: the same seed gives the same blocks. Default: 0.
+    #[serde(default)]
+    pub seed: u64,
+    /// Blocks thinner than this are left out [m]. Default: 0.
+    #[serde(default)]
+    pub sliver_width_m: f64,
+    /// How blocks are filled with tetrahedra. Default: `Fewest`.
+    #[serde(default)]
+    pub fill: Fill,
+    /// How blocks may move. Default: `Elastic`.
+    #[serde(default)]
+    pub body: Body,
+    /// Blocks that are taken out: an excavation. Default: none.
+    #[serde(default)]
+    pub removed: Vec<Whereabouts>,
+    /// Blocks that stay where they are, as `body: Fixed`. Default: none.
+    #[serde(default)]
+    pub fixed: Vec<Whereabouts>,
+}
+
+/// Rock before it is cut. Its faces give the blocks their node sets, as joints do.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Domain {
+    /// A box; faces `x_min` to `z_max`.
+    Box {
+        /// Lowest corner [m].
+        min_m: [f64; 3],
+        /// Highest corner [m].
+        max_m: [f64; 3],
+    },
+    /// An outline drawn along an axis; faces `side_0` from corner 0 to 1, …, `start` and `end`.
+    Column {
+        /// Corners in order, either way round, convex or not [m]: (y, z) along `X`, (x, z) along `Y`, (x, y) along `Z`.
+        outline_m: Vec<[f64; 2]>,
+        /// The axis. Default: `Z`.
+        #[serde(default)]
+        axis: Axis,
+        /// Where it starts on the axis [m].
+        start_m: f64,
+        /// Where it ends [m].
+        end_m: f64,
+    },
+    /// A body under flat faces; `face_0`, `face_1`, ….
+    Polyhedron {
+        /// Corners [m].
+        corners_m: Vec<[f64; 3]>,
+        /// Corners of each face, counter-clockwise seen from outside, counted from 0.
+        faces: Vec<Vec<u32>>,
+    },
+    /// Rock under a grid of heights; faces `terrain`, `base` and `side`.
+    Terrain {
+        /// Place of the first height (x, y) [m].
+        origin_m: [f64; 2],
+        /// Distance of heights along x and y [m].
+        step_m: [f64; 2],
+        /// Rows of heights along x, one row after the other along y [m].
+        heights_m: Vec<Vec<f64>>,
+        /// Height of the base [m].
+        base_m: f64,
+    },
+}
+
+/// A coordinate axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum Axis {
+    /// East.
+    X,
+    /// North.
+    Y,
+    /// Up.
+    #[default]
+    Z,
+}
+
+/// Something that cuts rock. x is east, y north, z up; dip is below horizontal, its direction clockwise from north.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Discontinuity {
+    /// Planes of one orientation, one spacing apart.
+    Set {
+        /// Name of the node sets on it.
+        name: String,
+        /// Dip, 0 to 90 [°].
+        dip_deg: f64,
+        /// Dip direction [°].
+        dip_direction_deg: f64,
+        /// Mean distance of planes along their normal [m].
+        spacing_m: f64,
+        /// A point of one of the planes [m]. Default: (0, 0, 0).
+        #[serde(default)]
+        origin_m: [f64; 3],
+        /// Probability that a plane cuts a block that it crosses. Default: 1.
+        #[serde(default = "one")]
+        persistence: f64,
+        /// Scatter of orientations. Default: none.
+        #[serde(default)]
+        orientation_scatter: OrientationScatter,
+        /// Scatter of distances. Default: none.
+        #[serde(default)]
+        spacing_scatter: SpacingScatter,
+    },
+    /// One plane through all of the rock.
+    Plane {
+        /// Name of the node sets on it.
+        name: String,
+        /// Dip, 0 to 90 [°].
+        dip_deg: f64,
+        /// Dip direction [°].
+        dip_direction_deg: f64,
+        /// A point of it [m].
+        point_m: [f64; 3],
+    },
+    /// A disc, which cuts blocks through and through.
+    Disc {
+        /// Name of the node sets on it.
+        name: String,
+        /// Dip, 0 to 90 [°].
+        dip_deg: f64,
+        /// Dip direction [°].
+        dip_direction_deg: f64,
+        /// Centre [m].
+        center_m: [f64; 3],
+        /// Radius [m].
+        radius_m: f64,
+        /// Which blocks it cuts. Default: `Meets`.
+        #[serde(default)]
+        rule: DiscRule,
+    },
+}
+
+/// How planes of a set scatter about their mean orientation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum OrientationScatter {
+    /// All planes are parallel.
+    #[default]
+    None,
+    /// Poles tilt by a normally distributed angle about each of two axes.
+    Normal {
+        /// Standard deviation [°].
+        deviation_deg: f64,
+    },
+    /// Fisher's distribution.
+    Fisher {
+        /// Concentration κ; 100 scatters by about 8°.
+        kappa: f64,
+    },
+    /// Poles are uniform within an angle of the mean.
+    Uniform {
+        /// The angle [°].
+        within_deg: f64,
+    },
+}
+
+/// How distances of successive planes scatter about the spacing.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum SpacingScatter {
+    /// All are equal.
+    #[default]
+    None,
+    /// Uniform about the spacing.
+    Uniform {
+        /// Half of the range, less than the spacing [m].
+        half_width_m: f64,
+    },
+    /// Normal, at least a tenth of the spacing.
+    Normal {
+        /// Standard deviation [m].
+        deviation_m: f64,
+    },
+    /// Exponential.
+    Exponential,
+}
+
+/// Which blocks a disc cuts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub enum DiscRule {
+    /// Those of which it meets the section.
+    #[default]
+    Meets,
+    /// Those of which it covers the section.
+    Covers,
+}
+
+/// Voronoi cells of random points.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Voronoi {
+    /// Number of points; fewer fit when they keep too large a distance.
+    pub count: u32,
+    /// Distance that points keep where they can [m]. Default: 0.
+    #[serde(default)]
+    pub least_distance_m: f64,
+}
+
+/// Which blocks of a rock, by the place of their centroids.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Whereabouts {
+    /// Those in a box.
+    Inside {
+        /// Lowest corner [m].
+        min_m: [f64; 3],
+        /// Highest corner [m].
+        max_m: [f64; 3],
+    },
+    /// Those on the side of a plane that its normal points to.
+    Beyond {
+        /// A point of the plane [m].
+        point_m: [f64; 3],
+        /// Its normal; its length does not matter.
+        normal: [f64; 3],
+    },
+}
+
+impl Rock {
+    /// Whether a block of this name comes from this rock.
+    pub fn makes(&self, block: &str) -> bool {
+        let number = block.strip_prefix(self.name.as_str()).and_then(|rest| rest.strip_prefix('_'));
+        number.is_some_and(|n| !n.is_empty() && n.bytes().all(|c| c.is_ascii_digit()))
+    }
+}
+
+fn rock() -> String {
+    "rock".into()
+}
