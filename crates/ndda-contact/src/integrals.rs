@@ -84,6 +84,7 @@ impl Chunk {
         let hits = &mut self.hits;
         scratch.batches.finish(arch, |part| hits[part.pair as usize].moments.add_region(part));
         for (hit, lambda) in hits.iter_mut().zip(&scratch.lambda) {
+            hit.moments.drop_rounding();
             hit.moments.share_with_target(lambda);
         }
     }

@@ -203,6 +203,17 @@ impl PairMoments {
         self.depth = self.depth.max(part.depth);
     }
 
+    /// Takes integrals of what is nowhere negative for zero where rounding made them so: where nothing is left but
+    /// rounding, quotients of them would put the centre of pressure anywhere.
+    pub fn drop_rounding(&mut self) {
+        for sum in self.pressure.iter_mut().chain(&mut self.slope).chain([&mut self.area]) {
+            // Not a number stays what it is.
+            if *sum < 0.0 {
+                *sum = 0.0;
+            }
+        }
+    }
+
     /// Fills in what the target's nodes feel; `lambda[b][a]` is λ_b at corner a.
     pub fn share_with_target(&mut self, lambda: &[[f64; 3]; 4]) {
         for (b, lambda) in lambda.iter().enumerate() {
