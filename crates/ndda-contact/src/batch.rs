@@ -158,7 +158,8 @@ impl Batch {
         let group = &self.group;
         let form = |rows: &[[f64; GROUP]; 3]| Form::through(&rows.each_ref().map(|row| row[lane]));
         let cuts = group.fields.iter().zip(&group.bounds).take(group.cuts);
-        let polygon = cuts.fold(Polygon::triangle(), |p, (field, bound)| p.cut(&form(field), bound[lane]));
+        let mut polygon = Polygon::triangle();
+        cuts.for_each(|(field, bound)| polygon.cut(&form(field), bound[lane]));
         let mut moments = PairMoments::default();
         moments.add(&polygon, &form(&group.phi), group.slope[lane], self.area[lane]);
         (part.pressure, part.slope) = (moments.pressure, moments.slope);

@@ -45,22 +45,25 @@ impl Polygon {
         &self.corners[..self.len]
     }
 
-    /// The part where the field is not below `bound`: 0, or the least positive number to leave the zeros out.
-    pub fn cut(&self, field: &Form, bound: f64) -> Self {
+    /// Leaves the part where the field is not below `bound`: 0, or the least positive number to leave the zeros out.
+    pub fn cut(&mut self, field: &Form, bound: f64) {
         let inside = |d: f64| d >= bound;
-        let mut kept = Self { corners: [[0.0; 2]; MOST], len: 0 };
-        for (i, here) in self.corners().iter().enumerate() {
-            let next = &self.corners[(i + 1) % self.len];
-            let (from, to) = (field.at(here), field.at(next));
+        let whole = *self;
+        self.len = 0;
+        let Some(first) = whole.corners().first() else { return };
+        let mut from = field.at(first);
+        for (i, here) in whole.corners().iter().enumerate() {
+            let next = whole.corners().get(i + 1).unwrap_or(first);
+            let to = field.at(next);
             if inside(from) {
-                kept.push(*here);
+                self.push(*here);
             }
             if inside(from) != inside(to) {
                 let t = from / (from - to);
-                kept.push([0, 1].map(|k| here[k] + t * (next[k] - here[k])));
+                self.push([0, 1].map(|k| here[k] + t * (next[k] - here[k])));
             }
+            from = to;
         }
-        kept
     }
 
     fn push(&mut self, corner: [f64; 2]) {

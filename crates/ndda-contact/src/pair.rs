@@ -206,12 +206,13 @@ impl PairMoments {
     /// Takes integrals of what is nowhere negative for zero where rounding made them so: where nothing is left but
     /// rounding, quotients of them would put the centre of pressure anywhere.
     pub fn drop_rounding(&mut self) {
-        for sum in self.pressure.iter_mut().chain(&mut self.slope).chain([&mut self.area]) {
-            // Not a number stays what it is.
-            if *sum < 0.0 {
-                *sum = 0.0;
-            }
+        // Without a branch, since this is done for every hit; what is not a number stays so.
+        let non_negative = |sum: f64| if sum < 0.0 { 0.0 } else { sum };
+        for a in 0..3 {
+            self.pressure[a] = non_negative(self.pressure[a]);
+            self.slope[a] = non_negative(self.slope[a]);
         }
+        self.area = non_negative(self.area);
     }
 
     /// Fills in what the target's nodes feel; `lambda[b][a]` is λ_b at corner a.

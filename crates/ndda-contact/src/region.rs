@@ -108,8 +108,11 @@ impl Region {
 
     /// The region corner by corner.
     pub fn polygon(&self) -> Polygon {
-        let cut = |part: Polygon, cut: &Cut| part.cut(&Form::through(&cut.field), cut.bound);
-        self.cuts().iter().fold(Polygon::triangle(), cut)
+        let mut part = Polygon::triangle();
+        for cut in self.cuts() {
+            part.cut(&Form::through(&cut.field), cut.bound);
+        }
+        part
     }
 }
 
