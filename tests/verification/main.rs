@@ -21,6 +21,7 @@ mod springs_and_elimination;
 mod step_control;
 mod sticking_plate;
 mod tall_stack;
+mod toppling_slope;
 
 use ndda_cli::wiring;
 use ndda_mesh::Vec3;
