@@ -76,9 +76,7 @@ impl Factor for Inverse {
         rhs: &mut [[f64; EIGHT]],
         scratch: &mut Scratch,
     ) -> Result<(), SolveError> {
-        if scratch.lines.len() < self.lines_of_eight() {
-            scratch.lines.resize(self.lines_of_eight(), Eight::default());
-        }
+        scratch.make_room(self.lines_of_eight());
         let out = scratch.lines.as_chunks_mut().0;
         self.arch.dispatch(AllEight { inverse: self, x: rhs, out });
         rhs.iter_mut().zip(out.as_flattened()).for_each(|(rhs, out)| *rhs = out.0);

@@ -184,21 +184,20 @@ impl Simulation {
     ///
     /// The measure of misfits: forces that move nothing, as those that press a rigid block from all sides, are none.
     fn motion_of(&self, force: &[Vec3]) -> f64 {
-        let of_block = |block: BlockId| {
-            let masses = &self.shape(block).operator.node_mass;
-            let forces = &force[self.blocks.nodes_of(block)];
-            forces.iter().zip(masses).map(|(f, m)| f.norm_squared() / m).sum::<f64>()
-        };
-        (self.blocks.ids().map(of_block).sum::<f64>() / self.weights.mass_per_s2).sqrt()
+        self.motion_by(|node| force[node].norm_squared())
     }
 
     /// The same of the change of contact forces by the rounding of positions: no misfit is known better.
     fn resolution(&self) -> f64 {
+        let rounding = |node: usize| f64::EPSILON * self.contact_position[node].amax();
+        self.motion_by(|node| (self.contact_stiffness[node] * rounding(node)).powi(2))
+    }
+
+    /// [`motion_of`](Self::motion_of) the forces whose squares [N²] are given for each node.
+    fn motion_by(&self, force2: impl Fn(usize) -> f64) -> f64 {
         let of_block = |block: BlockId| {
-            let nodes = self.blocks.nodes_of(block);
             let masses = &self.shape(block).operator.node_mass;
-            let places = self.contact_stiffness[nodes.clone()].iter().zip(&self.contact_position[nodes]);
-            places.zip(masses).map(|((k, x), m)| (k * f64::EPSILON * x.amax()).powi(2) / m).sum::<f64>()
+            self.blocks.nodes_of(block).zip(masses).map(|(node, m)| force2(node) / m).sum::<f64>()
         };
         (self.blocks.ids().map(of_block).sum::<f64>() / self.weights.mass_per_s2).sqrt()
     }

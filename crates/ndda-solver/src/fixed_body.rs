@@ -2,7 +2,7 @@
 
 use ndda_mesh::Vec3;
 
-use crate::body::{BlockReport, StepContext, displacement_at};
+use crate::body::{BlockReport, StepContext};
 use crate::for_each_block::NodeSlices;
 use crate::shape::Shape;
 
@@ -25,7 +25,7 @@ impl FixedBody {
             out.copy_from_slice(position);
             return;
         }
-        let to = displacement_at(shape, Some(shape.supports.motions.len() - 1), end_s);
+        let to = shape.displacement_as_a_whole(end_s);
         out.iter_mut().zip(&self.anchor).for_each(|(x, anchor)| *x = anchor + to);
     }
 
@@ -43,9 +43,8 @@ impl FixedBody {
         if self.anchor.is_empty() {
             return report;
         }
-        let motion = Some(shape.supports.motions.len() - 1);
-        let to = displacement_at(shape, motion, context.end_s);
-        let increment = to - displacement_at(shape, motion, context.time_s);
+        let to = shape.displacement_as_a_whole(context.end_s);
+        let increment = to - shape.displacement_as_a_whole(context.time_s);
         let (old, velocity) = (nodes.velocity[0], increment / context.dt_s);
         report.reaction += shape.operator.mass_kg / context.dt_s * (velocity - old);
         report.motion_work_j = report.reaction.dot(&increment);

@@ -2,6 +2,7 @@
 
 use ndda_mesh::Vec3;
 
+use crate::newmark::Newmark;
 use crate::time_integrator::{StepWeights, TimeIntegrator};
 
 /// The generalised-α method (Chung & Hulbert 1993) with contact at predicted positions.
@@ -22,12 +23,16 @@ pub struct GeneralizedAlpha {
 }
 
 impl GeneralizedAlpha {
-    /// α_m, α_f, β, γ.
-    fn parameters(&self) -> (f64, f64, f64, f64) {
-        let (on_mass, on_stiffness) =
-            ((2.0 * self.radius - 1.0) / (self.radius + 1.0), self.radius / (self.radius + 1.0));
+    /// α_m and α_f.
+    fn shares(&self) -> (f64, f64) {
+        ((2.0 * self.radius - 1.0) / (self.radius + 1.0), self.radius / (self.radius + 1.0))
+    }
+
+    /// The formulas of motion are Newmark's, with β and γ.
+    fn newmark(&self) -> Newmark {
+        let (on_mass, on_stiffness) = self.shares();
         let shift = on_stiffness - on_mass;
-        (on_mass, on_stiffness, 0.25 * (1.0 + shift) * (1.0 + shift), 0.5 + shift)
+        Newmark { alpha: 0.25 * (1.0 + shift) * (1.0 + shift), delta: 0.5 + shift }
     }
 }
 
@@ -37,24 +42,23 @@ impl TimeIntegrator for GeneralizedAlpha {
     }
 
     fn weights(&self, dt_s: f64) -> StepWeights {
-        let (on_mass, on_stiffness, beta, gamma) = self.parameters();
+        let (on_mass, on_stiffness) = self.shares();
+        let newmark = self.newmark().weights(dt_s);
         StepWeights {
             stiffness: 1.0 - on_stiffness,
-            mass_per_s2: (1.0 - on_mass) / (beta * dt_s * dt_s),
-            velocity_per_m: gamma / (beta * dt_s),
+            mass_per_s2: (1.0 - on_mass) * newmark.mass_per_s2,
             mean_velocity: false,
             contact_lead: 1.0 - on_stiffness,
             contact_lead_acceleration: on_mass * (0.5 - on_mass) / 3.0,
             load_lead: 1.0 - on_stiffness,
-            new_force: gamma,
             old_inertia: on_mass,
             needs_acceleration: true,
+            ..newmark
         }
     }
 
     fn predict(&self, dt_s: f64, velocity: &Vec3, acceleration: &Vec3) -> Vec3 {
-        let (_, _, beta, _) = self.parameters();
-        dt_s * velocity + dt_s * dt_s * (0.5 - beta) * acceleration
+        self.newmark().predict(dt_s, velocity, acceleration)
     }
 
     fn correct(
@@ -65,10 +69,7 @@ impl TimeIntegrator for GeneralizedAlpha {
         velocity: &mut Vec3,
         acceleration: &mut Vec3,
     ) {
-        let (_, _, beta, gamma) = self.parameters();
-        let new = (increment - predicted) / (beta * dt_s * dt_s);
-        *velocity += dt_s * ((1.0 - gamma) * *acceleration + gamma * new);
-        *acceleration = new;
+        self.newmark().correct(dt_s, increment, predicted, velocity, acceleration);
     }
 
     fn contact_bound(&self) -> Option<f64> {

@@ -1,6 +1,6 @@
 //! The books of a run: energy, momentum, and the worst of everything that has a limit.
 
-use ndda_contact::ContactReport;
+use crate::simulation::StepReport;
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -168,11 +168,6 @@ impl Ledger {
         control.most_halvings = control.most_halvings.max(halvings);
     }
 
-    /// Keeps the most evaluations of contact in a step.
-    pub fn note_iterations(&mut self, iterations: u32) {
-        self.worst.iterations_max = self.worst.iterations_max.max(iterations);
-    }
-
     /// The largest energy so far [J].
     pub fn peak_energy_j(&self) -> f64 {
         self.peak_energy_j
@@ -192,14 +187,15 @@ impl Ledger {
     }
 
     /// Keeps the extremes of a step.
-    pub fn watch(&mut self, contact: &ContactReport, h: f64, travel_ratio: f64) {
-        let worst = &mut self.worst;
+    pub fn watch(&mut self, report: &StepReport) {
+        let (worst, contact) = (&mut self.worst, &report.contact);
         worst.max_penetration_ratio = worst.max_penetration_ratio.max(contact.max_penetration_ratio);
         worst.action_reaction = worst.action_reaction.max(contact.action_reaction_error);
         worst.candidate_pairs_max = worst.candidate_pairs_max.max(contact.candidate_pairs);
         worst.contact_pairs_max = worst.contact_pairs_max.max(contact.contact_pairs);
-        worst.max_h = worst.max_h.max(h);
-        worst.max_travel_ratio = worst.max_travel_ratio.max(travel_ratio);
+        worst.max_h = worst.max_h.max(report.h);
+        worst.max_travel_ratio = worst.max_travel_ratio.max(report.travel_ratio);
+        worst.iterations_max = worst.iterations_max.max(report.iterations.newton);
     }
 
     /// Balances a sample against the books and keeps the extremes; the first sample opens the books.

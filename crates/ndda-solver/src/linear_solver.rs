@@ -84,6 +84,15 @@ pub struct Scratch {
     pub lane: Vec<f64>,
 }
 
+impl Scratch {
+    /// At least so many lines; allocates only if there were fewer.
+    pub(crate) fn make_room(&mut self, lines: usize) {
+        if self.lines.len() < lines {
+            self.lines.resize(lines, Eight::default());
+        }
+    }
+}
+
 /// A solve that did not reach a solution.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(

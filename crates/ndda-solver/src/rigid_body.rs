@@ -122,7 +122,7 @@ impl RigidBody {
         report: &mut BlockReport,
     ) -> Result<Start, BlockError> {
         let start = start(shape, nodes)?;
-        let (gone, drive) = self.shift(shape, context, nodes, &start);
+        let (gone, drive, velocity) = shift(shape, context, nodes, &start);
         let torque = self.torque(shape, context, nodes, (&gone, &drive), report);
         let local = start.rotation.tr_mul(&torque);
         let inertia = shape.rigid.as_ref().expect("a rigid shape");
@@ -134,20 +134,13 @@ impl RigidBody {
         let turned = cayley(&angle);
         let rotation = start.rotation * turned;
         let spin = rotation * (inertia.inverse * turned.tr_mul(&momentum));
-        self.place(shape, context, nodes, &start, (&gone, &rotation, &spin));
+        let center = start.center + gone;
+        for (i, rest) in shape.operator.rest.iter().enumerate() {
+            let arm = rotation * rest;
+            self.increment[i] = center + arm - nodes.position[i];
+            self.velocity[i] = velocity + spin.cross(&arm);
+        }
         Ok(start)
-    }
-
-    /// How far the mass centre goes, and the force that drives it: c m (u − û) + a m u/Δt = F − α_m F₀.
-    fn shift(&self, shape: &Shape, context: &StepContext, nodes: &Nodes, start: &Start) -> (Vec3, Vec3) {
-        let (weights, mass) = (&context.weights, shape.operator.mass_kg);
-        let force: Vec3 = context.force.iter().sum();
-        let acceleration = shape.operator.center(nodes.acceleration);
-        let predicted = context.integrator.predict(context.dt_s, &start.velocity_m_s, &acceleration);
-        let (c, drag) = (weights.mass_per_s2, shape.damping.mass_per_s2);
-        let push = force - weights.old_inertia * context.inertia.force;
-        let gone = (push / mass + c * predicted) / (c + drag);
-        (gone, force - drag * mass * gone)
     }
 
     /// Torque about the mass centre in this step, without drag.
@@ -169,27 +162,6 @@ impl RigidBody {
             whole_torque(shape, context, (nodes.position, nodes.velocity), gone, (drive, &torque));
         report.inertia = inertia;
         torque
-    }
-
-    /// u and v₁ of every node.
-    fn place(
-        &mut self,
-        shape: &Shape,
-        context: &StepContext,
-        nodes: &Nodes,
-        start: &Start,
-        (gone, rotation, spin): (&Vec3, &Mat3, &Vec3),
-    ) {
-        let (mut velocity, mut acceleration) =
-            (start.velocity_m_s, shape.operator.center(nodes.acceleration));
-        let predicted = context.integrator.predict(context.dt_s, &velocity, &acceleration);
-        context.integrator.correct(context.dt_s, gone, &predicted, &mut velocity, &mut acceleration);
-        let center = start.center + gone;
-        for (i, rest) in shape.operator.rest.iter().enumerate() {
-            let arm = rotation * rest;
-            self.increment[i] = center + arm - nodes.position[i];
-            self.velocity[i] = velocity + spin.cross(&arm);
-        }
     }
 
     /// Work, force and torque of damping on mass.
@@ -232,6 +204,20 @@ fn start(shape: &Shape, nodes: &Nodes) -> Result<Start, FrameError> {
     let inertia = shape.rigid.as_ref().expect("a rigid shape");
     let spin = inertia.inverse_lumped * rotation.tr_mul(&moment);
     Ok(Start { center, rotation, velocity_m_s, spin })
+}
+
+/// How far the mass centre goes, the force that drives it and its velocity at the end of the step:
+/// c m (u − û) + a m u/Δt = F − α_m F₀.
+fn shift(shape: &Shape, context: &StepContext, nodes: &Nodes, start: &Start) -> (Vec3, Vec3, Vec3) {
+    let (weights, mass) = (&context.weights, shape.operator.mass_kg);
+    let force: Vec3 = context.force.iter().sum();
+    let (mut velocity, mut acceleration) = (start.velocity_m_s, shape.operator.center(nodes.acceleration));
+    let predicted = context.integrator.predict(context.dt_s, &velocity, &acceleration);
+    let (c, drag) = (weights.mass_per_s2, shape.damping.mass_per_s2);
+    let push = force - weights.old_inertia * context.inertia.force;
+    let gone = (push / mass + c * predicted) / (c + drag);
+    context.integrator.correct(context.dt_s, &gone, &predicted, &mut velocity, &mut acceleration);
+    (gone, force - drag * mass * gone, velocity)
 }
 
 /// What a turn is dragged by, as part of its own inertia [1/s].

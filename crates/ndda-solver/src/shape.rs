@@ -172,23 +172,29 @@ impl Shape {
             BodyKind::Rigid | BodyKind::Fixed => Unknowns::none(),
         };
         let rigid = (kind == BodyKind::Rigid).then(|| RigidInertia::new(&operator));
-        let factor = if unknowns.is_empty() {
-            None
-        } else {
-            let matrix = unknowns.matrix(&operator, &supports, weights, &damping);
-            let factor = solver.factor(&matrix);
-            Some(factor.map_err(|source| SetupError::Factor { block: name(), source })?)
-        };
         let heights = operator
             .tets
             .iter()
             .flat_map(|tet| ndda_mesh::geometry::tet_heights(&tet.map(|n| operator.rest[n as usize])));
         let smallest_height_m = heights.fold(f64::INFINITY, f64::min);
         let material = setup.material.clone();
-        Ok(Self { kind, operator, supports, unknowns, factor, material, damping, rigid, smallest_height_m })
+        let mut shape = Self {
+            kind,
+            operator,
+            supports,
+            unknowns,
+            factor: None,
+            material,
+            damping,
+            rigid,
+            smallest_height_m,
+        };
+        let factor = shape.factored(weights, solver);
+        shape.factor = factor.map_err(|source| SetupError::Factor { block: name(), source })?;
+        Ok(shape)
     }
 
-    /// K̃ of a step with these weights, factored.
+    /// K̃ of a step with these weights, factored; nothing when nothing is to be solved for.
     ///
     /// # Errors
     /// [`FactorError`] when it is not positive definite or too large.
@@ -196,8 +202,16 @@ impl Shape {
         &self,
         weights: &StepWeights,
         solver: &dyn LinearSolver,
-    ) -> Result<Box<dyn Factor>, FactorError> {
-        solver.factor(&self.unknowns.matrix(&self.operator, &self.supports, weights, &self.damping))
+    ) -> Result<Option<Box<dyn Factor>>, FactorError> {
+        if self.unknowns.is_empty() {
+            return Ok(None);
+        }
+        solver.factor(&self.unknowns.matrix(&self.operator, &self.supports, weights, &self.damping)).map(Some)
+    }
+
+    /// How far a block that is held as a whole is displaced at time t [m]; the last motion counts.
+    pub fn displacement_as_a_whole(&self, time_s: f64) -> Vec3 {
+        self.supports.motions.last().map_or_else(Vec3::zeros, |motion| motion.displacement(time_s))
     }
 
     /// Whether nothing holds the block, so that its momentum changes by outside forces only.

@@ -172,8 +172,9 @@ impl Simulation {
             if held {
                 if shape.kind == BodyKind::Fixed {
                     // Where it goes in this step is known already.
-                    let at = |time_s: f64| shape.supports.motions[0].displacement(time_s);
-                    body.velocity_m_s = (at(end_s) - at(now_s)) / self.part_s;
+                    let increment =
+                        shape.displacement_as_a_whole(end_s) - shape.displacement_as_a_whole(now_s);
+                    body.velocity_m_s = increment / self.part_s;
                 }
                 continue;
             }
@@ -324,10 +325,10 @@ impl Simulation {
         let h = self.part_s * rate2.sqrt();
         self.ledger.add_impulse(self.part_s, &self.weights, force, torque);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
-        self.ledger.watch(&contact, h, travel_ratio);
-        self.ledger.note_iterations(iterations.newton);
+        let report = StepReport { contact, h, travel_ratio, iterations };
+        self.ledger.watch(&report);
         self.advance_clock();
-        StepReport { contact, h, travel_ratio, iterations }
+        report
     }
 
     /// Where each node was when time began [m].

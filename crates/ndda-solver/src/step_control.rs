@@ -115,7 +115,7 @@ impl Simulation {
                 Err(rejection) => rejection,
             };
             let halvings = self.state.control.halvings;
-            let mut deaf = 0;
+            let mut deaf = self.state.control.deaf;
             if let Rejection::Energy(gain) = rejection {
                 unhelpful = if gain > HELPS * last_gain { unhelpful + 1 } else { 0 };
                 last_gain = gain;
@@ -125,6 +125,7 @@ impl Simulation {
                 }
             }
             self.state.clone_from(&control.state);
+            control.ledger.note_rejected();
             self.ledger.clone_from(&control.ledger);
             if halvings >= control.settings.most_halvings && deaf == 0 {
                 return Err(match rejection {
@@ -140,7 +141,6 @@ impl Simulation {
                 Rejection::TooLong(times) if times.is_finite() => (times.log2().ceil() as u32).max(1),
                 _ => 1,
             };
-            self.ledger.note_rejected();
             self.state.control.deaf = deaf;
             let halvings = (halvings + more).min(control.settings.most_halvings);
             self.use_halvings(control, halvings)?;
@@ -200,9 +200,9 @@ impl Simulation {
             shape.damping = StepDamping::new(&shape.material.damping(), self.part_s);
             spare[control.halvings as usize] = shape.factor.take();
             shape.factor = match spare[halvings as usize].take() {
-                None if !shape.unknowns.is_empty() => {
+                None => {
                     let factor = shape.factored(&self.weights, control.solver.as_ref());
-                    Some(factor.map_err(|source| StepError::Factor { step_s: self.part_s, source })?)
+                    factor.map_err(|source| StepError::Factor { step_s: self.part_s, source })?
                 }
                 known => known,
             };

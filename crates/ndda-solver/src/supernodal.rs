@@ -120,9 +120,7 @@ impl Factor for SupernodalFactor {
         rhs: &mut [[f64; EIGHT]],
         scratch: &mut Scratch,
     ) -> Result<(), SolveError> {
-        if scratch.lines.len() < self.lines_of_eight() {
-            scratch.lines.resize(self.lines_of_eight(), Eight::default());
-        }
+        scratch.make_room(self.lines_of_eight());
         let (x, local) = scratch.lines.split_at_mut(self.unknowns() + 1);
         x[self.unknowns()] = Eight::default();
         x.iter_mut().zip(&self.unknown).for_each(|(x, &u)| x.0 = rhs[u as usize]);
