@@ -2,10 +2,13 @@
 
 mod bar_under_traction;
 mod bedded_bar;
+mod block_on_a_slope;
 mod body_kinds;
 mod bouncing_block;
+mod cantilever;
 mod contact_patch;
 mod damping;
+mod elastic_waves;
 mod end_contact;
 mod glancing_collision;
 mod ground_stress;
@@ -14,6 +17,7 @@ mod lumped_mass;
 mod one_block_alone;
 mod prescribed_motion;
 mod release_of_initial_stress;
+mod rocking_block;
 mod settling;
 mod shaken_base;
 mod sliding_over_element_borders;

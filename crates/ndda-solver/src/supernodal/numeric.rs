@@ -62,7 +62,7 @@ pub fn factor(matrix: &SymmetricMatrix, symbolic: &Symbolic) -> Result<Panels, F
     let ordered = Ordered::new(matrix, &symbolic.unknown);
     let mut place = vec![0u32; matrix.n];
     let mut updates: Vec<Vec<f64>> = vec![Vec::new(); symbolic.supernodes.len()];
-    let (mut next, mut tile) = (0, 0);
+    let mut next = 0;
     for (k, node) in symbolic.supernodes.iter().enumerate() {
         let mut front = Front::new(node, matrix.n)?;
         front.gather(node, &ordered, &mut place);
@@ -73,8 +73,8 @@ pub fn factor(matrix: &SymmetricMatrix, symbolic: &Symbolic) -> Result<Panels, F
         front.eliminate(matrix.n)?;
         while let Some(panel) = panels.panels.get(next).filter(|panel| panel.first < node.columns.end) {
             let offset = panel.first - node.columns.start;
-            front.copy(offset, *panel, &mut panels.tiles[tile..tile + panel.len()])?;
-            (next, tile) = (next + 1, tile + panel.len());
+            front.copy(offset, *panel, &mut panels.tiles[panel.tiles..panel.tiles + panel.len()])?;
+            next += 1;
         }
         updates[k] = front.update;
     }
@@ -83,7 +83,7 @@ pub fn factor(matrix: &SymmetricMatrix, symbolic: &Symbolic) -> Result<Panels, F
 
 /// Panels of zeros.
 fn lay_out(unknowns: usize, symbolic: &Symbolic) -> Result<Panels, FactorError> {
-    let mut panels = Panels { unknowns, ..Panels::default() };
+    let (mut panels, mut tiles) = (Panels { unknowns, ..Panels::default() }, 0);
     for node in &symbolic.supernodes {
         let start = panels.row.len();
         let rows: Vec<u32> =
@@ -96,11 +96,12 @@ fn lay_out(unknowns: usize, symbolic: &Symbolic) -> Result<Panels, FactorError> 
         for first in node.columns.clone().step_by(most) {
             let skipped = (first - node.columns.start) / EIGHT;
             let (width, height) = (most.min(node.columns.end - first), panels.row.len() - start - skipped);
-            panels.panels.push(Panel { first, width, rows: start + skipped, height });
+            let panel = Panel { first, width, rows: start + skipped, height, tiles };
+            tiles += panel.len();
+            panels.panels.push(panel);
         }
     }
-    let len = panels.panels.iter().map(|panel| panel.len()).sum();
-    panels.tiles = filled(len, Eight::default(), unknowns)?;
+    panels.tiles = filled(tiles, Eight::default(), unknowns)?;
     Ok(panels)
 }
 

@@ -22,6 +22,8 @@ pub struct Panel {
     pub rows: usize,
     /// How many eights of rows it has, its columns first among them.
     pub height: usize,
+    /// Where its tiles begin in [`Panels::tiles`].
+    pub tiles: usize,
 }
 
 /// The factor.
@@ -71,37 +73,33 @@ impl Panels {
         self.panels.iter().map(|panel| panel.height).max().unwrap_or(0)
     }
 
+    /// The columns of tiles of a panel: number, how many columns it has, its tiles.
+    #[inline(always)]
+    fn groups(&self, panel: &Panel) -> impl Iterator<Item = (usize, usize, &[Eight])> {
+        let mut tiles = &self.tiles[panel.tiles..];
+        panel.groups().enumerate().map(move |(g, (columns, height))| {
+            let (group, rest) = tiles.split_at(columns * height);
+            tiles = rest;
+            (g, columns, group)
+        })
+    }
+
     /// x ← (L Lᵀ)⁻¹ x; `x` has one number more than there are unknowns, and that is 0.
     #[inline(always)]
     pub fn solve<S: Simd>(&self, simd: S, x: &mut [f64], local: &mut [Eight]) {
-        let mut tiles = self.tiles.as_slice();
         for panel in &self.panels {
-            let (own, rest) = tiles.split_at(panel.len());
-            tiles = rest;
-            self.forward(simd, panel, own, x, &mut local[..panel.height]);
+            self.forward(simd, panel, x, &mut local[..panel.height]);
         }
-        let mut tiles = self.tiles.as_slice();
         for panel in self.panels.iter().rev() {
-            let (rest, own) = tiles.split_at(tiles.len() - panel.len());
-            tiles = rest;
-            self.backward(simd, panel, own, x, &mut local[..panel.height]);
+            self.backward(simd, panel, x, &mut local[..panel.height]);
         }
     }
 
     #[inline(always)]
-    fn forward<S: Simd>(
-        &self,
-        simd: S,
-        panel: &Panel,
-        mut tiles: &[Eight],
-        x: &mut [f64],
-        local: &mut [Eight],
-    ) {
+    fn forward<S: Simd>(&self, simd: S, panel: &Panel, x: &mut [f64], local: &mut [Eight]) {
         local.fill(Eight::default());
         let own = &mut x[panel.first..panel.first + panel.width];
-        for (g, (columns, height)) in panel.groups().enumerate() {
-            let (group, rest) = tiles.split_at(columns * height);
-            tiles = rest;
+        for (g, columns, group) in self.groups(panel) {
             by_columns!(columns, add_tiles::<S>(simd, group, &own[EIGHT * g..], &mut local[g..]));
         }
         own.fill(0.0);
@@ -113,21 +111,12 @@ impl Panels {
     }
 
     #[inline(always)]
-    fn backward<S: Simd>(
-        &self,
-        simd: S,
-        panel: &Panel,
-        mut tiles: &[Eight],
-        x: &mut [f64],
-        local: &mut [Eight],
-    ) {
+    fn backward<S: Simd>(&self, simd: S, panel: &Panel, x: &mut [f64], local: &mut [Eight]) {
         for (rows, local) in self.row[panel.rows..].iter().zip(&mut *local) {
             *local = Eight(rows.map(|row| x[row as usize]));
         }
         let own = &mut x[panel.first..panel.first + panel.width];
-        for (g, (columns, height)) in panel.groups().enumerate() {
-            let (group, rest) = tiles.split_at(columns * height);
-            tiles = rest;
+        for (g, columns, group) in self.groups(panel) {
             by_columns!(columns, tiles_times::<S>(simd, group, &local[g..], &mut own[EIGHT * g..]));
         }
     }
@@ -135,34 +124,19 @@ impl Panels {
     /// [`solve`](Self::solve) for eight right-hand sides, each as if it were alone; `local` is of eight times the size.
     #[inline(always)]
     pub fn solve_eight<S: Simd>(&self, simd: S, x: &mut [Eight], local: &mut [[Eight; EIGHT]]) {
-        let mut tiles = self.tiles.as_slice();
         for panel in &self.panels {
-            let (own, rest) = tiles.split_at(panel.len());
-            tiles = rest;
-            self.forward_eight(simd, panel, own, x, &mut local[..panel.height]);
+            self.forward_eight(simd, panel, x, &mut local[..panel.height]);
         }
-        let mut tiles = self.tiles.as_slice();
         for panel in self.panels.iter().rev() {
-            let (rest, own) = tiles.split_at(tiles.len() - panel.len());
-            tiles = rest;
-            self.backward_eight(simd, panel, own, x, &mut local[..panel.height]);
+            self.backward_eight(simd, panel, x, &mut local[..panel.height]);
         }
     }
 
     #[inline(always)]
-    fn forward_eight<S: Simd>(
-        &self,
-        simd: S,
-        panel: &Panel,
-        mut tiles: &[Eight],
-        x: &mut [Eight],
-        local: &mut [[Eight; EIGHT]],
-    ) {
+    fn forward_eight<S: Simd>(&self, simd: S, panel: &Panel, x: &mut [Eight], local: &mut [[Eight; EIGHT]]) {
         local.fill(Default::default());
         let own = &mut x[panel.first..panel.first + panel.width];
-        for (g, (columns, height)) in panel.groups().enumerate() {
-            let (group, rest) = tiles.split_at(columns * height);
-            tiles = rest;
+        for (g, columns, group) in self.groups(panel) {
             by_columns!(columns, add_tiles_eight::<S>(simd, group, &own[EIGHT * g..], &mut local[g..]));
         }
         own.fill(Eight::default());
@@ -174,21 +148,12 @@ impl Panels {
     }
 
     #[inline(always)]
-    fn backward_eight<S: Simd>(
-        &self,
-        simd: S,
-        panel: &Panel,
-        mut tiles: &[Eight],
-        x: &mut [Eight],
-        local: &mut [[Eight; EIGHT]],
-    ) {
+    fn backward_eight<S: Simd>(&self, simd: S, panel: &Panel, x: &mut [Eight], local: &mut [[Eight; EIGHT]]) {
         for (rows, local) in self.row[panel.rows..].iter().zip(&mut *local) {
             *local = rows.map(|row| x[row as usize]);
         }
         let own = &mut x[panel.first..panel.first + panel.width];
-        for (g, (columns, height)) in panel.groups().enumerate() {
-            let (group, rest) = tiles.split_at(columns * height);
-            tiles = rest;
+        for (g, columns, group) in self.groups(panel) {
             by_columns!(columns, tiles_times_eight::<S>(simd, group, &local[g..], &mut own[EIGHT * g..]));
         }
     }

@@ -1,0 +1,94 @@
+//! V10: a block on a slope stands, slides, topples or does both, by its slenderness and friction (Wyllie & Mah 2004),
+//! and as quickly as a rigid block does.
+
+use ndda_mesh::{BlockId, Vec3};
+use ndda_solver::Settle;
+
+use crate::simulation;
+
+const BASE_M: f64 = 10.0;
+const DIP_DEG: f64 = 40.0;
+const GRAVITY: f64 = 9.8;
+const DENSITY: f64 = 2000.0;
+/// Length over which the potential rises.
+const REFERENCE_M: f64 = 1.0;
+
+/// What became of the block after `time_s`: how far it slid down the slope, and how far it turned [rad]. It may be
+/// brought to rest first, as far as it stays.
+fn fate((height_m, friction_deg): (f64, f64), penalty_pa: f64, time_s: f64, settles: bool) -> (f64, f64) {
+    // A step in proportion to the period of contact.
+    let step_s = 9.0 / penalty_pa.sqrt();
+    let (sin, cos) = DIP_DEG.to_radians().sin_cos();
+    // As deep as its weight asks for: p = 2 k_n h/L₀.
+    let sunk = DENSITY * GRAVITY * cos * height_m * REFERENCE_M / (2.0 * penalty_pa);
+    let mut simulation = simulation(&format!(
+        "(title: \"slope\", time: (step_s: {step_s:e}, end_s: 1), gravity_m_s2: ({}, 0, -{}),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: {DENSITY})],
+          blocks: [
+            (name: \"slope\", material: \"rock\", body: Fixed, shape: Box(size_m: (60, 20, 5), cells: (12, 4, 1)), at_m: (-40, -5, -5)),
+            (name: \"block\", material: \"rock\", body: Rigid, at_m: (0, 0, -{sunk:e}),
+             shape: Box(size_m: ({BASE_M}, {BASE_M}, {height_m}), cells: (4, 4, 2))),
+          ],
+          contact: Potential(penalty_pa: {penalty_pa:e}, potential: Smooth(reference_m: {REFERENCE_M}),
+                             friction: (friction_deg: {friction_deg})))",
+        -GRAVITY * sin,
+        GRAVITY * cos
+    ));
+    let block = simulation.blocks().nodes_of(BlockId(1));
+    if settles {
+        simulation.settle(&Settle { tolerance: 1e-4, most_steps: 20_000 }).unwrap();
+    }
+    let rest: Vec<Vec3> = simulation.state().position[block.clone()].to_vec();
+    for _ in 0..(time_s / step_s) as u32 {
+        simulation.step().unwrap();
+    }
+    let now = &simulation.state().position[block];
+    // The lower edge slides; an edge along z, from the bottom to the top, turns.
+    let at = |x: f64, z: f64| {
+        let misfit = |i: &usize| (rest[*i].x - x).abs() + (rest[*i].z - z).abs() + rest[*i].y.abs();
+        (0..rest.len()).min_by(|a, b| misfit(a).total_cmp(&misfit(b))).unwrap()
+    };
+    let low = rest.iter().map(|x| x.z).fold(f64::INFINITY, f64::min);
+    let left = rest.iter().map(|x| x.x).fold(f64::INFINITY, f64::min);
+    let (foot, top) = (at(left, low), at(left, low + height_m));
+    let lean = |x: &[Vec3]| (x[foot].x - x[top].x).atan2(x[top].z - x[foot].z);
+    (rest[foot].x - now[foot].x, lean(now) - lean(&rest))
+}
+
+#[test]
+fn a_block_on_a_slope_stands_slides_or_topples_as_statics_says() {
+    let (sin, cos) = DIP_DEG.to_radians().sin_cos();
+    let time_s = 0.5;
+    let (slid, turned) = fate((10.0, 40.1), 2e9, time_s, true);
+    println!("10 m, 40.1°: slides {slid:.1e} m, turns {turned:.1e}");
+    assert!(slid.abs() < 1e-6 && turned.abs() < 1e-6, "it stands: {slid} {turned}");
+
+    let (slid, turned) = fate((5.0, 20.0), 1e11, time_s, false);
+    let free = 0.5 * GRAVITY * (sin - 20f64.to_radians().tan() * cos) * time_s * time_s;
+    println!("5 m, 20°: slides {slid:.5} m, exact {free:.5}; turns {turned:.1e}");
+    assert!((slid / free - 1.0).abs() < 2e-2 && turned.abs() < 2e-3, "it slides: {slid} {turned}");
+
+    let (slid, turned) = fate((25.0, 60.0), 1e11, time_s, false);
+    // Contact is stiff here: a soft edge sinks, and the block turns about a line further up.
+    let falls = turn_about_the_foot(25.0, time_s);
+    println!("25 m, 60°: turns {turned:.5}, exact {falls:.5}; slides {slid:.1e} m");
+    assert!((turned / falls - 1.0).abs() < 5e-2 && slid.abs() < 0.02, "it topples: {slid} {turned}");
+
+    let (slid, turned) = fate((25.0, 20.0), 1e11, time_s, false);
+    println!("25 m, 20°: slides {slid:.4} m and turns {turned:.4}");
+    assert!(slid > 0.1 && turned > 0.01, "it does both: {slid} {turned}");
+}
+
+/// Turn of a rigid block about its foot on a slope: (4/3) R² θ″ = g R sin(θ + ψ − α), tan α = b/h, by small steps.
+fn turn_about_the_foot(height_m: f64, time_s: f64) -> f64 {
+    let radius = 0.5 * BASE_M.hypot(height_m);
+    let lean = DIP_DEG.to_radians() - BASE_M.atan2(height_m);
+    let (mut angle, mut rate, steps) = (0.0f64, 0.0f64, 100_000);
+    let dt = time_s / f64::from(steps);
+    for _ in 0..steps {
+        angle += 0.5 * dt * rate;
+        rate += dt * 0.75 * GRAVITY / radius * (angle + lean).sin();
+        angle += 0.5 * dt * rate;
+    }
+    angle
+}
