@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_cli::args::{HowArgs, RunArgs};
+use ndda_cli::args::{HowArgs, RunArgs, SceneArgs};
 use ndda_cli::{exit, run};
 use serde_json::Value;
 
@@ -50,10 +50,13 @@ fn scenes() -> PathBuf {
 
 fn args(scene: &str, out: &Path) -> RunArgs {
     RunArgs {
-        scene: scenes().join(format!("{scene}.ron")),
         out: Some(out.join(scene)),
         force: false,
-        overrides: vec!["output.frames=2".into()],
+        input: SceneArgs {
+            scene: Some(scenes().join(format!("{scene}.ron"))),
+            overrides: vec!["output.frames=2".into()],
+            ..SceneArgs::default()
+        },
         how: HowArgs { quiet: true, ..HowArgs::default() },
     }
 }
