@@ -21,7 +21,7 @@ pub fn man(args: &ManArgs) -> u8 {
     let page = match &args.verb {
         None => command,
         Some(verb) => match command.find_subcommand(verb) {
-            Some(found) => found.clone().name(format!("ndda-{}", found.get_name())),
+            Some(found) => found.clone(),
             None => {
                 let verbs: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
                 complain(&format!("error: there is no verb `{verb}`: {}", suggest(verb, &verbs)));

@@ -65,7 +65,7 @@ fn examples_are_listed_checked_explained_and_run_by_their_names() {
     let (code, reason) = refused(folder.path(), &["run", "--example", "slidng_45"]);
     assert!(code == 2 && reason.contains("did you mean `sliding_45`"), "{code}: {reason}");
     assert!(said(folder.path(), &["check", "--example", "free_fall"]).contains("200 steps"));
-    said(folder.path(), &["run", "--example", "free_fall", "--set", "time.end_s=0.1", "--quiet"]);
+    said(folder.path(), &["run", "--example", "free_fall", "--set", "time.end_s=0.2", "--quiet"]);
     let summary = std::fs::read_to_string(folder.path().join("out/free_fall/summary.json")).unwrap();
     assert_eq!(serde_json::from_str::<Value>(&summary).unwrap()["status"], "done");
 }
@@ -102,11 +102,11 @@ fn friction_is_in_the_plan_when_an_angle_is_and_out_when_it_is_zero() {
 }
 
 #[test]
-fn congruent_cubes_share_one_factor_and_fixed_blocks_have_none() {
+fn congruent_cubes_share_factors_and_fixed_blocks_have_none() {
     let plan = plan(&["pile_125"]);
     let factors = plan["factors"].as_array().unwrap();
-    assert_eq!((factors.len(), &factors[0]["blocks"]), (1, &Value::from(125)));
-    assert!(factors[0]["together"].as_u64().unwrap() > 100);
+    assert!(factors.len() < 125);
+    assert_eq!(factors.iter().map(|factor| factor["blocks"].as_u64().unwrap()).sum::<u64>(), 125);
     let kinds = plan["blocks"].as_array().unwrap();
     let fixed = kinds.iter().find(|kind| kind["kind"] == "fixed").unwrap();
     assert_eq!((&fixed["blocks"], &fixed["unknowns"]), (&Value::from(6), &Value::from(0)));

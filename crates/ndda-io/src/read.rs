@@ -33,12 +33,13 @@ pub struct LoadedScene {
 impl LoadedScene {
     /// An error about the value at `path`, with its place in the text.
     pub fn diagnose(&self, path: &str, message: String) -> Diagnostic {
-        Diagnostic::error(
+        let found = Diagnostic::error(
             Code::CannotBuild,
             path,
             message,
             place(&locate::tree(&self.text), &self.text, path),
-        )
+        );
+        found.with_help("`ndda mesh` measures and draws the blocks as they are placed")
     }
 
     /// Messages about this scene.
@@ -196,33 +197,72 @@ fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: &Node) -> D
             at(Code::WrongType, format!("expected {expected}, found {found}"))
                 .with_help("see docs/scene.md for this field")
         }
+        RonError::ExpectedComma => {
+            let (kind, message, help) = comma(text, start);
+            at(kind, message.into()).with_help(help)
+        }
         code => {
             let (kind, help) = grammar(code);
-            at(kind, lowercase_first(&code.to_string())).with_help(help)
+            at(kind, in_words(code)).with_help(help)
         }
+    }
+}
+
+/// What stands where a comma should.
+fn comma(text: &str, at: usize) -> (Code, &'static str, &'static str) {
+    let after_number = text[..at].ends_with(|c: char| c.is_ascii_digit());
+    // At the end, RON shows the bracket before it.
+    let rest = text[at..].trim_start_matches([')', ']']).trim_start();
+    match text[at..].chars().next() {
+        _ if rest.is_empty() => (
+            Code::Truncated,
+            "the file ends before the scene does",
+            "a closing bracket is missing, or the file was cut off",
+        ),
+        Some('.') if after_number => (Code::WrongType, "expected a whole number", "write it without a point"),
+        Some(c) if after_number && c.is_alphabetic() => (
+            Code::Syntax,
+            "a number has no unit after it",
+            "it is in the unit of the field's name; another one is written around it: Millisecond(0.1)",
+        ),
+        _ => (
+            Code::Syntax,
+            "expected a comma",
+            "a comma is missing before this, a bracket is one too many, or a text above is not closed",
+        ),
+    }
+}
+
+/// RON's words for what it expected, in those of a scene.
+fn in_words(error: &RonError) -> String {
+    match error {
+        RonError::ExpectedFloat => "expected a number".into(),
+        RonError::ExpectedInteger | RonError::IntegerOutOfBounds => "expected a whole number".into(),
+        RonError::ExpectedString => "expected a text in quotes".into(),
+        RonError::ExpectedIdentifier => "expected one of the choices by its name".into(),
+        other => lowercase_first(&other.to_string()),
     }
 }
 
 /// What kind of complaint of the grammar it is, and what to do about it.
 fn grammar(error: &RonError) -> (Code, &'static str) {
     match error {
-        RonError::ExpectedComma => {
-            (Code::Syntax, "a comma is missing before this, or a bracket is one too many")
-        }
         RonError::ExpectedMapColon => (Code::Syntax, "a field is `name: value`"),
         RonError::ExpectedArrayEnd => (Code::Syntax, "a comma or `]` is missing before this"),
         RonError::ExpectedStructLikeEnd => {
             (Code::WrongType, "a comma or `)` is missing, or there is one value too many")
         }
         RonError::TrailingCharacters => (Code::Syntax, "a bracket before this closes the scene too early"),
-        RonError::ExpectedBoolean => (Code::WrongType, "write true or false"),
         RonError::ExpectedString => (Code::WrongType, "write the text between quotes: \"text\""),
-        RonError::ExpectedInteger => (Code::WrongType, "write a whole number, 0 or above"),
+        RonError::ExpectedInteger | RonError::IntegerOutOfBounds => {
+            (Code::WrongType, "counts are whole numbers from 0 to 4294967295")
+        }
         RonError::ExpectedFloat => (
             Code::WrongType,
             "write a number, such as 1.5 or 20e9, or one with its unit, such as Megapascal(20)",
         ),
-        RonError::IntegerOutOfBounds => (Code::OutOfRange, "a whole number is from 0 to 4294967295"),
+        RonError::ExpectedIdentifier => (Code::WrongType, "see docs/scene.md for the choices of this field"),
+        RonError::ExpectedDifferentLength { .. } => (Code::WrongType, "see docs/scene.md for this field"),
         RonError::ExpectedArray => (Code::WrongType, "a list is written between [ and ]"),
         RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_) => {
             (Code::WrongType, "structs and vectors are written between ( and )")
@@ -245,7 +285,11 @@ fn lowercase_first(text: &str) -> String {
 pub fn suggest(found: &str, expected: &[&str]) -> String {
     match nearest(found, expected) {
         Some(name) => format!("did you mean `{name}`?"),
-        None => format!("there is {}", expected.join(", ")),
+        None => {
+            let mut names = expected.to_vec();
+            names.dedup();
+            format!("there is {}", names.join(", "))
+        }
     }
 }
 

@@ -115,7 +115,7 @@ impl Simulation {
                 self.any_shape(deforms),
                 match count {
                     0 => "of all blocks".into(),
-                    n => format!("left out of {n} rigid or fixed block(s), {tets} tets"),
+                    n => format!("of all blocks but {n} rigid or fixed one(s) of {tets} tets"),
                 },
                 "no block deforms",
             ),

@@ -44,7 +44,7 @@ impl Explanation {
         }
         match self.factors.len().saturating_sub(MOST_FACTORS) {
             0 => Ok(()),
-            more => writeln!(f, "  … and {more} smaller"),
+            more => writeln!(f, "  … and {more} more, none larger"),
         }
     }
 
