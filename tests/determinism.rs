@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda_cli::args::{HowArgs, RunArgs};
+use ndda_cli::args::{HowArgs, RunArgs, SceneArgs};
 use ndda_cli::{exit, run};
 
 /// Scenes with contact, friction and spin, cut short.
@@ -17,10 +17,13 @@ const SCENES: [(&str, &[&str]); 5] = [
 fn history(scene: &str, overrides: &[&str], threads: u16) -> Vec<u8> {
     let out = tempfile::tempdir().unwrap();
     let args = RunArgs {
-        scene: Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron")),
+        input: SceneArgs {
+            scene: Some(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"))),
+            overrides: overrides.iter().chain(&["output.frames=0"]).map(ToString::to_string).collect(),
+            ..SceneArgs::default()
+        },
         out: Some(out.path().join("results")),
         force: false,
-        overrides: overrides.iter().chain(&["output.frames=0"]).map(ToString::to_string).collect(),
         how: HowArgs { threads: Some(threads), strict: false, quiet: true },
     };
     assert_eq!(run::run(&args), exit::DONE, "{scene}");

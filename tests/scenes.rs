@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_cli::args::{HowArgs, RunArgs};
+use ndda_cli::args::{HowArgs, RunArgs, SceneArgs};
 use ndda_cli::{exit, run};
 use serde_json::Value;
 
@@ -50,10 +50,13 @@ fn scenes() -> PathBuf {
 
 fn args(scene: &str, out: &Path) -> RunArgs {
     RunArgs {
-        scene: scenes().join(format!("{scene}.ron")),
         out: Some(out.join(scene)),
         force: false,
-        overrides: vec!["output.frames=2".into()],
+        input: SceneArgs {
+            scene: Some(scenes().join(format!("{scene}.ron"))),
+            overrides: vec!["output.frames=2".into()],
+            ..SceneArgs::default()
+        },
         how: HowArgs { quiet: true, ..HowArgs::default() },
     }
 }
@@ -94,7 +97,7 @@ fn scenes_of_many_blocks_begin_without_a_complaint() {
     let out = tempfile::tempdir().unwrap();
     for (scene, end_s) in SHORT {
         let mut args = args(scene, out.path());
-        args.overrides.push(format!("time.end_s={end_s}"));
+        args.input.overrides.push(format!("time.end_s={end_s}"));
         assert_eq!(run::run(&args), exit::DONE, "{scene}");
         let text = std::fs::read_to_string(out.path().join(scene).join("summary.json")).unwrap();
         let summary: Value = serde_json::from_str(&text).unwrap();
@@ -143,7 +146,7 @@ fn has_the_promised_keys(scene: &str, summary: &Value) {
 fn a_run_past_the_reach_of_contact_stops_with_its_cause_and_no_nan() {
     let out = tempfile::tempdir().unwrap();
     let mut soft = args("collision_equal_free", out.path());
-    soft.overrides.push("contact.penalty_pa=1e3".into());
+    soft.input.overrides.push("contact.penalty_pa=1e3".into());
     assert_eq!(run::run(&soft), exit::STOPPED);
     let folder = out.path().join("collision_equal_free");
     let text = std::fs::read_to_string(folder.join("summary.json")).unwrap();

@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 #[derive(Debug, Parser)]
 #[command(
     version,
-    after_help = "Examples:\n  ndda run scenes/sliding_45.ron\n  ndda run scenes/sliding_45.ron --set time.step_s=1e-3 \
+    after_help = "Examples:\n  ndda run --example sliding_45\n  ndda new slide\n  ndda run scenes/sliding_45.ron --set time.step_s=1e-3 \
                   --out out/coarse\n  ndda check scenes/sliding_45.ron\n  ndda mesh scenes/column_phi0.ron\n\nExit codes: 0 done · 1 ran, a criterion \
                   failed · 2 usage · 3 bad input · 4 numerical stop · 5 input/output · 6 resources · 130 interrupted"
 )]
@@ -30,6 +30,19 @@ pub enum Verb {
     Resume(ResumeArgs),
     /// Read and check a scene without running it: all errors at once, each with its place.
     Check(CheckArgs),
+    /// Say what a run of a scene will do and what it leaves out, and why.
+    Explain(ExplainArgs),
+    /// Write a commented scene to begin with.
+    New(NewArgs),
+    /// Print what a scene may say, as JSON Schema.
+    #[cfg(feature = "schema")]
+    Schema(SchemaArgs),
+    /// Print completions for a shell.
+    #[cfg(feature = "shell")]
+    Completions(CompletionsArgs),
+    /// Print the manual page (ndda man | man -l -).
+    #[cfg(feature = "shell")]
+    Man(ManArgs),
     /// Build or read the blocks of a scene or a mesh file, check and measure them, and draw them.
     ///
     /// Prints counts, volumes, how large blocks are, how good their tetrahedra are (histograms, and the worst ten with
@@ -75,22 +88,34 @@ pub enum Fix {
     Merge,
 }
 
+/// Which scene, and what is changed in it.
+#[derive(Debug, Default, Args)]
+pub struct SceneArgs {
+    /// Scene file (RON; see docs/scene.md).
+    #[arg(required_unless_present = "example")]
+    pub scene: Option<PathBuf>,
+    /// Take an example that is in the program instead of a file; without a name, list them.
+    #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "", conflicts_with = "scene")]
+    pub example: Option<String>,
+    /// Override a value of the scene by its path; may be repeated.
+    ///
+    /// `time.step_s=1e-3`, `materials.rock.young_pa=20e9`, `blocks[0].at_m[2]=0.5`.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub overrides: Vec<String>,
+}
+
 /// Arguments of `ndda run`.
 #[derive(Debug, Args)]
 pub struct RunArgs {
-    /// Scene file (RON; see docs/scene.md).
-    pub scene: PathBuf,
+    /// The scene.
+    #[command(flatten)]
+    pub input: SceneArgs,
     /// Output folder [default: out/ and the name of the scene].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Replace the results of an earlier run in the output folder.
     #[arg(long)]
     pub force: bool,
-    /// Override a value of the scene by its path; may be repeated.
-    ///
-    /// `time.step_s=1e-3`, `materials.rock.young_pa=20e9`, `blocks[0].at_m[2]=0.5`.
-    #[arg(long = "set", value_name = "PATH=VALUE")]
-    pub overrides: Vec<String>,
     /// How to run it.
     #[command(flatten)]
     pub how: HowArgs,
@@ -123,9 +148,59 @@ pub struct ResumeArgs {
 /// Arguments of `ndda check`.
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// Scene file (RON; see docs/scene.md).
-    pub scene: PathBuf,
-    /// Override a value of the scene by its path; may be repeated.
-    #[arg(long = "set", value_name = "PATH=VALUE")]
-    pub overrides: Vec<String>,
+    /// The scene.
+    #[command(flatten)]
+    pub input: SceneArgs,
+}
+
+/// Arguments of `ndda explain`.
+#[derive(Debug, Args)]
+pub struct ExplainArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub input: SceneArgs,
+    /// Print the plan as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `ndda new`.
+#[derive(Debug, Args)]
+pub struct NewArgs {
+    /// Which template [default: slide].
+    pub template: Option<String>,
+    /// File to write, or - for standard output [default: the template's name with .ron].
+    #[arg(long, short, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// List the templates.
+    #[arg(long)]
+    pub list: bool,
+    /// Replace the file if it is there.
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// Arguments of `ndda schema`.
+#[cfg(feature = "schema")]
+#[derive(Debug, Args)]
+pub struct SchemaArgs {
+    /// Print docs/scene.md instead.
+    #[arg(long)]
+    pub markdown: bool,
+}
+
+/// Arguments of `ndda completions`.
+#[cfg(feature = "shell")]
+#[derive(Debug, Args)]
+pub struct CompletionsArgs {
+    /// Which shell.
+    pub shell: clap_complete::Shell,
+}
+
+/// Arguments of `ndda man`.
+#[cfg(feature = "shell")]
+#[derive(Debug, Args)]
+pub struct ManArgs {
+    /// Of which verb [default: of all, in short].
+    pub verb: Option<String>,
 }

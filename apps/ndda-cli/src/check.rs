@@ -9,6 +9,7 @@ use ndda_solver::Simulation;
 use crate::args::CheckArgs;
 use crate::console::{colour, complain, say};
 use crate::exit;
+use crate::input;
 use crate::monitor::Monitor;
 use crate::reference::Comparison;
 use crate::step_advice;
@@ -57,12 +58,9 @@ pub fn prepare_loaded(loaded: LoadedScene, folder: &Path) -> Result<Ready, Scene
 
 /// Runs `ndda check`; returns the exit code.
 pub fn check(args: &CheckArgs) -> u8 {
-    let ready = match prepare(&args.scene, &args.overrides) {
+    let ready = match input::ready(&args.input) {
         Ok(ready) => ready,
-        Err(errors) => {
-            complain(&errors.render(colour()));
-            return exit::BAD_INPUT;
-        }
+        Err(code) => return code,
     };
     if !ready.loaded.warnings.is_empty() {
         complain(&ready.loaded.errors(ready.loaded.warnings.clone()).render(colour()));
@@ -71,7 +69,7 @@ pub fn check(args: &CheckArgs) -> u8 {
     let blocks = simulation.blocks();
     say(&format!(
         "{}: no errors, {} warning(s)\n{} block(s), {} nodes, {} tets, {} unknowns, {} factor(s); {} steps",
-        args.scene.display(),
+        ready.loaded.file,
         ready.loaded.warnings.len(),
         blocks.len(),
         blocks.rest_position.len(),

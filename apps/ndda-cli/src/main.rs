@@ -4,13 +4,25 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use ndda_cli::args::{Cli, Verb};
-use ndda_cli::{check, mesh, resume, run};
+#[cfg(feature = "schema")]
+use ndda_cli::schema;
+#[cfg(feature = "shell")]
+use ndda_cli::shell;
+use ndda_cli::{check, explain, mesh, new, resume, run};
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().verb {
         Verb::Run(args) => run::run(&args),
         Verb::Resume(args) => resume::resume(&args),
         Verb::Check(args) => check::check(&args),
+        Verb::Explain(args) => explain::explain(&args),
+        Verb::New(args) => new::new(&args),
+        #[cfg(feature = "schema")]
+        Verb::Schema(args) => schema::schema(&args),
+        #[cfg(feature = "shell")]
+        Verb::Completions(args) => shell::completions(&args),
+        #[cfg(feature = "shell")]
+        Verb::Man(args) => shell::man(&args),
         Verb::Mesh(args) => mesh::mesh(&args),
     };
     ExitCode::from(outcome)

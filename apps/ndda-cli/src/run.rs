@@ -7,14 +7,14 @@ use ndda_io::{OutputFolder, WriteError, checkpoint, summary};
 use ndda_solver::{RunError, Settle, StepError};
 
 use crate::args::{HowArgs, RunArgs};
-use crate::check::{Ready, prepare};
+use crate::check::Ready;
 use crate::checkpoint::{Earlier, Identity, Outputs};
 use crate::console::{colour, complain, say};
 use crate::progress::Progress;
 use crate::recorder::{FieldWriter, Recorder};
 use crate::reference::{self, Comparison};
 use crate::report::{self, Outcome};
-use crate::{exit, interrupt, wiring};
+use crate::{exit, input, interrupt, wiring};
 
 /// Runs a scene and reports; the result is the exit code.
 pub fn run(args: &RunArgs) -> u8 {
@@ -64,17 +64,15 @@ pub struct Job {
 }
 
 fn run_here(args: &RunArgs, options: &Options) -> u8 {
-    let ready = match prepare(&args.scene, &args.overrides) {
+    let ready = match input::ready(&args.input) {
         Ok(ready) => ready,
-        Err(errors) => {
-            complain(&errors.render(colour()));
-            return exit::BAD_INPUT;
-        }
+        Err(code) => return code,
     };
     if !ready.loaded.warnings.is_empty() && !options.quiet {
         complain(&ready.loaded.errors(ready.loaded.warnings.clone()).render(colour()));
     }
-    let name = scene_name(&args.scene);
+    let file = input::file(&args.input);
+    let name = scene_name(&file);
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(&name));
     let folder = match OutputFolder::create(&folder, args.force) {
         Ok(folder) => folder,
@@ -83,7 +81,7 @@ fn run_here(args: &RunArgs, options: &Options) -> u8 {
             return exit::INPUT_OUTPUT;
         }
     };
-    let file = std::path::absolute(&args.scene).unwrap_or_else(|_| args.scene.clone());
+    let file = std::path::absolute(&file).unwrap_or(file);
     let identity = Identity { name, text: ready.loaded.text.clone(), file };
     let comparison = ready.comparison();
     execute(Job { ready, comparison, identity, folder, earlier: None }, options)
@@ -114,7 +112,7 @@ fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
             Ok(settled) if !options.quiet => complain(&format!("settled in {} steps", settled.steps)),
             Ok(_) => {}
             Err(error) => {
-                complain(&format!("error: stopped {error}"));
+                complain(&format!("error: stopped {}", stop(&error)));
                 return Ok(exit::STOPPED);
             }
         }
@@ -196,12 +194,17 @@ fn conclude(summary: &summary::Summary) -> u8 {
     }
 }
 
+/// A numerical stop in words, after its code.
+fn stop(error: &StepError) -> String {
+    format!("[{}] {error}", error.code())
+}
+
 /// The cause of a numerical stop in words; errors of output are handed on.
 fn numerical_stop(error: RunError) -> Result<String, WriteError> {
     match error {
-        RunError::Step(step) => Ok(step.to_string()),
+        RunError::Step(step) => Ok(stop(&step)),
         RunError::Sink(sink) => match sink.downcast::<StepError>() {
-            Ok(step) => Ok(step.to_string()),
+            Ok(step) => Ok(stop(&step)),
             Err(other) => match other.downcast::<WriteError>() {
                 Ok(write) => Err(*write),
                 Err(unknown) => Ok(unknown.to_string()),

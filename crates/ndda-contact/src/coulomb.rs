@@ -19,6 +19,10 @@ impl Coulomb {
 }
 
 impl FrictionLaw for Coulomb {
+    fn name(&self) -> &'static str {
+        "Coulomb with a shear spring"
+    }
+
     /// f′ = f − ½ k_s Δu S, capped at μ |f_n| along its own direction.
     fn advance(&self, slip: &FacetSlip, memory: &mut ShearMemory) {
         let spring = 0.5 * self.shear_penalty_pa_m * slip.area_m2;

@@ -35,6 +35,9 @@ impl Default for ShearMemory {
 /// Contract (checked by [`check_friction`](crate::testing::check_friction)): the force never exceeds what the law
 /// says it can carry, opposes the slip, and is zero without contact.
 pub trait FrictionLaw: Send + Sync {
+    /// Its name, for a person who asks.
+    fn name(&self) -> &'static str;
+
     /// Advances the shear force by one step.
     fn advance(&self, slip: &FacetSlip, memory: &mut ShearMemory);
 

@@ -68,6 +68,15 @@ impl Joints {
         self.law_of.iter().any(Option::is_some)
     }
 
+    /// Names of the laws that act, each once.
+    pub fn law_names(&self) -> Vec<&'static str> {
+        let mut names: Vec<_> =
+            self.law_of.iter().flatten().map(|&law| self.laws[law as usize].name()).collect();
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
     /// Whether a law acts on whole faces.
     pub fn act_on_faces(&self) -> bool {
         self.laws.iter().any(|law| law.acts_on_faces())

@@ -6,6 +6,7 @@
 pub mod element_pairs;
 pub mod model;
 pub mod pair_stiffness;
+pub mod plan;
 pub mod testing;
 
 #[cfg(feature = "potential")]
@@ -74,6 +75,8 @@ mod twofold;
 pub mod velocity_friction;
 #[cfg(feature = "potential")]
 pub mod volume_potential;
+
+pub use plan::Part;
 
 pub use model::{
     Body, Bond, ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport,

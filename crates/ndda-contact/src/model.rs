@@ -4,6 +4,7 @@ use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::pair_stiffness::PairStiffness;
+use crate::plan::Part;
 
 /// What a contact model sees of the blocks: positions and velocities, nothing of materials or integrators.
 #[derive(Clone, Copy, Debug)]
@@ -219,6 +220,11 @@ pub trait ContactModel: Send + Sync {
         _stiffness: &mut Vec<PairStiffness>,
     ) -> Result<(), ContactError> {
         Err(ContactError::NoTangent)
+    }
+
+    /// What the model consists of, for a person who asks.
+    fn plan(&self) -> Vec<Part> {
+        Vec::new()
     }
 
     /// Whether [`ContactInput::bodies`] is read; `false` lets the solver leave them out.

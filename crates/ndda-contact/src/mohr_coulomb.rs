@@ -22,6 +22,10 @@ impl MohrCoulomb {
 }
 
 impl FrictionLaw for MohrCoulomb {
+    fn name(&self) -> &'static str {
+        "Mohr–Coulomb with a shear spring"
+    }
+
     fn advance(&self, slip: &FacetSlip, memory: &mut ShearMemory) {
         let spring = 0.5 * self.shear_penalty_pa_m * slip.area_m2;
         let trial = [0, 1].map(|i| memory.shear_n[i] - spring * slip.slip_m[i]);

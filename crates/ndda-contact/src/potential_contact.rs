@@ -1,5 +1,7 @@
 //! The default contact model: a contact potential, and friction on top of it.
 
+mod plan;
+
 use ndda_mesh::Mat3;
 use rayon::prelude::*;
 
@@ -17,6 +19,7 @@ use crate::model::{
 };
 use crate::pair::TetFrame;
 use crate::pair_stiffness::PairStiffness;
+use crate::plan::Part;
 use crate::potential::{ContactPotential, Field, OverlapLaw};
 use crate::report::Reporter;
 use crate::tangent;
@@ -276,6 +279,10 @@ impl ContactModel for PotentialContact {
             bonds::add_stiffness(joints, input, &history.bonds, stiffness);
         }
         Ok(())
+    }
+
+    fn plan(&self) -> Vec<Part> {
+        plan::parts(self)
     }
 
     fn needs_bodies(&self) -> bool {

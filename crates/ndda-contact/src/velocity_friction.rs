@@ -25,6 +25,10 @@ impl VelocityCoulomb {
 }
 
 impl FrictionLaw for VelocityCoulomb {
+    fn name(&self) -> &'static str {
+        "Coulomb on velocities"
+    }
+
     fn advance(&self, slip: &FacetSlip, memory: &mut ShearMemory) {
         let trial = [0, 1].map(|i| memory.shear_n[i] + slip.stopping_n[i]);
         memory.shear_n = capped(trial, self.capacity_n(slip, memory)).0;

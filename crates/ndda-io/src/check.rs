@@ -5,6 +5,7 @@ mod shape;
 
 use std::path::Path;
 
+use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::read::suggest;
 use crate::scene::{
@@ -42,14 +43,35 @@ struct Check<'a> {
 }
 
 impl Check<'_> {
-    fn error(&mut self, path: impl Into<String>, message: impl Into<String>, help: impl Into<String>) {
-        self.found.push(Diagnostic::error(path, message, None).with_help(help));
+    fn report(
+        &mut self,
+        code: Code,
+        path: impl Into<String>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.found.push(Diagnostic::error(code, path, message, None).with_help(help));
     }
 
-    fn warn(&mut self, path: impl Into<String>, message: impl Into<String>, help: impl Into<String>) {
-        let mut warning = Diagnostic::error(path, message, None).with_help(help);
-        warning.severity = Severity::Warning;
-        self.found.push(warning);
+    /// A value outside of what is allowed.
+    fn error(&mut self, path: impl Into<String>, message: impl Into<String>, help: impl Into<String>) {
+        self.report(Code::OutOfRange, path, message, help);
+    }
+
+    /// Parts that do not go together.
+    fn misfit(&mut self, path: impl Into<String>, message: impl Into<String>, help: impl Into<String>) {
+        self.report(Code::DoesNotFit, path, message, help);
+    }
+
+    fn warn(
+        &mut self,
+        code: Code,
+        path: impl Into<String>,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
+        self.report(code, path, message, help);
+        self.found.last_mut().into_iter().for_each(|d| d.severity = Severity::Warning);
     }
 
     /// A number that must be positive and finite.
@@ -73,7 +95,8 @@ impl Check<'_> {
     fn direction(&mut self, path: String, value: &[f64; 3]) {
         let length = value.iter().map(|v| v * v).sum::<f64>().sqrt();
         if !(length > 0.0 && length.is_finite()) {
-            self.error(
+            self.report(
+                Code::NoDirection,
                 path,
                 "is no direction: its length is zero or overflows",
                 "give a vector such as (0, 0, 1)",
@@ -84,7 +107,12 @@ impl Check<'_> {
     /// A name that must be one of `known`.
     fn known(&mut self, path: String, what: &str, name: &str, known: &[&str]) {
         if !known.contains(&name) {
-            self.error(path, format!("there is no {what} `{name}`"), suggest(name, known));
+            self.report(
+                Code::UnknownName,
+                path,
+                format!("there is no {what} `{name}`"),
+                suggest(name, known),
+            );
         }
     }
 
@@ -101,7 +129,12 @@ impl Check<'_> {
         if !pattern.contains('*') {
             self.known_block(path, pattern);
         } else if self.scene.rock.is_empty() && !self.scene.blocks.iter().any(|b| matches(pattern, &b.name)) {
-            self.error(path, format!("no block is named `{pattern}`"), "`*` stands for anything");
+            self.report(
+                Code::UnknownName,
+                path,
+                format!("no block is named `{pattern}`"),
+                "`*` stands for anything",
+            );
         }
     }
 
@@ -113,9 +146,10 @@ impl Check<'_> {
                 || name.chars().any(|c| c.is_control() || "/\\,\"'`".contains(c))
             {
                 let help = "use letters, digits, spaces, - and _: names become columns and files";
-                self.error(path, format!("`{}` cannot be a name", name.escape_debug()), help);
+                self.report(Code::BadName, path, format!("`{}` cannot be a name", name.escape_debug()), help);
             } else if names[..i].contains(name) {
-                self.error(
+                self.report(
+                    Code::BadName,
                     path,
                     format!("the name `{name}` is used twice in {list}"),
                     "give each its own name",
@@ -138,6 +172,7 @@ impl Check<'_> {
                 self.error("time.step_s", message, "at most 1e9 steps are taken: make the step larger");
             } else if time.step_s > 0.1 * time.end_s {
                 self.warn(
+                    Code::UnitSlip,
                     "time.step_s",
                     "fewer than ten steps",
                     "is it meant in milliseconds? the unit is seconds",
@@ -214,11 +249,12 @@ impl Check<'_> {
                 self.error(path("poisson"), message, "rock has 0.15 to 0.35");
             } else if material.poisson > 0.49 {
                 let help = "four-node tetrahedra lock near 0.5: displacements come out too small";
-                self.warn(path("poisson"), "nearly incompressible", help);
+                self.warn(Code::Inexact, path("poisson"), "nearly incompressible", help);
             }
             if material.young_pa > 0.0 && material.young_pa < 1e6 {
                 let help = "the unit is pascal: 20 GPa is 20e9";
                 self.warn(
+                    Code::UnitSlip,
                     path("young_pa"),
                     format!("{} Pa is softer than any rock", material.young_pa),
                     help,
@@ -228,6 +264,7 @@ impl Check<'_> {
             if density > 0.0 && !(100.0..=20000.0).contains(&density) {
                 let help = "the unit is kg/m³: granite is 2650";
                 self.warn(
+                    Code::UnitSlip,
                     path("density_kg_m3"),
                     format!("{density} kg/m³ is not the density of a rock"),
                     help,
@@ -246,12 +283,18 @@ impl Check<'_> {
                 self.positive(path("bedding.shear_across_pa"), bedding.shear_across_pa, "Pa");
                 if bedding.normal == [0.0; 3] {
                     let help = "give a direction, such as (0, 0, 1) for level beds";
-                    self.error(path("bedding.normal"), "the normal of the beds has no length", help);
+                    self.report(
+                        Code::NoDirection,
+                        path("bedding.normal"),
+                        "the normal of the beds has no length",
+                        help,
+                    );
                 }
             }
             let of_rock = scene.rock.iter().any(|rock| rock.material == material.name);
             if !of_rock && !scene.blocks.iter().any(|b| b.material == material.name) {
                 self.warn(
+                    Code::NoEffect,
                     path("name"),
                     format!("no block is made of `{}`", material.name),
                     "it may be left out",
@@ -263,7 +306,7 @@ impl Check<'_> {
     fn blocks(&mut self, folder: Option<&Path>) {
         let scene = self.scene;
         if scene.blocks.is_empty() && scene.rock.is_empty() {
-            self.error("blocks", "there is no block", "a scene has `blocks` or `rock`");
+            self.misfit("blocks", "there is no block", "a scene has `blocks` or `rock`");
         }
         self.names("blocks", &scene.blocks.iter().map(|b| b.name.as_str()).collect::<Vec<_>>());
         let materials: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
@@ -282,11 +325,11 @@ impl Check<'_> {
             self.numbers(&path("spin_rad_s"), &block.spin_rad_s);
             if matches!(block.body, Body::Rigid | Body::Fixed) && block.initial_stress_pa.is_some() {
                 let help = "leave it out, or make the body Elastic or Affine";
-                self.error(path("initial_stress_pa"), "a block that does not deform has no stress", help);
+                self.misfit(path("initial_stress_pa"), "a block that does not deform has no stress", help);
             }
             if block.body == Body::Fixed && (block.velocity_m_s, block.spin_rad_s) != ([0.0; 3], [0.0; 3]) {
                 let help = "leave it out, or give the block a support with a Motion";
-                self.error(path("velocity_m_s"), "a fixed block does not start with a velocity", help);
+                self.misfit(path("velocity_m_s"), "a fixed block does not start with a velocity", help);
             }
             self.shape(&path("shape"), &block.shape, folder);
         }
@@ -297,7 +340,7 @@ impl Check<'_> {
             && !folder.join(file).is_file()
         {
             let message = format!("there is no file {}", folder.join(file).display());
-            self.error(path, message, "the path counts from the scene file");
+            self.report(Code::MissingFile, path, message, "the path counts from the scene file");
         }
     }
 
@@ -327,7 +370,7 @@ impl Check<'_> {
             match &support.hold {
                 Hold::Normal if !matches!(support.on, Region::Plane { .. }) => {
                     let help = "use `Plane(…)` as region, or `Direction((x, y, z))`";
-                    self.error(path("hold"), "`Normal` needs a region that is a plane", help);
+                    self.misfit(path("hold"), "`Normal` needs a region that is a plane", help);
                 }
                 Hold::Direction(n) => self.direction(path("hold"), n),
                 Hold::Motion(rows) => self.motion(&path("hold"), rows),
@@ -360,7 +403,7 @@ impl Check<'_> {
             self.error(format!("{path}[0][{i}].time_s"), message, "sort the rows by time_s");
         }
         if rows.first().is_some_and(|row| row.time_s <= 0.0 && row.displacement_m != [0.0; 3]) {
-            self.error(
+            self.misfit(
                 path,
                 "the motion does not begin at rest",
                 "let it start with displacement_m: (0, 0, 0)",
@@ -385,7 +428,7 @@ impl Check<'_> {
             && matches!(scene.reference, Some(Reference::SlidingBlock { .. } | Reference::FreeFall { .. }))
         {
             let help = "leave out the ramp or the reference";
-            self.error("gravity_ramp_s", "the closed form of `reference` has gravity act at once", help);
+            self.misfit("gravity_ramp_s", "the closed form of `reference` has gravity act at once", help);
         }
         if let Some(settle) = scene.settle {
             if !(0.0 < settle.tolerance && settle.tolerance < 1.0) {
@@ -394,7 +437,7 @@ impl Check<'_> {
             }
             if scene.gravity_ramp_s > 0.0 {
                 let help = "leave out one of the two";
-                self.error("gravity_ramp_s", "a scene settles under its full weight", help);
+                self.misfit("gravity_ramp_s", "a scene settles under its full weight", help);
             }
         }
         for (i, force) in scene.forces.iter().enumerate() {
@@ -454,7 +497,7 @@ impl Check<'_> {
                 self.error(field(name), message, "0 for a joint that does not hold together");
             } else if strength > 0.0 && friction.shear_penalty_pa_m.is_none() {
                 let help = "give shear_penalty_pa_m, the stiffness of the joint until it breaks";
-                self.error(field(name), "a joint that holds together needs a spring to hold with", help);
+                self.misfit(field(name), "a joint that holds together needs a spring to hold with", help);
             }
         }
     }
@@ -476,7 +519,7 @@ impl Check<'_> {
         match &self.scene.contact {
             None if several => {
                 let help = "write `contact: Potential(penalty_pa: …)` or `contact: Off`";
-                self.error("contact", "more than one block, and no word on contact", help);
+                self.misfit("contact", "more than one block, and no word on contact", help);
             }
             Some(Contact::Potential { penalty_pa, potential, friction, joints, .. }) => {
                 self.positive("contact.penalty_pa".into(), *penalty_pa, "Pa");
@@ -486,7 +529,12 @@ impl Check<'_> {
                 }
                 self.joints(joints);
                 if !several && !self.scene.blocks.is_empty() {
-                    self.warn("contact", "one block has nothing to touch", "contact is left out of this run");
+                    self.warn(
+                        Code::NoEffect,
+                        "contact",
+                        "one block has nothing to touch",
+                        "contact is left out of this run",
+                    );
                 }
             }
             _ => {}
@@ -540,7 +588,7 @@ impl Check<'_> {
                 }
                 if slope_deg.to_radians().tan() <= friction_deg.to_radians().tan() {
                     let message = "the block does not slide: the closed form is 0 and has no relative error";
-                    self.error(path("friction_deg"), message, "compare a slope that is steeper than φ");
+                    self.misfit(path("friction_deg"), message, "compare a slope that is steeper than φ");
                 }
                 if let Some(thickness) = thickness_m {
                     self.positive(path("thickness_m"), *thickness, "m");
@@ -581,7 +629,12 @@ impl Check<'_> {
         }
         if self.scene.output.frames > 100_000 {
             let frames = self.scene.output.frames;
-            self.warn("output.frames", format!("{frames} frames are as many files"), "are that many needed?");
+            self.warn(
+                Code::UnitSlip,
+                "output.frames",
+                format!("{frames} frames are as many files"),
+                "are that many needed?",
+            );
         }
     }
 }

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
+use crate::code::Code;
 use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
 
 /// How much a message matters.
@@ -19,6 +20,8 @@ pub enum Severity {
 pub struct Diagnostic {
     /// How much it matters.
     pub severity: Severity,
+    /// What kind of thing it is.
+    pub code: Code,
     /// Path of the value, as in `blocks[1].shape.size_m`; empty when it is about the whole file.
     pub path: String,
     /// What is wrong.
@@ -31,9 +34,14 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// An error at a place of the text.
-    pub fn error(path: impl Into<String>, message: impl Into<String>, span: Option<Range<usize>>) -> Self {
+    pub fn error(
+        code: Code,
+        path: impl Into<String>,
+        message: impl Into<String>,
+        span: Option<Range<usize>>,
+    ) -> Self {
         let (path, message) = (path.into(), message.into());
-        Self { severity: Severity::Error, path, message, help: None, span }
+        Self { severity: Severity::Error, code, path, message, help: None, span }
     }
 
     /// The same message with advice.
@@ -74,7 +82,7 @@ impl SceneErrors {
         out
     }
 
-    /// `file:line:column: error: path: message`.
+    /// `file:line:column: error[code]: path: message`.
     fn headline(&self, diagnostic: &Diagnostic) -> String {
         let word = match diagnostic.severity {
             Severity::Error => "error",
@@ -85,7 +93,7 @@ impl SceneErrors {
             format!(":{line}:{column}")
         });
         let path = if diagnostic.path.is_empty() { String::new() } else { format!("{}: ", diagnostic.path) };
-        format!("{}{place}: {word}: {path}{}\n", self.file, diagnostic.message)
+        format!("{}{place}: {word}[{}]: {path}{}\n", self.file, diagnostic.code, diagnostic.message)
     }
 }
 

@@ -4,6 +4,7 @@ pub mod abaqus;
 pub mod atomic;
 pub mod check;
 pub mod checkpoint;
+pub mod code;
 pub mod diagnostic;
 pub mod folder;
 pub mod gmsh_program;
@@ -16,11 +17,14 @@ pub mod pvd;
 pub mod read;
 pub mod record;
 pub mod scene;
+#[cfg(feature = "schema")]
+pub mod schema;
 pub mod summary;
 pub mod surface_file;
 pub mod tetgen;
 #[cfg(feature = "tetgen")]
 pub mod tetgen_fill;
+pub mod units;
 pub mod vtk_file;
 pub mod vtu;
 pub mod write_error;

@@ -63,6 +63,30 @@ impl Node {
         self.children.iter().find(inside).and_then(|c| c.innermost(offset)).or(Some(self))
     }
 
+    /// The word before the bracket that opens it, as `Box` in `Box(…)`; empty for anything else.
+    pub fn word<'a>(&self, text: &'a str) -> &'a str {
+        let Some('(') = self.opening else { return "" };
+        text[self.span.clone()].split(|c: char| "(/".contains(c) || c.is_whitespace()).next().unwrap_or("")
+    }
+
+    /// Path of the innermost value around or before a byte.
+    pub fn path_at(&self, offset: usize) -> String {
+        let mut path = String::new();
+        let mut node = self;
+        let begun = |node: &Self| node.key.as_ref().map_or(node.span.start, |_| node.key_span.start);
+        while let Some((i, child)) =
+            node.children.iter().enumerate().find(|(_, c)| begun(c) <= offset && offset <= c.span.end)
+        {
+            match &child.key {
+                Some(key) if path.is_empty() => path.push_str(key),
+                Some(key) => path.push_str(&format!(".{key}")),
+                None => path.push_str(&format!("[{i}]")),
+            }
+            node = child;
+        }
+        path
+    }
+
     /// Calls `leaf` for each word, number and string.
     pub fn for_each_leaf(&self, leaf: &mut impl FnMut(&Self)) {
         if self.opening.is_none() {

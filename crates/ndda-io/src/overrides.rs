@@ -1,5 +1,6 @@
 //! `--set path=value`: the scene's text with other values in it.
 
+use crate::code::Code;
 use crate::diagnostic::Diagnostic;
 use crate::locate::{self, Node, segments};
 
@@ -16,7 +17,7 @@ pub fn apply(text: &str, overrides: &[String]) -> Result<String, Diagnostic> {
 }
 
 fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
-    let refuse = |message: String| Diagnostic::error(format!("--set {one}"), message, None);
+    let refuse = |message: String| Diagnostic::error(Code::Override, format!("--set {one}"), message, None);
     let Some((path, value)) = one.split_once('=') else {
         return Err(refuse("has no `=`; write --set time.step_s=1e-3".into()));
     };

@@ -7,10 +7,12 @@ use ron::error::{Error as RonError, Position, SpannedError};
 use ron::extensions::Extensions;
 
 use crate::check;
+use crate::code::Code;
 use crate::diagnostic::{Diagnostic, SceneErrors, Severity};
 use crate::locate::{self, Node};
 use crate::overrides;
 use crate::scene::Scene;
+use crate::units::{self, Resolved};
 
 /// Names less alike than this are no suggestion.
 const ALIKE: f64 = 0.75;
@@ -31,7 +33,13 @@ pub struct LoadedScene {
 impl LoadedScene {
     /// An error about the value at `path`, with its place in the text.
     pub fn diagnose(&self, path: &str, message: String) -> Diagnostic {
-        Diagnostic::error(path, message, place(&locate::tree(&self.text), &self.text, path))
+        let found = Diagnostic::error(
+            Code::CannotBuild,
+            path,
+            message,
+            place(&locate::tree(&self.text), &self.text, path),
+        );
+        found.with_help("`ndda mesh` measures and draws the blocks as they are placed")
     }
 
     /// Messages about this scene.
@@ -49,7 +57,7 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<LoadedScene, SceneError
     let unreadable = |message: String, help: &str| SceneErrors {
         file: file.clone(),
         text: String::new(),
-        diagnostics: vec![Diagnostic::error("", message, None).with_help(help)],
+        diagnostics: vec![Diagnostic::error(Code::Unreadable, "", message, None).with_help(help)],
     };
     if path.is_dir() {
         return Err(unreadable("is a folder".into(), "name a scene file, such as scenes/sliding_45.ron"));
@@ -82,12 +90,13 @@ pub fn load_text(
         diagnostics,
     };
     if let Some(rest) = text.strip_prefix('\u{feff}') {
-        let begins = Diagnostic::error("", "the file begins with a byte order mark", Some(0..0));
+        let begins =
+            Diagnostic::error(Code::Syntax, "", "the file begins with a byte order mark", Some(0..0));
         return Err(fail(rest, vec![begins.with_help("save it as UTF-8 without BOM")]));
     }
     if text.trim().is_empty() {
-        let empty = Diagnostic::error("", "the file is empty", Some(0..0));
-        return Err(fail(text, vec![empty.with_help("begin with one of the scenes in scenes/")]));
+        let empty = Diagnostic::error(Code::Truncated, "", "the file is empty", Some(0..0));
+        return Err(fail(text, vec![empty.with_help("begin with one that runs: `ndda new` writes it")]));
     }
     let text = overrides::apply(text, overrides).map_err(|refused| fail(text, vec![refused]))?;
     let tree = locate::tree(&text);
@@ -95,8 +104,7 @@ pub fn load_text(
     if !numbers.is_empty() {
         return Err(fail(&text, numbers));
     }
-    let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
-    let scene: Scene = options.from_str(&text).map_err(|e| fail(&text, vec![explain(&e, &text, &tree)]))?;
+    let scene = typed(&text, &tree).map_err(|found| fail(&text, found))?;
     let mut found = check::problems(&scene, folder);
     for diagnostic in &mut found {
         diagnostic.span = place(&tree, &text, &diagnostic.path);
@@ -106,6 +114,20 @@ pub fn load_text(
         return Err(fail(&text, found));
     }
     Ok(LoadedScene { scene, text, file: file.to_string(), warnings: found })
+}
+
+/// The text as a scene, its values in the units of their fields.
+fn typed(text: &str, tree: &Node) -> Result<Scene, Vec<Diagnostic>> {
+    let plain = units::resolve(text, tree);
+    let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
+    match options.from_str(&plain.text) {
+        Ok(scene) if plain.errors.is_empty() => Ok(scene),
+        // In a field that does not exist, no unit is right.
+        Err(e) if plain.errors.is_empty() || matches!(e.code, RonError::NoSuchStructField { .. }) => {
+            Err(vec![explain(&e, &plain, text, tree)])
+        }
+        _ => Err(plain.errors),
+    }
 }
 
 /// Place of the value at a path, or of the nearest value around it that is written.
@@ -129,44 +151,128 @@ fn not_finite(tree: &Node, text: &str) -> Vec<Diagnostic> {
         let looks_like_number = digits.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
             || ["NaN", "inf"].contains(&digits.as_str());
         if looks_like_number && digits.parse::<f64>().is_ok_and(|number| !number.is_finite()) {
-            let path = leaf.key.clone().unwrap_or_default();
+            let path = tree.path_at(leaf.span.start);
             let message = format!("{word} is not a number that one can compute with");
-            found.push(Diagnostic::error(path, message, Some(leaf.span.clone())));
+            let place = Some(leaf.span.clone());
+            let help = "numbers are finite, at most 1.8e308 in size";
+            found.push(Diagnostic::error(Code::NotFinite, path, message, place).with_help(help));
         }
     });
     found
 }
 
-/// RON's complaint in the words of a scene, at the place a person would look.
-fn explain(error: &SpannedError, text: &str, tree: &Node) -> Diagnostic {
-    let start = offset(text, &error.span.start);
-    let span = start..offset(text, &error.span.end).max(start);
-    let at = |message: String| Diagnostic::error("", message, Some(span.clone()));
+/// RON's complaint in the words of a scene, at the place in the source where a person would look.
+fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: &Node) -> Diagnostic {
+    let byte = |position: &Position| plain.source(offset(&plain.text, position)).min(text.len());
+    let start = byte(&error.span.start);
+    let span = start..byte(&error.span.end).max(start);
+    let path = tree.path_at(start);
+    let at = |code: Code, message: String| Diagnostic::error(code, path.clone(), message, Some(span.clone()));
     let of = |outer: &Option<String>| outer.as_ref().map_or(String::new(), |name| format!(" of `{name}`"));
     match &error.code {
         RonError::NoSuchStructField { expected, found, outer } => {
-            at(format!("there is no field `{found}`{}", of(outer))).with_help(suggest(found, expected))
+            at(Code::UnknownField, format!("there is no field `{found}`{}", of(outer)))
+                .with_help(suggest(found, expected))
         }
         RonError::NoSuchEnumVariant { expected, found, outer } => {
-            at(format!("`{found}` is no choice{}", of(outer))).with_help(suggest(found, expected))
+            at(Code::UnknownChoice, format!("`{found}` is no choice{}", of(outer)))
+                .with_help(suggest(found, expected))
         }
         RonError::MissingStructField { field, outer } => {
             // RON points at the closing bracket; the struct is what lacks the field.
-            let around = tree.innermost(start.saturating_sub(1));
-            let span = around.map_or(span.clone(), |node| node.span.clone());
-            let path = around.and_then(|node| node.key.clone()).unwrap_or_default();
-            Diagnostic::error(path, format!("the field `{field}`{} is missing", of(outer)), Some(span))
+            let inside = start.saturating_sub(1);
+            let span = tree.innermost(inside).map_or(span.clone(), |node| node.span.clone());
+            let path = tree.path_at(span.start);
+            let message = format!("the field `{field}`{} is missing", of(outer));
+            Diagnostic::error(Code::MissingField, path, message, Some(span))
                 .with_help(format!("write `{field}: …,` (see docs/scene.md)"))
         }
         RonError::DuplicateStructField { field, outer } => {
-            at(format!("the field `{field}`{} is written twice", of(outer))).with_help("keep one of them")
+            at(Code::DuplicateField, format!("the field `{field}`{} is written twice", of(outer)))
+                .with_help("keep one of them")
         }
-        RonError::Eof => at("the file ends before the scene does".into())
+        RonError::Eof => at(Code::Truncated, "the file ends before the scene does".into())
             .with_help("a closing bracket is missing, or the file was cut off"),
         RonError::InvalidValueForType { expected, found } => {
-            at(format!("expected {expected}, found {found}")).with_help("see docs/scene.md for this field")
+            at(Code::WrongType, format!("expected {expected}, found {found}"))
+                .with_help("see docs/scene.md for this field")
         }
-        code => at(lowercase_first(&code.to_string())),
+        RonError::ExpectedComma => {
+            let (kind, message, help) = comma(text, start);
+            at(kind, message.into()).with_help(help)
+        }
+        code => {
+            let (kind, help) = grammar(code);
+            at(kind, in_words(code)).with_help(help)
+        }
+    }
+}
+
+/// What stands where a comma should.
+fn comma(text: &str, at: usize) -> (Code, &'static str, &'static str) {
+    let after_number = text[..at].ends_with(|c: char| c.is_ascii_digit());
+    // At the end, RON shows the bracket before it.
+    let rest = text[at..].trim_start_matches([')', ']']).trim_start();
+    match text[at..].chars().next() {
+        _ if rest.is_empty() => (
+            Code::Truncated,
+            "the file ends before the scene does",
+            "a closing bracket is missing, or the file was cut off",
+        ),
+        Some('.') if after_number => (Code::WrongType, "expected a whole number", "write it without a point"),
+        Some(c) if after_number && c.is_alphabetic() => (
+            Code::Syntax,
+            "a number has no unit after it",
+            "it is in the unit of the field's name; another one is written around it: Millisecond(0.1)",
+        ),
+        _ => (
+            Code::Syntax,
+            "expected a comma",
+            "a comma is missing before this, a bracket is one too many, or a text above is not closed",
+        ),
+    }
+}
+
+/// RON's words for what it expected, in those of a scene.
+fn in_words(error: &RonError) -> String {
+    match error {
+        RonError::ExpectedFloat => "expected a number".into(),
+        RonError::ExpectedInteger | RonError::IntegerOutOfBounds => "expected a whole number".into(),
+        RonError::ExpectedString => "expected a text in quotes".into(),
+        RonError::ExpectedIdentifier => "expected one of the choices by its name".into(),
+        other => lowercase_first(&other.to_string()),
+    }
+}
+
+/// What kind of complaint of the grammar it is, and what to do about it.
+fn grammar(error: &RonError) -> (Code, &'static str) {
+    match error {
+        RonError::ExpectedMapColon => (Code::Syntax, "a field is `name: value`"),
+        RonError::ExpectedArrayEnd => (Code::Syntax, "a comma or `]` is missing before this"),
+        RonError::ExpectedStructLikeEnd => {
+            (Code::WrongType, "a comma or `)` is missing, or there is one value too many")
+        }
+        RonError::TrailingCharacters => (Code::Syntax, "a bracket before this closes the scene too early"),
+        RonError::ExpectedString => (Code::WrongType, "write the text between quotes: \"text\""),
+        RonError::ExpectedInteger | RonError::IntegerOutOfBounds => {
+            (Code::WrongType, "counts are whole numbers from 0 to 4294967295")
+        }
+        RonError::ExpectedFloat => (
+            Code::WrongType,
+            "write a number, such as 1.5 or 20e9, or one with its unit, such as Megapascal(20)",
+        ),
+        RonError::ExpectedIdentifier => (Code::WrongType, "see docs/scene.md for the choices of this field"),
+        RonError::ExpectedDifferentLength { .. } => (Code::WrongType, "see docs/scene.md for this field"),
+        RonError::ExpectedArray => (Code::WrongType, "a list is written between [ and ]"),
+        RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_) => {
+            (Code::WrongType, "structs and vectors are written between ( and )")
+        }
+        RonError::ExpectedDifferentStructName { .. } => {
+            (Code::WrongType, "leave the name before the bracket out")
+        }
+        RonError::UnclosedBlockComment => (Code::Truncated, "close it with */"),
+        RonError::ExpectedStringEnd => (Code::Truncated, "close the text with a quote"),
+        _ => (Code::Syntax, "see docs/scene.md for how scenes are written"),
     }
 }
 
@@ -176,10 +282,14 @@ fn lowercase_first(text: &str) -> String {
 }
 
 /// "did you mean", or all that would be allowed.
-pub(crate) fn suggest(found: &str, expected: &[&str]) -> String {
+pub fn suggest(found: &str, expected: &[&str]) -> String {
     match nearest(found, expected) {
         Some(name) => format!("did you mean `{name}`?"),
-        None => format!("there is {}", expected.join(", ")),
+        None => {
+            let mut names = expected.to_vec();
+            names.dedup();
+            format!("there is {}", names.join(", "))
+        }
     }
 }
 

@@ -11,6 +11,7 @@ pub use shape::{Fill, Pattern, Shape};
 
 /// A complete scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// One line that says what the scene shows.
@@ -62,6 +63,7 @@ pub struct Scene {
 
 /// Time stepping.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Time {
     /// Time step Δt [s].
@@ -88,6 +90,7 @@ pub struct Time {
 /// A phase before time begins: loads, initial stress and contact are brought to equilibrium, then displacements are set
 /// to zero; initial velocities come after it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Settle {
     /// Speed left over the largest speed on the way [-]. Default: 1e-4.
@@ -104,9 +107,10 @@ impl Default for Settle {
 
 /// How a block's equations are solved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Solver {
-    /// Factored once (up to 200 unknowns inverted): quickest while the factor fits in memory.
+    /// Factored once (up to 100 unknowns inverted): quickest while the factor fits in memory.
     #[default]
     Cholesky,
     /// Iterated anew in every step: little memory, for blocks too large to factor.
@@ -117,8 +121,10 @@ pub enum Solver {
     },
 }
 
-/// Whether steps may be shorter.
+/// Whether steps may be shorter. A step that asks for too much is taken back whole, contact's memory included, and done
+/// again in more parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Step {
     /// All are `step_s`.
@@ -140,6 +146,7 @@ pub enum Step {
 
 /// Where in a step contact is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum ContactAt {
     /// Where the integrator predicts blocks to be; a step must be short: ω_c Δt < 2.
@@ -158,6 +165,7 @@ pub enum ContactAt {
 
 /// How mass is shared among nodes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Mass {
     /// By the shape functions: the most accurate.
     #[default]
@@ -168,6 +176,7 @@ pub enum Mass {
 
 /// Choice of time integrator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Integrator {
     /// Second order; elasticity weighted by θ, contact at x + ½ Δt v.
@@ -201,6 +210,7 @@ impl Default for Integrator {
 
 /// Linear elastic rock, isotropic or bedded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Material {
     /// Name that blocks refer to.
@@ -221,6 +231,7 @@ pub struct Material {
 
 /// Rayleigh damping: a mode of frequency ω [rad/s] is damped by a/2ω + b ω/2 of critical.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Damping {
     /// a [1/s], on mass: drags on every motion, that of a block as a whole, too. Default: 0.
@@ -231,6 +242,7 @@ pub struct Damping {
 
 /// What a bedded rock is across its beds (transverse isotropy).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Bedding {
     /// Normal of the beds in the scene's axes, whatever turns a block has; its length does not matter.
@@ -245,20 +257,22 @@ pub struct Bedding {
 
 /// How a block may move.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Body {
     /// Deforms as its mesh lets it.
     #[default]
     Elastic,
     /// Deforms uniformly, 12 unknowns: the first-order block of classic DDA.
     Affine,
-    /// Does not deform, 6 unknowns.
+    /// Does not deform, 6 unknowns; cannot be held in parts.
     Rigid,
-    /// Stays where it is, or goes where one support with a `Motion` takes it as a whole; no unknowns.
+    /// Stays where it is, or goes where one support with a `Motion` or an `Acceleration` takes it as a whole; no unknowns.
     Fixed,
 }
 
 /// One block of rock.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Block {
     /// Name, unique in the scene.
@@ -289,6 +303,7 @@ pub struct Block {
 
 /// A turn about an axis through the origin of the shape.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Turn {
     /// Direction of the axis; its length does not matter.
@@ -297,8 +312,9 @@ pub struct Turn {
     pub angle_deg: f64,
 }
 
-/// A stress that changes linearly over the scene.
+/// A stress that changes linearly over the scene, σ₀ = σ + Σ g (n·(x − at)).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct InSitu {
     /// The stress at `at_m` [Pa], tension positive.
@@ -313,6 +329,7 @@ pub struct InSitu {
 
 /// A change of stress along a direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct StressGradient {
     /// The direction; its length does not matter.
@@ -323,25 +340,32 @@ pub struct StressGradient {
 
 /// A symmetric stress [Pa], tension positive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-#[allow(missing_docs)] // the components are their own names
 pub struct Stress {
+    /// σ_xx [Pa]. Default: 0.
     #[serde(default)]
     pub xx: f64,
+    /// σ_yy [Pa]. Default: 0.
     #[serde(default)]
     pub yy: f64,
+    /// σ_zz [Pa]. Default: 0.
     #[serde(default)]
     pub zz: f64,
+    /// σ_xy [Pa]. Default: 0.
     #[serde(default)]
     pub xy: f64,
+    /// σ_yz [Pa]. Default: 0.
     #[serde(default)]
     pub yz: f64,
+    /// σ_zx [Pa]. Default: 0.
     #[serde(default)]
     pub zx: f64,
 }
 
 /// Part of a block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Region {
     /// All nodes of the block.
@@ -359,6 +383,7 @@ pub enum Region {
 
 /// A part of a block that is held or moved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Support {
     /// Name of the block; in `base_*` the star stands for anything, and all such blocks with a part in the region count.
@@ -374,6 +399,7 @@ pub struct Support {
 
 /// What a support holds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Hold {
     /// All three components.
@@ -384,7 +410,8 @@ pub enum Hold {
     Direction([f64; 3]),
     /// All three components follow a displacement, linear between rows and constant after the last.
     Motion(Vec<MotionRow>),
-    /// All three components follow a record of accelerations, from rest: a shaken base.
+    /// All three components follow a record of accelerations, from rest: a shaken base. Acceleration is linear between rows
+    /// and zero after the last.
     Acceleration {
         /// CSV file with the columns `time_s` and `acceleration_m_s2`; its path counts from the scene file.
         file: String,
@@ -398,6 +425,7 @@ pub enum Hold {
 
 /// One row of a prescribed motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct MotionRow {
     /// Time [s].
@@ -408,6 +436,7 @@ pub struct MotionRow {
 
 /// How a support is imposed.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum By {
     /// The unknowns are taken out of the equations.
@@ -423,6 +452,7 @@ pub enum By {
 
 /// A traction on part of a block's surface, constant in direction, per area at rest.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Traction {
     /// Name of the block, or of many as in `supports`.
@@ -438,6 +468,7 @@ pub struct Traction {
 
 /// A force on the node of a block that is nearest to a point, constant in direction.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Force {
     /// Name of the block.
@@ -453,6 +484,7 @@ pub struct Force {
 
 /// One row of a load's factor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct FactorRow {
     /// Time [s].
@@ -463,6 +495,7 @@ pub struct FactorRow {
 
 /// Contact between blocks.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Contact {
     /// Blocks do not feel each other.
@@ -488,6 +521,7 @@ pub enum Contact {
 
 /// The potential φ inside a block; the pressure is k_n φ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Potential {
     /// The paper's: 4 min λᵢ in every tetrahedron. Its stiffness depends on the mesh.
@@ -512,6 +546,7 @@ pub enum Potential {
 /// Friction of a joint. Without `shear_penalty_pa_m` it acts on velocities: at once when blocks slide, and without any
 /// displacement while they stick. With it, shear is a spring (the paper's eqs (17)–(19)), and may hold together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Friction {
     /// Friction angle φ [°]; μ = tan φ.
@@ -529,6 +564,7 @@ pub struct Friction {
 
 /// Friction between two materials.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Joint {
     /// Names of the two materials, or of one twice.
@@ -540,6 +576,7 @@ pub struct Joint {
 
 /// What a friction force is remembered with.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Memory {
     /// The facet and the block that it touches.
     #[default]
@@ -558,6 +595,7 @@ fn two() -> f64 {
 
 /// A point whose motion is recorded.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Monitor {
     /// Name, unique in the scene.
@@ -571,6 +609,7 @@ pub struct Monitor {
 
 /// A place on a block.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum At {
     /// The mass centre.
@@ -591,6 +630,7 @@ pub fn matches(pattern: &str, name: &str) -> bool {
 
 /// What is written and how often.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
     /// Frames of fields after the first; 0 writes none. Default: 20.
@@ -610,6 +650,7 @@ impl Default for Output {
 
 /// A closed form that the run is compared with.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Reference {
     /// Rigid block on a ramp, the paper's eq (20): S = ½ (sin α − tan φ cos α) g t².

@@ -2,6 +2,7 @@
 
 use ndda_fem::FrameError;
 use ndda_mesh::Vec3;
+use serde::Serialize;
 
 use crate::batch::Batch;
 use crate::elastic_body::ElasticBody;
@@ -13,7 +14,8 @@ use crate::shape::Shape;
 use crate::time_integrator::{Inertia, StepWeights, TimeIntegrator};
 
 /// How a block may move.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum BodyKind {
     /// Each node by itself: linear tetrahedra.
     #[default]

@@ -70,6 +70,10 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Factor for Rows {
+    fn name(&self) -> &'static str {
+        "conjugate gradients"
+    }
+
     fn unknowns(&self) -> usize {
         self.inverse_diagonal.len()
     }

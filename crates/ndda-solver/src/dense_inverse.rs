@@ -50,6 +50,10 @@ impl LinearSolver for DenseInverse {
 }
 
 impl Factor for Inverse {
+    fn name(&self) -> &'static str {
+        "dense inverse"
+    }
+
     fn unknowns(&self) -> usize {
         self.n
     }

@@ -103,3 +103,19 @@ pub enum StepError {
         volume_ratio: f64,
     },
 }
+
+impl StepError {
+    /// Its section in `docs/troubleshooting.md`.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Contact { .. } => "contact-failed",
+            Self::NoStepIsShortEnough { .. } => "no-step-short-enough",
+            Self::Factor { .. } => "factor-failed",
+            Self::ContactNotSolved { .. } => "contact-not-solved",
+            Self::PastCentroid { .. } => "past-centroid",
+            Self::Block { .. } => "block-failed",
+            Self::NotSettled { .. } => "not-settled",
+            Self::Inverted { .. } => "element-inverted",
+        }
+    }
+}

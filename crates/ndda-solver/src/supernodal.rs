@@ -93,6 +93,10 @@ impl WithSimd for AllEight<'_> {
 }
 
 impl Factor for SupernodalFactor {
+    fn name(&self) -> &'static str {
+        "supernodal Cholesky factor"
+    }
+
     fn unknowns(&self) -> usize {
         self.unknown.len()
     }

@@ -1,6 +1,7 @@
 //! Checks of rock that is cut. What it is cut into is found when it is.
 
 use super::Check;
+use crate::code::Code;
 use crate::scene::{Discontinuity, Domain, OrientationScatter, Rock, SpacingScatter, Whereabouts};
 
 /// More points of Voronoi cells than this are a slip of the keyboard.
@@ -29,7 +30,12 @@ impl Check<'_> {
             if let Some(k) = scene.blocks.iter().position(|block| rock.makes(&block.name)) {
                 let message =
                     format!("`{}` may be a block of rock `{}`, too", scene.blocks[k].name, rock.name);
-                self.error(format!("blocks[{k}].name"), message, "give the block or the rock another name");
+                self.report(
+                    Code::BadName,
+                    format!("blocks[{k}].name"),
+                    message,
+                    "give the block or the rock another name",
+                );
             }
         }
     }
@@ -86,7 +92,7 @@ impl Check<'_> {
         if let Some(voronoi) = rock.voronoi {
             if !rock.joints.is_empty() {
                 let help = "leave out one of the two";
-                self.error(
+                self.misfit(
                     format!("{path}.voronoi"),
                     "a rock is cut by joints or into cells, not both",
                     help,
@@ -109,7 +115,7 @@ impl Check<'_> {
         | Discontinuity::Plane { name, dip_deg, dip_direction_deg, .. }
         | Discontinuity::Disc { name, dip_deg, dip_direction_deg, .. }) = joint;
         if name.trim().is_empty() {
-            self.error(field("name"), "a joint has a name", "node sets go by it");
+            self.report(Code::BadName, field("name"), "a joint has a name", "node sets go by it");
         }
         if !(0.0..=90.0).contains(dip_deg) {
             let message = format!("{dip_deg}°: must be from 0 to 90");

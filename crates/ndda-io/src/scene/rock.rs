@@ -5,7 +5,28 @@ use serde::{Deserialize, Serialize};
 use super::{Body, Fill, one};
 
 /// A piece of rock that is cut into blocks. They are named `rock_0001`, `rock_0002`, … after its name.
+///
+/// Rock is cut with x to the east, y to the north and z up. Blocks of a rock come after the explicit ones, in the order of the cut; their node sets
+/// have the names of the joints and of the faces of the domain that bound them (`cells` between Voronoi cells). A column on a base:
+///
+/// ```text
+/// rock: [
+///     (
+///         name: "column", material: "rock",
+///         domain: Box(min_m: (0, 0, 0), max_m: (5, 5, 10)),
+///         joints: [
+///             Set(name: "bedding", dip_deg: 40, dip_direction_deg: 90, spacing_m: 2),
+///             Set(name: "cross", dip_deg: 90, dip_direction_deg: 0, spacing_m: 2.5),
+///         ],
+///         fill: Centre,
+///     ),
+///     (name: "base", material: "rock", domain: Box(min_m: (-3, -3, -10), max_m: (8, 8, 0))),
+/// ],
+/// supports: [(block: "base_*", on: Set("z_min"), hold: Direction((0, 0, 1)))],
+/// monitors: [(name: "largest_x", block: "column_*", at: Largest((1, 0, 0)))],
+/// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Rock {
     /// Name, unique in the scene, that the names of the blocks begin with. Default: `rock`.
@@ -43,6 +64,7 @@ pub struct Rock {
 
 /// Rock before it is cut. Its faces give the blocks their node sets, as joints do.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Domain {
     /// A box; faces `x_min` to `z_max`.
@@ -86,6 +108,7 @@ pub enum Domain {
 
 /// A coordinate axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Axis {
     /// East.
     X,
@@ -98,6 +121,7 @@ pub enum Axis {
 
 /// Something that cuts rock. x is east, y north, z up; dip is below horizontal, its direction clockwise from north.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Discontinuity {
     /// Planes of one orientation, one spacing apart.
@@ -154,6 +178,7 @@ pub enum Discontinuity {
 
 /// How planes of a set scatter about their mean orientation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum OrientationScatter {
     /// All planes are parallel.
@@ -178,6 +203,7 @@ pub enum OrientationScatter {
 
 /// How distances of successive planes scatter about the spacing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum SpacingScatter {
     /// All are equal.
@@ -199,6 +225,7 @@ pub enum SpacingScatter {
 
 /// Which blocks a disc cuts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum DiscRule {
     /// Those of which it meets the section.
     #[default]
@@ -209,6 +236,7 @@ pub enum DiscRule {
 
 /// Voronoi cells of random points.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Voronoi {
     /// Number of points; fewer fit when they keep too large a distance.
@@ -220,6 +248,7 @@ pub struct Voronoi {
 
 /// Which blocks of a rock, by the place of their centroids.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Whereabouts {
     /// Those in a box.

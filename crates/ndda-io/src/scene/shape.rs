@@ -6,6 +6,7 @@ use super::one;
 
 /// Shape and mesh of a block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Shape {
     /// A box with one corner at the origin.
@@ -97,6 +98,7 @@ pub enum Shape {
 
 /// How a box cell is cut into tetrahedra.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Pattern {
     /// Six tetrahedra around one diagonal: fewest elements.
     #[default]
@@ -107,6 +109,7 @@ pub enum Pattern {
 
 /// How a polyhedron is filled with tetrahedra.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Fill {
     /// As few as there can be; no node inside.

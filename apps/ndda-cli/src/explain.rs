@@ -1,0 +1,163 @@
+//! `ndda explain`: what a run of a scene does, what it leaves out, and why.
+//!
+//! The scene is built as it is for a run, and what was built says what it is.
+
+mod text;
+
+use ndda_contact::Part;
+use ndda_io::folder;
+use ndda_io::scene::Scene;
+use ndda_solver::{FactorPlan, KindPlan, Plan, Simulation};
+use serde::Serialize;
+
+use crate::args::ExplainArgs;
+use crate::check::Ready;
+use crate::console::{complain, say};
+use crate::{exit, input, reference, step_advice, wiring};
+
+/// The form of the JSON that is printed.
+const SCHEMA: &str = "ndda.explain/1";
+
+/// The plan of a run.
+#[derive(Debug, Serialize)]
+pub struct Explanation {
+    /// Form of this object.
+    pub schema: &'static str,
+    /// The scene's file.
+    pub scene: String,
+    /// Its title.
+    pub title: String,
+    /// Steps of the run.
+    pub steps: u64,
+    /// Δt [s].
+    pub step_s: f64,
+    /// What contact says of that step.
+    pub step_advice: Option<String>,
+    /// Blocks by how they may move.
+    pub blocks: Vec<KindPlan>,
+    /// Distinct matrices.
+    pub factors: Vec<FactorPlan>,
+    /// Parts that are in, and parts that are left out.
+    pub parts: Vec<Part>,
+    /// Files that will be written.
+    pub files: Vec<String>,
+    /// Threads that a run would have, unless `--threads` says otherwise.
+    pub threads: usize,
+    /// Cargo features of this program, and whether they are in.
+    pub features: Vec<(&'static str, bool)>,
+}
+
+/// Explains a scene; returns the exit code.
+pub fn explain(args: &ExplainArgs) -> u8 {
+    let ready = match input::ready(&args.input) {
+        Ok(ready) => ready,
+        Err(code) => return code,
+    };
+    let explanation = of(&ready);
+    if !args.json {
+        say(explanation.to_string().trim_end());
+        return exit::DONE;
+    }
+    match serde_json::to_string_pretty(&explanation) {
+        Ok(json) => {
+            say(&json);
+            exit::DONE
+        }
+        Err(error) => {
+            complain(&format!("error: the plan cannot be written as JSON: {error}"));
+            exit::INPUT_OUTPUT
+        }
+    }
+}
+
+/// The plan of a scene that is ready to run.
+pub fn of(ready: &Ready) -> Explanation {
+    let Ready { loaded, simulation, monitors } = ready;
+    let scene = &loaded.scene;
+    let Plan { kinds, factors, mut parts } = simulation.plan();
+    parts.extend(phases(scene));
+    parts.extend(outputs(scene, monitors.len()));
+    Explanation {
+        schema: SCHEMA,
+        scene: loaded.file.clone(),
+        title: scene.title.clone(),
+        steps: wiring::steps(&scene.time),
+        step_s: simulation.step_s(),
+        step_advice: advice(scene, simulation),
+        blocks: kinds,
+        factors,
+        parts,
+        files: files(scene),
+        threads: std::thread::available_parallelism().map_or(1, usize::from),
+        features: vec![
+            ("plots", cfg!(feature = "plots")),
+            ("schema", cfg!(feature = "schema")),
+            ("shell", cfg!(feature = "shell")),
+        ],
+    }
+}
+
+fn advice(scene: &Scene, simulation: &Simulation) -> Option<String> {
+    step_advice::advise(scene, simulation).map(|advice| advice.to_string())
+}
+
+fn phases(scene: &Scene) -> [Part; 1] {
+    let settles = scene.settle.map(|settle| {
+        format!(
+            "until the speed is {:e} of the largest, at most {} steps",
+            settle.tolerance, settle.most_steps
+        )
+    });
+    [Part::of(
+        "settling",
+        settles.is_some(),
+        settles.unwrap_or_default(),
+        "time begins as the scene is written",
+    )]
+}
+
+fn outputs(scene: &Scene, monitors: usize) -> [Part; 4] {
+    let output = &scene.output;
+    let compared =
+        scene.reference.as_ref().map(|r| format!("{}, in every row of the history", reference::kind(r).0));
+    [
+        Part::included(
+            "history",
+            format!("{} rows at most, with {monitors} monitor(s)", output.history_rows),
+        ),
+        Part::of(
+            "fields and recovery of stress",
+            output.frames > 0,
+            format!("{} frames after the first", output.frames),
+            "output.frames is 0",
+        ),
+        Part::of(
+            "checkpoints on the way",
+            output.checkpoint_wall_s > 0.0,
+            format!("every {} s of wall clock, and at start and end", output.checkpoint_wall_s),
+            "output.checkpoint_wall_s is 0: at start and end alone",
+        ),
+        Part::of(
+            "comparison with a closed form",
+            compared.is_some(),
+            compared.unwrap_or_default(),
+            "the scene names no reference",
+        ),
+    ]
+}
+
+fn files(scene: &Scene) -> Vec<String> {
+    let mut files = vec![folder::SUMMARY.into(), folder::HISTORY.into(), folder::CHECKPOINT.into()];
+    if scene.output.frames > 0 {
+        let last = folder::frame_name(scene.output.frames.min(steps_as_frames(scene)) as usize);
+        let fields = folder::FIELDS_FOLDER;
+        files.push(folder::FIELDS_INDEX.into());
+        files.push(format!("{fields}/{} to {fields}/{last}", folder::frame_name(0)));
+    }
+    files
+}
+
+/// Frames are no more than steps.
+fn steps_as_frames(scene: &Scene) -> u32 {
+    u32::try_from(wiring::steps(&scene.time)).unwrap_or(u32::MAX)
+}

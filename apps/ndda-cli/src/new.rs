@@ -1,0 +1,93 @@
+//! `ndda new`: a commented scene to begin with.
+
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use ndda_io::read::suggest;
+
+use crate::args::NewArgs;
+use crate::console::{complain, say};
+use crate::exit;
+
+/// A scene to begin with.
+pub struct Template {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is for.
+    pub about: &'static str,
+    /// The scene.
+    pub scene: &'static str,
+    /// Files that it refers to: name and content.
+    pub files: &'static [(&'static str, &'static str)],
+}
+
+const fn template(name: &'static str, about: &'static str, scene: &'static str) -> Template {
+    Template { name, about, scene, files: &[] }
+}
+
+/// All templates; the first is the default.
+pub const TEMPLATES: [Template; 6] = [
+    template("slide", "a block on a slope, with friction", include_str!("../templates/slide.ron")),
+    template("collide", "two blocks that meet in flight", include_str!("../templates/collide.ron")),
+    template("topple", "a slender block on a base that is shaken", include_str!("../templates/topple.ron")),
+    template("column", "rock cut by joint sets, on a base", include_str!("../templates/column.ron")),
+    template("pile", "blocks that fall into a box", include_str!("../templates/pile.ron")),
+    Template {
+        name: "mesh",
+        about: "a block from a mesh file",
+        scene: include_str!("../templates/mesh.ron"),
+        files: &[("block.msh", include_str!("../templates/block.msh"))],
+    },
+];
+
+/// Writes a template; returns the exit code.
+pub fn new(args: &NewArgs) -> u8 {
+    if args.list {
+        let lines: Vec<String> = TEMPLATES.iter().map(|t| format!("{:8} {}", t.name, t.about)).collect();
+        say(&lines.join("\n"));
+        return exit::DONE;
+    }
+    let name = args.template.as_deref().unwrap_or(TEMPLATES[0].name);
+    let Some(template) = TEMPLATES.iter().find(|template| template.name == name) else {
+        let names = TEMPLATES.map(|template| template.name);
+        complain(&format!("error: there is no template `{name}`: {}", suggest(name, &names)));
+        return exit::USAGE;
+    };
+    if args.out.as_deref() == Some(Path::new("-")) {
+        say(template.scene.trim_end());
+        return exit::DONE;
+    }
+    let scene = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.ron")));
+    match write(template, &scene, args.force) {
+        Ok(()) => {
+            say(&format!("{} is written; next: ndda run {}", scene.display(), scene.display()));
+            exit::DONE
+        }
+        Err(reason) => {
+            complain(&format!("error: {reason}"));
+            exit::INPUT_OUTPUT
+        }
+    }
+}
+
+/// The scene, and beside it the files that it refers to.
+fn write(template: &Template, scene: &Path, force: bool) -> Result<(), String> {
+    let folder = scene.parent().unwrap_or(Path::new(""));
+    let beside = template.files.iter().map(|(name, content)| (folder.join(name), *content));
+    let files: Vec<(PathBuf, &str)> = beside.chain([(scene.to_path_buf(), template.scene)]).collect();
+    if let Some((there, _)) = files.iter().find(|(file, _)| !force && file.exists()) {
+        return Err(format!(
+            "{} is there already; --force replaces it, --out names another",
+            there.display()
+        ));
+    }
+    for (file, content) in files {
+        let mut options = OpenOptions::new();
+        let opened = options.write(true).create(true).create_new(!force).truncate(true).open(&file);
+        opened
+            .and_then(|mut opened| opened.write_all(content.as_bytes()))
+            .map_err(|error| format!("{} cannot be written: {error}", file.display()))?;
+    }
+    Ok(())
+}

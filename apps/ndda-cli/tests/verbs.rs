@@ -1,0 +1,142 @@
+//! The verbs around a run: new, explain, schema, examples, completions, man.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use ndda_cli::new::TEMPLATES;
+use serde_json::Value;
+
+fn ndda(folder: &Path, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_ndda")).args(words).current_dir(folder).output().unwrap()
+}
+
+/// Standard output of a call that must end well.
+fn said(folder: &Path, words: &[&str]) -> String {
+    let done = ndda(folder, words);
+    assert!(done.status.success(), "{words:?}: {}", String::from_utf8_lossy(&done.stderr));
+    String::from_utf8(done.stdout).unwrap()
+}
+
+/// Exit code and standard error of a call that must not.
+fn refused(folder: &Path, words: &[&str]) -> (i32, String) {
+    let done = ndda(folder, words);
+    (done.status.code().unwrap(), String::from_utf8(done.stderr).unwrap())
+}
+
+#[test]
+fn every_template_passes_its_check_without_a_warning_and_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    for template in &TEMPLATES {
+        let file = format!("{}.ron", template.name);
+        said(folder.path(), &["new", template.name]);
+        let checked = said(folder.path(), &["check", &file]);
+        assert!(checked.contains("no errors, 0 warning(s)"), "{checked}");
+        // Ten steps of each: that they start is what a template is for.
+        let step_s = ndda_io::read::load(&folder.path().join(&file), &[]).unwrap().scene.time.step_s;
+        let end = format!("time.end_s={}", 10.0 * step_s);
+        let no_reference = "output.frames=1";
+        let mut words = vec!["run", &file, "--quiet", "--set", &end, "--set", no_reference];
+        if template.scene.contains("after_s:") {
+            words.extend(["--set", "reference.after_s=0"]);
+        }
+        said(folder.path(), &words);
+    }
+}
+
+#[test]
+fn a_template_is_never_written_over_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    said(folder.path(), &["new", "collide", "--out", "mine.ron"]);
+    let (code, reason) = refused(folder.path(), &["new", "slide", "-o", "mine.ron"]);
+    assert!(code == 5 && reason.contains("mine.ron is there already"), "{code}: {reason}");
+    said(folder.path(), &["new", "slide", "-o", "mine.ron", "--force"]);
+    assert_eq!(std::fs::read_to_string(folder.path().join("mine.ron")).unwrap(), TEMPLATES[0].scene);
+    let (code, reason) = refused(folder.path(), &["new", "slid"]);
+    assert!(code == 2 && reason.contains("did you mean `slide`"), "{code}: {reason}");
+    assert_eq!(said(folder.path(), &["new", "-o", "-"]), TEMPLATES[0].scene);
+    assert_eq!(said(folder.path(), &["new", "--list"]).lines().count(), TEMPLATES.len());
+}
+
+#[test]
+fn examples_are_listed_checked_explained_and_run_by_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let list = said(folder.path(), &["run", "--example"]);
+    assert!(list.contains("sliding_45 ") && list.contains("Free fall of a block"), "{list}");
+    let (code, reason) = refused(folder.path(), &["run", "--example", "slidng_45"]);
+    assert!(code == 2 && reason.contains("did you mean `sliding_45`"), "{code}: {reason}");
+    assert!(said(folder.path(), &["check", "--example", "free_fall"]).contains("200 steps"));
+    said(folder.path(), &["run", "--example", "free_fall", "--set", "time.end_s=0.2", "--quiet"]);
+    let summary = std::fs::read_to_string(folder.path().join("out/free_fall/summary.json")).unwrap();
+    assert_eq!(serde_json::from_str::<Value>(&summary).unwrap()["status"], "done");
+}
+
+/// The plan of an example as JSON.
+fn plan(words: &[&str]) -> Value {
+    let words = [&["explain", "--json", "--example"], words].concat();
+    let printed = said(Path::new("."), &words);
+    assert!(printed.starts_with("{\n  \"schema\": \"ndda.explain/1\""), "{printed}");
+    serde_json::from_str(&printed).unwrap()
+}
+
+/// Whether a part of a plan is in.
+fn has(plan: &Value, name: &str) -> bool {
+    let parts = plan["parts"].as_array().unwrap();
+    let part = parts.iter().find(|part| part["name"] == name).unwrap_or_else(|| panic!("no {name}: {plan}"));
+    part["included"].as_bool().unwrap()
+}
+
+#[test]
+fn one_block_alone_is_explained_to_have_no_contact() {
+    let plan = plan(&["free_fall", "--set", "output.frames=0"]);
+    assert!(!has(&plan, "contact") && !has(&plan, "fields and recovery of stress"));
+    assert!(!plan["files"].to_string().contains("fields"));
+    assert_eq!(plan["factors"].as_array().unwrap().len(), 1);
+}
+
+#[test]
+fn friction_is_in_the_plan_when_an_angle_is_and_out_when_it_is_zero() {
+    let rough = plan(&["sliding_45_phi35"]);
+    assert!(has(&rough, "friction") && has(&rough, "memory of friction") && !has(&rough, "bonds"));
+    let smooth = plan(&["sliding_45_phi35", "--set", "contact.friction.friction_deg=0"]);
+    assert!(has(&smooth, "contact") && !has(&smooth, "friction") && !has(&smooth, "work of friction"));
+}
+
+#[test]
+fn congruent_cubes_share_factors_and_fixed_blocks_have_none() {
+    let plan = plan(&["pile_125"]);
+    let factors = plan["factors"].as_array().unwrap();
+    assert!(factors.len() < 125);
+    assert_eq!(factors.iter().map(|factor| factor["blocks"].as_u64().unwrap()).sum::<u64>(), 125);
+    let kinds = plan["blocks"].as_array().unwrap();
+    let fixed = kinds.iter().find(|kind| kind["kind"] == "fixed").unwrap();
+    assert_eq!((&fixed["blocks"], &fixed["unknowns"]), (&Value::from(6), &Value::from(0)));
+}
+
+#[test]
+fn a_plan_in_words_has_what_is_in_and_what_is_left_out() {
+    let words = said(Path::new("."), &["explain", "--example", "sliding_45"]);
+    for word in
+        ["blocks\n", "equations, factored once", "\nin\n", "\nleft out\n", "supernodal", "files\n", "thread"]
+    {
+        assert!(words.contains(word), "{word} is not in\n{words}");
+    }
+}
+
+#[cfg(feature = "schema")]
+#[test]
+fn the_schema_is_json_and_the_reference_begins_with_its_title() {
+    let schema: Value = serde_json::from_str(&said(Path::new("."), &["schema"])).unwrap();
+    assert_eq!(schema["title"], "Scene");
+    assert!(said(Path::new("."), &["schema", "--markdown"]).starts_with("# The scene file\n"));
+}
+
+#[cfg(feature = "shell")]
+#[test]
+fn completions_and_manual_pages_know_the_verbs() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        assert!(said(Path::new("."), &["completions", shell]).contains("explain"), "{shell}");
+    }
+    assert!(said(Path::new("."), &["man"]).contains("explain"));
+    assert!(said(Path::new("."), &["man", "run"]).contains("example"));
+    assert_eq!(refused(Path::new("."), &["man", "rum"]).0, 2);
+}

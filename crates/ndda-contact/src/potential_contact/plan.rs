@@ -1,0 +1,55 @@
+//! What this model consists of.
+
+use super::PotentialContact;
+use crate::joints::{Joints, Memory};
+use crate::plan::Part;
+use crate::potential::OverlapLaw;
+
+const FRICTION: &str = "friction";
+const MEMORY: &str = "memory of friction";
+
+/// Parts of the model, by what it holds.
+pub(super) fn parts(model: &PotentialContact) -> Vec<Part> {
+    let (name, penalty_pa) = (model.potential.name(), model.penalty_pa);
+    let curved = model.potential.law() != OverlapLaw::Linear;
+    let mut parts = vec![
+        Part::included(
+            "broad phase",
+            "trees of boxes; pairs of blocks are listed anew once one has moved beyond its margin",
+        ),
+        Part::included("contact potential", format!("{name}, k_n = {penalty_pa:e} Pa, integrated exactly")),
+        Part::of(
+            "volume of overlaps",
+            curved,
+            "the pressure of a patch depends on all of its overlap",
+            "pressure is k_n φ, each point for itself",
+        ),
+    ];
+    match &model.joints {
+        None => {
+            let why = "friction, cohesion and tension are zero between all materials";
+            parts.extend([FRICTION, MEMORY, "bonds"].map(|name| Part::left_out(name, why)));
+        }
+        Some(joints) => parts.extend(friction(joints)),
+    }
+    parts
+}
+
+fn friction(joints: &Joints) -> [Part; 3] {
+    let faces = joints.act_on_faces();
+    let memory = match joints.memory {
+        _ if faces => "one force per face and block that it touches",
+        Memory::Body => "one force per facet and block that it touches",
+        Memory::Element => "one force per facet and element that it touches: lost on every element border",
+    };
+    [
+        Part::included(FRICTION, joints.law_names().join(", ")),
+        Part::included(MEMORY, memory),
+        Part::of(
+            "bonds",
+            joints.carry_tension(),
+            "tension until it breaks",
+            "no joint has a tensile strength",
+        ),
+    ]
+}
