@@ -14,6 +14,7 @@ mod glancing_collision;
 mod ground_stress;
 mod loads_over_time;
 mod lumped_mass;
+mod masonry_arch;
 mod one_block_alone;
 mod prescribed_motion;
 mod release_of_initial_stress;

@@ -1,0 +1,54 @@
+//! V15: a semicircular arch of rigid stones that cannot slide stands when its thickness over its mean radius exceeds
+//! 0.1075, and falls by hinges below (Milankovitch 1907; Heyman 1969).
+
+use std::fmt::Write;
+
+use ndda_solver::{Settle, StepError};
+
+use crate::simulation;
+
+const RADIUS_M: f64 = 5.0;
+const STONES: u32 = 27;
+
+fn arch(thickness: f64) -> String {
+    let (inner, outer) = (RADIUS_M * (1.0 - 0.5 * thickness), RADIUS_M * (1.0 + 0.5 * thickness));
+    let mut stones = String::new();
+    for k in 0..STONES {
+        let at = |k: u32| 180.0 * f64::from(k) / f64::from(STONES);
+        writeln!(
+            stones,
+            "(name: \"stone_{k}\", material: \"rock\", body: Rigid, shape: Voussoir(inner_radius_m: {inner}, outer_radius_m: {outer},
+              start_deg: {}, end_deg: {}, width_m: 1, cells: (4, 1, 1))),",
+            at(k),
+            at(k + 1)
+        )
+        .unwrap();
+    }
+    for (name, x) in [("right", RADIUS_M - 1.0), ("left", -RADIUS_M - 1.0)] {
+        writeln!(
+            stones,
+            "(name: \"{name}\", material: \"rock\", body: Fixed, at_m: ({x}, -0.5, -1), shape: Box(size_m: (2, 2, 1), cells: (1, 1, 1))),"
+        )
+        .unwrap();
+    }
+    format!(
+        "(title: \"arch\", time: (step_s: 2e-5, end_s: 1), gravity_m_s2: (0, 0, -9.8),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2500)], blocks: [{stones}],
+          contact: Potential(penalty_pa: 1e11, potential: Smooth(reference_m: 1), friction: (friction_deg: 60)))"
+    )
+}
+
+#[test]
+fn a_semicircular_arch_stands_above_milankovitchs_thickness_and_falls_below_it() {
+    let settle = Settle { tolerance: 1e-3, most_steps: 10_000 };
+    for (thickness, stands) in [(0.115, true), (0.100, false)] {
+        let mut simulation = simulation(&arch(thickness));
+        let outcome = simulation.settle(&settle);
+        println!("t/R = {thickness}: {outcome:?}");
+        match outcome {
+            Ok(_) => assert!(stands, "t/R = {thickness} stands"),
+            Err(StepError::NotSettled { .. }) => assert!(!stands, "t/R = {thickness} does not stand"),
+            Err(error) => panic!("{error}"),
+        }
+    }
+}
