@@ -15,6 +15,7 @@ pub mod overrides;
 pub mod pvd;
 pub mod read;
 pub mod record;
+pub mod results;
 pub mod scene;
 pub mod summary;
 pub mod surface_file;
