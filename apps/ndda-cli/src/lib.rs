@@ -5,6 +5,8 @@ pub mod check;
 pub mod checkpoint;
 pub mod console;
 pub mod exit;
+#[cfg(feature = "report")]
+pub mod html_report;
 pub mod interrupt;
 pub mod mesh;
 pub mod monitor;

@@ -4,6 +4,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use ndda_cli::args::{Cli, Verb};
+#[cfg(feature = "report")]
+use ndda_cli::html_report;
 use ndda_cli::{check, mesh, resume, run};
 
 fn main() -> ExitCode {
@@ -12,6 +14,10 @@ fn main() -> ExitCode {
         Verb::Resume(args) => resume::resume(&args),
         Verb::Check(args) => check::check(&args),
         Verb::Mesh(args) => mesh::mesh(&args),
+        #[cfg(feature = "report")]
+        Verb::Report(args) => html_report::report(&args),
+        #[cfg(feature = "report")]
+        Verb::View(args) => html_report::view(&args),
     };
     ExitCode::from(outcome)
 }
