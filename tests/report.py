@@ -75,7 +75,8 @@ def check_blocks(page, pictures):
     page.locator("#colour").select_option(index=0)
     go_to(page, last - 1)
     page.locator("#play").click()
-    page.wait_for_function(f"document.getElementById('slider').value == {last}")
+    page.wait_for_selector("#play[aria-label=Play]")
+    require(page.locator("#slider").input_value() == str(last), "it does not play to the end")
     return f"{last + 1} frames, colours: {', '.join(choices)}"
 
 

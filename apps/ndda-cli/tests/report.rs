@@ -111,6 +111,11 @@ fn folders_that_are_no_run_or_half_of_one_are_refused() {
 fn a_page_that_cannot_be_written_is_an_error_of_output() {
     let folder = tempfile::tempdir().unwrap();
     let folder_of_run = run_in(folder.path(), 1);
-    let args = ReportArgs { folder: folder_of_run, out: Some(folder.path().join("no/such.html")), frames: None, json: false };
+    let args = ReportArgs {
+        folder: folder_of_run,
+        out: Some(folder.path().join("no/such.html")),
+        frames: None,
+        json: false,
+    };
     assert_eq!(html_report::report(&args), exit::INPUT_OUTPUT);
 }

@@ -30,15 +30,17 @@ class Charts {
       grid: { stroke: style.getPropertyValue("--line"), width: 1 }, ticks: { stroke: style.getPropertyValue("--line") } };
     const short = (value) => (value === null || value === undefined ? "–" : Number(value.toPrecision(4)).toString());
     const tick = (plot, values) => values.map((v) => (v === null ? null : Number(v.toPrecision(6)).toString()));
-    const powers = (plot, values) => values.map((v) => (v !== null && Number.isInteger(Math.round(1e6 * Math.log10(v)) / 1e6)
-      ? v.toExponential(0) : null));
+    const isPower = (v) => Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-6;
+    const powers = (plot, values) => values.map((v) => (v !== null && isPower(v) ? v.toExponential(0) : null));
+    const onlyPowers = (plot, splits) => splits.map((v) => (isPower(v) ? v : null));
+    const filter = chart.is_log ? { filter: onlyPowers } : {};
     const series = chart.curves.map((curve, i) => ({ label: curve.label, width: 1.6, points: { show: false },
       stroke: CURVE_COLOURS[i % CURVE_COLOURS.length], value: (plot, value) => short(value) }));
     return {
       width: box.clientWidth, height: 220,
       scales: { x: { time: false }, y: chart.is_log ? { distr: 3 } : {} },
       axes: [{ ...axis, values: (plot, values) => values.map((v) => `${v} s`) },
-        { ...axis, size: 72, label: chart.unit, labelSize: chart.unit ? 18 : 0, labelFont: "12px system-ui",
+        { ...axis, grid: { ...axis.grid, ...filter }, ticks: { ...axis.ticks, ...filter }, size: 72, label: chart.unit, labelSize: chart.unit ? 18 : 0, labelFont: "12px system-ui",
           values: chart.is_log ? powers : tick }],
       series: [{ label: "t", value: (plot, value) => (value === null ? "–" : `${short(value)} s`) }, ...series],
       legend: { live: true }, cursor: { drag: { x: true, y: false }, sync: { key: "time" } },

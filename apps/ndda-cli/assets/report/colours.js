@@ -1,9 +1,9 @@
 // Colours of blocks: one per block, or by a field on the scale of viridis.
 "use strict";
 
-// Matplotlib's viridis at ten even places.
-const VIRIDIS = ["440154", "482878", "3e4a89", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"];
-const STILL_COLOUR = [214, 210, 203];
+// Matplotlib's viridis at even places, without its darkest ninth, where edges would not be seen.
+const VIRIDIS = ["482878", "3e4a89", "31688e", "26828e", "1f9e89", "35b779", "6ece58", "b5de2b", "fde725"];
+const STILL_COLOUR = [226, 223, 217];
 
 const bytesOf = (hex) => [0, 2, 4].map((i) => parseInt(hex.slice(i, i + 2), 16));
 const VIRIDIS_BYTES = VIRIDIS.map(bytesOf);

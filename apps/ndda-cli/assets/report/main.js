@@ -28,14 +28,14 @@ async function showBlocks(byId, data, charts) {
   byId("colour").value = 0;
   const player = new Player(byId, motion.about.times_s, (frame) => {
     const choice = choices[byId("colour").value];
-    viewer.show(frame, choice, Number(byId("factor").value), byId("held").checked);
+    viewer.show(frame, choice, Number(byId("factor").value), byId("rest").value);
     charts.setTime(motion.about.times_s[frame]);
   });
   const recolour = () => {
     showBar(byId, choices[byId("colour").value]);
     player.show();
   };
-  for (const id of ["colour", "factor", "held"]) byId(id).addEventListener("change", recolour);
+  for (const id of ["colour", "factor", "rest"]) byId(id).addEventListener("change", recolour);
   for (const button of document.querySelectorAll("[data-view]")) {
     button.addEventListener("click", () => viewer.look(button.dataset.view));
   }
@@ -53,7 +53,7 @@ function showBar(byId, choice) {
   byId("bar").hidden = !choice.values;
   if (!choice.values) return;
   const { least, bottom = least, top, largest } = choice.range;
-  const stops = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map((i) => `rgb(${viridis(i / 9).map(Math.round)})`);
+  const stops = VIRIDIS.map((hex) => `#${hex}`);
   byId("bar-title").textContent = choice.label;
   byId("bar-colours").style.background = `linear-gradient(to right, ${stops})`;
   const numbers = [withUnit(bottom, choice.unit), (top < largest ? "≥ " : "") + withUnit(top, choice.unit)];

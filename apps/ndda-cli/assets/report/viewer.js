@@ -1,7 +1,7 @@
 // The blocks in 3D: triangles and edges that follow the frames, a camera that turns about them.
 "use strict";
 
-const VIEWS = { iso: [0.55, -1, 0.5], front: [0, -1, 0.001], side: [1, 0, 0.001], top: [0, -0.001, 1] };
+const VIEWS = { iso: [0.55, -1, 0.7], front: [0, -1, 0.001], side: [1, 0, 0.001], top: [0, -0.001, 1] };
 
 class Viewer {
   constructor(box, motion) {
@@ -23,8 +23,8 @@ class Viewer {
   }
 
   addLight() {
-    this.scene.add(new THREE.HemisphereLight(0xffffff, 0x8d8578, 1.7));
-    const sun = new THREE.DirectionalLight(0xffffff, 1.9);
+    this.scene.add(new THREE.HemisphereLight(0xffffff, 0xc9c3b9, 2.6));
+    const sun = new THREE.DirectionalLight(0xffffff, 1.1);
     sun.position.set(-0.5, 0.6, 1.2);
     // The sun comes from over the left shoulder, wherever one looks from.
     this.camera.add(sun);
@@ -39,9 +39,12 @@ class Viewer {
     const faces = new THREE.BufferGeometry();
     faces.setAttribute("position", this.corners);
     faces.setAttribute("color", this.colours);
-    const rock = { vertexColors: true, flatShading: true, side: THREE.DoubleSide };
-    this.faces = new THREE.Mesh(faces, new THREE.MeshLambertMaterial(
-      { ...rock, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 }));
+    const rock = { vertexColors: true, flatShading: true, side: THREE.DoubleSide,
+      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
+    const moving = new THREE.MeshLambertMaterial(rock);
+    this.resting = new THREE.MeshLambertMaterial({ ...rock, opacity: 0.22 });
+    this.faces = new THREE.Mesh(faces, [moving, this.resting]);
+    this.groupByRest(faces);
     const edges = new THREE.BufferGeometry();
     this.nodes = new THREE.BufferAttribute(this.positions, 3);
     edges.setAttribute("position", this.nodes);
@@ -54,8 +57,27 @@ class Viewer {
     this.scene.add(this.faces, this.edges);
   }
 
-  /** Puts all blocks where they are in a frame, displacements times `factor`, coloured by a choice. */
-  show(frame, choice, factor, coloursStill) {
+  /** Runs of triangles of blocks that move, and of those that do not. */
+  groupByRest(faces) {
+    const { blocks, still } = this.motion;
+    const kind = (triangle) => (still.has(blocks[triangle]) ? 1 : 0);
+    for (let first = 0, next = 0; first < blocks.length; first = next) {
+      while (next < blocks.length && kind(next) === kind(first)) next += 1;
+      faces.addGroup(3 * first, 3 * (next - first), kind(first));
+    }
+  }
+
+  /** Whether one sees through blocks at rest. */
+  makeGlass(isGlass) {
+    if (this.resting.transparent === isGlass) return;
+    this.resting.transparent = isGlass;
+    this.resting.depthWrite = !isGlass;
+    this.resting.needsUpdate = true;
+  }
+
+  /** Puts all blocks where they are in a frame, displacements times `factor`, coloured by a choice; `rest` says how blocks at rest look. */
+  show(frame, choice, factor, rest) {
+    this.makeGlass(rest === "glass");
     const { motion, positions } = this;
     const moved = motion.displacements(frame);
     for (let i = 0; i < positions.length; i += 1) {
@@ -68,7 +90,7 @@ class Viewer {
       corners[3 * c + 1] = positions[node + 1];
       corners[3 * c + 2] = positions[node + 2];
     }
-    this.paint(choice.values ? choice.values(frame) : null, choice, coloursStill);
+    this.paint(choice.values ? choice.values(frame) : null, choice, rest === "plain");
     for (const changed of [this.corners, this.colours, this.nodes]) {
       changed.needsUpdate = true;
     }
@@ -95,34 +117,29 @@ class Viewer {
 
   /** Looks from one side so that all blocks fit at all times. */
   look(name) {
-    const size = new THREE.Vector3(...this.motion.about.extent_m);
-    const radius = Math.max(0.5 * size.length(), 1e-6);
-    const direction = new THREE.Vector3(...VIEWS[name]).normalize();
+    const { extent_m: size } = this.motion.about;
+    const radius = Math.max(0.5 * Math.hypot(...size), 1e-6);
     this.camera.near = radius / 200;
     this.camera.far = radius * 40;
-    this.controls.target.set(0, 0, 0);
-    this.camera.position.copy(direction);
-    this.camera.lookAt(0, 0, 0);
-    this.camera.updateMatrixWorld();
-    this.camera.position.multiplyScalar(this.fittingDistance(size));
     this.camera.updateProjectionMatrix();
+    const direction = new THREE.Vector3(...VIEWS[name]).normalize();
+    const target = new THREE.Vector3();
+    let distance = 6 * radius;
+    // Each round centres the box in the picture and takes up what is left of it; a few are enough.
+    for (let round = 0; round < 8; round += 1) {
+      this.camera.position.copy(direction).multiplyScalar(distance).add(target);
+      this.camera.lookAt(target);
+      this.camera.updateMatrixWorld();
+      const seen = boxCorners(size).map((corner) => corner.project(this.camera));
+      const [left, right] = bounds(seen.map((corner) => corner.x));
+      const [below, above] = bounds(seen.map((corner) => corner.y));
+      const depth = target.clone().project(this.camera).z;
+      target.set((left + right) / 2, (below + above) / 2, depth).unproject(this.camera);
+      distance *= Math.max(right - left, above - below) / 1.86;
+    }
+    this.controls.target.copy(target);
     this.controls.update();
     this.draw();
-  }
-
-  /** Distance from which the eight corners of a box are in the picture. */
-  fittingDistance(size) {
-    const toCamera = this.camera.matrixWorld.clone().invert();
-    const slope = Math.tan((this.camera.fov * Math.PI) / 360);
-    let distance = 0;
-    for (let i = 0; i < 8; i += 1) {
-      const sign = (bit) => (i & bit ? 0.5 : -0.5);
-      const corner = new THREE.Vector3(sign(1) * size.x, sign(2) * size.y, sign(4) * size.z).applyMatrix4(toCamera);
-      // The camera is at a distance of 1 while this is asked.
-      const away = Math.max(Math.abs(corner.y) / slope, Math.abs(corner.x) / (slope * this.camera.aspect));
-      distance = Math.max(distance, corner.z + 1 + away);
-    }
-    return 1.06 * distance;
   }
 
   /** The block under a place of the page. */
@@ -131,8 +148,10 @@ class Viewer {
     const ray = new THREE.Raycaster();
     ray.setFromCamera(new THREE.Vector2((2 * (x - left)) / width - 1, 1 - (2 * (y - top)) / height), this.camera);
     this.faces.geometry.computeBoundingSphere();
-    const [hit] = ray.intersectObject(this.faces);
-    return hit ? this.motion.blocks[hit.faceIndex] : null;
+    const { blocks, still } = this.motion;
+    const isSeen = (hit) => !(this.resting.transparent && still.has(blocks[hit.faceIndex]));
+    const hit = ray.intersectObject(this.faces).find(isSeen);
+    return hit ? blocks[hit.faceIndex] : null;
   }
 
   resize() {
@@ -147,4 +166,11 @@ class Viewer {
   draw() {
     this.renderer.render(this.scene, this.camera);
   }
+}
+
+const bounds = (values) => [Math.min(...values), Math.max(...values)];
+
+/** Corners of a box about the origin. */
+function boxCorners(size) {
+  return [0, 1, 2, 3, 4, 5, 6, 7].map((i) => new THREE.Vector3(...size.map((s, axis) => ((i >> axis) & 1 ? 0.5 : -0.5) * s)));
 }

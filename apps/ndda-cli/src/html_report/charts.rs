@@ -92,19 +92,20 @@ impl Charts {
 }
 
 const ENERGY: &str = "Energy";
-const WORK: &str = "Work of friction, loads and supports; balance";
+const WORK: &str = "Work and balance";
 const ERROR: &str = "Error against the closed form";
 const MOMENTUM: &str = "Momentum";
 const ANGULAR: &str = "Angular momentum";
 
-/// Error and energies come first, then monitors and what is not known here, momentum last.
+/// Error and energies come first, then monitors, what is not known here, and momentum last.
 fn rank(title: &str) -> usize {
     match title {
         ERROR => 0,
         ENERGY => 1,
         WORK => 2,
-        MOMENTUM | ANGULAR => 4,
-        _ => 3,
+        MOMENTUM | ANGULAR => 5,
+        _ if title.contains(": ") => 3,
+        _ => 4,
     }
 }
 
@@ -182,8 +183,8 @@ mod tests {
             (ERROR, "", vec!["reference error"]),
             (ENERGY, "J", vec!["kinetic"]),
             (WORK, "J", vec!["friction work"]),
-            ("Contact pairs", "", vec!["contact pairs"]),
             ("a.b: displacement", "m", vec!["x", "z"]),
+            ("Contact pairs", "", vec!["contact pairs"]),
             (MOMENTUM, "kg m/s", vec!["x"]),
         ];
         assert_eq!(found, expected);

@@ -161,7 +161,7 @@ impl Motion {
 fn range(codes: &Codes) -> Range {
     let Codes { least, largest, .. } = *codes;
     let usual = codes.quantile(USUAL);
-    let top = if largest > 3.0 * usual && usual > least { usual } else { largest };
+    let top = if largest - least > 1.5 * (usual - least) && usual > least { usual } else { largest };
     Range { least, largest, top }
 }
 

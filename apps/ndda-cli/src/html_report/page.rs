@@ -96,7 +96,14 @@ fn stage(input: &Input, motion: Option<&Motion>) -> Markup {
             div.tools {
                 label { "Colour " select #colour {} }
                 label { "Motion × " select #factor { @for factor in ["1", "10", "100", "1000"] { option { (factor) } } } }
-                label { input #held type="checkbox"; " colour blocks at rest" }
+                label {
+                    "Blocks at rest "
+                    select #rest {
+                        @for (way, name) in [("light", "light"), ("glass", "see-through"), ("plain", "as others")] {
+                            option value=(way) { (name) }
+                        }
+                    }
+                }
                 span.views {
                     @for (view, name) in [("iso", "3D"), ("front", "Front"), ("side", "Side"), ("top", "Top")] {
                         button type="button" data-view=(view) { (name) }

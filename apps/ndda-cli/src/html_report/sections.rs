@@ -81,7 +81,7 @@ pub fn facts(summary: &Summary) -> Markup {
 
 /// The invariants against their limits.
 pub fn verdicts(summary: &Summary) -> Markup {
-    let shown = |value: Option<f64>| value.map_or(String::new(), |v| format!("{v:.1e}"));
+    let shown = |value: Option<f64>| value.map_or(String::new(), brief);
     html! {
         section.card {
             h2 { "Invariants" }
@@ -204,12 +204,25 @@ fn number(value: f64) -> String {
         let text = format!("{value:.6}");
         text.trim_end_matches('0').trim_end_matches('.').to_string()
     } else {
-        format!("{value:.3e}").replacen(".000e", "e", 1)
+        let text = format!("{value:.3e}");
+        let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+        format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
+    }
+}
+
+/// A number with two or three digits.
+fn brief(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        0.01..1000.0 => format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_string(),
+        _ => format!("{value:.1e}"),
     }
 }
 
 fn triple(v: &[f64; 3]) -> String {
-    format!("({:.4}, {:.4}, {:.4})", v[0], v[1], v[2])
+    // Rounded first, and zero added, so that no −0 is shown.
+    let [x, y, z] = v.map(|component| (component * 1e4).round() / 1e4 + 0.0);
+    format!("({x:.4}, {y:.4}, {z:.4})")
 }
 
 fn seconds(s: f64) -> String {
@@ -239,7 +252,9 @@ mod tests {
 
     #[test]
     fn numbers_are_as_long_as_they_need_to_be() {
-        assert_eq!(["0.5", "1e-4", "2650", "1.235e7"], [0.5, 1e-4, 2650.0, 1.2346e7].map(|v| number(v)));
+        assert_eq!(["0.5", "2.5e-4", "2650", "1.235e7"], [0.5, 2.5e-4, 2650.0, 1.2346e7].map(number));
+        assert_eq!(["0", "1", "0.304", "-2.0e-9"], [0.0, 1.0, 0.3043, -2e-9].map(brief));
+        assert_eq!(triple(&[-1e-9, 1.0, -0.5]), "(0.0000, 1.0000, -0.5000)");
         assert_eq!(grouped(1_234_567).replace('\u{202F}', " "), "1 234 567");
         assert_eq!(
             (grouped(12), seconds(0.25), seconds(150.4)),
