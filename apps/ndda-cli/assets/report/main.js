@@ -45,6 +45,10 @@ async function showBlocks(byId, data, charts) {
     byId("picked").textContent = block === null ? "" : data.block_names[block] || `block ${block}`;
   });
   recolour();
+  if (viewer.hidesMotion()) {
+    byId("rest").value = "glass";
+    recolour();
+  }
   return player;
 }
 

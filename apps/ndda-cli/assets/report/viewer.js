@@ -42,7 +42,7 @@ class Viewer {
     const rock = { vertexColors: true, flatShading: true, side: THREE.DoubleSide,
       polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 };
     const moving = new THREE.MeshLambertMaterial(rock);
-    this.resting = new THREE.MeshLambertMaterial({ ...rock, opacity: 0.22 });
+    this.resting = new THREE.MeshLambertMaterial({ ...rock, opacity: 0.15 });
     this.faces = new THREE.Mesh(faces, [moving, this.resting]);
     this.groupByRest(faces);
     const edges = new THREE.BufferGeometry();
@@ -140,6 +140,24 @@ class Viewer {
     this.controls.target.copy(target);
     this.controls.update();
     this.draw();
+  }
+
+  /** Whether most of what moves is behind blocks at rest, from where one looks now. */
+  hidesMotion() {
+    const { blocks, still, triangles } = this.motion;
+    const moving = [...blocks.keys()].filter((triangle) => !still.has(blocks[triangle]));
+    const every = Math.ceil(moving.length / 40);
+    const asked = moving.filter((_, i) => i % every === 0);
+    const corner = (c) => new THREE.Vector3().fromArray(this.positions, 3 * triangles[c]);
+    const ray = new THREE.Raycaster();
+    this.faces.geometry.computeBoundingSphere();
+    const hidden = asked.filter((t) => {
+      const towards = corner(3 * t).add(corner(3 * t + 1)).add(corner(3 * t + 2)).divideScalar(3).sub(this.camera.position);
+      ray.set(this.camera.position, towards.normalize());
+      const [hit] = ray.intersectObject(this.faces);
+      return hit && still.has(blocks[hit.faceIndex]);
+    });
+    return hidden.length > 0.5 * asked.length;
   }
 
   /** The block under a place of the page. */

@@ -55,7 +55,7 @@ pub fn facts(summary: &Summary) -> Markup {
         ("Simulated", format!("{} s", number(summary.end_s))),
         ("Steps", format!("{} of {} s", grouped(summary.steps as usize), number(summary.step_s))),
         ("Run", format!("{} on {} thread(s)", seconds(summary.wall_s), summary.threads)),
-        ("Speed", format!("{} steps/s", grouped(speed as usize))),
+        ("Speed", format!("{} steps/s", grouped(speed.round() as usize))),
         ("Blocks", format!("{}, {} tetrahedra", grouped(counts.blocks), grouped(counts.tets))),
         ("Unknowns", format!("{}, {} factor(s)", grouped(counts.dofs), grouped(counts.factors))),
         ("Contact", format!("{} pairs at most", grouped(counts.contact_pairs_max))),
