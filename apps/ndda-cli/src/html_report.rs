@@ -61,9 +61,9 @@ pub fn view(args: &ViewArgs) -> u8 {
         }
     }
     let file = std::path::absolute(&file).unwrap_or(file);
+    say(&format!("opening {}", file.display()));
     if let Err(error) = open::that(&file) {
-        complain(&format!("no program was found that shows it ({error})"));
-        say(&format!("open {} in a browser", file.display()));
+        complain(&format!("no program was found that shows it ({error}): open it in a browser"));
     }
     exit::DONE
 }

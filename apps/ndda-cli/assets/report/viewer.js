@@ -17,6 +17,8 @@ class Viewer {
     this.addBlocks();
     this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
+    // A camera that somebody has moved stays where it is when the window changes.
+    this.controls.addEventListener("start", () => { this.view = null; });
     new ResizeObserver(() => this.resize()).observe(box);
     this.resize();
     this.look("iso");
@@ -117,6 +119,7 @@ class Viewer {
 
   /** Looks from one side so that all blocks fit at all times. */
   look(name) {
+    this.view = name;
     const { extent_m: size } = this.motion.about;
     const radius = Math.max(0.5 * Math.hypot(...size), 1e-6);
     this.camera.near = radius / 200;
@@ -178,7 +181,8 @@ class Viewer {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.draw();
+    if (this.view) this.look(this.view);
+    else this.draw();
   }
 
   draw() {
