@@ -9,7 +9,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 #[command(
     version,
     after_help = "Examples:\n  ndda run --example sliding_45\n  ndda new slide\n  ndda run scenes/sliding_45.ron --set time.step_s=1e-3 \
-                  --out out/coarse\n  ndda check scenes/sliding_45.ron\n  ndda mesh scenes/column_phi0.ron\n\nExit codes: 0 done · 1 ran, a criterion \
+                  --out out/coarse\n  ndda check scenes/sliding_45.ron\n  ndda mesh scenes/column_phi0.ron\n  ndda report out/sliding_45\n\nExit codes: 0 done · 1 ran, a criterion \
                   failed · 2 usage · 3 bad input · 4 numerical stop · 5 input/output · 6 resources · 130 interrupted"
 )]
 pub struct Cli {
@@ -50,6 +50,40 @@ pub enum Verb {
     /// Tetrahedra with dihedral angles of a few degrees or an aspect above 50 make runs inexact or short of steps:
     /// use larger spacings, another `fill`, or `sliver_width_m`.
     Mesh(MeshArgs),
+    /// Write a run as one HTML page: verdicts, curves, and the blocks moving in 3D; it needs no network.
+    #[cfg(feature = "report")]
+    Report(ReportArgs),
+    /// Open the report of a run in a browser; it is written first if it is missing or older than the run.
+    #[cfg(feature = "report")]
+    View(ViewArgs),
+}
+
+/// Arguments of `ndda report`.
+#[cfg(feature = "report")]
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  ndda report out/sliding_45\n  ndda report out/pile_125 -o pile.html --frames 25"
+)]
+pub struct ReportArgs {
+    /// Output folder of a run.
+    pub folder: PathBuf,
+    /// The page [default: report.html in the folder].
+    #[arg(long, short, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Most frames to show, evenly spaced; 0 leaves the blocks out [default: all, or as many as a page can carry].
+    #[arg(long, value_name = "N")]
+    pub frames: Option<u32>,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Arguments of `ndda view`.
+#[cfg(feature = "report")]
+#[derive(Debug, Args)]
+pub struct ViewArgs {
+    /// Output folder of a run.
+    pub folder: PathBuf,
 }
 
 /// Arguments of `ndda mesh`.

@@ -7,6 +7,8 @@ pub mod console;
 pub mod examples;
 pub mod exit;
 pub mod explain;
+#[cfg(feature = "report")]
+pub mod html_report;
 pub mod input;
 pub mod interrupt;
 pub mod mesh;

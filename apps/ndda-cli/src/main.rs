@@ -4,6 +4,8 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use ndda_cli::args::{Cli, Verb};
+#[cfg(feature = "report")]
+use ndda_cli::html_report;
 #[cfg(feature = "schema")]
 use ndda_cli::schema;
 #[cfg(feature = "shell")]
@@ -24,6 +26,10 @@ fn main() -> ExitCode {
         #[cfg(feature = "shell")]
         Verb::Man(args) => shell::man(&args),
         Verb::Mesh(args) => mesh::mesh(&args),
+        #[cfg(feature = "report")]
+        Verb::Report(args) => html_report::report(&args),
+        #[cfg(feature = "report")]
+        Verb::View(args) => html_report::view(&args),
     };
     ExitCode::from(outcome)
 }

@@ -13,6 +13,8 @@ pub const SUMMARY: &str = "summary.json";
 pub const HISTORY: &str = "history.csv";
 /// File that lists the frames of fields.
 pub const FIELDS_INDEX: &str = "fields.pvd";
+/// File of the report as a page.
+pub const REPORT: &str = "report.html";
 /// The newest checkpoint.
 pub const CHECKPOINT: &str = "checkpoint.ndda";
 /// The checkpoint before.
@@ -23,7 +25,7 @@ const WAITING: &str = "checkpoint.new.ndda";
 pub const FIELDS_FOLDER: &str = "fields";
 
 /// Files at the top of the folder, in the order in which an earlier run is deleted: an index before what it lists.
-const TOP_FILES: [&str; 6] = [CHECKPOINT, PREVIOUS, WAITING, FIELDS_INDEX, HISTORY, SUMMARY];
+const TOP_FILES: [&str; 7] = [CHECKPOINT, PREVIOUS, WAITING, REPORT, FIELDS_INDEX, HISTORY, SUMMARY];
 const PROBE: &str = "ndda-probe.tmp";
 const PROBE_BYTES: usize = 1 << 20;
 

@@ -16,6 +16,7 @@ pub mod overrides;
 pub mod pvd;
 pub mod read;
 pub mod record;
+pub mod results;
 pub mod scene;
 #[cfg(feature = "schema")]
 pub mod schema;

@@ -1,8 +1,11 @@
 //! The summary: what a run did, what it cost and whether it can be trusted, as `summary.json`.
 
+use std::fmt;
+use std::marker::PhantomData;
 use std::path::Path;
 
-use serde::{Serialize, Serializer};
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use serde_json::Value;
 
 use crate::atomic;
@@ -24,8 +27,33 @@ impl<T: Serialize> Serialize for Named<T> {
     }
 }
 
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Entries(PhantomData))
+    }
+}
+
+/// Takes the entries of a map in their order.
+struct Entries<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for Entries<T> {
+    type Value = Named<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("a map")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Named<T>, A::Error> {
+        let mut entries = Vec::new();
+        while let Some(entry) = map.next_entry()? {
+            entries.push(entry);
+        }
+        Ok(Named(entries))
+    }
+}
+
 /// Everything that `summary.json` says.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// Version of ndda.
     pub version: String,
@@ -69,7 +97,7 @@ pub struct Summary {
 }
 
 /// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Status {
     /// It ran to its end and every criterion was met.
@@ -83,7 +111,7 @@ pub enum Status {
 }
 
 /// Sizes of the problem.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Counts {
     /// Blocks.
     pub blocks: usize,
@@ -102,7 +130,7 @@ pub struct Counts {
 }
 
 /// The largest violation of each invariant over the run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Invariants {
     /// Energy gained, relative to the peak.
     pub energy_gain: f64,
@@ -119,7 +147,7 @@ pub struct Invariants {
 }
 
 /// A number judged against its limit.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// The number. Left out when it is not computed yet.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -132,7 +160,7 @@ pub struct Verdict {
 }
 
 /// How a number compares with its limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Judgement {
     /// Within the limit.
     #[serde(rename = "pass")]
@@ -149,7 +177,7 @@ pub enum Judgement {
 }
 
 /// State of a monitor at the end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MonitorEnd {
     /// Displacement since the start \[m\].
     pub displacement: [f64; 3],
@@ -158,7 +186,7 @@ pub struct MonitorEnd {
 }
 
 /// State of a block at the end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BlockEnd {
     /// Mass \[kg\].
     pub mass: f64,
@@ -173,7 +201,7 @@ pub struct BlockEnd {
 }
 
 /// Error against a closed form, relative to its magnitude.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ReferenceError {
     /// Which closed form, by its name in the scene.
     pub kind: String,

@@ -17,7 +17,8 @@ use std::path::Path;
 use crate::mesh_file::error::bytes_of;
 use crate::mesh_file::{MeshFile, MeshFileError};
 
-pub(crate) use data::Data;
+pub use data::Array;
+pub(crate) use data::{Data, TETRA};
 pub use polyhedra::write as write_polyhedra;
 pub use write::write;
 

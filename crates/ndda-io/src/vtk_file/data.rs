@@ -9,7 +9,7 @@ use crate::mesh_file::error::Fault;
 use crate::mesh_file::parts::Parts;
 
 /// Number of the tetrahedron among VTK's cell types.
-pub(super) const TETRA: u8 = 10;
+pub(crate) const TETRA: u8 = 10;
 /// Number of the polygon.
 pub(super) const POLYGON: u8 = 7;
 /// Cell types without volume.
@@ -20,6 +20,15 @@ const BODY_ARRAYS: [&str; 6] = ["body", "block", "block_id", "material", "gmsh:p
 pub(super) const SET: &str = "set:";
 /// Field data with the names of the bodies, one to a line, in UTF-8.
 pub(super) const BODY_NAMES: &str = "body_names";
+
+/// An array of points or cells of several components.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Array {
+    /// Numbers per entry.
+    pub components: usize,
+    /// The numbers, one entry after the other.
+    pub values: Vec<f64>,
+}
 
 /// Points and cells with their data.
 #[derive(Default)]
@@ -36,6 +45,10 @@ pub(crate) struct Data {
     pub cell_data: BTreeMap<String, Vec<f64>>,
     /// Point data of one component.
     pub point_data: BTreeMap<String, Vec<f64>>,
+    /// Cell data of several components.
+    pub cell_arrays: BTreeMap<String, Array>,
+    /// Point data of several components.
+    pub point_arrays: BTreeMap<String, Array>,
     /// Field data.
     pub field_data: BTreeMap<String, Vec<f64>>,
 }

@@ -1,8 +1,8 @@
 //! The arrays of a piece of an XML file, put together into cells.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
-use super::data::{Data, POLYGON, count};
+use super::data::{Array, Data, POLYGON, count};
 use crate::mesh_file::error::Fault;
 
 /// Arrays of a piece by section and name, as far as they make cells.
@@ -11,12 +11,12 @@ pub(super) struct Piece {
     points: Vec<f64>,
     cells: HashMap<&'static str, Vec<f64>>,
     polygons: HashMap<&'static str, Vec<f64>>,
-    cell_data: Vec<(String, Vec<f64>)>,
-    point_data: Vec<(String, Vec<f64>)>,
+    cell_data: Vec<(String, Array)>,
+    point_data: Vec<(String, Array)>,
 }
 
 impl Piece {
-    /// Takes an array; those of several components and of no concern here are left out.
+    /// Takes an array; those of no concern here are left out.
     pub fn add(
         &mut self,
         data: &mut Data,
@@ -25,14 +25,16 @@ impl Piece {
         numbers: Vec<f64>,
     ) {
         let name = attributes.get("Name").cloned().unwrap_or_default();
-        let is_scalar = attributes.get("NumberOfComponents").is_none_or(|count| count == "1" || count == "0");
+        let components = attributes.get("NumberOfComponents").and_then(|text| text.parse().ok());
+        // VTK writes 0 for what was never set, and means 1.
+        let components: usize = components.unwrap_or(1).max(1);
         let part = ["connectivity", "offsets", "types"].into_iter().find(|part| *part == name);
         match (section, part) {
             ("Points", _) => self.points = numbers,
             ("Cells", Some(part)) => drop(self.cells.insert(part, numbers)),
             ("Polys", Some(part)) => drop(self.polygons.insert(part, numbers)),
-            ("CellData", _) if is_scalar => self.cell_data.push((name, numbers)),
-            ("PointData", _) if is_scalar => self.point_data.push((name, numbers)),
+            ("CellData", _) => self.cell_data.push((name, Array { components, values: numbers })),
+            ("PointData", _) => self.point_data.push((name, Array { components, values: numbers })),
             ("FieldData", _) => drop(data.field_data.insert(name, numbers)),
             _ => {}
         }
@@ -51,14 +53,35 @@ impl Piece {
             data.add_cells(&kinds, &ends, &connectivity, first_point)?;
         }
         let (points, cells) = (data.points.len() - first_point, data.kinds.len() - first_cell);
-        for (name, values) in self.cell_data {
-            count(&format!("entries of {name}"), values.len(), cells)?;
-            data.cell_data.entry(name).or_default().extend(values);
+        for (name, array) in self.cell_data {
+            add(name, array, cells, &mut data.cell_data, &mut data.cell_arrays)?;
         }
-        for (name, values) in self.point_data {
-            count(&format!("entries of {name}"), values.len(), points)?;
-            data.point_data.entry(name).or_default().extend(values);
+        for (name, array) in self.point_data {
+            add(name, array, points, &mut data.point_data, &mut data.point_arrays)?;
         }
         Ok(())
     }
+}
+
+/// Adds an array of `entries` to the scalars or to the others.
+fn add(
+    name: String,
+    array: Array,
+    entries: usize,
+    scalars: &mut BTreeMap<String, Vec<f64>>,
+    others: &mut BTreeMap<String, Array>,
+) -> Result<(), Fault> {
+    let needed = entries.saturating_mul(array.components);
+    count(&format!("entries of {name}"), array.values.len(), needed)?;
+    if array.components == 1 {
+        scalars.entry(name).or_default().extend(array.values);
+    } else {
+        let known = others.entry(name.clone()).or_default();
+        if known.components == 0 {
+            known.components = array.components;
+        }
+        count(&format!("components of {name}"), array.components, known.components)?;
+        known.values.extend(array.values);
+    }
+    Ok(())
 }

@@ -1,0 +1,47 @@
+//! Why a report cannot be written.
+
+use std::path::PathBuf;
+
+use ndda_io::WriteError;
+use ndda_io::mesh_file::MeshFileError;
+use ndda_io::results::ResultsError;
+
+/// Why a report cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// There is no such folder.
+    #[error("{} is no folder: name the output folder of a run, as out/sliding_45", .0.display())]
+    NotAFolder(PathBuf),
+    /// The folder is not one that `ndda run` wrote.
+    #[error("{} holds no run: it has neither summary.json nor history.csv; `ndda run SCENE --out DIR` writes them", .0.display())]
+    NotARun(PathBuf),
+    /// The run is not over, or was killed.
+    #[error("{} holds a run without its {missing}: it goes on, or was killed; `ndda resume` takes it to its end", folder.display())]
+    Incomplete {
+        /// The output folder.
+        folder: PathBuf,
+        /// The file that is missing.
+        missing: &'static str,
+    },
+    /// A file of the run cannot be used.
+    #[error(transparent)]
+    Results(#[from] ResultsError),
+    /// A frame cannot be used.
+    #[error(transparent)]
+    Frame(#[from] MeshFileError),
+    /// A frame that does not fit the first.
+    #[error("{} holds {found} {what} and the first frame {needed}: they are of two runs, run the scene again", path.display())]
+    OtherBlocks {
+        /// The frame.
+        path: PathBuf,
+        /// Points, tetrahedra or entries of an array.
+        what: String,
+        /// How many it holds.
+        found: usize,
+        /// How many the first holds.
+        needed: usize,
+    },
+    /// The page cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}

@@ -1,0 +1,234 @@
+//! The frames of a run, as far as a page shows them.
+
+use ndda_io::results::{self, FieldFrame, ListedFrame};
+use ndda_mesh::Vec3;
+use ndda_mesh::geometry::Aabb;
+use serde::Serialize;
+
+use super::colours::{Field, Place, fields};
+use super::error::ReportError;
+use super::packed::{Codes, Packed, PackedArray};
+use super::surface::Surface;
+
+/// Codes of all frames before compression [bytes]; runs with more are thinned.
+const MOST_BYTES: usize = 40_000_000;
+/// Blocks that move less than this part of the farthest motion are drawn as supports.
+const STILL: f64 = 0.01;
+/// Part of all values that the colours resolve where a few are far above the others.
+const USUAL: f64 = 0.995;
+
+/// What is seen of a run in 3D.
+pub struct Motion {
+    /// Times of the frames that are shown [s].
+    pub times_s: Vec<f64>,
+    /// The surfaces.
+    pub surface: Surface,
+    /// Positions in the first frame [m], of nodes of the surface.
+    start: Vec<Vec3>,
+    /// Displacements since then [m], three per node.
+    moved: Codes,
+    /// The fields with a value per node or triangle.
+    fields: Vec<(Field, Codes)>,
+    /// The box that holds all blocks at all times.
+    extent: Aabb,
+}
+
+/// What the page is told of a motion, beside the numbers themselves.
+#[derive(Serialize)]
+pub struct Description {
+    times_s: Vec<f64>,
+    /// Centre of everything; positions count from it.
+    origin_m: [f64; 3],
+    extent_m: [f64; 3],
+    nodes: usize,
+    triangles: usize,
+    /// Blocks that hardly move.
+    still: Vec<usize>,
+    moved: Range,
+    fields: Vec<Colour>,
+    arrays: Vec<PackedArray>,
+}
+
+#[derive(Serialize)]
+struct Range {
+    least: f32,
+    largest: f32,
+    /// Where the colours end.
+    top: f32,
+}
+
+#[derive(Serialize)]
+struct Colour {
+    array: String,
+    label: String,
+    unit: &'static str,
+    of_nodes: bool,
+    range: Range,
+}
+
+impl Motion {
+    /// Reads frames, at most `most` of them or as many as a page can carry.
+    ///
+    /// # Errors
+    /// [`ReportError`] when a frame is damaged or does not fit the first.
+    pub fn read(listed: &[ListedFrame], most: Option<usize>) -> Result<Self, ReportError> {
+        let first = results::frame(&listed[0].path)?;
+        let surface = Surface::new(&first);
+        let fields = fields(&first);
+        let entries: usize = fields.iter().map(|f| entries(f.place, &surface)).sum();
+        let fitting = MOST_BYTES / (2 * (3 * surface.nodes.len() + entries)).max(1);
+        let shown = thinned(listed.len(), most.unwrap_or(fitting.max(2)));
+        let start: Vec<Vec3> = surface.nodes.iter().map(|&n| first.points[n as usize]).collect();
+        let (mut moved, mut values) = (Vec::new(), vec![Vec::new(); fields.len()]);
+        let (mut extent, mut times_s) = (Aabb::empty(), Vec::new());
+        for index in shown {
+            let ListedFrame { time_s, path } = &listed[index];
+            let frame = results::frame(path)?;
+            compare(path, &first, &frame, &fields)?;
+            let now = surface.nodes.iter().map(|&n| frame.points[n as usize]);
+            now.clone().for_each(|x| extent.grow(&x));
+            moved.push(
+                now.zip(&start).flat_map(|(x, x0)| <[f64; 3]>::from(x - x0)).map(|u| u as f32).collect(),
+            );
+            for (field, values) in fields.iter().zip(&mut values) {
+                values.extend(field.array_of(&frame).map(|array| field.values(array, &surface)));
+            }
+            times_s.push(*time_s);
+        }
+        let fields = fields.into_iter().zip(&values).map(|(field, values)| (field, Codes::new(values)));
+        Ok(Self { times_s, start, moved: Codes::new(&moved), fields: fields.collect(), surface, extent })
+    }
+
+    /// What the page is told, and the numbers as a text.
+    pub fn describe(&self) -> (Description, String) {
+        let origin = self.extent.center();
+        let mut packed = Packed::default();
+        let coordinates = |x: &Vec3| <[f64; 3]>::from(x - origin).map(|c| c as f32);
+        packed.add_f32("start", self.start.iter().flat_map(coordinates));
+        packed.add_u32("triangles", self.surface.triangles.iter().flatten().copied());
+        packed.add_u32("blocks", self.surface.blocks.iter().copied());
+        packed.add_u32("edges", self.surface.edges.iter().flatten().copied());
+        packed.add_codes("moved", &self.moved);
+        let (lengths, still) = (self.largest_motions(), STILL * self.farthest());
+        let colour = |(field, codes): &(Field, Codes)| {
+            packed.add_codes(&field.array, codes);
+            let (array, label, unit) = (field.array.clone(), field.label.clone(), field.unit);
+            Colour { array, label, unit, of_nodes: field.place == Place::Node, range: range(codes) }
+        };
+        let fields = self.fields.iter().map(colour).collect();
+        let description = Description {
+            times_s: self.times_s.clone(),
+            origin_m: origin.into(),
+            extent_m: (self.extent.max - self.extent.min).into(),
+            nodes: self.start.len(),
+            triangles: self.surface.triangles.len(),
+            still: (0..lengths.len()).filter(|&b| lengths[b] < still).collect(),
+            moved: Range {
+                least: self.moved.least,
+                largest: self.moved.largest,
+                top: self.farthest() as f32,
+            },
+            fields,
+            arrays: packed.arrays.drain(..).collect(),
+        };
+        (description, packed.text())
+    }
+
+    /// Farthest that any node was from where it began [m].
+    fn farthest(&self) -> f64 {
+        self.largest_motions().into_iter().fold(0.0, f64::max)
+    }
+
+    /// Farthest that a node of each block was from where it began [m].
+    fn largest_motions(&self) -> Vec<f64> {
+        let step = f64::from(self.moved.largest - self.moved.least) / f64::from(u16::MAX);
+        let metres = |code: u16| f64::from(self.moved.least) + step * f64::from(code);
+        let mut largest = vec![0.0; self.surface.block_count()];
+        for frame in &self.moved.frames {
+            for (corners, &block) in self.surface.triangles.iter().zip(&self.surface.blocks) {
+                for &node in corners {
+                    let u = &frame[3 * node as usize..][..3];
+                    let length = Vec3::new(metres(u[0]), metres(u[1]), metres(u[2])).norm();
+                    largest[block as usize] = f64::max(largest[block as usize], length);
+                }
+            }
+        }
+        largest
+    }
+}
+
+/// A range whose colours end where nearly all values do.
+fn range(codes: &Codes) -> Range {
+    let Codes { least, largest, .. } = *codes;
+    let usual = codes.quantile(USUAL);
+    let top = if largest - least > 1.5 * (usual - least) && usual > least { usual } else { largest };
+    Range { least, largest, top }
+}
+
+fn entries(place: Place, surface: &Surface) -> usize {
+    match place {
+        Place::Node => surface.nodes.len(),
+        Place::Triangle => surface.triangles.len(),
+    }
+}
+
+/// At most `most` of `count` frames, evenly, the first and the last among them; at least one.
+fn thinned(count: usize, most: usize) -> Vec<usize> {
+    if most >= count {
+        return (0..count).collect();
+    }
+    match most {
+        0 | 1 => vec![count - 1],
+        _ => (0..most).map(|i| (i * (count - 1) + (most - 1) / 2) / (most - 1)).collect(),
+    }
+}
+
+/// Whether a frame has the points, tetrahedra and arrays of the first.
+fn compare(
+    path: &std::path::Path,
+    first: &FieldFrame,
+    frame: &FieldFrame,
+    fields: &[Field],
+) -> Result<(), ReportError> {
+    let length =
+        |frame: &FieldFrame, field: &Field| field.array_of(frame).map_or(0, |array| array.values.len());
+    let mut counts = vec![
+        ("points".to_string(), frame.points.len(), first.points.len()),
+        ("tetrahedra".to_string(), frame.tets.len(), first.tets.len()),
+    ];
+    counts.extend(
+        fields.iter().map(|f| (format!("numbers in {}", f.array), length(frame, f), length(first, f))),
+    );
+    match counts.into_iter().find(|(_, found, needed)| found != needed) {
+        None => Ok(()),
+        Some((what, found, needed)) => {
+            Err(ReportError::OtherBlocks { path: path.to_path_buf(), what, found, needed })
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinned_frames_are_even_and_keep_both_ends() {
+        assert_eq!(thinned(5, 9), [0, 1, 2, 3, 4]);
+        assert_eq!(thinned(11, 3), [0, 5, 10]);
+        assert_eq!(thinned(11, 2), [0, 10]);
+        assert_eq!((thinned(11, 1), thinned(1, 1)), (vec![10], vec![0]));
+        let many = thinned(1000, 37);
+        assert_eq!((many.len(), many[0], many[36]), (37, 0, 999));
+        assert!(many.windows(2).all(|w| (27..=28).contains(&(w[1] - w[0]))), "{many:?}");
+    }
+
+    #[test]
+    fn a_few_values_far_above_the_others_do_not_spoil_the_colours() {
+        let mut values = vec![1.0f32; 10_000];
+        values[0] = 0.0;
+        assert_eq!(range(&Codes::new(&[values.clone()])).top, 1.0);
+        values[1] = 100.0;
+        let found = range(&Codes::new(&[values]));
+        assert!((found.top - 1.0).abs() < 1e-2 && found.largest == 100.0);
+    }
+}

@@ -1,0 +1,168 @@
+//! The page: its skeleton, and the scripts and numbers in it. `maud` escapes every text that comes from a scene.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde::Serialize;
+
+use super::charts::Charts;
+use super::input::Input;
+use super::motion::Motion;
+use super::sections;
+
+const STYLES: [&str; 2] =
+    [include_str!("../../assets/vendor/uplot.min.css"), include_str!("../../assets/report/report.css")];
+const DRAWING: [&str; 2] =
+    [include_str!("../../assets/vendor/uplot.min.js"), include_str!("../../assets/report/charts.js")];
+const BLOCKS: [&str; 4] = [
+    include_str!("../../assets/vendor/three.min.js"),
+    include_str!("../../assets/report/motion.js"),
+    include_str!("../../assets/report/colours.js"),
+    include_str!("../../assets/report/viewer.js"),
+];
+const MAIN: &str = include_str!("../../assets/report/main.js");
+/// A page that asks for nothing from anywhere.
+const POLICY: &str =
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
+
+/// What the scripts read beside the numbers of the motion.
+#[derive(Serialize)]
+struct Data<'a> {
+    charts: &'a Charts,
+    motion: Option<super::motion::Description>,
+    block_names: Vec<&'a str>,
+}
+
+/// The whole page.
+pub fn page(input: &Input, motion: Option<&Motion>) -> String {
+    let summary = &input.summary;
+    let charts = Charts::new(&input.history);
+    let (description, numbers) = motion.map(Motion::describe).unzip();
+    let block_names = summary.blocks.0.iter().map(|(name, _)| name.as_str()).collect();
+    let data = json(&Data { charts: &charts, motion: description, block_names });
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                title { (summary.title) " – ndda" }
+                @for style in STYLES { style { (PreEscaped(style)) } }
+            }
+            body {
+                (sections::header(summary))
+                main {
+                    (sections::warnings(summary))
+                    div.columns {
+                        div.wide { (stage(input, motion)) }
+                        div.narrow { (sections::facts(summary)) (sections::verdicts(summary)) }
+                    }
+                    (curves(&charts))
+                    div.columns.even { (sections::stages(summary)) (sections::monitors(summary)) }
+                    (sections::blocks(summary))
+                }
+                (sections::footer(summary))
+                script id="data" type="application/json" { (PreEscaped(data)) }
+                @if let Some(numbers) = numbers {
+                    script id="numbers" type="text/plain" { (PreEscaped(numbers)) }
+                    @for script in BLOCKS { script { (PreEscaped(script)) } }
+                }
+                @for script in DRAWING { script { (PreEscaped(script)) } }
+                script { (PreEscaped(MAIN)) }
+            }
+        }
+    };
+    page.into_string()
+}
+
+/// JSON that may stand in a script: nothing in it can end the script or begin a comment.
+fn json(value: &impl Serialize) -> String {
+    serde_json::to_string(value).unwrap_or_else(|_| "null".into()).replace('<', "\\u003c")
+}
+
+/// Where blocks move, with what moves them.
+fn stage(input: &Input, motion: Option<&Motion>) -> Markup {
+    let Some(motion) = motion else {
+        return html! {
+            section.card {
+                h2 { "Blocks" }
+                p.note { "This report shows no blocks: " (missing(input)) }
+            }
+        };
+    };
+    let (shown, all) = (motion.times_s.len(), input.frames.len());
+    html! {
+        section.card.stage {
+            div.tools {
+                label { "Colour " select #colour {} }
+                label { "Motion × " select #factor { @for factor in ["1", "10", "100", "1000"] { option { (factor) } } } }
+                label {
+                    "Blocks at rest "
+                    select #rest {
+                        @for (way, name) in [("light", "light"), ("glass", "see-through"), ("plain", "as others")] {
+                            option value=(way) { (name) }
+                        }
+                    }
+                }
+                span.views {
+                    @for (view, name) in [("iso", "3D"), ("front", "Front"), ("side", "Side"), ("top", "Top")] {
+                        button type="button" data-view=(view) { (name) }
+                    }
+                }
+            }
+            div #view tabindex="0" aria-label="Blocks in 3D: drag to turn, wheel to zoom, right button to shift" {
+                div #bar { span #bar-title {} div #bar-colours {} div #bar-numbers {} }
+                output #picked {}
+            }
+            div.player {
+                button #play type="button" aria-label="Play" { "▶" }
+                input #slider type="range" min="0" max=(shown.saturating_sub(1)) value="0" step="1" aria-label="Frame";
+                output #time {}
+            }
+            @if shown < all {
+                p.note { "Shows " (shown) " of the " (all) " frames of the run; fields.pvd has them all." }
+            }
+        }
+    }
+}
+
+fn missing(input: &Input) -> &'static str {
+    match input.frames.is_empty() {
+        true => "the run wrote no fields. Give its scene output: (frames: 20), and run it again.",
+        false => "it was written with --frames 0.",
+    }
+}
+
+fn curves(charts: &Charts) -> Markup {
+    html! {
+        @if !charts.charts.is_empty() {
+            h2.heading { "Over time" }
+            @for note in &charts.notes { p.note { (note) } }
+            div #charts {
+                @for chart in &charts.charts { section.card.chart { h3 { (chart.title) } div.plot {} } }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_in_scripts_cannot_end_them() {
+        let text = json(&["</script><script>alert(1)</script>", "<!--"]);
+        assert!(!text.contains('<'), "{text}");
+        assert_eq!(serde_json::from_str::<Vec<String>>(&text).unwrap()[1], "<!--");
+    }
+
+    #[test]
+    fn embedded_scripts_do_not_end_early_and_name_no_server() {
+        for script in BLOCKS.iter().chain(&DRAWING).chain([&MAIN]) {
+            assert!(!script.contains("</script") && !script.contains("<!--"));
+        }
+        for own in [MAIN, BLOCKS[1], BLOCKS[2], BLOCKS[3], DRAWING[1], STYLES[1]] {
+            assert!(!own.contains("http") && !own.contains("url("), "{own}");
+        }
+    }
+}

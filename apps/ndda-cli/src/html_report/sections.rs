@@ -1,0 +1,264 @@
+//! The parts of the page that are text: what was run, what became of it, what it cost.
+
+use maud::{Markup, html};
+use ndda_io::summary::{Judgement, Status, Summary, Verdict};
+
+/// Blocks that are listed; a table of more is no help.
+const MOST_BLOCKS: usize = 200;
+
+/// Title and badges.
+pub fn header(summary: &Summary) -> Markup {
+    let count = |wanted: Judgement| summary.verdicts.0.iter().filter(|(_, v)| v.verdict == wanted).count();
+    let (warned, failed) = (count(Judgement::Warn), count(Judgement::Fail));
+    html! {
+        header {
+            div {
+                p.scene { (summary.scene) }
+                h1 { (summary.title) }
+            }
+            p.badges {
+                (status(summary))
+                @if failed > 0 { span.badge.fail { (failed) " beyond the limit" } }
+                @if warned > 0 { span.badge.warn { (warned) " to look at" } }
+                @if failed + warned == 0 { span.badge.pass { "invariants hold" } }
+                @if let Some(reference) = &summary.reference {
+                    span.badge.info { "error " (format!("{:.1e}", reference.error_end)) }
+                }
+            }
+        }
+    }
+}
+
+fn status(summary: &Summary) -> Markup {
+    let (class, word) = match summary.status {
+        Status::Done => ("pass", "done"),
+        Status::Failed => ("fail", "failed"),
+        Status::Stopped => ("fail", "stopped"),
+        Status::Interrupted => ("warn", "interrupted"),
+    };
+    html! { span class={ "badge " (class) } { (word) } }
+}
+
+/// Why it stopped, and what a person should know.
+pub fn warnings(summary: &Summary) -> Markup {
+    html! {
+        @if let Some(cause) = &summary.stopped_by { p.alert.fail { strong { "Stopped " } (cause) } }
+        @for warning in &summary.warnings { p.alert.warn { (warning) } }
+    }
+}
+
+/// What was run.
+pub fn facts(summary: &Summary) -> Markup {
+    let counts = &summary.counts;
+    let speed = summary.steps as f64 / summary.wall_s.max(f64::MIN_POSITIVE);
+    let mut rows = vec![
+        ("Simulated", format!("{} s", number(summary.end_s))),
+        ("Steps", format!("{} of {} s", grouped(summary.steps as usize), number(summary.step_s))),
+        ("Run", format!("{} on {} thread(s)", seconds(summary.wall_s), summary.threads)),
+        ("Speed", format!("{} steps/s", grouped(speed.round() as usize))),
+        ("Blocks", format!("{}, {} tetrahedra", grouped(counts.blocks), grouped(counts.tets))),
+        ("Unknowns", format!("{}, {} factor(s)", grouped(counts.dofs), grouped(counts.factors))),
+        ("Contact", format!("{} pairs at most", grouped(counts.contact_pairs_max))),
+    ];
+    if let Some(reference) = &summary.reference {
+        let (end, max) = (reference.error_end, reference.error_max);
+        rows.push(("Closed form", reference.kind.clone()));
+        rows.push((
+            "Error",
+            format!("{end:.2e} at the end, at most {max:.2e} for t ≥ {} s", reference.after_s),
+        ));
+        if let (Some(end), Some(max)) = (reference.stick_stage_end, reference.stick_stage_max) {
+            rows.push(("With stick stage", format!("{end:.2e} at the end, at most {max:.2e}")));
+        }
+    }
+    html! {
+        section.card {
+            h2 { "The run" }
+            dl { @for (name, value) in &rows { dt { (name) } dd { (value) } } }
+        }
+    }
+}
+
+/// The invariants against their limits.
+pub fn verdicts(summary: &Summary) -> Markup {
+    let shown = |value: Option<f64>| value.map_or(String::new(), brief);
+    html! {
+        section.card {
+            h2 { "Invariants" }
+            table {
+                thead { tr { th { "" } th.number { "worst" } th.number { "limit" } th { "" } } }
+                tbody {
+                    @for (name, verdict) in &summary.verdicts.0 {
+                        tr {
+                            td { (name) }
+                            td.number { (shown(verdict.value)) }
+                            td.number { (shown(verdict.limit)) }
+                            td { (judgement(verdict)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn judgement(verdict: &Verdict) -> Markup {
+    let (class, word) = match (verdict.verdict, verdict.limit, verdict.value) {
+        (Judgement::Pass, None, Some(_)) => ("info", "shown"),
+        (Judgement::Pass, ..) => ("pass", "pass"),
+        (Judgement::Warn, ..) => ("warn", "warn"),
+        (Judgement::Fail, ..) => ("fail", "fail"),
+        (Judgement::NotYet, ..) => ("info", "not yet"),
+    };
+    html! { span class={ "badge " (class) } { (word) } }
+}
+
+/// Where the time went.
+pub fn stages(summary: &Summary) -> Markup {
+    let share = |s: f64| if summary.wall_s > 0.0 { 100.0 * s / summary.wall_s } else { 0.0 };
+    html! {
+        section.card {
+            h2 { "Where the time went" }
+            table.shares {
+                tbody {
+                    @for (name, s) in &summary.stages_s.0 {
+                        tr {
+                            td { (name) }
+                            td.bar { div style={ "width:" (format!("{:.2}", share(*s).clamp(0.0, 100.0))) "%" } {} }
+                            td.number { (format!("{:.1} %", share(*s))) }
+                            td.number { (seconds(*s)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Where monitors ended.
+pub fn monitors(summary: &Summary) -> Markup {
+    html! {
+        @if !summary.monitors.0.is_empty() {
+            section.card {
+                h2 { "Monitors at the end" }
+                div.scroll {
+                    table {
+                        thead { tr { th { "" } th.number { "displacement [m]" } th.number { "velocity [m/s]" } } }
+                        tbody {
+                            @for (name, end) in &summary.monitors.0 {
+                                tr {
+                                    td { (name) }
+                                    td.number { (triple(&end.displacement)) }
+                                    td.number { (triple(&end.velocity)) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Where blocks ended.
+pub fn blocks(summary: &Summary) -> Markup {
+    let all = summary.blocks.0.len();
+    html! {
+        details.card {
+            summary { "Blocks at the end (" (all) ")" }
+            div.scroll {
+                table {
+                    thead {
+                        tr { th { "" } th.number { "mass [kg]" } th.number { "velocity [m/s]" } th.number { "volume / at rest" } }
+                    }
+                    tbody {
+                        @for (name, end) in summary.blocks.0.iter().take(MOST_BLOCKS) {
+                            tr {
+                                td { (name) }
+                                td.number { (number(end.mass)) }
+                                td.number { (triple(&end.velocity)) }
+                                td.number { (format!("{:.9}", end.volume_ratio)) }
+                            }
+                        }
+                    }
+                }
+            }
+            @if all > MOST_BLOCKS { p.note { "The first " (MOST_BLOCKS) " of " (all) "; summary.json has them all." } }
+        }
+    }
+}
+
+/// Which program, which state.
+pub fn footer(summary: &Summary) -> Markup {
+    html! {
+        footer {
+            "ndda " (summary.version) " · final state " code { (summary.state_crc32) }
+            " · drawn by three.js and uPlot (MIT)"
+        }
+    }
+}
+
+/// A number with six digits at most, no more than it has.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e6).contains(&value.abs()) {
+        let text = format!("{value:.6}");
+        text.trim_end_matches('0').trim_end_matches('.').to_string()
+    } else {
+        let text = format!("{value:.3e}");
+        let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
+        format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
+    }
+}
+
+/// A number with two or three digits.
+fn brief(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        0.01..1000.0 => format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_string(),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+fn triple(v: &[f64; 3]) -> String {
+    // Rounded first, and zero added, so that no −0 is shown.
+    let [x, y, z] = v.map(|component| (component * 1e4).round() / 1e4 + 0.0);
+    format!("({x:.4}, {y:.4}, {z:.4})")
+}
+
+fn seconds(s: f64) -> String {
+    match s {
+        _ if s < 1.0 => format!("{:.0} ms", 1e3 * s),
+        _ if s < 120.0 => format!("{s:.1} s"),
+        _ => format!("{:.0} min {:02.0} s", (s / 60.0).floor(), (s % 60.0).floor()),
+    }
+}
+
+/// A whole number with its digits in threes.
+fn grouped(value: usize) -> String {
+    let digits = value.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push('\u{202F}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_as_long_as_they_need_to_be() {
+        assert_eq!(["0.5", "2.5e-4", "2650", "1.235e7"], [0.5, 2.5e-4, 2650.0, 1.2346e7].map(number));
+        assert_eq!(["0", "1", "0.304", "-2.0e-9"], [0.0, 1.0, 0.3043, -2e-9].map(brief));
+        assert_eq!(triple(&[-1e-9, 1.0, -0.5]), "(0.0000, 1.0000, -0.5000)");
+        assert_eq!(grouped(1_234_567).replace('\u{202F}', " "), "1 234 567");
+        assert_eq!(
+            (grouped(12), seconds(0.25), seconds(150.4)),
+            ("12".into(), "250 ms".into(), "2 min 30 s".into())
+        );
+    }
+}

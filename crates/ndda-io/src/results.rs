@@ -1,0 +1,121 @@
+//! What a run wrote, read back: summary, history, fields.
+
+mod fields;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::mesh_file::MeshFileError;
+use crate::summary::Summary;
+
+pub use crate::vtk_file::Array;
+pub use fields::{FieldFrame, ListedFrame, frame, frame_list};
+
+/// Why results cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum ResultsError {
+    /// A file cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// The summary is none of this version.
+    #[error("{}: {source}; it is damaged or of another version of ndda: run the scene again", path.display())]
+    Summary {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with line and column.
+        source: serde_json::Error,
+    },
+    /// A row of the history is not numbers, one per column.
+    #[error("{}: {source}; the history is damaged: run the scene again", path.display())]
+    History {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, with the line.
+        source: csv::Error,
+    },
+    /// The list of frames, or a frame.
+    #[error(transparent)]
+    Fields(#[from] MeshFileError),
+}
+
+/// A table of numbers with named columns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Table {
+    /// Names of the columns, units at their ends.
+    pub names: Vec<String>,
+    /// The columns, all of one length.
+    pub columns: Vec<Vec<f64>>,
+}
+
+/// Reads `summary.json`.
+///
+/// # Errors
+/// [`ResultsError`] when the file cannot be read, or is no summary of this version.
+pub fn summary(path: &Path) -> Result<Summary, ResultsError> {
+    let unreadable = |source| ResultsError::Unreadable { path: path.to_path_buf(), source };
+    let text = fs::read_to_string(path).map_err(unreadable)?;
+    serde_json::from_str(&text).map_err(|source| ResultsError::Summary { path: path.to_path_buf(), source })
+}
+
+/// Reads `history.csv`.
+///
+/// # Errors
+/// [`ResultsError`] when the file cannot be read, or a row is not one number per column.
+pub fn history(path: &Path) -> Result<Table, ResultsError> {
+    let broken = |source| ResultsError::History { path: path.to_path_buf(), source };
+    let mut reader = csv::Reader::from_path(path).map_err(broken)?;
+    let names: Vec<String> = reader.headers().map_err(broken)?.iter().map(String::from).collect();
+    let mut columns = vec![Vec::new(); names.len()];
+    for row in reader.deserialize::<Vec<f64>>() {
+        for (column, value) in columns.iter_mut().zip(row.map_err(broken)?) {
+            column.push(value);
+        }
+    }
+    Ok(Table { names, columns })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::History;
+
+    #[test]
+    fn a_history_is_read_back_bit_by_bit() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let names = ["time_s".to_string(), "a, b".to_string()];
+        let mut written = History::create(&path, &names).unwrap();
+        let rows = [[0.0, 1.0 / 3.0], [0.1 + 0.2, -5e-324]];
+        rows.iter().for_each(|row| written.push(row).unwrap());
+        written.finish().unwrap();
+        let table = history(&path).unwrap();
+        assert_eq!(table.names, names);
+        assert_eq!(table.columns, [[rows[0][0], rows[1][0]], [rows[0][1], rows[1][1]]]);
+    }
+
+    #[test]
+    fn a_damaged_row_is_named_by_its_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        for bad in ["0.0,1.0\n0.1,x\n", "0.0,1.0\n0.1\n"] {
+            std::fs::write(&path, format!("time_s,a\n{bad}")).unwrap();
+            let error = history(&path).unwrap_err().to_string();
+            assert!(error.contains("line: 3") || error.contains("line 3"), "{error}");
+        }
+        assert!(matches!(history(&folder.path().join("none.csv")), Err(ResultsError::History { .. })));
+    }
+
+    #[test]
+    fn a_summary_that_is_none_is_named_with_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("summary.json");
+        std::fs::write(&path, "{\n  \"version\": 3 }").unwrap();
+        let error = summary(&path).unwrap_err().to_string();
+        assert!(error.contains("line 2") && error.contains("run the scene again"), "{error}");
+    }
+}
