@@ -59,8 +59,8 @@ struct Patch {
     normal: Vec3,
     normal_n: f64,
     area_m2: f64,
-    /// ∫ φ r² dA, and mean r, from the centre.
-    pressure_radius2: f64,
+    /// Means of r² and r from the centre, weighted by pressure.
+    radius2: f64,
     radius: f64,
     /// Slip velocity, and spin about the normal, weighted by pressure.
     velocity_m_s: Vec3,
@@ -112,7 +112,7 @@ impl Faces {
             let run = &self.order[patch.run.clone()];
             for &(_, _, f) in run {
                 let arm = pressure_center(f, input, candidates, integrals) - patch.center;
-                let twist = torque_n_m / patch.pressure_radius2;
+                let twist = torque_n_m / patch.pressure / patch.radius2;
                 forces[f as usize].shear = force_n / patch.pressure + twist * patch.normal.cross(&arm);
             }
             let (face, target, _) = run[0];
@@ -218,8 +218,10 @@ impl Patch {
         }
         if self.pressure > 0.0 {
             self.center /= self.pressure;
-            self.normal_n = push.norm();
-            self.normal = -push / self.normal_n;
+            // Per unit of pressure: that of blocks which only just touch is too small a number to be squared.
+            let push = push / self.pressure;
+            self.normal_n = push.norm() * self.pressure;
+            self.normal = -push.normalize();
         }
     }
 
@@ -242,14 +244,15 @@ impl Patch {
                 let slip = relative_velocity(facet, hits, candidates, input);
                 // A disc of the same area: mean r² = A/2π.
                 let radius2 = arm.norm_squared() + area / std::f64::consts::TAU;
-                self.pressure_radius2 += pressure * radius2;
+                self.radius2 += pressure / self.pressure * radius2;
                 self.radius += pressure / self.pressure * radius2.sqrt();
-                self.velocity_m_s += slip / self.pressure;
+                let slip = slip / self.pressure;
+                self.velocity_m_s += slip;
                 twist += arm.cross(&slip).dot(&self.normal);
             }
         }
         self.velocity_m_s -= self.normal * self.normal.dot(&self.velocity_m_s);
-        self.spin_rad_s = twist / self.pressure_radius2;
+        self.spin_rad_s = twist / self.radius2;
     }
 }
 
@@ -265,8 +268,7 @@ impl FaceStep<'_> {
     /// Force and torque on the face, and what it remembers.
     fn advance(&self, law: &dyn FrictionLaw) -> (Vec3, f64, FaceMemory) {
         let mass_kg = self.mass_per_area() * self.patch.area_m2;
-        let rate =
-            [mass_kg, mass_kg * self.patch.pressure_radius2 / self.patch.pressure].map(|m| m / self.dt_s);
+        let rate = [mass_kg, mass_kg * self.patch.radius2].map(|m| m / self.dt_s);
         match &self.patch.old {
             Some(old) if !old.slides => self.hold(law, old, rate),
             Some(old) => self.stop(law, old.force_n, old.torque_n_m, rate),
