@@ -6,6 +6,7 @@
 pub mod element_pairs;
 pub mod model;
 pub mod pair_stiffness;
+pub mod resultants;
 pub mod testing;
 
 #[cfg(feature = "potential")]
@@ -77,10 +78,11 @@ pub mod volume_potential;
 
 pub use model::{
     Body, Bond, ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport,
-    FaceMemory, FacetMemory,
+    FaceMemory, FacetContact, FacetMemory,
 };
 
 pub use pair_stiffness::PairStiffness;
+pub use resultants::{PairResultant, resultants};
 
 #[cfg(feature = "potential")]
 pub use {

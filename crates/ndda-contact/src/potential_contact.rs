@@ -7,13 +7,14 @@ use crate::bonds;
 use crate::candidates::Candidates;
 use crate::element_potential::ElementPotential;
 use crate::energy;
-use crate::faces::Faces;
+use crate::faces::{Faces, pressure_center};
 use crate::facets::{FacetForce, FacetScene};
 use crate::friction::FrictionLaw;
 use crate::integrals::{Integrals, Scene};
 use crate::joints::{Joints, Memory};
 use crate::model::{
-    ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetMemory,
+    ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
+    FacetMemory,
 };
 use crate::pair::TetFrame;
 use crate::pair_stiffness::PairStiffness;
@@ -276,6 +277,29 @@ impl ContactModel for PotentialContact {
             bonds::add_stiffness(joints, input, &history.bonds, stiffness);
         }
         Ok(())
+    }
+
+    fn add_facets(&self, input: &ContactInput, history: &ContactHistory, facets: &mut Vec<FacetContact>) {
+        for (f, (facet, force)) in self.candidates.facets.iter().zip(&self.forces).enumerate() {
+            if !force.touches {
+                continue;
+            }
+            let hits = self.integrals.hits_of(f);
+            let pressure: f64 = hits.iter().map(|hit| hit.moments.total()).sum();
+            facets.push(FacetContact {
+                facet: facet.triangle,
+                target: facet.target,
+                area_m2: hits.iter().map(|hit| hit.moments.area).sum(),
+                normal: -force.push.normalize(),
+                center: pressure_center(f as u32, input, &self.candidates, &self.integrals),
+                push_n: pressure * force.push,
+                friction_n: pressure * force.shear,
+                sticks: force.sticks,
+            });
+        }
+        if let Some(joints) = &self.joints {
+            bonds::add_facets(joints, input, &history.bonds, facets);
+        }
     }
 
     fn needs_bodies(&self) -> bool {

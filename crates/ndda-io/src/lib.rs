@@ -12,12 +12,15 @@ pub mod locate;
 pub mod mesh_file;
 pub mod msh;
 pub mod overrides;
+#[cfg(feature = "parquet")]
+pub mod parquet_file;
 pub mod pvd;
 pub mod read;
 pub mod record;
 pub mod scene;
 pub mod summary;
 pub mod surface_file;
+pub mod tables;
 pub mod tetgen;
 #[cfg(feature = "tetgen")]
 pub mod tetgen_fill;

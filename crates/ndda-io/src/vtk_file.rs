@@ -6,6 +6,7 @@
 mod base64;
 mod binary;
 mod data;
+pub(crate) mod grid;
 mod legacy;
 mod polyhedra;
 mod sections;
@@ -17,7 +18,7 @@ use std::path::Path;
 use crate::mesh_file::error::bytes_of;
 use crate::mesh_file::{MeshFile, MeshFileError};
 
-pub(crate) use data::Data;
+pub(crate) use data::{Data, TETRA};
 pub use polyhedra::write as write_polyhedra;
 pub use write::write;
 

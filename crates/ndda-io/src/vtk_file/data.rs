@@ -9,7 +9,7 @@ use crate::mesh_file::error::Fault;
 use crate::mesh_file::parts::Parts;
 
 /// Number of the tetrahedron among VTK's cell types.
-pub(super) const TETRA: u8 = 10;
+pub(crate) const TETRA: u8 = 10;
 /// Number of the polygon.
 pub(super) const POLYGON: u8 = 7;
 /// Cell types without volume.
