@@ -90,6 +90,16 @@ impl PotentialContact {
 
     /// Integrals of all candidate pairs at `input.position`.
     fn integrate(&mut self, input: &ContactInput) -> Result<(), ContactError> {
+        self.find_pairs(input)?;
+        let Some((_, field)) = &self.field else { return Ok(()) };
+        let (blocks, position) = (input.blocks, input.position);
+        let (candidates, frames) = (&self.candidates, &self.frames[..]);
+        self.integrals.update(&Scene { blocks, position, candidates, frames, field });
+        Ok(())
+    }
+
+    /// Candidate pairs at `input.position`, and frames of their tetrahedra.
+    fn find_pairs(&mut self, input: &ContactInput) -> Result<(), ContactError> {
         let tets = input.blocks.tets.len();
         if self.field.as_ref().is_none_or(|(known, _)| *known != tets) {
             let field = self.potential.field(input.blocks);
@@ -104,12 +114,7 @@ impl PotentialContact {
                 self.faces.arrange(&self.candidates);
             }
         }
-        self.place_frames(input)?;
-        let Some((_, field)) = &self.field else { return Ok(()) };
-        let (blocks, position) = (input.blocks, input.position);
-        let (candidates, frames) = (&self.candidates, &self.frames[..]);
-        self.integrals.update(&Scene { blocks, position, candidates, frames, field });
-        Ok(())
+        self.place_frames(input)
     }
 
     fn place_frames(&mut self, input: &ContactInput) -> Result<(), ContactError> {
@@ -251,9 +256,13 @@ impl ContactModel for PotentialContact {
     }
 
     fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError> {
-        self.integrate(input)?;
-        let Some((_, field)) = &self.field else { return Ok(0.0) };
         let law = self.potential.law();
+        match law {
+            // The volume of overlaps comes from the integrals, other energies from the pairs.
+            OverlapLaw::Power { .. } => self.integrate(input)?,
+            OverlapLaw::Linear => self.find_pairs(input)?,
+        }
+        let Some((_, field)) = &self.field else { return Ok(0.0) };
         self.overlaps.integrate(input, &self.candidates, &self.integrals, &self.frames, field, law);
         let bonds = self.joints.as_ref().map_or(0.0, |joints| bonds::energy_j(joints, input, &history.bonds));
         Ok(self.penalty_pa * self.overlaps.energy_m3(law) + bonds)

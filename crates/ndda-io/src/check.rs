@@ -7,11 +7,11 @@ use std::path::Path;
 
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::read::suggest;
-use crate::tables;
 use crate::scene::{
     At, Body, By, Contact, ContactAt, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene,
     Solver, Step, matches,
 };
+use crate::tables;
 
 /// More steps than this are a slip of the keyboard.
 const MOST_STEPS: f64 = 1e9;

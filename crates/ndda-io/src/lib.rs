@@ -14,6 +14,8 @@ pub mod msh;
 pub mod overrides;
 #[cfg(feature = "parquet")]
 pub mod parquet_file;
+#[cfg(feature = "fancy")]
+mod picture;
 pub mod pvd;
 pub mod read;
 pub mod record;
