@@ -52,8 +52,7 @@ impl FieldWriter {
     ) -> Result<Self, WriteError> {
         let fields = scene.output.fields.clone();
         let topology = topology(scene, simulation.blocks());
-        let needs_stress = fields.iter().any(|f| matches!(f, Field::Stress | Field::VonMises));
-        let tets = if needs_stress { simulation.blocks().tets.len() } else { 0 };
+        let stress_pa = room_for_stress(&fields, simulation.blocks());
         let spent_s = saved.as_ref().map_or(0.0, |saved| saved.spent_s);
         Ok(Self {
             series: match saved {
@@ -64,7 +63,7 @@ impl FieldWriter {
             precision: scene.output.precision,
             steps,
             frames: u64::from(scene.output.frames),
-            stress_pa: vec![[0.0; 6]; tets],
+            stress_pa,
             spent_s,
         })
     }
@@ -84,7 +83,7 @@ impl FieldWriter {
     /// [`StepError`] when stresses cannot be recovered, [`WriteError`] for a number that is not finite.
     pub fn encode(scene: &Scene, simulation: &mut Simulation) -> Result<Vec<u8>, SinkError> {
         let (fields, precision) = (&scene.output.fields, scene.output.precision);
-        let mut stress_pa = vec![[0.0; 6]; simulation.blocks().tets.len()];
+        let mut stress_pa = room_for_stress(fields, simulation.blocks());
         let frame = frame(fields, precision, simulation, &mut stress_pa)?;
         let topology = topology(scene, simulation.blocks());
         Ok(ndda_io::vtu::encode("frame.vtu".as_ref(), &topology, &frame)?)
@@ -106,6 +105,12 @@ impl Sink for FieldWriter {
         self.spent_s += started.elapsed().as_secs_f64();
         Ok(ControlFlow::Continue(()))
     }
+}
+
+/// A stress for each tetrahedron, if a field needs it.
+fn room_for_stress(fields: &[Field], blocks: &BlockSet) -> Vec<[f64; 6]> {
+    let needed = fields.iter().any(|field| matches!(field, Field::Stress | Field::VonMises));
+    vec![[0.0; 6]; if needed { blocks.tets.len() } else { 0 }]
 }
 
 /// What does not change from frame to frame.
@@ -135,46 +140,52 @@ fn frame(
     if !stress_pa.is_empty() {
         simulation.recover_stress(stress_pa)?;
     }
-    let (state, blocks) = (simulation.state(), simulation.blocks());
-    let mut frame = Frame::new(blocks, &state.position);
+    let mut frame = Frame::new(simulation.blocks(), &simulation.state().position);
     for field in fields {
         match field {
-            Field::Displacement => {
-                let moved =
-                    state.position.iter().zip(simulation.start_position()).map(|(x, start)| x - start);
-                frame.add_points(Values::vectors("displacement_m", moved, precision));
-            }
-            Field::Velocity => {
-                let velocity = state.velocity.iter().copied();
-                frame.add_points(Values::vectors("velocity_m_s", velocity, precision));
-            }
-            Field::Acceleration => {
-                let acceleration = state.acceleration.iter().copied();
-                frame.add_points(Values::vectors("acceleration_m_s2", acceleration, precision));
-            }
-            Field::ContactForce => {
-                let force = simulation.contact_forces_n();
-                frame.add_points(Values::vectors("contact_force_n", force, precision));
-            }
-            Field::ContactTraction => {
-                let areas = node_areas_m2(blocks, &state.position);
-                let over =
-                    |(force, &area): (Vec3, &f64)| if area > 0.0 { force / area } else { Vec3::zeros() };
-                let traction = simulation.contact_forces_n().zip(&areas).map(over);
-                frame.add_points(Values::vectors("contact_traction_pa", traction, precision));
-            }
-            Field::FrictionState => {
-                frame.add_points(Values::states("friction_state", friction_states(simulation)));
-            }
             Field::Stress => frame.add_cells(Values::new("stress_pa", stress_pa.iter().copied(), precision)),
             Field::VonMises => {
                 let von_mises = stress_pa.iter().map(|s| [von_mises_pa(s)]);
                 frame.add_cells(Values::new("von_mises_pa", von_mises, precision));
             }
+            // Of the topology.
             Field::BlockId | Field::Material => {}
+            Field::FrictionState => {
+                frame.add_points(Values::states("friction_state", friction_states(simulation)));
+            }
+            Field::ContactForce => {
+                let force = simulation.contact_forces_n();
+                frame.add_points(Values::vectors("contact_force_n", force, precision));
+            }
+            Field::ContactTraction => frame.add_points(traction(simulation, precision)),
+            Field::Displacement | Field::Velocity | Field::Acceleration => {
+                frame.add_points(motion(*field, simulation, precision));
+            }
         }
     }
     Ok(frame)
+}
+
+/// Displacement, velocity or acceleration of the nodes.
+fn motion(field: Field, simulation: &Simulation, precision: Precision) -> Values {
+    let state = simulation.state();
+    match field {
+        Field::Velocity => Values::vectors("velocity_m_s", state.velocity.iter().copied(), precision),
+        Field::Acceleration => {
+            Values::vectors("acceleration_m_s2", state.acceleration.iter().copied(), precision)
+        }
+        _ => {
+            let moved = state.position.iter().zip(simulation.start_position()).map(|(x, start)| x - start);
+            Values::vectors("displacement_m", moved, precision)
+        }
+    }
+}
+
+/// Contact force over the surface of the nodes; none inside.
+fn traction(simulation: &Simulation, precision: Precision) -> Values {
+    let areas = node_areas_m2(simulation.blocks(), &simulation.state().position);
+    let over = |(force, &area): (Vec3, &f64)| if area > 0.0 { force / area } else { Vec3::zeros() };
+    Values::vectors("contact_traction_pa", simulation.contact_forces_n().zip(&areas).map(over), precision)
 }
 
 /// Each node's share of the surface, a third of its triangles.
@@ -198,4 +209,18 @@ fn friction_states(simulation: &Simulation) -> Vec<u8> {
         }
     }
     states
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stresses_are_recovered_only_for_fields_that_need_them() {
+        let mesh = ndda_contact::testing::test_box([0.0; 3], [1.0; 3], [1, 1, 1]);
+        let blocks = BlockSet::new(vec![("a".into(), mesh)]).expect("a block");
+        for (field, tets) in [(Field::Velocity, 0), (Field::Stress, 6), (Field::VonMises, 6)] {
+            assert_eq!(room_for_stress(&[Field::Displacement, field], &blocks).len(), tets, "{field:?}");
+        }
+    }
 }

@@ -204,22 +204,31 @@ fn step_to_end(job: Job, steps: u64, options: &Options, log: &mut RunLog) -> Res
         state_crc32: checkpoint::fingerprint(simulation.state()),
     };
     let summary = report::summarise(&simulation, &outputs.recorder, outcome);
+    write_results(&folder, scene, &summary, log)?;
+    if !options.quiet {
+        say(&format!("{}results in {}", report::table(&summary), folder.path().display()));
+    }
+    Ok(summary)
+}
+
+/// Writes what is written at the end only.
+fn write_results(
+    folder: &OutputFolder,
+    scene: &Scene,
+    summary: &Summary,
+    log: &mut RunLog,
+) -> Result<(), WriteError> {
     let has_ended = matches!(summary.status, Status::Done | Status::Failed);
     #[cfg(feature = "parquet")]
     if has_ended {
-        tables::write_parquet(&folder, &scene.output)?;
+        tables::write_parquet(folder, &scene.output)?;
     }
-    summary::write(&folder.summary(), &summary)?;
+    summary::write(&folder.summary(), summary)?;
     if has_ended {
-        tables::remove_csv(&folder, &scene.output)?;
+        tables::remove_csv(folder, &scene.output)?;
     }
-    let table = report::table(&summary);
     log.line("ended")?;
-    log.block(&table)?;
-    if !options.quiet {
-        say(&format!("{table}results in {}", folder.path().display()));
-    }
-    Ok(summary)
+    log.block(&report::table(summary))
 }
 
 /// All that watches a run.
