@@ -21,7 +21,7 @@ fn history(scene: &str, overrides: &[&str], threads: u16) -> Vec<u8> {
         out: Some(out.path().join("results")),
         force: false,
         overrides: overrides.iter().chain(&["output.frames=0"]).map(ToString::to_string).collect(),
-        how: HowArgs { threads: Some(threads), strict: false, quiet: true },
+        how: HowArgs { threads: Some(threads), quiet: true, ..HowArgs::default() },
     };
     assert_eq!(run::run(&args), exit::DONE, "{scene}");
     std::fs::read(out.path().join("results/history.csv")).unwrap()
