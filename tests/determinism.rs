@@ -24,7 +24,7 @@ fn history(scene: &str, overrides: &[&str], threads: u16) -> Vec<u8> {
         },
         out: Some(out.path().join("results")),
         force: false,
-        how: HowArgs { threads: Some(threads), strict: false, quiet: true },
+        how: HowArgs { threads: Some(threads), quiet: true, ..HowArgs::default() },
     };
     assert_eq!(run::run(&args), exit::DONE, "{scene}");
     std::fs::read(out.path().join("results/history.csv")).unwrap()

@@ -23,12 +23,13 @@ pub struct Cli {
 pub enum Verb {
     /// Run a scene and write its results.
     ///
-    /// Writes summary.json (numbers and verdicts), history.csv (monitors, energies, momentum over time) and
+    /// Writes summary.json (numbers and verdicts), history.csv (monitors, energies, momentum over time), run.log and
     /// fields.pvd with its frames (open it in ParaView).
     Run(RunArgs),
     /// Go on with a run that was interrupted, from its last checkpoint: the same bits as if it never had been.
     Resume(ResumeArgs),
-    /// Read and check a scene without running it: all errors at once, each with its place.
+    /// Read and check a scene without running it: all errors at once, each with its place; and, from a few timed steps,
+    /// what a run will take and write.
     Check(CheckArgs),
     /// Say what a run of a scene will do and what it leaves out, and why.
     Explain(ExplainArgs),
@@ -105,7 +106,7 @@ pub struct MeshArgs {
     /// Replace the results of an earlier call in the output folder.
     #[arg(long)]
     pub force: bool,
-    /// Print the report as JSON.
+    /// Print the report as JSON, one object on a line (see docs/json.md).
     #[arg(long)]
     pub json: bool,
     /// Override a value of the scene by its path; may be repeated.
@@ -167,6 +168,9 @@ pub struct HowArgs {
     /// Print nothing but errors.
     #[arg(long, short)]
     pub quiet: bool,
+    /// Print events and results as JSON, one object per line (see docs/json.md).
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What `ndda resume` takes.
@@ -185,6 +189,9 @@ pub struct CheckArgs {
     /// The scene.
     #[command(flatten)]
     pub input: SceneArgs,
+    /// Print what is found as JSON, one object per line (see docs/json.md).
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `ndda explain`.

@@ -1,14 +1,18 @@
 //! `ndda check`: everything that can be wrong with a scene, without running it.
 
+use std::fmt;
 use std::path::Path;
 
 use ndda_io::diagnostic::{Diagnostic, SceneErrors};
 use ndda_io::read::{LoadedScene, load};
 use ndda_solver::Simulation;
+use serde::Serialize;
 
 use crate::args::CheckArgs;
-use crate::console::{colour, complain, say};
+use crate::console::say;
+use crate::events::{self, Events};
 use crate::exit;
+use crate::guess::{self, Guess};
 use crate::input;
 use crate::monitor::Monitor;
 use crate::reference::Comparison;
@@ -56,30 +60,69 @@ pub fn prepare_loaded(loaded: LoadedScene, folder: &Path) -> Result<Ready, Scene
     Ok(Ready { loaded, simulation, monitors })
 }
 
+/// What is found in a scene without errors.
+#[derive(Serialize)]
+struct Checked<'a> {
+    exit_code: u8,
+    scene: &'a Path,
+    warnings: usize,
+    blocks: usize,
+    nodes: usize,
+    tets: usize,
+    unknowns: usize,
+    factors: usize,
+    steps: u64,
+    advised_step_s: Option<f64>,
+    guess: Option<Guess>,
+}
+
 /// Runs `ndda check`; returns the exit code.
 pub fn check(args: &CheckArgs) -> u8 {
-    let ready = match input::ready(&args.input) {
+    let events = Events::new(args.json, events::CHECK);
+    let mut ready = match input::ready(&args.input, events) {
         Ok(ready) => ready,
         Err(code) => return code,
     };
-    if !ready.loaded.warnings.is_empty() {
-        complain(&ready.loaded.errors(ready.loaded.warnings.clone()).render(colour()));
+    let loaded = &ready.loaded;
+    if !loaded.warnings.is_empty() {
+        events.doubt(&loaded.errors(loaded.warnings.clone()));
     }
-    let (scene, simulation) = (&ready.loaded.scene, &ready.simulation);
-    let blocks = simulation.blocks();
-    say(&format!(
-        "{}: no errors, {} warning(s)\n{} block(s), {} nodes, {} tets, {} unknowns, {} factor(s); {} steps",
-        ready.loaded.file,
-        ready.loaded.warnings.len(),
-        blocks.len(),
-        blocks.rest_position.len(),
-        blocks.tets.len(),
-        simulation.unknowns(),
-        simulation.factors(),
-        wiring::steps(&scene.time),
-    ));
-    if let Some(advice) = step_advice::advise(scene, simulation) {
-        say(&advice.to_string());
+    let advice = step_advice::advise(&loaded.scene, &ready.simulation);
+    let guess = guess::guess(&loaded.scene, &mut ready.simulation);
+    let file = input::file(&args.input);
+    let stops = guess.as_ref().err().map(|error| format!("the first steps stop: {error}"));
+    if let Some(stops) = &stops {
+        events.warn(stops);
     }
-    exit::DONE
+    let (simulation, blocks) = (&ready.simulation, ready.simulation.blocks());
+    let checked = Checked {
+        exit_code: exit::DONE,
+        scene: &file,
+        warnings: loaded.warnings.len() + usize::from(stops.is_some()),
+        blocks: blocks.len(),
+        nodes: blocks.rest_position.len(),
+        tets: blocks.tets.len(),
+        unknowns: simulation.unknowns(),
+        factors: simulation.factors(),
+        steps: wiring::steps(&loaded.scene.time),
+        advised_step_s: advice.as_ref().map(|advice| advice.step_s),
+        guess: guess.ok(),
+    };
+    events.emit("finished", &checked);
+    if !args.json {
+        say(&format!("{checked}{}", advice.map_or_else(String::new, |advice| format!("\n{advice}"))));
+    }
+    checked.exit_code
+}
+
+impl fmt::Display for Checked<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { blocks, nodes, tets, unknowns, factors, steps, warnings, .. } = self;
+        writeln!(f, "{}: no errors, {warnings} warning(s)", self.scene.display())?;
+        write!(
+            f,
+            "{blocks} block(s), {nodes} nodes, {tets} tets, {unknowns} unknowns, {factors} factor(s); {steps} steps"
+        )?;
+        self.guess.as_ref().map_or(Ok(()), |guess| write!(f, "\n{guess}"))
+    }
 }

@@ -10,8 +10,10 @@ use ndda_io::{OutputFolder, WriteError, checkpoint};
 use ndda_solver::{Sink, SinkError, Snapshot, View};
 use serde::{Deserialize, Serialize};
 
+use crate::contacts::ContactTable;
+use crate::fields::{FieldWriter, SavedFields};
 use crate::progress::Progress;
-use crate::recorder::{FieldWriter, Recorder, SavedFields, SavedRecorder};
+use crate::recorder::{Recorder, SavedRecorder};
 
 /// Which scene a run is of.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -42,6 +44,8 @@ pub struct Earlier {
     pub recorder: SavedRecorder,
     /// The fields.
     pub fields: Option<SavedFields>,
+    /// Rows of the contacts.
+    pub contacts: Option<usize>,
     /// Seconds of wall clock spent, all parts of the run together.
     pub wall_s: f64,
 }
@@ -52,6 +56,8 @@ pub struct Outputs<'a> {
     pub recorder: Recorder,
     /// Fields, where they are wanted.
     pub fields: Option<FieldWriter>,
+    /// Contacts, where they are wanted.
+    pub contacts: Option<ContactTable>,
     /// Progress.
     pub progress: Progress,
     /// The scene.
@@ -75,6 +81,28 @@ pub struct Outputs<'a> {
 }
 
 impl Outputs<'_> {
+    /// Closes the tables, and waits until fields are on the disk.
+    ///
+    /// # Errors
+    /// [`WriteError`] when one of them cannot be written.
+    pub fn flush(&mut self) -> Result<(), WriteError> {
+        self.recorder.finish()?;
+        if let Some(fields) = &mut self.fields {
+            fields.save()?;
+        }
+        match &mut self.contacts {
+            Some(contacts) => contacts.save().map(drop),
+            None => Ok(()),
+        }
+    }
+
+    /// Seconds spent on output.
+    pub fn output_s(&self) -> f64 {
+        let fields_s = self.fields.as_ref().map_or(0.0, |fields| fields.spent_s);
+        let contacts_s = self.contacts.as_ref().map_or(0.0, |contacts| contacts.spent_s);
+        self.recorder.spent_s + fields_s + contacts_s + self.spent_s
+    }
+
     fn is_due(&self, step: u64) -> bool {
         let passed = !self.every.is_zero() && self.last.elapsed() >= self.every;
         step == 0 || step >= self.steps || passed
@@ -87,7 +115,8 @@ impl Outputs<'_> {
             snapshot: view.simulation.snapshot(),
             earlier: Earlier {
                 recorder: self.recorder.save()?,
-                fields: self.fields.as_ref().map(FieldWriter::save),
+                fields: self.fields.as_mut().map(FieldWriter::save).transpose()?,
+                contacts: self.contacts.as_mut().map(ContactTable::save).transpose()?,
                 wall_s: self.earlier_s + self.started.elapsed().as_secs_f64(),
             },
         };
@@ -103,10 +132,18 @@ impl Sink for Outputs<'_> {
         self.recorder.wants_sample(step)
     }
 
+    fn wants_contacts(&self, step: u64) -> bool {
+        let of_fields = self.fields.as_ref().is_some_and(|fields| fields.wants_contacts(step));
+        of_fields || self.contacts.as_ref().is_some_and(|contacts| contacts.wants_contacts(step))
+    }
+
     fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
         let mut flow = self.recorder.step_done(view)?;
         if let Some(fields) = &mut self.fields {
             flow = both(flow, fields.step_done(view)?);
+        }
+        if let Some(contacts) = &mut self.contacts {
+            flow = both(flow, contacts.step_done(view)?);
         }
         flow = both(flow, self.progress.step_done(view)?);
         let asked = self.asked_to_end.load(Ordering::Relaxed);

@@ -6,13 +6,14 @@ mod text;
 
 use ndda_contact::Part;
 use ndda_io::folder;
-use ndda_io::scene::Scene;
+use ndda_io::scene::{Field, Scene, TableFormat};
 use ndda_solver::{FactorPlan, KindPlan, Plan, Simulation};
 use serde::Serialize;
 
 use crate::args::ExplainArgs;
 use crate::check::Ready;
 use crate::console::{complain, say};
+use crate::events::Events;
 use crate::{exit, input, reference, step_advice, wiring};
 
 /// The form of the JSON that is printed.
@@ -49,7 +50,7 @@ pub struct Explanation {
 
 /// Explains a scene; returns the exit code.
 pub fn explain(args: &ExplainArgs) -> u8 {
-    let ready = match input::ready(&args.input) {
+    let ready = match input::ready(&args.input, Events::default()) {
         Ok(ready) => ready,
         Err(code) => return code,
     };
@@ -116,7 +117,7 @@ fn phases(scene: &Scene) -> [Part; 1] {
     )]
 }
 
-fn outputs(scene: &Scene, monitors: usize) -> [Part; 4] {
+fn outputs(scene: &Scene, monitors: usize) -> [Part; 7] {
     let output = &scene.output;
     let compared =
         scene.reference.as_ref().map(|r| format!("{}, in every row of the history", reference::kind(r).0));
@@ -126,10 +127,31 @@ fn outputs(scene: &Scene, monitors: usize) -> [Part; 4] {
             format!("{} rows at most, with {monitors} monitor(s)", output.history_rows),
         ),
         Part::of(
-            "fields and recovery of stress",
+            "fields",
             output.frames > 0,
-            format!("{} frames after the first", output.frames),
+            format!(
+                "{} frames after the first, {:?}, {:?} as {:?}",
+                output.frames, output.fields, output.format, output.precision
+            ),
             "output.frames is 0",
+        ),
+        Part::of(
+            "recovery of stress",
+            output.frames > 0 && output.fields.iter().any(|f| matches!(f, Field::Stress | Field::VonMises)),
+            "for every frame",
+            "no frame holds a stress",
+        ),
+        Part::of(
+            "what each pair of blocks does to each other",
+            output.contacts,
+            "in every row of the history",
+            "output.contacts is false",
+        ),
+        Part::of(
+            "reactions of supports",
+            output.reactions,
+            "in every row of the history",
+            "output.reactions is false",
         ),
         Part::of(
             "checkpoints on the way",
@@ -147,7 +169,16 @@ fn outputs(scene: &Scene, monitors: usize) -> [Part; 4] {
 }
 
 fn files(scene: &Scene) -> Vec<String> {
-    let mut files = vec![folder::SUMMARY.into(), folder::HISTORY.into(), folder::CHECKPOINT.into()];
+    let mut files: Vec<String> = [folder::SUMMARY, folder::CHECKPOINT, folder::LOG].map(Into::into).to_vec();
+    let tables = [(folder::HISTORY, true), (folder::CONTACTS, scene.output.contacts)];
+    for ((csv, written), parquet) in tables.into_iter().zip(folder::PARQUET) {
+        if written && scene.output.history != TableFormat::Parquet {
+            files.push(csv.into());
+        }
+        if written && scene.output.history != TableFormat::Csv {
+            files.push(parquet.into());
+        }
+    }
     if scene.output.frames > 0 {
         let last = folder::frame_name(scene.output.frames.min(steps_as_frames(scene)) as usize);
         let fields = folder::FIELDS_FOLDER;

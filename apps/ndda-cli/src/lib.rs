@@ -4,13 +4,18 @@ pub mod args;
 pub mod check;
 pub mod checkpoint;
 pub mod console;
+pub mod contacts;
+pub mod events;
 pub mod examples;
 pub mod exit;
 pub mod explain;
+pub mod fields;
+pub mod guess;
 #[cfg(feature = "report")]
 pub mod html_report;
 pub mod input;
 pub mod interrupt;
+pub mod machine;
 pub mod mesh;
 pub mod monitor;
 pub mod new;
@@ -20,6 +25,7 @@ pub mod reference;
 pub mod report;
 pub mod resume;
 pub mod run;
+pub mod run_log;
 #[cfg(feature = "schema")]
 pub mod schema;
 #[cfg(feature = "shell")]

@@ -8,15 +8,18 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use ndda_io::read::load;
-use ndda_io::vtu::{self, Frame};
+use ndda_io::scene::FieldFormat;
+use ndda_io::vtu::{self, Frame, Topology};
 use ndda_io::{OutputFolder, WriteError, mesh_file};
-use ndda_mesh::{BlockSet, MeshError, Vec3, repair};
+use ndda_mesh::{BlockSet, MeshError, repair};
 
 use crate::args::{Fix, MeshArgs};
-use crate::console::{colour, complain, say};
+use crate::console::{colour, say};
+use crate::events::{self, Events};
 use crate::exit;
 use crate::wiring::{self, Meshes, RockReport};
 use report::MeshReport;
+use serde::Serialize;
 
 /// Blocks before they are checked.
 struct Input {
@@ -27,23 +30,35 @@ struct Input {
 
 /// Runs `ndda mesh`; returns the exit code.
 pub fn mesh(args: &MeshArgs) -> u8 {
+    let events = Events::new(args.json, events::MESH);
     let input = if is_scene(&args.input) { from_scene(args) } else { from_file(args) };
     let input = match input {
         Ok(input) => input,
-        Err(message) => {
-            complain(&message);
-            return exit::BAD_INPUT;
-        }
+        Err(message) => return events.fail(exit::BAD_INPUT, message.trim_start_matches("error: ")),
     };
     let measured = MeshReport::new(&input.meshes, input.rock, input.fixes);
     match BlockSet::new(input.meshes) {
         Ok(blocks) => finish(args, &measured, &blocks),
         Err(error) => {
-            say(&if args.json { measured.json() } else { measured.to_string() });
-            complain(&refusal(&args.input, &error));
-            exit::BAD_INPUT
+            if args.json {
+                events.emit("measured", &Measured { report: &measured });
+            } else {
+                say(&measured.to_string());
+            }
+            events.fail(exit::BAD_INPUT, &refusal(&args.input, &error))
         }
     }
+}
+
+#[derive(Serialize)]
+struct Measured<'a> {
+    report: &'a MeshReport,
+}
+
+#[derive(Serialize)]
+struct Finished<'a> {
+    exit_code: u8,
+    folder: &'a Path,
 }
 
 fn is_scene(path: &Path) -> bool {
@@ -52,7 +67,7 @@ fn is_scene(path: &Path) -> bool {
 
 /// All defects, and what may cure them.
 fn refusal(input: &Path, error: &MeshError) -> String {
-    let mut text = format!("error: {} is not fit to run:", input.display());
+    let mut text = format!("{} is not fit to run:", input.display());
     for (block, problem) in &error.problems {
         let _ = write!(text, "\n  {block}: {problem}");
     }
@@ -106,16 +121,15 @@ fn finish(args: &MeshArgs, measured: &MeshReport, blocks: &BlockSet) -> u8 {
     match write(&folder, args.force, measured, blocks) {
         Ok(files) => {
             if args.json {
-                say(&measured.json());
+                let events = Events::new(true, events::MESH);
+                events.emit("measured", &Measured { report: measured });
+                events.emit("finished", &Finished { exit_code: exit::DONE, folder: &folder });
             } else {
                 say(&format!("{}: no errors\n{measured}{files}", args.input.display()));
             }
             exit::DONE
         }
-        Err(error) => {
-            complain(&format!("error: {error}"));
-            exit::INPUT_OUTPUT
-        }
+        Err(error) => Events::new(args.json, events::MESH).fail(exit::INPUT_OUTPUT, &error.to_string()),
     }
 }
 
@@ -123,15 +137,10 @@ fn finish(args: &MeshArgs, measured: &MeshReport, blocks: &BlockSet) -> u8 {
 fn write(folder: &Path, force: bool, measured: &MeshReport, blocks: &BlockSet) -> Result<String, WriteError> {
     let folder = OutputFolder::create(folder, force)?;
     let folder = folder.path();
-    let still = vec![Vec3::zeros(); blocks.rest_position.len()];
-    let frame = Frame {
-        blocks,
-        position: &blocks.rest_position,
-        displacement: &still,
-        velocity: &still,
-        stress_pa: &vec![[0.0; 6]; blocks.tets.len()],
-    };
-    vtu::write(&folder.join("blocks.vtu"), &frame)?;
+    let path = folder.join("blocks.vtu");
+    let topology = Topology::new(blocks, FieldFormat::default()).with_blocks(blocks);
+    let frame = Frame::new(blocks, &blocks.rest_position);
+    ndda_io::atomic::write(&path, &vtu::encode(&path, &topology, &frame)?)?;
     ndda_io::atomic::write(&folder.join("mesh.json"), measured.json().as_bytes())?;
     #[cfg(feature = "plots")]
     ndda_io::atomic::write(&folder.join("mesh.svg"), plot::svg(measured).as_bytes())?;

@@ -1,11 +1,10 @@
-//! Sinks of a run: history, fields, comparison with the closed form.
+//! Sink of a run: history, and comparison with the closed form.
 
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use ndda_io::vtu::Frame;
-use ndda_io::{FieldSeries, History, OutputFolder, WriteError};
-use ndda_mesh::Vec3;
+use ndda_io::{History, OutputFolder, WriteError};
+use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{Sample, Simulation, Sink, SinkError, View};
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +25,8 @@ pub struct Recorder {
     after_s: f64,
     comparison: Option<Comparison>,
     row: Vec<f64>,
+    /// Held blocks whose supports' forces are columns.
+    held: Vec<BlockId>,
     /// Points whose motion is recorded.
     pub monitors: Vec<Monitor>,
     /// Errors at the last row.
@@ -48,13 +49,6 @@ pub struct SavedRecorder {
     spent_s: f64,
 }
 
-/// What a checkpoint keeps of a [`FieldWriter`].
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct SavedFields {
-    times_s: Vec<f64>,
-    spent_s: f64,
-}
-
 impl Recorder {
     /// Begins a history, or goes on with a saved one.
     ///
@@ -66,9 +60,10 @@ impl Recorder {
         comparison: Option<Comparison>,
         after_s: f64,
         (steps, rows): (u64, u64),
+        held: Vec<(BlockId, String)>,
         saved: Option<SavedRecorder>,
     ) -> Result<Self, WriteError> {
-        let columns = columns(&monitors, comparison.is_some());
+        let columns = columns(&monitors, &held, comparison.is_some());
         let history = match &saved {
             None => History::create(&folder.history(), &columns)?,
             Some(saved) => History::resume(&folder.history(), &columns, saved.rows)?,
@@ -82,6 +77,7 @@ impl Recorder {
             after_s,
             comparison,
             row,
+            held: held.into_iter().map(|(block, _)| block).collect(),
             monitors,
             error_end,
             error_max,
@@ -90,12 +86,12 @@ impl Recorder {
         })
     }
 
-    /// What a checkpoint keeps of it, all rows handed to the operating system.
+    /// What a checkpoint keeps of it, all rows being on the disk.
     ///
     /// # Errors
-    /// [`WriteError`] when it does not take them.
+    /// [`WriteError`] when they are not.
     pub fn save(&mut self) -> Result<SavedRecorder, WriteError> {
-        self.history.flush()?;
+        self.history.sync()?;
         Ok(SavedRecorder {
             rows: self.history.rows(),
             error_end: self.error_end,
@@ -128,7 +124,14 @@ impl Recorder {
     }
 }
 
-fn columns(monitors: &[Monitor], compared: bool) -> Vec<String> {
+/// Blocks that supports hold, and their names.
+pub fn held_blocks(simulation: &Simulation) -> Vec<(BlockId, String)> {
+    let blocks = simulation.blocks();
+    let held = blocks.ids().filter(|&block| !simulation.shape(block).is_free());
+    held.map(|block| (block, blocks.names[block.index()].clone())).collect()
+}
+
+fn columns(monitors: &[Monitor], held: &[(BlockId, String)], compared: bool) -> Vec<String> {
     let fixed = [
         "time_s",
         "kinetic_j",
@@ -156,6 +159,9 @@ fn columns(monitors: &[Monitor], compared: bool) -> Vec<String> {
         for (quantity, unit) in [("displacement", "m"), ("velocity", "m_s")] {
             columns.extend(["x", "y", "z"].map(|axis| format!("{}.{quantity}_{axis}_{unit}", monitor.name)));
         }
+    }
+    for (_, name) in held {
+        columns.extend(["x", "y", "z"].map(|axis| format!("{name}.reaction_{axis}_n")));
     }
     if compared {
         columns.push("reference_error".into());
@@ -194,77 +200,15 @@ impl Sink for Recorder {
             self.row.extend(monitor.displacement(simulation).iter());
             self.row.extend(monitor.velocity(simulation).iter());
         }
+        for &block in &self.held {
+            let reaction = if sample.step == 0 { Vec3::zeros() } else { simulation.reaction_n(block) };
+            self.row.extend(reaction.iter());
+        }
         let errors = self.compare(simulation);
         if self.comparison.is_some() {
             self.row.push(errors.unwrap_or_default().plain);
         }
         self.history.push(&self.row)?;
-        self.spent_s += started.elapsed().as_secs_f64();
-        Ok(ControlFlow::Continue(()))
-    }
-}
-
-/// Writes a frame of fields at even intervals.
-pub struct FieldWriter {
-    series: FieldSeries,
-    steps: u64,
-    frames: u64,
-    displacement: Vec<Vec3>,
-    stress_pa: Vec<[f64; 6]>,
-    /// Seconds spent.
-    pub spent_s: f64,
-}
-
-impl FieldWriter {
-    /// Begins a series of frames, or goes on with a saved one.
-    ///
-    /// # Errors
-    /// [`WriteError`] when its folder cannot be made.
-    pub fn new(
-        folder: &OutputFolder,
-        simulation: &Simulation,
-        (steps, frames): (u64, u64),
-        saved: Option<SavedFields>,
-    ) -> Result<Self, WriteError> {
-        let blocks = simulation.blocks();
-        let spent_s = saved.as_ref().map_or(0.0, |saved| saved.spent_s);
-        Ok(Self {
-            series: match saved {
-                None => FieldSeries::create(folder)?,
-                Some(saved) => FieldSeries::resume(folder, saved.times_s)?,
-            },
-            steps,
-            frames,
-            displacement: vec![Vec3::zeros(); blocks.rest_position.len()],
-            stress_pa: vec![[0.0; 6]; blocks.tets.len()],
-            spent_s,
-        })
-    }
-
-    /// What a checkpoint keeps of it.
-    pub fn save(&self) -> SavedFields {
-        SavedFields { times_s: self.series.times_s().to_vec(), spent_s: self.spent_s }
-    }
-}
-
-impl Sink for FieldWriter {
-    fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
-        if !is_due(view.simulation.state().step, self.steps, self.frames) {
-            return Ok(ControlFlow::Continue(()));
-        }
-        let started = Instant::now();
-        view.simulation.recover_stress(&mut self.stress_pa)?;
-        let (state, blocks) = (view.simulation.state(), view.simulation.blocks());
-        let moved = state.position.iter().zip(view.simulation.start_position());
-        self.displacement.iter_mut().zip(moved).for_each(|(d, (x, rest))| *d = x - rest);
-        let frame = Frame {
-            blocks,
-            position: &state.position,
-            displacement: &self.displacement,
-            velocity: &state.velocity,
-            stress_pa: &self.stress_pa,
-        };
-        self.series.push(view.simulation.time_s(), &frame)?;
         self.spent_s += started.elapsed().as_secs_f64();
         Ok(ControlFlow::Continue(()))
     }

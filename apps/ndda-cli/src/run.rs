@@ -3,17 +3,25 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use ndda_io::{OutputFolder, WriteError, checkpoint, summary};
-use ndda_solver::{RunError, Settle, StepError};
+use ndda_io::scene::Scene;
+use ndda_io::summary::{Judgement, Status, Summary};
+use ndda_io::{OutputFolder, WriteError, checkpoint, summary, tables};
+use ndda_solver::{RunError, Settle, Simulation, StepError};
+use serde::Serialize;
 
 use crate::args::{HowArgs, RunArgs};
 use crate::check::Ready;
 use crate::checkpoint::{Earlier, Identity, Outputs};
-use crate::console::{colour, complain, say};
+use crate::console::{complain, say};
+use crate::contacts::ContactTable;
+use crate::events::{self, Events};
+use crate::fields::FieldWriter;
+use crate::monitor::Monitor;
 use crate::progress::Progress;
-use crate::recorder::{FieldWriter, Recorder};
+use crate::recorder::{Recorder, held_blocks};
 use crate::reference::{self, Comparison};
 use crate::report::{self, Outcome};
+use crate::run_log::RunLog;
 use crate::{exit, input, interrupt, wiring};
 
 /// Runs a scene and reports; the result is the exit code.
@@ -24,17 +32,19 @@ pub fn run(args: &RunArgs) -> u8 {
 /// Does `work` on as many threads as are asked for.
 pub fn in_pool(how: &HowArgs, work: impl FnOnce(&Options) -> u8 + Send) -> u8 {
     let started = Instant::now();
+    let events = Events::new(how.json, events::RUN);
     let threads = how.threads.map_or(0, usize::from);
     let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool,
         Err(error) => {
-            complain(&format!("error: cannot start {threads} threads: {error}; use a smaller --threads"));
-            return exit::RESOURCE;
+            let message = format!("cannot start {threads} threads: {error}; use a smaller --threads");
+            return events.fail(exit::RESOURCE, &message);
         }
     };
     // Everything runs inside the pool: a step handed in from outside would allocate.
     let threads = pool.current_num_threads();
-    pool.install(|| work(&Options { threads, strict: how.strict, quiet: how.quiet, started }))
+    let quiet = how.quiet || how.json;
+    pool.install(|| work(&Options { threads, strict: how.strict, quiet, events, started }))
 }
 
 /// How to run, whatever the scene.
@@ -45,6 +55,8 @@ pub struct Options {
     pub strict: bool,
     /// No progress and no table.
     pub quiet: bool,
+    /// What programs read.
+    pub events: Events,
     /// When this process began.
     pub started: Instant,
 }
@@ -64,22 +76,19 @@ pub struct Job {
 }
 
 fn run_here(args: &RunArgs, options: &Options) -> u8 {
-    let ready = match input::ready(&args.input) {
+    let ready = match input::ready(&args.input, options.events) {
         Ok(ready) => ready,
         Err(code) => return code,
     };
-    if !ready.loaded.warnings.is_empty() && !options.quiet {
-        complain(&ready.loaded.errors(ready.loaded.warnings.clone()).render(colour()));
+    if !ready.loaded.warnings.is_empty() && (!options.quiet || options.events.are_read()) {
+        options.events.doubt(&ready.loaded.errors(ready.loaded.warnings.clone()));
     }
     let file = input::file(&args.input);
     let name = scene_name(&file);
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(&name));
     let folder = match OutputFolder::create(&folder, args.force) {
         Ok(folder) => folder,
-        Err(error) => {
-            complain(&format!("error: {error}"));
-            return exit::INPUT_OUTPUT;
-        }
+        Err(error) => return options.events.fail(exit::INPUT_OUTPUT, &error.to_string()),
     };
     let file = std::path::absolute(&file).unwrap_or(file);
     let identity = Identity { name, text: ready.loaded.text.clone(), file };
@@ -95,50 +104,84 @@ fn scene_name(scene: &Path) -> String {
 pub fn execute(job: Job, options: &Options) -> u8 {
     match run_job(job, options) {
         Ok(code) => code,
-        Err(error) => {
-            complain(&format!("error: {error}"));
-            exit::INPUT_OUTPUT
-        }
+        Err(error) => options.events.fail(exit::INPUT_OUTPUT, &error.to_string()),
     }
 }
 
-fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
+#[derive(Serialize)]
+struct Started<'a> {
+    version: &'static str,
+    scene: &'a str,
+    title: &'a str,
+    folder: &'a Path,
+    threads: usize,
+    step: u64,
+    steps: u64,
+    step_s: f64,
+    blocks: usize,
+    tets: usize,
+    unknowns: usize,
+}
+
+fn run_job(mut job: Job, options: &Options) -> Result<u8, WriteError> {
+    let mut log = RunLog::open(&job.folder, options.started)?;
+    log.begin(&job.identity, options.threads)?;
+    for warning in &job.ready.loaded.warnings {
+        log.line(&format!("warning: {}: {}", warning.path, warning.message))?;
+    }
+    let (steps, simulation) = (wiring::steps(&job.ready.loaded.scene.time), &job.ready.simulation);
+    options.events.emit(
+        "started",
+        &Started {
+            version: env!("CARGO_PKG_VERSION"),
+            scene: &job.identity.name,
+            title: &job.ready.loaded.scene.title,
+            folder: job.folder.path(),
+            threads: options.threads,
+            step: simulation.state().step,
+            steps,
+            step_s: simulation.step_s(),
+            blocks: simulation.blocks().len(),
+            tets: simulation.blocks().tets.len(),
+            unknowns: simulation.unknowns(),
+        },
+    );
+    if let Err(error) = settle(&mut job, &mut log, options)? {
+        let message = format!("stopped {}", stop(&error));
+        log.line(&message)?;
+        return Ok(options.events.fail(exit::STOPPED, &message));
+    }
+    log.line(&format!("from step {} of {steps}", job.ready.simulation.state().step))?;
+    let summary = step_to_end(job, steps, options, &mut log)?;
+    Ok(conclude(&summary, options))
+}
+
+/// Brings the scene to rest, if it asks for that and has not been.
+fn settle(job: &mut Job, log: &mut RunLog, options: &Options) -> Result<Result<(), StepError>, WriteError> {
+    let (Some(settle), None) = (&job.ready.loaded.scene.settle, &job.earlier) else { return Ok(Ok(())) };
+    let settle = Settle { tolerance: settle.tolerance, most_steps: settle.most_steps };
+    match job.ready.simulation.settle(&settle) {
+        Ok(settled) => {
+            let text = format!("settled in {} steps", settled.steps);
+            log.line(&text)?;
+            if !options.quiet {
+                complain(&text);
+            }
+            Ok(Ok(()))
+        }
+        Err(error) => Ok(Err(error)),
+    }
+}
+
+/// Runs, and writes all that there is to be known.
+fn step_to_end(job: Job, steps: u64, options: &Options, log: &mut RunLog) -> Result<Summary, WriteError> {
     let Job { ready: Ready { loaded, mut simulation, monitors }, comparison, identity, folder, earlier } =
         job;
     let scene = &loaded.scene;
-    if let (Some(settle), None) = (&scene.settle, &earlier) {
-        let settle = Settle { tolerance: settle.tolerance, most_steps: settle.most_steps };
-        match simulation.settle(&settle) {
-            Ok(settled) if !options.quiet => complain(&format!("settled in {} steps", settled.steps)),
-            Ok(_) => {}
-            Err(error) => {
-                complain(&format!("error: stopped {}", stop(&error)));
-                return Ok(exit::STOPPED);
-            }
-        }
-    }
-    let (steps, name) = (wiring::steps(&scene.time), identity.name.clone());
-    let after_s = scene.reference.as_ref().map_or(0.0, |r| reference::kind(r).1);
-    let (rows, frames) = (u64::from(scene.output.history_rows), u64::from(scene.output.frames));
-    let goes_on = earlier.is_some();
+    let (name, goes_on) = (identity.name.clone(), earlier.is_some());
     let earlier_s = earlier.as_ref().map_or(0.0, |earlier| earlier.wall_s);
-    let (saved_recorder, saved_fields) = earlier.map_or((None, None), |e| (Some(e.recorder), e.fields));
-    let recorder = Recorder::new(&folder, monitors, comparison, after_s, (steps, rows), saved_recorder)?;
-    let fields = || FieldWriter::new(&folder, &simulation, (steps, frames), saved_fields);
-    let mut outputs = Outputs {
-        recorder,
-        fields: if frames > 0 { Some(fields()?) } else { None },
-        progress: Progress::new(simulation.state().step, steps, options.quiet),
-        identity,
-        folder: &folder,
-        steps,
-        every: Duration::from_secs_f64(scene.output.checkpoint_wall_s),
-        last: Instant::now(),
-        started: options.started,
-        earlier_s,
-        spent_s: 0.0,
-        asked_to_end: interrupt::watch(),
-    };
+    let points = (monitors, comparison);
+    let mut outputs = outputs(scene, &simulation, points, (identity, &folder, earlier), steps, options)?;
     let setup_s = options.started.elapsed().as_secs_f64();
     let ended = if goes_on {
         ndda_solver::resume(&mut simulation, steps, &mut [&mut outputs])
@@ -146,13 +189,9 @@ fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
         ndda_solver::run(&mut simulation, steps, &mut [&mut outputs])
     };
     outputs.progress.finish();
-    outputs.recorder.finish()?;
-    let stopped_by = match ended {
-        Ok(()) => None,
-        Err(error) => Some(numerical_stop(error)?),
-    };
-    let Outputs { recorder, fields, spent_s, .. } = outputs;
-    let output_s = recorder.spent_s + fields.as_ref().map_or(0.0, |f| f.spent_s) + spent_s;
+    let stopped_by = ended.map_or_else(|error| numerical_stop(error).map(Some), |()| Ok(None))?;
+    outputs.flush()?;
+    let output_s = outputs.output_s();
     let outcome = Outcome {
         scene,
         name: &name,
@@ -165,33 +204,95 @@ fn run_job(job: Job, options: &Options) -> Result<u8, WriteError> {
         strict: options.strict,
         state_crc32: checkpoint::fingerprint(simulation.state()),
     };
-    let summary = report::summarise(&simulation, &recorder, outcome);
-    summary::write(&folder.summary(), &summary)?;
+    let summary = report::summarise(&simulation, &outputs.recorder, outcome);
+    write_results(&folder, scene, &summary, log)?;
     if !options.quiet {
         say(&format!("{}results in {}", report::table(&summary), folder.path().display()));
     }
-    Ok(conclude(&summary))
+    Ok(summary)
+}
+
+/// Writes what is written at the end only.
+fn write_results(
+    folder: &OutputFolder,
+    scene: &Scene,
+    summary: &Summary,
+    log: &mut RunLog,
+) -> Result<(), WriteError> {
+    let has_ended = matches!(summary.status, Status::Done | Status::Failed);
+    #[cfg(feature = "parquet")]
+    if has_ended {
+        tables::write_parquet(folder, &scene.output)?;
+    }
+    summary::write(&folder.summary(), summary)?;
+    if has_ended {
+        tables::remove_csv(folder, &scene.output)?;
+    }
+    log.line("ended")?;
+    log.block(&report::table(summary))
+}
+
+/// All that watches a run.
+fn outputs<'a>(
+    scene: &Scene,
+    simulation: &Simulation,
+    (monitors, comparison): (Vec<Monitor>, Option<Comparison>),
+    (identity, folder, earlier): (Identity, &'a OutputFolder, Option<Earlier>),
+    steps: u64,
+    options: &Options,
+) -> Result<Outputs<'a>, WriteError> {
+    let earlier_s = earlier.as_ref().map_or(0.0, |earlier| earlier.wall_s);
+    let (saved_recorder, saved_fields, saved_contacts) =
+        earlier.map_or((None, None, None), |e| (Some(e.recorder), e.fields, e.contacts));
+    let after_s = scene.reference.as_ref().map_or(0.0, |r| reference::kind(r).1);
+    let rows = (steps, u64::from(scene.output.history_rows));
+    let held = if scene.output.reactions { held_blocks(simulation) } else { Vec::new() };
+    let contacts = || ContactTable::new(folder, rows, saved_contacts);
+    let fields = || FieldWriter::new(folder, simulation, scene, steps, saved_fields);
+    Ok(Outputs {
+        recorder: Recorder::new(folder, monitors, comparison, after_s, rows, held, saved_recorder)?,
+        fields: (scene.output.frames > 0).then(fields).transpose()?,
+        contacts: scene.output.contacts.then(contacts).transpose()?,
+        progress: Progress::new(simulation.state().step, steps, options),
+        identity,
+        folder,
+        steps,
+        every: Duration::from_secs_f64(scene.output.checkpoint_wall_s),
+        last: Instant::now(),
+        started: options.started,
+        earlier_s,
+        spent_s: 0.0,
+        asked_to_end: interrupt::watch(),
+    })
+}
+
+#[derive(Serialize)]
+struct Finished<'a> {
+    exit_code: u8,
+    summary: &'a Summary,
 }
 
 /// Says what is beyond its limit, and gives the exit code.
-fn conclude(summary: &summary::Summary) -> u8 {
-    for (name, _) in summary.verdicts.0.iter().filter(|(_, v)| v.verdict == summary::Judgement::Fail) {
-        complain(&format!("warning: {name} is beyond its limit: do not use this result"));
+fn conclude(summary: &Summary, options: &Options) -> u8 {
+    for (name, _) in summary.verdicts.0.iter().filter(|(_, v)| v.verdict == Judgement::Fail) {
+        options.events.warn(&format!("{name} is beyond its limit: do not use this result"));
     }
-    match summary.status {
-        summary::Status::Done => exit::DONE,
-        summary::Status::Failed => exit::FAILED,
-        summary::Status::Interrupted => {
+    let exit_code = match summary.status {
+        Status::Done => exit::DONE,
+        Status::Failed => exit::FAILED,
+        Status::Interrupted => {
             complain(&format!("interrupted at t = {} s: `ndda resume` goes on from here", summary.end_s));
             exit::INTERRUPTED
         }
-        summary::Status::Stopped => {
+        Status::Stopped => {
             if let Some(cause) = &summary.stopped_by {
                 complain(&format!("error: stopped {cause}"));
             }
             exit::STOPPED
         }
-    }
+    };
+    options.events.emit("finished", &Finished { exit_code, summary });
+    exit_code
 }
 
 /// A numerical stop in words, after its code.

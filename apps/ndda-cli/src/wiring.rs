@@ -210,6 +210,16 @@ fn contact_potential(potential: &scene::Potential) -> Box<dyn ContactPotential> 
     }
 }
 
+fn material_index(scene: &Scene, name: &str) -> u32 {
+    scene.materials.iter().position(|m| m.name == name).unwrap_or(0) as u32
+}
+
+/// Number of each block's material, in the order of the scene's materials.
+pub fn materials_of(scene: &Scene, blocks: &BlockSet) -> Vec<u32> {
+    let index = |source: &Option<Source>| source.as_ref().map_or(0, |s| material_index(scene, s.material()));
+    sources(scene, blocks).iter().map(index).collect()
+}
+
 /// Laws between materials; `None` where nothing rubs, so that no shear spring and no memory is made.
 fn friction_table(
     scene: &Scene,
@@ -219,10 +229,8 @@ fn friction_table(
     memory: scene::Memory,
 ) -> Option<Joints> {
     let rubs = |f: &&scene::Friction| f.friction_deg > 0.0 || f.cohesion_pa > 0.0 || f.tension_pa > 0.0;
-    let index = |name: &str| scene.materials.iter().position(|m| m.name == name).unwrap_or(0) as u32;
-    let sources = sources(scene, blocks);
-    let material = sources.iter().map(|s| s.as_ref().map_or(0, |s| index(s.material()))).collect();
-    let mut joints = Joints::between(material, scene.materials.len());
+    let index = |name: &str| material_index(scene, name);
+    let mut joints = Joints::between(materials_of(scene, blocks), scene.materials.len());
     let all = || 0..scene.materials.len() as u32;
     let pairs: Vec<(u32, u32)> = all().flat_map(|a| all().map(move |b| (a, b))).collect();
     joints.set(&pairs, everywhere.filter(rubs).map(friction_law));

@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ndda_cli::args::{HowArgs, ReportArgs, RunArgs, ViewArgs};
+use ndda_cli::args::{HowArgs, ReportArgs, RunArgs, SceneArgs, ViewArgs};
 use ndda_cli::{exit, html_report, run};
 
 const HOSTILE: &str = "</script><script>document.title='taken'</script><img src=x onerror=alert(1)>&'";
@@ -28,7 +28,8 @@ fn run_in(folder: &Path, frames: u32) -> PathBuf {
     fs::write(&scene, text).unwrap();
     let out = folder.join("out");
     let how = HowArgs { threads: Some(1), quiet: true, ..HowArgs::default() };
-    let args = RunArgs { scene, out: Some(out.clone()), force: true, overrides: Vec::new(), how };
+    let input = SceneArgs { scene: Some(scene), ..SceneArgs::default() };
+    let args = RunArgs { input, out: Some(out.clone()), force: true, how };
     assert_eq!(run::run(&args), exit::DONE);
     for file in ["summary.json", "history.csv"] {
         let text = fs::read_to_string(out.join(file)).unwrap();

@@ -9,7 +9,7 @@ use ndda_mesh::{Mat3, TriangleId, Vec3};
 
 use crate::candidates::Candidates;
 use crate::joints::Joints;
-use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput};
+use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput, FacetContact};
 use crate::pair::TetFrame;
 use crate::pair_stiffness::PairStiffness;
 
@@ -62,31 +62,51 @@ fn form(joints: &Joints, candidates: &Candidates, input: &ContactInput, bonds: &
 /// Adds the force of one bond; false when it breaks.
 fn pull(joints: &Joints, input: &ContactInput, bond: &Bond, output: &mut ContactOutput) -> bool {
     let blocks = input.blocks;
-    let nodes = blocks.triangles[bond.facet.index()];
-    let tet = blocks.tets[bond.tet.index()];
-    let corners = nodes.map(|n| input.position[n.index()]);
-    let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
-    let area_vector = triangle_area_vector(&corners);
-    let stretch = anchor - centroid(input, bond.facet);
     let (owner, target) = (blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]);
     let Some(law) = joints.law(owner, target) else { return false };
-    if stretch.dot(&area_vector) <= 0.0 {
-        return true;
-    }
-    let half_area = 0.5 * area_vector.norm();
+    let Some((stretch, half_area)) = stretch(input, bond) else { return true };
     if law.bond_stiffness_pa_m() * stretch.norm() > law.tension_pa() {
         return false;
     }
     let force = law.bond_stiffness_pa_m() * half_area * stretch;
-    for node in nodes {
+    for node in blocks.triangles[bond.facet.index()] {
         output.force[node.index()] += force / 3.0;
         output.stiffness[node.index()] += 2.0 * law.bond_stiffness_pa_m() * half_area / 3.0;
     }
-    for (node, lambda) in tet.iter().zip(bond.lambda) {
+    for (node, lambda) in blocks.tets[bond.tet.index()].iter().zip(bond.lambda) {
         output.force[node.index()] -= lambda * force;
         output.stiffness[node.index()] += 2.0 * law.bond_stiffness_pa_m() * half_area * lambda.abs();
     }
     true
+}
+
+/// From the facet's centroid to the point that it is glued to, and half of the facet's area; none unless it is open.
+fn stretch(input: &ContactInput, bond: &Bond) -> Option<(Vec3, f64)> {
+    let tet = input.blocks.tets[bond.tet.index()];
+    let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
+    let area_vector = triangle_area_vector(&input.blocks.triangle_corners(bond.facet, input.position));
+    let stretch = anchor - centroid(input, bond.facet);
+    (stretch.dot(&area_vector) > 0.0).then(|| (stretch, 0.5 * area_vector.norm()))
+}
+
+/// What the bonds do that are stretched.
+pub fn add_facets(joints: &Joints, input: &ContactInput, bonds: &[Bond], facets: &mut Vec<FacetContact>) {
+    let blocks = input.blocks;
+    facets.extend(bonds.iter().filter_map(|bond| {
+        let (stretch, half_area) = stretch(input, bond)?;
+        let target = blocks.tet_block[bond.tet.index()];
+        let law = joints.law(blocks.triangle_block[bond.facet.index()], target)?;
+        Some(FacetContact {
+            facet: bond.facet,
+            target,
+            area_m2: 0.0,
+            normal: triangle_area_vector(&blocks.triangle_corners(bond.facet, input.position)).normalize(),
+            center: centroid(input, bond.facet),
+            push_n: law.bond_stiffness_pa_m() * half_area * stretch,
+            friction_n: Vec3::zeros(),
+            sticks: true,
+        })
+    }));
 }
 
 /// Adds the stiffness of bonds that are stretched.
@@ -123,14 +143,10 @@ fn centroid(input: &ContactInput, facet: TriangleId) -> Vec3 {
 pub fn energy_j(joints: &Joints, input: &ContactInput, bonds: &[Bond]) -> f64 {
     let blocks = input.blocks;
     let of_bond = |bond: &Bond| {
-        let tet = blocks.tets[bond.tet.index()];
-        let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
-        let area_vector = triangle_area_vector(&blocks.triangle_corners(bond.facet, input.position));
-        let stretch = anchor - centroid(input, bond.facet);
+        let Some((stretch, half_area)) = stretch(input, bond) else { return 0.0 };
         let pair = (blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]);
         let stiffness = joints.law(pair.0, pair.1).map_or(0.0, |law| law.bond_stiffness_pa_m());
-        let open = stretch.dot(&area_vector) > 0.0;
-        if open { 0.25 * stiffness * area_vector.norm() * stretch.norm_squared() } else { 0.0 }
+        0.5 * stiffness * half_area * stretch.norm_squared()
     };
     bonds.iter().map(of_bond).sum()
 }

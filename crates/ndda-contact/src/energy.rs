@@ -6,8 +6,9 @@
 
 use ndda_mesh::geometry::{Aabb, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, TetId, Vec3};
+use rayon::prelude::*;
 
-use crate::candidates::Candidates;
+use crate::candidates::{Candidates, Pair};
 use crate::integrals::Integrals;
 use crate::model::ContactInput;
 use crate::overlap::{Linear, overlap_of};
@@ -16,6 +17,9 @@ use crate::potential::{Field, OverlapLaw, PieceTable};
 
 /// Part of a tetrahedron's volume beyond which a negative integral is more than rounding.
 const PAST_CENTROID: f64 = 1e-9;
+
+/// Pairs below which a second thread costs more than it brings.
+const GRAIN_PAIRS: usize = 512;
 
 /// U for each pair of blocks that may touch.
 #[derive(Default)]
@@ -26,6 +30,7 @@ pub struct BlockOverlaps {
     /// ∫ φ dA over the pieces of both surfaces [m²].
     pressure_m2: Vec<f64>,
     origin: Vec<Option<Vec3>>,
+    per_pair: Vec<f64>,
     per_tet: Vec<f64>,
 }
 
@@ -73,7 +78,7 @@ impl BlockOverlaps {
     ) {
         match (field, law) {
             (_, OverlapLaw::Power { .. }) => self.add_surfaces(input, candidates, integrals),
-            (Field::Element, _) => self.add_pieces(input, candidates, integrals, frames),
+            (Field::Element, _) => self.add_pieces(input, candidates, frames),
             (Field::Pieces(table), _) => self.add_tets(input, candidates, table),
         }
     }
@@ -101,23 +106,24 @@ impl BlockOverlaps {
     }
 
     /// The element potential, from the flux through surface pieces.
-    fn add_pieces(
-        &mut self,
-        input: &ContactInput,
-        candidates: &Candidates,
-        integrals: &Integrals,
-        frames: &[TetFrame],
-    ) {
+    fn add_pieces(&mut self, input: &ContactInput, candidates: &Candidates, frames: &[TetFrame]) {
         let blocks = input.blocks;
         self.list(blocks, candidates);
-        self.per_tet.clear();
-        self.per_tet.resize(candidates.overlaps.len(), 0.0);
-        for hit in integrals.chunks().iter().flat_map(|chunk| &chunk.hits) {
-            let pair = &candidates.pairs[hit.pair as usize];
+        self.per_pair.clear();
+        self.per_pair.resize(candidates.pairs.len(), 0.0);
+        let place = |(pair, integral): (&Pair, &mut f64)| {
             let corners = blocks.triangle_corners(pair.triangle, input.position);
             let frame = &frames[pair.tet as usize];
-            self.per_tet[pair.overlap as usize] +=
-                pair_energy(&corners, &triangle_area_vector(&corners), frame);
+            if frame.lambda_inside(&corners).is_some() {
+                *integral = pair_energy(&corners, &triangle_area_vector(&corners), frame);
+            }
+        };
+        let pairs = candidates.pairs.par_iter().with_min_len(GRAIN_PAIRS);
+        pairs.zip(&mut self.per_pair).for_each(place);
+        self.per_tet.clear();
+        self.per_tet.resize(candidates.overlaps.len(), 0.0);
+        for (pair, integral) in candidates.pairs.iter().zip(&self.per_pair) {
+            self.per_tet[pair.overlap as usize] += integral;
         }
         for (&(tet, block), &integral) in candidates.overlaps.iter().zip(&self.per_tet) {
             let slot = candidates.tets.binary_search(&tet).expect("every overlap has its tet");

@@ -114,6 +114,7 @@ impl Faces {
                 let arm = pressure_center(f, input, candidates, integrals) - patch.center;
                 let twist = torque_n_m / patch.pressure / patch.radius2;
                 forces[f as usize].shear = force_n / patch.pressure + twist * patch.normal.cross(&arm);
+                forces[f as usize].sticks = !memory.slides;
             }
             let (face, target, _) = run[0];
             self.new_faces.push(FaceMemory { face, target, ..memory });
@@ -371,7 +372,12 @@ fn remembered(history: &ContactHistory, face: u32, target: BlockId) -> Option<Fa
 }
 
 /// ∫ φ x dA / ∫ φ dA of a facet.
-fn pressure_center(f: u32, input: &ContactInput, candidates: &Candidates, integrals: &Integrals) -> Vec3 {
+pub(crate) fn pressure_center(
+    f: u32,
+    input: &ContactInput,
+    candidates: &Candidates,
+    integrals: &Integrals,
+) -> Vec3 {
     let corners = input.blocks.triangle_corners(candidates.facets[f as usize].triangle, input.position);
     let mut weights = [0.0; 3];
     for hit in integrals.hits_of(f as usize) {

@@ -7,6 +7,7 @@ pub mod element_pairs;
 pub mod model;
 pub mod pair_stiffness;
 pub mod plan;
+pub mod resultants;
 pub mod testing;
 
 #[cfg(feature = "potential")]
@@ -80,10 +81,11 @@ pub use plan::Part;
 
 pub use model::{
     Body, Bond, ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport,
-    FaceMemory, FacetMemory,
+    FaceMemory, FacetContact, FacetMemory,
 };
 
 pub use pair_stiffness::PairStiffness;
+pub use resultants::{PairResultant, resultants};
 
 #[cfg(feature = "potential")]
 pub use {

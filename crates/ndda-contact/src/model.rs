@@ -187,6 +187,27 @@ pub struct ContactHistory {
     pub begun: bool,
 }
 
+/// What a boundary triangle and a block that it is pressed into do to each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FacetContact {
+    /// The triangle.
+    pub facet: TriangleId,
+    /// The block that it is in.
+    pub target: BlockId,
+    /// Area of the triangle that is inside [m²]; zero for a bond.
+    pub area_m2: f64,
+    /// Outward normal of the triangle.
+    pub normal: Vec3,
+    /// Where the force acts: the centre of pressure, or the centroid that is glued [m].
+    pub center: Vec3,
+    /// Force on the triangle but for friction [N].
+    pub push_n: Vec3,
+    /// Friction on the triangle [N].
+    pub friction_n: Vec3,
+    /// Whether friction holds it.
+    pub sticks: bool,
+}
+
 /// A law of contact between blocks. `&mut self` is scratch only; memory that matters is in [`ContactHistory`].
 pub trait ContactModel: Send + Sync {
     /// Adds the contact forces at `input.position` to `output` and advances `history` by one step.
@@ -226,6 +247,10 @@ pub trait ContactModel: Send + Sync {
     fn plan(&self) -> Vec<Part> {
         Vec::new()
     }
+
+    /// Adds what each facet does, as [`add_forces`](Self::add_forces) found it in the call before, with the same input.
+    /// A model of other things than facets adds none.
+    fn add_facets(&self, _input: &ContactInput, _history: &ContactHistory, _facets: &mut Vec<FacetContact>) {}
 
     /// Whether [`ContactInput::bodies`] is read; `false` lets the solver leave them out.
     fn needs_bodies(&self) -> bool {

@@ -9,13 +9,14 @@ use crate::bonds;
 use crate::candidates::Candidates;
 use crate::element_potential::ElementPotential;
 use crate::energy;
-use crate::faces::Faces;
+use crate::faces::{Faces, pressure_center};
 use crate::facets::{FacetForce, FacetScene};
 use crate::friction::FrictionLaw;
 use crate::integrals::{Integrals, Scene};
 use crate::joints::{Joints, Memory};
 use crate::model::{
-    ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetMemory,
+    ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
+    FacetMemory,
 };
 use crate::pair::TetFrame;
 use crate::pair_stiffness::PairStiffness;
@@ -92,6 +93,16 @@ impl PotentialContact {
 
     /// Integrals of all candidate pairs at `input.position`.
     fn integrate(&mut self, input: &ContactInput) -> Result<(), ContactError> {
+        self.find_pairs(input)?;
+        let Some((_, field)) = &self.field else { return Ok(()) };
+        let (blocks, position) = (input.blocks, input.position);
+        let (candidates, frames) = (&self.candidates, &self.frames[..]);
+        self.integrals.update(&Scene { blocks, position, candidates, frames, field });
+        Ok(())
+    }
+
+    /// Candidate pairs at `input.position`, and frames of their tetrahedra.
+    fn find_pairs(&mut self, input: &ContactInput) -> Result<(), ContactError> {
         let tets = input.blocks.tets.len();
         if self.field.as_ref().is_none_or(|(known, _)| *known != tets) {
             let field = self.potential.field(input.blocks);
@@ -106,12 +117,7 @@ impl PotentialContact {
                 self.faces.arrange(&self.candidates);
             }
         }
-        self.place_frames(input)?;
-        let Some((_, field)) = &self.field else { return Ok(()) };
-        let (blocks, position) = (input.blocks, input.position);
-        let (candidates, frames) = (&self.candidates, &self.frames[..]);
-        self.integrals.update(&Scene { blocks, position, candidates, frames, field });
-        Ok(())
+        self.place_frames(input)
     }
 
     fn place_frames(&mut self, input: &ContactInput) -> Result<(), ContactError> {
@@ -253,9 +259,13 @@ impl ContactModel for PotentialContact {
     }
 
     fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError> {
-        self.integrate(input)?;
-        let Some((_, field)) = &self.field else { return Ok(0.0) };
         let law = self.potential.law();
+        match law {
+            // The volume of overlaps comes from the integrals, other energies from the pairs.
+            OverlapLaw::Power { .. } => self.integrate(input)?,
+            OverlapLaw::Linear => self.find_pairs(input)?,
+        }
+        let Some((_, field)) = &self.field else { return Ok(0.0) };
         self.overlaps.integrate(input, &self.candidates, &self.integrals, &self.frames, field, law);
         let bonds = self.joints.as_ref().map_or(0.0, |joints| bonds::energy_j(joints, input, &history.bonds));
         Ok(self.penalty_pa * self.overlaps.energy_m3(law) + bonds)
@@ -283,6 +293,29 @@ impl ContactModel for PotentialContact {
 
     fn plan(&self) -> Vec<Part> {
         plan::parts(self)
+    }
+
+    fn add_facets(&self, input: &ContactInput, history: &ContactHistory, facets: &mut Vec<FacetContact>) {
+        for (f, (facet, force)) in self.candidates.facets.iter().zip(&self.forces).enumerate() {
+            if !force.touches {
+                continue;
+            }
+            let hits = self.integrals.hits_of(f);
+            let pressure: f64 = hits.iter().map(|hit| hit.moments.total()).sum();
+            facets.push(FacetContact {
+                facet: facet.triangle,
+                target: facet.target,
+                area_m2: hits.iter().map(|hit| hit.moments.area).sum(),
+                normal: -force.push.normalize(),
+                center: pressure_center(f as u32, input, &self.candidates, &self.integrals),
+                push_n: pressure * force.push,
+                friction_n: pressure * force.shear,
+                sticks: force.sticks,
+            });
+        }
+        if let Some(joints) = &self.joints {
+            bonds::add_facets(joints, input, &history.bonds, facets);
+        }
     }
 
     fn needs_bodies(&self) -> bool {

@@ -12,6 +12,7 @@ use crate::scene::{
     At, Body, By, Contact, ContactAt, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene,
     Solver, Step, matches,
 };
+use crate::tables;
 
 /// More steps than this are a slip of the keyboard.
 const MOST_STEPS: f64 = 1e9;
@@ -625,6 +626,18 @@ impl Check<'_> {
                 "output.checkpoint_wall_s",
                 format!("{wall_s} is no time between checkpoints"),
                 "give seconds, or 0 for none between start and end",
+            );
+        }
+        let fields = &self.scene.output.fields;
+        if let Some((i, field)) = fields.iter().enumerate().find(|(i, field)| fields[..*i].contains(field)) {
+            let path = format!("output.fields[{i}]");
+            self.error(&path, format!("{field:?} is listed twice"), "list each field once");
+        }
+        if self.scene.output.history.has_parquet() && !tables::HAS_PARQUET {
+            self.error(
+                "output.history",
+                "this ndda was built without Parquet",
+                "build it with `--features parquet`, or take Csv",
             );
         }
         if self.scene.output.frames > 100_000 {

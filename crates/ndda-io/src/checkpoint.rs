@@ -18,7 +18,7 @@ use crate::folder::OutputFolder;
 use crate::write_error::WriteError;
 
 /// Changes whenever what is kept changes.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
 const MAGIC: &[u8; 16] = b"NDDA-CHECKPOINT\n";
 const HEADER: usize = 16 + 4 + 8;
@@ -62,6 +62,11 @@ pub enum CheckpointError {
 /// CRC-32 of a value's encoding: equal values, bit for bit, have equal ones.
 pub fn fingerprint(value: &impl Serialize) -> u32 {
     crc32fast::hash(&postcard::to_stdvec(value).unwrap_or_default())
+}
+
+/// Bytes of a value's encoding.
+pub fn size(value: &impl Serialize) -> u64 {
+    postcard::to_stdvec(value).map_or(0, |bytes| bytes.len() as u64)
 }
 
 /// Writes a checkpoint; the file that was there becomes the previous one.

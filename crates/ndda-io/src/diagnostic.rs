@@ -4,7 +4,6 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::code::Code;
-use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, SourceCode};
 
 /// How much a message matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,23 +62,28 @@ pub struct SceneErrors {
 }
 
 impl SceneErrors {
-    /// All messages as text: `file:line:column`, the source line, a caret and advice.
+    /// All messages as text: `file:line:column`, advice, and with the feature `fancy` the source line and a mark.
     pub fn render(&self, colour: bool) -> String {
-        let theme = if colour { GraphicalTheme::unicode() } else { GraphicalTheme::none() };
-        let handler = GraphicalReportHandler::new_themed(theme).with_width(110).with_links(false);
         let mut out = String::new();
         for diagnostic in &self.diagnostics {
             out.push_str(&self.headline(diagnostic));
-            let report = Located { diagnostic, source: NamedSource::new(&self.file, self.text.clone()) };
-            let mut picture = String::new();
-            // Without a place there is nothing to draw.
-            if diagnostic.span.is_some() && handler.render_report(&mut picture, &report).is_ok() {
-                out.push_str(&picture);
-            } else if let Some(help) = &diagnostic.help {
-                out.push_str(&format!("  help: {help}\n"));
+            match self.picture(diagnostic, colour) {
+                Some(picture) => out.push_str(&picture),
+                None => out.extend(diagnostic.help.iter().map(|help| format!("  help: {help}\n"))),
             }
         }
         out
+    }
+
+    /// The line of the text that a message is about; none without a place, or in a build that draws none.
+    #[cfg(feature = "fancy")]
+    fn picture(&self, diagnostic: &Diagnostic, colour: bool) -> Option<String> {
+        crate::picture::draw(self, diagnostic, colour)
+    }
+
+    #[cfg(not(feature = "fancy"))]
+    fn picture(&self, _diagnostic: &Diagnostic, _colour: bool) -> Option<String> {
+        None
     }
 
     /// `file:line:column: error[code]: path: message`.
@@ -109,45 +113,4 @@ impl std::error::Error for SceneErrors {}
 pub fn line_column(text: &str, offset: usize) -> (usize, usize) {
     let before = text.char_indices().take_while(|(i, _)| *i < offset).map(|(_, c)| c);
     before.fold((1, 1), |(line, column), c| if c == '\n' { (line + 1, 1) } else { (line, column + 1) })
-}
-
-/// A diagnostic with the text it is about, as miette wants it.
-#[derive(Debug)]
-struct Located<'a> {
-    diagnostic: &'a Diagnostic,
-    source: NamedSource<String>,
-}
-
-impl fmt::Display for Located<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&self.diagnostic.message)
-    }
-}
-
-impl std::error::Error for Located<'_> {}
-
-impl miette::Diagnostic for Located<'_> {
-    fn severity(&self) -> Option<miette::Severity> {
-        Some(match self.diagnostic.severity {
-            Severity::Error => miette::Severity::Error,
-            Severity::Warning => miette::Severity::Warning,
-        })
-    }
-
-    fn help<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
-        self.diagnostic.help.as_ref().map(|help| Box::new(help) as Box<dyn fmt::Display>)
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(&self.source)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = self.diagnostic.span.clone()?;
-        // A struct of many lines is marked by its first one.
-        let text = self.source.inner();
-        let line_end = text[span.start..].find('\n').map_or(text.len(), |i| span.start + i);
-        let length = span.end.min(line_end).saturating_sub(span.start);
-        Some(Box::new(std::iter::once(LabeledSpan::new(Some("here".into()), span.start, length))))
-    }
 }

@@ -11,6 +11,12 @@ use crate::write_error::WriteError;
 pub const SUMMARY: &str = "summary.json";
 /// File of the history.
 pub const HISTORY: &str = "history.csv";
+/// File of the contacts.
+pub const CONTACTS: &str = "contacts.csv";
+/// The same tables in columns.
+pub const PARQUET: [&str; 2] = ["history.parquet", "contacts.parquet"];
+/// What the run said of itself.
+pub const LOG: &str = "run.log";
 /// File that lists the frames of fields.
 pub const FIELDS_INDEX: &str = "fields.pvd";
 /// File of the report as a page.
@@ -25,7 +31,19 @@ const WAITING: &str = "checkpoint.new.ndda";
 pub const FIELDS_FOLDER: &str = "fields";
 
 /// Files at the top of the folder, in the order in which an earlier run is deleted: an index before what it lists.
-const TOP_FILES: [&str; 7] = [CHECKPOINT, PREVIOUS, WAITING, REPORT, FIELDS_INDEX, HISTORY, SUMMARY];
+const TOP_FILES: [&str; 11] = [
+    CHECKPOINT,
+    PREVIOUS,
+    WAITING,
+    REPORT,
+    FIELDS_INDEX,
+    HISTORY,
+    CONTACTS,
+    PARQUET[0],
+    PARQUET[1],
+    LOG,
+    SUMMARY,
+];
 const PROBE: &str = "ndda-probe.tmp";
 const PROBE_BYTES: usize = 1 << 20;
 
@@ -102,6 +120,16 @@ impl OutputFolder {
     /// Where the history goes.
     pub fn history(&self) -> PathBuf {
         self.path.join(HISTORY)
+    }
+
+    /// Where the contacts go.
+    pub fn contacts(&self) -> PathBuf {
+        self.path.join(CONTACTS)
+    }
+
+    /// Where the log goes.
+    pub fn log(&self) -> PathBuf {
+        self.path.join(LOG)
     }
 
     /// Where the list of frames goes.

@@ -124,6 +124,15 @@ impl History {
         self.writer.flush().map_err(WriteError::io("write", &self.path))
     }
 
+    /// Waits until all rows are on the disk.
+    ///
+    /// # Errors
+    /// [`WriteError::Io`] when they are not.
+    pub fn sync(&mut self) -> Result<(), WriteError> {
+        self.flush()?;
+        self.writer.get_ref().sync_data().map_err(WriteError::io("sync", &self.path))
+    }
+
     /// Ends the table and waits until it is on the disk. A table that is only dropped is complete too unless the
     /// disk is full, which then nobody hears of.
     ///

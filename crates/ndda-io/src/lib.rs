@@ -13,6 +13,10 @@ pub mod locate;
 pub mod mesh_file;
 pub mod msh;
 pub mod overrides;
+#[cfg(feature = "parquet")]
+pub mod parquet_file;
+#[cfg(feature = "fancy")]
+mod picture;
 pub mod pvd;
 pub mod read;
 pub mod record;
@@ -22,6 +26,7 @@ pub mod scene;
 pub mod schema;
 pub mod summary;
 pub mod surface_file;
+pub mod tables;
 pub mod tetgen;
 #[cfg(feature = "tetgen")]
 pub mod tetgen_fill;

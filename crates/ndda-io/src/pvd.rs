@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use crate::atomic;
 use crate::folder::{FIELDS_FOLDER, OutputFolder, frame_name};
-use crate::vtu::{self, Frame};
+use crate::vtu::{self, Frame, Topology};
 use crate::write_error::WriteError;
 
 /// Writes frames one after the other and keeps the index up to date: a file that is listed is whole.
@@ -14,7 +14,10 @@ use crate::write_error::WriteError;
 pub struct FieldSeries {
     index: PathBuf,
     frames: PathBuf,
+    topology: Topology,
     times_s: Vec<f64>,
+    /// Frames that may not be on the disk yet.
+    unsynced: Vec<PathBuf>,
 }
 
 impl FieldSeries {
@@ -22,10 +25,11 @@ impl FieldSeries {
     ///
     /// # Errors
     /// [`WriteError::Io`] when the folder of the frames cannot be created.
-    pub fn create(folder: &OutputFolder) -> Result<Self, WriteError> {
+    pub fn create(folder: &OutputFolder, topology: Topology) -> Result<Self, WriteError> {
         let frames = folder.path().join(FIELDS_FOLDER);
         fs::create_dir_all(&frames).map_err(WriteError::io("create", &frames))?;
-        Ok(Self { index: folder.fields_index(), frames, times_s: Vec::new() })
+        let index = folder.fields_index();
+        Ok(Self { index, frames, topology, times_s: Vec::new(), unsynced: Vec::new() })
     }
 
     /// Goes on with a series in `folder` after the frames of these times \[s\]; frames after them are replaced as they
@@ -33,8 +37,8 @@ impl FieldSeries {
     ///
     /// # Errors
     /// [`WriteError::Io`] when the index cannot be written.
-    pub fn resume(folder: &OutputFolder, times_s: Vec<f64>) -> Result<Self, WriteError> {
-        let series = Self { times_s, ..Self::create(folder)? };
+    pub fn resume(folder: &OutputFolder, topology: Topology, times_s: Vec<f64>) -> Result<Self, WriteError> {
+        let series = Self { times_s, ..Self::create(folder, topology)? };
         atomic::write(&series.index, series.text().as_bytes())?;
         Ok(series)
     }
@@ -44,13 +48,14 @@ impl FieldSeries {
         &self.times_s
     }
 
-    /// Writes the frame of `time_s` \[s\] as `fields/frame_000012.vtu` and then the index that lists it.
+    /// Writes the frame of `time_s` \[s\] as `fields/frame_000012.vtu` and then the index that lists it, both whole; they
+    /// are on the disk for good after the next [`sync`](Self::sync).
     ///
     /// # Errors
-    /// As [`vtu::write`]; the index then still lists the frames before.
+    /// As [`vtu::encode`], or [`WriteError::Io`]; the index then still lists the frames before.
     ///
     /// # Panics
-    /// When times do not increase, and as [`vtu::write`].
+    /// When times do not increase, and as [`vtu::encode`].
     pub fn push(&mut self, time_s: f64, frame: &Frame) -> Result<(), WriteError> {
         let number = self.times_s.len();
         if !time_s.is_finite() {
@@ -59,13 +64,28 @@ impl FieldSeries {
         if let Some(last) = self.times_s.last() {
             assert!(time_s > *last, "frame at {time_s} s after one at {last} s");
         }
-        vtu::write(&self.frames.join(frame_name(number)), frame)?;
+        let path = self.frames.join(frame_name(number));
+        atomic::write_unsynced(&path, &vtu::encode(&path, &self.topology, frame)?)?;
         self.times_s.push(time_s);
-        let written = atomic::write(&self.index, self.text().as_bytes());
-        if written.is_err() {
-            self.times_s.pop();
+        let written = atomic::write_unsynced(&self.index, self.text().as_bytes());
+        match &written {
+            Ok(()) => self.unsynced.push(path),
+            Err(_) => drop(self.times_s.pop()),
         }
         written
+    }
+
+    /// Waits until all frames and the index are on the disk.
+    ///
+    /// # Errors
+    /// [`WriteError::Io`] when one of them is not.
+    pub fn sync(&mut self) -> Result<(), WriteError> {
+        if !self.unsynced.is_empty() {
+            atomic::sync(&self.unsynced)?;
+            atomic::sync(std::slice::from_ref(&self.index))?;
+            self.unsynced.clear();
+        }
+        Ok(())
     }
 
     /// Number of frames written.
@@ -102,6 +122,7 @@ mod tests {
     use ndda_mesh::{BlockMesh, BlockSet, Vec3};
 
     use super::*;
+    use crate::scene::FieldFormat;
 
     fn one_tet() -> BlockSet {
         let nodes = vec![Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
@@ -111,7 +132,8 @@ mod tests {
 
     fn series_in(folder: &std::path::Path) -> (OutputFolder, FieldSeries) {
         let output = OutputFolder::create(folder, false).unwrap();
-        let series = FieldSeries::create(&output).unwrap();
+        let topology = Topology::new(&one_tet(), FieldFormat::default());
+        let series = FieldSeries::create(&output, topology).unwrap();
         (output, series)
     }
 
@@ -120,15 +142,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (output, mut series) = series_in(folder.path());
         let blocks = one_tet();
-        let zero = [Vec3::zeros(); 4];
-        let position = &blocks.rest_position;
-        let frame =
-            Frame { blocks: &blocks, position, displacement: &zero, velocity: &zero, stress_pa: &[[0.0; 6]] };
+        let frame = Frame::new(&blocks, &blocks.rest_position);
         let times_s = [0.0, 1e-7, 0.1 + 0.2];
         for time_s in times_s {
             series.push(time_s, &frame).unwrap();
         }
         assert_eq!(series.len(), 3);
+        series.sync().unwrap();
         let text = fs::read_to_string(output.fields_index()).unwrap();
         let value = |line: &str, key: &str| {
             let (_, rest) = line.split_once(&format!("{key}=\"")).unwrap();
@@ -148,12 +168,9 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (output, mut series) = series_in(folder.path());
         let blocks = one_tet();
-        let (zero, nan) = ([Vec3::zeros(); 4], [Vec3::repeat(f64::NAN); 4]);
-        let position = &blocks.rest_position;
-        let good =
-            Frame { blocks: &blocks, position, displacement: &zero, velocity: &zero, stress_pa: &[[0.0; 6]] };
+        let good = Frame::new(&blocks, &blocks.rest_position);
         series.push(0.0, &good).unwrap();
-        series.push(1.0, &Frame { velocity: &nan, ..good }).unwrap_err();
+        series.push(1.0, &Frame::new(&blocks, &[Vec3::repeat(f64::NAN); 4])).unwrap_err();
         let error = series.push(f64::NAN, &good).unwrap_err();
         assert!(matches!(error, WriteError::NotFinite { index: Some(1), .. }));
         assert_eq!(fs::read_to_string(output.fields_index()).unwrap().matches("<DataSet").count(), 1);

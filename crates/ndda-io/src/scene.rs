@@ -1,10 +1,12 @@
 //! The scene: everything a run needs, as a person writes it in RON. Every quantity is SI with its unit in the key.
 
+mod output;
 mod rock;
 mod shape;
 
 use serde::{Deserialize, Serialize};
 
+pub use output::{Field, FieldFormat, Output, Precision, TableFormat};
 pub use rock::{Axis, DiscRule, Discontinuity, Domain, OrientationScatter};
 pub use rock::{Rock, SpacingScatter, Voronoi, Whereabouts};
 pub use shape::{Fill, Pattern, Shape};
@@ -626,26 +628,6 @@ pub fn matches(pattern: &str, name: &str) -> bool {
     let Some((head, tail)) = pattern.split_once('*') else { return pattern == name };
     let Some(rest) = name.strip_prefix(head) else { return false };
     rest.char_indices().map(|(i, _)| i).chain([rest.len()]).any(|i| matches(tail, &rest[i..]))
-}
-
-/// What is written and how often.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, default)]
-pub struct Output {
-    /// Frames of fields after the first; 0 writes none. Default: 20.
-    pub frames: u32,
-    /// Rows of `history.csv` after the first, at most one per step. Default: 1000.
-    pub history_rows: u32,
-    /// Wall-clock time between checkpoints [s], which `ndda resume` goes on from; one is written at the start and at
-    /// the end, too. Default: 60.
-    pub checkpoint_wall_s: f64,
-}
-
-impl Default for Output {
-    fn default() -> Self {
-        Self { frames: 20, history_rows: 1000, checkpoint_wall_s: 60.0 }
-    }
 }
 
 /// A closed form that the run is compared with.

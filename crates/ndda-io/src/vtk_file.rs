@@ -6,6 +6,7 @@
 mod base64;
 mod binary;
 mod data;
+pub(crate) mod grid;
 mod legacy;
 mod polyhedra;
 mod sections;

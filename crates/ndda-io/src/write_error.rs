@@ -99,7 +99,7 @@ pub enum WriteError {
 
 impl WriteError {
     /// For `map_err`: wraps what the operating system said.
-    pub(crate) fn io(operation: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+    pub fn io(operation: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_path_buf();
         move |source| Self::Io { operation, path, source }
     }

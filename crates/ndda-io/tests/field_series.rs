@@ -4,6 +4,8 @@
 
 use std::path::Path;
 
+use ndda_io::scene::{FieldFormat, Precision};
+use ndda_io::vtu::{Topology, Values, von_mises_pa};
 use ndda_io::{FieldSeries, Frame, OutputFolder};
 use ndda_mesh::{BlockMesh, BlockSet, Mat3, Vec3};
 
@@ -22,8 +24,9 @@ fn blocks() -> BlockSet {
 fn a_series_of_frames_is_written() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("field_series");
     let output = OutputFolder::create(&folder, true).unwrap();
-    let mut series = FieldSeries::create(&output).unwrap();
     let blocks = blocks();
+    let topology = Topology::new(&blocks, FieldFormat::Compressed).with_blocks(&blocks);
+    let mut series = FieldSeries::create(&output, topology).unwrap();
     let velocity: Vec<Vec3> = blocks.rest_position.iter().map(|x| Vec3::new(1.0 / 3.0, -x.z, x.y)).collect();
     for frame in 0..4 {
         let time_s = 0.1 * f64::from(frame);
@@ -33,13 +36,12 @@ fn a_series_of_frames_is_written() {
         let stress_pa: Vec<[f64; 6]> = (0..blocks.tets.len())
             .map(|tet| [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|s| s * time_s * tet as f64))
             .collect();
-        let frame = Frame {
-            blocks: &blocks,
-            position: &position,
-            displacement: &displacement,
-            velocity: &velocity,
-            stress_pa: &stress_pa,
-        };
+        let mut frame = Frame::new(&blocks, &position);
+        let precision = Precision::F64;
+        frame.add_points(Values::vectors("displacement_m", displacement.iter().copied(), precision));
+        frame.add_points(Values::vectors("velocity_m_s", velocity.iter().copied(), precision));
+        frame.add_cells(Values::new("von_mises_pa", stress_pa.iter().map(|s| [von_mises_pa(s)]), precision));
+        frame.add_cells(Values::new("stress_pa", stress_pa.iter().copied(), precision));
         series.push(time_s, &frame).unwrap();
     }
     assert_eq!(series.len(), 4);

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use ndda_contact::ContactInput;
+use ndda_contact::{ContactInput, FacetContact};
 use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
 use ndda_mesh::{BlockId, TetId, Vec3};
 
@@ -66,6 +66,35 @@ impl Simulation {
         })?;
         sample.spring_j += elastic.spring_energy_j(shape, position, time_s);
         Ok(())
+    }
+
+    /// Whether the next steps note what each facet does.
+    pub fn watch_contacts(&mut self, wanted: bool) {
+        if wanted != self.contacts.is_some() {
+            self.contacts = wanted.then(Vec::new);
+        }
+    }
+
+    /// What facets did in the last step, where contact was evaluated in it; none unless it was
+    /// [watched](Self::watch_contacts), nor before the first step.
+    pub fn contacts(&self) -> &[FacetContact] {
+        self.contacts.as_deref().unwrap_or(&[])
+    }
+
+    /// Contact force on each node in the last step [N], friction included; zero before the first step.
+    pub fn contact_forces_n(&self) -> impl ExactSizeIterator<Item = Vec3> {
+        let begun = self.state.step > 0;
+        let contact = move |(force, load): (&Vec3, &Vec3)| if begun { force - load } else { Vec3::zeros() };
+        self.force.iter().zip(self.loads.total()).map(contact)
+    }
+
+    /// Asks contact what it just did, before anything else asks it for something.
+    pub(crate) fn note_contacts(&mut self) {
+        let (Some(contacts), Some(model)) = (&mut self.contacts, &self.contact) else { return };
+        contacts.clear();
+        let input =
+            ContactInput::new(&self.blocks, &self.contact_position, &self.state.velocity, self.part_s);
+        model.add_facets(&input, &self.state.contact, contacts);
     }
 
     /// Cauchy stress per tetrahedron, global axes, (xx, yy, zz, xy, yz, zx) [Pa].

@@ -100,6 +100,7 @@ impl Simulation {
             contact_stiffness: vec![0.0; contact_nodes],
             contact_position: blocks.rest_position.clone(),
             contact_bodies: Vec::new(),
+            contacts: None,
             ledger: Ledger::new((Vec3::zeros(), Vec3::zeros())),
             stages: StageTimes::default(),
             blocks,

@@ -3,7 +3,9 @@
 use std::mem::take;
 use std::time::Instant;
 
-use ndda_contact::{Body as ContactBody, ContactInput, ContactModel, ContactOutput, ContactReport};
+use ndda_contact::{
+    Body as ContactBody, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
+};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -91,6 +93,8 @@ pub struct Simulation {
     pub(crate) contact_stiffness: Vec<f64>,
     pub(crate) contact_position: Vec<Vec3>,
     pub(crate) contact_bodies: Vec<ContactBody>,
+    /// What facets did in the last step, if somebody wants to know.
+    pub(crate) contacts: Option<Vec<FacetContact>>,
 }
 
 impl Simulation {
@@ -110,6 +114,7 @@ impl Simulation {
         let started = Instant::now();
         self.gather_loads();
         let (contact, iterations) = self.gather_contact()?;
+        self.note_contacts();
         let contact_done = Instant::now();
         self.solve_blocks()?;
         let solved = Instant::now();

@@ -42,6 +42,11 @@ pub trait Sink {
     fn wants_sample(&self, _step: u64) -> bool {
         false
     }
+
+    /// Whether [`Simulation::contacts`] is wanted at this step.
+    fn wants_contacts(&self, _step: u64) -> bool {
+        false
+    }
 }
 
 /// Shows the start to the sinks, then runs up to step `steps` as [`resume`] does.
@@ -62,6 +67,8 @@ pub fn run(simulation: &mut Simulation, steps: u64, sinks: &mut [&mut dyn Sink])
 /// [`RunError`] of the step or sink that failed.
 pub fn resume(simulation: &mut Simulation, steps: u64, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
     while simulation.state().step < steps {
+        let next = simulation.state().step + 1;
+        simulation.watch_contacts(sinks.iter().any(|sink| sink.wants_contacts(next)));
         let report = simulation.step()?;
         if show(simulation, steps, &report, sinks)?.is_break() {
             break;

@@ -112,6 +112,8 @@ mod tests {
     use ndda_mesh::{BlockMesh, BlockSet};
 
     use super::*;
+    use crate::scene::{FieldFormat, Precision};
+    use crate::vtu::{Topology, Values};
     use crate::{FieldSeries, Frame, OutputFolder};
 
     fn one_tet() -> BlockSet {
@@ -124,18 +126,15 @@ mod tests {
     fn frames_that_were_written_are_read_back() {
         let folder = tempfile::tempdir().unwrap();
         let output = OutputFolder::create(folder.path(), false).unwrap();
-        let mut series = FieldSeries::create(&output).unwrap();
         let blocks = one_tet();
-        let velocity = vec![Vec3::new(1.0, -2.0, 1.0 / 3.0); 4];
+        let topology = Topology::new(&blocks, FieldFormat::default()).with_blocks(&blocks);
+        let mut series = FieldSeries::create(&output, topology).unwrap();
+        let velocity = [Vec3::new(1.0, -2.0, 1.0 / 3.0); 4];
         for time_s in [0.0, 0.1 + 0.2] {
-            let displacement: Vec<Vec3> = velocity.iter().map(|v| time_s * v).collect();
-            let frame = Frame {
-                blocks: &blocks,
-                position: &blocks.rest_position,
-                displacement: &displacement,
-                velocity: &velocity,
-                stress_pa: &[[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]],
-            };
+            let mut frame = Frame::new(&blocks, &blocks.rest_position);
+            frame.add_points(Values::vectors("velocity_m_s", velocity.iter().copied(), Precision::F64));
+            let stress = [[1.0, 2.0, 3.0, 4.0, 5.0, 6.0]];
+            frame.add_cells(Values::new("stress_pa", stress.into_iter(), Precision::F64));
             series.push(time_s, &frame).unwrap();
         }
         let listed = frame_list(&output.fields_index()).unwrap();
@@ -162,14 +161,9 @@ mod tests {
         }
         let path = folder.path().join("frame.vtu");
         let blocks = one_tet();
-        let still = vec![Vec3::zeros(); 4];
-        let (position, stress_pa) = (&blocks.rest_position, &[[0.0; 6]]);
-        crate::vtu::write(
-            &path,
-            &Frame { blocks: &blocks, position, displacement: &still, velocity: &still, stress_pa },
-        )
-        .unwrap();
-        let whole = std::fs::read(&path).unwrap();
+        let topology = Topology::new(&blocks, FieldFormat::default()).with_blocks(&blocks);
+        let whole =
+            crate::vtu::encode(&path, &topology, &Frame::new(&blocks, &blocks.rest_position)).unwrap();
         for part in 1..20 {
             std::fs::write(&path, &whole[..whole.len() * part / 20]).unwrap();
             let error = frame(&path).unwrap_err().to_string();

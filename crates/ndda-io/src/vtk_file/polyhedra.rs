@@ -4,8 +4,9 @@ use std::path::Path;
 
 use ndda_mesh::cut::Blocks;
 
-use super::write::Grid;
+use super::grid::Grid;
 use crate::atomic;
+use crate::scene::FieldFormat;
 use crate::write_error::WriteError;
 
 /// Number of the polyhedron among VTK's cell types.
@@ -21,7 +22,7 @@ pub fn write(path: &Path, blocks: &Blocks) -> Result<(), WriteError> {
         return Err(WriteError::not_finite(path, "vertex", Some(index)));
     }
     let count = blocks.blocks.len();
-    let mut grid = Grid::new(points().count(), count);
+    let mut grid = Grid::new(points().count(), count, FieldFormat::Base64);
     grid.open_piece();
     grid.open("CellData");
     grid.integers("block", 0..count as i64);
@@ -47,5 +48,5 @@ pub fn write(path: &Path, blocks: &Blocks) -> Result<(), WriteError> {
     grid.integers("faces", faces.into_iter());
     grid.integers("faceoffsets", face_ends.into_iter());
     grid.close("Cells");
-    atomic::write(path, grid.finish().as_bytes())
+    atomic::write(path, &grid.finish())
 }

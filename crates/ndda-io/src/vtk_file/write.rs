@@ -1,13 +1,14 @@
-//! Writes unstructured grids with inline base 64 arrays, as text by hand: `vtkio` knows no field data and no faces.
+//! Writes meshes as `.vtu` with inline base 64 arrays, which every reader knows.
 
 use std::path::Path;
 
 use ndda_mesh::BlockMesh;
 
-use super::base64::encode;
 use super::data::{BODY_NAMES, SET, TETRA};
+use super::grid::Grid;
 use crate::atomic;
 use crate::mesh_file::join::Joined;
+use crate::scene::FieldFormat;
 use crate::write_error::WriteError;
 
 /// Writes a mesh of tetrahedra as `.vtu`.
@@ -19,9 +20,9 @@ use crate::write_error::WriteError;
 /// [`WriteError`] for a number that is not finite, a name that cannot be kept, and what the operating system refuses.
 pub fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
     let joined = Joined::new(path, bodies)?;
-    let mut grid = Grid::new(joined.nodes.len(), joined.tets.len());
+    let mut grid = Grid::new(joined.nodes.len(), joined.tets.len(), FieldFormat::Base64);
     grid.open("FieldData");
-    grid.bytes(BODY_NAMES, joined.names.join("\n").as_bytes());
+    grid.field_bytes(BODY_NAMES, joined.names.join("\n").as_bytes());
     grid.close("FieldData");
     grid.open_piece();
     grid.open("PointData");
@@ -40,67 +41,5 @@ pub fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteErr
     grid.integers("offsets", (1..=joined.tets.len() as i64).map(|tet| 4 * tet));
     grid.bytes("types", &vec![TETRA; joined.tets.len()]);
     grid.close("Cells");
-    atomic::write(path, grid.finish().as_bytes())
-}
-
-/// The text of a file that is being made.
-pub(super) struct Grid {
-    text: String,
-    counts: [usize; 2],
-}
-
-impl Grid {
-    /// With so many points and cells.
-    pub fn new(points: usize, cells: usize) -> Self {
-        let text = "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" \
-                    byte_order=\"LittleEndian\" header_type=\"UInt64\">\n<UnstructuredGrid>\n";
-        Self { text: text.to_string(), counts: [points, cells] }
-    }
-
-    pub fn open(&mut self, section: &str) {
-        self.text += &format!("<{section}>\n");
-    }
-
-    pub fn close(&mut self, section: &str) {
-        self.text += &format!("</{section}>\n");
-    }
-
-    pub fn open_piece(&mut self) {
-        let [points, cells] = self.counts;
-        self.text += &format!("<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n");
-    }
-
-    fn array(&mut self, kind: &str, name: &str, more: &str, bytes: &[u8]) {
-        let name = name.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
-        self.text += &format!("<DataArray type=\"{kind}\" Name=\"{name}\" {more} format=\"binary\">");
-        let mut content = (bytes.len() as u64).to_le_bytes().to_vec();
-        content.extend(bytes);
-        encode(&content, &mut self.text);
-        self.text += "</DataArray>\n";
-    }
-
-    pub fn bytes(&mut self, name: &str, bytes: &[u8]) {
-        self.array("UInt8", name, &format!("NumberOfTuples=\"{}\"", bytes.len()), bytes);
-    }
-
-    pub fn integers(&mut self, name: &str, values: impl Iterator<Item = i64>) {
-        self.array("Int64", name, "", &values.flat_map(i64::to_le_bytes).collect::<Vec<u8>>());
-    }
-
-    pub fn reals(&mut self, name: &str, values: impl Iterator<Item = f64>) {
-        self.array("Float64", name, "", &values.flat_map(f64::to_le_bytes).collect::<Vec<u8>>());
-    }
-
-    pub fn points(&mut self, points: impl Iterator<Item = [f64; 3]>) {
-        let bytes: Vec<u8> = points.flatten().flat_map(f64::to_le_bytes).collect();
-        self.open("Points");
-        self.array("Float64", "Points", "NumberOfComponents=\"3\"", &bytes);
-        self.close("Points");
-    }
-
-    /// The whole file.
-    pub fn finish(mut self) -> String {
-        self.text += "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
-        self.text
-    }
+    atomic::write(path, &grid.finish())
 }

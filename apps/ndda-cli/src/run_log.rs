@@ -1,0 +1,66 @@
+//! `run.log`: what a run was, what it did and when, for a person.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::PathBuf;
+use std::time::{Instant, SystemTime};
+
+use ndda_io::{OutputFolder, WriteError, checkpoint};
+
+use crate::checkpoint::Identity;
+use crate::machine;
+
+/// A log that grows line by line; what has been said survives a crash.
+pub struct RunLog {
+    file: File,
+    path: PathBuf,
+    started: Instant,
+}
+
+impl RunLog {
+    /// Begins the log of a run, or goes on with the one that is there.
+    ///
+    /// # Errors
+    /// [`WriteError`] when it cannot be written.
+    pub fn open(folder: &OutputFolder, started: Instant) -> Result<Self, WriteError> {
+        let path = folder.log();
+        let file = File::options().create(true).append(true).open(&path);
+        Ok(Self { file: file.map_err(WriteError::io("open", &path))?, path, started })
+    }
+
+    /// Says what is about to run, and on what.
+    ///
+    /// # Errors
+    /// [`WriteError`] when it cannot be written.
+    pub fn begin(&mut self, identity: &Identity, threads: usize) -> Result<(), WriteError> {
+        let version = env!("CARGO_PKG_VERSION");
+        let (commit, rustc, features) = (machine::COMMIT, machine::RUSTC, machine::FEATURES);
+        let now = humantime::format_rfc3339_seconds(SystemTime::now());
+        self.line(&format!("ndda {version}, commit {commit}, {rustc}, features: {features}"))?;
+        self.line(&format!("{now}, {} on {threads} thread(s)", machine::processor()))?;
+        let crc32 = checkpoint::fingerprint(&identity.text);
+        self.line(&format!("scene {}, CRC-32 of its text {crc32:08x}:", identity.file.display()))?;
+        self.block(&identity.text)
+    }
+
+    /// Adds a line with the seconds since the start.
+    ///
+    /// # Errors
+    /// [`WriteError`] when it cannot be written.
+    pub fn line(&mut self, text: &str) -> Result<(), WriteError> {
+        let spent_s = self.started.elapsed().as_secs_f64();
+        self.add(&format!("[{spent_s:10.3} s] {text}\n"))
+    }
+
+    /// Adds lines as they are, set off.
+    ///
+    /// # Errors
+    /// [`WriteError`] when they cannot be written.
+    pub fn block(&mut self, text: &str) -> Result<(), WriteError> {
+        self.add(&text.lines().map(|line| format!("    {line}\n")).collect::<String>())
+    }
+
+    fn add(&mut self, text: &str) -> Result<(), WriteError> {
+        self.file.write_all(text.as_bytes()).map_err(WriteError::io("write", &self.path))
+    }
+}

@@ -1,0 +1,128 @@
+//! What a scene asks to be written is written, and nothing else; what is written balances.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use ndda_cli::args::{HowArgs, RunArgs};
+use ndda_cli::{exit, run};
+use serde_json::Value;
+
+/// Runs a hundred steps of the ramp without friction.
+fn run_ramp(place: &Path, overrides: &[&str]) -> PathBuf {
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/sliding_45.ron");
+    let out = place.join("out");
+    let always = ["time.end_s=0.01", "output.frames=1", "reference.after_s=0.001"];
+    let args = RunArgs {
+        scene,
+        out: Some(out.clone()),
+        force: true,
+        overrides: always.iter().chain(overrides).map(|text| text.to_string()).collect(),
+        how: HowArgs { quiet: true, ..HowArgs::default() },
+    };
+    assert_eq!(run::run(&args), exit::DONE);
+    out
+}
+
+fn files(folder: &Path) -> BTreeSet<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect()
+}
+
+/// Names of the arrays of a frame.
+fn arrays(out: &Path) -> BTreeSet<String> {
+    let file = fs::read(out.join("fields/frame_000001.vtu")).unwrap();
+    let text = String::from_utf8_lossy(&file);
+    let names = text.split(" Name=\"").skip(1).map(|rest| rest.split('"').next().unwrap().to_string());
+    let always = ["Points", "connectivity", "offsets", "types"];
+    names.filter(|name| !always.contains(&name.as_str())).collect()
+}
+
+/// Columns of a table by name.
+fn column(text: &str, name: &str) -> Vec<f64> {
+    let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let place = lines.next().unwrap().iter().position(|column| *column == name).unwrap();
+    lines.map(|line| line[place].parse().unwrap()).collect()
+}
+
+fn set(names: &[&str]) -> BTreeSet<String> {
+    names.iter().map(|name| name.to_string()).collect()
+}
+
+const ALWAYS: [&str; 5] =
+    ["checkpoint.ndda", "checkpoint.previous.ndda", "run.log", "summary.json", "history.csv"];
+
+#[test]
+fn files_and_arrays_are_those_that_are_asked_for() {
+    let place = tempfile::tempdir().unwrap();
+    let out = run_ramp(place.path(), &[]);
+    assert_eq!(files(&out), &set(&ALWAYS) | &set(&["fields", "fields.pvd"]));
+    let usual = ["displacement_m", "velocity_m_s", "von_mises_pa", "stress_pa", "block_id"];
+    assert_eq!(arrays(&out), set(&usual));
+
+    let out = run_ramp(place.path(), &["output.fields=[]", "output.contacts=true"]);
+    assert_eq!(files(&out), &set(&ALWAYS) | &set(&["fields", "fields.pvd", "contacts.csv"]));
+    assert_eq!(arrays(&out), set(&[]));
+
+    let others = "output.fields=[Acceleration,ContactForce,ContactTraction,FrictionState,Material]";
+    for format in ["Compressed", "Appended", "Base64"] {
+        let out =
+            run_ramp(place.path(), &[others, &format!("output.format={format}"), "output.precision=F32"]);
+        let names =
+            ["acceleration_m_s2", "contact_force_n", "contact_traction_pa", "friction_state", "material"];
+        assert_eq!(arrays(&out), set(&names), "{format}");
+    }
+    fs::remove_dir_all(&out).unwrap();
+    let out = run_ramp(place.path(), &["output.frames=0"]);
+    assert_eq!(files(&out), set(&ALWAYS));
+}
+
+#[cfg(feature = "parquet")]
+#[test]
+fn tables_are_left_in_the_forms_that_are_asked_for() {
+    let place = tempfile::tempdir().unwrap();
+    let out = run_ramp(place.path(), &["output.history=Both", "output.contacts=true"]);
+    let tables = ["history.csv", "history.parquet", "contacts.csv", "contacts.parquet"];
+    assert!(files(&out).is_superset(&set(&tables)));
+    let out = run_ramp(place.path(), &["output.history=Parquet", "output.contacts=true"]);
+    let found: BTreeSet<String> = files(&out).intersection(&set(&tables)).cloned().collect();
+    assert_eq!(found, set(&["history.parquet", "contacts.parquet"]));
+}
+
+#[test]
+fn impulses_of_contacts_and_reactions_are_the_changes_of_momentum() {
+    let place = tempfile::tempdir().unwrap();
+    let steps = 100;
+    let rows = format!("output.history_rows={steps}");
+    let out = run_ramp(place.path(), &["output.contacts=true", "output.reactions=true", &rows]);
+    let summary: Value =
+        serde_json::from_str(&fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let [contacts, history] =
+        ["contacts.csv", "history.csv"].map(|name| fs::read_to_string(out.join(name)).unwrap());
+    let (step_s, gravity) = (1e-4, [0.0, 0.0, -9.8]);
+    let impulse = |text: &str, name: &str| step_s * column(text, name).iter().sum::<f64>();
+    for (i, axis) in ["x", "y", "z"].iter().enumerate() {
+        let on_ramp = impulse(&contacts, &format!("force_{axis}_n"));
+        let held = impulse(&history, &format!("ramp.reaction_{axis}_n"));
+        let of = |block: &str| &summary["blocks"][block];
+        let weight =
+            |block: &str| of(block)["mass"].as_f64().unwrap() * gravity[i] * step_s * f64::from(steps);
+        let gained = |block: &str| of(block)["momentum"][i].as_f64().unwrap() - weight(block);
+        let scale = weight("prism").abs().max(1.0);
+        assert!((gained("prism") + on_ramp).abs() < 1e-9 * scale, "{axis}: {on_ramp} on the ramp");
+        let scale = of("ramp")["mass"].as_f64().unwrap() * 9.8 * step_s * f64::from(steps);
+        assert!((gained("ramp") - on_ramp - held).abs() < 1e-9 * scale, "{axis}: {held} by supports");
+    }
+}
+
+#[test]
+fn the_log_says_what_ran_on_what() {
+    let place = tempfile::tempdir().unwrap();
+    let out = run_ramp(place.path(), &[]);
+    let log = fs::read_to_string(out.join("run.log")).unwrap();
+    for part in
+        ["ndda 0.", "rustc", "features", "thread(s)", "CRC-32", "end_s: 0.01", "I4 energy gain", "contact"]
+    {
+        assert!(log.contains(part), "{part} is missing in\n{log}");
+    }
+}
