@@ -4,6 +4,8 @@
 pub const DONE: u8 = 0;
 /// The run reached its end, but a criterion was not met.
 pub const FAILED: u8 = 1;
+/// The command line is wrong.
+pub const USAGE: u8 = 2;
 /// The scene or a mesh is not usable.
 pub const BAD_INPUT: u8 = 3;
 /// The run stopped because going on would have given a wrong number.

@@ -4,7 +4,9 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use ndda_cli::args::{Cli, Verb};
-use ndda_cli::{check, mesh, resume, run};
+#[cfg(feature = "plots")]
+use ndda_cli::plot;
+use ndda_cli::{check, mesh, resume, run, study};
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().verb {
@@ -12,6 +14,9 @@ fn main() -> ExitCode {
         Verb::Resume(args) => resume::resume(&args),
         Verb::Check(args) => check::check(&args),
         Verb::Mesh(args) => mesh::mesh(&args),
+        Verb::Study(args) => study::study(&args),
+        #[cfg(feature = "plots")]
+        Verb::Plot(args) => plot::plot(&args),
     };
     ExitCode::from(outcome)
 }

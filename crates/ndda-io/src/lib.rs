@@ -16,8 +16,10 @@ pub mod pvd;
 pub mod read;
 pub mod record;
 pub mod scene;
+pub mod study;
 pub mod summary;
 pub mod surface_file;
+pub mod table;
 pub mod tetgen;
 #[cfg(feature = "tetgen")]
 pub mod tetgen_fill;

@@ -1,0 +1,179 @@
+//! Pictures: drawn once as SVG; a PNG is that SVG rendered with a font that the program brings.
+
+use std::path::Path;
+
+use ndda_io::{WriteError, atomic};
+use plotters::coord::Shift;
+use plotters::coord::ranged1d::Ranged;
+use plotters::prelude::*;
+
+/// Where things are drawn.
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// Whether something could be drawn.
+pub type Drawn = Result<(), Box<dyn std::error::Error>>;
+
+/// Pixels of a PNG per pixel of the SVG.
+#[cfg(feature = "png")]
+const PNG_SCALE: f32 = 2.0;
+
+/// Endings of the files that every picture of a study is written to.
+pub const ENDINGS: &[&str] = if cfg!(feature = "png") { &["svg", "png"] } else { &["svg"] };
+
+/// Colours that differ in print and for the colour-blind (Okabe and Ito).
+const COLOURS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(90, 90, 90),
+];
+
+/// Colour of the i-th series.
+pub fn colour(i: usize) -> RGBColor {
+    COLOURS[i % COLOURS.len()]
+}
+
+/// Draws a picture and writes it to `path`, as PNG if that is its ending.
+///
+/// # Errors
+/// [`WriteError::Encode`] when it cannot be drawn; [`WriteError::Io`] when it cannot be written.
+pub fn write(path: &Path, size: (u32, u32), draw: impl FnOnce(&Area) -> Drawn) -> Result<(), WriteError> {
+    let encode = |reason: String| WriteError::Encode { path: path.to_path_buf(), reason };
+    let svg = svg(size, draw).map_err(|e| encode(e.to_string()))?;
+    let bytes = match path.extension().and_then(|ending| ending.to_str()) {
+        Some("svg") => svg.into_bytes(),
+        Some("png") => png(&svg).map_err(encode)?,
+        _ => return Err(encode("the name of a picture ends in .svg or .png".into())),
+    };
+    atomic::write(path, &bytes)
+}
+
+fn svg(size: (u32, u32), draw: impl FnOnce(&Area) -> Drawn) -> Result<String, Box<dyn std::error::Error>> {
+    let mut text = String::new();
+    {
+        let root = SVGBackend::with_string(&mut text, size).into_drawing_area();
+        root.fill(&WHITE)?;
+        draw(&root)?;
+        root.present()?;
+    }
+    Ok(text)
+}
+
+#[cfg(feature = "png")]
+fn png(svg: &str) -> Result<Vec<u8>, String> {
+    use resvg::{tiny_skia, usvg};
+    let mut options = usvg::Options::default();
+    let fonts = options.fontdb_mut();
+    fonts.load_font_data(dejavu::sans::regular().to_vec());
+    fonts.set_sans_serif_family("DejaVu Sans");
+    let tree = usvg::Tree::from_str(svg, &options).map_err(|e| e.to_string())?;
+    let size = tree.size().to_int_size().scale_by(PNG_SCALE).ok_or("the picture has no size")?;
+    let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height()).ok_or("the picture is too large")?;
+    resvg::render(&tree, tiny_skia::Transform::from_scale(PNG_SCALE, PNG_SCALE), &mut pixels.as_mut());
+    pixels.encode_png().map_err(|e| e.to_string())
+}
+
+#[cfg(not(feature = "png"))]
+fn png(_: &str) -> Result<Vec<u8>, String> {
+    Err("this program was built without the feature `png`: choose .svg".into())
+}
+
+/// What each series is called, in a box.
+///
+/// # Errors
+/// It cannot be drawn.
+pub fn legend<'a, 'b: 'a, X, Y>(
+    chart: &mut ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>,
+    position: SeriesLabelPosition,
+) -> Drawn
+where
+    X: Ranged<ValueType = f64>,
+    Y: Ranged<ValueType = f64>,
+{
+    chart
+        .configure_series_labels()
+        .position(position)
+        .background_style(WHITE.mix(0.85))
+        .border_style(RGBColor(200, 200, 200))
+        .label_font(("sans-serif", 14))
+        .draw()?;
+    Ok(())
+}
+
+/// A number on an axis.
+pub fn number(value: f64) -> String {
+    if value == 0.0 || (0.01..1e4).contains(&value.abs()) {
+        format!("{value:.3}")
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
+/// A number on a logarithmic axis, `0.02` or `3e-5`.
+pub fn short(value: f64) -> String {
+    let plain = (1e-2..1e4).contains(&value);
+    if plain { format!("{}", (value * 1e6).round() / 1e6) } else { format!("{value:.0e}") }
+}
+
+/// Ends of a logarithmic axis around values above zero, a little wider; a decade where there are none.
+pub fn log_range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+    let used = values.filter(|v| *v > 0.0 && v.is_finite());
+    let (least, most) = used.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
+    if least > most {
+        return 0.1..1.0;
+    }
+    let room = (most / least).powf(0.06).max(1.3);
+    least / room..most * room
+}
+
+/// Ends of an axis around values, a little wider.
+pub fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+    let used = values.filter(|v| v.is_finite());
+    let (least, most) = used.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+    if least > most {
+        return 0.0..1.0;
+    }
+    let room = if most > least { 0.04 * (most - least) } else { least.abs().max(1.0) };
+    least - room..most + room
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_hold_their_values_and_are_never_empty() {
+        for values in [vec![1.0, 5.0], vec![2.0], vec![], vec![0.0, 0.0], vec![f64::NAN, 1e-9]] {
+            let (log, plain) = (log_range(values.iter().copied()), range(values.iter().copied()));
+            assert!(0.0 < log.start && log.start < log.end && plain.start < plain.end, "{values:?}");
+            for value in values.iter().filter(|v| v.is_finite()) {
+                assert!(plain.contains(value) && (*value == 0.0 || log.contains(value)), "{value}");
+            }
+        }
+    }
+
+    #[test]
+    fn numbers_on_logarithmic_axes_are_short() {
+        assert_eq!([0.1 + 0.2, 1e-5, 20.0, 1e5].map(short), ["0.3", "1e-5", "20", "1e5"]);
+    }
+
+    #[test]
+    fn a_picture_is_what_its_ending_says() {
+        let folder = tempfile::tempdir().unwrap();
+        let draw = |root: &Area| -> Drawn { Ok(root.titled("title", ("sans-serif", 20)).map(drop)?) };
+        let written = |name: &str| {
+            let path = folder.path().join(name);
+            write(&path, (200, 100), draw).map(|()| std::fs::read(path).unwrap())
+        };
+        assert!(written("a.svg").unwrap().starts_with(b"<svg"));
+        assert!(written("a.gif").unwrap_err().to_string().contains(".svg or .png"));
+        if cfg!(feature = "png") {
+            let png = written("a.png").unwrap();
+            let size = |at: usize| u32::from_be_bytes(png[at..at + 4].try_into().unwrap());
+            assert!(png.starts_with(b"\x89PNG"));
+            assert_eq!((size(16), size(20)), (400, 200));
+        }
+    }
+}
