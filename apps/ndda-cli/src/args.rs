@@ -59,26 +59,12 @@ pub struct StudyArgs {
     /// Part of a study.
     #[command(subcommand)]
     pub part: Option<StudyPart>,
-    /// All of it.
+    /// Study file (RON; see docs/study.md).
+    #[arg(required = true)]
+    pub study: Option<PathBuf>,
+    /// Where and how.
     #[command(flatten)]
-    pub all: Option<StudyRunArgs>,
-}
-
-/// Parts of a study, for schedulers.
-#[derive(Debug, Subcommand)]
-pub enum StudyPart {
-    /// Run one case.
-    Case(StudyCaseArgs),
-    /// Gather the results of the cases that have run.
-    Collect(StudyCollectArgs),
-}
-
-/// Arguments of `ndda study STUDY`.
-#[derive(Debug, Args)]
-pub struct StudyRunArgs {
-    /// What and where.
-    #[command(flatten)]
-    pub common: StudyCommon,
+    pub how: StudyHow,
     /// Cases that run at a time; more than one disturbs their times.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: u16,
@@ -90,32 +76,43 @@ pub struct StudyRunArgs {
     pub json: bool,
 }
 
-/// Arguments of `ndda study collect`.
-#[derive(Debug, Args)]
-pub struct StudyCollectArgs {
-    /// What and where.
-    #[command(flatten)]
-    pub common: StudyCommon,
-    /// Print the results as JSON.
-    #[arg(long)]
-    pub json: bool,
+/// Parts of a study, for schedulers.
+#[derive(Debug, Subcommand)]
+pub enum StudyPart {
+    /// Run one case.
+    Case(StudyCaseArgs),
+    /// Gather the results of the cases that have run.
+    Collect(StudyCollectArgs),
 }
 
 /// Arguments of `ndda study case`.
 #[derive(Debug, Args)]
 pub struct StudyCaseArgs {
-    /// What and where.
-    #[command(flatten)]
-    pub common: StudyCommon,
+    /// Study file.
+    pub study: PathBuf,
     /// Name of the case.
     pub case: String,
+    /// Where and how.
+    #[command(flatten)]
+    pub how: StudyHow,
+}
+
+/// Arguments of `ndda study collect`.
+#[derive(Debug, Args)]
+pub struct StudyCollectArgs {
+    /// Study file.
+    pub study: PathBuf,
+    /// Where and how.
+    #[command(flatten)]
+    pub how: StudyHow,
+    /// Print the results as JSON.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// What all parts of a study take.
 #[derive(Debug, Args)]
-pub struct StudyCommon {
-    /// Study file (RON; see docs/study.md).
-    pub study: PathBuf,
+pub struct StudyHow {
     /// Output folder [default: out/ and the name of the study with _study].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

@@ -14,11 +14,12 @@ mod table;
 mod write;
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 
 use ndda_io::WriteError;
 use ndda_io::study::{self, LoadedStudy};
 
-use crate::args::{StudyArgs, StudyCommon, StudyPart, StudyRunArgs};
+use crate::args::{StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 use crate::console::{complain, say};
 use crate::{exit, interrupt};
 use case::Case;
@@ -29,16 +30,14 @@ use result::Results;
 
 /// Runs `ndda study`; returns the exit code.
 pub fn study(args: &StudyArgs) -> u8 {
-    let outcome = match (&args.part, &args.all) {
-        (Some(StudyPart::Case(case)), _) => run_one(&case.common, &case.case),
-        (Some(StudyPart::Collect(args)), _) => {
-            Opened::new(&args.common).and_then(|o| gather(&o, &args.common, args.json))
+    let outcome = match (&args.part, &args.study) {
+        (Some(StudyPart::Case(case)), _) => run_one(case),
+        (Some(StudyPart::Collect(collect)), _) => {
+            Opened::new(&collect.study, &collect.how).and_then(|opened| gather(&opened, collect.json))
         }
-        (None, Some(all)) => run_all(all),
-        (None, None) => {
-            complain("error: name a study file (see ndda study --help)");
-            return exit::USAGE;
-        }
+        (None, Some(study)) => run_all(study, args),
+        // The command line asks for one before it comes to this.
+        (None, None) => return exit::USAGE,
     };
     outcome.unwrap_or_else(|error| {
         complain(&error.to_string());
@@ -46,24 +45,24 @@ pub fn study(args: &StudyArgs) -> u8 {
     })
 }
 
-/// A study that is read, and where it goes.
-struct Opened {
+/// A study that is read, and where and how it runs.
+struct Opened<'a> {
     loaded: LoadedStudy,
     name: String,
     cases: Vec<Case>,
     references: Vec<Case>,
     out: PathBuf,
+    how: &'a StudyHow,
 }
 
-impl Opened {
-    fn new(common: &StudyCommon) -> Result<Self, StudyError> {
-        let loaded = study::load(&common.study).map_err(StudyError::Scene)?;
+impl<'a> Opened<'a> {
+    fn new(study: &Path, how: &'a StudyHow) -> Result<Self, StudyError> {
+        let loaded = study::load(study).map_err(StudyError::Scene)?;
         let cases = case::cases(&loaded)?;
         let references = case::reference_cases(&loaded, &cases)?;
-        let name =
-            common.study.file_stem().map_or_else(|| "study".into(), |s| s.to_string_lossy().into_owned());
-        let out = common.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_study")));
-        Ok(Self { loaded, name, cases, references, out })
+        let name = study.file_stem().map_or_else(|| "study".into(), |s| s.to_string_lossy().into_owned());
+        let out = how.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_study")));
+        Ok(Self { loaded, name, cases, references, out, how })
     }
 
     /// All that runs, what the others are compared with first.
@@ -71,38 +70,33 @@ impl Opened {
         self.references.iter().chain(&self.cases).cloned().collect()
     }
 
-    fn launch<'a>(
-        &'a self,
-        common: &StudyCommon,
-        jobs: u16,
-        asked: &'a std::sync::atomic::AtomicBool,
-    ) -> Launch<'a> {
-        let (threads, quiet) = (common.threads, common.quiet);
-        Launch { loaded: &self.loaded, out: &self.out, jobs, threads, quiet, asked_to_end: asked }
+    fn launch<'b>(&'b self, jobs: u16, asked_to_end: &'b AtomicBool) -> Launch<'b> {
+        let (threads, quiet) = (self.how.threads, self.how.quiet);
+        Launch { loaded: &self.loaded, out: &self.out, jobs, threads, quiet, asked_to_end }
     }
 }
 
-fn run_all(args: &StudyRunArgs) -> Result<u8, StudyError> {
-    let opened = Opened::new(&args.common)?;
+fn run_all(study: &Path, args: &StudyArgs) -> Result<u8, StudyError> {
+    let opened = Opened::new(study, &args.how)?;
     if let Some(kind) = args.emit {
-        let (study, out, threads) = (args.common.study.as_path(), opened.out.as_path(), args.common.threads);
+        let (out, threads) = (opened.out.as_path(), args.how.threads);
         say(&emit::script(&Plan { study, out, jobs: args.jobs, threads }, &opened.runs(), kind));
         return Ok(exit::DONE);
     }
     make_folder(&opened.out)?;
-    let asked = interrupt::watch();
-    opened.launch(&args.common, args.jobs, &asked).run_all(&opened.runs())?;
-    gather(&opened, &args.common, args.json)
+    let asked_to_end = interrupt::watch();
+    opened.launch(args.jobs, &asked_to_end).run_all(&opened.runs())?;
+    gather(&opened, args.json)
 }
 
-fn run_one(common: &StudyCommon, name: &str) -> Result<u8, StudyError> {
-    let opened = Opened::new(common)?;
-    let runs = opened.runs();
-    let case = runs.iter().find(|case| case.name == name).ok_or_else(|| StudyError::NoCase(name.into()))?;
+fn run_one(args: &StudyCaseArgs) -> Result<u8, StudyError> {
+    let opened = Opened::new(&args.study, &args.how)?;
+    let (runs, name) = (opened.runs(), &args.case);
+    let case = runs.iter().find(|case| case.name == *name).ok_or_else(|| StudyError::NoCase(name.clone()))?;
     make_folder(&opened.out)?;
-    let asked = interrupt::watch();
-    let said = opened.launch(common, 1, &asked).run_case(case)?;
-    if !common.quiet {
+    let asked_to_end = interrupt::watch();
+    let said = opened.launch(1, &asked_to_end).run_case(case)?;
+    if !args.how.quiet {
         say(&format!("{name}: {said}"));
     }
     Ok(exit::DONE)
@@ -118,9 +112,9 @@ fn make_folder(out: &Path) -> Result<(), StudyError> {
 }
 
 /// Reads what has run, writes and prints the results.
-fn gather(opened: &Opened, common: &StudyCommon, as_json: bool) -> Result<u8, StudyError> {
-    let asked = std::sync::atomic::AtomicBool::new(false);
-    let launch = opened.launch(common, 1, &asked);
+fn gather(opened: &Opened, as_json: bool) -> Result<u8, StudyError> {
+    let never = AtomicBool::new(false);
+    let launch = opened.launch(1, &never);
     let results = Results::gather(&launch, &opened.name, (&opened.cases, &opened.references))?;
     make_folder(&opened.out)?;
     let json = write::all(&opened.out, &results)?;
