@@ -1,9 +1,11 @@
 //! Pictures: drawn once as SVG; a PNG is that SVG rendered with a font that the program brings.
 
+use std::ops::Range;
 use std::path::Path;
 
 use ndda_io::{WriteError, atomic};
 use plotters::coord::Shift;
+use plotters::coord::combinators::{BindKeyPoints, IntoLogRange, LogCoord, WithKeyPoints};
 use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
 
@@ -18,6 +20,9 @@ const PNG_SCALE: f32 = 2.0;
 
 /// Endings of the files that every picture of a study is written to.
 pub const ENDINGS: &[&str] = if cfg!(feature = "png") { &["svg", "png"] } else { &["svg"] };
+
+/// Most marks of a logarithmic axis.
+const MOST_MARKS: usize = 8;
 
 /// Colours that differ in print and for the colour-blind (Okabe and Ito).
 const COLOURS: [RGBColor; 7] = [
@@ -102,23 +107,18 @@ where
     Ok(())
 }
 
-/// A number on an axis.
-pub fn number(value: f64) -> String {
-    if value == 0.0 || (0.01..1e4).contains(&value.abs()) {
-        format!("{value:.3}")
+/// A number on an axis, to six digits: `0.02` or `3e-5`.
+pub fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-2..1e5).contains(&rounded.abs()) {
+        rounded.to_string()
     } else {
-        format!("{value:.1e}")
+        format!("{rounded:e}")
     }
 }
 
-/// A number on a logarithmic axis, `0.02` or `3e-5`.
-pub fn short(value: f64) -> String {
-    let plain = (1e-2..1e4).contains(&value);
-    if plain { format!("{}", (value * 1e6).round() / 1e6) } else { format!("{value:.0e}") }
-}
-
 /// Ends of a logarithmic axis around values above zero, a little wider; a decade where there are none.
-pub fn log_range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+pub fn log_range(values: impl Iterator<Item = f64>) -> Range<f64> {
     let used = values.filter(|v| *v > 0.0 && v.is_finite());
     let (least, most) = used.fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(v), b.max(v)));
     if least > most {
@@ -128,8 +128,31 @@ pub fn log_range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
     least / room..most * room
 }
 
+/// A logarithmic axis with marks at powers of ten, and at two and five times those where they are few.
+pub fn log_axis(ends: Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
+    let marks = log_marks(&ends);
+    ends.log_scale().with_key_points(marks)
+}
+
+fn log_marks(ends: &Range<f64>) -> Vec<f64> {
+    let decades = (ends.start.log10().floor() as i32..=ends.end.log10().ceil() as i32).collect::<Vec<_>>();
+    let at = |factors: &[f64]| -> Vec<f64> {
+        let all = decades.iter().flat_map(|k| factors.iter().map(move |f| f * 10f64.powi(*k)));
+        all.filter(|mark| ends.contains(mark)).collect()
+    };
+    let [powers, halves, all] =
+        [at(&[1.0]), at(&[1.0, 2.0, 5.0]), at(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0])];
+    if powers.len() > 3 {
+        powers.iter().copied().step_by(powers.len().div_ceil(MOST_MARKS)).collect()
+    } else if halves.len() > 1 {
+        halves
+    } else {
+        all
+    }
+}
+
 /// Ends of an axis around values, a little wider.
-pub fn range(values: impl Iterator<Item = f64>) -> std::ops::Range<f64> {
+pub fn range(values: impl Iterator<Item = f64>) -> Range<f64> {
     let used = values.filter(|v| v.is_finite());
     let (least, most) = used.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
     if least > most {
@@ -155,8 +178,19 @@ mod tests {
     }
 
     #[test]
-    fn numbers_on_logarithmic_axes_are_short() {
-        assert_eq!([0.1 + 0.2, 1e-5, 20.0, 1e5].map(short), ["0.3", "1e-5", "20", "1e5"]);
+    fn logarithmic_axes_have_a_few_round_marks() {
+        assert_eq!(
+            log_marks(&(0.03..3.0)).iter().copied().map(short).collect::<Vec<_>>().join(" "),
+            "0.05 0.1 0.2 0.5 1 2"
+        );
+        assert_eq!(log_marks(&(2e-9..3e-4)).len(), 5);
+        assert_eq!(log_marks(&(332.0..561.0)), [400.0, 500.0]);
+        assert!(log_marks(&(1e-17..1e3)).len() <= MOST_MARKS);
+    }
+
+    #[test]
+    fn numbers_on_axes_are_short() {
+        assert_eq!([0.1 + 0.2, 1e-5, -20.0, 1.5e5, 0.0].map(short), ["0.3", "1e-5", "-20", "1.5e5", "0"]);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use plotters::prelude::*;
 use crate::args::PlotArgs;
 use crate::console::{complain, say};
 use crate::exit;
-use crate::picture::{self, Area, Drawn, colour, log_range, number, range, short};
+use crate::picture::{self, Area, Drawn, colour, log_axis, log_range, range, short};
 
 /// Width and height of the picture [px].
 const SIZE: (u32, u32) = (960, 600);
@@ -131,9 +131,9 @@ fn draw(root: &Area, lines: &[Line], axes: &[String; 2], log: bool) -> Drawn {
     let points = || lines.iter().flat_map(|line| line.points.iter().copied());
     let x = range(points().map(|p| p.0));
     if log {
-        chart(root, lines, axes, x, log_range(points().map(|p| p.1)).log_scale(), &|y| short(*y))
+        chart(root, lines, axes, x, log_axis(log_range(points().map(|p| p.1))))
     } else {
-        chart(root, lines, axes, x, range(points().map(|p| p.1)), &|y| number(*y))
+        chart(root, lines, axes, x, range(points().map(|p| p.1)))
     }
 }
 
@@ -144,7 +144,6 @@ fn chart<Y>(
     [x_title, y_title]: &[String; 2],
     x: std::ops::Range<f64>,
     y: Y,
-    y_label: &dyn Fn(&f64) -> String,
 ) -> Drawn
 where
     Y: AsRangedCoord<Value = f64>,
@@ -165,8 +164,8 @@ where
         .y_desc(y_title.as_str())
         .label_style(("sans-serif", 14))
         .axis_desc_style(("sans-serif", 16))
-        .x_label_formatter(&|x| number(*x))
-        .y_label_formatter(y_label)
+        .x_label_formatter(&|x| short(*x))
+        .y_label_formatter(&|y| short(*y))
         .draw()?;
     for (i, line) in lines.iter().enumerate() {
         let style = colour(i).stroke_width(2);

@@ -3,7 +3,7 @@
 use plotters::prelude::*;
 
 use super::report::{Bars, MeshReport};
-use crate::picture::{Area, Drawn, number};
+use crate::picture::{Area, Drawn};
 
 /// Width and height of the picture [px].
 pub const SIZE: (u32, u32) = (1000, 700);
@@ -48,4 +48,12 @@ fn panel(area: &Area, title: &str, bars: &Bars) -> Drawn {
         Rectangle::new([(left, 0.0), (right, bars.counts[i] as f64)], BAR.filled())
     }))?;
     Ok(())
+}
+
+fn number(value: f64) -> String {
+    if value == 0.0 || (0.01..1e4).contains(&value.abs()) {
+        format!("{value:.3}")
+    } else {
+        format!("{value:.1e}")
+    }
 }

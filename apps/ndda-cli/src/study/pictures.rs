@@ -3,24 +3,25 @@
 use std::path::Path;
 
 use ndda_io::WriteError;
-use plotters::coord::combinators::LogCoord;
+use plotters::coord::combinators::{LogCoord, WithKeyPoints};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::front::{Point, front};
 use super::result::{CasePoint, Figures, Results};
 use super::table::WHICH;
-use crate::picture::{self, Area, Drawn, colour, log_range, short};
+use crate::picture::{self, Area, Drawn, colour, log_axis, log_range, short};
 
 /// Width and height of the pictures with two frames [px].
 const SIZE: (u32, u32) = (1280, 560);
 /// Errors of exactly zero are drawn here.
 const ZERO: f64 = 1e-17;
-/// Height of a bar with its room, width of the picture of stages, room for names and legend beside the bars [px].
+/// Height of a bar with its room, width of the picture of stages, room for names beside the bars [px].
 const BAR: u32 = 24;
 const WIDE: u32 = 1100;
 const NAMES: u32 = 330;
-const LEGEND: u32 = 120;
+/// End of the axis of shares [%]; beyond 100 is room for the legend.
+const FULL: f64 = 118.0;
 
 /// Draws and writes all of them.
 ///
@@ -72,7 +73,8 @@ fn pair(root: &Area, results: &Results, across: &Across) -> Drawn {
 }
 
 /// A frame whose axes are both logarithmic.
-type Frame<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<LogCoord<f64>, LogCoord<f64>>>;
+type Frame<'a, 'b> =
+    ChartContext<'a, SVGBackend<'b>, Cartesian2d<WithKeyPoints<LogCoord<f64>>, WithKeyPoints<LogCoord<f64>>>>;
 
 /// Errors of one kind, one colour per curve; the front is a grey band.
 fn frame(area: &Area, results: &Results, across: &Across, which: usize) -> Drawn {
@@ -80,15 +82,15 @@ fn frame(area: &Area, results: &Results, across: &Across, which: usize) -> Drawn
     let place = |f: &Figures| (across.of(f), f.point(which, floor.max(ZERO)).error);
     let all: Vec<(f64, f64)> = results.points.iter().filter_map(|p| p.figures.as_ref()).map(place).collect();
     let (x, y) = (log_range(all.iter().map(|p| p.0)), log_range(all.iter().map(|p| p.1)));
-    let ends = [(x.start, floor), (x.end, floor)];
+    let (ends, seen) = ([(x.start, floor), (x.end, floor)], y.contains(&floor));
     let mut chart = ChartBuilder::on(area)
         .margin(14)
         .x_label_area_size(46)
         .y_label_area_size(72)
-        .build_cartesian_2d(x.log_scale(), y.log_scale())?;
+        .build_cartesian_2d(log_axis(x), log_axis(y))?;
     chart
         .configure_mesh()
-        .light_line_style(RGBColor(242, 242, 242))
+        .light_line_style(TRANSPARENT)
         .bold_line_style(RGBColor(215, 215, 215))
         .x_desc(across.title())
         .y_desc(format!("{} [-]", WHICH[which]))
@@ -102,7 +104,7 @@ fn frame(area: &Area, results: &Results, across: &Across, which: usize) -> Drawn
         let best = front(&points).into_iter().map(|i| all[i]).collect::<Vec<_>>();
         line(&mut chart, best, RGBColor(190, 190, 190).stroke_width(7), "front")?;
     }
-    if floor > 0.0 {
+    if seen {
         line(&mut chart, ends.to_vec(), BLACK.stroke_width(1), "as exact as the references")?;
     }
     curves(&mut chart, results, &place)?;
@@ -144,19 +146,19 @@ fn stages(root: &Area, results: &Results) -> Drawn {
         .margin(14)
         .x_label_area_size(46)
         .y_label_area_size(NAMES)
-        .right_y_label_area_size(LEGEND)
-        .build_cartesian_2d(0.0..100.0, count..0.0)?;
+        .build_cartesian_2d(0.0..FULL, count..0.0)?;
     chart
         .configure_mesh()
-        .disable_y_mesh()
+        .disable_mesh()
         .disable_y_axis()
+        .x_labels(12)
         .x_desc("share of the wall time [%]")
         .label_style(("sans-serif", 14))
         .axis_desc_style(("sans-serif", 16))
-        .x_label_formatter(&|v| format!("{v:.0}"))
+        .x_label_formatter(&|v| if *v > 100.0 { String::new() } else { format!("{v:.0}") })
         .draw()?;
     for (k, name) in names.iter().enumerate() {
-        let fill = colour(k).mix(0.85).filled();
+        let fill = colour(k).filled();
         let bar = |(i, (_, f)): (usize, &(&CasePoint, &Figures))| {
             let before: f64 = names[..k].iter().map(|earlier| share(f, earlier)).sum();
             let (left, right) = (100.0 * before, 100.0 * (before + share(f, name)));
@@ -172,5 +174,5 @@ fn stages(root: &Area, results: &Results) -> Drawn {
         let words = format!("{}: {:.3} s", point.choices(), f.wall_s);
         EmptyElement::at((0.0, i as f64 + 0.5)) + Text::new(words, (-8, 0), font.clone())
     }))?;
-    picture::legend(&mut chart, SeriesLabelPosition::Coordinate((WIDE - NAMES - LEGEND) as i32, 0))
+    picture::legend(&mut chart, SeriesLabelPosition::UpperRight)
 }
