@@ -6,8 +6,8 @@ use std::path::Path;
 use ndda_io::{WriteError, atomic};
 use plotters::coord::Shift;
 use plotters::coord::combinators::{BindKeyPoints, IntoLogRange, LogCoord, WithKeyPoints};
-use plotters::coord::ranged1d::Ranged;
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Where things are drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -20,6 +20,9 @@ const PNG_SCALE: f32 = 2.0;
 
 /// Endings of the files that every picture of a study is written to.
 pub const ENDINGS: &[&str] = if cfg!(feature = "png") { &["svg", "png"] } else { &["svg"] };
+
+/// Height of a line of a key [px].
+const KEY_LINE: i32 = 22;
 
 /// Most marks of a logarithmic axis.
 const MOST_MARKS: usize = 8;
@@ -85,25 +88,17 @@ fn png(_: &str) -> Result<Vec<u8>, String> {
     Err("this program was built without the feature `png`: choose .svg".into())
 }
 
-/// What each series is called, in a box.
+/// What each colour stands for, one below the other; `width` is that of the line in the picture [px].
 ///
 /// # Errors
 /// It cannot be drawn.
-pub fn legend<'a, 'b: 'a, X, Y>(
-    chart: &mut ChartContext<'a, SVGBackend<'b>, Cartesian2d<X, Y>>,
-    position: SeriesLabelPosition,
-) -> Drawn
-where
-    X: Ranged<ValueType = f64>,
-    Y: Ranged<ValueType = f64>,
-{
-    chart
-        .configure_series_labels()
-        .position(position)
-        .background_style(WHITE.mix(0.85))
-        .border_style(RGBColor(200, 200, 200))
-        .label_font(("sans-serif", 14))
-        .draw()?;
+pub fn key(area: &Area, entries: &[(String, RGBColor, u32)]) -> Drawn {
+    let font = TextStyle::from(("sans-serif", 14).into_font()).pos(Pos::new(HPos::Left, VPos::Center));
+    for (i, (name, colour, width)) in entries.iter().enumerate() {
+        let y = 24 + KEY_LINE * i as i32;
+        area.draw(&PathElement::new([(4, y), (26, y)], colour.stroke_width(*width)))?;
+        area.draw(&Text::new(name.as_str(), (36, y), font.clone()))?;
+    }
     Ok(())
 }
 
@@ -132,6 +127,14 @@ pub fn log_range(values: impl Iterator<Item = f64>) -> Range<f64> {
 pub fn log_axis(ends: Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
     let marks = log_marks(&ends);
     ends.log_scale().with_key_points(marks)
+}
+
+/// A logarithmic axis of whole numbers with marks at the values themselves.
+pub fn count_axis(ends: Range<f64>, mut values: Vec<f64>) -> WithKeyPoints<LogCoord<f64>> {
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    let step = values.len().div_ceil(MOST_MARKS).max(1);
+    ends.log_scale().with_key_points(values.into_iter().step_by(step).collect())
 }
 
 fn log_marks(ends: &Range<f64>) -> Vec<f64> {

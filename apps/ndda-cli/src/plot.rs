@@ -13,7 +13,9 @@ use crate::exit;
 use crate::picture::{self, Area, Drawn, colour, log_axis, log_range, range, short};
 
 /// Width and height of the picture [px].
-const SIZE: (u32, u32) = (960, 600);
+const SIZE: (u32, u32) = (1160, 600);
+/// Width of the part of it that tells colours [px].
+const KEY: u32 = 230;
 /// Endings of columns that are units, the longer ones before those that they end in.
 const UNITS: [(&str, &str); 6] =
     [("_kg_m2_s", "kg m²/s"), ("_kg_m_s", "kg m/s"), ("_m_s", "m/s"), ("_m", "m"), ("_j", "J"), ("_s", "s")];
@@ -70,11 +72,10 @@ fn plot_or_list(args: &PlotArgs) -> Result<String, PlotError> {
             names.push(table.names[y].clone());
             let run = if tables.len() > 1 { format!("{}: ", label(input)) } else { String::new() };
             let points = table.columns[x].iter().copied().zip(table.columns[y].iter().copied());
-            let kept = points.filter(|(x, y)| x.is_finite() && y.is_finite() && !(args.log && *y <= 0.0));
-            lines.push(Line { name: format!("{run}{}", table.names[y]), points: kept.collect() });
+            lines.push(Line { name: format!("{run}{}", table.names[y]), points: points.collect() });
         }
     }
-    if lines.iter().all(|line| line.points.is_empty()) {
+    if !lines.iter().flat_map(|line| &line.points).any(|(x, y)| drawable(*x, *y, args.log)) {
         return Err(PlotError::Empty(if args.log { " and above zero" } else { "" }));
     }
     let axes = [axis_title(&[against]), axis_title(&names)];
@@ -128,12 +129,14 @@ fn axis_title(names: &[String]) -> String {
 }
 
 fn draw(root: &Area, lines: &[Line], axes: &[String; 2], log: bool) -> Drawn {
+    let (frame, key) = root.split_horizontally(SIZE.0 - KEY);
+    let entry = |(i, line): (usize, &Line)| (line.name.clone(), colour(i), 2);
+    picture::key(&key, &lines.iter().enumerate().map(entry).collect::<Vec<_>>())?;
     let points = || lines.iter().flat_map(|line| line.points.iter().copied());
-    let x = range(points().map(|p| p.0));
-    if log {
-        chart(root, lines, axes, x, log_axis(log_range(points().map(|p| p.1))))
-    } else {
-        chart(root, lines, axes, x, range(points().map(|p| p.1)))
+    let (x, y) = (range(points().map(|p| p.0)), || points().map(|p| p.1));
+    match log {
+        true => chart(&frame, lines, axes, x, log_axis(log_range(y())), log),
+        false => chart(&frame, lines, axes, x, range(y()), log),
     }
 }
 
@@ -144,6 +147,7 @@ fn chart<Y>(
     [x_title, y_title]: &[String; 2],
     x: std::ops::Range<f64>,
     y: Y,
+    log: bool,
 ) -> Drawn
 where
     Y: AsRangedCoord<Value = f64>,
@@ -168,13 +172,16 @@ where
         .y_label_formatter(&|y| short(*y))
         .draw()?;
     for (i, line) in lines.iter().enumerate() {
-        let style = colour(i).stroke_width(2);
-        chart
-            .draw_series(LineSeries::new(line.points.iter().copied(), style))?
-            .label(line.name.as_str())
-            .legend(move |(x, y)| PathElement::new([(x, y), (x + 20, y)], style));
+        // What has no logarithm leaves a gap.
+        for part in line.points.split(|(x, y)| !drawable(*x, *y, log)) {
+            chart.draw_series(LineSeries::new(part.iter().copied(), colour(i).stroke_width(2)))?;
+        }
     }
-    picture::legend(&mut chart, SeriesLabelPosition::UpperLeft)
+    Ok(())
+}
+
+fn drawable(x: f64, y: f64, log: bool) -> bool {
+    x.is_finite() && y.is_finite() && (!log || y > 0.0)
 }
 
 #[cfg(test)]

@@ -3,25 +3,26 @@
 use std::path::Path;
 
 use ndda_io::WriteError;
-use plotters::coord::combinators::{LogCoord, WithKeyPoints};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::front::{Point, front};
 use super::result::{CasePoint, Figures, Results};
 use super::table::WHICH;
-use crate::picture::{self, Area, Drawn, colour, log_axis, log_range, short};
+use crate::picture::{self, Area, Drawn, colour, count_axis, log_axis, log_range, short};
 
 /// Width and height of the pictures with two frames [px].
-const SIZE: (u32, u32) = (1280, 560);
+const SIZE: (u32, u32) = (1480, 560);
+/// Width of the part of it that tells colours [px].
+const KEY: u32 = 240;
+/// Colour of the front.
+const FRONT: RGBColor = RGBColor(190, 190, 190);
 /// Errors of exactly zero are drawn here.
 const ZERO: f64 = 1e-17;
 /// Height of a bar with its room, width of the picture of stages, room for names beside the bars [px].
 const BAR: u32 = 24;
 const WIDE: u32 = 1100;
 const NAMES: u32 = 330;
-/// End of the axis of shares [%]; beyond 100 is room for the legend.
-const FULL: f64 = 118.0;
 
 /// Draws and writes all of them.
 ///
@@ -63,18 +64,24 @@ impl Across {
     }
 }
 
-/// Both errors side by side.
+/// Both errors side by side, and what colours stand for.
 fn pair(root: &Area, results: &Results, across: &Across) -> Drawn {
     let root = root.titled(&results.title, ("sans-serif", 20))?;
-    for (which, area) in root.split_evenly((1, 2)).iter().enumerate() {
+    let (frames, key) = root.split_horizontally(SIZE.0 - KEY);
+    for (which, area) in frames.split_evenly((1, 2)).iter().enumerate() {
         frame(area, results, across, which)?;
     }
-    Ok(())
+    let name = |name: String| if name.is_empty() { "all cases".into() } else { name };
+    let curves = results.curve_names().into_iter().enumerate();
+    let mut entries: Vec<_> = curves.map(|(i, curve)| (name(curve), colour(i), 10)).collect();
+    if matches!(across, Across::Time) {
+        entries.push(("front".into(), FRONT, 7));
+    }
+    if results.reference.floors().iter().any(|floor| *floor > 0.0) {
+        entries.push(("as exact as references".into(), BLACK, 1));
+    }
+    picture::key(&key, &entries)
 }
-
-/// A frame whose axes are both logarithmic.
-type Frame<'a, 'b> =
-    ChartContext<'a, SVGBackend<'b>, Cartesian2d<WithKeyPoints<LogCoord<f64>>, WithKeyPoints<LogCoord<f64>>>>;
 
 /// Errors of one kind, one colour per curve; the front is a grey band.
 fn frame(area: &Area, results: &Results, across: &Across, which: usize) -> Drawn {
@@ -83,14 +90,17 @@ fn frame(area: &Area, results: &Results, across: &Across, which: usize) -> Drawn
     let all: Vec<(f64, f64)> = results.points.iter().filter_map(|p| p.figures.as_ref()).map(place).collect();
     let (x, y) = (log_range(all.iter().map(|p| p.0)), log_range(all.iter().map(|p| p.1)));
     let (ends, seen) = ([(x.start, floor), (x.end, floor)], y.contains(&floor));
+    let x = match across {
+        Across::Time => log_axis(x),
+        Across::Dofs => count_axis(x, all.iter().map(|p| p.0).collect()),
+    };
     let mut chart = ChartBuilder::on(area)
         .margin(14)
         .x_label_area_size(46)
         .y_label_area_size(72)
-        .build_cartesian_2d(log_axis(x), log_axis(y))?;
+        .build_cartesian_2d(x, log_axis(y))?;
     chart
         .configure_mesh()
-        .light_line_style(TRANSPARENT)
         .bold_line_style(RGBColor(215, 215, 215))
         .x_desc(across.title())
         .y_desc(format!("{} [-]", WHICH[which]))
@@ -101,34 +111,19 @@ fn frame(area: &Area, results: &Results, across: &Across, which: usize) -> Drawn
         .draw()?;
     if matches!(across, Across::Time) {
         let points: Vec<Point> = all.iter().map(|&(time_s, error)| Point { time_s, error }).collect();
-        let best = front(&points).into_iter().map(|i| all[i]).collect::<Vec<_>>();
-        line(&mut chart, best, RGBColor(190, 190, 190).stroke_width(7), "front")?;
+        chart.draw_series(LineSeries::new(
+            front(&points).into_iter().map(|i| all[i]),
+            FRONT.stroke_width(7),
+        ))?;
     }
     if seen {
-        line(&mut chart, ends.to_vec(), BLACK.stroke_width(1), "as exact as the references")?;
+        chart.draw_series(LineSeries::new(ends, BLACK.stroke_width(1)))?;
     }
-    curves(&mut chart, results, &place)?;
-    picture::legend(&mut chart, SeriesLabelPosition::LowerLeft)
-}
-
-fn line(chart: &mut Frame, points: Vec<(f64, f64)>, style: ShapeStyle, label: &str) -> Drawn {
-    let sample = move |(x, y): (i32, i32)| PathElement::new([(x, y), (x + 18, y)], style);
-    chart.draw_series(LineSeries::new(points, style))?.label(label).legend(sample);
-    Ok(())
-}
-
-/// The points of each curve, joined in the order of the cases.
-fn curves(chart: &mut Frame, results: &Results, place: &dyn Fn(&Figures) -> (f64, f64)) -> Drawn {
     for (i, name) in results.curve_names().into_iter().enumerate() {
         let on = results.points.iter().filter(|point| point.curve(&results.curves) == name);
         let places: Vec<(f64, f64)> = on.filter_map(|point| point.figures.as_ref()).map(place).collect();
-        let (fill, thin) = (colour(i).filled(), colour(i).stroke_width(1));
-        chart.draw_series(LineSeries::new(places.iter().copied(), thin))?;
-        let label = if name.is_empty() { "all cases".to_string() } else { name };
-        chart
-            .draw_series(places.into_iter().map(|place| Circle::new(place, 5, fill)))?
-            .label(label)
-            .legend(move |(x, y)| Circle::new((x + 9, y), 5, fill));
+        chart.draw_series(LineSeries::new(places.iter().copied(), colour(i).stroke_width(1)))?;
+        chart.draw_series(places.into_iter().map(|place| Circle::new(place, 5, colour(i).filled())))?;
     }
     Ok(())
 }
@@ -142,11 +137,12 @@ fn stages(root: &Area, results: &Results) -> Drawn {
         |f: &Figures, name: &str| f.run.stages_s.get(name).and_then(|s| s.as_f64()).unwrap_or(0.0) / f.wall_s;
     let count = done.len() as f64;
     let root = root.titled(&format!("{}: where the time goes", results.title), ("sans-serif", 20))?;
-    let mut chart = ChartBuilder::on(&root)
+    let (frame, key) = root.split_horizontally(WIDE - KEY / 2);
+    let mut chart = ChartBuilder::on(&frame)
         .margin(14)
         .x_label_area_size(46)
         .y_label_area_size(NAMES)
-        .build_cartesian_2d(0.0..FULL, count..0.0)?;
+        .build_cartesian_2d(0.0..100.0, count..0.0)?;
     chart
         .configure_mesh()
         .disable_mesh()
@@ -155,24 +151,21 @@ fn stages(root: &Area, results: &Results) -> Drawn {
         .x_desc("share of the wall time [%]")
         .label_style(("sans-serif", 14))
         .axis_desc_style(("sans-serif", 16))
-        .x_label_formatter(&|v| if *v > 100.0 { String::new() } else { format!("{v:.0}") })
+        .x_label_formatter(&|v| format!("{v:.0}"))
         .draw()?;
     for (k, name) in names.iter().enumerate() {
-        let fill = colour(k).filled();
         let bar = |(i, (_, f)): (usize, &(&CasePoint, &Figures))| {
             let before: f64 = names[..k].iter().map(|earlier| share(f, earlier)).sum();
             let (left, right) = (100.0 * before, 100.0 * (before + share(f, name)));
-            Rectangle::new([(left, i as f64 + 0.12), (right, i as f64 + 0.88)], fill)
+            Rectangle::new([(left, i as f64 + 0.12), (right, i as f64 + 0.88)], colour(k).filled())
         };
-        chart
-            .draw_series(done.iter().enumerate().map(bar))?
-            .label(name.as_str())
-            .legend(move |(x, y)| Rectangle::new([(x, y - 5), (x + 12, y + 5)], fill));
+        chart.draw_series(done.iter().enumerate().map(bar))?;
     }
     let font = TextStyle::from(("sans-serif", 13).into_font()).pos(Pos::new(HPos::Right, VPos::Center));
     chart.draw_series(done.iter().enumerate().map(|(i, (point, f))| {
         let words = format!("{}: {:.3} s", point.choices(), f.wall_s);
         EmptyElement::at((0.0, i as f64 + 0.5)) + Text::new(words, (-8, 0), font.clone())
     }))?;
-    picture::legend(&mut chart, SeriesLabelPosition::UpperRight)
+    let entry = |(k, name): (usize, &&String)| (name.to_string(), colour(k), 10);
+    picture::key(&key, &names.iter().enumerate().map(entry).collect::<Vec<_>>())
 }
