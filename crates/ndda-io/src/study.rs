@@ -111,11 +111,8 @@ impl Axis {
     pub fn choices(&self) -> Vec<(String, Vec<String>)> {
         match self {
             Self::Vary { path, values } => {
-                let choice = |value: &Box<RawValue>| {
-                    let text = value.get_ron().trim();
-                    (text.to_string(), vec![format!("{path}={text}")])
-                };
-                values.iter().map(choice).collect()
+                let texts = values.iter().map(|value| value.get_ron().trim());
+                texts.map(|text| (text.to_string(), vec![format!("{path}={text}")])).collect()
             }
             Self::Choose { choices, .. } => {
                 choices.iter().map(|choice| (choice.label.clone(), as_overrides(&choice.set))).collect()
