@@ -119,13 +119,20 @@ fn frame(area: &Area, results: &Results, across: &Across, which: usize) -> Drawn
     if seen {
         chart.draw_series(LineSeries::new(ends, BLACK.stroke_width(1)))?;
     }
-    for (i, name) in results.curve_names().into_iter().enumerate() {
-        let on = results.points.iter().filter(|point| point.curve(&results.curves) == name);
-        let places: Vec<(f64, f64)> = on.filter_map(|point| point.figures.as_ref()).map(place).collect();
+    for (i, places) in curves(results, &place).into_iter().enumerate() {
         chart.draw_series(LineSeries::new(places.iter().copied(), colour(i).stroke_width(1)))?;
         chart.draw_series(places.into_iter().map(|place| Circle::new(place, 5, colour(i).filled())))?;
     }
     Ok(())
+}
+
+/// The places of each curve's points.
+fn curves(results: &Results, place: &dyn Fn(&Figures) -> (f64, f64)) -> Vec<Vec<(f64, f64)>> {
+    let curve = |name: String| {
+        let on = results.points.iter().filter(|point| point.curve(&results.curves) == name);
+        on.filter_map(|point| point.figures.as_ref()).map(place).collect()
+    };
+    results.curve_names().into_iter().map(curve).collect()
 }
 
 /// One bar per case: the seconds of each stage.

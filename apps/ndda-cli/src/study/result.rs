@@ -1,21 +1,15 @@
 //! What a study has found: a point per case, its errors and figures, and the fronts.
 
-use ndda_io::read::LoadedScene;
-use ndda_io::study::Reference;
 use ndda_io::summary::Named;
-use ndda_io::table::{self, Table};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::case::Case;
-use super::difference::{Difference, difference};
 use super::error::StudyError;
 use super::front::{Point, front};
-use super::launch::{Launch, least};
-use super::record::{RESULTS, Record, RunOutcome, folder};
-
-/// Reference runs must agree this many times better than the smallest error that is told apart from zero.
-const AGREE: f64 = 5.0;
+use super::judge::Judge;
+use super::launch::Launch;
+use super::record::{Record, RunOutcome, folder};
 
 /// Everything that a study has found.
 pub struct Results {
@@ -150,6 +144,16 @@ pub struct Counts {
 }
 
 impl CasePoint {
+    /// The point of a case that failed.
+    pub fn failed(case: &Case, reason: String) -> Self {
+        Self {
+            name: case.name.clone(),
+            labels: Named(case.labels.clone()),
+            figures: None,
+            reason: Some(reason),
+        }
+    }
+
     /// All its choices.
     pub fn choices(&self) -> String {
         self.labels.0.iter().map(|(_, label)| label.as_str()).collect::<Vec<_>>().join(", ")
@@ -234,18 +238,9 @@ fn unfinished(launch: &Launch, case: &Case) -> Result<Option<CasePoint>, StudyEr
     let record = Record::read(&folder(launch.out, &case.name))?;
     let record = record.filter(|record| record.identity == launch.identity(case));
     Ok(record.and_then(|record| match record.outcome {
-        RunOutcome::Failed { reason, .. } => Some(failed(case, reason)),
+        RunOutcome::Failed { reason, .. } => Some(CasePoint::failed(case, reason)),
         RunOutcome::Done { .. } => None,
     }))
-}
-
-fn failed(case: &Case, reason: String) -> CasePoint {
-    CasePoint {
-        name: case.name.clone(),
-        labels: Named(case.labels.clone()),
-        figures: None,
-        reason: Some(reason),
-    }
 }
 
 fn mark_fronts(points: &mut [CasePoint], floors: [f64; 2]) {
@@ -254,103 +249,6 @@ fn mark_fronts(points: &mut [CasePoint], floors: [f64; 2]) {
         let all: Vec<Point> = done.iter().map(|figures| figures.point(which, floors[which])).collect();
         for i in front(&all) {
             done[i].on_front[which] = true;
-        }
-    }
-}
-
-/// What judges results.
-enum Judge {
-    ClosedForm,
-    Runs { first: Table, step_s: f64, apart: Difference, monitors: Vec<String> },
-}
-
-impl Judge {
-    fn new(launch: &Launch, references: &[Case]) -> Result<Self, StudyError> {
-        let Reference::Runs { monitors, .. } = &launch.loaded.study.reference else {
-            return Ok(Self::ClosedForm);
-        };
-        let (first, scene) = reference_history(launch, &references[0])?;
-        let (second, _) = reference_history(launch, &references[1])?;
-        let all = || scene.scene.monitors.iter().map(|monitor| monitor.name.clone()).collect();
-        let monitors = monitors.clone().unwrap_or_else(all);
-        let apart = difference(&second, &first, &monitors)
-            .map_err(|source| StudyError::Difference { name: references[1].name.clone(), source })?;
-        Ok(Self::Runs { first, step_s: scene.scene.time.step_s, apart, monitors })
-    }
-
-    fn compared(&self, kind: String) -> Compared {
-        match self {
-            Self::ClosedForm => Compared::ClosedForm { name: kind },
-            Self::Runs { step_s, apart, .. } => Compared::Runs {
-                step_s: *step_s,
-                disagreement_end: apart.end,
-                disagreement_max: apart.max,
-                floor_end: AGREE * apart.end,
-                floor_max: AGREE * apart.max,
-            },
-        }
-    }
-
-    /// The point of a case that has run; `kind` becomes the name of the closed form.
-    fn point(
-        &self,
-        launch: &Launch,
-        case: &Case,
-        record: Record,
-        kind: &mut String,
-    ) -> Result<CasePoint, StudyError> {
-        let (walls_s, summary) = match record.outcome {
-            RunOutcome::Failed { reason, .. } => return Ok(failed(case, reason)),
-            RunOutcome::Done { walls_s, summary } => (walls_s, summary),
-        };
-        let apart = match self {
-            Self::ClosedForm => {
-                let reference = &summary["reference"];
-                let error = |key: &str| reference[key].as_f64();
-                let (Some(end), Some(max)) = (error("error_end"), error("error_max")) else {
-                    return Err(StudyError::NoReference(launch.loaded.scene.clone()));
-                };
-                *kind = reference["kind"].as_str().unwrap_or_default().into();
-                Difference { end, max }
-            }
-            Self::Runs { first, monitors, .. } => difference(&history(launch, case)?, first, monitors)
-                .map_err(|source| StudyError::Difference { name: case.name.clone(), source })?,
-        };
-        let beyond_limits = beyond_limits(&summary);
-        let run: Run = serde_json::from_value(summary).map_err(|e| StudyError::Record {
-            file: folder(launch.out, &case.name),
-            reason: e.to_string(),
-        })?;
-        let wall_s = least(&walls_s);
-        let (error_end, error_max) = (apart.end, apart.max);
-        let figures =
-            Figures { error_end, error_max, on_front: [false; 2], wall_s, walls_s, beyond_limits, run };
-        let (name, labels) = (case.name.clone(), Named(case.labels.clone()));
-        Ok(CasePoint { name, labels, figures: Some(figures), reason: None })
-    }
-}
-
-/// Names of the verdicts that failed.
-fn beyond_limits(summary: &Value) -> Vec<String> {
-    let verdicts = summary["verdicts"].as_object().into_iter().flatten();
-    verdicts.filter(|(_, verdict)| verdict["verdict"] == "fail").map(|(name, _)| name.clone()).collect()
-}
-
-fn history(launch: &Launch, case: &Case) -> Result<Table, StudyError> {
-    let results = folder(launch.out, &case.name).join(RESULTS);
-    Ok(table::read(&results.join(ndda_io::folder::HISTORY))?)
-}
-
-/// History and scene of a reference run.
-fn reference_history(launch: &Launch, case: &Case) -> Result<(Table, LoadedScene), StudyError> {
-    let refuse = |reason: String| StudyError::Reference { name: case.name.clone(), reason };
-    let record = Record::read(&folder(launch.out, &case.name))?;
-    match record.filter(|record| record.identity == launch.identity(case)).map(|record| record.outcome) {
-        None => Err(refuse("it has not run".into())),
-        Some(RunOutcome::Failed { reason, .. }) => Err(refuse(reason)),
-        Some(RunOutcome::Done { .. }) => {
-            let scene = launch.loaded.scene_with(&case.overrides).map_err(StudyError::Scene)?;
-            Ok((history(launch, case)?, scene))
         }
     }
 }
