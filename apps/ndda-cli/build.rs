@@ -13,7 +13,8 @@ fn said(program: &str, arguments: &[&str]) -> Option<String> {
 
 fn main() {
     let rustc = env::var("RUSTC").ok().and_then(|rustc| said(&rustc, &["-V"]));
-    let commit = said("git", &["describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]);
+    let described = || said("git", &["describe", "--always", "--dirty", "--abbrev=12", "--exclude=*"]);
+    let commit = env::var("NDDA_COMMIT").ok().or_else(described);
     let mut features: Vec<String> = env::vars()
         .filter_map(|(name, _)| Some(name.strip_prefix("CARGO_FEATURE_")?.to_lowercase()))
         .filter(|name| name != "default")
@@ -24,6 +25,7 @@ fn main() {
     println!("cargo::rustc-env=NDDA_COMMIT={}", commit.unwrap_or_else(unknown));
     println!("cargo::rustc-env=NDDA_FEATURES={}", features.join(" "));
     println!("cargo::rerun-if-changed=build.rs");
+    println!("cargo::rerun-if-env-changed=NDDA_COMMIT");
     // Grows with every commit; a copy without history has none.
     let log = "../../.git/logs/HEAD";
     if Path::new(log).exists() {

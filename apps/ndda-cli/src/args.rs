@@ -57,6 +57,14 @@ pub enum Verb {
     /// Open the report of a run in a browser; it is written first if it is missing or older than the run.
     #[cfg(feature = "report")]
     View(ViewArgs),
+    /// Run a scene over and over with other steps, integrators, meshes, …: error against time, as tables and pictures.
+    ///
+    /// Writes study.csv, study.json, time_to_error.csv and pictures; the same command goes on where it was interrupted.
+    /// How to write a study and read its results: docs/study.md.
+    Study(StudyArgs),
+    /// Draw columns of histories.
+    #[cfg(feature = "plots")]
+    Plot(PlotArgs),
 }
 
 /// Arguments of `ndda report`.
@@ -85,6 +93,119 @@ pub struct ReportArgs {
 pub struct ViewArgs {
     /// Output folder of a run.
     pub folder: PathBuf,
+}
+
+/// Arguments of `ndda study`.
+#[derive(Debug, Args)]
+#[command(
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
+    after_help = "Examples:\n  ndda study scenes/studies/bounce.ron\n  ndda study s.ron --emit slurm > job.sh\n  ndda study \
+                  collect s.ron"
+)]
+pub struct StudyArgs {
+    /// Part of a study.
+    #[command(subcommand)]
+    pub part: Option<StudyPart>,
+    /// Study file (RON; see docs/study.md).
+    #[arg(required = true)]
+    pub study: Option<PathBuf>,
+    /// Where and how.
+    #[command(flatten)]
+    pub how: StudyHow,
+    /// Cases that run at a time; more than one disturbs their times.
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: u16,
+    /// Run nothing: print what hands the cases to a scheduler.
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub emit: Option<Emit>,
+    /// Print the results as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Parts of a study, for schedulers.
+#[derive(Debug, Subcommand)]
+pub enum StudyPart {
+    /// Run one case.
+    Case(StudyCaseArgs),
+    /// Gather the results of the cases that have run.
+    Collect(StudyCollectArgs),
+}
+
+/// Arguments of `ndda study case`.
+#[derive(Debug, Args)]
+pub struct StudyCaseArgs {
+    /// Study file.
+    pub study: PathBuf,
+    /// Name of the case.
+    pub case: String,
+    /// Where and how.
+    #[command(flatten)]
+    pub how: StudyHow,
+}
+
+/// Arguments of `ndda study collect`.
+#[derive(Debug, Args)]
+pub struct StudyCollectArgs {
+    /// Study file.
+    pub study: PathBuf,
+    /// Where and how.
+    #[command(flatten)]
+    pub how: StudyHow,
+    /// Print the results as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What all parts of a study take.
+#[derive(Debug, Args)]
+pub struct StudyHow {
+    /// Output folder [default: out/ and the name of the study with _study].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Threads of each run.
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: u16,
+    /// Print nothing but errors and results.
+    #[arg(long, short)]
+    pub quiet: bool,
+}
+
+/// What runs the cases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Emit {
+    /// A job array of Slurm.
+    Slurm,
+    /// GNU parallel.
+    Parallel,
+    /// One command per line.
+    List,
+}
+
+/// Arguments of `ndda plot`.
+#[cfg(feature = "plots")]
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  ndda plot out/sliding_45\n  ndda plot out/sliding_45 --columns kinetic,strain -o \
+                        energy.png\n  ndda plot out/a out/b --columns reference_error --log -o errors.svg"
+)]
+pub struct PlotArgs {
+    /// Output folders of runs, or history files; several are drawn over each other.
+    #[arg(required = true)]
+    pub inputs: Vec<PathBuf>,
+    /// Columns to draw, by name or its beginning; without them, print those that there are.
+    #[arg(long, value_delimiter = ',', value_name = "NAME")]
+    pub columns: Vec<String>,
+    /// Column to draw against.
+    #[arg(long, default_value = "time_s", value_name = "NAME")]
+    pub against: String,
+    /// Logarithms of values; what is not above zero is left out.
+    #[arg(long)]
+    pub log: bool,
+    /// The picture, .svg or .png.
+    #[arg(long, short, default_value = "plot.svg", value_name = "FILE")]
+    pub out: PathBuf,
 }
 
 /// Arguments of `ndda mesh`.

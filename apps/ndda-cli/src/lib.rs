@@ -19,6 +19,10 @@ pub mod machine;
 pub mod mesh;
 pub mod monitor;
 pub mod new;
+#[cfg(feature = "plots")]
+pub mod picture;
+#[cfg(feature = "plots")]
+pub mod plot;
 pub mod progress;
 pub mod recorder;
 pub mod reference;
@@ -31,4 +35,5 @@ pub mod schema;
 #[cfg(feature = "shell")]
 pub mod shell;
 pub mod step_advice;
+pub mod study;
 pub mod wiring;

@@ -2,6 +2,8 @@
 
 use std::fs;
 
+use ndda_io::summary::Machine;
+
 /// Commit that the program was built from.
 pub const COMMIT: &str = env!("NDDA_COMMIT");
 /// Compiler that it was built with.
@@ -9,16 +11,44 @@ pub const RUSTC: &str = env!("NDDA_RUSTC");
 /// Cargo features that it was built with.
 pub const FEATURES: &str = env!("NDDA_FEATURES");
 
+/// This process and what it runs on, with its peak of memory so far.
+pub fn describe() -> Machine {
+    Machine {
+        processor: processor(),
+        commit: COMMIT.into(),
+        features: FEATURES.split_whitespace().map(String::from).collect(),
+        peak_memory_b: peak_memory_bytes(),
+    }
+}
+
 /// Name of the processor, or of its architecture where the system does not tell.
 pub fn processor() -> String {
-    let info = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
-    model.map_or_else(|| std::env::consts::ARCH.to_string(), |(_, name)| name.trim().to_string())
+    let text = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    field(&text, "model name").map_or_else(|| std::env::consts::ARCH.into(), String::from)
 }
 
 /// Most memory that this process has had [B], where the system tells.
 pub fn peak_memory_bytes() -> Option<u64> {
-    let status = fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    Some(1024 * line.trim().strip_suffix(" kB")?.parse::<u64>().ok()?)
+    let text = fs::read_to_string("/proc/self/status").ok()?;
+    let kibibytes: u64 = field(&text, "VmHWM")?.strip_suffix("kB")?.trim().parse().ok()?;
+    Some(kibibytes * 1024)
+}
+
+/// Value of the first line `name: value`.
+fn field<'a>(text: &'a str, name: &str) -> Option<&'a str> {
+    let lines = text.lines().filter_map(|line| line.split_once(':'));
+    lines.map(|(key, value)| (key.trim(), value.trim())).find(|(key, _)| *key == name).map(|found| found.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_read_by_their_name() {
+        let text = "processor\t: 0\nmodel name\t: Some CPU: fast\nVmHWM:\t  123 kB\n";
+        assert_eq!(field(text, "model name"), Some("Some CPU: fast"));
+        assert_eq!(field(text, "VmHWM"), Some("123 kB"));
+        assert_eq!(field(text, "VmPeak"), None);
+    }
 }

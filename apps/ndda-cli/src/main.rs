@@ -6,11 +6,13 @@ use clap::Parser;
 use ndda_cli::args::{Cli, Verb};
 #[cfg(feature = "report")]
 use ndda_cli::html_report;
+#[cfg(feature = "plots")]
+use ndda_cli::plot;
 #[cfg(feature = "schema")]
 use ndda_cli::schema;
 #[cfg(feature = "shell")]
 use ndda_cli::shell;
-use ndda_cli::{check, explain, mesh, new, resume, run};
+use ndda_cli::{check, explain, mesh, new, resume, run, study};
 
 fn main() -> ExitCode {
     let outcome = match Cli::parse().verb {
@@ -30,6 +32,9 @@ fn main() -> ExitCode {
         Verb::Report(args) => html_report::report(&args),
         #[cfg(feature = "report")]
         Verb::View(args) => html_report::view(&args),
+        Verb::Study(args) => study::study(&args),
+        #[cfg(feature = "plots")]
+        Verb::Plot(args) => plot::plot(&args),
     };
     ExitCode::from(outcome)
 }

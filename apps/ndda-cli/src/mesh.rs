@@ -143,7 +143,7 @@ fn write(folder: &Path, force: bool, measured: &MeshReport, blocks: &BlockSet) -
     ndda_io::atomic::write(&path, &vtu::encode(&path, &topology, &frame)?)?;
     ndda_io::atomic::write(&folder.join("mesh.json"), measured.json().as_bytes())?;
     #[cfg(feature = "plots")]
-    ndda_io::atomic::write(&folder.join("mesh.svg"), plot::svg(measured).as_bytes())?;
+    crate::picture::write(&folder.join("mesh.svg"), plot::SIZE, |root| plot::draw(measured, root))?;
     let picture = if cfg!(feature = "plots") { ", mesh.svg (histograms)" } else { "" };
     Ok(format!("{}: blocks.vtu (open it in ParaView), mesh.json{picture}", folder.display()))
 }

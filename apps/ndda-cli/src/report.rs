@@ -10,6 +10,7 @@ use ndda_io::summary::{
 use ndda_mesh::Vec3;
 use ndda_solver::{Simulation, StepCounts};
 
+use crate::machine;
 use crate::recorder::Recorder;
 use crate::reference;
 
@@ -62,6 +63,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, outcome: Outcome)
         state_crc32: format!("{:08x}", outcome.state_crc32),
         wall_s: outcome.wall_s,
         threads: outcome.threads,
+        machine: machine::describe(),
         counts: counts(simulation),
         stages_s: stages(simulation, outcome.stages, outcome.wall_s),
         invariants: Invariants {
@@ -90,6 +92,8 @@ fn counts(simulation: &Simulation) -> Counts {
         factors: simulation.factors(),
         candidate_pairs_max: worst.candidate_pairs_max,
         contact_pairs_max: worst.contact_pairs_max,
+        candidate_pairs_total: worst.candidate_pairs_total,
+        clips_total: worst.contact_pairs_total,
     }
 }
 

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ndda_cli::args::{HowArgs, RunArgs};
+use ndda_cli::args::{HowArgs, RunArgs, SceneArgs};
 use ndda_cli::{exit, run};
 use serde_json::Value;
 
@@ -14,10 +14,13 @@ fn run_ramp(place: &Path, overrides: &[&str]) -> PathBuf {
     let out = place.join("out");
     let always = ["time.end_s=0.01", "output.frames=1", "reference.after_s=0.001"];
     let args = RunArgs {
-        scene,
+        input: SceneArgs {
+            scene: Some(scene),
+            overrides: always.iter().chain(overrides).map(|text| text.to_string()).collect(),
+            ..SceneArgs::default()
+        },
         out: Some(out.clone()),
         force: true,
-        overrides: always.iter().chain(overrides).map(|text| text.to_string()).collect(),
         how: HowArgs { quiet: true, ..HowArgs::default() },
     };
     assert_eq!(run::run(&args), exit::DONE);

@@ -24,8 +24,10 @@ pub mod results;
 pub mod scene;
 #[cfg(feature = "schema")]
 pub mod schema;
+pub mod study;
 pub mod summary;
 pub mod surface_file;
+pub mod table;
 pub mod tables;
 pub mod tetgen;
 #[cfg(feature = "tetgen")]

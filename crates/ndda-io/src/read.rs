@@ -5,6 +5,7 @@ use std::path::Path;
 
 use ron::error::{Error as RonError, Position, SpannedError};
 use ron::extensions::Extensions;
+use serde::de::DeserializeOwned;
 
 use crate::check;
 use crate::code::Code;
@@ -53,6 +54,16 @@ impl LoadedScene {
 /// # Errors
 /// Everything that is wrong with it: syntax and types one at a time, values all at once.
 pub fn load(path: &Path, overrides: &[String]) -> Result<LoadedScene, SceneErrors> {
+    let text = text_of(path)?;
+    let folder = path.parent().unwrap_or(Path::new("."));
+    load_text(&path.display().to_string(), &text, overrides, Some(folder))
+}
+
+/// The text of a scene or study file.
+///
+/// # Errors
+/// It cannot be read, or is no text.
+pub fn text_of(path: &Path) -> Result<String, SceneErrors> {
     let file = path.display().to_string();
     let unreadable = |message: String, help: &str| SceneErrors {
         file: file.clone(),
@@ -64,14 +75,12 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<LoadedScene, SceneError
     }
     let bytes = std::fs::read(path)
         .map_err(|e| unreadable(format!("cannot be read: {e}"), "check the path of the scene file"))?;
-    let text = String::from_utf8(bytes).map_err(|e| {
+    String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         let line = e.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count() + 1;
         let message = format!("is not UTF-8 text (byte {at}, line {line})");
         unreadable(message, "save the file as UTF-8")
-    })?;
-    let folder = path.parent().unwrap_or(Path::new("."));
-    load_text(&file, &text, overrides, Some(folder))
+    })
 }
 
 /// Reads and checks the text of a scene; `folder` is where its meshes are, if they are to be looked for.
@@ -89,45 +98,56 @@ pub fn load_text(
         text: text.to_string(),
         diagnostics,
     };
-    if let Some(rest) = text.strip_prefix('\u{feff}') {
-        let begins =
-            Diagnostic::error(Code::Syntax, "", "the file begins with a byte order mark", Some(0..0));
-        return Err(fail(rest, vec![begins.with_help("save it as UTF-8 without BOM")]));
-    }
-    if text.trim().is_empty() {
-        let empty = Diagnostic::error(Code::Truncated, "", "the file is empty", Some(0..0));
-        return Err(fail(text, vec![empty.with_help("begin with one that runs: `ndda new` writes it")]));
-    }
+    refuse_blank(text).map_err(|(text, refused)| fail(text, vec![refused]))?;
     let text = overrides::apply(text, overrides).map_err(|refused| fail(text, vec![refused]))?;
     let tree = locate::tree(&text);
-    let numbers = not_finite(&tree, &text);
-    if !numbers.is_empty() {
-        return Err(fail(&text, numbers));
-    }
-    let scene = typed(&text, &tree).map_err(|found| fail(&text, found))?;
+    let scene: Scene = parse(&text, &tree).map_err(|found| fail(&text, found))?;
     let mut found = check::problems(&scene, folder);
-    for diagnostic in &mut found {
-        diagnostic.span = place(&tree, &text, &diagnostic.path);
-    }
-    found.sort_by_key(|d| d.span.as_ref().map_or(0, |span| span.start));
+    locate_all(&mut found, &text, &tree);
     if found.iter().any(|d| d.severity == Severity::Error) {
         return Err(fail(&text, found));
     }
     Ok(LoadedScene { scene, text, file: file.to_string(), warnings: found })
 }
 
-/// The text as a scene, its values in the units of their fields.
-fn typed(text: &str, tree: &Node) -> Result<Scene, Vec<Diagnostic>> {
+/// Refuses a text that begins with a byte order mark, or is empty; returns the text to show with it.
+pub(crate) fn refuse_blank(text: &str) -> Result<(), (&str, Diagnostic)> {
+    if let Some(rest) = text.strip_prefix('\u{feff}') {
+        let begins =
+            Diagnostic::error(Code::Syntax, "", "the file begins with a byte order mark", Some(0..0));
+        return Err((rest, begins.with_help("save it as UTF-8 without BOM")));
+    }
+    if text.trim().is_empty() {
+        let empty = Diagnostic::error(Code::Truncated, "", "the file is empty", Some(0..0));
+        return Err((text, empty.with_help("begin with one that runs: `ndda new` writes it")));
+    }
+    Ok(())
+}
+
+/// Text to types, values in the units of their fields: numbers that are none all at once, grammar and types one at a time.
+pub(crate) fn parse<T: DeserializeOwned>(text: &str, tree: &Node) -> Result<T, Vec<Diagnostic>> {
+    let numbers = not_finite(tree, text);
+    if !numbers.is_empty() {
+        return Err(numbers);
+    }
     let plain = units::resolve(text, tree);
     let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
     match options.from_str(&plain.text) {
-        Ok(scene) if plain.errors.is_empty() => Ok(scene),
+        Ok(value) if plain.errors.is_empty() => Ok(value),
         // In a field that does not exist, no unit is right.
         Err(e) if plain.errors.is_empty() || matches!(e.code, RonError::NoSuchStructField { .. }) => {
             Err(vec![explain(&e, &plain, text, tree)])
         }
         _ => Err(plain.errors),
     }
+}
+
+/// Gives each message its place, and puts them in the order of the text.
+pub(crate) fn locate_all(found: &mut [Diagnostic], text: &str, tree: &Node) {
+    for diagnostic in found.iter_mut() {
+        diagnostic.span = place(tree, text, &diagnostic.path);
+    }
+    found.sort_by_key(|d| d.span.as_ref().map_or(0, |span| span.start));
 }
 
 /// Place of the value at a path, or of the nearest value around it that is written.

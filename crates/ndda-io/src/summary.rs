@@ -78,6 +78,8 @@ pub struct Summary {
     pub wall_s: f64,
     /// Threads used.
     pub threads: usize,
+    /// What it ran on.
+    pub machine: Machine,
     /// Sizes of the problem.
     pub counts: Counts,
     /// Wall-clock time per stage of the step \[s\].
@@ -127,6 +129,24 @@ pub struct Counts {
     pub candidate_pairs_max: usize,
     /// Most pairs that touched in a step.
     pub contact_pairs_max: usize,
+    /// Pairs that the broad phase reported, over all steps.
+    pub candidate_pairs_total: u64,
+    /// Pairs that touched and were clipped, over all steps.
+    pub clips_total: u64,
+}
+
+/// What a run ran on, and as which program.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Machine {
+    /// The processor.
+    pub processor: String,
+    /// Commit that the program was built from.
+    pub commit: String,
+    /// Cargo features that it was built with.
+    pub features: Vec<String>,
+    /// Most memory that it held at a time \[B\]. Left out where the system does not tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub peak_memory_b: Option<u64>,
 }
 
 /// The largest violation of each invariant over the run.
@@ -270,6 +290,7 @@ mod tests {
             state_crc32: "0123abcd".into(),
             wall_s: 2.5,
             threads: 2,
+            machine: Machine { processor: "one".into(), ..Machine::default() },
             counts: Counts { blocks: 2, nodes: 100, ..Counts::default() },
             stages_s: Named(vec![("contact".into(), 1.5), ("assemble".into(), 0.5)]),
             invariants: Invariants { energy_gain: 1e-9, ..Invariants::default() },
@@ -307,10 +328,14 @@ mod tests {
     #[test]
     fn the_promised_keys_are_there() {
         let (_, value) = written(&example());
-        let top = "scene status steps step_s end_s wall_s threads counts stages_s invariants monitors blocks reference";
+        let top = "scene status steps step_s end_s wall_s threads machine counts stages_s invariants monitors blocks reference";
         let promised = [
             ("", top),
-            ("/counts", "blocks nodes tets dofs factors candidate_pairs_max contact_pairs_max"),
+            ("/machine", "processor commit features"),
+            (
+                "/counts",
+                "blocks nodes tets dofs factors candidate_pairs_max contact_pairs_max candidate_pairs_total clips_total",
+            ),
             (
                 "/invariants",
                 "energy_gain energy_loss linear_momentum angular_momentum max_penetration_ratio max_h",

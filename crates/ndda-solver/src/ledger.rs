@@ -78,6 +78,10 @@ pub struct Invariants {
     pub candidate_pairs_max: usize,
     /// Most pairs in contact in a step.
     pub contact_pairs_max: usize,
+    /// Pairs looked at, over all steps.
+    pub candidate_pairs_total: u64,
+    /// Pairs in contact, over all steps.
+    pub contact_pairs_total: u64,
     /// Most evaluations of contact that a step was solved with.
     pub iterations_max: u32,
     /// What controlling the step took.
@@ -122,6 +126,8 @@ impl Ledger {
             max_travel_ratio: 0.0,
             candidate_pairs_max: 0,
             contact_pairs_max: 0,
+            candidate_pairs_total: 0,
+            contact_pairs_total: 0,
             iterations_max: 0,
             control: StepCounts::default(),
         };
@@ -193,6 +199,8 @@ impl Ledger {
         worst.action_reaction = worst.action_reaction.max(contact.action_reaction_error);
         worst.candidate_pairs_max = worst.candidate_pairs_max.max(contact.candidate_pairs);
         worst.contact_pairs_max = worst.contact_pairs_max.max(contact.contact_pairs);
+        worst.candidate_pairs_total += contact.candidate_pairs as u64;
+        worst.contact_pairs_total += contact.contact_pairs as u64;
         worst.max_h = worst.max_h.max(report.h);
         worst.max_travel_ratio = worst.max_travel_ratio.max(report.travel_ratio);
         worst.iterations_max = worst.iterations_max.max(report.iterations.newton);

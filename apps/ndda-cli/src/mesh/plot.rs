@@ -3,23 +3,14 @@
 use plotters::prelude::*;
 
 use super::report::{Bars, MeshReport};
+use crate::picture::{Area, Drawn};
 
 /// Width and height of the picture [px].
-const SIZE: (u32, u32) = (1000, 700);
+pub const SIZE: (u32, u32) = (1000, 700);
 const BAR: RGBColor = RGBColor(70, 110, 160);
 
-/// Four histograms as SVG.
-pub fn svg(report: &MeshReport) -> String {
-    let mut text = String::new();
-    if let Err(error) = draw(report, &mut text) {
-        return format!("<svg xmlns=\"http://www.w3.org/2000/svg\"><!-- not drawn: {error} --></svg>");
-    }
-    text
-}
-
-fn draw(report: &MeshReport, text: &mut String) -> Result<(), Box<dyn std::error::Error>> {
-    let root = SVGBackend::with_string(text, SIZE).into_drawing_area();
-    root.fill(&WHITE)?;
+/// Four histograms.
+pub fn draw(report: &MeshReport, root: &Area) -> Drawn {
     let panels = [
         ("volume of blocks [m³]", &report.block_size.volume_m3),
         ("smallest dihedral angle of tetrahedra [°]", &report.dihedral_deg),
@@ -29,14 +20,11 @@ fn draw(report: &MeshReport, text: &mut String) -> Result<(), Box<dyn std::error
     for (area, (title, bars)) in root.split_evenly((2, 2)).iter().zip(panels) {
         panel(area, title, bars)?;
     }
-    root.present()?;
     Ok(())
 }
 
-type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
-
 /// One histogram; empty bars at its ends are left out.
-fn panel(area: &Area<'_>, title: &str, bars: &Bars) -> Result<(), Box<dyn std::error::Error>> {
+fn panel(area: &Area, title: &str, bars: &Bars) -> Drawn {
     let used = |i: &usize| bars.counts[*i] > 0;
     let first = (0..bars.counts.len()).find(used).unwrap_or(0);
     let last = (0..bars.counts.len()).rev().find(used).unwrap_or(0);

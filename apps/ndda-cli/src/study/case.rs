@@ -1,0 +1,133 @@
+//! The cases of a study: every choice of one axis with every one of the others.
+
+use std::path::Path;
+
+use ndda_io::checkpoint;
+use ndda_io::diagnostic::SceneErrors;
+use ndda_io::locate;
+use ndda_io::study::{LoadedStudy, Reference, as_overrides};
+
+use super::error::StudyError;
+
+/// Names of cases become names of folders.
+const LONGEST_NAME: usize = 200;
+/// Rows of a reference run's history over those of a case, so that reading between them costs no digits.
+const REFERENCE_ROWS: u32 = 10;
+
+/// One scene to run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Case {
+    /// Name of its folder.
+    pub name: String,
+    /// Axis and choice, in the order of the study.
+    pub labels: Vec<(String, String)>,
+    /// What `ndda run` gets with `--set`.
+    pub overrides: Vec<String>,
+    /// How often it runs.
+    pub repeats: u32,
+}
+
+/// All cases that are plotted.
+///
+/// # Errors
+/// [`StudyError::Names`] when two cases would have one folder.
+pub fn cases(loaded: &LoadedStudy) -> Result<Vec<Case>, StudyError> {
+    let common = as_overrides(&loaded.study.set);
+    let mut all = vec![(Vec::new(), common)];
+    for axis in &loaded.study.axes {
+        let choices = axis.choices();
+        let with = |(labels, overrides): &(Vec<(String, String)>, Vec<String>)| {
+            let one = |(label, own): &(String, Vec<String>)| {
+                let mut labels = labels.clone();
+                labels.push((axis.name().to_string(), label.clone()));
+                (labels, overrides.iter().chain(own).cloned().collect())
+            };
+            choices.iter().map(one).collect::<Vec<_>>()
+        };
+        all = all.iter().flat_map(with).collect();
+    }
+    let repeats = loaded.study.repeats;
+    let cases =
+        all.into_iter().map(|(labels, overrides)| Case { name: name(&labels), labels, overrides, repeats });
+    let cases: Vec<Case> = cases.collect();
+    for (i, case) in cases.iter().enumerate() {
+        if case.name.len() > LONGEST_NAME || cases[..i].iter().any(|other| other.name == case.name) {
+            return Err(StudyError::Names(case.name.clone()));
+        }
+    }
+    Ok(cases)
+}
+
+/// The two runs that results are compared with where no closed form is known; none where one is.
+///
+/// # Errors
+/// [`StudyError::Scene`] when no case of the study can be read, so that the shortest step is unknown.
+pub fn reference_cases(loaded: &LoadedStudy, cases: &[Case]) -> Result<Vec<Case>, StudyError> {
+    let Reference::Runs { first, second, divisor, .. } = &loaded.study.reference else {
+        return Ok(Vec::new());
+    };
+    let mut scenes = Vec::new();
+    let mut refused = None;
+    for case in cases {
+        match loaded.scene_with(&case.overrides) {
+            Ok(read) => scenes.push(read.scene),
+            Err(errors) => refused = Some(errors),
+        }
+    }
+    if let (true, Some(errors)) = (scenes.is_empty(), refused) {
+        return Err(StudyError::Scene(errors));
+    }
+    let shortest_s = scenes.iter().map(|scene| scene.time.step_s).fold(f64::INFINITY, f64::min);
+    let rows = scenes.iter().map(|scene| scene.output.history_rows).max().unwrap_or(0);
+    let runs = [("reference_first", first), ("reference_second", second)];
+    let case = |(name, values): (&str, _)| {
+        let mut overrides = as_overrides(&loaded.study.set);
+        overrides.extend(as_overrides(values));
+        overrides.push(format!("time.step_s={:e}", shortest_s / f64::from(*divisor)));
+        overrides.push(format!("output.history_rows={}", rows.saturating_mul(REFERENCE_ROWS)));
+        Case { name: name.into(), labels: Vec::new(), overrides, repeats: 1 }
+    };
+    Ok(runs.map(case).to_vec())
+}
+
+/// `axis=choice__axis=choice`, with nothing in it that a file system or a shell could mistake.
+fn name(labels: &[(String, String)]) -> String {
+    let part = |(axis, label): &(String, String)| format!("{}={}", plain(axis), plain(label));
+    labels.iter().map(part).collect::<Vec<_>>().join("__")
+}
+
+fn plain(text: &str) -> String {
+    let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || "+-.".contains(c)));
+    words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join("_")
+}
+
+/// Fingerprint of a case: the text of its scene and the files that it names.
+///
+/// # Errors
+/// What is wrong with the scene.
+pub fn fingerprint(loaded: &LoadedStudy, case: &Case) -> Result<String, SceneErrors> {
+    let text = loaded.scene_with(&case.overrides)?.text;
+    let mut bytes = text.clone().into_bytes();
+    let folder = loaded.scene.parent().unwrap_or(Path::new("."));
+    locate::tree(&text).for_each_leaf(&mut |leaf| {
+        let word = text[leaf.span.clone()].trim_matches('"');
+        let file = folder.join(word);
+        // Whatever names a file, a mesh or a record, is part of the scene.
+        if !word.is_empty() && file.is_file() {
+            bytes.extend(std::fs::read(&file).unwrap_or_default());
+        }
+    });
+    Ok(format!("{:08x}-{}", checkpoint::fingerprint(&bytes), bytes.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_safe_for_shells_and_files() {
+        let labels = [("step_s", "1e-3"), ("integrator", "Newmark(alpha: 0.5, delta: 1)"), ("é", "$(rm)/..")];
+        let labels = labels.map(|(axis, label)| (axis.to_string(), label.to_string()));
+        assert_eq!(name(&labels), "step_s=1e-3__integrator=Newmark_alpha_0.5_delta_1__=rm_..");
+    }
+}

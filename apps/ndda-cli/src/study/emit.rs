@@ -1,0 +1,93 @@
+//! Hands the cases to a scheduler: a job array, GNU parallel, or a plain list of commands.
+
+use std::path::Path;
+
+use super::case::Case;
+use crate::args::Emit;
+
+/// How a scheduler is to run the cases.
+pub struct Plan<'a> {
+    /// The study file.
+    pub study: &'a Path,
+    /// Its output folder.
+    pub out: &'a Path,
+    /// Cases at a time.
+    pub jobs: u16,
+    /// Threads of each.
+    pub threads: u16,
+}
+
+/// A script that runs all cases.
+pub fn script(plan: &Plan, cases: &[Case], emit: Emit) -> String {
+    let command = format!("ndda study case {}", quoted(plan.study));
+    let options = format!("--out {} --threads {}", quoted(plan.out), plan.threads);
+    let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+    match emit {
+        Emit::List => {
+            names.iter().map(|name| format!("{command} {name} {options}")).collect::<Vec<_>>().join("\n")
+        }
+        Emit::Parallel => format!(
+            "#!/bin/sh\nparallel --jobs {} {command} {{}} {options} ::: \\\n  {}\nndda study collect {} {options}",
+            plan.jobs,
+            names.join(" \\\n  "),
+            quoted(plan.study),
+        ),
+        Emit::Slurm => format!(
+            "#!/bin/sh\n#SBATCH --array=0-{}%{}\n#SBATCH --cpus-per-task={}\n\
+             # Afterwards: ndda study collect {} {options}\nset -- \\\n  {}\nshift \"$SLURM_ARRAY_TASK_ID\"\n\
+             exec {command} \"$1\" {options}",
+            cases.len() - 1,
+            plan.jobs,
+            plan.threads,
+            quoted(plan.study),
+            names.join(" \\\n  "),
+        ),
+    }
+}
+
+/// A path as one word of a shell.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        text
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn emitted(emit: Emit) -> String {
+        let case =
+            |name: &str| Case { name: name.into(), labels: Vec::new(), overrides: Vec::new(), repeats: 1 };
+        let plan = Plan { study: Path::new("it's.ron"), out: Path::new("out/s"), jobs: 3, threads: 2 };
+        script(&plan, &[case("a=1"), case("a=2")], emit)
+    }
+
+    #[test]
+    fn a_list_has_one_command_per_case() {
+        let first = "ndda study case 'it'\\''s.ron' a=1 --out out/s --threads 2";
+        assert_eq!(emitted(Emit::List).lines().next(), Some(first));
+        assert_eq!(emitted(Emit::List).lines().count(), 2);
+    }
+
+    #[test]
+    fn an_array_has_one_task_per_case() {
+        let script = emitted(Emit::Slurm);
+        assert!(script.contains("#SBATCH --array=0-1%3\n#SBATCH --cpus-per-task=2\n"), "{script}");
+        assert!(script.contains("set -- \\\n  a=1 \\\n  a=2\nshift"), "{script}");
+    }
+
+    #[test]
+    fn parallel_gets_the_names_and_gathers() {
+        let script = emitted(Emit::Parallel);
+        assert!(
+            script.contains("parallel --jobs 3 ndda study case")
+                && script.contains("::: \\\n  a=1 \\\n  a=2\n")
+        );
+        assert!(script.contains("ndda study collect"));
+    }
+}

@@ -1,0 +1,80 @@
+//! Why a study cannot go on.
+
+use std::path::PathBuf;
+
+use ndda_io::WriteError;
+use ndda_io::diagnostic::SceneErrors;
+use ndda_io::table::TableError;
+
+use super::difference::DifferenceError;
+use crate::console::colour;
+use crate::exit;
+
+/// Why a study cannot go on. A case that fails is no such reason: it is listed.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// Something is wrong with the study or its scene.
+    #[error("{}", .0.render(colour()))]
+    Scene(SceneErrors),
+    /// Names of cases.
+    #[error(
+        "error: the case name `{0}` is too long or there twice: give shorter or other labels with Choose"
+    )]
+    Names(String),
+    /// No closed form.
+    #[error("error: the scene {} names no reference: write `reference: Runs(first: {{…}}, second: {{…}})`", .0.display())]
+    NoReference(PathBuf),
+    /// No such case.
+    #[error("error: the study has no case `{0}`: `ndda study STUDY --emit list` prints all")]
+    NoCase(String),
+    /// A reference run failed.
+    #[error("error: the reference run `{name}` failed: {reason}")]
+    Reference {
+        /// Name of the run.
+        name: String,
+        /// Why.
+        reason: String,
+    },
+    /// The two reference runs, or a case and the first of them, cannot be compared.
+    #[error("error: case `{name}`: {source}")]
+    Difference {
+        /// Name of the case.
+        name: String,
+        /// Why.
+        source: DifferenceError,
+    },
+    /// A history cannot be read.
+    #[error("error: {0}")]
+    Table(#[from] TableError),
+    /// A result cannot be written.
+    #[error("error: {0}")]
+    Write(#[from] WriteError),
+    /// A record of a case cannot be used.
+    #[error("error: {} is no record of a case ({reason}): delete it", file.display())]
+    Record {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A run cannot be started.
+    #[error("error: cannot start a run: {0}")]
+    Start(std::io::Error),
+    /// Somebody asked it to end.
+    #[error("interrupted: the same command goes on from here")]
+    Interrupted,
+}
+
+impl StudyError {
+    /// The exit code for it.
+    pub fn code(&self) -> u8 {
+        match self {
+            Self::Scene(_) | Self::Names(_) | Self::NoReference(_) | Self::NoCase(_) => exit::BAD_INPUT,
+            Self::Difference { .. } => exit::BAD_INPUT,
+            Self::Reference { .. } => exit::STOPPED,
+            Self::Table(_) | Self::Write(_) | Self::Record { .. } => exit::INPUT_OUTPUT,
+            Self::Start(_) => exit::RESOURCE,
+            Self::Interrupted => exit::INTERRUPTED,
+        }
+    }
+}

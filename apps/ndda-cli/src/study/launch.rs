@@ -1,0 +1,165 @@
+//! Runs cases as processes of their own, so that memory is measured per case and a crash ends one run, not all.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use ndda_io::WriteError;
+use ndda_io::study::LoadedStudy;
+use serde_json::Value;
+
+use super::case::{Case, fingerprint};
+use super::error::StudyError;
+use super::record::{Identity, RESULTS, Record, RunOutcome, folder};
+use crate::console::complain;
+use crate::exit;
+
+/// Where and how cases run.
+pub struct Launch<'a> {
+    /// The study.
+    pub loaded: &'a LoadedStudy,
+    /// Its output folder.
+    pub out: &'a Path,
+    /// Cases at a time.
+    pub jobs: u16,
+    /// Threads of each.
+    pub threads: u16,
+    /// Print nothing but errors.
+    pub quiet: bool,
+    /// Raised when somebody asks the study to end.
+    pub asked_to_end: &'a AtomicBool,
+}
+
+impl Launch<'_> {
+    /// The identity of a case as it would run now; what is wrong with its scene otherwise.
+    pub fn identity(&self, case: &Case) -> Identity {
+        // A scene that is wrong has a fingerprint, too: its errors.
+        let scene = fingerprint(self.loaded, case).unwrap_or_else(|errors| errors.render(false));
+        Identity::new(scene, self.threads, case.repeats)
+    }
+
+    /// The record of a case that has run as it would run now.
+    ///
+    /// # Errors
+    /// [`StudyError::Record`] when its file is something else.
+    pub fn finished(&self, case: &Case) -> Result<Option<Record>, StudyError> {
+        let record = Record::read(&folder(self.out, &case.name))?;
+        Ok(record.filter(|record| record.is_final() && record.identity == self.identity(case)))
+    }
+
+    /// Runs what has not run yet, `jobs` at a time.
+    ///
+    /// # Errors
+    /// The first error of any case that is not the case's own.
+    pub fn run_all(&self, cases: &[Case]) -> Result<(), StudyError> {
+        let (next, failed) = (AtomicUsize::new(0), Mutex::new(None));
+        let work = || {
+            while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                match self.run_case(case) {
+                    Ok(said) if !self.quiet => {
+                        complain(&format!(
+                            "{} of {}: {}: {said}",
+                            self.place(case, cases),
+                            cases.len(),
+                            case.name
+                        ));
+                    }
+                    Ok(_) => {}
+                    Err(error) => {
+                        next.store(cases.len(), Ordering::Relaxed);
+                        failed.lock().expect("no thread panics").get_or_insert(error);
+                    }
+                }
+            }
+        };
+        std::thread::scope(|scope| (0..self.jobs).for_each(|_| drop(scope.spawn(work))));
+        failed.into_inner().expect("no thread panics").map_or(Ok(()), Err)
+    }
+
+    fn place(&self, case: &Case, cases: &[Case]) -> usize {
+        cases.iter().position(|other| other.name == case.name).map_or(0, |i| i + 1)
+    }
+
+    /// Runs one case unless it has run; returns a few words on how it went.
+    ///
+    /// # Errors
+    /// [`StudyError`] when runs cannot be started, recorded, or somebody asks to end.
+    pub fn run_case(&self, case: &Case) -> Result<String, StudyError> {
+        if self.finished(case)?.is_some() {
+            return Ok("has run".into());
+        }
+        let folder = folder(self.out, &case.name);
+        fs::create_dir_all(&folder).map_err(|source| WriteError::Io {
+            operation: "create the folder",
+            path: folder.clone(),
+            source,
+        })?;
+        let outcome = self.repeat(case, &folder)?;
+        let said = match &outcome {
+            RunOutcome::Done { walls_s, .. } => {
+                format!("{:.3} s, the least of {}", least(walls_s), walls_s.len())
+            }
+            RunOutcome::Failed { reason, .. } => format!("failed: {reason}"),
+        };
+        Record { name: case.name.clone(), identity: self.identity(case), outcome }.write(&folder)?;
+        Ok(said)
+    }
+
+    /// All runs of a case, until one fails.
+    fn repeat(&self, case: &Case, folder: &Path) -> Result<RunOutcome, StudyError> {
+        let mut walls_s: Vec<f64> = Vec::new();
+        let mut fastest = Value::Null;
+        for _ in 0..case.repeats {
+            if self.asked_to_end.load(Ordering::Relaxed) {
+                return Err(StudyError::Interrupted);
+            }
+            let summary = match self.run_once(case, &folder.join(RESULTS))? {
+                Ok(summary) => summary,
+                Err(failed) => return Ok(failed),
+            };
+            if !walls_s.is_empty() && summary["state_crc32"] != fastest["state_crc32"] {
+                let reason = "two runs of it ended in different bits: please report this".into();
+                return Ok(RunOutcome::Failed { code: None, reason });
+            }
+            let wall_s = summary["wall_s"].as_f64().unwrap_or(f64::INFINITY);
+            if wall_s < least(&walls_s) {
+                fastest = summary;
+            }
+            walls_s.push(wall_s);
+        }
+        Ok(RunOutcome::Done { walls_s, summary: fastest })
+    }
+
+    /// One run: its summary, or how it failed.
+    fn run_once(&self, case: &Case, results: &Path) -> Result<Result<Value, RunOutcome>, StudyError> {
+        let program = std::env::current_exe().map_err(StudyError::Start)?;
+        let mut command = Command::new(program);
+        command.arg("run").arg(&self.loaded.scene).arg("--out").arg(results);
+        command.args(["--force", "--quiet", "--threads", &self.threads.to_string()]);
+        for one in &case.overrides {
+            command.args(["--set", one]);
+        }
+        let done = command.stdin(Stdio::null()).output().map_err(StudyError::Start)?;
+        let code = done.status.code();
+        if code == Some(i32::from(exit::INTERRUPTED)) {
+            return Err(StudyError::Interrupted);
+        }
+        if !done.status.success() {
+            let said = String::from_utf8_lossy(&done.stderr);
+            let reason = said.lines().find(|line| line.contains("error")).or(said.lines().next());
+            let reason = reason.map_or_else(|| done.status.to_string(), String::from);
+            return Ok(Err(RunOutcome::Failed { code, reason }));
+        }
+        let file = results.join(ndda_io::folder::SUMMARY);
+        let broken = |reason: String| StudyError::Record { file: file.clone(), reason };
+        let text = fs::read_to_string(&file).map_err(|e| broken(e.to_string()))?;
+        serde_json::from_str(&text).map(Ok).map_err(|e| broken(e.to_string()))
+    }
+}
+
+/// The least of some times; infinite if there are none.
+pub fn least(times_s: &[f64]) -> f64 {
+    times_s.iter().copied().fold(f64::INFINITY, f64::min)
+}

@@ -1,0 +1,254 @@
+//! What a study has found: a point per case, its errors and figures, and the fronts.
+
+use ndda_io::summary::Named;
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use super::case::Case;
+use super::error::StudyError;
+use super::front::{Point, front};
+use super::judge::Judge;
+use super::launch::Launch;
+use super::record::{Record, RunOutcome, folder};
+
+/// Everything that a study has found.
+pub struct Results {
+    /// Name of the study: its file without the ending.
+    pub name: String,
+    /// Its title.
+    pub title: String,
+    /// Name of the scene's file.
+    pub scene: String,
+    /// Axes that tell curves apart.
+    pub curves: Vec<String>,
+    /// What errors are relative to.
+    pub reference: Compared,
+    /// One per case that has run.
+    pub points: Vec<CasePoint>,
+    /// Cases that have not run.
+    pub missing: Vec<String>,
+}
+
+/// What errors are relative to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Compared {
+    /// A closed form of this name.
+    ClosedForm {
+        /// Its name in the scene.
+        name: String,
+    },
+    /// Two runs.
+    Runs {
+        /// Their step [s].
+        step_s: f64,
+        /// How far they are apart at the end, relative.
+        disagreement_end: f64,
+        /// How far they are apart at most, relative.
+        disagreement_max: f64,
+        /// Errors at the end below this are not told apart.
+        floor_end: f64,
+        /// Largest errors below this are not told apart.
+        floor_max: f64,
+    },
+}
+
+impl Compared {
+    /// Errors at the end, and largest errors, below which points are not told apart.
+    pub fn floors(&self) -> [f64; 2] {
+        match self {
+            Self::ClosedForm { .. } => [0.0; 2],
+            Self::Runs { floor_end, floor_max, .. } => [*floor_end, *floor_max],
+        }
+    }
+}
+
+/// One case that has run.
+#[derive(Clone, Debug, Serialize)]
+pub struct CasePoint {
+    /// Its name.
+    pub name: String,
+    /// Choice by axis.
+    pub labels: Named<String>,
+    /// What it gave; none if it failed.
+    pub figures: Option<Figures>,
+    /// Why it failed.
+    pub reason: Option<String>,
+}
+
+/// What a case gave.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Figures {
+    /// Relative error at the end.
+    pub error_end: f64,
+    /// Largest relative error over time.
+    pub error_max: f64,
+    /// Whether no other case is both faster and more exact, at the end and over time.
+    pub on_front: [bool; 2],
+    /// Wall time of the fastest run [s].
+    pub wall_s: f64,
+    /// Wall time of each run [s].
+    pub walls_s: Vec<f64>,
+    /// Invariants that were beyond their limits.
+    pub beyond_limits: Vec<String>,
+    /// What the fastest run says of itself.
+    #[serde(flatten)]
+    pub run: Run,
+}
+
+/// What is read of a `summary.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Run {
+    /// Version of ndda.
+    pub version: String,
+    /// Steps.
+    pub steps: u64,
+    /// Step [s].
+    pub step_s: f64,
+    /// Threads.
+    pub threads: u64,
+    /// Processor, commit, features, memory.
+    pub machine: Machine,
+    /// Sizes of the problem.
+    pub counts: Counts,
+    /// Seconds per stage.
+    pub stages_s: Map<String, Value>,
+}
+
+/// What a run ran on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Machine {
+    /// The processor.
+    pub processor: String,
+    /// Commit of the program.
+    pub commit: String,
+    /// Its cargo features.
+    pub features: Vec<String>,
+    /// Most memory held at a time [B].
+    pub peak_memory_b: Option<u64>,
+}
+
+/// Sizes of the problem.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Counts {
+    /// Blocks.
+    pub blocks: u64,
+    /// Tetrahedra.
+    pub tets: u64,
+    /// Unknown displacement components.
+    pub dofs: u64,
+    /// Pairs that were looked at, over all steps.
+    pub candidate_pairs_total: u64,
+    /// Pairs that were clipped, over all steps.
+    pub clips_total: u64,
+}
+
+impl CasePoint {
+    /// The point of a case that failed.
+    pub fn failed(case: &Case, reason: String) -> Self {
+        Self {
+            name: case.name.clone(),
+            labels: Named(case.labels.clone()),
+            figures: None,
+            reason: Some(reason),
+        }
+    }
+
+    /// All its choices.
+    pub fn choices(&self) -> String {
+        self.labels.0.iter().map(|(_, label)| label.as_str()).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Choices of the curve that the point is on.
+    pub fn curve(&self, curves: &[String]) -> String {
+        let parts =
+            self.labels.0.iter().filter(|(axis, _)| curves.contains(axis)).map(|(_, label)| label.as_str());
+        parts.collect::<Vec<_>>().join(", ")
+    }
+}
+
+impl Figures {
+    /// Time and error, at the end (0) or the largest over time (1); an error below the floor counts as the floor.
+    pub fn point(&self, which: usize, floor: f64) -> Point {
+        let error = [self.error_end, self.error_max][which];
+        Point { time_s: self.wall_s, error: error.max(floor) }
+    }
+}
+
+impl Results {
+    /// Reads the records of all cases and compares them.
+    ///
+    /// # Errors
+    /// [`StudyError`] when there is nothing to compare with, or a file cannot be read.
+    pub fn gather(
+        launch: &Launch,
+        name: &str,
+        (cases, references): (&[Case], &[Case]),
+    ) -> Result<Self, StudyError> {
+        let loaded = launch.loaded;
+        let judge = Judge::new(launch, references)?;
+        let (mut points, mut missing) = (Vec::new(), Vec::new());
+        let mut kind = String::new();
+        for case in cases {
+            match launch.finished(case)? {
+                Some(record) => points.push(judge.point(launch, case, record, &mut kind)?),
+                None => match unfinished(launch, case)? {
+                    Some(point) => points.push(point),
+                    None => missing.push(case.name.clone()),
+                },
+            }
+        }
+        let reference = judge.compared(kind);
+        mark_fronts(&mut points, reference.floors());
+        let scene = loaded.scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let title = loaded.study.title.clone();
+        Ok(Self {
+            name: name.into(),
+            title,
+            scene,
+            curves: loaded.curves.clone(),
+            reference,
+            points,
+            missing,
+        })
+    }
+
+    /// Names of the curves, in the order of the cases.
+    pub fn curve_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for name in self.points.iter().map(|point| point.curve(&self.curves)) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
+    }
+
+    /// Time and error of the points on a curve, or of all; see [`Figures::point`].
+    pub fn time_and_error(&self, curve: Option<&str>, which: usize) -> Vec<Point> {
+        let floor = self.reference.floors()[which];
+        let on = |point: &&CasePoint| curve.is_none_or(|name| point.curve(&self.curves) == name);
+        let points = self.points.iter().filter(on);
+        points.filter_map(|point| Some(point.figures.as_ref()?.point(which, floor))).collect()
+    }
+}
+
+/// A case whose run ended in a way that another attempt may not: it is told, and run again the next time.
+fn unfinished(launch: &Launch, case: &Case) -> Result<Option<CasePoint>, StudyError> {
+    let record = Record::read(&folder(launch.out, &case.name))?;
+    let record = record.filter(|record| record.identity == launch.identity(case));
+    Ok(record.and_then(|record| match record.outcome {
+        RunOutcome::Failed { reason, .. } => Some(CasePoint::failed(case, reason)),
+        RunOutcome::Done { .. } => None,
+    }))
+}
+
+fn mark_fronts(points: &mut [CasePoint], floors: [f64; 2]) {
+    for which in [0, 1] {
+        let mut done: Vec<&mut Figures> = points.iter_mut().filter_map(|p| p.figures.as_mut()).collect();
+        let all: Vec<Point> = done.iter().map(|figures| figures.point(which, floors[which])).collect();
+        for i in front(&all) {
+            done[i].on_front[which] = true;
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! `ndda study` and `ndda plot` from end to end, as processes of the program itself.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::SystemTime;
+
+use ndda_cli::study::case;
+use serde_json::Value;
+
+/// A tetrahedron thrown sideways in gravity: its closed form is exact at any step.
+const SCENE: &str = "(
+    title: \"fall\", time: (step_s: 1e-2, end_s: 0.1), gravity_m_s2: (0, 0, -10), contact: Off,
+    materials: [(name: \"rock\", young_pa: 1e9, poisson: 0.25, density_kg_m3: 2500)],
+    blocks: [(name: \"b\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), velocity_m_s: (1, 0, 0))],
+    monitors: [(name: \"m\", block: \"b\")], output: (frames: 0), reference: FreeFall(monitor: \"m\", after_s: 0),
+)";
+
+/// Poisson's ratio of 0.7 is refused.
+const STUDY: &str = "(
+    title: \"falls\", scene: \"fall.ron\", repeats: 2,
+    axes: [
+        Vary(path: \"time.step_s\", values: [1e-2, 5e-3]),
+        Choose(name: \"rock\", choices: [
+            (label: \"good\", set: {\"materials.rock.poisson\": 0.25}),
+            (label: \"bad, too\", set: {\"materials.rock.poisson\": 0.7}),
+        ]),
+    ],
+)";
+
+/// Against two runs in place of the closed form: in free fall all integrators agree to rounding.
+const RUNS: &str = "(
+    title: \"falls\", scene: \"fall.ron\", repeats: 1,
+    axes: [Vary(path: \"time.step_s\", values: [1e-2, 5e-3])],
+    reference: Runs(
+        first: {\"time.integrator\": Midpoint(theta: 0.5)}, second: {\"time.integrator\": GeneralizedAlpha(radius: 0.8)},
+        divisor: 2,
+    ),
+)";
+
+/// A folder with a scene and a study.
+fn folder(study: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("fall.ron"), SCENE).unwrap();
+    fs::write(folder.path().join("study.ron"), study).unwrap();
+    folder
+}
+
+fn ndda(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_ndda")).args(arguments).current_dir(folder).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+fn json(path: PathBuf) -> Value {
+    serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn changed(folder: &Path, case: &str) -> SystemTime {
+    let path = folder.join("out/study_study/cases").join(case).join("case.json");
+    fs::metadata(path).unwrap().modified().unwrap()
+}
+
+#[test]
+fn a_study_runs_lists_failures_and_goes_on_where_it_was() {
+    let folder = folder(STUDY);
+    let done = ndda(folder.path(), &["study", "study.ron", "--jobs", "2"]);
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    let text = said(&done);
+    assert!(text.contains("time to error at the end") && text.contains("FreeFall"), "{text}");
+    assert!(text.contains("failed: step_s=1e-2__rock=bad_too") && text.contains("poisson"), "{text}");
+    let out = folder.path().join("out/study_study");
+    let results = json(out.join("study.json"));
+    assert_eq!(results["schema"], "ndda-study-1");
+    let cases = results["cases"].as_array().unwrap();
+    assert_eq!(cases.len(), 4);
+    let figures = &cases[0]["figures"];
+    assert!(figures["error_max"].as_f64().unwrap() < 1e-12, "{figures}");
+    assert_eq!(figures["walls_s"].as_array().unwrap().len(), 2);
+    assert_eq!((&figures["steps"], &figures["counts"]["clips_total"]), (&Value::from(10), &Value::from(0)));
+    assert!(figures["machine"]["commit"].is_string() && figures["machine"]["processor"].is_string());
+    assert!(cases[1]["figures"].is_null() && cases[1]["reason"].as_str().unwrap().contains("poisson"));
+    let csv = fs::read_to_string(out.join("study.csv")).unwrap();
+    assert!(
+        csv.starts_with("case,step_s,rock,status,reason,error_end") && csv.contains("\"bad, too\",failed,"),
+        "{csv}"
+    );
+    if cfg!(feature = "png") {
+        for name in ["error_time", "error_dofs", "stages"] {
+            assert!(
+                out.join(name).with_extension("svg").exists()
+                    && out.join(name).with_extension("png").exists()
+            );
+        }
+    }
+
+    // Nothing runs again; a case whose record is lost does, and no other.
+    let (kept, lost) = ("step_s=1e-2__rock=good", "step_s=5e-3__rock=good");
+    let before = changed(folder.path(), kept);
+    fs::remove_file(out.join("cases").join(lost).join("case.json")).unwrap();
+    let again = ndda(folder.path(), &["study", "collect", "study.ron"]);
+    assert_eq!(again.status.code(), Some(1), "a case is missing");
+    assert!(said(&again).contains(&format!("not run: {lost}")));
+    assert_eq!(ndda(folder.path(), &["study", "study.ron"]).status.code(), Some(0));
+    assert_eq!(changed(folder.path(), kept), before);
+    changed(folder.path(), lost);
+
+    // Another scene is another case.
+    fs::write(folder.path().join("fall.ron"), SCENE.replace("-10", "-9")).unwrap();
+    assert_eq!(ndda(folder.path(), &["study", "study.ron", "--quiet"]).status.code(), Some(0));
+    assert!(changed(folder.path(), kept) > before);
+}
+
+#[test]
+fn results_are_compared_with_runs_that_agree() {
+    let folder = folder(RUNS);
+    let done = ndda(folder.path(), &["study", "study.ron", "--json", "--quiet"]);
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    let results: Value = serde_json::from_slice(&done.stdout).unwrap();
+    let reference = &results["reference"];
+    assert_eq!((&reference["kind"], &reference["step_s"]), (&Value::from("runs"), &Value::from(2.5e-3)));
+    assert!(reference["disagreement_max"].as_f64().unwrap() < 1e-12, "{reference}");
+    for case in results["cases"].as_array().unwrap() {
+        assert!(case["figures"]["error_max"].as_f64().unwrap() < 1e-12, "{case}");
+    }
+}
+
+#[test]
+fn a_scheduler_gets_commands_that_run_one_case_each() {
+    let folder = folder(RUNS);
+    let list = ndda(folder.path(), &["study", "study.ron", "--emit", "list"]);
+    let text = String::from_utf8(list.stdout).unwrap();
+    let commands: Vec<&str> = text.lines().collect();
+    assert_eq!(commands.len(), 4, "{text}");
+    assert!(!folder.path().join("out").exists(), "nothing has run");
+    for command in commands {
+        let arguments: Vec<&str> = command.split(' ').skip(1).collect();
+        let done = ndda(folder.path(), &arguments);
+        assert_eq!(done.status.code(), Some(0), "{command}: {}", said(&done));
+    }
+    assert_eq!(ndda(folder.path(), &["study", "collect", "study.ron", "--quiet"]).status.code(), Some(0));
+    assert_eq!(ndda(folder.path(), &["study", "case", "study.ron", "nobody"]).status.code(), Some(3));
+}
+
+#[test]
+fn a_wrong_study_is_refused_at_its_place() {
+    let folder = folder(&STUDY.replace("time.step_s", "blocks.nobody.at_m"));
+    let done = ndda(folder.path(), &["study", "study.ron"]);
+    assert_eq!(done.status.code(), Some(3));
+    assert!(said(&done).contains("study.ron:4:51: error: axes[0].values[0]"), "{}", said(&done));
+    assert_eq!(ndda(folder.path(), &["study", "no.ron"]).status.code(), Some(3));
+    assert_eq!(ndda(folder.path(), &["study"]).status.code(), Some(2));
+}
+
+#[test]
+fn the_scenes_of_the_example_studies_are_right() {
+    let studies = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/studies");
+    for entry in fs::read_dir(studies).unwrap() {
+        let path = entry.unwrap().path();
+        let loaded = ndda_io::study::load(&path).unwrap_or_else(|errors| panic!("{errors}"));
+        let cases = case::cases(&loaded).unwrap();
+        let references = case::reference_cases(&loaded, &cases).unwrap();
+        for case in cases.iter().chain(&references) {
+            loaded.scene_with(&case.overrides).unwrap_or_else(|errors| panic!("{}: {errors}", case.name));
+        }
+    }
+}
+
+#[cfg(feature = "plots")]
+#[test]
+fn columns_of_runs_are_drawn_over_each_other() {
+    let folder = folder(STUDY);
+    for (out, step) in [("a", "1e-2"), ("b", "5e-3")] {
+        let set = format!("time.step_s={step}");
+        let done = ndda(folder.path(), &["run", "fall.ron", "--set", &set, "--out", out, "--quiet"]);
+        assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    }
+    let list = ndda(folder.path(), &["plot", "a"]);
+    assert!(said(&list).contains("history.csv: time_s, kinetic_j"), "{}", said(&list));
+    let drawn =
+        ndda(folder.path(), &["plot", "a", "b/history.csv", "--columns", "kinetic,load_j", "-o", "e.svg"]);
+    assert_eq!(drawn.status.code(), Some(0), "{}", said(&drawn));
+    let svg = fs::read_to_string(folder.path().join("e.svg")).unwrap();
+    for word in ["a: kinetic_j", "b: load_j", "time [s]", "[J]"] {
+        assert!(svg.contains(word), "{word} is not in the picture");
+    }
+    let lost = ndda(folder.path(), &["plot", "a", "--columns", "momentum", "-o", "e.svg"]);
+    assert_eq!(lost.status.code(), Some(3));
+    assert!(said(&lost).contains("more than one column begins with `momentum`"), "{}", said(&lost));
+    assert_eq!(ndda(folder.path(), &["plot", "a", "--columns", "h", "-o", "e.gif"]).status.code(), Some(5));
+    assert_eq!(ndda(folder.path(), &["plot", "nobody", "--columns", "h"]).status.code(), Some(3));
+}
