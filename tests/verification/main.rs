@@ -9,6 +9,7 @@ mod damping;
 mod end_contact;
 mod glancing_collision;
 mod ground_stress;
+mod joint_friction;
 mod loads_over_time;
 mod lumped_mass;
 mod one_block_alone;

@@ -41,8 +41,7 @@ pub fn add_forces(
 fn form(joints: &Joints, candidates: &Candidates, input: &ContactInput, bonds: &mut Vec<Bond>) {
     let blocks = input.blocks;
     for facet in &candidates.facets {
-        let owner = blocks.triangle_block[facet.triangle.index()];
-        let tension_pa = joints.law(owner, facet.target).map_or(0.0, |law| law.tension_pa());
+        let tension_pa = joints.law(blocks, facet.triangle, facet.target).map_or(0.0, |law| law.tension_pa());
         let known = bonds.last().is_some_and(|bond: &Bond| bond.facet == facet.triangle);
         if tension_pa <= 0.0 || known {
             continue;
@@ -68,8 +67,8 @@ fn pull(joints: &Joints, input: &ContactInput, bond: &Bond, output: &mut Contact
     let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
     let area_vector = triangle_area_vector(&corners);
     let stretch = anchor - centroid(input, bond.facet);
-    let (owner, target) = (blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]);
-    let Some(law) = joints.law(owner, target) else { return false };
+    let target = blocks.tet_block[bond.tet.index()];
+    let Some(law) = joints.law(blocks, bond.facet, target) else { return false };
     if stretch.dot(&area_vector) <= 0.0 {
         return true;
     }
@@ -101,8 +100,8 @@ pub fn add_stiffness(
         let (triangle, tet) = (&blocks.triangles[bond.facet.index()], &blocks.tets[bond.tet.index()]);
         let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
         let area_vector = triangle_area_vector(&blocks.triangle_corners(bond.facet, input.position));
-        let pair = (blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]);
-        let Some(law) = joints.law(pair.0, pair.1) else { continue };
+        let target = blocks.tet_block[bond.tet.index()];
+        let Some(law) = joints.law(blocks, bond.facet, target) else { continue };
         if (anchor - centroid(input, bond.facet)).dot(&area_vector) <= 0.0 {
             continue;
         }
@@ -127,8 +126,8 @@ pub fn energy_j(joints: &Joints, input: &ContactInput, bonds: &[Bond]) -> f64 {
         let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
         let area_vector = triangle_area_vector(&blocks.triangle_corners(bond.facet, input.position));
         let stretch = anchor - centroid(input, bond.facet);
-        let pair = (blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]);
-        let stiffness = joints.law(pair.0, pair.1).map_or(0.0, |law| law.bond_stiffness_pa_m());
+        let target = blocks.tet_block[bond.tet.index()];
+        let stiffness = joints.law(blocks, bond.facet, target).map_or(0.0, |law| law.bond_stiffness_pa_m());
         let open = stretch.dot(&area_vector) > 0.0;
         if open { 0.25 * stiffness * area_vector.norm() * stretch.norm_squared() } else { 0.0 }
     };

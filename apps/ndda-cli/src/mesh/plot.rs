@@ -2,7 +2,9 @@
 
 use plotters::prelude::*;
 
-use super::report::{Bars, MeshReport};
+use ndda_mesh::quality::Histogram;
+
+use super::report::MeshReport;
 
 /// Width and height of the picture [px].
 const SIZE: (u32, u32) = (1000, 700);
@@ -22,9 +24,9 @@ fn draw(report: &MeshReport, text: &mut String) -> Result<(), Box<dyn std::error
     root.fill(&WHITE)?;
     let panels = [
         ("volume of blocks [m³]", &report.block_size.volume_m3),
-        ("smallest dihedral angle of tetrahedra [°]", &report.dihedral_deg),
-        ("longest edge over smallest height", &report.aspect),
-        ("smallest height of tetrahedra [m]", &report.height_m),
+        ("smallest dihedral angle of tetrahedra [°]", &report.quality.dihedral_deg),
+        ("longest edge over smallest height", &report.quality.aspect),
+        ("smallest height of tetrahedra [m]", &report.quality.height_m),
     ];
     for (area, (title, bars)) in root.split_evenly((2, 2)).iter().zip(panels) {
         panel(area, title, bars)?;
@@ -36,7 +38,7 @@ fn draw(report: &MeshReport, text: &mut String) -> Result<(), Box<dyn std::error
 type Area<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 
 /// One histogram; empty bars at its ends are left out.
-fn panel(area: &Area<'_>, title: &str, bars: &Bars) -> Result<(), Box<dyn std::error::Error>> {
+fn panel(area: &Area<'_>, title: &str, bars: &Histogram) -> Result<(), Box<dyn std::error::Error>> {
     let used = |i: &usize| bars.counts[*i] > 0;
     let first = (0..bars.counts.len()).find(used).unwrap_or(0);
     let last = (0..bars.counts.len()).rev().find(used).unwrap_or(0);
@@ -47,7 +49,7 @@ fn panel(area: &Area<'_>, title: &str, bars: &Bars) -> Result<(), Box<dyn std::e
         .x_label_area_size(28)
         .y_label_area_size(56)
         .build_cartesian_2d(first as f64..(last + 1) as f64, 0.0..1.05 * most as f64)?;
-    let border = |x: &f64| bars.from.get(x.round() as usize).map_or(String::new(), |b| number(*b));
+    let border = |x: &f64| bars.borders.get(x.round() as usize).map_or(String::new(), |b| number(*b));
     chart
         .configure_mesh()
         .disable_x_mesh()
