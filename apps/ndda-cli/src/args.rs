@@ -42,7 +42,7 @@ pub enum Verb {
 /// Arguments of `ndda mesh`.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  ndda mesh scenes/column_phi0.ron\n  ndda mesh scenes/pile_125.ron \
-                        --set rock.cube.fill='Size(size_m: 0.4)'\n  ndda mesh block.msh --fix orient,merge --json")]
+                        --set rock.cube.fill='Size(size_m: 0.4)'\n  ndda mesh scenes/column_phi0.ron --also polyhedra,gmsh\n  ndda mesh block.msh --fix orient,merge --json")]
 pub struct MeshArgs {
     /// Scene file (RON), or mesh file (Gmsh, TetGen, VTK, Abaqus) with coordinates in metres.
     pub input: PathBuf,

@@ -81,6 +81,9 @@ fn a_scene_is_not_repaired_and_a_missing_file_is_no_panic() {
     let scene = written(folder.path(), "s.ron", SCENE);
     assert_eq!(mesh::mesh(&args(scene, &[Fix::Orient])), exit::BAD_INPUT);
     assert_eq!(mesh::mesh(&args(folder.path().join("no.msh"), &[])), exit::BAD_INPUT);
+    fs::create_dir(folder.path().join("folder.msh")).unwrap();
+    assert_eq!(mesh::mesh(&args(folder.path().join("folder.msh"), &[])), exit::BAD_INPUT);
+    assert_eq!(mesh::mesh(&args(folder.path().to_path_buf(), &[])), exit::BAD_INPUT);
 }
 
 /// Penalty contact is a spring: ω² grows as the penalty, so the step falls by √10 from one row to the next.

@@ -97,10 +97,18 @@ impl SizeField {
 
     /// Target length of edges at a point [m].
     pub fn at(&self, x: &Vec3) -> f64 {
-        let near_points = self.points.iter().map(|(at, size, growth)| size + growth * (x - at).norm());
+        let mut least = self.largest_m;
+        for (at, size, growth) in &self.points {
+            // Most points are too far to matter, which takes no root.
+            let reach = (least - size) / growth;
+            let squared = (x - at).norm_squared();
+            if reach > 0.0 && squared < reach * reach {
+                least = least.min(size + growth * squared.sqrt());
+            }
+        }
         let near_planes =
             self.planes.iter().map(|(at, n, size, growth)| size + growth * n.dot(&(x - at)).abs());
-        near_points.chain(near_planes).fold(self.largest_m, f64::min)
+        near_planes.fold(least, f64::min)
     }
 
     /// Tetrahedra to expect, from the size sampled between the centroid and the vertices.
