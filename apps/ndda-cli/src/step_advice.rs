@@ -131,7 +131,8 @@ pub fn advise_materials(scene: &Scene, blocks: &BlockSet) -> Vec<AdvisedStep> {
     let moving = wiring::moving(scene, blocks);
     let mut advised = Vec::new();
     for (index, material) in scene.materials.iter().enumerate() {
-        let of_material = blocks.ids().filter(|block| moving[block.index()] == Some(index)).collect();
+        let of_material: Vec<BlockId> =
+            blocks.ids().filter(|block| moving[block.index()] == Some(index)).collect();
         for penalty_pa in [0.1, 1.0, 10.0].map(|factor| factor * penalty_pa) {
             let mut changed = scene.clone();
             if let Some(Contact::Potential { penalty_pa: penalty, .. }) = &mut changed.contact {
@@ -148,7 +149,7 @@ pub fn advise_materials(scene: &Scene, blocks: &BlockSet) -> Vec<AdvisedStep> {
 }
 
 /// Blocks of the smallest elements, one of each kind, with lumped masses.
-fn smallest<'a>(blocks: &'a BlockSet, among: &Vec<BlockId>, density_kg_m3: f64) -> Vec<Trial<'a>> {
+fn smallest<'a>(blocks: &'a BlockSet, among: &[BlockId], density_kg_m3: f64) -> Vec<Trial<'a>> {
     let trial = |&block: &BlockId| {
         let mesh = BlockMesh {
             nodes: blocks.rest_position[blocks.nodes_of(block)].to_vec(),
@@ -186,6 +187,8 @@ fn fastest<'a>(scene: &Scene, trials: impl Iterator<Item = Trial<'a>>) -> Option
 fn contact_rate2(scene: &Scene, trial: &Trial) -> Option<f64> {
     let Trial { mesh, node_mass, .. } = trial;
     let alone = BlockSet::new(vec![("it".into(), mesh.clone())]).ok()?;
+    // Far from the origin, a set has one of its own.
+    let mesh = &BlockMesh { nodes: alone.rest_position.clone(), ..mesh.clone() };
     let pair = alone_with_its_like(scene, trial.block, trial.name);
     let mut largest = 0.0f64;
     for (centroid, normal) in largest_faces(&alone) {

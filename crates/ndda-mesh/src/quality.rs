@@ -89,8 +89,9 @@ impl Histogram {
         let (least, most) = positive.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), v| (a.min(v), b.max(v)));
         let mut histogram = Self::new(vec![0.0]);
         if least.is_finite() && most.is_finite() {
-            let bars = ((most / least).log2().floor() as i32 + 1).clamp(1, most_bars);
-            let first = least.max(most * 2f64.powi(1 - bars));
+            let wanted = (most / least).log2().floor() as i32 + 1;
+            let bars = wanted.clamp(1, most_bars);
+            let first = if wanted > bars { most * 2f64.powi(1 - bars) } else { least };
             histogram = Self::new((0..bars).map(|i| first * 2f64.powi(i)).collect());
         }
         values.iter().for_each(|&value| histogram.add(value));
