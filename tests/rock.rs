@@ -197,7 +197,7 @@ fn faces_know_their_joint_where_nodes_do_not() {
     assert!(blocks.triangles[in_first].iter().filter(on_set).count() >= tagged);
 }
 
-const TWO_TETS_HIGH: &str = "o rock\nv 0 0 0\nv 2000 0 0\nv 0 2000 0\nv 0 0 1000\nusemtl floor\nf 1 3 2\n\
+const WEDGE_MM: &str = "o rock\nv 0 0 0\nv 2000 0 0\nv 0 2000 0\nv 0 0 1000\nusemtl floor\nf 1 3 2\n\
                              usemtl wall\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 fn in_folder(file: &str, content: &str, scene: &str) -> Result<BlockSet, String> {
@@ -211,7 +211,7 @@ fn in_folder(file: &str, content: &str, scene: &str) -> Result<BlockSet, String>
 fn a_surface_in_a_file_is_rock_that_is_cut_in_metres() {
     let rock = "(material: \"rock\", domain: File(file: \"a.obj\", unit_m: 1e-3),
                  joints: [Plane(name: \"cut\", dip_deg: 0, dip_direction_deg: 0, point_m: (0, 0, 0.5))])";
-    let blocks = in_folder("a.obj", TWO_TETS_HIGH, &scene(rock, "")).unwrap();
+    let blocks = in_folder("a.obj", WEDGE_MM, &scene(rock, "")).unwrap();
     assert_eq!(blocks.len(), 2);
     // ⅙ · 2 · 2 · 1 m³.
     assert!((volume_m3(&blocks) - 2.0 / 3.0).abs() < 1e-12);
@@ -222,12 +222,14 @@ fn a_surface_in_a_file_is_rock_that_is_cut_in_metres() {
 fn what_is_wrong_with_a_surface_is_said() {
     let rock = |file: &str| format!("(material: \"rock\", domain: File(file: \"{file}\"))");
     let said = |content: &str| in_folder("a.obj", content, &scene(&rock("a.obj"), "")).unwrap_err();
-    let open = said(&TWO_TETS_HIGH.replace("f 2 3 4\n", ""));
+    let open = said(&WEDGE_MM.replace("f 2 3 4\n", ""));
     assert!(open.contains("not closed: 3 edges"), "{open}");
-    // The tip is pushed through the floor at a corner of its own: two sheets cross.
-    let crossed = "v 0 0 0\nv 4 0 0\nv 0 4 0\nv 1 1 2\nv 1 1 -1\nv 2 2 1\nf 1 3 2\nf 1 2 5\nf 2 3 5\nf 3 1 5\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
-    assert!(said(crossed).contains("not closed"), "{}", said(crossed));
-    let inside_out = TWO_TETS_HIGH.replace("f 2 3 4", "f 2 4 3");
+    // A second shell that reaches into the first.
+    let second = "v 100 100 100\nv 2100 100 100\nv 100 2100 100\nv 100 100 1100\n\
+                  f 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
+    let crossed = said(&(WEDGE_MM.to_string() + second));
+    assert!(crossed.contains("cuts itself") || crossed.contains("cut itself"), "{crossed}");
+    let inside_out = WEDGE_MM.replace("f 2 3 4", "f 2 4 3");
     assert!(said(&inside_out).contains("all faces outward"), "{}", said(&inside_out));
     let missing = in_folder("b.obj", "", &scene(&rock("a.obj"), "")).unwrap_err();
     assert!(missing.contains("there is no file"), "{missing}");
@@ -239,7 +241,7 @@ fn filled(fill: &str) -> Result<BlockSet, String> {
           materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2650)],
           blocks: [(name: \"a\", material: \"rock\", shape: Surface(file: \"a.obj\", unit_m: 1e-3, fill: {fill}))])"
     );
-    in_folder("a.obj", TWO_TETS_HIGH, &scene)
+    in_folder("a.obj", WEDGE_MM, &scene)
 }
 
 #[test]
