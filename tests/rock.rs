@@ -170,3 +170,117 @@ fn a_star_stands_for_anything() {
     );
     assert!(!matches("rock_*", "base") && !matches("a*c", "abcd") && !matches("a", "ab"));
 }
+
+/// Triangles whose corners are all on joints of one name, but which lie across them, are not part of the joint.
+#[test]
+fn faces_know_their_joint_where_nodes_do_not() {
+    let blocks = blocks(&load(&COLUMN.replace("fill: Centre", "fill: Fewest"), ""));
+    let area = |upright: bool, surface: &str| -> f64 {
+        let index = blocks.surface_names.iter().position(|name| name == surface).map(|i| i as u32);
+        let own = |t: &usize| index.is_some() && blocks.triangle_surface[*t] == index;
+        let normals = (0..blocks.triangles.len()).filter(own).map(|t| {
+            let corners = blocks.triangles[t].map(|n| blocks.rest_position[n.index()]);
+            ndda_mesh::geometry::triangle_area_vector(&corners)
+        });
+        normals.filter(|n| (n.z.abs() > 0.5 * n.norm()) == upright).map(|n| n.norm()).sum()
+    };
+    // Three planes inside and the top and bottom of the domain; `up` cuts once, over 8 m by 4 m.
+    assert!((area(true, "bed") - 3.0 * 2.0 * 16.0).abs() < 1e-9 && area(false, "bed") == 0.0);
+    assert!((area(false, "up") - 2.0 * 32.0).abs() < 1e-9 && area(true, "up") == 0.0);
+    let set = &blocks.node_sets[0]["bed"];
+    let on_set = |t: &&[ndda_mesh::NodeId; 3]| t.iter().all(|n| set.contains(n));
+    let in_first = blocks.triangles_of(ndda_mesh::BlockId(0));
+    let tagged = blocks.triangle_surface[in_first.clone()]
+        .iter()
+        .filter(|s| s.is_some_and(|s| blocks.surface_names[s as usize] == "bed"))
+        .count();
+    assert!(blocks.triangles[in_first].iter().filter(on_set).count() >= tagged);
+}
+
+const WEDGE_MM: &str = "o rock\nv 0 0 0\nv 2000 0 0\nv 0 2000 0\nv 0 0 1000\nusemtl floor\nf 1 3 2\n\
+                             usemtl wall\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+fn in_folder(file: &str, content: &str, scene: &str) -> Result<BlockSet, String> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join(file), content).unwrap();
+    let loaded = load_text("t.ron", scene, &[], Some(folder.path())).map_err(|e| e.to_string())?;
+    wiring::blocks(&loaded.scene, folder.path()).map_err(|faults| format!("{faults:?}"))
+}
+
+#[test]
+fn a_surface_in_a_file_is_rock_that_is_cut_in_metres() {
+    let rock = "(material: \"rock\", domain: File(file: \"a.obj\", unit_m: 1e-3),
+                 joints: [Plane(name: \"cut\", dip_deg: 0, dip_direction_deg: 0, point_m: (0, 0, 0.5))])";
+    let blocks = in_folder("a.obj", WEDGE_MM, &scene(rock, "")).unwrap();
+    assert_eq!(blocks.len(), 2);
+    // ⅙ · 2 · 2 · 1 m³.
+    assert!((volume_m3(&blocks) - 2.0 / 3.0).abs() < 1e-12);
+    assert!(blocks.node_sets.iter().any(|sets| sets.contains_key("floor")));
+}
+
+#[test]
+fn what_is_wrong_with_a_surface_is_said() {
+    let rock = |file: &str| format!("(material: \"rock\", domain: File(file: \"{file}\"))");
+    let said = |content: &str| in_folder("a.obj", content, &scene(&rock("a.obj"), "")).unwrap_err();
+    let open = said(&WEDGE_MM.replace("f 2 3 4\n", ""));
+    assert!(open.contains("not closed: 3 edges"), "{open}");
+    // A second shell that reaches into the first.
+    let second = "v 100 100 100\nv 2100 100 100\nv 100 2100 100\nv 100 100 1100\n\
+                  f 5 7 6\nf 5 6 8\nf 5 8 7\nf 6 7 8\n";
+    let crossed = said(&(WEDGE_MM.to_string() + second));
+    assert!(crossed.contains("cuts itself") || crossed.contains("cut itself"), "{crossed}");
+    let inside_out = WEDGE_MM.replace("f 2 3 4", "f 2 4 3");
+    assert!(said(&inside_out).contains("all faces outward"), "{}", said(&inside_out));
+    let missing = in_folder("b.obj", "", &scene(&rock("a.obj"), "")).unwrap_err();
+    assert!(missing.contains("there is no file"), "{missing}");
+}
+
+fn filled(fill: &str) -> Result<BlockSet, String> {
+    let scene = format!(
+        "(title: \"t\", time: (step_s: 1e-4, end_s: 0.01),
+          materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2650)],
+          blocks: [(name: \"a\", material: \"rock\", shape: Surface(file: \"a.obj\", unit_m: 1e-3, fill: {fill}))])"
+    );
+    in_folder("a.obj", WEDGE_MM, &scene)
+}
+
+#[test]
+fn a_surface_is_filled_finer_towards_a_point() {
+    let coarse = filled("Size(size_m: 0.4)").unwrap();
+    let finer =
+        filled("Size(size_m: 0.4, finer: [(towards: Point((2, 0, 0)), size_m: 0.05, growth: 0.4)])").unwrap();
+    let plane = filled(
+        "Size(size_m: 0.4, finer: [(towards: Plane(point_m: (0, 0, 0), normal: (0, 0, 1)), size_m: 0.05)])",
+    )
+    .unwrap();
+    let counts = [&coarse, &finer, &plane].map(|blocks| blocks.tets.len());
+    assert!(counts[0] < counts[1] && 2 * counts[0] < counts[2], "{counts:?}");
+    assert!((volume_m3(&finer) - 2.0 / 3.0).abs() < 1e-12);
+    let near = |blocks: &BlockSet| {
+        let at = ndda_mesh::Vec3::new(2.0, 0.0, 0.0) - blocks.origin_m;
+        blocks.rest_position.iter().filter(|x| (*x - at).norm() < 0.3).count()
+    };
+    assert!(near(&finer) > 5 * near(&coarse), "{} and {}", near(&finer), near(&coarse));
+    assert!(
+        filled("Size(size_m: 0.4, finer: [(towards: Point((2, 0, 0)), size_m: 0)])")
+            .unwrap_err()
+            .contains("size_m")
+    );
+}
+
+#[test]
+fn tetgen_fills_where_the_program_has_it_and_is_missed_by_name_where_not() {
+    match filled("TetGen(size_m: 0.3)") {
+        Ok(blocks) => assert!((volume_m3(&blocks) - 2.0 / 3.0).abs() < 1e-9 && blocks.tets.len() > 50),
+        Err(message) => assert!(message.contains("without TetGen"), "{message}"),
+    }
+}
+
+#[test]
+fn a_mesh_that_is_there_has_no_size() {
+    let scene = "(title: \"t\", time: (step_s: 1e-4, end_s: 0.01),
+          materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2650)],
+          blocks: [(name: \"a\", material: \"rock\", shape: Mesh(file: \"a.msh\", size_m: 0.1))])";
+    let message = in_folder("a.msh", "", scene).unwrap_err();
+    assert!(message.contains("a mesh in a file is as fine as it is"), "{message}");
+}

@@ -72,3 +72,43 @@ fn a_force_that_comes_and_goes_leaves_its_impulse() {
     let worst = simulation.invariants();
     assert!(worst.linear_momentum < 1e-12 && worst.angular_momentum < 1e-12, "{worst:?}");
 }
+
+#[test]
+fn a_force_on_blocks_by_pattern_pushes_each_through_its_mass_centre() {
+    let mut simulation = simulation(
+        "(title: \"push\", time: (step_s: 1e-3, end_s: 1), contact: Off,
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2500)],
+          blocks: [(name: \"free\", material: \"rock\", at_m: (9, 0, 0), shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+          rock: [(material: \"rock\", fill: Centre, domain: Box(min_m: (0, 0, 0), max_m: (3, 2, 1)),
+                  joints: [Plane(name: \"j\", dip_deg: 60, dip_direction_deg: 90, point_m: (1, 0, 0))])],
+          forces: [(block: \"rock_*\", force_n: (600, 0, 300)), (block: \"rock_*\", at_m: (0, 0, 0), force_n: (0, 100, 0))])",
+    );
+    for _ in 0..100 {
+        simulation.step().unwrap();
+    }
+    let (state, blocks) = (simulation.state(), simulation.blocks());
+    let momenta: Vec<(Vec3, Vec3)> = blocks
+        .ids()
+        .map(|block| {
+            let mass = &simulation.shape(block).operator.node_mass;
+            let nodes = blocks.nodes_of(block);
+            let (x, v) = (&state.position[nodes.clone()], &state.velocity[nodes]);
+            let whole: f64 = mass.iter().sum();
+            let center = mass.iter().zip(x).map(|(&m, x)| m * x).sum::<Vec3>() / whole;
+            let linear = mass.iter().zip(v).map(|(&m, v)| m * v).sum();
+            (linear, mass.iter().zip(x).zip(v).map(|((&m, x), v)| (x - center).cross(&(m * v))).sum())
+        })
+        .collect();
+    assert_eq!(momenta[0], (Vec3::zeros(), Vec3::zeros()));
+    for (linear, angular) in &momenta[1..] {
+        let off = linear - Vec3::new(60.0, 0.0, 30.0);
+        assert!(off.x.abs().max(off.z.abs()) < 1e-9, "{linear:?}");
+        assert!(linear.y.abs() > 1e-9 || angular.norm() < 1e-6, "{angular:?}");
+    }
+    let sideways: Vec<f64> = momenta[1..].iter().map(|(linear, _)| linear.y).collect();
+    // Only the block that has the point takes the force that acts there.
+    assert!(
+        sideways.iter().any(|y| (y - 10.0).abs() < 1e-9) && sideways.iter().any(|y| y.abs() < 1e-9),
+        "{sideways:?}"
+    );
+}

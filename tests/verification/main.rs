@@ -12,6 +12,7 @@ mod elastic_waves;
 mod end_contact;
 mod glancing_collision;
 mod ground_stress;
+mod joint_friction;
 mod loads_over_time;
 mod lumped_mass;
 mod masonry_arch;

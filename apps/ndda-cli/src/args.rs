@@ -47,7 +47,7 @@ pub enum Verb {
     /// Build or read the blocks of a scene or a mesh file, check and measure them, and draw them.
     ///
     /// Prints counts, volumes, how large blocks are, how good their tetrahedra are (histograms, and the worst ten with
-    /// their places), and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg.
+    /// their places), the steps that contact of each material asks for, and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg.
     /// Tetrahedra with dihedral angles of a few degrees or an aspect above 50 make runs inexact or short of steps:
     /// use larger spacings, another `fill`, or `sliver_width_m`.
     Mesh(MeshArgs),
@@ -211,7 +211,7 @@ pub struct PlotArgs {
 /// Arguments of `ndda mesh`.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:\n  ndda mesh scenes/column_phi0.ron\n  ndda mesh scenes/pile_125.ron \
-                        --set rock.cube.fill='Size(size_m: 0.4)'\n  ndda mesh block.msh --fix orient,merge --json")]
+                        --set rock.cube.fill='Size(size_m: 0.4)'\n  ndda mesh scenes/column_phi0.ron --also polyhedra,gmsh\n  ndda mesh block.msh --fix orient,merge --json")]
 pub struct MeshArgs {
     /// Scene file (RON), or mesh file (Gmsh, TetGen, VTK, Abaqus) with coordinates in metres.
     pub input: PathBuf,
@@ -227,12 +227,32 @@ pub struct MeshArgs {
     /// Replace the results of an earlier call in the output folder.
     #[arg(long)]
     pub force: bool,
+    /// Write the blocks in other formats, too: `polyhedra` and `obj` are the convex parts of rock before they are filled.
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "FORMAT")]
+    pub also: Vec<Export>,
     /// Print the report as JSON, one object on a line (see docs/json.md).
     #[arg(long)]
     pub json: bool,
     /// Override a value of the scene by its path; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub overrides: Vec<String>,
+}
+
+/// A format of meshes or blocks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Export {
+    /// mesh.msh, with a physical volume per block.
+    Gmsh,
+    /// mesh.inp.
+    Abaqus,
+    /// mesh.node, mesh.ele and mesh.face.
+    Tetgen,
+    /// mesh.vtu, with the sets of nodes.
+    Vtu,
+    /// ROCK_parts.vtu, with the blocks of a rock as polyhedra.
+    Polyhedra,
+    /// ROCK_parts.obj.
+    Obj,
 }
 
 /// A repair.

@@ -8,23 +8,25 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use ndda_io::read::load;
-use ndda_io::scene::FieldFormat;
+use ndda_io::scene::{FieldFormat, Scene};
 use ndda_io::vtu::{self, Frame, Topology};
-use ndda_io::{OutputFolder, WriteError, mesh_file};
+use ndda_io::{OutputFolder, WriteError, mesh_file, surface_file, vtk_file};
 use ndda_mesh::{BlockSet, MeshError, repair};
 
-use crate::args::{Fix, MeshArgs};
+use crate::args::{Export, Fix, MeshArgs};
 use crate::console::{colour, say};
 use crate::events::{self, Events};
 use crate::exit;
-use crate::wiring::{self, Meshes, RockReport};
+use crate::step_advice;
+use crate::wiring::{self, CutRock, Meshes};
 use report::MeshReport;
 use serde::Serialize;
 
 /// Blocks before they are checked.
 struct Input {
     meshes: Meshes,
-    rock: Vec<RockReport>,
+    scene: Option<Scene>,
+    rock: Vec<CutRock>,
     fixes: Vec<String>,
 }
 
@@ -36,9 +38,15 @@ pub fn mesh(args: &MeshArgs) -> u8 {
         Ok(input) => input,
         Err(message) => return events.fail(exit::BAD_INPUT, message.trim_start_matches("error: ")),
     };
-    let measured = MeshReport::new(&input.meshes, input.rock, input.fixes);
-    match BlockSet::new(input.meshes) {
-        Ok(blocks) => finish(args, &measured, &blocks),
+    let mut measured = MeshReport::new(&input.meshes);
+    measured.rock = input.rock.iter().map(|rock| rock.report.clone()).collect();
+    measured.fixes.clone_from(&input.fixes);
+    match BlockSet::new(input.meshes.clone()) {
+        Ok(blocks) => {
+            measured.steps =
+                input.scene.as_ref().map_or(Vec::new(), |s| step_advice::advise_materials(s, &blocks));
+            finish(args, &measured, &input, &blocks)
+        }
         Err(error) => {
             if args.json {
                 events.emit("measured", &Measured { report: &measured });
@@ -84,7 +92,7 @@ fn from_scene(args: &MeshArgs) -> Result<Input, String> {
         let diagnostics = faults.into_iter().map(|f| loaded.diagnose(&f.path, f.message)).collect();
         loaded.errors(diagnostics).render(colour())
     })?;
-    Ok(Input { meshes, rock, fixes: Vec::new() })
+    Ok(Input { meshes, scene: Some(loaded.scene), rock, fixes: Vec::new() })
 }
 
 fn from_file(args: &MeshArgs) -> Result<Input, String> {
@@ -110,15 +118,15 @@ fn from_file(args: &MeshArgs) -> Result<Input, String> {
             fixes.push(format!("{name}: {done}"));
         }
     }
-    Ok(Input { meshes, rock: Vec::new(), fixes })
+    Ok(Input { meshes, scene: None, rock: Vec::new(), fixes })
 }
 
-fn finish(args: &MeshArgs, measured: &MeshReport, blocks: &BlockSet) -> u8 {
+fn finish(args: &MeshArgs, measured: &MeshReport, input: &Input, blocks: &BlockSet) -> u8 {
     let folder = args.out.clone().unwrap_or_else(|| {
         let stem = args.input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned());
         PathBuf::from("out").join(stem + "_mesh")
     });
-    match write(&folder, args.force, measured, blocks) {
+    match write(&folder, args, measured, input, blocks) {
         Ok(files) => {
             if args.json {
                 let events = Events::new(true, events::MESH);
@@ -134,8 +142,14 @@ fn finish(args: &MeshArgs, measured: &MeshReport, blocks: &BlockSet) -> u8 {
 }
 
 /// Writes the picture and the blocks; returns a line that says where.
-fn write(folder: &Path, force: bool, measured: &MeshReport, blocks: &BlockSet) -> Result<String, WriteError> {
-    let folder = OutputFolder::create(folder, force)?;
+fn write(
+    folder: &Path,
+    args: &MeshArgs,
+    measured: &MeshReport,
+    input: &Input,
+    blocks: &BlockSet,
+) -> Result<String, WriteError> {
+    let folder = OutputFolder::create(folder, args.force)?;
     let folder = folder.path();
     let path = folder.join("blocks.vtu");
     let topology = Topology::new(blocks, FieldFormat::default()).with_blocks(blocks);
@@ -144,6 +158,42 @@ fn write(folder: &Path, force: bool, measured: &MeshReport, blocks: &BlockSet) -
     ndda_io::atomic::write(&folder.join("mesh.json"), measured.json().as_bytes())?;
     #[cfg(feature = "plots")]
     crate::picture::write(&folder.join("mesh.svg"), plot::SIZE, |root| plot::draw(measured, root))?;
+    let mut exported = String::new();
+    for export in &args.also {
+        for name in written(folder, *export, input)? {
+            let _ = write!(exported, ", {name}");
+        }
+    }
     let picture = if cfg!(feature = "plots") { ", mesh.svg (histograms)" } else { "" };
-    Ok(format!("{}: blocks.vtu (open it in ParaView), mesh.json{picture}", folder.display()))
+    Ok(format!("{}: blocks.vtu (open it in ParaView), mesh.json{picture}{exported}", folder.display()))
+}
+
+/// Writes the blocks in another format; returns the names of the files.
+fn written(folder: &Path, export: Export, input: &Input) -> Result<Vec<String>, WriteError> {
+    let ending = match export {
+        Export::Gmsh => "msh",
+        Export::Abaqus => "inp",
+        Export::Tetgen => "ele",
+        Export::Vtu => "vtu",
+        Export::Polyhedra | Export::Obj => return parts(folder, export, input),
+    };
+    let name = format!("mesh.{ending}");
+    mesh_file::write(&folder.join(&name), &input.meshes)?;
+    Ok(vec![name])
+}
+
+/// Writes the convex parts of each rock.
+fn parts(folder: &Path, export: Export, input: &Input) -> Result<Vec<String>, WriteError> {
+    let mut names = Vec::new();
+    for CutRock { report, blocks } in &input.rock {
+        let is_obj = export == Export::Obj;
+        let name = format!("{}_parts.{}", report.name, if is_obj { "obj" } else { "vtu" });
+        if is_obj {
+            surface_file::write_blocks(&folder.join(&name), blocks)?;
+        } else {
+            vtk_file::write_polyhedra(&folder.join(&name), blocks)?;
+        }
+        names.push(name);
+    }
+    Ok(names)
 }

@@ -7,11 +7,13 @@ use std::fmt;
 
 use ndda_contact::block_faces::BlockFaces;
 use ndda_contact::{ContactHistory, ContactInput, ContactOutput};
-use ndda_io::scene::Scene;
-use ndda_mesh::geometry::triangle_area_vector;
+use ndda_io::scene::{Contact, ContactAt, Scene};
+use ndda_mesh::geometry::{tet_volume, triangle_area_vector};
+use ndda_mesh::stats::stats;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
+use ndda_solver::Simulation;
 use ndda_solver::body::BodyKind;
-use ndda_solver::{Shape, Simulation};
+use serde::Serialize;
 
 use crate::wiring;
 
@@ -19,6 +21,8 @@ use crate::wiring;
 const MOST_SHAPES: usize = 32;
 /// Faces of a block that are tried, the largest first.
 const MOST_FACES: usize = 8;
+/// Blocks whose smallest heights differ by less than this part, and that have as many elements, are of one kind.
+const SAME_HEIGHT: f64 = 1e-9;
 /// Depth over the smallest height of an element.
 const DEPTH: f64 = 1e-3;
 /// Part of the bound on h that is advised.
@@ -54,11 +58,44 @@ impl fmt::Display for Advice {
     }
 }
 
+/// A step for the contact of one material at one penalty, safe by half of the bound.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct AdvisedStep {
+    /// The material.
+    pub material: String,
+    /// The normal penalty k_n [Pa].
+    pub penalty_pa: f64,
+    /// The step [s].
+    pub step_s: f64,
+    /// The block that asks for it.
+    pub block: String,
+}
+
+impl fmt::Display for AdvisedStep {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { material, penalty_pa, step_s, block } = self;
+        write!(
+            f,
+            "contact of {material} at penalty_pa {penalty_pa:.1e}: advised step_s {step_s:.1e} (for {block})"
+        )
+    }
+}
+
+/// A block that is laid against its like.
+struct Trial<'a> {
+    block: BlockId,
+    name: &'a str,
+    mesh: BlockMesh,
+    node_mass: Vec<f64>,
+    smallest_height_m: f64,
+}
+
 /// The step for a scene's contact; none without contact, or where contact is stable at any step or at none.
 pub fn advise(scene: &Scene, simulation: &Simulation) -> Option<Advice> {
     let bound = simulation.contact_bound().filter(|_| simulation.has_contact())?;
+    let blocks = simulation.blocks();
     let mut distinct: Vec<BlockId> = Vec::new();
-    for block in simulation.blocks().ids() {
+    for block in blocks.ids() {
         let shape = simulation.shape(block);
         let known = distinct.iter().any(|other| std::ptr::eq(simulation.shape(*other), shape));
         if !known && shape.kind != BodyKind::Fixed {
@@ -68,29 +105,94 @@ pub fn advise(scene: &Scene, simulation: &Simulation) -> Option<Advice> {
     let height = |block: &BlockId| simulation.shape(*block).smallest_height_m;
     distinct.sort_by(|a, b| height(a).total_cmp(&height(b)));
     distinct.truncate(MOST_SHAPES);
-    let rates = distinct.iter().filter_map(|&block| {
-        let name = &simulation.blocks().names[block.index()];
-        let rate2 = contact_rate2(scene, simulation.shape(block), (block, name))?;
-        Some((rate2.sqrt(), block))
+    let trials = distinct.into_iter().map(|block| {
+        let shape = simulation.shape(block);
+        let (nodes, tets) = (shape.operator.rest.clone(), shape.operator.tets.clone());
+        Trial {
+            block,
+            name: &blocks.names[block.index()],
+            mesh: BlockMesh { nodes, tets, surfaces: blocks.surfaces_of(block), ..BlockMesh::default() },
+            node_mass: shape.operator.node_mass.clone(),
+            smallest_height_m: shape.smallest_height_m,
+        }
     });
-    let (rate, block) = rates.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(rate, _)| *rate > 0.0)?;
-    let name = simulation.blocks().names[block.index()].clone();
-    Some(Advice { step_s: SAFETY * bound / rate, block: name, h: rate * simulation.step_s(), bound })
+    let (rate, block) = fastest(scene, trials)?;
+    Some(Advice { step_s: SAFETY * bound / rate, block, h: rate * simulation.step_s(), bound })
+}
+
+/// Steps for the contact of each material that moves, at the scene's penalty, a tenth of it and ten times as much; none
+/// without contact, or where contact is stable at any step or at none.
+pub fn advise_materials(scene: &Scene, blocks: &BlockSet) -> Vec<AdvisedStep> {
+    let predicted = matches!(scene.time.contact_at, ContactAt::Predicted);
+    let bound = wiring::integrator(&scene.time.integrator).contact_bound().filter(|_| predicted);
+    let (Some(bound), Some(Contact::Potential { penalty_pa, .. })) = (bound, &scene.contact) else {
+        return Vec::new();
+    };
+    let moving = wiring::moving(scene, blocks);
+    let mut advised = Vec::new();
+    for (index, material) in scene.materials.iter().enumerate() {
+        let of_material: Vec<BlockId> =
+            blocks.ids().filter(|block| moving[block.index()] == Some(index)).collect();
+        for penalty_pa in [0.1, 1.0, 10.0].map(|factor| factor * penalty_pa) {
+            let mut changed = scene.clone();
+            if let Some(Contact::Potential { penalty_pa: penalty, .. }) = &mut changed.contact {
+                *penalty = penalty_pa;
+            }
+            let trials = smallest(blocks, &of_material, material.density_kg_m3);
+            if let Some((rate, block)) = fastest(&changed, trials.into_iter()) {
+                let step_s = SAFETY * bound / rate;
+                advised.push(AdvisedStep { material: material.name.clone(), penalty_pa, step_s, block });
+            }
+        }
+    }
+    advised
+}
+
+/// Blocks of the smallest elements, one of each kind, with lumped masses.
+fn smallest<'a>(blocks: &'a BlockSet, among: &[BlockId], density_kg_m3: f64) -> Vec<Trial<'a>> {
+    let trial = |&block: &BlockId| {
+        let mesh = BlockMesh {
+            nodes: blocks.rest_position[blocks.nodes_of(block)].to_vec(),
+            tets: blocks.local_tets(block).collect(),
+            surfaces: blocks.surfaces_of(block),
+            ..BlockMesh::default()
+        };
+        let mut node_mass = vec![0.0; mesh.nodes.len()];
+        for tet in &mesh.tets {
+            let mass = density_kg_m3 * tet_volume(&tet.map(|node| mesh.nodes[node as usize])) / 4.0;
+            tet.iter().for_each(|&node| node_mass[node as usize] += mass);
+        }
+        let smallest_height_m = stats(&mesh).smallest_height_m;
+        Trial { block, name: &blocks.names[block.index()], mesh, node_mass, smallest_height_m }
+    };
+    let mut trials: Vec<Trial> = among.iter().map(trial).collect();
+    trials.sort_by(|a, b| a.smallest_height_m.total_cmp(&b.smallest_height_m));
+    let same = |a: &Trial, b: &Trial| {
+        let difference = (a.smallest_height_m - b.smallest_height_m).abs();
+        a.mesh.tets.len() == b.mesh.tets.len() && difference <= SAME_HEIGHT * b.smallest_height_m
+    };
+    trials.dedup_by(|a, b| same(a, b));
+    trials.truncate(MOST_SHAPES);
+    trials
+}
+
+/// The largest ω_c of blocks against their like [1/s], and whose it is.
+fn fastest<'a>(scene: &Scene, trials: impl Iterator<Item = Trial<'a>>) -> Option<(f64, String)> {
+    let rates = trials.filter_map(|trial| Some((contact_rate2(scene, &trial)?.sqrt(), trial.name)));
+    let fastest = rates.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(rate, _)| *rate > 0.0)?;
+    Some((fastest.0, fastest.1.to_string()))
 }
 
 /// ω_c² of a block against its like [1/s²]; none if the scene's contact model cannot serve the two.
-fn contact_rate2(scene: &Scene, shape: &Shape, (block, name): (BlockId, &str)) -> Option<f64> {
-    let mesh = BlockMesh {
-        nodes: shape.operator.rest.clone(),
-        tets: shape.operator.tets.clone(),
-        ..BlockMesh::default()
-    };
+fn contact_rate2(scene: &Scene, trial: &Trial) -> Option<f64> {
+    let Trial { mesh, node_mass, .. } = trial;
     let alone = BlockSet::new(vec![("it".into(), mesh.clone())]).ok()?;
-    let pair = alone_with_its_like(scene, block, name);
+    // Far from the origin, a set has one of its own.
+    let mesh = &BlockMesh { nodes: alone.rest_position.clone(), ..mesh.clone() };
+    let pair = alone_with_its_like(scene, trial.block, trial.name);
     let mut largest = 0.0f64;
     for (centroid, normal) in largest_faces(&alone) {
-        let depth = DEPTH * shape.smallest_height_m;
-        let like = turned_over(&mesh, &centroid, &normal, depth);
+        let like = turned_over(mesh, &centroid, &normal, DEPTH * trial.smallest_height_m);
         let Ok(blocks) = BlockSet::new(vec![("it".into(), mesh.clone()), ("like".into(), like)]) else {
             continue;
         };
@@ -102,7 +204,7 @@ fn contact_rate2(scene: &Scene, shape: &Shape, (block, name): (BlockId, &str)) -
         let mut output =
             ContactOutput { force: &mut force, friction_force: &mut friction, stiffness: &mut stiffness };
         model.add_forces(&input, &mut ContactHistory::default(), &mut output).ok()?;
-        let masses = shape.operator.node_mass.iter().cycle();
+        let masses = node_mass.iter().cycle();
         largest = stiffness.iter().zip(masses).map(|(k, m)| k / m).fold(largest, f64::max);
     }
     Some(largest)

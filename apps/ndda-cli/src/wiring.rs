@@ -6,6 +6,7 @@ mod bodies;
 mod regions;
 mod rock;
 mod shapes;
+mod solid;
 
 use std::path::Path;
 
@@ -15,7 +16,7 @@ use ndda_contact::{
 };
 use ndda_fem::Table;
 use ndda_io::scene::{self, At, Contact, Integrator, Scene};
-use ndda_mesh::{BlockSet, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{
     AutoStep, ConjugateGradients, Direct, EndContact, GeneralizedAlpha, LinearSolver, Mass, Midpoint,
     Newmark, Setup, SetupError, Simulation, TimeIntegrator,
@@ -23,7 +24,7 @@ use ndda_solver::{
 
 use crate::monitor::Monitor;
 use regions::{find, find_all};
-pub use rock::{Meshes, RockReport};
+pub use rock::{CutRock, Meshes, RockReport};
 
 /// A node is on a plane when it is nearer than this part of its block's size.
 const ON_PLANE: f64 = 1e-6;
@@ -54,12 +55,12 @@ pub fn blocks(scene: &Scene, folder: &Path) -> Result<BlockSet, Vec<Fault>> {
     })
 }
 
-/// The meshes of a scene before they are checked, and what its rock was cut into.
+/// The meshes of a scene before they are checked, and what each rock was cut into.
 ///
 /// # Errors
 /// All shapes that cannot be built.
-pub fn meshes(scene: &Scene, folder: &Path) -> Result<(Meshes, Vec<RockReport>), Vec<Fault>> {
-    let (mut meshes, mut reports, mut faults) = (Meshes::new(), Vec::new(), Vec::new());
+pub fn meshes(scene: &Scene, folder: &Path) -> Result<(Meshes, Vec<CutRock>), Vec<Fault>> {
+    let (mut meshes, mut rocks, mut faults) = (Meshes::new(), Vec::new(), Vec::new());
     for (i, block) in scene.blocks.iter().enumerate() {
         match shapes::mesh(&block.shape, folder) {
             Ok(mesh) => {
@@ -70,15 +71,15 @@ pub fn meshes(scene: &Scene, folder: &Path) -> Result<(Meshes, Vec<RockReport>),
         }
     }
     for index in 0..scene.rock.len() {
-        match rock::cut_rock(scene, index) {
-            Ok((cut, report)) => {
-                meshes.extend(cut);
-                reports.push(report);
+        match rock::cut_rock(scene, folder, index) {
+            Ok((filled, cut)) => {
+                meshes.extend(filled);
+                rocks.push(cut);
             }
             Err(found) => faults.extend(found),
         }
     }
-    if faults.is_empty() { Ok((meshes, reports)) } else { Err(faults) }
+    if faults.is_empty() { Ok((meshes, rocks)) } else { Err(faults) }
 }
 
 /// Where in the scene a block comes from.
@@ -101,6 +102,20 @@ fn sources<'a>(scene: &'a Scene, blocks: &BlockSet) -> Vec<Option<Source<'a>>> {
     let rock = |name: &String| scene.rock.iter().find(|rock| rock.makes(name)).map(Source::Rock);
     let written = scene.blocks.iter().map(|block| Some(Source::Block(block)));
     written.chain(blocks.names.iter().skip(scene.blocks.len()).map(rock)).collect()
+}
+
+/// Index of the material of each block that can move.
+pub fn moving(scene: &Scene, blocks: &BlockSet) -> Vec<Option<usize>> {
+    let material = |(block, source): (BlockId, Option<Source>)| {
+        let source = source?;
+        let body = match source {
+            Source::Block(block) => block.body,
+            Source::Rock(rock) => rock::body(rock, blocks, block),
+        };
+        let index = scene.materials.iter().position(|m| m.name == source.material());
+        index.filter(|_| body != scene::Body::Fixed)
+    };
+    blocks.ids().zip(sources(scene, blocks)).map(material).collect()
 }
 
 /// Path of what makes a block; `field` is that of an explicit one.
@@ -187,12 +202,19 @@ fn setup_fault(scene: &Scene, error: SetupError) -> Fault {
 pub fn contact_model(scene: &Scene, blocks: &BlockSet) -> Result<Option<Box<dyn ContactModel>>, Fault> {
     match &scene.contact {
         None | Some(Contact::Off) => Ok(None),
-        Some(Contact::Potential { penalty_pa, potential, friction, joints, memory }) => {
+        Some(Contact::Potential { penalty_pa, potential, friction, joints, laws, memory }) => {
             let potential = contact_potential(potential);
             potential.field(blocks).map_err(|e| Fault::new("contact.potential", e))?;
             let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);
-            if let Some(joints) = friction_table(scene, blocks, friction.as_ref(), joints, *memory) {
-                model = model.with_joints(joints);
+            let mut table = between_materials(scene, blocks, friction.as_ref(), joints);
+            add_joint_laws(&mut table, laws, blocks);
+            table.memory = match memory {
+                scene::Memory::Body => Memory::Body,
+                scene::Memory::Element => Memory::Element,
+            };
+            // Where nothing rubs, no shear spring and no memory is made.
+            if table.have_laws() {
+                model = model.with_joints(table);
             }
             Ok(Some(Box::new(model)))
         }
@@ -220,41 +242,48 @@ pub fn materials_of(scene: &Scene, blocks: &BlockSet) -> Vec<u32> {
     sources(scene, blocks).iter().map(index).collect()
 }
 
-/// Laws between materials; `None` where nothing rubs, so that no shear spring and no memory is made.
-fn friction_table(
+/// Laws between materials.
+fn between_materials(
     scene: &Scene,
     blocks: &BlockSet,
     everywhere: Option<&scene::Friction>,
     special: &[scene::Joint],
-    memory: scene::Memory,
-) -> Option<Joints> {
-    let rubs = |f: &&scene::Friction| f.friction_deg > 0.0 || f.cohesion_pa > 0.0 || f.tension_pa > 0.0;
+) -> Joints {
     let index = |name: &str| material_index(scene, name);
     let mut joints = Joints::between(materials_of(scene, blocks), scene.materials.len());
     let all = || 0..scene.materials.len() as u32;
     let pairs: Vec<(u32, u32)> = all().flat_map(|a| all().map(move |b| (a, b))).collect();
-    joints.set(&pairs, everywhere.filter(rubs).map(friction_law));
+    joints.set(&pairs, everywhere.and_then(friction_law));
     for joint in special {
         let pair = (index(&joint.between.0), index(&joint.between.1));
-        joints.set(&[pair], joint.friction.as_ref().filter(rubs).map(friction_law));
+        joints.set(&[pair], joint.friction.as_ref().and_then(friction_law));
     }
-    joints.memory = match memory {
-        scene::Memory::Body => Memory::Body,
-        scene::Memory::Element => Memory::Element,
-    };
-    joints.have_laws().then_some(joints)
+    joints
 }
 
-/// The law that a scene's friction asks for.
-fn friction_law(friction: &scene::Friction) -> Box<dyn FrictionLaw> {
+/// Laws on the faces that joints made.
+fn add_joint_laws(joints: &mut Joints, laws: &[scene::JointLaw], blocks: &BlockSet) {
+    for law in laws {
+        let named = |(_, name): &(u32, &String)| scene::matches(&law.joint, name);
+        let surfaces: Vec<u32> =
+            (0..).zip(&blocks.surface_names).filter(named).map(|(surface, _)| surface).collect();
+        joints.set_on(&surfaces, law.friction.as_ref().and_then(friction_law));
+    }
+}
+
+/// The law that a scene's friction asks for; `None` where nothing rubs.
+fn friction_law(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> {
     let scene::Friction { friction_deg, shear_penalty_pa_m, cohesion_pa, tension_pa } = *friction;
-    match shear_penalty_pa_m {
+    if friction_deg <= 0.0 && cohesion_pa <= 0.0 && tension_pa <= 0.0 {
+        return None;
+    }
+    Some(match shear_penalty_pa_m {
         None => Box::new(VelocityCoulomb::new(friction_deg)),
         Some(shear) if cohesion_pa > 0.0 || tension_pa > 0.0 => {
             Box::new(MohrCoulomb::new(friction_deg, shear, cohesion_pa, tension_pa))
         }
         Some(shear) => Box::new(Coulomb::new(friction_deg, shear)),
-    }
+    })
 }
 
 /// The time integrator that a scene names.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ndda_cli::args::{Fix, MeshArgs};
+use ndda_cli::args::{Export, Fix, MeshArgs};
 use ndda_cli::{exit, mesh};
 use serde_json::Value;
 
@@ -20,7 +20,16 @@ const GMSH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 
 
 fn args(input: PathBuf, fix: &[Fix]) -> MeshArgs {
     let out = Some(input.with_extension("out"));
-    MeshArgs { input, fix: fix.to_vec(), within: 1e-9, out, force: true, json: true, overrides: Vec::new() }
+    MeshArgs {
+        input,
+        fix: fix.to_vec(),
+        within: 1e-9,
+        out,
+        force: true,
+        json: true,
+        also: Vec::new(),
+        overrides: Vec::new(),
+    }
 }
 
 fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
@@ -33,14 +42,20 @@ fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
 fn a_scene_is_measured_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let scene = written(folder.path(), "s.ron", SCENE);
-    assert_eq!(mesh::mesh(&args(scene, &[])), exit::DONE);
+    let also = vec![Export::Gmsh, Export::Polyhedra, Export::Obj, Export::Tetgen];
+    assert_eq!(mesh::mesh(&MeshArgs { also, ..args(scene, &[]) }), exit::DONE);
     let out = folder.path().join("s.out");
     let report: Value = serde_json::from_str(&fs::read_to_string(out.join("mesh.json")).unwrap()).unwrap();
     assert_eq!(report["blocks"], 2);
     assert!((report["volume_m3"].as_f64().unwrap() - 8.0).abs() < 1e-12);
     assert_eq!(report["block_size"]["smallest_m3"][1], "rock_0001");
     assert_eq!(report["rock"][0]["blocks"], 2);
-    assert!(fs::metadata(out.join("blocks.vtu")).unwrap().len() > 0);
+    for name in ["blocks.vtu", "rock_parts.vtu", "rock_parts.obj", "mesh.ele"] {
+        assert!(fs::metadata(out.join(name)).unwrap().len() > 0, "{name}");
+    }
+    let again = ndda_io::mesh_file::read(&out.join("mesh.msh")).unwrap().bodies;
+    assert_eq!(again.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(), ["rock_0001", "rock_0002"]);
+    assert_eq!(report["steps"].as_array().unwrap().len(), 0);
     if cfg!(feature = "plots") {
         let picture = fs::read_to_string(out.join("mesh.svg")).unwrap();
         assert!(picture.starts_with("<svg") && picture.contains("volume of blocks"), "{picture}");
@@ -66,4 +81,27 @@ fn a_scene_is_not_repaired_and_a_missing_file_is_no_panic() {
     let scene = written(folder.path(), "s.ron", SCENE);
     assert_eq!(mesh::mesh(&args(scene, &[Fix::Orient])), exit::BAD_INPUT);
     assert_eq!(mesh::mesh(&args(folder.path().join("no.msh"), &[])), exit::BAD_INPUT);
+    fs::create_dir(folder.path().join("folder.msh")).unwrap();
+    assert_eq!(mesh::mesh(&args(folder.path().join("folder.msh"), &[])), exit::BAD_INPUT);
+    assert_eq!(mesh::mesh(&args(folder.path().to_path_buf(), &[])), exit::BAD_INPUT);
+}
+
+/// Penalty contact is a spring: ω² grows as the penalty, so the step falls by √10 from one row to the next.
+#[test]
+fn steps_are_advised_for_each_material_and_penalty() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = SCENE.replace("contact: Off", "contact: Potential(penalty_pa: 1e8, potential: Smooth())");
+    let scene = written(folder.path(), "s.ron", &text);
+    assert_eq!(mesh::mesh(&args(scene, &[])), exit::DONE);
+    let text = fs::read_to_string(folder.path().join("s.out/mesh.json")).unwrap();
+    let report: Value = serde_json::from_str(&text).unwrap();
+    let steps: Vec<f64> =
+        report["steps"].as_array().unwrap().iter().map(|s| s["step_s"].as_f64().unwrap()).collect();
+    assert_eq!(steps.len(), 3);
+    let ratio = 10f64.sqrt();
+    assert!(
+        (steps[0] / steps[1] - ratio).abs() < 1e-9 && (steps[1] / steps[2] - ratio).abs() < 1e-9,
+        "{steps:?}"
+    );
+    assert_eq!(report["steps"][1]["penalty_pa"], 1e8);
 }

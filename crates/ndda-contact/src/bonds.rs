@@ -41,8 +41,7 @@ pub fn add_forces(
 fn form(joints: &Joints, candidates: &Candidates, input: &ContactInput, bonds: &mut Vec<Bond>) {
     let blocks = input.blocks;
     for facet in &candidates.facets {
-        let owner = blocks.triangle_block[facet.triangle.index()];
-        let tension_pa = joints.law(owner, facet.target).map_or(0.0, |law| law.tension_pa());
+        let tension_pa = joints.law(blocks, facet.triangle, facet.target).map_or(0.0, |law| law.tension_pa());
         let known = bonds.last().is_some_and(|bond: &Bond| bond.facet == facet.triangle);
         if tension_pa <= 0.0 || known {
             continue;
@@ -62,8 +61,8 @@ fn form(joints: &Joints, candidates: &Candidates, input: &ContactInput, bonds: &
 /// Adds the force of one bond; false when it breaks.
 fn pull(joints: &Joints, input: &ContactInput, bond: &Bond, output: &mut ContactOutput) -> bool {
     let blocks = input.blocks;
-    let (owner, target) = (blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]);
-    let Some(law) = joints.law(owner, target) else { return false };
+    let target = blocks.tet_block[bond.tet.index()];
+    let Some(law) = joints.law(blocks, bond.facet, target) else { return false };
     let Some((stretch, half_area)) = stretch(input, bond) else { return true };
     if law.bond_stiffness_pa_m() * stretch.norm() > law.tension_pa() {
         return false;
@@ -95,7 +94,7 @@ pub fn add_facets(joints: &Joints, input: &ContactInput, bonds: &[Bond], facets:
     facets.extend(bonds.iter().filter_map(|bond| {
         let (stretch, half_area) = stretch(input, bond)?;
         let target = blocks.tet_block[bond.tet.index()];
-        let law = joints.law(blocks.triangle_block[bond.facet.index()], target)?;
+        let law = joints.law(blocks, bond.facet, target)?;
         Some(FacetContact {
             facet: bond.facet,
             target,
@@ -121,8 +120,8 @@ pub fn add_stiffness(
         let (triangle, tet) = (&blocks.triangles[bond.facet.index()], &blocks.tets[bond.tet.index()]);
         let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
         let area_vector = triangle_area_vector(&blocks.triangle_corners(bond.facet, input.position));
-        let pair = (blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]);
-        let Some(law) = joints.law(pair.0, pair.1) else { continue };
+        let target = blocks.tet_block[bond.tet.index()];
+        let Some(law) = joints.law(blocks, bond.facet, target) else { continue };
         if (anchor - centroid(input, bond.facet)).dot(&area_vector) <= 0.0 {
             continue;
         }
@@ -144,8 +143,8 @@ pub fn energy_j(joints: &Joints, input: &ContactInput, bonds: &[Bond]) -> f64 {
     let blocks = input.blocks;
     let of_bond = |bond: &Bond| {
         let Some((stretch, half_area)) = stretch(input, bond) else { return 0.0 };
-        let pair = (blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]);
-        let stiffness = joints.law(pair.0, pair.1).map_or(0.0, |law| law.bond_stiffness_pa_m());
+        let target = blocks.tet_block[bond.tet.index()];
+        let stiffness = joints.law(blocks, bond.facet, target).map_or(0.0, |law| law.bond_stiffness_pa_m());
         0.5 * stiffness * half_area * stretch.norm_squared()
     };
     bonds.iter().map(of_bond).sum()

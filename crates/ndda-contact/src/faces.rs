@@ -1,6 +1,6 @@
 //! Friction of whole faces, for laws that act on velocities.
 //!
-//! A face is a set of boundary triangles in one plane. Its friction on another block is one force F and one torque T
+//! A face is a set of boundary triangles in one plane and of one surface. Its friction on another block is one force F and one torque T
 //! about the normal, spread in proportion to the pressure p, and it answers to the slip velocity v and the spin ω
 //! about the normal in the same proportion, so that a face that sticks can only take energy from what it acts on.
 //!
@@ -75,9 +75,16 @@ impl Faces {
         self.face_of.clear();
         let mut next = 0;
         for block in blocks.ids() {
-            let faces = BlockFaces::new(blocks, block);
-            self.face_of.extend(faces.of_triangle.iter().map(|&face| next + face as u32));
-            next += faces.planes.len() as u32;
+            let faces = BlockFaces::new(blocks, block).of_triangle;
+            let surfaces = &blocks.triangle_surface[blocks.triangles_of(block)];
+            let parts: Vec<_> = faces.into_iter().zip(surfaces).collect();
+            let mut distinct = parts.clone();
+            distinct.sort_unstable();
+            distinct.dedup();
+            self.face_of.extend(
+                parts.iter().map(|part| next + distinct.partition_point(|other| other < part) as u32),
+            );
+            next += distinct.len() as u32;
         }
     }
 
@@ -106,7 +113,9 @@ impl Faces {
         self.push_bodies(input, candidates, integrals, forces);
         self.new_faces.clear();
         for patch in &self.patches {
-            let law = joints.law(patch.owner, patch.target).expect("patches have a law");
+            let (_, _, first) = self.order[patch.run.start];
+            let facet = candidates.facets[first as usize].triangle;
+            let law = joints.law(input.blocks, facet, patch.target).expect("patches have a law");
             let step = FaceStep { dt_s: input.dt_s, patch, bodies: &self.bodies, areas: &self.block_area };
             let (force_n, torque_n_m, memory) = step.advance(law);
             let run = &self.order[patch.run.clone()];
@@ -138,10 +147,11 @@ impl Faces {
             let (face, target, first) = run[0];
             let range = start..start + run.len();
             start = range.end;
-            let owner = input.blocks.triangle_block[candidates.facets[first as usize].triangle.index()];
-            if joints.law(owner, target).is_none_or(|law| !law.acts_on_faces()) {
+            let facet = candidates.facets[first as usize].triangle;
+            if joints.law(input.blocks, facet, target).is_none_or(|law| !law.acts_on_faces()) {
                 continue;
             }
+            let owner = input.blocks.triangle_block[facet.index()];
             let mut patch = Patch { owner, target, run: range, ..Patch::default() };
             patch.sum(run, input, candidates, integrals, forces);
             if patch.pressure > 0.0 && patch.area_m2 > 0.0 {

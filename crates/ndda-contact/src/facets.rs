@@ -59,7 +59,7 @@ impl FacetScene<'_> {
         force
     }
 
-    /// Friction by the law between the two blocks, if it acts on facets; apart, so that it is no weight on scenes without.
+    /// Friction by the law of the facet, if it acts on facets; apart, so that it is no weight on scenes without.
     #[inline(never)]
     fn add_friction(
         &self,
@@ -69,8 +69,8 @@ impl FacetScene<'_> {
         (pressure, penalty_pa): (f64, f64),
         force: &mut FacetForce,
     ) {
-        let owner = self.input.blocks.triangle_block[facet.triangle.index()];
-        let Some(law) = joints.law(owner, facet.target).filter(|law| !law.acts_on_faces()) else { return };
+        let law = joints.law(self.input.blocks, facet.triangle, facet.target);
+        let Some(law) = law.filter(|law| !law.acts_on_faces()) else { return };
         let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
         let basis = facet_basis(&corners, &(-force.push / penalty_pa));
         let mut memory = self.remembered(facet);

@@ -1,6 +1,6 @@
-//! Which friction law acts between which blocks.
+//! Which friction law acts between which blocks, and on which of their faces.
 
-use ndda_mesh::BlockId;
+use ndda_mesh::{BlockId, BlockSet, TriangleId};
 
 use crate::friction::FrictionLaw;
 
@@ -14,7 +14,21 @@ pub enum Memory {
     Element,
 }
 
-/// A friction law for each pair of materials.
+/// What acts on the faces of one named surface.
+#[derive(Clone, Copy, Debug, Default)]
+enum OnSurface {
+    /// What acts between the materials.
+    #[default]
+    Materials,
+    /// A law of its own, or none.
+    Own(Option<u32>),
+}
+
+/// A friction law for each pair of materials, and others for named surfaces: joints.
+///
+/// Each side of a contact rubs by the law of its own face: of the surface that the face is part of, if that has one,
+/// else of the two materials. Where two faces of different surfaces meet, each law acts on the pressure that its side
+/// bears, about half.
 pub struct Joints {
     laws: Vec<Box<dyn FrictionLaw>>,
     /// Material of each block; blocks beyond the list have material 0.
@@ -22,6 +36,8 @@ pub struct Joints {
     materials: usize,
     /// Law of each pair of materials.
     law_of: Vec<Option<u32>>,
+    /// By index in [`BlockSet::surface_names`]; surfaces beyond the list have no law of their own.
+    on_surface: Vec<OnSurface>,
     /// What history belongs to.
     pub memory: Memory,
 }
@@ -34,6 +50,7 @@ impl Joints {
             material: Vec::new(),
             materials: 1,
             law_of: vec![Some(0)],
+            on_surface: Vec::new(),
             memory: Memory::Body,
         }
     }
@@ -41,15 +58,13 @@ impl Joints {
     /// No law yet, for blocks of so many materials (one index per block).
     pub fn between(material: Vec<u32>, materials: usize) -> Self {
         let law_of = vec![None; materials * materials];
-        Self { laws: Vec::new(), material, materials, law_of, memory: Memory::Body }
+        let (laws, on_surface) = (Vec::new(), Vec::new());
+        Self { laws, material, materials, law_of, on_surface, memory: Memory::Body }
     }
 
     /// Sets the law between materials, whichever is contactor; the latest call counts.
     pub fn set(&mut self, pairs: &[(u32, u32)], law: Option<Box<dyn FrictionLaw>>) {
-        let index = law.map(|law| {
-            self.laws.push(law);
-            self.laws.len() as u32 - 1
-        });
+        let index = self.add(law);
         for &(a, b) in pairs {
             for (a, b) in [(a, b), (b, a)] {
                 self.law_of[a as usize * self.materials + b as usize] = index;
@@ -57,15 +72,50 @@ impl Joints {
         }
     }
 
-    /// The law between two blocks.
-    pub fn law(&self, a: BlockId, b: BlockId) -> Option<&dyn FrictionLaw> {
-        let material = |block: BlockId| self.material.get(block.index()).copied().unwrap_or(0) as usize;
-        self.law_of[material(a) * self.materials + material(b)].map(|law| self.laws[law as usize].as_ref())
+    /// Sets the law, or none, on faces of surfaces, by their index in [`BlockSet::surface_names`]; the latest call counts.
+    pub fn set_on(&mut self, surfaces: &[u32], law: Option<Box<dyn FrictionLaw>>) {
+        if surfaces.is_empty() {
+            return;
+        }
+        let index = self.add(law);
+        for surface in surfaces.iter().map(|&surface| surface as usize) {
+            let count = self.on_surface.len().max(surface + 1);
+            self.on_surface.resize(count, OnSurface::Materials);
+            self.on_surface[surface] = OnSurface::Own(index);
+        }
+    }
+
+    fn add(&mut self, law: Option<Box<dyn FrictionLaw>>) -> Option<u32> {
+        self.laws.push(law?);
+        Some(self.laws.len() as u32 - 1)
+    }
+
+    /// The law on a facet of one block that touches another.
+    pub fn law(&self, blocks: &BlockSet, facet: TriangleId, target: BlockId) -> Option<&dyn FrictionLaw> {
+        let index = match self.on_surface(blocks, facet) {
+            OnSurface::Own(law) => law,
+            OnSurface::Materials => {
+                let owner = blocks.triangle_block[facet.index()];
+                let material =
+                    |block: BlockId| self.material.get(block.index()).copied().unwrap_or(0) as usize;
+                self.law_of[material(owner) * self.materials + material(target)]
+            }
+        };
+        index.map(|law| self.laws[law as usize].as_ref())
+    }
+
+    fn on_surface(&self, blocks: &BlockSet, facet: TriangleId) -> OnSurface {
+        if self.on_surface.is_empty() {
+            return OnSurface::Materials;
+        }
+        let surface = blocks.triangle_surface[facet.index()];
+        surface.and_then(|surface| self.on_surface.get(surface as usize)).copied().unwrap_or_default()
     }
 
     /// Whether there is a law at all.
     pub fn have_laws(&self) -> bool {
-        self.law_of.iter().any(Option::is_some)
+        let on_surfaces = self.on_surface.iter().any(|rule| matches!(rule, OnSurface::Own(Some(_))));
+        on_surfaces || self.law_of.iter().any(Option::is_some)
     }
 
     /// Names of the laws that act, each once.

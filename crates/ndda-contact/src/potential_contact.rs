@@ -84,7 +84,7 @@ impl PotentialContact {
         self.with_joints(Joints::everywhere(law))
     }
 
-    /// With friction laws for pairs of materials.
+    /// With friction laws for pairs of materials and for named surfaces.
     pub fn with_joints(mut self, joints: Joints) -> Self {
         self.candidates.split_by_element = joints.memory == Memory::Element;
         self.joints = Some(joints);

@@ -5,12 +5,14 @@ mod shape;
 
 use std::path::Path;
 
+use ndda_mesh::cut::CELLS;
+
 use crate::code::Code;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::read::suggest;
 use crate::scene::{
-    At, Body, By, Contact, ContactAt, Friction, Hold, Integrator, Joint, Potential, Reference, Region, Scene,
-    Solver, Step, matches,
+    At, Body, By, Contact, ContactAt, Friction, Hold, Integrator, Joint, JointLaw, Potential, Reference,
+    Region, Scene, Solver, Step, matches,
 };
 use crate::tables;
 
@@ -28,7 +30,7 @@ pub fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> {
     check.numbers("gravity_m_s2", &scene.gravity_m_s2);
     check.materials();
     check.blocks(folder);
-    check.rock();
+    check.rock(folder);
     check.supports(folder);
     check.loads();
     check.contact();
@@ -442,8 +444,8 @@ impl Check<'_> {
             }
         }
         for (i, force) in scene.forces.iter().enumerate() {
-            self.known_block(format!("forces[{i}].block"), &force.block);
-            self.numbers(&format!("forces[{i}].at_m"), &force.at_m);
+            self.known_blocks(format!("forces[{i}].block"), &force.block);
+            self.numbers(&format!("forces[{i}].at_m"), force.at_m.as_slice().as_flattened());
             self.numbers(&format!("forces[{i}].force_n"), &force.force_n);
             self.factor(&format!("forces[{i}].factor"), &force.factor);
         }
@@ -515,6 +517,21 @@ impl Check<'_> {
         }
     }
 
+    fn laws(&mut self, laws: &[JointLaw]) {
+        let scene = self.scene;
+        let mut names: Vec<&str> =
+            scene.rock.iter().flat_map(|rock| &rock.joints).map(|j| j.name()).collect();
+        names.extend(scene.rock.iter().filter(|rock| rock.voronoi.is_some()).map(|_| CELLS));
+        for (i, law) in laws.iter().enumerate() {
+            if !names.iter().any(|name| matches(&law.joint, name)) {
+                self.known(format!("contact.laws[{i}].joint"), "joint", &law.joint, &names);
+            }
+            if let Some(friction) = &law.friction {
+                self.friction(&format!("contact.laws[{i}].friction"), friction);
+            }
+        }
+    }
+
     fn contact(&mut self) {
         let several = self.scene.blocks.len() > 1 || !self.scene.rock.is_empty();
         match &self.scene.contact {
@@ -522,13 +539,14 @@ impl Check<'_> {
                 let help = "write `contact: Potential(penalty_pa: …)` or `contact: Off`";
                 self.misfit("contact", "more than one block, and no word on contact", help);
             }
-            Some(Contact::Potential { penalty_pa, potential, friction, joints, .. }) => {
+            Some(Contact::Potential { penalty_pa, potential, friction, joints, laws, .. }) => {
                 self.positive("contact.penalty_pa".into(), *penalty_pa, "Pa");
                 self.potential(potential);
                 if let Some(friction) = friction {
                     self.friction("contact.friction", friction);
                 }
                 self.joints(joints);
+                self.laws(laws);
                 if !several && !self.scene.blocks.is_empty() {
                     self.warn(
                         Code::NoEffect,

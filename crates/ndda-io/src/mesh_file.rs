@@ -19,6 +19,7 @@ use std::path::Path;
 
 use ndda_mesh::BlockMesh;
 
+use crate::gmsh_program::Sizes;
 use crate::write_error::WriteError;
 use crate::{abaqus, gmsh_program, msh, tetgen, vtk_file};
 use error::{Fault, ending};
@@ -49,7 +50,7 @@ pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
         "node" | "ele" | "face" => tetgen::read(path),
         "inp" => abaqus::read(path),
         "vtu" | "vtk" => vtk_file::read(path),
-        "geo" | "step" | "stp" | "brep" => gmsh_program::mesh(path, None, None),
+        _ if gmsh_program::is_geometry(path) => gmsh_program::mesh(path, &Sizes::default(), None),
         _ => Err(Fault::from(FileProblem::Extension { found: ending(path), known: ENDINGS }).of(path)),
     }
 }

@@ -16,6 +16,7 @@ mod write;
 use std::path::Path;
 
 pub use crate::mesh_file::MeshFile as MshFile;
+use crate::mesh_file::error::whole_file;
 pub use error::{MshError, MshProblem, Place};
 pub use write::write;
 
@@ -31,12 +32,11 @@ pub use write::write;
 /// but points, lines, triangles and tetrahedra of first order, or leaves open which body a tetrahedron is in.
 pub fn read(path: &Path) -> Result<MshFile, MshError> {
     let fail = |problem| MshError { path: path.to_owned(), place: None, problem };
-    let unreadable = |error: std::io::Error| fail(MshProblem::Unreadable(error.to_string()));
-    let kind = std::fs::metadata(path).map_err(unreadable)?;
-    if !kind.is_file() {
-        return Err(fail(MshProblem::NotAFile));
+    match whole_file(path) {
+        Ok(Some(bytes)) => parse(path, &bytes),
+        Ok(None) => Err(fail(MshProblem::NotAFile)),
+        Err(error) => Err(fail(MshProblem::Unreadable(error.to_string()))),
     }
-    parse(path, &std::fs::read(path).map_err(unreadable)?)
 }
 
 /// Reads a Gmsh mesh from memory; `path` is only for the error.

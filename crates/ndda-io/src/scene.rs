@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub use output::{Field, FieldFormat, Output, Precision, TableFormat};
 pub use rock::{Axis, DiscRule, Discontinuity, Domain, OrientationScatter};
 pub use rock::{Rock, SpacingScatter, Voronoi, Whereabouts};
-pub use shape::{Fill, Pattern, Shape};
+pub use shape::{Fill, Grading, Pattern, Shape, Towards};
 
 /// A complete scene.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -468,15 +468,17 @@ pub struct Traction {
     pub factor: Vec<FactorRow>,
 }
 
-/// A force on the node of a block that is nearest to a point, constant in direction.
+/// A force on a block, constant in direction: on the node nearest to a point, or through the mass centre.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Force {
-    /// Name of the block.
+    /// Name of the block, or of many as in a support; each takes the whole force.
     pub block: String,
-    /// The point [m].
-    pub at_m: [f64; 3],
+    /// The point [m]; of many blocks, those that have it take the force. Default: through the mass centre, shared among
+    /// all nodes by volume.
+    #[serde(default)]
+    pub at_m: Option<[f64; 3]>,
     /// Force [N].
     pub force_n: [f64; 3],
     /// Factor over time, linear between rows and constant outside. Default: 1.
@@ -515,6 +517,9 @@ pub enum Contact {
         /// Friction between blocks of two materials, in place of `friction`; a later entry counts more. Default: none.
         #[serde(default)]
         joints: Vec<Joint>,
+        /// Friction on the faces of joints that cut rock, in place of all other; a later entry counts more. Default: none.
+        #[serde(default)]
+        laws: Vec<JointLaw>,
         /// What a friction force is remembered with. Default: `Body`.
         #[serde(default)]
         memory: Memory,
@@ -571,6 +576,21 @@ pub struct Friction {
 pub struct Joint {
     /// Names of the two materials, or of one twice.
     pub between: (String, String),
+    /// Friction there. Default: none.
+    #[serde(default)]
+    pub friction: Option<Friction>,
+}
+
+/// Friction on the faces that a named joint made.
+///
+/// Each side of a contact rubs by the law of its own face: that of the joint, if it has one here, else that of the two
+/// materials. Where faces of different joints meet, each law acts on the pressure that its side bears, about half.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct JointLaw {
+    /// Name of the joint in `rock`, or of many as in a support; `cells` is that between Voronoi cells.
+    pub joint: String,
     /// Friction there. Default: none.
     #[serde(default)]
     pub friction: Option<Friction>,

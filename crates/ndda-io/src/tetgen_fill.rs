@@ -46,7 +46,8 @@ pub enum TetgenError {
 
 /// Fills a closed surface with tetrahedra whose edges are about `size` or shorter [unit of the surface].
 ///
-/// The largest volume is that of a regular tetrahedron of this edge, size³ / (6 √2). Names of faces become node sets.
+/// The largest volume is that of a regular tetrahedron of this edge, size³ / (6 √2). Names of faces become node sets
+/// and surfaces.
 ///
 /// # Errors
 /// [`TetgenError`], for a surface that cuts itself for instance.
@@ -108,19 +109,23 @@ fn block(tetgen: &Tetgen, names: &[&str]) -> BlockMesh {
     };
     let tets = (0..tetgen.out_ncell()).map(tet).collect();
     let mut node_sets: BTreeMap<String, Vec<u32>> = BTreeMap::new();
+    let mut surfaces: BTreeMap<String, Vec<[u32; 3]>> = BTreeMap::new();
     for i in 0..tetgen.out_n_marked_face() {
         let mut points = [0; 6];
         let (marker, _) = tetgen.out_marked_face(i, &mut points);
         let name = usize::try_from(marker - 1).ok().and_then(|index| names.get(index));
         if let Some(name) = name {
-            node_sets.entry(name.to_string()).or_default().extend(points[..3].iter().map(|&p| p as u32));
+            let mut triangle = [points[0], points[1], points[2]].map(|point| point as u32);
+            triangle.sort_unstable();
+            node_sets.entry(name.to_string()).or_default().extend(triangle);
+            surfaces.entry(name.to_string()).or_default().push(triangle);
         }
     }
     for nodes in node_sets.values_mut() {
         nodes.sort_unstable();
         nodes.dedup();
     }
-    BlockMesh { nodes, tets, node_sets }
+    BlockMesh { nodes, tets, node_sets, surfaces }
 }
 
 #[cfg(test)]

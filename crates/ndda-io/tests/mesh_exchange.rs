@@ -1,7 +1,7 @@
 //! Meshes go to meshio and Gmsh and come back the same.
 //!
 //! Needs a Python with the packages meshio and gmsh: `python3`, or the one that `NDDA_PYTHON` names. Without them the
-//! test says so and passes: `python3 -m venv v && v/bin/pip install meshio gmsh`, then
+//! test says so and passes, and without gmsh alone it goes on with meshio: `python3 -m venv v && v/bin/pip install meshio gmsh`, then
 //! `NDDA_PYTHON=v/bin/python cargo test -p ndda-io --test mesh_exchange -- --nocapture`.
 
 use std::fs;
@@ -94,7 +94,8 @@ fn meshio_and_gmsh_read_the_same_meshes_and_write_them_back() {
     println!("{text}");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let expected = joined(&bodies());
-    for (name, tells_apart) in BACK {
+    let has_gmsh = !text.contains("SKIPPED: Gmsh");
+    for (name, tells_apart) in BACK.into_iter().filter(|(name, _)| has_gmsh || !name.starts_with("gmsh")) {
         let found = read(&folder.join(name)).unwrap_or_else(|error| panic!("{error}")).bodies;
         assert_eq!(found.len(), if tells_apart { 2 } else { 1 }, "{name}");
         let all = joined(&found);

@@ -162,6 +162,84 @@ fn other_endings_missing_files_and_folders_are_refused() {
     assert_eq!(fault(&folder.path().join("a.inp")).1, FileProblem::NotAFile);
 }
 
+/// What is said of `a.ending` with that text; `.ele` has a `.node` of four corners beside it.
+fn said(ending: &str, text: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.node"), CORNERS).unwrap();
+    let path = folder.path().join("a").with_extension(ending);
+    fs::write(&path, text).unwrap();
+    read(&path).unwrap_err().to_string()
+}
+
+const CORNERS: &str = "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n";
+const VTU: &str = "<?xml version='1.0'?><VTKFile type='UnstructuredGrid' version='0.1'><UnstructuredGrid>\
+    <Piece NumberOfPoints='4' NumberOfCells='1'><Points><DataArray type='Float32' NumberOfComponents='3' format='ascii'>\
+    0 0 0 1 0 0 0 1 0 0 0 1</DataArray></Points><Cells><DataArray type='Int32' Name='connectivity' format='ascii'>0 1 2 3\
+    </DataArray><DataArray type='Int32' Name='offsets' format='ascii'>4</DataArray>\
+    <DataArray type='UInt8' Name='types' format='ascii'>10</DataArray></Cells></Piece></UnstructuredGrid></VTKFile>";
+
+#[test]
+fn a_folder_with_the_name_of_a_mesh_is_no_mesh() {
+    let folder = tempfile::tempdir().unwrap();
+    for ending in ["msh", "node", "ele", "inp", "vtu", "vtk"] {
+        let path = folder.path().join("a").with_extension(ending);
+        fs::create_dir(&path).unwrap();
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains("is not a file"), "{error}");
+    }
+}
+
+#[test]
+fn a_header_that_promises_a_million_million_is_refused_before_memory_is_taken() {
+    let huge = "1000000000000";
+    for (ending, text) in [
+        ("ele", format!("{huge} 4 0\n0 0 1 2 3\n")),
+        ("node", CORNERS.replacen('4', huge, 1)),
+        ("vtk", LEGACY.replace("POINTS 5", &format!("POINTS {huge}"))),
+        ("vtk", LEGACY.replace("CELLS 3 14", &format!("CELLS {huge} 14"))),
+        ("vtk", LEGACY.replace("CELLS 3 14", &format!("CELLS 3 {huge}"))),
+    ] {
+        let error = said(ending, &text);
+        // The numbers of a point count one by one.
+        assert!(error.contains("000000000000 ") && error.contains("damaged"), "{ending}: {error}");
+    }
+    for count in ["NumberOfPoints='4'", "NumberOfCells='1'"] {
+        let name = count.split('=').next().unwrap();
+        let error = said("vtu", &VTU.replace(count, &format!("{name}='{huge}'")));
+        assert!(error.contains(huge), "{error}");
+    }
+}
+
+#[test]
+fn files_of_triangles_only_are_no_blocks() {
+    for (ending, text) in [
+        (
+            "vtk",
+            LEGACY
+                .replace("CELLS 3 14\n4 0 1 2 3\n4 0 2 1 4", "CELLS 3 12\n3 0 1 2\n3 0 2 1")
+                .replace("10 10 5", "5 5 5"),
+        ),
+        ("vtu", VTU.replace("0 1 2 3", "0 1 2").replace(">4<", ">3<").replace(">10<", ">5<")),
+        ("inp", "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n*ELEMENT, TYPE=S3\n1, 1, 2, 3\n".to_string()),
+        ("ele", "0 4 0\n".to_string()),
+    ] {
+        let error = said(ending, &text);
+        assert!(error.contains("holds no tetrahedra"), "{ending}: {error}");
+    }
+}
+
+#[test]
+fn nodes_that_are_missing_are_named_and_those_of_no_tetrahedron_left_out() {
+    assert!(said("ele", "1 4 0\n0 0 1 2 9\n").contains("node 9"));
+    assert!(said("vtu", &VTU.replace("0 1 2 3", "0 1 2 9")).contains("node 9"));
+    assert!(said("vtk", &LEGACY.replace("4 0 2 1 4", "4 0 2 1 9")).contains("node 9"));
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.node"), CORNERS.replacen('4', "5", 1) + "4 9 9 9\n").unwrap();
+    fs::write(folder.path().join("a.ele"), "1 4 0\n0 0 1 2 3\n").unwrap();
+    let bodies = read(&folder.path().join("a.ele")).unwrap().bodies;
+    assert_eq!(bodies[0].1.nodes.len(), 4);
+}
+
 /// Names and contents of the files of two boxes in every format.
 static FILES: LazyLock<Vec<(String, Vec<u8>)>> = LazyLock::new(|| {
     let folder = tempfile::tempdir().unwrap();

@@ -13,6 +13,9 @@ pub struct BlockMesh {
     pub tets: Vec<[u32; 4]>,
     /// Named sets of node indices, sorted and without repeats.
     pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// Named parts of the boundary: triangles as three node indices, rising. Nodes alone do not tell: a triangle may have
+    /// its corners on two joints of one name and lie on neither.
+    pub surfaces: BTreeMap<String, Vec<[u32; 3]>>,
 }
 
 impl BlockMesh {

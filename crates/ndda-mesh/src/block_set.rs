@@ -1,6 +1,6 @@
 //! All blocks of a scene: constant topology and rest shape, as structs of arrays.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 use crate::geometry::Aabb;
@@ -24,6 +24,10 @@ pub struct BlockSet {
     pub tet_block: Vec<BlockId>,
     /// The block of each boundary triangle.
     pub triangle_block: Vec<BlockId>,
+    /// The named part of its block's surface that each boundary triangle is in, as an index in `surface_names`.
+    pub triangle_surface: Vec<Option<u32>>,
+    /// Names of parts of surfaces, of joints for instance.
+    pub surface_names: Vec<String>,
     /// Named node sets of each block.
     pub node_sets: Vec<BTreeMap<String, Vec<NodeId>>>,
     /// What was subtracted from every coordinate so that map coordinates keep their digits [m].
@@ -58,6 +62,8 @@ impl BlockSet {
             triangle_tet: Vec::new(),
             tet_block: Vec::new(),
             triangle_block: Vec::new(),
+            triangle_surface: Vec::new(),
+            surface_names: Vec::new(),
             node_sets: Vec::new(),
             origin_m,
             node_start: vec![0],
@@ -79,7 +85,11 @@ impl BlockSet {
         self.rest_position.extend(mesh.nodes.iter().map(|x| x - self.origin_m));
         self.tets.extend(mesh.tets.iter().map(|tet| tet.map(global)));
         self.tet_block.resize(self.tets.len(), block);
+        let surface_of = self.surfaces(mesh);
         for face in boundary_faces(&mesh.tets) {
+            let mut key = face.nodes;
+            key.sort_unstable();
+            self.triangle_surface.push(surface_of.get(&key).copied());
             self.triangles.push(face.nodes.map(global));
             self.triangle_tet.push(TetId(first_tet + face.tet));
             self.triangle_block.push(block);
@@ -90,6 +100,20 @@ impl BlockSet {
         self.node_start.push(self.rest_position.len() as u32);
         self.tet_start.push(self.tets.len() as u32);
         self.triangle_start.push(self.triangles.len() as u32);
+    }
+
+    /// The named part that triangles of a mesh are in.
+    fn surfaces(&mut self, mesh: &BlockMesh) -> HashMap<[u32; 3], u32> {
+        let mut surface_of = HashMap::new();
+        for (name, triangles) in &mesh.surfaces {
+            let known = self.surface_names.iter().position(|known| known == name);
+            let surface = known.unwrap_or_else(|| {
+                self.surface_names.push(name.clone());
+                self.surface_names.len() - 1
+            });
+            surface_of.extend(triangles.iter().map(|&triangle| (triangle, surface as u32)));
+        }
+        surface_of
     }
 
     /// Number of blocks.
@@ -125,6 +149,19 @@ impl BlockSet {
     /// Range of a block's boundary triangles in per-triangle arrays.
     pub fn triangles_of(&self, block: BlockId) -> Range<usize> {
         range(&self.triangle_start, block)
+    }
+
+    /// Named parts of a block's surface, as in [`BlockMesh::surfaces`].
+    pub fn surfaces_of(&self, block: BlockId) -> BTreeMap<String, Vec<[u32; 3]>> {
+        let first = self.node_start[block.index()];
+        let mut surfaces: BTreeMap<String, Vec<[u32; 3]>> = BTreeMap::new();
+        for triangle in self.triangles_of(block) {
+            let Some(surface) = self.triangle_surface[triangle] else { continue };
+            let mut nodes = self.triangles[triangle].map(|n| n.0 - first);
+            nodes.sort_unstable();
+            surfaces.entry(self.surface_names[surface as usize].clone()).or_default().push(nodes);
+        }
+        surfaces
     }
 
     /// The block that a node belongs to.

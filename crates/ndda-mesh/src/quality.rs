@@ -2,23 +2,20 @@
 
 use std::fmt;
 
+use serde::Serialize;
+
 use crate::geometry::{TET_FACES, tet_heights, tet_volume, triangle_area_vector};
 use crate::validate::longest_edge;
 use crate::{BlockMesh, Vec3};
 
-/// The six edges and the faces (opposite to which corner) that meet at each.
-const EDGES: [([usize; 2], [usize; 2]); 6] = [
-    ([0, 1], [2, 3]),
-    ([0, 2], [1, 3]),
-    ([0, 3], [1, 2]),
-    ([1, 2], [0, 3]),
-    ([1, 3], [0, 2]),
-    ([2, 3], [0, 1]),
-];
+/// Which faces, by the corner opposite to them, meet at the edges 01, 02, 03, 12, 13, 23.
+const FACES_OF_EDGES: [[usize; 2]; 6] = [[2, 3], [1, 3], [1, 2], [0, 3], [0, 2], [0, 1]];
 /// How many of the worst tetrahedra a report lists.
 const LISTED: usize = 10;
 /// Width of a bar of the histogram of smallest dihedral angles [°]; the regular tetrahedron has 70.5°.
 const BAR_DEG: f64 = 5.0;
+/// Most bars of a histogram whose borders double.
+const MOST_BARS: i32 = 64;
 /// Longest bar, in characters.
 const LONGEST_BAR: usize = 40;
 
@@ -26,34 +23,40 @@ const LONGEST_BAR: usize = 40;
 ///
 /// 0 for a flat tetrahedron, 0.943 for the regular one. What is not finite counts as flat.
 pub fn least_sine(corners: &[Vec3; 4]) -> f64 {
-    let volume = tet_volume(corners);
-    let area = TET_FACES.map(|face| triangle_area_vector(&face.map(|i| corners[i])).norm());
-    let mut least = f64::INFINITY;
-    for ([i, j], [k, l]) in EDGES {
-        least = least.min((corners[i] - corners[j]).norm() / (area[k] * area[l]));
-    }
-    let sine = 1.5 * volume * least;
+    // Written out, with squares and one root at the end: this is what improving a mesh spends its time on.
+    let [a, b, c, d] = corners;
+    let (ab, ac, ad, bc, bd, cd) = (b - a, c - a, d - a, c - b, d - b, d - c);
+    let per_area2 = |u: &Vec3, v: &Vec3| 4.0 / u.cross(v).norm_squared();
+    let (opposite_a, opposite_b) = (per_area2(&bc, &bd), per_area2(&ac, &ad));
+    let (opposite_c, opposite_d) = (per_area2(&ab, &ad), per_area2(&ab, &ac));
+    let least = (ab.norm_squared() * opposite_c * opposite_d)
+        .min(ac.norm_squared() * opposite_b * opposite_d)
+        .min(ad.norm_squared() * opposite_b * opposite_c)
+        .min(bc.norm_squared() * opposite_a * opposite_d)
+        .min(bd.norm_squared() * opposite_a * opposite_c)
+        .min(cd.norm_squared() * opposite_a * opposite_b);
+    let sine = 1.5 * tet_volume(corners) * least.sqrt();
     if sine.is_finite() { sine } else { 0.0 }
 }
 
 /// The six dihedral angles [°], in the order of edges 01, 02, 03, 12, 13, 23.
 pub fn dihedral_angles_deg(corners: &[Vec3; 4]) -> [f64; 6] {
     let outward = TET_FACES.map(|face| triangle_area_vector(&face.map(|i| corners[i])));
-    EDGES.map(|(_, [k, l])| {
+    FACES_OF_EDGES.map(|[k, l]| {
         let (a, b) = (outward[k], outward[l]);
         a.cross(&b).norm().atan2(-a.dot(&b)).to_degrees()
     })
 }
 
 /// One tetrahedron in numbers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TetQuality {
     /// Name of the block.
     pub block: String,
     /// Index in the block.
     pub tet: u32,
     /// Centroid [m].
-    pub at_m: Vec3,
+    pub at_m: [f64; 3],
     /// Smallest dihedral angle [°].
     pub dihedral_deg: f64,
     /// Largest dihedral angle [°].
@@ -65,7 +68,7 @@ pub struct TetQuality {
 }
 
 /// A histogram by fixed borders: bar i counts values from border i up to border i + 1, the last one all from there.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Histogram {
     /// Lower borders, rising.
     pub borders: Vec<f64>,
@@ -79,12 +82,32 @@ impl Histogram {
         Self { borders, counts }
     }
 
+    /// Of values above 0, with borders that double: from the least up, or, if those were more than `most_bars`, from
+    /// the largest down. Values that are not above 0 are in the first bar.
+    pub fn doubling(values: &[f64], most_bars: i32) -> Self {
+        let positive = values.iter().copied().filter(|v| *v > 0.0);
+        let (least, most) = positive.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), v| (a.min(v), b.max(v)));
+        let mut histogram = Self::new(vec![0.0]);
+        if least.is_finite() && most.is_finite() {
+            let wanted = (most / least).log2().floor() as i32 + 1;
+            let bars = wanted.clamp(1, most_bars);
+            let first = if wanted > bars { most * 2f64.powi(1 - bars) } else { least };
+            histogram = Self::new((0..bars).map(|i| first * 2f64.powi(i)).collect());
+        }
+        values.iter().for_each(|&value| histogram.add(value));
+        histogram
+    }
+
     fn add(&mut self, value: f64) {
         let bar = self.borders.partition_point(|border| *border <= value);
         self.counts[bar.saturating_sub(1)] += 1;
     }
 
-    fn show(&self, f: &mut fmt::Formatter<'_>, title: &str) -> fmt::Result {
+    /// Prints the bars that are not empty.
+    ///
+    /// # Errors
+    /// Those of the formatter.
+    pub fn show(&self, f: &mut fmt::Formatter<'_>, title: &str) -> fmt::Result {
         let most = self.counts.iter().copied().max().unwrap_or(0).max(1);
         writeln!(f, "{title}")?;
         for (border, count) in self.borders.iter().zip(&self.counts).filter(|(_, count)| **count > 0) {
@@ -95,8 +118,8 @@ impl Histogram {
     }
 }
 
-/// Quality of the tetrahedra of many blocks; printed, it is a table of histograms and the worst ten.
-#[derive(Clone, Debug, PartialEq)]
+/// Quality of the tetrahedra of many blocks; printed, it is histograms and the worst ten.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct QualityReport {
     /// Number of tetrahedra.
     pub tets: usize,
@@ -114,12 +137,11 @@ pub struct QualityReport {
 pub fn quality<'a>(blocks: impl IntoIterator<Item = (&'a str, &'a BlockMesh)>) -> QualityReport {
     let mut heights = Vec::new();
     let bars = (0..15).map(|i| BAR_DEG * f64::from(i)).collect();
-    let doubling = |first: f64, bars: i32| (0..bars).map(|i| first * 2f64.powi(i)).collect();
     let mut report = QualityReport {
         tets: 0,
         dihedral_deg: Histogram::new(bars),
-        aspect: Histogram::new(doubling(1.0, 20)),
-        height_m: Histogram::new(vec![0.0]),
+        aspect: Histogram::new((0..20).map(|i| 2f64.powi(i)).collect()),
+        height_m: Histogram::default(),
         worst: Vec::new(),
     };
     for (block, mesh) in blocks {
@@ -136,13 +158,7 @@ pub fn quality<'a>(blocks: impl IntoIterator<Item = (&'a str, &'a BlockMesh)>) -
             }
         }
     }
-    let positive = heights.iter().copied().filter(|h| *h > 0.0);
-    let (least, most) = positive.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), h| (a.min(h), b.max(h)));
-    if least.is_finite() && most.is_finite() {
-        let bars = ((most / least).log2().floor() as i32 + 1).clamp(1, 64);
-        report.height_m = Histogram::new(doubling(least, bars));
-    }
-    heights.into_iter().for_each(|h| report.height_m.add(h));
+    report.height_m = Histogram::doubling(&heights, MOST_BARS);
     report
 }
 
@@ -159,7 +175,7 @@ fn measure(block: &str, tet: u32, mesh: &BlockMesh, nodes: &[u32; 4]) -> Option<
     Some(TetQuality {
         block: block.into(),
         tet,
-        at_m: corners.iter().sum::<Vec3>() / 4.0,
+        at_m: (corners.iter().sum::<Vec3>() / 4.0).into(),
         dihedral_deg: if is_inverted { -least } else { least },
         largest_dihedral_deg: most,
         aspect: longest_edge(&corners) / height_m,
@@ -169,13 +185,12 @@ fn measure(block: &str, tet: u32, mesh: &BlockMesh, nodes: &[u32; 4]) -> Option<
 
 impl fmt::Display for QualityReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{} tetrahedra", self.tets)?;
-        self.dihedral_deg.show(f, "smallest dihedral angle [°]")?;
+        self.dihedral_deg.show(f, "smallest dihedral angle of tetrahedra [°]")?;
         self.aspect.show(f, "longest edge over smallest height")?;
         self.height_m.show(f, "smallest height [m]")?;
         writeln!(f, "worst")?;
         for w in &self.worst {
-            let [x, y, z]: [f64; 3] = w.at_m.into();
+            let [x, y, z] = w.at_m;
             writeln!(
                 f,
                 "  tet {} of {:?} at ({x:.4}, {y:.4}, {z:.4}) m: {:.2}° to {:.2}°, aspect {:.1}, height {:.3e} m",

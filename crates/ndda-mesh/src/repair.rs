@@ -59,7 +59,7 @@ pub enum MergeError {
 
 /// Merges nodes nearer to each other than `relative_tolerance` of the mesh's diagonal into the first of them.
 ///
-/// Tetrahedra that two merged nodes belonged to are dropped; node sets follow. Nodes are compared with the kept ones
+/// Tetrahedra that two merged nodes belonged to are dropped; node sets and surfaces follow. Nodes are compared with the kept ones
 /// only, so that a chain of near nodes does not shrink to one.
 ///
 /// # Errors
@@ -110,6 +110,13 @@ pub fn merge(mesh: &mut BlockMesh, relative_tolerance: f64) -> Result<Merged, Me
         set.iter_mut().for_each(|node| *node = index.get(*node as usize).copied().unwrap_or(*node));
         set.sort_unstable();
         set.dedup();
+    }
+    for surface in mesh.surfaces.values_mut() {
+        for triangle in surface.iter_mut() {
+            *triangle = triangle.map(|node| index.get(node as usize).copied().unwrap_or(node));
+            triangle.sort_unstable();
+        }
+        surface.retain(|[a, b, c]| a != b && b != c);
     }
     Ok(done)
 }

@@ -2,29 +2,33 @@
 
 use plotters::prelude::*;
 
-use super::report::{Bars, MeshReport};
+use ndda_mesh::quality::Histogram;
+
+use super::report::MeshReport;
 use crate::picture::{Area, Drawn};
 
 /// Width and height of the picture [px].
 pub const SIZE: (u32, u32) = (1000, 700);
+/// Most labels of counts: of few, each has its own.
+const MOST_LABELS: usize = 8;
 const BAR: RGBColor = RGBColor(70, 110, 160);
 
 /// Four histograms.
 pub fn draw(report: &MeshReport, root: &Area) -> Drawn {
     let panels = [
-        ("volume of blocks [m³]", &report.block_size.volume_m3),
-        ("smallest dihedral angle of tetrahedra [°]", &report.dihedral_deg),
-        ("longest edge over smallest height", &report.aspect),
-        ("smallest height of tetrahedra [m]", &report.height_m),
+        ("volume of blocks [m³]", "blocks", &report.block_size.volume_m3),
+        ("smallest dihedral angle [°]", "tetrahedra", &report.quality.dihedral_deg),
+        ("longest edge over smallest height", "tetrahedra", &report.quality.aspect),
+        ("smallest height [m]", "tetrahedra", &report.quality.height_m),
     ];
-    for (area, (title, bars)) in root.split_evenly((2, 2)).iter().zip(panels) {
-        panel(area, title, bars)?;
+    for (area, (title, counted, bars)) in root.split_evenly((2, 2)).iter().zip(panels) {
+        panel(area, (title, counted), bars)?;
     }
     Ok(())
 }
 
 /// One histogram; empty bars at its ends are left out.
-fn panel(area: &Area, title: &str, bars: &Bars) -> Drawn {
+fn panel(area: &Area, (title, counted): (&str, &str), bars: &Histogram) -> Drawn {
     let used = |i: &usize| bars.counts[*i] > 0;
     let first = (0..bars.counts.len()).find(used).unwrap_or(0);
     let last = (0..bars.counts.len()).rev().find(used).unwrap_or(0);
@@ -32,13 +36,17 @@ fn panel(area: &Area, title: &str, bars: &Bars) -> Drawn {
     let mut chart = ChartBuilder::on(area)
         .caption(title, ("sans-serif", 18))
         .margin(12)
+        .margin_right(28)
         .x_label_area_size(28)
-        .y_label_area_size(56)
+        .y_label_area_size(72)
         .build_cartesian_2d(first as f64..(last + 1) as f64, 0.0..1.05 * most as f64)?;
-    let border = |x: &f64| bars.from.get(x.round() as usize).map_or(String::new(), |b| number(*b));
+    let border = |x: &f64| bars.borders.get(x.round() as usize).map_or(String::new(), |b| number(*b));
     chart
         .configure_mesh()
         .disable_x_mesh()
+        .max_light_lines(0)
+        .y_desc(counted)
+        .y_labels((most + 1).min(MOST_LABELS))
         .x_labels((last - first + 2).min(10))
         .x_label_formatter(&border)
         .y_label_formatter(&|count| format!("{count:.0}"))
@@ -50,10 +58,12 @@ fn panel(area: &Area, title: &str, bars: &Bars) -> Drawn {
     Ok(())
 }
 
+/// Three digits, without zeros at the end.
 fn number(value: f64) -> String {
-    if value == 0.0 || (0.01..1e4).contains(&value.abs()) {
-        format!("{value:.3}")
-    } else {
-        format!("{value:.1e}")
+    if value == 0.0 || !(0.01..1e4).contains(&value.abs()) {
+        return if value == 0.0 { "0".into() } else { format!("{value:.1e}") };
     }
+    let decimals = (2 - value.abs().log10().floor() as i32).max(0) as usize;
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }

@@ -9,11 +9,11 @@ use ndda_fem::{
 };
 use ndda_io::record;
 use ndda_io::scene::{self, By, Hold, Region, Scene};
-use ndda_mesh::geometry::Aabb;
+use ndda_mesh::geometry::{Aabb, tet_volume};
 use ndda_mesh::{BlockId, BlockSet};
 use ndda_solver::{BodyKind, BodySetup, ForceSetup, TractionSetup};
 
-use super::regions::{find, in_region, loaded_triangles, region_nodes};
+use super::regions::{in_region, loaded_triangles, region_nodes};
 use super::{Fault, Source, rock, sources, vec3};
 
 /// The paper's support springs: 10⁶ E per metre of reference length.
@@ -24,17 +24,18 @@ pub(super) fn bodies(scene: &Scene, blocks: &BlockSet, folder: &Path) -> Result<
     let mut faults = Vec::new();
     let materials = materials(scene, &mut faults);
     let mut bodies = Vec::new();
-    for (id, source) in blocks.ids().zip(sources(scene, blocks)) {
+    let sources = sources(scene, blocks);
+    for (id, source) in blocks.ids().zip(&sources) {
         let Some(source) = source else { continue };
         let used = scene.materials.iter().position(|m| m.name == source.material());
         let Some(material) = used.and_then(|i| materials[i].clone()) else { continue };
-        bodies.push(body(scene, blocks, id, &source, material));
+        bodies.push(body(scene, blocks, id, source, material));
     }
     if !faults.is_empty() {
         return Err(faults);
     }
     for (i, support) in scene.supports.iter().enumerate() {
-        match node_supports(scene, blocks, folder, support) {
+        match node_supports(scene, blocks, folder, &sources, support) {
             Ok(held) => held.into_iter().for_each(|(block, held)| bodies[block.index()].supports.push(held)),
             Err(message) => faults.push(Fault::new(format!("supports[{i}].on"), message)),
         }
@@ -52,10 +53,14 @@ pub(super) fn bodies(scene: &Scene, blocks: &BlockSet, folder: &Path) -> Result<
         }
     }
     for (i, force) in scene.forces.iter().enumerate() {
-        match nearest_node(blocks, force) {
-            Ok((block, node)) => {
-                let (force_n, factor) = (vec3(force.force_n), table(&force.factor));
-                bodies[block.index()].forces.push(ForceSetup { node, force_n, factor });
+        match in_region(blocks, &force.block, |block| shares(blocks, block, force)) {
+            Ok(parts) => {
+                for (block, (node, share)) in
+                    parts.iter().flat_map(|(block, s)| s.iter().map(|s| (*block, *s)))
+                {
+                    let (force_n, factor) = (share * vec3(force.force_n), table(&force.factor));
+                    bodies[block.index()].forces.push(ForceSetup { node, force_n, factor });
+                }
             }
             Err(message) => faults.push(Fault::new(format!("forces[{i}].at_m"), message)),
         }
@@ -125,18 +130,38 @@ fn table(rows: &[scene::FactorRow]) -> Option<Table> {
     (!rows.is_empty()).then_some(Table { rows })
 }
 
-/// The node nearest to where a force acts, which must not be outside of the block's box by more than a tenth of it.
-fn nearest_node(blocks: &BlockSet, force: &scene::Force) -> Result<(BlockId, u32), String> {
-    let block = find(blocks, &force.block)?;
-    let place = vec3(force.at_m) - blocks.origin_m;
+/// The nodes that a force acts on, and their shares of it.
+fn shares(blocks: &BlockSet, block: BlockId, force: &scene::Force) -> Result<Vec<(u32, f64)>, String> {
+    match force.at_m {
+        Some(at_m) => Ok(vec![(nearest_node(blocks, block, at_m)?, 1.0)]),
+        None => Ok((0..).zip(volume_shares(blocks, block)).collect()),
+    }
+}
+
+/// The part of a block's volume that is each node's: their mean place is the mass centre.
+fn volume_shares(blocks: &BlockSet, block: BlockId) -> Vec<f64> {
+    let nodes = &blocks.rest_position[blocks.nodes_of(block)];
+    let mut shares = vec![0.0; nodes.len()];
+    for tet in blocks.local_tets(block) {
+        let volume = tet_volume(&tet.map(|node| nodes[node as usize]));
+        tet.iter().for_each(|&node| shares[node as usize] += volume);
+    }
+    let whole: f64 = shares.iter().sum();
+    shares.iter_mut().for_each(|share| *share /= whole);
+    shares
+}
+
+/// The node nearest to a place, which must not be outside of the block's box by more than a tenth of it.
+fn nearest_node(blocks: &BlockSet, block: BlockId, at_m: [f64; 3]) -> Result<u32, String> {
+    let place = vec3(at_m) - blocks.origin_m;
     let nodes = &blocks.rest_position[blocks.nodes_of(block)];
     let bounds = Aabb::around(nodes);
     if !bounds.inflated(0.1 * bounds.diagonal()).touches(&Aabb { min: place, max: place }) {
-        return Err(format!("this point is not on block `{}`", force.block));
+        return Err(format!("this point is not on block `{}`", blocks.names[block.index()]));
     }
     let distance = |i: usize| (nodes[i] - place).norm_squared();
     let nearest = (0..nodes.len()).min_by(|&i, &j| distance(i).total_cmp(&distance(j)));
-    Ok((block, nearest.ok_or("the block has no nodes")? as u32))
+    Ok(nearest.ok_or("the block has no nodes")? as u32)
 }
 
 fn materials(scene: &Scene, faults: &mut Vec<Fault>) -> Vec<Option<Arc<dyn Material>>> {
@@ -172,6 +197,7 @@ fn node_supports(
     scene: &Scene,
     blocks: &BlockSet,
     folder: &Path,
+    sources: &[Option<Source<'_>>],
     support: &scene::Support,
 ) -> Result<Vec<(BlockId, NodeSupport)>, String> {
     let parts = in_region(blocks, &support.block, |block| region_nodes(blocks, block, &support.on))?;
@@ -190,7 +216,6 @@ fn node_supports(
             FemHold::Motion(Motion::Record(Record::new(direction, &rows)))
         }
     };
-    let sources = sources(scene, blocks);
     let young_pa = |block: BlockId| {
         let material = sources[block.index()].as_ref().map_or("", |source| source.material());
         scene.materials.iter().find(|m| m.name == *material).map_or(0.0, |m| m.young_pa)

@@ -70,12 +70,17 @@ fn boundary_nodes(blocks: &BlockSet, block: BlockId) -> Vec<u32> {
     nodes
 }
 
-/// Boundary triangles of a block whose corners are all in a region.
+/// Boundary triangles of a block in a region: those of the named surface, or else those whose corners are all in it.
 pub(super) fn loaded_triangles(
     blocks: &BlockSet,
     block: BlockId,
     on: &Region,
 ) -> Result<Vec<[u32; 3]>, String> {
+    if let Region::Set(set) = on
+        && let Some(triangles) = blocks.surfaces_of(block).remove(set)
+    {
+        return Ok(triangles);
+    }
     let nodes = region_nodes(blocks, block, on)?;
     let first = blocks.nodes_of(block).start as u32;
     let local = blocks.triangles[blocks.triangles_of(block)].iter().map(|t| t.map(|n| n.0 - first));

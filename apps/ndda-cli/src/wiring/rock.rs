@@ -1,17 +1,19 @@
 //! Rock of a scene as blocks.
 
 use std::fmt;
+use std::path::Path;
 
 use ndda_io::scene::{self, Rock, Scene, Whereabouts};
 use ndda_mesh::cut::{
-    self, Axis, Blocks, CutOptions, Disc, DiscRule, Discontinuity, Domain, DomainFace, JointSet,
-    OrientationScatter, Plane, SpacingScatter, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
+    self, Axis, Blocks, CutOptions, Disc, DiscRule, Discontinuity, Domain, JointSet, OrientationScatter,
+    Plane, SpacingScatter, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
 };
 use ndda_mesh::geometry::tet_volume;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
+use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{Fault, shapes, vec3};
+use super::{Fault, solid, vec3};
 
 /// What a rock was cut into, and what was left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -43,6 +45,15 @@ impl fmt::Display for RockReport {
     }
 }
 
+/// A rock in blocks.
+#[derive(Clone, Debug)]
+pub struct CutRock {
+    /// What the cut amounted to.
+    pub report: RockReport,
+    /// The convex parts of the blocks that are left.
+    pub blocks: Blocks,
+}
+
 /// Names and meshes of blocks.
 pub type Meshes = Vec<(String, BlockMesh)>;
 
@@ -50,10 +61,10 @@ pub type Meshes = Vec<(String, BlockMesh)>;
 ///
 /// # Errors
 /// What cannot be cut or filled.
-pub(super) fn cut_rock(scene: &Scene, index: usize) -> Result<(Meshes, RockReport), Vec<Fault>> {
+pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Meshes, CutRock), Vec<Fault>> {
     let rock = &scene.rock[index];
     let at = |field: &str| format!("rock[{index}]{field}");
-    let domain = domain(&rock.domain).map_err(|m| vec![Fault::new(at(".domain"), m)])?;
+    let domain = domain(&rock.domain, folder).map_err(|m| vec![Fault::new(at(".domain"), m)])?;
     let cut_field = if rock.voronoi.is_some() { ".voronoi" } else { ".joints" };
     let mut blocks = cut(rock, &domain).map_err(|m| vec![Fault::new(at(cut_field), m)])?;
     let refused = blocks.report.refused.iter().map(|(_, count)| count).sum();
@@ -70,10 +81,12 @@ pub(super) fn cut_rock(scene: &Scene, index: usize) -> Result<(Meshes, RockRepor
         removed: (removed.len(), removed_m3),
         refused,
     };
-    let fill = shapes::fill(rock.fill);
     let mut faults = Vec::new();
-    for (number, group) in (1..).zip(blocks.groups()) {
-        match blocks.mesh_glued(&group, &fill) {
+    let groups = blocks.groups();
+    let filled: Vec<_> =
+        groups.par_iter().map(|group| solid::filled_group(&blocks, group, &rock.fill)).collect();
+    for (number, filled) in (1..).zip(filled) {
+        match filled {
             Ok(mesh) => meshes.push((format!("{}_{number:04}", rock.name), mesh)),
             Err(error) => faults.push(Fault::new(
                 at(".fill"),
@@ -88,7 +101,7 @@ pub(super) fn cut_rock(scene: &Scene, index: usize) -> Result<(Meshes, RockRepor
         faults.push(Fault::new(at(".removed"), "no block is left: take out fewer"));
     }
     report.blocks = meshes.len();
-    if faults.is_empty() { Ok((meshes, report)) } else { Err(faults) }
+    if faults.is_empty() { Ok((meshes, CutRock { report, blocks })) } else { Err(faults) }
 }
 
 /// Slivers that are blocks of their own, not parts of a concave one.
@@ -133,22 +146,7 @@ pub(super) fn body(rock: &Rock, blocks: &BlockSet, block: BlockId) -> scene::Bod
     if holds(&rock.fixed, &centroid) { scene::Body::Fixed } else { rock.body }
 }
 
-/// A solid by its corners and faces.
-pub(super) fn polyhedron(corners_m: &[[f64; 3]], faces: &[Vec<u32>]) -> Result<Domain, String> {
-    let corners: Vec<Vec3> = corners_m.iter().copied().map(vec3).collect();
-    if let Some(face) = faces.iter().position(|f| f.iter().any(|&v| v as usize >= corners.len())) {
-        return Err(format!(
-            "face {face} names a corner that is not there: count from 0 to {}",
-            corners.len() - 1
-        ));
-    }
-    let named =
-        |(i, face): (usize, &Vec<u32>)| DomainFace { name: format!("face_{i}"), vertices: face.clone() };
-    let faces: Vec<DomainFace> = faces.iter().enumerate().map(named).collect();
-    Domain::polyhedral(&corners, &faces).map_err(|e| e.to_string())
-}
-
-fn domain(domain: &scene::Domain) -> Result<Domain, String> {
+fn domain(domain: &scene::Domain, folder: &Path) -> Result<Domain, String> {
     match domain {
         scene::Domain::Box { min_m, max_m } => {
             Domain::cuboid(vec3(*min_m), vec3(*max_m)).map_err(|e| e.to_string())
@@ -161,7 +159,12 @@ fn domain(domain: &scene::Domain) -> Result<Domain, String> {
             };
             Domain::extruded(outline_m, axis, *start_m, *end_m).map_err(|e| e.to_string())
         }
-        scene::Domain::Polyhedron { corners_m, faces } => polyhedron(corners_m, faces),
+        scene::Domain::Polyhedron { corners_m, faces } => {
+            solid::domain(&solid::of_corners(corners_m, faces), solid::EXACT)
+        }
+        scene::Domain::File { file, unit_m } => {
+            solid::domain(&solid::of_file(&folder.join(file), *unit_m)?, solid::ROUNDED)
+        }
         scene::Domain::Terrain { origin_m, step_m, heights_m, base_m } => {
             terrain(*origin_m, *step_m, heights_m, *base_m)
         }

@@ -2,13 +2,14 @@
 
 use std::path::Path;
 
-use ndda_io::mesh_file;
-use ndda_io::scene::{self, Pattern, Shape};
+use ndda_io::gmsh_program::{self, Finer, Sizes};
+use ndda_io::mesh_file::{self, MeshFile};
+use ndda_io::scene::{self, Grading, Pattern, Shape, Towards};
+use ndda_mesh::cut::plane::sin_cos;
 use ndda_mesh::generate::{BoxPattern, Voussoir, box_block, cylinder, hexahedron, prism, sphere, voussoir};
-use ndda_mesh::tetrahedralise::Fill;
 use ndda_mesh::{BlockMesh, Mat3};
 
-use super::{rock, vec3};
+use super::{solid, vec3};
 
 /// The mesh of a shape before it is turned and placed.
 pub(super) fn mesh(shape: &Shape, folder: &Path) -> Result<BlockMesh, String> {
@@ -36,22 +37,21 @@ pub(super) fn mesh(shape: &Shape, folder: &Path) -> Result<BlockMesh, String> {
             cylinder(*radius_m, *height_m, *cells).map_err(|e| e.to_string())
         }
         Shape::Sphere { radius_m, levels } => sphere(*radius_m, *levels).map_err(|e| e.to_string()),
-        Shape::Polyhedron { corners_m, faces, fill } => polyhedron(corners_m, faces, &self::fill(*fill)),
-        Shape::Mesh { file, body, unit_m } => {
-            let mut mesh = body_of(&folder.join(file), body.as_deref())?;
+        Shape::Polyhedron { corners_m, faces, fill } => {
+            let solid = solid::of_corners(corners_m, faces);
+            solid::filled(&solid, solid::EXACT, fill)
+        }
+        Shape::Surface { file, unit_m, fill } => {
+            let solid = solid::of_file(&folder.join(file), *unit_m)?;
+            solid::filled(&solid, solid::ROUNDED, fill)
+        }
+        Shape::Mesh { file, body, unit_m, size_m, finer } => {
+            let path = folder.join(file);
+            let bodies = bodies_of(&path, *unit_m, *size_m, finer)?;
+            let mut mesh = body_of(&path, bodies, body.as_deref())?;
             mesh.nodes.iter_mut().for_each(|x| *x *= *unit_m);
             Ok(mesh)
         }
-    }
-}
-
-/// A polyhedron is rock that nothing cuts.
-fn polyhedron(corners_m: &[[f64; 3]], faces: &[Vec<u32>], fill: &Fill) -> Result<BlockMesh, String> {
-    let domain = rock::polyhedron(corners_m, faces)?;
-    let blocks = ndda_mesh::cut::cut_blocks(&domain, &[], &Default::default()).map_err(|e| e.to_string())?;
-    match blocks.groups().as_slice() {
-        [whole] => blocks.mesh_glued(whole, fill).map_err(|e| e.to_string()),
-        several => Err(format!("the faces bound {} bodies: give each its own block", several.len())),
     }
 }
 
@@ -62,17 +62,27 @@ fn box_pattern(pattern: Pattern) -> BoxPattern {
     }
 }
 
-/// How a polyhedron is filled.
-pub(super) fn fill(fill: scene::Fill) -> Fill {
-    match fill {
-        scene::Fill::Fewest => Fill::Fewest,
-        scene::Fill::Centre => Fill::Centre,
-        scene::Fill::Size { size_m } => Fill::Size { size_m, finer: Vec::new() },
-    }
+/// The bodies of a mesh file, or of a geometry that Gmsh meshes: lengths in its own unit.
+fn bodies_of(path: &Path, unit_m: f64, size_m: Option<f64>, finer: &[Grading]) -> Result<MeshFile, String> {
+    let in_unit = |grading: &Grading| {
+        let unit = |at: [f64; 3]| at.map(|c| c / unit_m);
+        let place = match grading.towards {
+            Towards::Point(at) => (unit(at), None),
+            Towards::Plane { point_m, normal } => (unit(point_m), Some(normal)),
+        };
+        Finer { place, size: grading.size_m / unit_m, growth: grading.growth }
+    };
+    let sizes = Sizes { size: size_m.map(|size| size / unit_m), finer: finer.iter().map(in_unit).collect() };
+    let read = if gmsh_program::is_geometry(path) {
+        gmsh_program::mesh(path, &sizes, None)
+    } else {
+        mesh_file::read(path)
+    };
+    read.map_err(|e| e.to_string())
 }
 
-fn body_of(file: &Path, body: Option<&str>) -> Result<BlockMesh, String> {
-    let bodies = mesh_file::read(file).map_err(|e| e.to_string())?.bodies;
+fn body_of(file: &Path, mesh: MeshFile, body: Option<&str>) -> Result<BlockMesh, String> {
+    let bodies = mesh.bodies;
     let names = bodies.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", ");
     match body {
         None if bodies.len() > 1 => {
@@ -96,12 +106,6 @@ pub(super) fn turned(turns: &[scene::Turn]) -> Mat3 {
 /// Rodrigues' formula, R = cos θ I + sin θ [n]× + (1 − cos θ) n nᵀ.
 fn rotation(turn: &scene::Turn) -> Mat3 {
     let axis = vec3(turn.axis).normalize();
-    let (sin, cos) = match turn.angle_deg.rem_euclid(360.0) {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        angle => angle.to_radians().sin_cos(),
-    };
+    let (sin, cos) = sin_cos(turn.angle_deg);
     cos * Mat3::identity() + sin * axis.cross_matrix() + (1.0 - cos) * axis * axis.transpose()
 }

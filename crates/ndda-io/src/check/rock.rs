@@ -1,5 +1,7 @@
 //! Checks of rock that is cut. What it is cut into is found when it is.
 
+use std::path::Path;
+
 use super::Check;
 use crate::code::Code;
 use crate::scene::{Discontinuity, Domain, OrientationScatter, Rock, SpacingScatter, Whereabouts};
@@ -8,16 +10,16 @@ use crate::scene::{Discontinuity, Domain, OrientationScatter, Rock, SpacingScatt
 const MOST_CELLS: u32 = 10_000_000;
 
 impl Check<'_> {
-    pub(super) fn rock(&mut self) {
+    pub(super) fn rock(&mut self, folder: Option<&Path>) {
         let scene = self.scene;
         self.names("rock", &scene.rock.iter().map(|rock| rock.name.as_str()).collect::<Vec<_>>());
         let materials: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
         for (i, rock) in scene.rock.iter().enumerate() {
             let path = |field: &str| format!("rock[{i}].{field}");
             self.known(path("material"), "material", &rock.material, &materials);
-            self.domain(&path("domain"), &rock.domain);
+            self.domain(&path("domain"), &rock.domain, folder);
             self.joints_of(&format!("rock[{i}]"), rock);
-            self.fill(&path("fill"), rock.fill);
+            self.fill(&path("fill"), &rock.fill);
             if !(rock.sliver_width_m >= 0.0 && rock.sliver_width_m.is_finite()) {
                 let message = format!("{} m: must not be negative", rock.sliver_width_m);
                 self.error(path("sliver_width_m"), message, "0 leaves nothing out");
@@ -64,7 +66,7 @@ impl Check<'_> {
         }
     }
 
-    fn domain(&mut self, path: &str, domain: &Domain) {
+    fn domain(&mut self, path: &str, domain: &Domain, folder: Option<&Path>) {
         match domain {
             Domain::Box { min_m, max_m } => self.extent(path, min_m, max_m),
             Domain::Column { outline_m, start_m, end_m, .. } => {
@@ -79,6 +81,10 @@ impl Check<'_> {
                 }
             }
             Domain::Polyhedron { corners_m, faces } => self.polyhedron(path, corners_m, faces),
+            Domain::File { file, unit_m } => {
+                self.positive(format!("{path}.unit_m"), *unit_m, "m");
+                self.file(format!("{path}.file"), file, folder);
+            }
             Domain::Terrain { origin_m, step_m, heights_m, .. } => {
                 self.numbers(&format!("{path}.origin_m"), origin_m);
                 self.positive(format!("{path}.step_m[0]"), step_m[0], "m");

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::Check;
-use crate::scene::{Fill, Shape};
+use crate::gmsh_program;
+use crate::scene::{Fill, Grading, Shape, Towards};
 
 /// Refinements of a sphere beyond this are a slip of the keyboard.
 const MOST_LEVELS: u32 = 6;
@@ -63,11 +64,23 @@ impl Check<'_> {
             }
             Shape::Polyhedron { corners_m, faces, fill } => {
                 self.polyhedron(path, corners_m, faces);
-                self.fill(&format!("{path}.fill"), *fill);
+                self.fill(&format!("{path}.fill"), fill);
             }
-            Shape::Mesh { file, unit_m, .. } => {
+            Shape::Surface { file, unit_m, fill } => {
                 self.positive(format!("{path}.unit_m"), *unit_m, "m");
                 self.file(format!("{path}.file"), file, folder);
+                self.fill(&format!("{path}.fill"), fill);
+            }
+            Shape::Mesh { file, unit_m, size_m, finer, .. } => {
+                self.positive(format!("{path}.unit_m"), *unit_m, "m");
+                self.file(format!("{path}.file"), file, folder);
+                size_m.iter().for_each(|size| self.positive(format!("{path}.size_m"), *size, "m"));
+                self.gradings(&format!("{path}.finer"), finer);
+                let asks = size_m.map(|_| "size_m").or((!finer.is_empty()).then_some("finer"));
+                if let Some(field) = asks.filter(|_| !gmsh_program::is_geometry(Path::new(file))) {
+                    let help = "leave it out, or give a .geo, .step, .stp or .brep file";
+                    self.error(format!("{path}.{field}"), "a mesh in a file is as fine as it is", help);
+                }
             }
         }
     }
@@ -93,9 +106,34 @@ impl Check<'_> {
         }
     }
 
-    pub(super) fn fill(&mut self, path: &str, fill: Fill) {
-        if let Fill::Size { size_m } = fill {
-            self.positive(format!("{path}.size_m"), size_m, "m");
+    pub(super) fn fill(&mut self, path: &str, fill: &Fill) {
+        match fill {
+            Fill::Fewest | Fill::Centre => {}
+            Fill::Size { size_m, finer } => {
+                self.positive(format!("{path}.size_m"), *size_m, "m");
+                self.gradings(&format!("{path}.finer"), finer);
+            }
+            Fill::TetGen { size_m } => {
+                self.positive(format!("{path}.size_m"), *size_m, "m");
+                if !cfg!(feature = "tetgen") {
+                    let help = "build ndda with `--features tetgen` (AGPL), or use `Size`";
+                    self.error(path, "this program was built without TetGen", help);
+                }
+            }
+        }
+    }
+
+    fn gradings(&mut self, path: &str, finer: &[Grading]) {
+        for (i, grading) in finer.iter().enumerate() {
+            self.positive(format!("{path}[{i}].size_m"), grading.size_m, "m");
+            self.positive(format!("{path}[{i}].growth"), grading.growth, "");
+            match &grading.towards {
+                Towards::Point(at) => self.numbers(&format!("{path}[{i}].towards"), at),
+                Towards::Plane { point_m, normal } => {
+                    self.numbers(&format!("{path}[{i}].towards.point_m"), point_m);
+                    self.direction(format!("{path}[{i}].towards.normal"), normal);
+                }
+            }
         }
     }
 }

@@ -180,11 +180,16 @@ impl From<FileProblem> for Fault {
 
 /// The bytes of the file at `path`.
 pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, MeshFileError> {
-    let unreadable = |e: std::io::Error| Fault::from(FileProblem::Unreadable(e.to_string())).of(path);
-    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
-        return Err(Fault::from(FileProblem::NotAFile).of(path));
+    let fail = |problem: FileProblem| Fault::from(problem).of(path);
+    match whole_file(path) {
+        Ok(bytes) => bytes.ok_or_else(|| fail(FileProblem::NotAFile)),
+        Err(error) => Err(fail(FileProblem::Unreadable(error.to_string()))),
     }
-    std::fs::read(path).map_err(unreadable)
+}
+
+/// The bytes of a file; `None` for a folder or a device, which may have no end.
+pub(crate) fn whole_file(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
+    if std::fs::metadata(path)?.is_file() { std::fs::read(path).map(Some) } else { Ok(None) }
 }
 
 /// The ending of a path, in small letters.

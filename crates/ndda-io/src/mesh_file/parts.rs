@@ -49,6 +49,7 @@ impl Parts {
                 nodes: nodes.iter().map(|&node| self.nodes[node as usize]).collect(),
                 tets: tets.iter().map(|tet| tet.map(|node| local[node as usize])).collect(),
                 node_sets: std::mem::take(&mut sets[id]),
+                ..BlockMesh::default()
             };
             bodies.push((self.names.get(id).map_or(ONLY_BODY, String::as_str).to_string(), mesh));
         }

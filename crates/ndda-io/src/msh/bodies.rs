@@ -132,7 +132,7 @@ fn block(mesh: &Mesh, body: &Body) -> BlockMesh {
     BlockMesh {
         nodes: body.nodes.iter().map(|&node| mesh.nodes[node as usize]).collect(),
         tets: body.tets.iter().map(|tet| tet.map(local)).collect(),
-        node_sets: BTreeMap::new(),
+        ..BlockMesh::default()
     }
 }
 

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use super::error::{Fault, MshProblem, Place};
+use crate::mesh_file::error::excerpt;
 
 /// How numbers are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -172,14 +173,4 @@ impl<'a> Cursor<'a> {
             None => Err(self.truncated(&format!("`{word}`"))),
         }
     }
-}
-
-/// The start of what was found, printable.
-pub(super) fn excerpt(found: &[u8]) -> String {
-    let text: String = String::from_utf8_lossy(&found[..found.len().min(160)])
-        .chars()
-        .map(|c| if c.is_control() { '\u{FFFD}' } else { c })
-        .take(40)
-        .collect();
-    if text.len() < found.len() { text + "…" } else { text }
 }

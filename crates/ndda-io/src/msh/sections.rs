@@ -1,9 +1,10 @@
 //! The frame that both versions share: sections, the format header, the names of physical groups.
 
-use super::cursor::{Cursor, Encoding, excerpt};
+use super::cursor::{Cursor, Encoding};
 use super::error::{Fault, MshProblem};
 use super::mesh::{Kind, Mesh};
 use super::{v2, v4};
+use crate::mesh_file::error::excerpt;
 use ndda_mesh::Vec3;
 
 /// Versions that are read.

@@ -93,6 +93,14 @@ pub enum Domain {
         /// Corners of each face, counter-clockwise seen from outside, counted from 0.
         faces: Vec<Vec<u32>>,
     },
+    /// Rock under a closed surface in a file, STL, OBJ, VTK's `.vtp` or `.vtk`; its faces have the names that the file gives.
+    File {
+        /// Path, relative to the scene file.
+        file: String,
+        /// Metres per unit of the file. Default: 1.
+        #[serde(default = "one")]
+        unit_m: f64,
+    },
     /// Rock under a grid of heights; faces `terrain`, `base` and `side`.
     Terrain {
         /// Place of the first height (x, y) [m].
@@ -272,6 +280,15 @@ impl Rock {
     pub fn makes(&self, block: &str) -> bool {
         let number = block.strip_prefix(self.name.as_str()).and_then(|rest| rest.strip_prefix('_'));
         number.is_some_and(|n| !n.is_empty() && n.bytes().all(|c| c.is_ascii_digit()))
+    }
+}
+
+impl Discontinuity {
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Set { name, .. } | Self::Plane { name, .. } | Self::Disc { name, .. } => name,
+        }
     }
 }
 

@@ -82,6 +82,17 @@ pub enum Shape {
         #[serde(default)]
         fill: Fill,
     },
+    /// A closed surface in a file, filled: STL, OBJ, VTK's `.vtp` or `.vtk`; node sets have the names of its parts.
+    Surface {
+        /// Path, relative to the scene file.
+        file: String,
+        /// Metres per unit of the file. Default: 1.
+        #[serde(default = "one")]
+        unit_m: f64,
+        /// How it is filled. Default: `Fewest`.
+        #[serde(default)]
+        fill: Fill,
+    },
     /// A tetrahedral mesh in a file: Gmsh `.msh`, TetGen `.ele`, VTK `.vtu` and `.vtk`, Abaqus `.inp`; or a geometry,
     /// `.geo` or `.step`, that an installed Gmsh meshes.
     Mesh {
@@ -93,6 +104,12 @@ pub enum Shape {
         /// Metres per unit of the file. Default: 1.
         #[serde(default = "one")]
         unit_m: f64,
+        /// Longest edge that Gmsh makes in a geometry [m]. Default: what the geometry says.
+        #[serde(default)]
+        size_m: Option<f64>,
+        /// Where Gmsh makes a geometry's mesh finer. Default: nowhere.
+        #[serde(default)]
+        finer: Vec<Grading>,
     },
 }
 
@@ -108,7 +125,7 @@ pub enum Pattern {
 }
 
 /// How a polyhedron is filled with tetrahedra.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Fill {
@@ -121,5 +138,47 @@ pub enum Fill {
     Size {
         /// The length [m].
         size_m: f64,
+        /// Where to be finer. Default: nowhere.
+        #[serde(default)]
+        finer: Vec<Grading>,
     },
+    /// By TetGen, for surfaces as rough as they come; a build with the feature `tetgen` only, which is under the AGPL.
+    TetGen {
+        /// Longest edge, about [m].
+        size_m: f64,
+    },
+}
+
+/// Shorter edges towards a place, growing with the distance from it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Grading {
+    /// The place, in the coordinates of the shape before it is turned, or of the rock.
+    pub towards: Towards,
+    /// Length of edges there [m].
+    pub size_m: f64,
+    /// Growth of the length per metre of distance. Default: 0.3.
+    #[serde(default = "gentle")]
+    pub growth: f64,
+}
+
+/// What a mesh is finer towards.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub enum Towards {
+    /// A point [m].
+    Point([f64; 3]),
+    /// A plane, that of a face for instance.
+    Plane {
+        /// A point of it [m].
+        point_m: [f64; 3],
+        /// Its normal; its length does not matter.
+        normal: [f64; 3],
+    },
+}
+
+fn gentle() -> f64 {
+    0.3
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::data::{Array, Data, POLYGON, count};
 use crate::mesh_file::error::Fault;
+use crate::mesh_file::lines::parse;
 
 /// Arrays of a piece by section and name, as far as they make cells.
 #[derive(Default)]
@@ -13,9 +14,17 @@ pub(super) struct Piece {
     polygons: HashMap<&'static str, Vec<f64>>,
     cell_data: Vec<(String, Array)>,
     point_data: Vec<(String, Array)>,
+    /// Points and cells that its header promises; more are no reason to take memory.
+    promised: [Option<usize>; 2],
 }
 
 impl Piece {
+    /// A piece with the attributes of its header.
+    pub fn new(attributes: &HashMap<String, String>) -> Self {
+        let number = |name: &str| attributes.get(name).and_then(|text| parse(text.as_bytes()));
+        Self { promised: ["NumberOfPoints", "NumberOfCells"].map(number), ..Self::default() }
+    }
+
     /// Takes an array; those of no concern here are left out.
     pub fn add(
         &mut self,
@@ -53,6 +62,11 @@ impl Piece {
             data.add_cells(&kinds, &ends, &connectivity, first_point)?;
         }
         let (points, cells) = (data.points.len() - first_point, data.kinds.len() - first_cell);
+        for (what, found, promised) in
+            [("points", points, self.promised[0]), ("cells", cells, self.promised[1])]
+        {
+            count(what, found, promised.unwrap_or(found))?;
+        }
         for (name, array) in self.cell_data {
             add(name, array, cells, &mut data.cell_data, &mut data.cell_arrays)?;
         }

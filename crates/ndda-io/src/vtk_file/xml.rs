@@ -62,6 +62,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Data, Fault> {
                             piece.add(&mut data, &section, &attributes, numbers);
                         }
                     }
+                    b"Piece" => piece = Piece::new(&attributes),
                     name => section = String::from_utf8_lossy(name).into_owned(),
                 }
             }

@@ -1,5 +1,7 @@
 //! The rock before it is cut.
 
+use std::collections::HashMap;
+
 use super::blocks::{Surface, SurfaceKind};
 use super::decompose::{convex_parts, triangulate};
 use super::plane::Plane;
@@ -117,24 +119,36 @@ impl Domain {
     /// # Errors
     /// [`CutError`] when the surface is open, inside out, cuts itself, or a face is not flat.
     pub fn polyhedral(vertices_m: &[Vec3], faces: &[DomainFace]) -> Result<Self, CutError> {
+        Self::rounded(vertices_m, faces, 0.0)
+    }
+
+    /// As [`polyhedral`](Self::polyhedral), for a surface whose coordinates were rounded, to single precision for
+    /// instance: neighbouring faces of one name that are flat together to within `flat_ratio` of the diagonal are one face.
+    ///
+    /// # Errors
+    /// As [`polyhedral`](Self::polyhedral).
+    pub fn rounded(vertices_m: &[Vec3], faces: &[DomainFace], flat_ratio: f64) -> Result<Self, CutError> {
         let bounds = Aabb::around(vertices_m);
         check_extent(&bounds)?;
-        let tolerance = tolerance(&bounds);
         check_closed(vertices_m.len(), faces)?;
+        let mut tolerance = tolerance(&bounds);
+        tolerance.least_depth_m = tolerance.least_depth_m.max(flat_ratio * bounds.diagonal());
+        let flat_m = tolerance.least_depth_m;
         let mut domain = Self { parts: Vec::new(), surfaces: Vec::new(), names: Vec::new() };
+        let planes = planes(vertices_m, faces, flat_m)?;
+        let merged = if flat_ratio > 0.0 {
+            flat_together(vertices_m, faces, &planes, flat_m)
+        } else {
+            (0..faces.len()).collect()
+        };
         let mut polygons = Vec::new();
         for (index, face) in faces.iter().enumerate() {
-            let ring: Vec<Vec3> = face.vertices.iter().map(|&v| vertices_m[v as usize]).collect();
-            let normal = decompose::area_vector(&ring);
-            let plane = Plane::new(ring.iter().sum::<Vec3>() / ring.len() as f64, normal)?;
-            let gap_m = ring.iter().map(|x| plane.height_m(x).abs()).fold(0.0, f64::max);
-            if gap_m > tolerance.least_depth_m {
-                return Err(CutError::NotFlat { face: index, gap_m });
-            }
             let name = index_of(&mut domain.names, &face.name);
-            let surface = domain.surfaces.len() as u32;
-            domain.surfaces.push(Surface { plane, kind: SurfaceKind::Domain, name });
-            let triangles = triangulate(&ring, &normal).ok_or(CutError::Profile { corners: ring.len() })?;
+            domain.surfaces.push(Surface { plane: planes[index], kind: SurfaceKind::Domain, name });
+            let ring: Vec<Vec3> = face.vertices.iter().map(|&v| vertices_m[v as usize]).collect();
+            let triangles = triangulate(&ring, planes[index].normal());
+            let triangles = triangles.ok_or(CutError::Profile { corners: ring.len() })?;
+            let surface = merged[index] as u32;
             polygons.extend(triangles.into_iter().map(|triangle| (surface, triangle.to_vec())));
         }
         domain.parts = convex_parts(polygons, &domain.surfaces, &bounds, tolerance)?;
@@ -177,6 +191,56 @@ pub(super) fn check_extent(bounds: &Aabb) -> Result<(), CutError> {
         && bounds.min.iter().chain(bounds.max.iter()).all(|x| x.is_finite())
         && size.iter().all(|&s| s > 1.0 / LARGEST_M && s > 4.0 * tolerance(bounds).least_depth_m);
     if good { Ok(()) } else { Err(CutError::Extent { min_m: bounds.min.into(), max_m: bounds.max.into() }) }
+}
+
+/// The mean plane of each face, which must be flat.
+fn planes(vertices_m: &[Vec3], faces: &[DomainFace], flat_m: f64) -> Result<Vec<Plane>, CutError> {
+    let mut planes = Vec::with_capacity(faces.len());
+    for (index, face) in faces.iter().enumerate() {
+        let ring: Vec<Vec3> = face.vertices.iter().map(|&v| vertices_m[v as usize]).collect();
+        let normal = decompose::area_vector(&ring);
+        let plane = Plane::new(ring.iter().sum::<Vec3>() / ring.len() as f64, normal)?;
+        let gap_m = ring.iter().map(|x| plane.height_m(x).abs()).fold(0.0, f64::max);
+        if gap_m > flat_m {
+            return Err(CutError::NotFlat { face: index, gap_m });
+        }
+        planes.push(plane);
+    }
+    Ok(planes)
+}
+
+/// The face whose plane each face shares: the largest among neighbours that lie in it.
+fn flat_together(vertices_m: &[Vec3], faces: &[DomainFace], planes: &[Plane], flat_m: f64) -> Vec<usize> {
+    let mut across: HashMap<(u32, u32), usize> = HashMap::new();
+    let edges = |face: usize| {
+        let ring = &faces[face].vertices;
+        (0..ring.len()).map(|i| (ring[i], ring[(i + 1) % ring.len()]))
+    };
+    (0..faces.len()).for_each(|face| across.extend(edges(face).map(|edge| (edge, face))));
+    let ring = |face: usize| faces[face].vertices.iter().map(|&v| vertices_m[v as usize]);
+    let area = |face: &usize| decompose::area_vector(&ring(*face).collect::<Vec<_>>()).norm();
+    let mut order: Vec<usize> = (0..faces.len()).collect();
+    order.sort_by(|a, b| area(b).total_cmp(&area(a)));
+    let mut seed_of: Vec<Option<usize>> = vec![None; faces.len()];
+    for seed in order {
+        if seed_of[seed].is_some() {
+            continue;
+        }
+        seed_of[seed] = Some(seed);
+        let mut front = vec![seed];
+        while let Some(face) = front.pop() {
+            for other in edges(face).filter_map(|(a, b)| across.get(&(b, a)).copied()) {
+                let lies_in = faces[other].name == faces[seed].name
+                    && planes[other].normal().dot(planes[seed].normal()) > 0.0
+                    && ring(other).all(|x| planes[seed].height_m(&x).abs() <= flat_m);
+                if seed_of[other].is_none() && lies_in {
+                    seed_of[other] = Some(seed);
+                    front.push(other);
+                }
+            }
+        }
+    }
+    seed_of.into_iter().enumerate().map(|(face, seed)| seed.unwrap_or(face)).collect()
 }
 
 fn check_closed(vertices: usize, faces: &[DomainFace]) -> Result<(), CutError> {
@@ -243,6 +307,28 @@ mod tests {
         assert!(domain.parts().len() <= 12);
         assert!((domain.volume_m3() - 11.0).abs() < 1e-12);
         assert!(domain.parts().iter().all(|part| part.euler() == Some(2)));
+    }
+
+    #[test]
+    fn triangles_rounded_to_single_precision_are_the_flat_faces_that_they_were() {
+        let outline = [[0.0, 0.0], [3.0, 0.0], [3.0, 1.0], [1.0, 1.0], [1.0, 2.0], [0.0, 2.0]];
+        let ground = [[0, 1, 2], [0, 2, 3], [0, 3, 5], [3, 4, 5]];
+        let mut triangles: Vec<[u32; 3]> =
+            ground.iter().flat_map(|&[a, b, c]| [[a, c, b], [a + 6, b + 6, c + 6]]).collect();
+        triangles.extend((0..6).flat_map(|i| {
+            let j = (i + 1) % 6;
+            [[i, j, j + 6], [i, j + 6, i + 6]]
+        }));
+        let turn = nalgebra::Rotation3::new(Vec3::new(0.3, -0.7, 0.5));
+        let vertex = |z: f64| move |p: &[f64; 2]| turn * Vec3::new(p[0] + 10.0, p[1], z);
+        let exact = outline.iter().map(vertex(0.0)).chain(outline.iter().map(vertex(1.5)));
+        let vertices: Vec<Vec3> = exact.map(|x| x.map(|c| f64::from(c as f32))).collect();
+        let faces: Vec<DomainFace> =
+            triangles.iter().map(|t| DomainFace { name: "rock".into(), vertices: t.to_vec() }).collect();
+        let domain = Domain::rounded(&vertices, &faces, 1e-6).unwrap();
+        assert!((domain.volume_m3() - 6.0).abs() < 1e-4, "{}", domain.volume_m3());
+        let sides: Vec<usize> = domain.parts().iter().map(|part| part.faces.len()).collect();
+        assert!(domain.parts().len() <= 3 && sides.iter().all(|&count| count == 6), "{sides:?}");
     }
 
     #[test]

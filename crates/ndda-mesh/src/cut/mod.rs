@@ -29,7 +29,7 @@ pub use polyhedron::{Face, Polyhedron};
 pub(crate) use random::frame as plane_frame;
 pub use split::{Split, Tolerance, split};
 pub use system::{CutOptions, cut_blocks};
-pub use voronoi::{VoronoiOptions, random_seeds, voronoi_blocks};
+pub use voronoi::{CELLS, VoronoiOptions, random_seeds, voronoi_blocks};
 
 /// Vertices within this fraction of the domain's diagonal of a plane lie on it.
 const ON_PLANE_RATIO: f64 = 1e-13;

@@ -75,7 +75,7 @@ pub fn dip_normal(dip_deg: f64, dip_direction_deg: f64) -> Vec3 {
 }
 
 /// Sine and cosine of degrees, exact at multiples of 90°.
-pub(crate) fn sin_cos(angle_deg: f64) -> (f64, f64) {
+pub fn sin_cos(angle_deg: f64) -> (f64, f64) {
     let turns = (angle_deg / 90.0).round();
     let (sin, cos) = (angle_deg - 90.0 * turns).to_radians().sin_cos();
     match turns.rem_euclid(4.0) as u32 {

@@ -11,8 +11,8 @@ use super::system::index_of;
 use crate::Vec3;
 use crate::geometry::Aabb;
 
-/// Name of the borders of cells.
-const NAME: &str = "cells";
+/// Name of the faces between Voronoi cells.
+pub const CELLS: &str = "cells";
 
 /// Choices of a Voronoi cut.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -112,7 +112,7 @@ fn named(
         }
     }
     let mut names = domain.names.clone();
-    let name = index_of(&mut names, NAME);
+    let name = index_of(&mut names, CELLS);
     let mut surfaces = domain.surfaces.clone();
     for (a, b) in pairs {
         let plane = bisector(seeds_m, a, b)?;

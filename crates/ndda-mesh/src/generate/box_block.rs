@@ -39,7 +39,7 @@ pub fn box_block(size_m: [f64; 3], cells: [u32; 3], pattern: BoxPattern) -> Resu
         .iter()
         .map(|at| Vec3::from_fn(|axis, _| fraction(size_m[axis], at[axis], 2 * cells[axis])))
         .collect();
-    Ok(BlockMesh { nodes, tets, node_sets: side_sets(&halves, cells) })
+    Ok(BlockMesh { nodes, tets, node_sets: side_sets(&halves, cells), ..BlockMesh::default() })
 }
 
 /// Nodes and tetrahedra that the box would have.

@@ -33,7 +33,8 @@ pub fn prism(outline_m: [[f64; 2]; 3], height_m: f64, cells: [u32; 2]) -> Result
             Vec3::new(x, y, z)
         }));
     }
-    Ok(BlockMesh { nodes, tets: tets(&outline, cells[1]), node_sets: side_sets(&outline, cells[1]) })
+    let node_sets = side_sets(&outline, cells[1]);
+    Ok(BlockMesh { nodes, tets: tets(&outline, cells[1]), node_sets, ..BlockMesh::default() })
 }
 
 /// The area of the outline [m²], if it is finite, positive and not a line.

@@ -63,7 +63,7 @@ pub fn cylinder(radius_m: f64, height_m: f64, cells: [u32; 2]) -> Result<BlockMe
         ("z_min".into(), collect(&|layer, _| layer == 0)),
         ("z_max".into(), collect(&|layer, _| layer == cells[1])),
     ]);
-    Ok(BlockMesh { nodes, tets, node_sets })
+    Ok(BlockMesh { nodes, tets, node_sets, ..BlockMesh::default() })
 }
 
 /// Counter-clockwise triangles of a disc of rings; ring k starts at node 1 + 3 k (k − 1).
@@ -111,7 +111,8 @@ pub fn sphere(radius_m: f64, levels: u32) -> Result<BlockMesh, GenerateError> {
     let surface =
         (0..).zip(&octahedron.places).filter(|(_, at)| sum(at) == far).map(|(node, _)| node).collect();
     let nodes = octahedron.places.iter().map(|at| octahedron.rounded(at) * radius_m).collect();
-    Ok(BlockMesh { nodes, tets, node_sets: BTreeMap::from([("surface".into(), surface)]) })
+    let node_sets = BTreeMap::from([("surface".into(), surface)]);
+    Ok(BlockMesh { nodes, tets, node_sets, ..BlockMesh::default() })
 }
 
 /// |x| + |y| + |z|.

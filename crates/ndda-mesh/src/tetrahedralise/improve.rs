@@ -22,7 +22,7 @@ pub(super) fn sweep(pool: &mut Pool, wanted_sine: f64) -> usize {
     bad.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut changes = 0;
     for &(sine, tet) in &bad {
-        if pool.sine[tet as usize] == sine && flip(pool, tet) {
+        if pool.sine[tet as usize] == sine && pool.is_flip_due(tet) && flip(pool, tet) {
             changes += 1;
         }
     }
@@ -31,7 +31,8 @@ pub(super) fn sweep(pool: &mut Pool, wanted_sine: f64) -> usize {
     nodes.sort_unstable();
     nodes.dedup();
     for node in nodes {
-        changes += usize::from(pool.worst_around(node) < wanted_sine && smooth(pool, node));
+        let is_due = pool.worst_around(node) < wanted_sine && pool.is_move_due(node);
+        changes += usize::from(is_due && smooth(pool, node));
     }
     changes
 }
@@ -58,9 +59,12 @@ pub(super) fn remove_edge(pool: &mut Pool, a: u32, b: u32) -> bool {
     if tets.len() > LONGEST_RING {
         return false;
     }
+    let shared = pool.shared(a, b);
+    if shared.len() > 1 {
+        return false;
+    }
     let Some(ring) = pool.ring(a, b, &tets) else { return false };
     let n = ring.nodes.len();
-    let shared = pool.shared(a, b);
     // An edge of the block stays; one in a face is exchanged for another in that face.
     let in_face = |node: u32| shared.iter().all(|face| pool.on[node as usize].contains(face));
     let may_go = if ring.is_closed {
@@ -143,7 +147,10 @@ pub(super) fn smooth(pool: &mut Pool, node: u32) -> bool {
         return false;
     }
     let start = pool.nodes[node as usize];
-    let tets: Vec<[u32; 4]> = pool.around[node as usize].iter().map(|&t| pool.tets[t as usize]).collect();
+    let mut around = pool.around[node as usize].clone();
+    // The worst ones first: they refuse most attempts.
+    around.sort_by(|&s, &t| pool.sine[s as usize].total_cmp(&pool.sine[t as usize]));
+    let tets: Vec<[u32; 4]> = around.into_iter().map(|t| pool.tets[t as usize]).collect();
     let (centre, mut step_m) = neighbourhood(pool, node, &tets);
     let mut best = (pool.worst_around(node), start);
     let old = best.0;

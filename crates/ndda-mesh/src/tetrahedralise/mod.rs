@@ -18,6 +18,7 @@ pub use size::{Grading, Towards};
 use std::collections::BTreeMap;
 
 use crate::cut::{Blocks, Polyhedron};
+use crate::surface::boundary_faces;
 use crate::validate::MAX_TETS;
 use crate::{BlockMesh, Vec3, validate};
 use size::SizeField;
@@ -50,14 +51,6 @@ pub enum FillError {
         what: &'static str,
         /// Its value.
         value: f64,
-    },
-    /// A face that the block has not.
-    #[error("the block has {faces} faces, no face {face}: count from 0")]
-    NoSuchFace {
-        /// The face asked for.
-        face: usize,
-        /// Number of faces.
-        faces: usize,
     },
     /// A block that the system has not.
     #[error("there are {blocks} blocks, no block {block}: count from 0")]
@@ -131,28 +124,6 @@ impl Blocks {
         let names: Vec<&str> = polyhedron.faces.iter().map(|face| self.name_of(face)).collect();
         tetrahedralise(polyhedron, &names, fill)
     }
-
-    /// Tetrahedra of all blocks, glued ones as one.
-    pub fn meshes(&self, fill: &Fill) -> Meshed {
-        let mut meshed = Meshed::default();
-        for group in self.groups() {
-            let first = group[0] as usize;
-            match self.mesh_glued(&group, fill) {
-                Ok(mesh) => meshed.meshes.push((format!("block_{first}"), mesh)),
-                Err(error) => meshed.failed.push((first, error)),
-            }
-        }
-        meshed
-    }
-}
-
-/// Blocks that were filled, and those that could not be.
-#[derive(Clone, Debug, Default)]
-pub struct Meshed {
-    /// Meshes under the names `block_0`, `block_1`, … of the first or only block in each.
-    pub meshes: Vec<(String, BlockMesh)>,
-    /// Index of each block that was not filled and the reason: usually slivers, for the caller to drop or report.
-    pub failed: Vec<(usize, FillError)>,
 }
 
 /// Fills a convex polyhedron. `face_names` names the node set of each face; several faces may share one, and faces
@@ -168,7 +139,7 @@ pub fn tetrahedralise(block: &Polyhedron, face_names: &[&str], fill: &Fill) -> R
     let length_m = block.bounds().diagonal();
     for ratio in WELD_RATIOS {
         if let Some(welded) = weld::weld(block, ratio * length_m) {
-            let filled = filled(block, &welded, fill)?;
+            let filled = filled(&welded, fill)?;
             let mesh = named(filled, |face| {
                 let face = welded.old_face[face as usize];
                 Some(face_names.get(face).map_or_else(|| format!("face_{face}"), |name| name.to_string()))
@@ -181,12 +152,12 @@ pub fn tetrahedralise(block: &Polyhedron, face_names: &[&str], fill: &Fill) -> R
     Err(FillError::TooThin { width_m: block.width_m(), length_m })
 }
 
-fn filled(block: &Polyhedron, welded: &Welded, fill: &Fill) -> Result<Filled, FillError> {
+fn filled(welded: &Welded, fill: &Fill) -> Result<Filled, FillError> {
     match fill {
         Fill::Fewest => Ok(star::fewest(&welded.block)),
         Fill::Centre => Ok(star::centre(&welded.block)),
         Fill::Size { size_m, finer } => {
-            let size = SizeField::new(&welded.block, block, *size_m, finer)?;
+            let size = SizeField::new(&welded.block, *size_m, finer)?;
             let normals =
                 welded.block.faces.iter().map(|f| welded.block.area_vector(f).normalize()).collect();
             let too_fine = |tets| FillError::TooFine { size_m: *size_m, tets: tets as f64 };
@@ -195,8 +166,18 @@ fn filled(block: &Polyhedron, welded: &Welded, fill: &Fill) -> Result<Filled, Fi
     }
 }
 
-/// The mesh with a node set for each name of a face.
+/// The mesh with a node set and a part of the boundary for each name of a face.
 fn named(filled: Filled, name_of: impl Fn(u32) -> Option<String>) -> BlockMesh {
+    let mut surfaces: BTreeMap<String, Vec<[u32; 3]>> = BTreeMap::new();
+    for face in boundary_faces(&filled.tets) {
+        let [a, b, c] = face.nodes.map(|node| &filled.on[node as usize]);
+        let mut shared = a.iter().filter(|on| b.contains(on) && c.contains(on));
+        if let Some(name) = shared.find_map(|&on| name_of(on)) {
+            let mut triangle = face.nodes;
+            triangle.sort_unstable();
+            surfaces.entry(name).or_default().push(triangle);
+        }
+    }
     let mut node_sets: BTreeMap<String, Vec<u32>> = BTreeMap::new();
     for (node, faces) in (0..).zip(&filled.on) {
         for name in faces.iter().filter_map(|&face| name_of(face)) {
@@ -206,7 +187,7 @@ fn named(filled: Filled, name_of: impl Fn(u32) -> Option<String>) -> BlockMesh {
             }
         }
     }
-    BlockMesh { nodes: filled.nodes, tets: filled.tets, node_sets }
+    BlockMesh { nodes: filled.nodes, tets: filled.tets, node_sets, surfaces }
 }
 
 /// Nodes, the faces of the block that each lies on (sorted), and tetrahedra.

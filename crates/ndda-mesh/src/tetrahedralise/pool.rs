@@ -17,6 +17,12 @@ pub(super) struct Pool {
     /// Unit normals of the block's faces.
     pub normals: Vec<Vec3>,
     free: Vec<u32>,
+    /// Changes so far; the last one around each node; and how many there had been when each tetrahedron was last tried to
+    /// flip and each node to move. What failed fails again unless something around it has changed.
+    changes: u64,
+    changed: Vec<u64>,
+    flip_tried: Vec<u64>,
+    move_tried: Vec<u64>,
 }
 
 /// The nodes around an edge, each followed by the next; closed unless the edge lies on the surface.
@@ -27,10 +33,20 @@ pub(super) struct Ring {
 
 impl Pool {
     pub fn new(normals: Vec<Vec3>, filled: Filled) -> Self {
-        let around = vec![Vec::new(); filled.nodes.len()];
-        let (nodes, on) = (filled.nodes, filled.on);
-        let mut pool =
-            Self { nodes, on, tets: Vec::new(), sine: Vec::new(), around, normals, free: Vec::new() };
+        let count = filled.nodes.len();
+        let mut pool = Self {
+            nodes: filled.nodes,
+            on: filled.on,
+            tets: Vec::new(),
+            sine: Vec::new(),
+            around: vec![Vec::new(); count],
+            normals,
+            free: Vec::new(),
+            changes: 0,
+            changed: vec![0; count],
+            flip_tried: Vec::new(),
+            move_tried: vec![0; count],
+        };
         filled.tets.into_iter().for_each(|tet| pool.add(tet));
         pool
     }
@@ -71,11 +87,30 @@ impl Pool {
         if slot as usize == self.tets.len() {
             self.tets.push(tet);
             self.sine.push(sine);
+            self.flip_tried.push(0);
         } else {
             self.tets[slot as usize] = tet;
             self.sine[slot as usize] = sine;
         }
         tet.iter().for_each(|&n| self.around[n as usize].push(slot));
+        self.mark(tet);
+    }
+
+    fn mark(&mut self, tet: [u32; 4]) {
+        self.changes += 1;
+        tet.iter().for_each(|&n| self.changed[n as usize] = self.changes);
+    }
+
+    /// Whether a flip of a tetrahedron has not been tried as things are; from now on it has.
+    pub fn is_flip_due(&mut self, tet: u32) -> bool {
+        let tried = std::mem::replace(&mut self.flip_tried[tet as usize], self.changes);
+        self.tets[tet as usize].iter().any(|&n| self.changed[n as usize] > tried)
+    }
+
+    /// Whether a move of a node has not been tried as things are; from now on it has.
+    pub fn is_move_due(&mut self, node: u32) -> bool {
+        let tried = std::mem::replace(&mut self.move_tried[node as usize], self.changes);
+        self.changed[node as usize] > tried
     }
 
     pub fn remove(&mut self, tet: u32) {
@@ -87,12 +122,15 @@ impl Pool {
         }
         self.sine[tet as usize] = f64::NEG_INFINITY;
         self.free.push(tet);
+        self.mark(self.tets[tet as usize]);
     }
 
     pub fn add_node(&mut self, at: Vec3, on: Vec<u32>) -> u32 {
         self.nodes.push(at);
         self.on.push(on);
         self.around.push(Vec::new());
+        self.changed.push(0);
+        self.move_tried.push(0);
         self.nodes.len() as u32 - 1
     }
 
@@ -102,6 +140,7 @@ impl Pool {
         for i in 0..self.around[node as usize].len() {
             let tet = self.around[node as usize][i];
             self.sine[tet as usize] = self.quality(self.tets[tet as usize]);
+            self.mark(self.tets[tet as usize]);
         }
     }
 

@@ -18,8 +18,13 @@ const TET_VOLUME: f64 = 0.1;
 pub enum Towards {
     /// A point [m].
     Point(Vec3),
-    /// A face of the block, by its index.
-    Face(usize),
+    /// The plane through a point with a normal of any length, that of a face for instance.
+    Plane {
+        /// The point [m].
+        point_m: Vec3,
+        /// The normal.
+        normal: Vec3,
+    },
 }
 
 /// Edges of `size_m` at a place, growing by `growth` metres per metre away from it.
@@ -37,8 +42,8 @@ pub struct Grading {
 pub(super) struct SizeField {
     largest_m: f64,
     points: Vec<(Vec3, f64, f64)>,
-    /// Inward plane: point, normal, size, growth.
-    faces: Vec<(Vec3, Vec3, f64, f64)>,
+    /// Point, unit normal, size, growth.
+    planes: Vec<(Vec3, Vec3, f64, f64)>,
     /// Tetrahedra to expect.
     pub tets: f64,
 }
@@ -48,26 +53,19 @@ fn positive(what: &'static str, value: f64) -> Result<(), FillError> {
 }
 
 impl SizeField {
-    pub fn new(
-        block: &Polyhedron,
-        original: &Polyhedron,
-        size_m: f64,
-        finer: &[Grading],
-    ) -> Result<Self, FillError> {
+    pub fn new(block: &Polyhedron, size_m: f64, finer: &[Grading]) -> Result<Self, FillError> {
         positive("size_m", size_m)?;
         let largest_m = size_m.min((LENGTH_PER_WIDTH * block.width_m()).max(FINEST * size_m));
-        let mut size = Self { largest_m, points: Vec::new(), faces: Vec::new(), tets: 0.0 };
+        let mut size = Self { largest_m, points: Vec::new(), planes: Vec::new(), tets: 0.0 };
         for grading in finer {
             positive("size_m of a grading", grading.size_m)?;
             positive("growth of a grading", grading.growth)?;
             match grading.towards {
                 Towards::Point(at) => size.points.push((at, grading.size_m, grading.growth)),
-                Towards::Face(face) => {
-                    let faces = original.faces.len();
-                    let ring = original.faces.get(face).ok_or(FillError::NoSuchFace { face, faces })?;
-                    let normal = original.area_vector(ring).normalize();
-                    let at = original.vertices[ring.vertices[0] as usize];
-                    size.faces.push((at, normal, grading.size_m, grading.growth));
+                Towards::Plane { point_m, normal } => {
+                    let length = normal.norm();
+                    positive("length of the normal of a grading", length)?;
+                    size.planes.push((point_m, normal / length, grading.size_m, grading.growth));
                 }
             }
         }
@@ -82,17 +80,16 @@ impl SizeField {
         if tets <= MOST_TETS as f64 { Ok(size) } else { Err(FillError::TooFine { size_m, tets }) }
     }
 
-    /// The field of a concave block in parts; faces of gradings are those of the first part.
+    /// The field of a concave block in parts.
     pub fn of_parts(parts: &[&Polyhedron], size_m: f64, finer: &[Grading]) -> Result<Self, FillError> {
-        let mut size = Self { largest_m: 0.0, points: Vec::new(), faces: Vec::new(), tets: 0.0 };
-        let points: Vec<Grading> =
-            finer.iter().filter(|g| matches!(g.towards, Towards::Point(_))).copied().collect();
-        for (index, part) in parts.iter().enumerate() {
-            let own = Self::new(part, part, size_m, if index == 0 { finer } else { &points })?;
+        let mut size = Self { largest_m: 0.0, points: Vec::new(), planes: Vec::new(), tets: 0.0 };
+        for part in parts {
+            let own = Self::new(part, size_m, finer)?;
             size.largest_m = size.largest_m.max(own.largest_m);
             size.tets += own.tets;
             size.points.extend(own.points);
-            size.faces.extend(own.faces);
+            // The same in all parts.
+            size.planes = own.planes;
         }
         let tets = size.tets;
         if tets <= MOST_TETS as f64 { Ok(size) } else { Err(FillError::TooFine { size_m, tets }) }
@@ -100,10 +97,18 @@ impl SizeField {
 
     /// Target length of edges at a point [m].
     pub fn at(&self, x: &Vec3) -> f64 {
-        let near_points = self.points.iter().map(|(at, size, growth)| size + growth * (x - at).norm());
-        let near_faces =
-            self.faces.iter().map(|(at, n, size, growth)| size + growth * n.dot(&(x - at)).abs());
-        near_points.chain(near_faces).fold(self.largest_m, f64::min)
+        let mut least = self.largest_m;
+        for (at, size, growth) in &self.points {
+            // Most points are too far to matter, which takes no root.
+            let reach = (least - size) / growth;
+            let squared = (x - at).norm_squared();
+            if reach > 0.0 && squared < reach * reach {
+                least = least.min(size + growth * squared.sqrt());
+            }
+        }
+        let near_planes =
+            self.planes.iter().map(|(at, n, size, growth)| size + growth * n.dot(&(x - at)).abs());
+        near_planes.fold(least, f64::min)
     }
 
     /// Tetrahedra to expect, from the size sampled between the centroid and the vertices.

@@ -103,12 +103,12 @@ fn grading_makes_the_mesh_finer_at_a_point_and_at_a_face() {
         let volumes: Vec<f64> = chosen.map(|t| tet_volume(&t)).collect();
         (volumes.iter().sum::<f64>() / volumes.len() as f64 * 8.0).cbrt()
     };
-    for towards in [Towards::Point(Vec3::zeros()), Towards::Face(0)] {
+    let side = Towards::Plane { point_m: Vec3::zeros(), normal: -2.0 * Vec3::x() };
+    for towards in [Towards::Point(Vec3::zeros()), side] {
         let finer = vec![Grading { towards, size_m: 0.04, growth: 0.4 }];
         let mesh = tetrahedralise(&cube(), &[], &Fill::Size { size_m: 0.3, finer }).unwrap();
         check(&cube(), &mesh);
-        let near =
-            mean_edge(&mesh, &|x| if towards == Towards::Face(0) { x.x < 0.1 } else { x.norm() < 0.15 });
+        let near = mean_edge(&mesh, &|x| if towards == side { x.x < 0.1 } else { x.norm() < 0.15 });
         let far = mean_edge(&mesh, &|x| x.x > 0.5);
         assert!(near < 0.09 && far > 0.15, "{near} {far}");
     }

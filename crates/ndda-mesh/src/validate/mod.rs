@@ -250,7 +250,7 @@ mod tests {
             set in prop::collection::vec(any::<u32>(), 0..3),
         ) {
             let nodes = nodes.into_iter().map(Vec3::from).collect();
-            let mesh = BlockMesh { nodes, tets, node_sets: [("a".to_string(), set)].into() };
+            let mesh = BlockMesh { nodes, tets, node_sets: [("a".to_string(), set)].into(), ..BlockMesh::default() };
             for problem in problems(&mesh) {
                 prop_assert!(!problem.to_string().is_empty());
             }
