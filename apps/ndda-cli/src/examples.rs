@@ -5,8 +5,9 @@ use std::fmt::Write;
 use ndda_io::locate;
 
 /// Names and texts.
-pub const EXAMPLES: [(&str, &str); 26] = [
+pub const EXAMPLES: [(&str, &str); 27] = [
     ("arch", include_str!("../../../scenes/arch.ron")),
+    ("bounce", include_str!("../../../scenes/bounce.ron")),
     ("collision_equal", include_str!("../../../scenes/collision_equal.ron")),
     ("collision_equal_free", include_str!("../../../scenes/collision_equal_free.ron")),
     ("collision_unequal", include_str!("../../../scenes/collision_unequal.ron")),

@@ -91,9 +91,14 @@ pub fn of(ready: &Ready) -> Explanation {
         files: files(scene),
         threads: std::thread::available_parallelism().map_or(1, usize::from),
         features: vec![
+            ("fancy", cfg!(feature = "fancy")),
+            ("parquet", cfg!(feature = "parquet")),
             ("plots", cfg!(feature = "plots")),
+            ("png", cfg!(feature = "png")),
+            ("report", cfg!(feature = "report")),
             ("schema", cfg!(feature = "schema")),
             ("shell", cfg!(feature = "shell")),
+            ("tetgen", cfg!(feature = "tetgen")),
         ],
     }
 }

@@ -149,7 +149,7 @@ fn a_wrong_study_is_refused_at_its_place() {
     let folder = folder(&STUDY.replace("time.step_s", "blocks.nobody.at_m"));
     let done = ndda(folder.path(), &["study", "study.ron"]);
     assert_eq!(done.status.code(), Some(3));
-    assert!(said(&done).contains("study.ron:4:51: error: axes[0].values[0]"), "{}", said(&done));
+    assert!(said(&done).contains("study.ron:4:51: error[override]: axes[0].values[0]"), "{}", said(&done));
     assert_eq!(ndda(folder.path(), &["study", "no.ron"]).status.code(), Some(3));
     assert_eq!(ndda(folder.path(), &["study"]).status.code(), Some(2));
 }
