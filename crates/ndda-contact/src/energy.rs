@@ -18,6 +18,12 @@ use crate::potential::{Field, OverlapLaw, PieceTable};
 /// Part of a tetrahedron's volume beyond which a negative integral is more than rounding.
 const PAST_CENTROID: f64 = 1e-9;
 
+/// Whether a flux through all pieces of a block in a tetrahedron says that its centroid is inside the block: ∫ φ dV is not
+/// negative, and a centroid inside is a source that the flux leaves out.
+pub fn has_centroid(integral_m3: f64, volume_m3: f64) -> bool {
+    integral_m3 < -PAST_CENTROID * volume_m3
+}
+
 /// Pairs below which a second thread costs more than it brings.
 const GRAIN_PAIRS: usize = 512;
 
@@ -129,8 +135,7 @@ impl BlockOverlaps {
             let slot = candidates.tets.binary_search(&tet).expect("every overlap has its tet");
             let volume_m3 = frames[slot].volume_m3;
             // ∫ φ over the whole tetrahedron is V/4: that is what a contained centroid leaves out.
-            let past = integral < -PAST_CENTROID * volume_m3;
-            let missing = if past { 0.25 * volume_m3 } else { 0.0 };
+            let missing = if has_centroid(integral, volume_m3) { 0.25 * volume_m3 } else { 0.0 };
             let k = self.place(blocks.tet_block[tet.index()], block).expect("listed above");
             self.overlap_m3[k] += integral + missing;
         }

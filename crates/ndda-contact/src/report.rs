@@ -6,7 +6,8 @@ use ndda_mesh::{TetId, TriangleId};
 use crate::candidates::Candidates;
 use crate::integrals::{Hit, Integrals};
 use crate::model::{ContactError, ContactInput, ContactReport};
-use crate::pair::TetFrame;
+use crate::energy::has_centroid;
+use crate::pair::{TetFrame, pair_energy};
 use crate::potential::Field;
 
 /// On which sides of a tetrahedron's centroid the pieces of another block are.
@@ -90,8 +91,20 @@ impl Reporter {
                 _ => Reach::Past(hit.pair),
             };
         }
+        // Faces that only just touch have pieces made of rounding, on any side: the integral tells.
+        let swallowed = |pair: u32| {
+            let pair = &candidates.pairs[pair as usize];
+            let frame = &frames[pair.tet as usize];
+            let flux = |hit: &Hit| {
+                let other = &candidates.pairs[hit.pair as usize];
+                let corners = input.blocks.triangle_corners(other.triangle, input.position);
+                pair_energy(&corners, &triangle_area_vector(&corners), frame)
+            };
+            let pieces = hits(integrals).filter(|hit| candidates.pairs[hit.pair as usize].overlap == pair.overlap);
+            has_centroid(pieces.map(flux).sum(), frame.volume_m3)
+        };
         let past = self.reach.iter().find_map(|reach| match reach {
-            Reach::Past(pair) => Some(*pair),
+            Reach::Past(pair) if swallowed(*pair) => Some(*pair),
             _ => None,
         })?;
         Some((candidates.pairs[past as usize].triangle, candidates.tet_of(past)))
