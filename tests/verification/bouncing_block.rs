@@ -141,3 +141,27 @@ fn midpoint_and_generalised_alpha_are_of_second_order_in_contact_and_the_papers_
         assert!((order - expected).abs() < tolerance, "{integrator}: {errors:?}, order {order}");
     }
 }
+
+#[test]
+fn momentum_on_supports_is_accounted_for_from_the_first_step() {
+    for integrator in ["Midpoint()", "GeneralizedAlpha(radius: 0.8)", "Newmark(alpha: 0.25, delta: 0.5)"] {
+        let mut simulation = simulation(&format!(
+            "(title: \"held\", time: (step_s: 1e-4, end_s: 1, integrator: {integrator}), gravity_m_s2: (1, 0, -9.8),
+              materials: [(name: \"rock\", young_pa: 1e9, poisson: 0.2, density_kg_m3: 2500)],
+              blocks: [
+                (name: \"base\", material: \"rock\", shape: Box(size_m: (1, 1, 0.25), cells: (2, 2, 1))),
+                (name: \"top\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 0.2499)),
+              ],
+              supports: [(block: \"base\", on: Plane(point_m: (0, 0, 0), normal: (0, 0, 1)), hold: Fixed)],
+              contact: Potential(penalty_pa: 1e8, potential: Smooth(reference_m: 1)))"
+        ));
+        simulation.sample().unwrap();
+        for _ in 0..50 {
+            simulation.step().unwrap();
+        }
+        simulation.sample().unwrap();
+        let error = simulation.invariants().linear_momentum;
+        println!("{integrator}: {error:.1e}");
+        assert!(error < 1e-12, "{integrator}: {error:e}");
+    }
+}

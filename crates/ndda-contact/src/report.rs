@@ -4,9 +4,9 @@ use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{TetId, TriangleId};
 
 use crate::candidates::Candidates;
+use crate::energy::has_centroid;
 use crate::integrals::{Hit, Integrals};
 use crate::model::{ContactError, ContactInput, ContactReport};
-use crate::energy::has_centroid;
 use crate::pair::{TetFrame, pair_energy};
 use crate::potential::Field;
 
@@ -100,7 +100,8 @@ impl Reporter {
                 let corners = input.blocks.triangle_corners(other.triangle, input.position);
                 pair_energy(&corners, &triangle_area_vector(&corners), frame)
             };
-            let pieces = hits(integrals).filter(|hit| candidates.pairs[hit.pair as usize].overlap == pair.overlap);
+            let pieces =
+                hits(integrals).filter(|hit| candidates.pairs[hit.pair as usize].overlap == pair.overlap);
             has_centroid(pieces.map(flux).sum(), frame.volume_m3)
         };
         let past = self.reach.iter().find_map(|reach| match reach {

@@ -5,7 +5,7 @@ use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::step_control::StepCounts;
-use crate::time_integrator::StepWeights;
+use crate::time_integrator::{Inertia, StepWeights};
 
 /// Energies and momenta of all blocks at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -112,8 +112,9 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Empty books; `outside` is the force and torque of the constant loads at the start.
-    pub fn new(outside: (Vec3, Vec3)) -> Self {
+    /// Empty books; `inertia` is that of each block at the start, supports and contact included, if the integrator asks
+    /// for it.
+    pub fn new(inertia: &[Inertia]) -> Self {
         let worst = Invariants {
             linear_momentum: 0.0,
             angular_momentum: 0.0,
@@ -135,8 +136,8 @@ impl Ledger {
             start: None,
             impulse: Vec3::zeros(),
             angular_impulse: Vec3::zeros(),
-            last_force: outside,
-            load_n: outside.0.norm(),
+            last_force: (inertia.iter().map(|i| i.force).sum(), inertia.iter().map(|i| i.torque).sum()),
+            load_n: 0.0,
             load_impulse: 0.0,
             friction_work_j: 0.0,
             motion_work_j: 0.0,
@@ -253,7 +254,7 @@ mod tests {
 
     #[test]
     fn energy_that_friction_took_is_not_a_loss() {
-        let mut ledger = Ledger::new((Vec3::zeros(), Vec3::zeros()));
+        let mut ledger = Ledger::new(&[]);
         ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() });
         ledger.add_work(-4.0, 0.0, 0.0, 0.0);
         let sample = ledger.balance(Sample { kinetic_j: 5.0, ..Sample::default() });
@@ -264,7 +265,7 @@ mod tests {
 
     #[test]
     fn an_impulse_from_outside_explains_momentum() {
-        let mut ledger = Ledger::new((Vec3::zeros(), Vec3::zeros()));
+        let mut ledger = Ledger::new(&[]);
         ledger.balance(Sample::default());
         let weights = Midpoint { theta: 0.5 }.weights(0.5);
         ledger.add_impulse(0.5, &weights, Vec3::x(), Vec3::zeros());

@@ -81,9 +81,4 @@ impl Loads {
     pub fn force(&self) -> Vec3 {
         self.force
     }
-
-    /// Force and torque about the origin of all of them at these positions [N, N m].
-    pub fn resultant(&self, position: &[Vec3]) -> (Vec3, Vec3) {
-        (self.force, position.iter().zip(self.total()).map(|(x, f)| x.cross(f)).sum())
-    }
 }

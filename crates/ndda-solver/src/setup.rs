@@ -101,7 +101,7 @@ impl Simulation {
             contact_position: blocks.rest_position.clone(),
             contact_bodies: Vec::new(),
             contacts: None,
-            ledger: Ledger::new((Vec3::zeros(), Vec3::zeros())),
+            ledger: Ledger::new(&[]),
             stages: StageTimes::default(),
             blocks,
             shapes,
@@ -211,13 +211,17 @@ impl Simulation {
         self.loads = Loads::new(constant, varying);
     }
 
-    /// Total load at the start, and accelerations at the start for integrators that need them: M a = f − ∫Bᵀσ₀, contact
-    /// being part of f.
+    /// Opens the books, with the accelerations at the start for integrators that need them.
     fn open_books(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
-        self.ledger = Ledger::new(self.loads.resultant(&self.state.position));
-        if !self.weights.needs_acceleration {
-            return Ok(());
+        if self.weights.needs_acceleration {
+            self.place_accelerations(solver)?;
         }
+        self.ledger = Ledger::new(&self.state.inertia);
+        Ok(())
+    }
+
+    /// M a = f − ∫Bᵀσ₀ at the start, contact being part of f.
+    fn place_accelerations(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
         let untouched = self.state.contact.clone();
         self.force.copy_from_slice(self.loads.total());
         self.add_contact_forces(None).map_err(Box::new)?;

@@ -350,7 +350,7 @@ impl Simulation {
         self.state.step = 0;
         self.settling = false;
         self.loads.place(0.0);
-        self.ledger = Ledger::new(self.loads.resultant(&self.state.position));
+        self.ledger = Ledger::new(&self.state.inertia);
     }
 
     /// A copy of all that changes.
