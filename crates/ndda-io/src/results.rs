@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 
 use crate::mesh_file::MeshFileError;
 use crate::summary::Summary;
+use crate::table::{self, TableError};
 
+pub use crate::table::Table;
 pub use crate::vtk_file::Array;
 pub use fields::{FieldFrame, ListedFrame, frame, frame_list};
 
@@ -31,25 +33,11 @@ pub enum ResultsError {
         source: serde_json::Error,
     },
     /// A row of the history is not numbers, one per column.
-    #[error("{}: {source}; the history is damaged: run the scene again", path.display())]
-    History {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong, with the line.
-        source: csv::Error,
-    },
+    #[error("{0}; the history is damaged: run the scene again")]
+    History(#[from] TableError),
     /// The list of frames, or a frame.
     #[error(transparent)]
     Fields(#[from] MeshFileError),
-}
-
-/// A table of numbers with named columns.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Table {
-    /// Names of the columns, units at their ends.
-    pub names: Vec<String>,
-    /// The columns, all of one length.
-    pub columns: Vec<Vec<f64>>,
 }
 
 /// Reads `summary.json`.
@@ -67,16 +55,7 @@ pub fn summary(path: &Path) -> Result<Summary, ResultsError> {
 /// # Errors
 /// [`ResultsError`] when the file cannot be read, or a row is not one number per column.
 pub fn history(path: &Path) -> Result<Table, ResultsError> {
-    let broken = |source| ResultsError::History { path: path.to_path_buf(), source };
-    let mut reader = csv::Reader::from_path(path).map_err(broken)?;
-    let names: Vec<String> = reader.headers().map_err(broken)?.iter().map(String::from).collect();
-    let mut columns = vec![Vec::new(); names.len()];
-    for row in reader.deserialize::<Vec<f64>>() {
-        for (column, value) in columns.iter_mut().zip(row.map_err(broken)?) {
-            column.push(value);
-        }
-    }
-    Ok(Table { names, columns })
+    Ok(table::read(path)?)
 }
 
 #[cfg(test)]
@@ -99,15 +78,15 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_row_is_named_by_its_line() {
+    fn a_damaged_row_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");
-        for bad in ["0.0,1.0\n0.1,x\n", "0.0,1.0\n0.1\n"] {
+        for (bad, place) in [("0.0,1.0\n0.1,x\n", "row 2"), ("0.0,1.0\n0.1\n", "line: 3")] {
             std::fs::write(&path, format!("time_s,a\n{bad}")).unwrap();
             let error = history(&path).unwrap_err().to_string();
-            assert!(error.contains("line: 3") || error.contains("line 3"), "{error}");
+            assert!(error.contains(place) && error.contains("run the scene again"), "{error}");
         }
-        assert!(matches!(history(&folder.path().join("none.csv")), Err(ResultsError::History { .. })));
+        assert!(matches!(history(&folder.path().join("none.csv")), Err(ResultsError::History(_))));
     }
 
     #[test]
