@@ -10,6 +10,7 @@ mod contact_patch;
 mod damping;
 mod elastic_waves;
 mod end_contact;
+mod evidence;
 mod glancing_collision;
 mod ground_stress;
 mod joint_friction;

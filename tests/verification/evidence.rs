@@ -1,0 +1,59 @@
+//! Rows of the verification manual: what was measured beside its answer, asserted and printed in one line, so that
+//! `docs/verification.py` finds every figure of docs/verification.md in the output of the tests.
+
+use std::fmt::{Display, Formatter, Result};
+use std::panic::Location;
+
+/// What a measured figure is held against.
+#[derive(Clone, Copy)]
+pub enum Answer {
+    /// A closed form or an independent result, and the error that passes, as a part of it.
+    Within(f64, f64),
+    /// The same, with an error in the unit of the figure: for answers of zero, angles and orders.
+    Near(f64, f64),
+    /// The largest value that passes.
+    AtMost(f64),
+    /// The least value that passes.
+    AtLeast(f64),
+}
+
+impl Answer {
+    /// How far `measured` is off, as the answer counts; nothing for a limit.
+    fn error(self, measured: f64) -> Option<f64> {
+        match self {
+            Answer::Within(answer, _) => Some((measured / answer - 1.0).abs()),
+            Answer::Near(answer, _) => Some((measured - answer).abs()),
+            Answer::AtMost(_) | Answer::AtLeast(_) => None,
+        }
+    }
+
+    fn holds(self, measured: f64) -> bool {
+        match self {
+            Answer::Within(_, tolerance) | Answer::Near(_, tolerance) => {
+                self.error(measured).is_some_and(|error| error <= tolerance)
+            }
+            Answer::AtMost(limit) => measured <= limit,
+            Answer::AtLeast(limit) => measured >= limit,
+        }
+    }
+}
+
+impl Display for Answer {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        match self {
+            Answer::Within(answer, tolerance) => write!(f, "{answer:e} ± {tolerance:e} of it"),
+            Answer::Near(answer, tolerance) => write!(f, "{answer:e} ± {tolerance:e}"),
+            Answer::AtMost(limit) => write!(f, "at most {limit:e}"),
+            Answer::AtLeast(limit) => write!(f, "at least {limit:e}"),
+        }
+    }
+}
+
+/// Prints the row `id` (as V5 or X12), `what` was measured with its unit; panics unless the answer holds.
+#[track_caller]
+pub fn row(id: &str, what: &str, measured: f64, answer: Answer) {
+    let file = Location::caller().file();
+    let error = answer.error(measured).map_or_else(|| "-".into(), |e| format!("{e:.1e}"));
+    println!("evidence\t{id}\t{file}\t{what}\t{measured:.5e}\t{answer}\t{error}");
+    assert!(answer.holds(measured), "{id}: {what}: {measured:e}, expected {answer}");
+}
