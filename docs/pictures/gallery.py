@@ -4,6 +4,7 @@
 Usage: gallery.py RUNS [NAME ...]     (RUNS holds the folders of `ndda run`, one per scene; needs pyvista and pillow)
 """
 
+import json
 import sys
 from pathlib import Path
 
@@ -15,23 +16,7 @@ OUT = Path(__file__).parent / "gallery"
 PANEL = (520, 400)
 STILL = (0.82, 0.79, 0.74)
 # Per scene: where the eye is from the middle of the blocks, how near, and what else differs from the usual.
-VIEWS = {
-    "sliding_45": {"eye": (0.3, -1, 0.25)},
-    "sliding_45_phi35_velocity": {"eye": (0.3, -1, 0.25)},
-    "sticking_30_phi35": {"eye": (0.3, -1, 0.25)},
-    "collision_equal_free": {"eye": (0.25, -1, 0.4), "colour": "velocity_m_s"},
-    "free_fall": {"eye": (0.25, -1, 0.25), "end": 0.5, "zoom": 1.0},
-    "bounce": {"eye": (0.5, -1, 0.25), "colour": "velocity_m_s", "end": 0.1},
-    "spinning_block": {"eye": (0.6, -1, 0.5), "zoom": 0.8},
-    "wedge_two_planes": {"eye": (1, -0.7, 0.45), "zoom": 1.05},
-    "tunnel_roof_wedge": {"eye": (0.25, -1, 0.1), "clear": True},
-    "slope_toppling": {"eye": (0, -1, 0), "up": (0.5, 0, 0.866)},
-    "arch": {"eye": (0.15, -1, 0.2)},
-    "dominoes": {"eye": (0.35, -1, 0.4), "zoom": 1.35},
-    "pile_125": {"eye": (0.5, -1, 0.7), "clear": True},
-    "column_phi0": {"eye": (0.35, -1, 0.2), "zoom": 1.0},
-    "voronoi_column": {"eye": (0.6, -1, 0.3)},
-}
+VIEWS = json.loads((Path(__file__).parent.parent / "recipes" / "views.json").read_text(encoding="utf-8"))
 
 
 def frame(reader, time):

@@ -82,7 +82,7 @@ pub struct ReportArgs {
     /// Most frames to show, evenly spaced; 0 leaves the blocks out [default: all, or as many as a page can carry].
     #[arg(long, value_name = "N")]
     pub frames: Option<u32>,
-    /// Print what was written as JSON.
+    /// Print JSON for programs, an object per line; see docs/json.md.
     #[arg(long)]
     pub json: bool,
 }
@@ -93,6 +93,9 @@ pub struct ReportArgs {
 pub struct ViewArgs {
     /// Output folder of a run.
     pub folder: PathBuf,
+    /// Print JSON for programs, an object per line; see docs/json.md.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `ndda study`.
@@ -206,6 +209,9 @@ pub struct PlotArgs {
     /// The picture, .svg or .png.
     #[arg(long, short, default_value = "plot.svg", value_name = "FILE")]
     pub out: PathBuf,
+    /// Print JSON for programs, an object per line; see docs/json.md.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `ndda mesh`.
@@ -360,6 +366,9 @@ pub struct NewArgs {
     /// Replace the file if it is there.
     #[arg(long)]
     pub force: bool,
+    /// Print JSON for programs, an object per line; see docs/json.md.
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// Arguments of `ndda schema`.

@@ -10,7 +10,7 @@ use ndda_solver::{Sink, SinkError, View};
 use crate::recorder::is_due;
 
 /// Columns of the table; blocks are numbered from 0 in the order of `block_id` and of the summary.
-const COLUMNS: [&str; 18] = [
+pub const COLUMNS: [&str; 18] = [
     "time_s",
     "first_block",
     "second_block",

@@ -12,6 +12,12 @@ pub const RUN: &str = "ndda.run/1";
 pub const CHECK: &str = "ndda.check/1";
 /// Schema of `ndda mesh`.
 pub const MESH: &str = "ndda.mesh/1";
+/// Schema of `ndda new`.
+pub const NEW: &str = "ndda.new/1";
+/// Schema of `ndda plot`.
+pub const PLOT: &str = "ndda.plot/1";
+/// Schema of `ndda report` and `ndda view`.
+pub const REPORT: &str = "ndda.report/1";
 
 /// Where events go: to standard output as lines of a schema, or nowhere.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,7 +6,7 @@ mod text;
 
 use ndda_contact::Part;
 use ndda_io::folder;
-use ndda_io::scene::{Field, Scene, TableFormat};
+use ndda_io::scene::{Scene, TableFormat};
 use ndda_solver::{FactorPlan, KindPlan, Plan, Simulation};
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ use crate::args::ExplainArgs;
 use crate::check::Ready;
 use crate::console::{complain, say};
 use crate::events::Events;
-use crate::{exit, input, reference, step_advice, wiring};
+use crate::{exit, fields, guess, input, reference, step_advice, wiring};
 
 /// The form of the JSON that is printed.
 const SCHEMA: &str = "ndda.explain/1";
@@ -92,12 +92,14 @@ pub fn of(ready: &Ready) -> Explanation {
         threads: std::thread::available_parallelism().map_or(1, usize::from),
         features: vec![
             ("fancy", cfg!(feature = "fancy")),
+            ("gmsh", cfg!(feature = "gmsh")),
             ("parquet", cfg!(feature = "parquet")),
             ("plots", cfg!(feature = "plots")),
             ("png", cfg!(feature = "png")),
             ("report", cfg!(feature = "report")),
             ("schema", cfg!(feature = "schema")),
             ("shell", cfg!(feature = "shell")),
+            ("terminal", cfg!(feature = "terminal")),
             ("tetgen", cfg!(feature = "tetgen")),
         ],
     }
@@ -142,7 +144,7 @@ fn outputs(scene: &Scene, monitors: usize) -> [Part; 7] {
         ),
         Part::of(
             "recovery of stress",
-            output.frames > 0 && output.fields.iter().any(|f| matches!(f, Field::Stress | Field::VonMises)),
+            output.frames > 0 && fields::need_stress(&output.fields),
             "for every frame",
             "no frame holds a stress",
         ),
@@ -185,15 +187,10 @@ fn files(scene: &Scene) -> Vec<String> {
         }
     }
     if scene.output.frames > 0 {
-        let last = folder::frame_name(scene.output.frames.min(steps_as_frames(scene)) as usize);
+        let last = folder::frame_name(guess::frames(scene) as usize - 1);
         let fields = folder::FIELDS_FOLDER;
         files.push(folder::FIELDS_INDEX.into());
         files.push(format!("{fields}/{} to {fields}/{last}", folder::frame_name(0)));
     }
     files
-}
-
-/// Frames are no more than steps.
-fn steps_as_frames(scene: &Scene) -> u32 {
-    u32::try_from(wiring::steps(&scene.time)).unwrap_or(u32::MAX)
 }

@@ -109,8 +109,12 @@ impl Sink for FieldWriter {
 
 /// A stress for each tetrahedron, if a field needs it.
 fn room_for_stress(fields: &[Field], blocks: &BlockSet) -> Vec<[f64; 6]> {
-    let needed = fields.iter().any(|field| matches!(field, Field::Stress | Field::VonMises));
-    vec![[0.0; 6]; if needed { blocks.tets.len() } else { 0 }]
+    vec![[0.0; 6]; if need_stress(fields) { blocks.tets.len() } else { 0 }]
+}
+
+/// Whether some field is made of stresses.
+pub fn need_stress(fields: &[Field]) -> bool {
+    fields.iter().any(|field| matches!(field, Field::Stress | Field::VonMises))
 }
 
 /// What does not change from frame to frame.

@@ -3,24 +3,20 @@
 use std::fmt;
 use std::time::{Duration, Instant};
 
-use ndda_io::checkpoint;
-use ndda_io::scene::{Output, Scene};
+use ndda_io::scene::Scene;
+use ndda_io::{checkpoint, folder};
 use ndda_solver::{Simulation, SinkError};
 use serde::Serialize;
 
 use crate::fields::FieldWriter;
-use crate::machine;
-use crate::recorder::held_blocks;
-use crate::wiring;
+use crate::recorder::{columns, events, held_blocks};
+use crate::{contacts, machine, wiring};
 
 /// Steps are timed this long, but at least a few of them: a check of a small scene is to be felt as instant.
 const TIMED: Duration = Duration::from_millis(10);
 const FEWEST_STEPS: u64 = 3;
 /// A number in a table and its comma, on average [B].
 const NUMBER_BYTES: u64 = 20;
-/// Columns of the history besides monitors and reactions, and of the contacts.
-const HISTORY_COLUMNS: u64 = 21;
-const CONTACT_COLUMNS: u64 = 18;
 
 /// A file that a run writes, or several of them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -70,39 +66,41 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
     let started = Instant::now();
     let frame = if scene.output.frames > 0 { FieldWriter::encode(scene, simulation)? } else { Vec::new() };
     let frame_s = started.elapsed().as_secs_f64();
-    let (rows, frames) = counts(&scene.output, steps);
+    let rows = events(steps, scene.output.history_rows.into());
+    let frames = frames(scene);
     let run_s = first_s + steps as f64 * step_s + rows as f64 * row_s + frames as f64 * frame_s;
     let files = files(scene, simulation, (rows, frames), frame.len() as u64);
     Ok(Guess { timed_steps, run_s, memory_bytes: machine::peak_memory_bytes(), files })
 }
 
-/// Rows and frames of a run.
-fn counts(output: &Output, steps: u64) -> (u64, u64) {
-    let rows = u64::from(output.history_rows).clamp(1, steps) + 1;
-    let frames = u64::from(output.frames).min(steps);
-    (rows, if frames > 0 { frames + 1 } else { 0 })
+/// Frames of a run, that of the start among them.
+pub fn frames(scene: &Scene) -> u64 {
+    let asked = u64::from(scene.output.frames);
+    if asked > 0 { events(wiring::steps(&scene.time), asked) } else { 0 }
 }
 
 fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), frame: u64) -> Vec<FileGuess> {
     let output = &scene.output;
     let file = |name: &str, count: u64, bytes: u64| FileGuess { name: name.to_string(), count, bytes };
-    let held = if output.reactions { held_blocks(simulation).len() as u64 } else { 0 };
-    let columns = HISTORY_COLUMNS + 6 * scene.monitors.len() as u64 + 3 * held;
+    let held = if output.reactions { held_blocks(simulation) } else { Vec::new() };
+    let monitors = scene.monitors.iter().map(|monitor| monitor.name.as_str());
+    let columns = columns(monitors, &held, scene.reference.is_some()).len() as u64;
     // Of the scene, its text is kept.
     let saved = checkpoint::size(&simulation.snapshot()) + checkpoint::size(scene);
     let blocks = simulation.blocks().len() as u64;
     let mut files = vec![
-        file("history", 1, rows * columns * NUMBER_BYTES),
-        file("checkpoint.ndda", 2, 2 * saved),
-        file("summary.json", 1, 3000 + 600 * blocks),
-        file("run.log", 1, 4000 + 100 * blocks),
+        file(folder::HISTORY, 1, rows * columns * NUMBER_BYTES),
+        file(folder::CHECKPOINT, 2, 2 * saved),
+        file(folder::SUMMARY, 1, 3000 + 600 * blocks),
+        file(folder::LOG, 1, 4000 + 100 * blocks),
     ];
     if frames > 0 {
-        files.push(file("fields/*.vtu", frames, frames * frame));
+        files.push(file(&format!("{}/*.vtu", folder::FIELDS_FOLDER), frames, frames * frame));
     }
     if output.contacts {
         let pairs = ndda_contact::resultants(simulation.blocks(), &mut simulation.contacts().to_vec()).len();
-        files.push(file("contacts", 1, rows * pairs as u64 * CONTACT_COLUMNS * NUMBER_BYTES));
+        let numbers = (pairs * contacts::COLUMNS.len()) as u64;
+        files.push(file(folder::CONTACTS, 1, rows * numbers * NUMBER_BYTES));
     }
     files
 }

@@ -20,7 +20,8 @@ use ndda_io::folder::{REPORT, SUMMARY};
 use serde::Serialize;
 
 use crate::args::{ReportArgs, ViewArgs};
-use crate::console::{complain, say};
+use crate::console::say;
+use crate::events::{self, Events};
 use crate::exit;
 use error::ReportError;
 use input::Input;
@@ -39,38 +40,69 @@ struct Written {
     triangles: usize,
 }
 
+#[derive(Serialize)]
+struct Finished<'a> {
+    exit_code: u8,
+    report: &'a Path,
+}
+
+impl Written {
+    /// Says what was written, in words or as an event.
+    fn said(&self, events: Events) {
+        events.emit("written", self);
+        if !events.are_read() {
+            say(&self.words());
+        }
+    }
+
+    fn words(&self) -> String {
+        let Self { report, bytes, frames, frames_of_run, .. } = self;
+        let motion = match frames {
+            0 => "no frames of fields, so without blocks in 3D".to_string(),
+            _ => format!("{frames} of {frames_of_run} frames"),
+        };
+        format!("{}: {:.1} MB, {motion}", report.display(), *bytes as f64 / 1e6)
+    }
+}
+
 /// Runs `ndda report`; returns the exit code.
 pub fn report(args: &ReportArgs) -> u8 {
     let file = args.out.clone().unwrap_or_else(|| args.folder.join(REPORT));
+    let events = Events::new(args.json, events::REPORT);
     match write(&args.folder, &file, args.frames) {
         Ok(written) => {
-            say(&if args.json { json(&written) } else { words(&written) });
+            written.said(events);
+            events.emit("finished", &Finished { exit_code: exit::DONE, report: &file });
             exit::DONE
         }
-        Err(error) => failed(&error),
+        Err(error) => failed(events, &error),
     }
 }
 
 /// Runs `ndda view`; returns the exit code.
 pub fn view(args: &ViewArgs) -> u8 {
     let file = args.folder.join(REPORT);
+    let events = Events::new(args.json, events::REPORT);
     if !is_current(&args.folder, &file) {
         match write(&args.folder, &file, None) {
-            Ok(written) => say(&words(&written)),
-            Err(error) => return failed(&error),
+            Ok(written) => written.said(events),
+            Err(error) => return failed(events, &error),
         }
     }
     let file = std::path::absolute(&file).unwrap_or(file);
-    say(&format!("opening {}", file.display()));
-    if let Err(error) = open::that(&file) {
-        complain(&format!("no program was found that shows it ({error}): open it in a browser"));
+    if !args.json {
+        say(&format!("opening {}", file.display()));
     }
+    if let Err(error) = open::that(&file) {
+        events.warn(&format!("no program was found that shows it ({error}): open it in a browser"));
+    }
+    events.emit("finished", &Finished { exit_code: exit::DONE, report: &file });
     exit::DONE
 }
 
-fn failed(error: &ReportError) -> u8 {
-    complain(&format!("error: {error}"));
-    if matches!(error, ReportError::Write(_)) { exit::INPUT_OUTPUT } else { exit::BAD_INPUT }
+fn failed(events: Events, error: &ReportError) -> u8 {
+    let code = if matches!(error, ReportError::Write(_)) { exit::INPUT_OUTPUT } else { exit::BAD_INPUT };
+    events.fail(code, &error.to_string())
 }
 
 /// Whether there is a report that is no older than the summary.
@@ -96,17 +128,4 @@ fn write(folder: &Path, file: &Path, frames: Option<u32>) -> Result<Written, Rep
         blocks: input.summary.counts.blocks,
         triangles: motion.as_ref().map_or(0, |m| m.surface.triangles.len()),
     })
-}
-
-fn words(written: &Written) -> String {
-    let Written { report, bytes, frames, frames_of_run, .. } = written;
-    let motion = match frames {
-        0 => "no frames of fields, so without blocks in 3D".to_string(),
-        _ => format!("{frames} of {frames_of_run} frames"),
-    };
-    format!("{}: {:.1} MB, {motion}", report.display(), *bytes as f64 / 1e6)
-}
-
-fn json(written: &Written) -> String {
-    serde_json::to_string_pretty(written).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
 }

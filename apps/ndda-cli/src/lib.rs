@@ -1,8 +1,10 @@
 //! ndda on the command line: where names in a scene become objects, and a run becomes files and a table.
 
 pub mod args;
+mod bar;
 pub mod check;
 pub mod checkpoint;
+mod columns;
 pub mod console;
 pub mod contacts;
 pub mod events;

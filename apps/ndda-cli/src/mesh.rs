@@ -24,6 +24,7 @@ use serde::Serialize;
 
 /// Blocks before they are checked.
 struct Input {
+    /// Kept for files in other formats only.
     meshes: Meshes,
     scene: Option<Scene>,
     rock: Vec<CutRock>,
@@ -34,23 +35,26 @@ struct Input {
 pub fn mesh(args: &MeshArgs) -> u8 {
     let events = Events::new(args.json, events::MESH);
     let input = if is_scene(&args.input) { from_scene(args) } else { from_file(args) };
-    let input = match input {
+    let mut input = match input {
         Ok(input) => input,
         Err(message) => return events.fail(exit::BAD_INPUT, message.trim_start_matches("error: ")),
     };
     let mut measured = MeshReport::new(&input.meshes);
     measured.rock = input.rock.iter().map(|rock| rock.report.clone()).collect();
     measured.fixes.clone_from(&input.fixes);
-    match BlockSet::new(input.meshes.clone()) {
+    let meshes = std::mem::take(&mut input.meshes);
+    if !args.also.is_empty() {
+        input.meshes.clone_from(&meshes);
+    }
+    match BlockSet::new(meshes) {
         Ok(blocks) => {
             measured.steps =
                 input.scene.as_ref().map_or(Vec::new(), |s| step_advice::advise_materials(s, &blocks));
-            finish(args, &measured, &input, &blocks)
+            finish(args, events, &measured, &input, &blocks)
         }
         Err(error) => {
-            if args.json {
-                events.emit("measured", &Measured { report: &measured });
-            } else {
+            events.emit("measured", &Measured { report: &measured });
+            if !args.json {
                 say(&measured.to_string());
             }
             events.fail(exit::BAD_INPUT, &refusal(&args.input, &error))
@@ -121,23 +125,21 @@ fn from_file(args: &MeshArgs) -> Result<Input, String> {
     Ok(Input { meshes, scene: None, rock: Vec::new(), fixes })
 }
 
-fn finish(args: &MeshArgs, measured: &MeshReport, input: &Input, blocks: &BlockSet) -> u8 {
+fn finish(args: &MeshArgs, events: Events, measured: &MeshReport, input: &Input, blocks: &BlockSet) -> u8 {
     let folder = args.out.clone().unwrap_or_else(|| {
         let stem = args.input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned());
         PathBuf::from("out").join(stem + "_mesh")
     });
     match write(&folder, args, measured, input, blocks) {
         Ok(files) => {
-            if args.json {
-                let events = Events::new(true, events::MESH);
-                events.emit("measured", &Measured { report: measured });
-                events.emit("finished", &Finished { exit_code: exit::DONE, folder: &folder });
-            } else {
+            events.emit("measured", &Measured { report: measured });
+            events.emit("finished", &Finished { exit_code: exit::DONE, folder: &folder });
+            if !args.json {
                 say(&format!("{}: no errors\n{measured}{files}", args.input.display()));
             }
             exit::DONE
         }
-        Err(error) => Events::new(args.json, events::MESH).fail(exit::INPUT_OUTPUT, &error.to_string()),
+        Err(error) => events.fail(exit::INPUT_OUTPUT, &error.to_string()),
     }
 }
 

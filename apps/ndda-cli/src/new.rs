@@ -5,20 +5,25 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use ndda_io::read::suggest;
+use serde::Serialize;
 
 use crate::args::NewArgs;
-use crate::console::{complain, say};
+use crate::console::say;
+use crate::events::{self, Events};
 use crate::exit;
 
 /// A scene to begin with.
+#[derive(Serialize)]
 pub struct Template {
     /// Its name.
     pub name: &'static str,
     /// What it is for.
     pub about: &'static str,
     /// The scene.
+    #[serde(skip)]
     pub scene: &'static str,
     /// Files that it refers to: name and content.
+    #[serde(skip)]
     pub files: &'static [(&'static str, &'static str)],
 }
 
@@ -43,32 +48,60 @@ pub const TEMPLATES: [Template; 6] = [
 
 /// Writes a template; returns the exit code.
 pub fn new(args: &NewArgs) -> u8 {
+    let events = Events::new(args.json, events::NEW);
     if args.list {
-        let lines: Vec<String> = TEMPLATES.iter().map(|t| format!("{:8} {}", t.name, t.about)).collect();
-        say(&lines.join("\n"));
-        return exit::DONE;
+        return list(events);
     }
     let name = args.template.as_deref().unwrap_or(TEMPLATES[0].name);
     let Some(template) = TEMPLATES.iter().find(|template| template.name == name) else {
         let names = TEMPLATES.map(|template| template.name);
-        complain(&format!("error: there is no template `{name}`: {}", suggest(name, &names)));
-        return exit::USAGE;
+        return events.fail(exit::USAGE, &format!("there is no template `{name}`: {}", suggest(name, &names)));
     };
     if args.out.as_deref() == Some(Path::new("-")) {
-        say(template.scene.trim_end());
+        match args.json {
+            true => events.emit("finished", &Text { exit_code: exit::DONE, text: template.scene }),
+            false => say(template.scene.trim_end()),
+        }
         return exit::DONE;
     }
     let scene = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.ron")));
     match write(template, &scene, args.force) {
         Ok(()) => {
-            say(&format!("{} is written; next: ndda run {}", scene.display(), scene.display()));
+            events.emit("finished", &Finished { exit_code: exit::DONE, scene: &scene });
+            if !args.json {
+                say(&format!("{} is written; next: ndda run {}", scene.display(), scene.display()));
+            }
             exit::DONE
         }
-        Err(reason) => {
-            complain(&format!("error: {reason}"));
-            exit::INPUT_OUTPUT
-        }
+        Err(reason) => events.fail(exit::INPUT_OUTPUT, &reason),
     }
+}
+
+#[derive(Serialize)]
+struct Listed {
+    exit_code: u8,
+    templates: &'static [Template],
+}
+
+#[derive(Serialize)]
+struct Text {
+    exit_code: u8,
+    text: &'static str,
+}
+
+#[derive(Serialize)]
+struct Finished<'a> {
+    exit_code: u8,
+    scene: &'a Path,
+}
+
+fn list(events: Events) -> u8 {
+    events.emit("finished", &Listed { exit_code: exit::DONE, templates: &TEMPLATES });
+    if !events.are_read() {
+        let lines: Vec<String> = TEMPLATES.iter().map(|t| format!("{:8} {}", t.name, t.about)).collect();
+        say(&lines.join("\n"));
+    }
+    exit::DONE
 }
 
 /// The scene, and beside it the files that it refers to.

@@ -6,9 +6,11 @@ use ndda_io::table::{self, Table, TableError};
 use ndda_io::{WriteError, folder};
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
+use serde::Serialize;
 
 use crate::args::PlotArgs;
-use crate::console::{complain, say};
+use crate::console::say;
+use crate::events::{self, Events};
 use crate::exit;
 use crate::picture::{self, Area, Drawn, colour, log_axis, log_range, range, short};
 
@@ -39,27 +41,62 @@ enum PlotError {
     Write(#[from] WriteError),
 }
 
+/// What came of it.
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Done {
+    /// Columns that there are to draw.
+    Tables(Vec<Columns>),
+    /// The file of what is drawn.
+    Picture(PathBuf),
+}
+
+#[derive(Serialize)]
+struct Columns {
+    file: PathBuf,
+    columns: Vec<String>,
+}
+
+#[derive(Serialize)]
+struct Finished<'a> {
+    exit_code: u8,
+    #[serde(flatten)]
+    done: &'a Done,
+}
+
 /// Runs `ndda plot`; returns the exit code.
 pub fn plot(args: &PlotArgs) -> u8 {
+    let events = Events::new(args.json, events::PLOT);
     match plot_or_list(args) {
-        Ok(said) => {
-            say(&said);
+        Ok(done) => {
+            events.emit("finished", &Finished { exit_code: exit::DONE, done: &done });
+            if !args.json {
+                say(&words(&done));
+            }
             exit::DONE
         }
         Err(error) => {
-            complain(&format!("error: {error}"));
-            if matches!(error, PlotError::Write(_)) { exit::INPUT_OUTPUT } else { exit::BAD_INPUT }
+            let code =
+                if matches!(error, PlotError::Write(_)) { exit::INPUT_OUTPUT } else { exit::BAD_INPUT };
+            events.fail(code, &error.to_string())
         }
     }
 }
 
-fn plot_or_list(args: &PlotArgs) -> Result<String, PlotError> {
+fn words(done: &Done) -> String {
+    let list = |table: &Columns| format!("{}: {}", table.file.display(), table.columns.join(", "));
+    match done {
+        Done::Tables(tables) => tables.iter().map(list).collect::<Vec<_>>().join("\n"),
+        Done::Picture(file) => file.display().to_string(),
+    }
+}
+
+fn plot_or_list(args: &PlotArgs) -> Result<Done, PlotError> {
     let files: Vec<PathBuf> = args.inputs.iter().map(|input| history(input)).collect();
     let tables = files.iter().map(|file| table::read(file)).collect::<Result<Vec<_>, _>>()?;
     if args.columns.is_empty() {
-        let list =
-            |(file, table): (&PathBuf, &Table)| format!("{}: {}", file.display(), table.names.join(", "));
-        return Ok(files.iter().zip(&tables).map(list).collect::<Vec<_>>().join("\n"));
+        let tables = files.into_iter().zip(tables);
+        return Ok(Done::Tables(tables.map(|(file, t)| Columns { file, columns: t.names }).collect()));
     }
     let mut lines = Vec::new();
     let (mut names, mut against) = (Vec::new(), String::new());
@@ -80,7 +117,7 @@ fn plot_or_list(args: &PlotArgs) -> Result<String, PlotError> {
     }
     let axes = [axis_title(&[against]), axis_title(&names)];
     picture::write(&args.out, SIZE, |root| draw(root, &lines, &axes, args.log))?;
-    Ok(args.out.display().to_string())
+    Ok(Done::Picture(args.out.clone()))
 }
 
 /// The history of a run's folder, or the file itself.

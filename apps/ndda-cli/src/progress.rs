@@ -3,26 +3,22 @@
 use std::fmt;
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use ndda_solver::{Sink, SinkError, View};
 use serde::Serialize;
 
+use crate::bar::Bar;
 use crate::console::complain;
 use crate::events::Events;
 use crate::run::Options;
 
-/// How often the bar is redrawn.
-const REDRAW: Duration = Duration::from_millis(100);
-
 /// Shows progress on standard error.
 pub struct Progress {
     steps: u64,
-    bar: Option<ProgressBar>,
+    bar: Option<Bar>,
     plain: bool,
     started: Instant,
-    drawn: Instant,
     tenths: u64,
     percent: u64,
     events: Events,
@@ -35,18 +31,12 @@ impl Progress {
     pub fn new(first: u64, steps: u64, options: &Options) -> Self {
         let quiet = options.quiet;
         let terminal = std::io::stderr().is_terminal();
-        let bar = (terminal && !quiet).then(|| {
-            let style = "{bar:40} {percent:>3} %  {eta} left  {msg}";
-            let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
-            bar.with_style(ProgressStyle::with_template(style).expect("a fixed template"))
-        });
-        let now = Instant::now();
+        let bar = if terminal && !quiet { Bar::new(steps) } else { None };
         Self {
             steps,
+            plain: bar.is_none() && !quiet,
             bar,
-            plain: !terminal && !quiet,
-            started: now,
-            drawn: now,
+            started: Instant::now(),
             tenths: 10 * first / steps.max(1),
             percent: 100 * first / steps.max(1),
             events: options.events,
@@ -57,7 +47,7 @@ impl Progress {
     /// Clears the bar.
     pub fn finish(&self) {
         if let Some(bar) = &self.bar {
-            bar.finish_and_clear();
+            bar.finish();
         }
     }
 }
@@ -109,12 +99,9 @@ impl Progress {
 impl Sink for Progress {
     fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
         let step = view.simulation.state().step;
-        if let Some(bar) = &self.bar
-            && self.drawn.elapsed() >= REDRAW
-        {
-            self.drawn = Instant::now();
-            bar.set_position(step);
-            bar.set_message(self.now(view).to_string());
+        if self.bar.as_ref().is_some_and(Bar::is_due) {
+            let now = self.now(view).to_string();
+            self.bar.iter_mut().for_each(|bar| bar.draw(step, &now));
         }
         let tenths = 10 * step / self.steps;
         if self.plain && step > self.first && tenths > self.tenths {

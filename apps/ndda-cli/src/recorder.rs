@@ -17,6 +17,11 @@ pub fn is_due(step: u64, steps: u64, count: u64) -> bool {
     step == 0 || step >= steps || passed(step) != passed(step - 1)
 }
 
+/// How many times [`is_due`] says yes in a run of `steps`.
+pub fn events(steps: u64, count: u64) -> u64 {
+    count.clamp(1, steps.max(1)) + 1
+}
+
 /// Writes `history.csv` and follows the errors against the closed form.
 pub struct Recorder {
     history: History,
@@ -63,7 +68,8 @@ impl Recorder {
         held: Vec<(BlockId, String)>,
         saved: Option<SavedRecorder>,
     ) -> Result<Self, WriteError> {
-        let columns = columns(&monitors, &held, comparison.is_some());
+        let names = monitors.iter().map(|monitor| monitor.name.as_str());
+        let columns = columns(names, &held, comparison.is_some());
         let history = match &saved {
             None => History::create(&folder.history(), &columns)?,
             Some(saved) => History::resume(&folder.history(), &columns, saved.rows)?,
@@ -131,7 +137,12 @@ pub fn held_blocks(simulation: &Simulation) -> Vec<(BlockId, String)> {
     held.map(|block| (block, blocks.names[block.index()].clone())).collect()
 }
 
-fn columns(monitors: &[Monitor], held: &[(BlockId, String)], compared: bool) -> Vec<String> {
+/// Columns of the history, with those of monitors, held blocks and the comparison.
+pub fn columns<'a>(
+    monitors: impl Iterator<Item = &'a str>,
+    held: &[(BlockId, String)],
+    compared: bool,
+) -> Vec<String> {
     let fixed = [
         "time_s",
         "kinetic_j",
@@ -157,7 +168,7 @@ fn columns(monitors: &[Monitor], held: &[(BlockId, String)], compared: bool) -> 
     let mut columns: Vec<String> = fixed.map(String::from).to_vec();
     for monitor in monitors {
         for (quantity, unit) in [("displacement", "m"), ("velocity", "m_s")] {
-            columns.extend(["x", "y", "z"].map(|axis| format!("{}.{quantity}_{axis}_{unit}", monitor.name)));
+            columns.extend(["x", "y", "z"].map(|axis| format!("{monitor}.{quantity}_{axis}_{unit}")));
         }
     }
     for (_, name) in held {
@@ -225,5 +236,8 @@ mod tests {
         assert_eq!(due(3, 100), [0, 1, 2, 3]);
         assert_eq!(due(7, 0), [0, 7]);
         assert_eq!(due(1000, 7).len(), 8);
+        for (steps, count) in [(10, 2), (3, 100), (7, 0), (1000, 7), (1, 1)] {
+            assert_eq!(due(steps, count).len() as u64, events(steps, count), "{steps} {count}");
+        }
     }
 }

@@ -1,7 +1,5 @@
 //! What a run says of itself: the summary, its verdicts, and the table at the end.
 
-use comfy_table::presets::UTF8_BORDERS_ONLY;
-use comfy_table::{CellAlignment, Table};
 use ndda_fem::stress::volume_m3;
 use ndda_io::scene::{Integrator, Scene};
 use ndda_io::summary::{
@@ -10,6 +8,7 @@ use ndda_io::summary::{
 use ndda_mesh::Vec3;
 use ndda_solver::{Simulation, StepCounts};
 
+use crate::columns::columns;
 use crate::machine;
 use crate::recorder::Recorder;
 use crate::reference;
@@ -287,25 +286,17 @@ pub fn table(summary: &Summary) -> String {
     text
 }
 
-fn framed(header: &[&str], rows: Vec<Vec<String>>) -> Table {
-    let mut table = Table::new();
-    table.load_style(UTF8_BORDERS_ONLY).set_header(header.to_vec());
-    for row in rows {
-        table.add_row(row);
-    }
-    for column in table.column_iter_mut().skip(1) {
-        column.set_cell_alignment(CellAlignment::Right);
-    }
-    table
+fn framed(header: &[&str], rows: Vec<Vec<String>>) -> String {
+    columns(header.iter().map(ToString::to_string).collect(), rows)
 }
 
-fn stage_table(summary: &Summary) -> Table {
+fn stage_table(summary: &Summary) -> String {
     let share = |s: f64| format!("{:.1} %", 100.0 * s / summary.wall_s);
     let rows = summary.stages_s.0.iter().map(|(name, s)| vec![name.clone(), format!("{s:.3} s"), share(*s)]);
     framed(&["stage", "time", "share"], rows.collect())
 }
 
-fn verdict_table(summary: &Summary) -> Table {
+fn verdict_table(summary: &Summary) -> String {
     let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.2e}"));
     let word = |verdict: &Verdict| match (verdict.verdict, verdict.limit) {
         (Judgement::Pass, None) if verdict.value.is_some() => "shown",
@@ -319,7 +310,7 @@ fn verdict_table(summary: &Summary) -> Table {
     framed(&["invariant", "worst", "limit", "verdict"], summary.verdicts.0.iter().map(row).collect())
 }
 
-fn monitor_table(summary: &Summary) -> Table {
+fn monitor_table(summary: &Summary) -> String {
     let triple = |v: &[f64; 3]| format!("({:.6}, {:.6}, {:.6})", v[0], v[1], v[2]);
     let monitors = summary.monitors.0.iter();
     let rows =

@@ -69,7 +69,7 @@ fn a_check_reckons_what_a_run_will_take_and_write() {
     assert!(guess["run_s"].as_f64().unwrap() > 0.0, "{guess}");
     let files: Vec<&str> =
         guess["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
-    assert_eq!(files, ["history", "checkpoint.ndda", "summary.json", "run.log", "fields/*.vtu"]);
+    assert_eq!(files, ["history.csv", "checkpoint.ndda", "summary.json", "run.log", "fields/*.vtu"]);
 }
 
 #[test]
@@ -79,4 +79,32 @@ fn a_mesh_is_measured() {
     let (code, found) = events(&["mesh", &scene("free_fall"), "--out", &out], "ndda.mesh/1");
     assert_eq!((code, names(&found)), (0, vec!["measured", "finished"]));
     assert!(found[0]["report"]["tets"].as_u64().unwrap() > 0);
+}
+
+#[test]
+fn a_template_a_picture_and_a_page_are_told_of_as_events() {
+    let place = tempfile::tempdir().unwrap();
+    let (folder, out) = out(&place);
+    let (code, found) = events(&["new", "--list"], "ndda.new/1");
+    assert_eq!((code, names(&found), &found[0]["templates"][0]["name"]), (0, vec!["finished"], &"slide".into()));
+    let (code, found) = events(&["new", "slyde"], "ndda.new/1");
+    assert_eq!((code, names(&found)), (2, vec!["failed"]));
+    let scene = place.path().join("s.ron").display().to_string();
+    let (code, found) = events(&["new", "slide", "--out", &scene], "ndda.new/1");
+    assert_eq!((code, &found[0]["scene"]), (0, &scene.as_str().into()));
+
+    assert_eq!(events(&["run", &scene, "--set", "output.frames=5", "--out", &out], "ndda.run/1").0, 0);
+    let (code, found) = events(&["plot", &out], "ndda.plot/1");
+    assert_eq!((code, &found[0]["tables"][0]["columns"][0]), (0, &"time_s".into()));
+    let picture = place.path().join("p.svg").display().to_string();
+    let (code, found) = events(&["plot", &out, "--columns", "kinetic", "-o", &picture], "ndda.plot/1");
+    assert_eq!((code, &found[0]["picture"]), (0, &picture.as_str().into()));
+    let (code, found) = events(&["plot", &out, "--columns", "kinetik"], "ndda.plot/1");
+    assert_eq!((code, names(&found)), (3, vec!["failed"]));
+
+    let (code, found) = events(&["report", &out], "ndda.report/1");
+    assert_eq!((code, names(&found)), (0, vec!["written", "finished"]));
+    assert_eq!(found[0]["report"], folder.join("report.html").display().to_string());
+    let (code, found) = events(&["report", &scene], "ndda.report/1");
+    assert_eq!((code, names(&found)), (3, vec!["failed"]));
 }

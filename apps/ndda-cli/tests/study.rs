@@ -73,7 +73,7 @@ fn a_study_runs_lists_failures_and_goes_on_where_it_was() {
     assert!(text.contains("failed: step_s=1e-2__rock=bad_too") && text.contains("poisson"), "{text}");
     let out = folder.path().join("out/study_study");
     let results = json(out.join("study.json"));
-    assert_eq!(results["schema"], "ndda-study-1");
+    assert_eq!(results["schema"], "ndda.study/1");
     let cases = results["cases"].as_array().unwrap();
     assert_eq!(cases.len(), 4);
     let figures = &cases[0]["figures"];

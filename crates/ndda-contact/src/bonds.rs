@@ -5,9 +5,10 @@
 //! facet's area for each side. Past σ_t S it is gone for good, and so is the facet's cohesion.
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{Mat3, TriangleId, Vec3};
+use ndda_mesh::{BlockSet, Mat3, TriangleId, Vec3};
 
 use crate::candidates::Candidates;
+use crate::friction::FrictionLaw;
 use crate::joints::Joints;
 use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput, FacetContact};
 use crate::pair::TetFrame;
@@ -61,9 +62,8 @@ fn form(joints: &Joints, candidates: &Candidates, input: &ContactInput, bonds: &
 /// Adds the force of one bond; false when it breaks.
 fn pull(joints: &Joints, input: &ContactInput, bond: &Bond, output: &mut ContactOutput) -> bool {
     let blocks = input.blocks;
-    let target = blocks.tet_block[bond.tet.index()];
-    let Some(law) = joints.law(blocks, bond.facet, target) else { return false };
-    let Some((stretch, half_area)) = stretch(input, bond) else { return true };
+    let Some(law) = law(joints, blocks, bond) else { return false };
+    let Some(Opening { stretch, half_area, .. }) = opening(input, bond) else { return true };
     if law.bond_stiffness_pa_m() * stretch.norm() > law.tension_pa() {
         return false;
     }
@@ -79,27 +79,42 @@ fn pull(joints: &Joints, input: &ContactInput, bond: &Bond, output: &mut Contact
     true
 }
 
-/// From the facet's centroid to the point that it is glued to, and half of the facet's area; none unless it is open.
-fn stretch(input: &ContactInput, bond: &Bond) -> Option<(Vec3, f64)> {
+/// The law of the joint that a bond is in.
+fn law<'a>(joints: &'a Joints, blocks: &BlockSet, bond: &Bond) -> Option<&'a dyn FrictionLaw> {
+    joints.law(blocks, bond.facet, blocks.tet_block[bond.tet.index()])
+}
+
+/// How far a bond has opened.
+struct Opening {
+    /// From the facet's centroid to the point that it is glued to [m].
+    stretch: Vec3,
+    /// Unit normal of the facet.
+    normal: Vec3,
+    /// Half of the facet's area [m²].
+    half_area: f64,
+}
+
+/// How far a bond has opened; none unless it has.
+fn opening(input: &ContactInput, bond: &Bond) -> Option<Opening> {
     let tet = input.blocks.tets[bond.tet.index()];
     let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
     let area_vector = triangle_area_vector(&input.blocks.triangle_corners(bond.facet, input.position));
     let stretch = anchor - centroid(input, bond.facet);
-    (stretch.dot(&area_vector) > 0.0).then(|| (stretch, 0.5 * area_vector.norm()))
+    let opening = || Opening { stretch, normal: area_vector.normalize(), half_area: 0.5 * area_vector.norm() };
+    (stretch.dot(&area_vector) > 0.0).then(opening)
 }
 
 /// What the bonds do that are stretched.
 pub fn add_facets(joints: &Joints, input: &ContactInput, bonds: &[Bond], facets: &mut Vec<FacetContact>) {
     let blocks = input.blocks;
     facets.extend(bonds.iter().filter_map(|bond| {
-        let (stretch, half_area) = stretch(input, bond)?;
-        let target = blocks.tet_block[bond.tet.index()];
-        let law = joints.law(blocks, bond.facet, target)?;
+        let Opening { stretch, normal, half_area } = opening(input, bond)?;
+        let law = law(joints, blocks, bond)?;
         Some(FacetContact {
             facet: bond.facet,
-            target,
+            target: blocks.tet_block[bond.tet.index()],
             area_m2: 0.0,
-            normal: triangle_area_vector(&blocks.triangle_corners(bond.facet, input.position)).normalize(),
+            normal,
             center: centroid(input, bond.facet),
             push_n: law.bond_stiffness_pa_m() * half_area * stretch,
             friction_n: Vec3::zeros(),
@@ -118,17 +133,11 @@ pub fn add_stiffness(
     let blocks = input.blocks;
     for bond in bonds {
         let (triangle, tet) = (&blocks.triangles[bond.facet.index()], &blocks.tets[bond.tet.index()]);
-        let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
-        let area_vector = triangle_area_vector(&blocks.triangle_corners(bond.facet, input.position));
-        let target = blocks.tet_block[bond.tet.index()];
-        let Some(law) = joints.law(blocks, bond.facet, target) else { continue };
-        if (anchor - centroid(input, bond.facet)).dot(&area_vector) <= 0.0 {
-            continue;
-        }
+        let Some(law) = law(joints, blocks, bond) else { continue };
+        let Some(Opening { half_area, .. }) = opening(input, bond) else { continue };
         let [a, b, c, d] = bond.lambda;
         let weights = [1.0 / 3.0, 1.0 / 3.0, 1.0 / 3.0, -a, -b, -c, -d];
         let mut spring = PairStiffness::new(triangle, tet);
-        let half_area = 0.5 * area_vector.norm();
         spring.add_spring(&weights, &Mat3::from_diagonal_element(law.bond_stiffness_pa_m() * half_area));
         stiffness.push(spring);
     }
@@ -142,9 +151,8 @@ fn centroid(input: &ContactInput, facet: TriangleId) -> Vec3 {
 pub fn energy_j(joints: &Joints, input: &ContactInput, bonds: &[Bond]) -> f64 {
     let blocks = input.blocks;
     let of_bond = |bond: &Bond| {
-        let Some((stretch, half_area)) = stretch(input, bond) else { return 0.0 };
-        let target = blocks.tet_block[bond.tet.index()];
-        let stiffness = joints.law(blocks, bond.facet, target).map_or(0.0, |law| law.bond_stiffness_pa_m());
+        let Some(Opening { stretch, half_area, .. }) = opening(input, bond) else { return 0.0 };
+        let stiffness = law(joints, blocks, bond).map_or(0.0, |law| law.bond_stiffness_pa_m());
         0.5 * stiffness * half_area * stretch.norm_squared()
     };
     bonds.iter().map(of_bond).sum()

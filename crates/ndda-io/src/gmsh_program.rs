@@ -1,17 +1,12 @@
 //! Meshes of geometry by Gmsh, an external program: `.geo`, `.step`, `.stp`, `.brep` in, its `.msh` read.
 
-use std::ffi::OsString;
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 use crate::mesh_file::error::{Fault, ending};
 use crate::mesh_file::{FileProblem, MeshFile, MeshFileError};
-use crate::msh;
 
 /// Environment variable that names the program.
 pub const VARIABLE: &str = "NDDA_GMSH";
-/// Lines of the program's complaints that are passed on.
-const LINES: usize = 4;
 
 /// How long edges may be [unit of the file].
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -47,10 +42,27 @@ pub fn is_geometry(path: &Path) -> bool {
 /// [`FileProblem::Program`] when the program is missing (with what to install) or complains, and those of
 /// [`msh::read`] for its mesh.
 pub fn mesh(geometry: &Path, sizes: &Sizes, program: Option<&Path>) -> Result<MeshFile, MeshFileError> {
-    let fail = |problem| Fault::from(problem).of(geometry);
     if let Err(error) = std::fs::metadata(geometry) {
-        return Err(fail(FileProblem::Unreadable(error.to_string())));
+        return Err(Fault::from(FileProblem::Unreadable(error.to_string())).of(geometry));
     }
+    by_program(geometry, sizes, program)
+}
+
+#[cfg(not(feature = "gmsh"))]
+fn by_program(geometry: &Path, _: &Sizes, _: Option<&Path>) -> Result<MeshFile, MeshFileError> {
+    let said = "this program was built without calling Gmsh: build it with `--features gmsh`";
+    Err(Fault::from(FileProblem::Program(said.into())).of(geometry))
+}
+
+#[cfg(feature = "gmsh")]
+fn by_program(geometry: &Path, sizes: &Sizes, program: Option<&Path>) -> Result<MeshFile, MeshFileError> {
+    use std::ffi::OsString;
+    use std::process::{Command, Stdio};
+
+    /// Lines of the program's complaints that are passed on.
+    const LINES: usize = 4;
+
+    let fail = |problem| Fault::from(problem).of(geometry);
     let name = program.map(|path| path.as_os_str().to_owned()).or_else(|| std::env::var_os(VARIABLE));
     let name = name.unwrap_or_else(|| OsString::from("gmsh"));
     let folder = tempfile::tempdir().map_err(|e| fail(FileProblem::Unreadable(e.to_string())))?;
@@ -85,10 +97,11 @@ pub fn mesh(geometry: &Path, sizes: &Sizes, program: Option<&Path>) -> Result<Me
     }
     let bytes = std::fs::read(&result).map_err(|e| fail(FileProblem::Unreadable(e.to_string())))?;
     // Errors name the geometry: the mesh is gone by then.
-    Ok(msh::parse(geometry, &bytes)?)
+    Ok(crate::msh::parse(geometry, &bytes)?)
 }
 
 /// Gmsh's fields for the places where edges are shorter; the least counts.
+#[cfg(feature = "gmsh")]
 fn fields_text(places: &[Finer]) -> String {
     let mut text = String::new();
     for (i, finer) in (1..).zip(places) {

@@ -109,7 +109,8 @@ impl Motion {
         packed.add_u32("blocks", self.surface.blocks.iter().copied());
         packed.add_u32("edges", self.surface.edges.iter().flatten().copied());
         packed.add_codes("moved", &self.moved);
-        let (lengths, still) = (self.largest_motions(), STILL * self.farthest());
+        let lengths = self.largest_motions();
+        let farthest = lengths.iter().copied().fold(0.0, f64::max);
         let colour = |(field, codes): &(Field, Codes)| {
             packed.add_codes(&field.array, codes);
             let (array, label, unit) = (field.array.clone(), field.label.clone(), field.unit);
@@ -122,21 +123,16 @@ impl Motion {
             extent_m: (self.extent.max - self.extent.min).into(),
             nodes: self.start.len(),
             triangles: self.surface.triangles.len(),
-            still: (0..lengths.len()).filter(|&b| lengths[b] < still).collect(),
+            still: (0..lengths.len()).filter(|&b| lengths[b] < STILL * farthest).collect(),
             moved: Range {
                 least: self.moved.least,
                 largest: self.moved.largest,
-                top: self.farthest() as f32,
+                top: farthest as f32,
             },
             fields,
             arrays: packed.arrays.drain(..).collect(),
         };
         (description, packed.text())
-    }
-
-    /// Farthest that any node was from where it began [m].
-    fn farthest(&self) -> f64 {
-        self.largest_motions().into_iter().fold(0.0, f64::max)
     }
 
     /// Farthest that a node of each block was from where it began [m].

@@ -2,12 +2,11 @@
 
 use std::fmt::Write as _;
 
-use comfy_table::presets::UTF8_BORDERS_ONLY;
-use comfy_table::{CellAlignment, Table};
 use serde::Serialize;
 
 use super::front::{targets, time_to_error};
 use super::result::{Compared, Results};
+use crate::columns::columns;
 
 /// What each of the two errors is called.
 pub const WHICH: [&str; 2] = ["error at the end", "largest error over time"];
@@ -91,19 +90,16 @@ fn against(reference: &Compared) -> String {
     }
 }
 
-fn framed(rows: &[Row]) -> Table {
-    let mut table = Table::new();
+fn framed(rows: &[Row]) -> String {
     let mut header = vec!["curve".to_string()];
     header.extend(rows[0].times.iter().map(|time| format!("{:.0e}", time.error)));
-    table.load_style(UTF8_BORDERS_ONLY).set_header(header);
-    for row in rows {
+    let line = |row: &Row| {
         let cell = |time: &Time| match (time.time_s, time.relative) {
             (Some(time_s), Some(relative)) => format!("{time_s:.3} ({relative:.2})"),
             _ => "not reached".into(),
         };
         let name = if row.curve.is_empty() { "all" } else { &row.curve };
-        table.add_row(std::iter::once(name.to_string()).chain(row.times.iter().map(cell)));
-    }
-    table.column_iter_mut().skip(1).for_each(|column| column.set_cell_alignment(CellAlignment::Right));
-    table
+        std::iter::once(name.to_string()).chain(row.times.iter().map(cell)).collect()
+    };
+    columns(header, rows.iter().map(line).collect())
 }

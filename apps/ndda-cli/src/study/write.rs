@@ -9,7 +9,7 @@ use super::result::{CasePoint, Compared, Results};
 use super::table::{self, Row};
 
 /// What `study.json` calls its form; it changes when a key does.
-const SCHEMA: &str = "ndda-study-1";
+const SCHEMA: &str = "ndda.study/1";
 
 /// What `study.json` holds.
 #[derive(Serialize)]
