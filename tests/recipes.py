@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Checks docs/recipes.md: what it quotes is what the files say, and every recipe runs on the results of a run.
 
-Usage: recipes.py OUTDIR     (exit 0: all well, 1: not, 3: packages are missing, only quotes and syntax were checked)
+Usage: recipes.py OUTDIR [BOTH]     (BOTH: a run with tables as CSV and Parquet; exit 0: all well, 1: not, 3: packages are missing, only quotes and syntax were checked)
 """
 
 import csv
@@ -9,6 +9,7 @@ import importlib.util
 import json
 import math
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -16,9 +17,9 @@ from pathlib import Path
 
 DOCS = Path(__file__).parent.parent / "docs"
 RECIPES = DOCS / "recipes"
-PACKAGES = ("numpy", "pandas", "matplotlib", "meshio", "pyvista")
-# Needs ParaView, which no package index has.
-NOT_RUN = "paraview_series.py"
+PACKAGES = ("numpy", "pandas", "matplotlib", "meshio", "pyvista", "pyarrow")
+# Need ParaView, which no package index has.
+PARAVIEW = {"paraview_series.py", "paraview_gallery.py"}
 MOST_LINES = 30
 RAN = set()
 
@@ -94,8 +95,39 @@ def check_comparison(folder):
         require(" 0.00e+00 " in line, f"a run differs from itself: {line}")
 
 
+def check_parquet(folder):
+    """The tables in columns are those in lines."""
+    import pandas
+
+    for name in ("history", "contacts"):
+        lines, columns = pandas.read_csv(folder / f"{name}.csv"), pandas.read_parquet(folder / f"{name}.parquet")
+        require(list(lines.columns) == list(columns.columns), f"{name}.parquet has other columns than {name}.csv")
+        require(len(lines) > 1 and (lines.to_numpy() == columns.to_numpy()).all(), f"{name}.parquet has other numbers")
+    print("Parquet and CSV hold the same numbers")
+
+
+def check_paraview(folder, scratch):
+    """What the scripts for ParaView draw, where there is one; else False."""
+    program = [shutil.which(name) for name in ("xvfb-run", "pvpython")]
+    if None in program:
+        return False
+    run = scratch / "run"
+    shutil.copytree(folder, run)
+    for name, arguments in (("paraview_series.py", (run, scratch / "frames")), ("paraview_gallery.py", (run,))):
+        command = [program[0], "-a", program[1], str(RECIPES / name), *map(str, arguments)]
+        done = subprocess.run(command, capture_output=True, text=True, encoding="utf-8", check=False, timeout=300)
+        require(done.returncode == 0, f"{name} ended with {done.returncode}:\n{done.stderr}")
+        warned = [line for line in done.stderr.splitlines() if "ERR|" in line or "WARN|" in line]
+        require(not warned, f"ParaView warns in {name}: {warned}")
+    frames = len(re.findall("<DataSet ", (run / "fields.pvd").read_text()))
+    require(len(list((scratch / "frames").glob("*.png"))) == frames, "paraview_series.py drew another number of frames")
+    state = (run / "view.pvsm").read_text()
+    require('type="RenderView"' in state and 'type="PVDReader"' in state, "paraview_gallery.py saved no view")
+    return True
+
+
 def main():
-    if len(sys.argv) != 2:
+    if len(sys.argv) not in (2, 3):
         sys.exit(__doc__.strip())
     check_quotes()
     missing = [name for name in PACKAGES if importlib.util.find_spec(name) is None]
@@ -105,11 +137,14 @@ def main():
     folder = Path(sys.argv[1])
     with tempfile.TemporaryDirectory() as scratch:
         check_energies(folder, Path(scratch))
+        drawn = check_paraview(folder, Path(scratch))
     check_blocks(folder)
     check_comparison(folder)
-    untried = {path.name for path in RECIPES.glob("*.py")} - RAN - {NOT_RUN}
+    untried = {path.name for path in RECIPES.glob("*.py")} - RAN - PARAVIEW
     require(not untried, f"not tried: {sorted(untried)}")
-    print(f"{len(RAN)} recipes ran, {NOT_RUN} was only compiled")
+    if len(sys.argv) == 3:
+        check_parquet(Path(sys.argv[2]))
+    print(f"{len(RAN)} recipes ran; those for ParaView", "did, too" if drawn else "were only compiled, for want of pvpython")
 
 
 if __name__ == "__main__":

@@ -11,14 +11,14 @@ for run in map(Path, sys.argv[1:]):
     look = VIEWS[json.loads((run / "summary.json").read_text())["scene"]]
     ResetSession()
     blocks = PVDReader(FileName=str((run / "fields.pvd").resolve()))
-    view = GetActiveViewOrCreate("RenderView")
+    view = CreateView("RenderView")
+    AssignViewToLayout(view=view, layout=CreateLayout())
     view.ViewSize = [1280, 800]
     shown = Show(blocks, view)
     shown.Representation = "Surface With Edges"
     shown.Opacity = 0.4 if look.get("clear") else 1.0
     ColorBy(shown, ("POINTS", look.get("colour", "displacement_m"), "Magnitude"))
     shown.RescaleTransferFunctionToDataRangeOverTime()
-    shown.SetScalarBarVisibility(view, True)
     scene = GetAnimationScene()
     scene.UpdateAnimationUsingDataTimeSteps()
     scene.AnimationTime = look.get("end", blocks.TimestepValues[-1])
