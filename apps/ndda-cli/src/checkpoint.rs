@@ -26,6 +26,13 @@ pub struct Identity {
     pub file: PathBuf,
 }
 
+impl Identity {
+    /// CRC-32 of the scene's text.
+    pub fn crc32(&self) -> u32 {
+        checkpoint::fingerprint(&self.text)
+    }
+}
+
 /// Everything that `ndda resume` needs.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct SavedRun {

@@ -17,8 +17,9 @@ pub fn columns(header: Vec<String>, rows: Vec<Vec<String>>) -> String {
 #[cfg(not(feature = "terminal"))]
 pub fn columns(header: Vec<String>, rows: Vec<Vec<String>>) -> String {
     let lines: Vec<Vec<String>> = std::iter::once(header).chain(rows).collect();
-    let width =
-        |column: usize| lines.iter().filter_map(|l| l.get(column)).map(|c| c.chars().count()).max().unwrap_or(0);
+    let width = |column: usize| {
+        lines.iter().filter_map(|l| l.get(column)).map(|c| c.chars().count()).max().unwrap_or(0)
+    };
     let widths: Vec<usize> = (0..lines[0].len()).map(width).collect();
     let cell = |(k, text): (usize, &String)| {
         let width = widths[k];

@@ -55,7 +55,8 @@ pub fn new(args: &NewArgs) -> u8 {
     let name = args.template.as_deref().unwrap_or(TEMPLATES[0].name);
     let Some(template) = TEMPLATES.iter().find(|template| template.name == name) else {
         let names = TEMPLATES.map(|template| template.name);
-        return events.fail(exit::USAGE, &format!("there is no template `{name}`: {}", suggest(name, &names)));
+        return events
+            .fail(exit::USAGE, &format!("there is no template `{name}`: {}", suggest(name, &names)));
     };
     if args.out.as_deref() == Some(Path::new("-")) {
         match args.json {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use ndda_io::table::{self, Table, TableError};
-use ndda_io::{WriteError, folder};
+use ndda_io::{WriteError, folder, results};
 use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use serde::Serialize;
@@ -122,7 +122,10 @@ fn plot_or_list(args: &PlotArgs) -> Result<Done, PlotError> {
 
 /// The history of a run's folder, or the file itself.
 fn history(input: &Path) -> PathBuf {
-    if input.is_dir() { input.join(folder::HISTORY) } else { input.to_path_buf() }
+    if !input.is_dir() {
+        return input.to_path_buf();
+    }
+    results::history_file(input).unwrap_or_else(|| input.join(folder::HISTORY))
 }
 
 /// What a run is called in the legend.

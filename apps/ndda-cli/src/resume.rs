@@ -11,7 +11,7 @@ use crate::checkpoint::SavedRun;
 use crate::console::say;
 use crate::exit;
 use crate::run::{Job, Options, execute, in_pool};
-use crate::wiring;
+use crate::{run_log, wiring};
 
 /// Goes on with a run and reports; the result is the exit code.
 pub fn resume(args: &ResumeArgs) -> u8 {
@@ -28,12 +28,22 @@ fn resume_here(folder: &Path, options: &Options) -> u8 {
         Ok(folder) => folder,
         Err(error) => return options.events.fail(exit::INPUT_OUTPUT, &error.to_string()),
     };
-    let (saved, passed_over) = match checkpoint::read::<SavedRun>(&folder) {
+    let scene = run_log::scene_crc32(&folder);
+    let of_this_run = |saved: &SavedRun| match scene {
+        Some(known) if known != saved.identity.crc32() => {
+            Err(format!("of {}", saved.identity.file.display()))
+        }
+        _ => Ok(()),
+    };
+    let (saved, passed_over) = match checkpoint::read(&folder, of_this_run) {
         Ok(found) => found,
         Err(error) => return options.events.fail(exit::BAD_INPUT, &error.to_string()),
     };
     if let Some(error) = passed_over {
         options.events.warn(&format!("{error}; going on from the checkpoint before"));
+        if let Err(error) = checkpoint::go_back(&folder) {
+            return options.events.fail(exit::INPUT_OUTPUT, &error.to_string());
+        }
     }
     let meshes = saved.identity.file.parent().unwrap_or(Path::new("."));
     let name = saved.identity.file.display().to_string();

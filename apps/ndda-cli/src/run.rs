@@ -146,13 +146,15 @@ fn run_job(mut job: Job, options: &Options) -> Result<u8, WriteError> {
             unknowns: simulation.unknowns(),
         },
     );
+    let settling = Instant::now();
     if let Err(error) = settle(&mut job, &mut log, options)? {
         let message = format!("stopped {}", stop(&error));
         log.line(&message)?;
         return Ok(options.events.fail(exit::STOPPED, &message));
     }
     log.line(&format!("from step {} of {steps}", job.ready.simulation.state().step))?;
-    let summary = step_to_end(job, steps, options, &mut log)?;
+    let setup = Setup { settled_s: settling.elapsed().as_secs_f64(), steps };
+    let summary = step_to_end(job, setup, options, &mut log)?;
     Ok(conclude(&summary, options))
 }
 
@@ -173,16 +175,23 @@ fn settle(job: &mut Job, log: &mut RunLog, options: &Options) -> Result<Result<(
     }
 }
 
+/// What went before the first step, and how many there are to be.
+struct Setup {
+    /// Settling, whose steps are in the stages of steps [s].
+    settled_s: f64,
+    steps: u64,
+}
+
 /// Runs, and writes all that there is to be known.
-fn step_to_end(job: Job, steps: u64, options: &Options, log: &mut RunLog) -> Result<Summary, WriteError> {
+fn step_to_end(job: Job, setup: Setup, options: &Options, log: &mut RunLog) -> Result<Summary, WriteError> {
     let Job { ready: Ready { loaded, mut simulation, monitors }, comparison, identity, folder, earlier } =
         job;
-    let scene = &loaded.scene;
+    let (scene, Setup { settled_s, steps }) = (&loaded.scene, setup);
     let (name, goes_on) = (identity.name.clone(), earlier.is_some());
     let earlier_s = earlier.as_ref().map_or(0.0, |earlier| earlier.wall_s);
     let points = (monitors, comparison);
     let mut outputs = outputs(scene, &simulation, points, (identity, &folder, earlier), steps, options)?;
-    let setup_s = options.started.elapsed().as_secs_f64();
+    let setup_s = options.started.elapsed().as_secs_f64() - settled_s;
     let ended = if goes_on {
         ndda_solver::resume(&mut simulation, steps, &mut [&mut outputs])
     } else {

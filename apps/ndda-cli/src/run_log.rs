@@ -5,10 +5,20 @@ use std::io::Write;
 use std::path::PathBuf;
 use std::time::{Instant, SystemTime};
 
-use ndda_io::{OutputFolder, WriteError, checkpoint};
+use ndda_io::{OutputFolder, WriteError};
 
 use crate::checkpoint::Identity;
 use crate::machine;
+
+/// What stands before the scene's fingerprint.
+const CRC32: &str = "CRC-32 of its text ";
+
+/// The fingerprint of the scene that the log in a folder begins with, if there is a log.
+pub fn scene_crc32(folder: &OutputFolder) -> Option<u32> {
+    let text = std::fs::read_to_string(folder.log()).ok()?;
+    let (_, rest) = text.split_once(CRC32)?;
+    u32::from_str_radix(rest.get(..8)?, 16).ok()
+}
 
 /// A log that grows line by line; what has been said survives a crash.
 pub struct RunLog {
@@ -38,8 +48,8 @@ impl RunLog {
         let now = humantime::format_rfc3339_seconds(SystemTime::now());
         self.line(&format!("ndda {version}, commit {commit}, {rustc}, features: {features}"))?;
         self.line(&format!("{now}, {} on {threads} thread(s)", machine::processor()))?;
-        let crc32 = checkpoint::fingerprint(&identity.text);
-        self.line(&format!("scene {}, CRC-32 of its text {crc32:08x}:", identity.file.display()))?;
+        let crc32 = identity.crc32();
+        self.line(&format!("scene {}, {CRC32}{crc32:08x}:", identity.file.display()))?;
         self.block(&identity.text)
     }
 

@@ -86,7 +86,10 @@ fn a_template_a_picture_and_a_page_are_told_of_as_events() {
     let place = tempfile::tempdir().unwrap();
     let (folder, out) = out(&place);
     let (code, found) = events(&["new", "--list"], "ndda.new/1");
-    assert_eq!((code, names(&found), &found[0]["templates"][0]["name"]), (0, vec!["finished"], &"slide".into()));
+    assert_eq!(
+        (code, names(&found), &found[0]["templates"][0]["name"]),
+        (0, vec!["finished"], &"slide".into())
+    );
     let (code, found) = events(&["new", "slyde"], "ndda.new/1");
     assert_eq!((code, names(&found)), (2, vec!["failed"]));
     let scene = place.path().join("s.ron").display().to_string();

@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+#[cfg(feature = "parquet")]
+use std::process::Command;
 
 use ndda_cli::args::{HowArgs, RunArgs, SceneArgs};
 use ndda_cli::{exit, run};
@@ -90,6 +92,37 @@ fn tables_are_left_in_the_forms_that_are_asked_for() {
     let out = run_ramp(place.path(), &["output.history=Parquet", "output.contacts=true"]);
     let found: BTreeSet<String> = files(&out).intersection(&set(&tables)).cloned().collect();
     assert_eq!(found, set(&["history.parquet", "contacts.parquet"]));
+    // What reads results finds them in columns, too.
+    let picture = place.path().join("p.svg");
+    for arguments in [&["report"][..], &["plot", "--columns", "kinetic", "-o", picture.to_str().unwrap()]] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ndda"));
+        let read = command.arg(arguments[0]).arg(&out).args(&arguments[1..]).output().unwrap();
+        assert!(read.status.success(), "{}", String::from_utf8_lossy(&read.stderr));
+    }
+}
+
+#[test]
+fn stages_sum_to_the_whole_of_a_run_that_settles_first() {
+    let place = tempfile::tempdir().unwrap();
+    let scene = place.path().join("rest.ron");
+    let text = "(title: \"rest\", time: (step_s: 1e-3, end_s: 0.01), gravity_m_s2: (0, 0, -9.8),
+        materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2500)],
+        blocks: [(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (3, 3, 1), cells: (3, 3, 1)), at_m: (-1, -1, -1)),
+                 (name: \"block\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (2, 2, 2)))],
+        contact: Potential(penalty_pa: 2e8, potential: Smooth(reference_m: 1)), settle: (tolerance: 1e-6, most_steps: 100000))";
+    fs::write(&scene, text).unwrap();
+    let args = RunArgs {
+        input: SceneArgs { scene: Some(scene), ..SceneArgs::default() },
+        out: Some(place.path().join("out")),
+        force: false,
+        how: HowArgs { quiet: true, ..HowArgs::default() },
+    };
+    assert_eq!(run::run(&args), exit::DONE);
+    let summary: Value =
+        serde_json::from_str(&fs::read_to_string(place.path().join("out/summary.json")).unwrap()).unwrap();
+    let stages: f64 = summary["stages_s"].as_object().unwrap().values().map(|s| s.as_f64().unwrap()).sum();
+    let whole = summary["wall_s"].as_f64().unwrap();
+    assert!((stages / whole - 1.0).abs() < 0.02, "{stages} s of {whole} s");
 }
 
 #[test]

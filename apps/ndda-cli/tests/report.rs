@@ -98,7 +98,10 @@ fn folders_that_are_no_run_or_half_of_one_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(report(&folder.path().join("none"), None), exit::BAD_INPUT);
     assert_eq!(report(folder.path(), None), exit::BAD_INPUT);
-    assert_eq!(html_report::view(&ViewArgs { folder: folder.path().to_path_buf(), json: false }), exit::BAD_INPUT);
+    assert_eq!(
+        html_report::view(&ViewArgs { folder: folder.path().to_path_buf(), json: false }),
+        exit::BAD_INPUT
+    );
     let out = run_in(folder.path(), 4);
     let frame = out.join("fields/frame_000002.vtu");
     let whole = fs::read(&frame).unwrap();

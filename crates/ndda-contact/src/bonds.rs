@@ -100,7 +100,8 @@ fn opening(input: &ContactInput, bond: &Bond) -> Option<Opening> {
     let anchor: Vec3 = (0..4).map(|b| bond.lambda[b] * input.position[tet[b].index()]).sum();
     let area_vector = triangle_area_vector(&input.blocks.triangle_corners(bond.facet, input.position));
     let stretch = anchor - centroid(input, bond.facet);
-    let opening = || Opening { stretch, normal: area_vector.normalize(), half_area: 0.5 * area_vector.norm() };
+    let opening =
+        || Opening { stretch, normal: area_vector.normalize(), half_area: 0.5 * area_vector.norm() };
     (stretch.dot(&area_vector) > 0.0).then(opening)
 }
 

@@ -49,6 +49,14 @@ pub enum CheckpointError {
         /// What is wrong with it.
         what: String,
     },
+    /// The file belongs to another run.
+    #[error("{} is of another run ({what}): put it back where it came from", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// How it tells.
+        what: String,
+    },
     /// The file is of another version.
     #[error("{} is of format {found}, this ndda reads format {FORMAT}: resume it with the ndda that wrote it", path.display())]
     Version {
@@ -92,22 +100,38 @@ pub fn write(folder: &OutputFolder, value: &impl Serialize) -> Result<(), WriteE
     fs::rename(&waiting, &path).map_err(WriteError::io("rename the new checkpoint to", &path))
 }
 
-/// Reads the newest checkpoint of a folder that is whole, and says why a newer one was passed over.
+/// Reads the newest checkpoint of a folder that is whole and of its run, and says why a newer one was passed over;
+/// `fits` says what a foreign one gives itself away by.
 ///
 /// # Errors
 /// [`CheckpointError`] of the newest file when none can be used.
 pub fn read<T: DeserializeOwned>(
     folder: &OutputFolder,
+    fits: impl Fn(&T) -> Result<(), String>,
 ) -> Result<(T, Option<CheckpointError>), CheckpointError> {
     let mut passed_over = None;
     for path in [folder.checkpoint(), folder.previous_checkpoint()] {
-        match read_file(&path) {
+        let found = read_file(&path).and_then(|found| match found.as_ref().map_or(Ok(()), &fits) {
+            Ok(()) => Ok(found),
+            Err(what) => Err(CheckpointError::Foreign { path: path.clone(), what }),
+        });
+        match found {
             Ok(Some(value)) => return Ok((value, passed_over)),
             Ok(None) => {}
             Err(error) => passed_over = passed_over.or(Some(error)),
         }
     }
     Err(passed_over.unwrap_or(CheckpointError::None { folder: folder.path().to_path_buf() }))
+}
+
+/// Puts the checkpoint before in the place of a newer one that cannot be used, so that the next one written does not
+/// take its place.
+///
+/// # Errors
+/// [`WriteError::Io`] when the file cannot be renamed.
+pub fn go_back(folder: &OutputFolder) -> Result<(), WriteError> {
+    let previous = folder.previous_checkpoint();
+    fs::rename(&previous, folder.checkpoint()).map_err(WriteError::io("rename", &previous))
 }
 
 fn read_file<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, CheckpointError> {
@@ -155,22 +179,38 @@ mod tests {
         let value = vec![0.1 + 0.2, -0.0, f64::MIN_POSITIVE / 8.0, f64::INFINITY];
         write(&folder, &vec![1.0f64]).unwrap();
         write(&folder, &value).unwrap();
-        let (found, passed_over): (Vec<f64>, _) = read(&folder).unwrap();
+        let (found, passed_over): (Vec<f64>, _) = read(&folder, any).unwrap();
         assert!(found.iter().zip(&value).all(|(a, b)| a.to_bits() == b.to_bits()) && passed_over.is_none());
         fs::remove_file(folder.checkpoint()).unwrap();
-        assert_eq!(read::<Vec<f64>>(&folder).unwrap().0, [1.0]);
+        assert_eq!(read(&folder, any::<Vec<f64>>).unwrap().0, [1.0]);
+    }
+
+    fn any<T>(_: &T) -> Result<(), String> {
+        Ok(())
+    }
+
+    #[test]
+    fn one_of_another_run_is_passed_over_and_does_not_come_back() {
+        let (_place, folder) = folder();
+        write(&folder, &1.0f64).unwrap();
+        write(&folder, &2.0f64).unwrap();
+        let fits = |value: &f64| if *value == 1.0 { Ok(()) } else { Err("it is two".to_owned()) };
+        let (found, passed_over) = read(&folder, fits).unwrap();
+        assert!(found == 1.0 && matches!(passed_over, Some(CheckpointError::Foreign { .. })));
+        go_back(&folder).unwrap();
+        assert!(read(&folder, fits).unwrap().1.is_none() && !folder.previous_checkpoint().exists());
     }
 
     #[test]
     fn a_folder_without_one_and_another_format_are_named() {
         let (_place, folder) = folder();
-        assert!(matches!(read::<f64>(&folder), Err(CheckpointError::None { .. })));
+        assert!(matches!(read(&folder, any::<f64>), Err(CheckpointError::None { .. })));
         let mut bytes = MAGIC.to_vec();
         bytes.extend_from_slice(&99u32.to_le_bytes());
         bytes.extend_from_slice(&0u64.to_le_bytes());
         bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
         fs::write(folder.checkpoint(), bytes).unwrap();
-        assert!(matches!(read::<f64>(&folder), Err(CheckpointError::Version { found: 99, .. })));
+        assert!(matches!(read(&folder, any::<f64>), Err(CheckpointError::Version { found: 99, .. })));
     }
 
     proptest! {
@@ -184,7 +224,7 @@ mod tests {
             let at = at % bytes.len();
             if cut { bytes.truncate(at) } else { bytes[at] ^= 1 << bit }
             fs::write(folder.checkpoint(), bytes).unwrap();
-            let (found, passed_over): (Vec<f64>, _) = read(&folder).unwrap();
+            let (found, passed_over): (Vec<f64>, _) = read(&folder, any).unwrap();
             prop_assert_eq!(&found, &values[0]);
             prop_assert!(passed_over.is_some());
         }

@@ -1,17 +1,21 @@
-//! A table of numbers as Parquet.
+//! A table of numbers as Parquet: written, and read back.
 
+use std::fs::File;
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
 use parquet::basic::{Compression, Repetition, Type as Physical};
+use parquet::column::reader::ColumnReader;
 use parquet::data_type::DoubleType;
 use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
+use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::SerializedFileWriter;
 use parquet::schema::types::Type;
 
 use crate::atomic;
+use crate::table::{Table, TableError};
 use crate::write_error::WriteError;
 
 /// Rows that are put into columns together.
@@ -46,6 +50,34 @@ pub fn from_csv(csv: &Path, parquet: &Path) -> Result<(), WriteError> {
     add_group(&mut writer, &mut columns).map_err(encode)?;
     writer.close().map_err(encode)?;
     atomic::write(parquet, &file)
+}
+
+/// Reads a table of numbers.
+///
+/// # Errors
+/// [`TableError::Unreadable`] when the file cannot be read, or has a column that is not of doubles.
+pub fn read(file: &Path) -> Result<Table, TableError> {
+    let refuse = |reason: String| TableError::Unreadable { file: file.to_path_buf(), reason };
+    let opened = File::open(file).map_err(|e| refuse(e.to_string()))?;
+    read_columns(opened).map_err(|e| refuse(e.to_string()))
+}
+
+fn read_columns(file: File) -> Result<Table, ParquetError> {
+    let reader = SerializedFileReader::new(file)?;
+    let described = reader.metadata().file_metadata().schema_descr_ptr();
+    let names: Vec<String> = described.columns().iter().map(|c| c.name().to_owned()).collect();
+    let mut columns = vec![Vec::new(); names.len()];
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group)?;
+        let rows = usize::try_from(group.metadata().num_rows())?;
+        for (k, column) in columns.iter_mut().enumerate() {
+            let ColumnReader::DoubleColumnReader(mut numbers) = group.get_column_reader(k)? else {
+                return Err(ParquetError::General(format!("column `{}` is not of doubles", names[k])));
+            };
+            numbers.read_records(rows, None, None, column)?;
+        }
+    }
+    Ok(Table { names, columns })
 }
 
 fn schema(names: &[String]) -> Result<Arc<Type>, ParquetError> {
@@ -84,7 +116,6 @@ fn add_group(
 mod tests {
     use std::fs;
 
-    use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::Field;
 
     use super::*;
@@ -97,6 +128,9 @@ mod tests {
         let lines: String = rows.iter().map(|[a, b]| format!("{a:?},{b:?}\n")).collect();
         fs::write(&csv, format!("time_s,\"block, left\"\n{lines}")).unwrap();
         from_csv(&csv, &parquet).unwrap();
+        let columns = [0, 1].map(|k| rows.map(|row| row[k]).to_vec()).to_vec();
+        let names = ["time_s", "block, left"].map(String::from).to_vec();
+        assert_eq!(read(&parquet).unwrap(), Table { names, columns });
         let reader = SerializedFileReader::new(fs::File::open(&parquet).unwrap()).unwrap();
         let found: Vec<Vec<(String, Field)>> =
             reader.get_row_iter(None).unwrap().map(|row| row.unwrap().into_columns()).collect();

@@ -5,6 +5,7 @@ mod fields;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::folder::{HISTORY, PARQUET};
 use crate::mesh_file::MeshFileError;
 use crate::summary::Summary;
 use crate::table::{self, TableError};
@@ -50,7 +51,12 @@ pub fn summary(path: &Path) -> Result<Summary, ResultsError> {
     serde_json::from_str(&text).map_err(|source| ResultsError::Summary { path: path.to_path_buf(), source })
 }
 
-/// Reads `history.csv`.
+/// The history in the output folder of a run: as text, or else in columns.
+pub fn history_file(folder: &Path) -> Option<PathBuf> {
+    [HISTORY, PARQUET[0]].map(|name| folder.join(name)).into_iter().find(|file| file.is_file())
+}
+
+/// Reads a history.
 ///
 /// # Errors
 /// [`ResultsError`] when the file cannot be read, or a row is not one number per column.

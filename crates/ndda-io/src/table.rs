@@ -15,12 +15,12 @@ pub struct Table {
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
     /// It cannot be read.
-    #[error("cannot read {}: {source}", file.display())]
-    Csv {
+    #[error("cannot read {}: {reason}", file.display())]
+    Unreadable {
         /// The file.
         file: PathBuf,
         /// What is wrong.
-        source: csv::Error,
+        reason: String,
     },
     /// A value is not a number.
     #[error("{}, row {row}: `{value}` in column `{column}` is not a number", file.display())]
@@ -44,12 +44,16 @@ impl Table {
     }
 }
 
-/// Reads a table such as `history.csv`.
+/// Reads a table such as `history.csv` or `history.parquet`.
 ///
 /// # Errors
 /// [`TableError`] naming the file, and row and column of a value that is not a number.
 pub fn read(file: &Path) -> Result<Table, TableError> {
-    let broken = |source| TableError::Csv { file: file.to_path_buf(), source };
+    if file.extension().is_some_and(|ending| ending == "parquet") {
+        return columns(file);
+    }
+    let broken =
+        |error: csv::Error| TableError::Unreadable { file: file.to_path_buf(), reason: error.to_string() };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(broken)?;
     let names: Vec<String> = reader.headers().map_err(broken)?.iter().map(String::from).collect();
     let mut columns = vec![Vec::new(); names.len()];
@@ -66,6 +70,17 @@ pub fn read(file: &Path) -> Result<Table, TableError> {
         }
     }
     Ok(Table { names, columns })
+}
+
+#[cfg(feature = "parquet")]
+fn columns(file: &Path) -> Result<Table, TableError> {
+    crate::parquet_file::read(file)
+}
+
+#[cfg(not(feature = "parquet"))]
+fn columns(file: &Path) -> Result<Table, TableError> {
+    let reason = "this program was built without Parquet: build it with `--features parquet`".into();
+    Err(TableError::Unreadable { file: file.to_path_buf(), reason })
 }
 
 #[cfg(test)]

@@ -28,16 +28,19 @@ impl Input {
             return Err(ReportError::NotAFolder(folder.to_path_buf()));
         }
         let has = |name: &str| folder.join(name).is_file();
-        if !has(SUMMARY) && !has(HISTORY) && !has(CHECKPOINT) {
+        let history = results::history_file(folder);
+        if !has(SUMMARY) && history.is_none() && !has(CHECKPOINT) {
             return Err(ReportError::NotARun(folder.to_path_buf()));
         }
-        if let Some(missing) = [SUMMARY, HISTORY].into_iter().find(|name| !has(name)) {
-            return Err(ReportError::Incomplete { folder: folder.to_path_buf(), missing });
+        let incomplete = |missing| ReportError::Incomplete { folder: folder.to_path_buf(), missing };
+        if !has(SUMMARY) {
+            return Err(incomplete(SUMMARY));
         }
+        let history = history.ok_or_else(|| incomplete(HISTORY))?;
         let index = folder.join(FIELDS_INDEX);
         Ok(Self {
             summary: results::summary(&folder.join(SUMMARY))?,
-            history: results::history(&folder.join(HISTORY))?,
+            history: results::history(&history)?,
             frames: if index.is_file() { results::frame_list(&index)? } else { Vec::new() },
         })
     }

@@ -124,11 +124,7 @@ impl Motion {
             nodes: self.start.len(),
             triangles: self.surface.triangles.len(),
             still: (0..lengths.len()).filter(|&b| lengths[b] < STILL * farthest).collect(),
-            moved: Range {
-                least: self.moved.least,
-                largest: self.moved.largest,
-                top: farthest as f32,
-            },
+            moved: Range { least: self.moved.least, largest: self.moved.largest, top: farthest as f32 },
             fields,
             arrays: packed.arrays.drain(..).collect(),
         };
