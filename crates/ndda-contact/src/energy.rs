@@ -97,7 +97,7 @@ impl BlockOverlaps {
         self.origin.clear();
         self.origin.resize(self.pairs.len(), None);
         for (f, facet) in candidates.facets.iter().enumerate() {
-            let area: f64 = integrals.hits_of(f).iter().map(|hit| hit.moments.area).sum();
+            let area: f64 = integrals.sums_of(f).area;
             if area <= 0.0 {
                 continue;
             }
@@ -106,7 +106,7 @@ impl BlockOverlaps {
             let corners = input.blocks.triangle_corners(facet.triangle, input.position);
             let origin = *self.origin[k].get_or_insert(corners[0]);
             let normal = triangle_area_vector(&corners).normalize();
-            self.pressure_m2[k] += integrals.hits_of(f).iter().map(|hit| hit.moments.total()).sum::<f64>();
+            self.pressure_m2[k] += integrals.sums_of(f).pressure;
             self.overlap_m3[k] += area * (corners[0] - origin).dot(&normal) / 3.0;
         }
     }

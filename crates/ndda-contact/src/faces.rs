@@ -19,12 +19,13 @@
 use std::ops::Range;
 
 use ndda_mesh::{BlockId, BlockSet, Vec3};
+use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
-use crate::candidates::Candidates;
+use crate::candidates::{Candidates, Facet};
 use crate::facets::{FacetForce, mass_per_area, reduced, relative_velocity};
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
-use crate::integrals::Integrals;
+use crate::integrals::{FacetSums, Integrals};
 use crate::joints::Joints;
 use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
 
@@ -33,15 +34,59 @@ const SPRING: f64 = 0.1;
 /// ζ, the part of a slip velocity that a step takes away.
 const DAMPER: f64 = 0.2;
 
+/// Faces below which a second thread costs more than it brings.
+const GRAIN_PATCHES: usize = 64;
+
+/// What all faces read.
+#[derive(Clone, Copy)]
+pub struct FaceScene<'a> {
+    /// Blocks and their motion.
+    pub input: &'a ContactInput<'a>,
+    /// Pairs and facets.
+    pub candidates: &'a Candidates,
+    /// Integrals of the pairs.
+    pub integrals: &'a Integrals,
+    /// Laws.
+    pub joints: &'a Joints,
+}
+
+impl FaceScene<'_> {
+    fn facet(&self, f: u32) -> &Facet {
+        &self.candidates.facets[f as usize]
+    }
+
+    fn sums(&self, f: u32) -> &FacetSums {
+        self.integrals.sums_of(f as usize)
+    }
+
+    /// Centre of pressure of a facet [m].
+    fn center(&self, f: u32) -> Vec3 {
+        self.sums(f).center(&self.input.blocks.triangle_corners(self.facet(f).triangle, self.input.position))
+    }
+
+    /// The law of the facets of a run, if it acts on faces.
+    fn law(&self, run: &[Place]) -> Option<&dyn FrictionLaw> {
+        let (_, target, first) = run[0];
+        let law = self.joints.law(self.input.blocks, self.facet(first).triangle, target);
+        law.filter(|law| law.acts_on_faces())
+    }
+}
+
+/// (face, target, facet).
+type Place = (u32, BlockId, u32);
+
 /// Facets by face and target, and room for what a step finds.
 #[derive(Default)]
 pub struct Faces {
     /// Face of each boundary triangle, numbered over all blocks.
     face_of: Vec<u32>,
-    /// (face, target, facet), sorted.
-    order: Vec<(u32, BlockId, u32)>,
+    /// Facets by face and target.
+    order: Vec<Place>,
+    /// Those of each face and target, in `order`.
+    runs: Vec<Range<usize>>,
     block_area: Vec<f64>,
     bodies: Vec<Body>,
+    /// One per run.
     patches: Vec<Patch>,
     new_faces: Vec<FaceMemory>,
 }
@@ -51,9 +96,7 @@ pub struct Faces {
 struct Patch {
     owner: BlockId,
     target: BlockId,
-    /// Its facets in the order of faces.
-    run: Range<usize>,
-    /// ∫ φ dA and its centre.
+    /// ∫ φ dA and its centre; nothing else counts where there is no pressure.
     pressure: f64,
     center: Vec3,
     normal: Vec3,
@@ -67,6 +110,10 @@ struct Patch {
     spin_rad_s: f64,
     /// Friction of the last step, turned with the face; none at first touch.
     old: Option<FaceMemory>,
+    /// Friction of this step [N, N m], and what is kept of it.
+    force_n: Vec3,
+    torque_n_m: f64,
+    memory: FaceMemory,
 }
 
 impl Faces {
@@ -91,95 +138,71 @@ impl Faces {
     /// Sorts facets by face and target; needed when the list of facets has changed.
     pub fn arrange(&mut self, candidates: &Candidates) {
         self.order.clear();
-        let key = |(f, facet): (usize, &crate::candidates::Facet)| {
-            (self.face_of[facet.triangle.index()], facet.target, f as u32)
-        };
-        self.order.extend(candidates.facets.iter().enumerate().map(key));
+        let place =
+            |(f, facet): (usize, &Facet)| (self.face_of[facet.triangle.index()], facet.target, f as u32);
+        self.order.extend(candidates.facets.iter().enumerate().map(place));
         self.order.sort_unstable();
+        self.runs.clear();
+        let mut start = 0;
+        for run in self.order.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            self.runs.push(start..start + run.len());
+            start += run.len();
+        }
     }
 
     /// Adds the friction of faces whose law asks for it to the facets' forces, and takes over what they remember.
-    pub fn add(
-        &mut self,
-        input: &ContactInput,
-        candidates: &Candidates,
-        integrals: &Integrals,
-        joints: &Joints,
-        forces: &mut [FacetForce],
-        history: &mut ContactHistory,
-    ) {
-        self.sum_areas(input, candidates, integrals);
-        self.find_patches(input, candidates, integrals, joints, forces, history);
-        self.push_bodies(input, candidates, integrals, forces);
+    pub fn add(&mut self, scene: &FaceScene, forces: &mut [FacetForce], history: &mut ContactHistory) {
+        self.sum_areas(scene);
+        self.find_patches(scene, forces, history);
+        self.push_bodies(scene, forces);
+        self.rub(scene);
         self.new_faces.clear();
-        for patch in &self.patches {
-            let (_, _, first) = self.order[patch.run.start];
-            let facet = candidates.facets[first as usize].triangle;
-            let law = joints.law(input.blocks, facet, patch.target).expect("patches have a law");
-            let step = FaceStep { dt_s: input.dt_s, patch, bodies: &self.bodies, areas: &self.block_area };
-            let (force_n, torque_n_m, memory) = step.advance(law);
-            let run = &self.order[patch.run.clone()];
+        for (patch, run) in self.patches.iter().zip(&self.runs).filter(|(patch, _)| patch.presses()) {
+            let run = &self.order[run.clone()];
+            let twist = patch.torque_n_m / patch.pressure / patch.radius2;
             for &(_, _, f) in run {
-                let arm = pressure_center(f, input, candidates, integrals) - patch.center;
-                let twist = torque_n_m / patch.pressure / patch.radius2;
-                forces[f as usize].shear = force_n / patch.pressure + twist * patch.normal.cross(&arm);
-                forces[f as usize].sticks = !memory.slides;
+                let arm = scene.center(f) - patch.center;
+                forces[f as usize].shear = patch.force_n / patch.pressure + twist * patch.normal.cross(&arm);
+                forces[f as usize].sticks = !patch.memory.slides;
             }
             let (face, target, _) = run[0];
-            self.new_faces.push(FaceMemory { face, target, ..memory });
+            self.new_faces.push(FaceMemory { face, target, ..patch.memory });
         }
         std::mem::swap(&mut history.faces, &mut self.new_faces);
     }
 
-    fn find_patches(
-        &mut self,
-        input: &ContactInput,
-        candidates: &Candidates,
-        integrals: &Integrals,
-        joints: &Joints,
-        forces: &[FacetForce],
-        history: &ContactHistory,
-    ) {
-        self.patches.clear();
-        let same = |a: &(u32, BlockId, u32), b: &(u32, BlockId, u32)| (a.0, a.1) == (b.0, b.1);
-        let mut start = 0;
-        for run in self.order.chunk_by(same) {
-            let (face, target, first) = run[0];
-            let range = start..start + run.len();
-            start = range.end;
-            let facet = candidates.facets[first as usize].triangle;
-            if joints.law(input.blocks, facet, target).is_none_or(|law| !law.acts_on_faces()) {
-                continue;
+    /// Where each face presses, how hard, and how it slips.
+    fn find_patches(&mut self, scene: &FaceScene, forces: &[FacetForce], history: &ContactHistory) {
+        let (order, runs) = (&self.order, &self.runs);
+        self.patches.resize(runs.len(), Patch::default());
+        let find = |(patch, run): (&mut Patch, &Range<usize>)| {
+            *patch = Patch::find(&order[run.clone()], scene, forces, history);
+        };
+        self.patches.par_iter_mut().zip(runs).with_min_len(GRAIN_PATCHES).for_each(find);
+    }
+
+    /// Friction of each face.
+    fn rub(&mut self, scene: &FaceScene) {
+        let (order, bodies, areas) = (&self.order, &self.bodies, &self.block_area);
+        let rub = |(patch, run): (&mut Patch, &Range<usize>)| {
+            if patch.presses() {
+                let law = scene.law(&order[run.clone()]).expect("patches have a law");
+                let step = FaceStep { dt_s: scene.input.dt_s, patch, bodies, areas };
+                (patch.force_n, patch.torque_n_m, patch.memory) = step.advance(law);
             }
-            let owner = input.blocks.triangle_block[facet.index()];
-            let mut patch = Patch { owner, target, run: range, ..Patch::default() };
-            patch.sum(run, input, candidates, integrals, forces);
-            if patch.pressure > 0.0 && patch.area_m2 > 0.0 {
-                patch.measure(run, input, candidates, integrals);
-                let old = remembered(history, face, target);
-                let old = old.filter(|old| old.normal.dot(&patch.normal) > 0.0);
-                patch.old = old.map(|old| old.turned_to(&patch.normal));
-                self.patches.push(patch);
-            }
-        }
+        };
+        self.patches.par_iter_mut().zip(&self.runs).with_min_len(GRAIN_PATCHES).for_each(rub);
     }
 
     /// All blocks under their loads, the normal forces of this step and the friction of the last one.
-    fn push_bodies(
-        &mut self,
-        input: &ContactInput,
-        candidates: &Candidates,
-        integrals: &Integrals,
-        forces: &[FacetForce],
-    ) {
+    fn push_bodies(&mut self, scene: &FaceScene, forces: &[FacetForce]) {
         self.bodies.clear();
-        self.bodies.extend_from_slice(input.bodies);
-        for (f, (facet, force)) in candidates.facets.iter().zip(forces).enumerate() {
+        self.bodies.extend_from_slice(scene.input.bodies);
+        for (f, (facet, force)) in (0..).zip(scene.candidates.facets.iter().zip(forces)) {
             if force.touches {
-                let pressure: f64 = integrals.hits_of(f).iter().map(|hit| hit.moments.total()).sum();
-                let center = pressure_center(f as u32, input, candidates, integrals);
-                let owner = input.blocks.triangle_block[facet.triangle.index()];
-                let push = pressure * (force.push + force.shear);
+                let center = scene.center(f);
+                let owner = scene.input.blocks.triangle_block[facet.triangle.index()];
+                let push = scene.sums(f).pressure * (force.push + force.shear);
                 self.bodies[owner.index()].push(&center, &push);
                 self.bodies[facet.target.index()].push(&center, &-push);
             }
@@ -195,12 +218,12 @@ impl Faces {
         }
     }
 
-    fn sum_areas(&mut self, input: &ContactInput, candidates: &Candidates, integrals: &Integrals) {
+    fn sum_areas(&mut self, scene: &FaceScene) {
         self.block_area.clear();
-        self.block_area.resize(input.blocks.len(), 0.0);
-        for (f, facet) in candidates.facets.iter().enumerate() {
-            let area: f64 = integrals.hits_of(f).iter().map(|hit| hit.moments.area).sum();
-            let owner = input.blocks.triangle_block[facet.triangle.index()];
+        self.block_area.resize(scene.input.blocks.len(), 0.0);
+        for (f, facet) in (0..).zip(&scene.candidates.facets) {
+            let area = scene.sums(f).area;
+            let owner = scene.input.blocks.triangle_block[facet.triangle.index()];
             self.block_area[owner.index()] += area;
             self.block_area[facet.target.index()] += area;
         }
@@ -208,22 +231,35 @@ impl Faces {
 }
 
 impl Patch {
-    fn sum(
-        &mut self,
-        run: &[(u32, BlockId, u32)],
-        input: &ContactInput,
-        candidates: &Candidates,
-        integrals: &Integrals,
-        forces: &[FacetForce],
-    ) {
+    fn find(run: &[Place], scene: &FaceScene, forces: &[FacetForce], history: &ContactHistory) -> Self {
+        let (face, target, first) = run[0];
+        if scene.law(run).is_none() {
+            return Self::default();
+        }
+        let owner = scene.input.blocks.triangle_block[scene.facet(first).triangle.index()];
+        let mut patch = Self { owner, target, ..Self::default() };
+        patch.sum(run, scene, forces);
+        if !patch.presses() {
+            return Self::default();
+        }
+        patch.measure(run, scene);
+        let old = remembered(history, face, target).filter(|old| old.normal.dot(&patch.normal) > 0.0);
+        patch.old = old.map(|old| old.turned_to(&patch.normal));
+        patch
+    }
+
+    fn presses(&self) -> bool {
+        self.pressure > 0.0 && self.area_m2 > 0.0
+    }
+
+    fn sum(&mut self, run: &[Place], scene: &FaceScene, forces: &[FacetForce]) {
         let mut push = Vec3::zeros();
         for &(_, _, f) in run {
-            let hits = integrals.hits_of(f as usize);
-            let pressure: f64 = hits.iter().map(|hit| hit.moments.total()).sum();
+            let FacetSums { pressure, area, .. } = *scene.sums(f);
             if pressure > 0.0 {
                 self.pressure += pressure;
-                self.center += pressure * pressure_center(f, input, candidates, integrals);
-                self.area_m2 += hits.iter().map(|hit| hit.moments.area).sum::<f64>();
+                self.center += pressure * scene.center(f);
+                self.area_m2 += area;
                 push += pressure * forces[f as usize].push;
             }
         }
@@ -237,22 +273,14 @@ impl Patch {
     }
 
     /// Radii and slip about the centre; a facet counts with its own size, so that one facet has a radius, too.
-    fn measure(
-        &mut self,
-        run: &[(u32, BlockId, u32)],
-        input: &ContactInput,
-        candidates: &Candidates,
-        integrals: &Integrals,
-    ) {
+    fn measure(&mut self, run: &[Place], scene: &FaceScene) {
         let mut twist = 0.0;
         for &(_, _, f) in run {
-            let hits = integrals.hits_of(f as usize);
-            let pressure: f64 = hits.iter().map(|hit| hit.moments.total()).sum();
-            let area: f64 = hits.iter().map(|hit| hit.moments.area).sum();
+            let FacetSums { pressure, area, .. } = *scene.sums(f);
             if pressure > 0.0 {
-                let facet = &candidates.facets[f as usize];
-                let arm = pressure_center(f, input, candidates, integrals) - self.center;
-                let slip = relative_velocity(facet, hits, candidates, input);
+                let hits = scene.integrals.hits_of(f as usize);
+                let arm = scene.center(f) - self.center;
+                let slip = relative_velocity(scene.facet(f), hits, scene.candidates, scene.input);
                 // A disc of the same area: mean r² = A/2π.
                 let radius2 = arm.norm_squared() + area / std::f64::consts::TAU;
                 self.radius2 += pressure / self.pressure * radius2;
@@ -379,25 +407,6 @@ fn remembered(history: &ContactHistory, face: u32, target: BlockId) -> Option<Fa
     let key = |memory: &FaceMemory| (memory.face, memory.target);
     let place = history.faces.binary_search_by_key(&(face, target), key);
     place.ok().map(|place| history.faces[place])
-}
-
-/// ∫ φ x dA / ∫ φ dA of a facet.
-pub(crate) fn pressure_center(
-    f: u32,
-    input: &ContactInput,
-    candidates: &Candidates,
-    integrals: &Integrals,
-) -> Vec3 {
-    let corners = input.blocks.triangle_corners(candidates.facets[f as usize].triangle, input.position);
-    let mut weights = [0.0; 3];
-    for hit in integrals.hits_of(f as usize) {
-        (0..3).for_each(|a| weights[a] += hit.moments.pressure[a]);
-    }
-    let total = weights[0] + weights[1] + weights[2];
-    if total <= 0.0 {
-        return corners[0];
-    }
-    (corners[0] * weights[0] + corners[1] * weights[1] + corners[2] * weights[2]) / total
 }
 
 /// Two unit vectors across a normal.

@@ -5,7 +5,7 @@ use ndda_mesh::{TetId, Vec3};
 
 use crate::candidates::{Candidates, Facet};
 use crate::friction::{FacetSlip, ShearMemory};
-use crate::integrals::Hit;
+use crate::integrals::{FacetSums, Hit};
 use crate::joints::{Joints, Memory};
 use crate::model::{Body, ContactHistory, ContactInput, FacetMemory};
 
@@ -45,16 +45,15 @@ pub struct FacetScene<'a> {
 impl FacetScene<'_> {
     /// Normal force −k n ∫ φ dA and friction of one facet.
     #[inline]
-    pub fn force(&self, facet: &Facet, hits: &[Hit], penalty_pa: f64) -> FacetForce {
-        let pressure: f64 = hits.iter().map(|hit| hit.moments.total()).sum();
-        if pressure <= 0.0 {
+    pub fn force(&self, facet: &Facet, (hits, sums): (&[Hit], &FacetSums), penalty_pa: f64) -> FacetForce {
+        if sums.pressure <= 0.0 {
             return FacetForce::default();
         }
         let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
         let normal = triangle_area_vector(&corners).normalize();
         let mut force = FacetForce { push: -penalty_pa * normal, touches: true, ..FacetForce::default() };
         if let Some(joints) = self.joints {
-            self.add_friction(joints, facet, hits, (pressure, penalty_pa), &mut force);
+            self.add_friction(joints, facet, (hits, sums), penalty_pa, &mut force);
         }
         force
     }
@@ -65,8 +64,8 @@ impl FacetScene<'_> {
         &self,
         joints: &Joints,
         facet: &Facet,
-        hits: &[Hit],
-        (pressure, penalty_pa): (f64, f64),
+        (hits, sums): (&[Hit], &FacetSums),
+        penalty_pa: f64,
         force: &mut FacetForce,
     ) {
         let law = joints.law(self.input.blocks, facet.triangle, facet.target);
@@ -74,29 +73,27 @@ impl FacetScene<'_> {
         let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
         let basis = facet_basis(&corners, &(-force.push / penalty_pa));
         let mut memory = self.remembered(facet);
-        let slip = self.slip(facet, hits, &basis, pressure, penalty_pa);
+        let slip = self.slip(facet, (hits, sums), &basis, penalty_pa);
         law.advance(&slip, &mut memory);
         let [x, y] = memory.shear_n;
         force.sticks = x.hypot(y) < STICKS * law.capacity_n(&slip, &memory);
-        force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / pressure;
-        force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / pressure;
+        force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / sums.pressure;
+        force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / sums.pressure;
         force.memory = Some(memory);
     }
 
     fn slip(
         &self,
         facet: &Facet,
-        hits: &[Hit],
+        (hits, sums): (&[Hit], &FacetSums),
         basis: &[Vec3; 2],
-        pressure: f64,
         penalty_pa: f64,
     ) -> FacetSlip {
         let in_basis = |v: &Vec3| [v.dot(&basis[0]), v.dot(&basis[1])];
-        let area_m2 = hits.iter().map(|hit| hit.moments.area).sum();
-        let velocity = relative_velocity(facet, hits, self.candidates, self.input) / pressure;
+        let velocity = relative_velocity(facet, hits, self.candidates, self.input) / sums.pressure;
         FacetSlip {
-            normal_n: penalty_pa * pressure,
-            area_m2,
+            normal_n: penalty_pa * sums.pressure,
+            area_m2: sums.area,
             slip_m: in_basis(&(self.input.dt_s * velocity)),
             stopping_n: [0.0; 2],
         }

@@ -26,6 +26,41 @@ pub struct Hit {
     pub moments: PairMoments,
 }
 
+/// What the hits of a facet come to.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FacetSums {
+    /// ∫ φ dA [m²].
+    pub pressure: f64,
+    /// ∫ φ ψ_a dA [m²].
+    pub weights: [f64; 3],
+    /// ∫ |∂φ/∂n| ψ_a dA [m].
+    pub slope: [f64; 3],
+    /// Area that touches [m²].
+    pub area: f64,
+}
+
+impl FacetSums {
+    fn of(hits: &[Hit]) -> Self {
+        let mut sums = Self::default();
+        for Hit { moments, .. } in hits {
+            sums.pressure += moments.total();
+            sums.area += moments.area;
+            for a in 0..3 {
+                sums.weights[a] += moments.pressure[a];
+                sums.slope[a] += moments.slope[a];
+            }
+        }
+        sums
+    }
+
+    /// Centre of pressure ∫ φ x dA / ∫ φ dA [m] on a facet with these corners; the first where there is no pressure.
+    pub fn center(&self, corners: &[Vec3; 3]) -> Vec3 {
+        let [a, b, c] = self.weights;
+        let total = a + b + c;
+        if total <= 0.0 { corners[0] } else { (corners[0] * a + corners[1] * b + corners[2] * c) / total }
+    }
+}
+
 /// What all chunks read.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
@@ -50,6 +85,8 @@ pub struct Chunk {
     pub hits: Vec<Hit>,
     /// End of each facet's hits.
     ends: Vec<usize>,
+    /// Sums of each facet's hits.
+    sums: Vec<FacetSums>,
 }
 
 /// What a thread needs while it is at a chunk.
@@ -87,6 +124,10 @@ impl Chunk {
             hit.moments.drop_rounding();
             hit.moments.share_with_target(lambda);
         }
+        let mut sums = std::mem::take(&mut self.sums);
+        sums.clear();
+        sums.extend((0..facets.len()).map(|k| FacetSums::of(self.hits_of(k))));
+        self.sums = sums;
     }
 
     fn add_facet(&mut self, arch: Arch, scene: &Scene, facet: &Facet, scratch: &mut Scratch) {
@@ -226,5 +267,11 @@ impl Integrals {
     pub fn hits_of(&self, facet: usize) -> &[Hit] {
         let chunk = &self.chunks[self.chunk_of[facet] as usize];
         chunk.hits_of(facet - chunk.facets.start)
+    }
+
+    /// What the hits of a facet come to.
+    pub fn sums_of(&self, facet: usize) -> &FacetSums {
+        let chunk = &self.chunks[self.chunk_of[facet] as usize];
+        &chunk.sums[facet - chunk.facets.start]
     }
 }

@@ -9,7 +9,7 @@ use crate::bonds;
 use crate::candidates::Candidates;
 use crate::element_potential::ElementPotential;
 use crate::energy;
-use crate::faces::{Faces, pressure_center};
+use crate::faces::{FaceScene, Faces};
 use crate::facets::{FacetForce, FacetScene};
 use crate::friction::FrictionLaw;
 use crate::integrals::{Integrals, Scene};
@@ -164,7 +164,7 @@ impl PotentialContact {
         self.forces.resize(facets.len(), FacetForce::default());
         let penalties = &self.penalty_of_facet;
         let place = |(f, force): (usize, &mut FacetForce)| {
-            *force = scene.force(&facets[f], integrals.hits_of(f), penalties[f]);
+            *force = scene.force(&facets[f], (integrals.hits_of(f), integrals.sums_of(f)), penalties[f]);
         };
         if facets.len() > GRAIN_FACETS {
             self.forces.par_iter_mut().enumerate().with_min_len(GRAIN_FACETS / 2).for_each(place);
@@ -238,7 +238,8 @@ impl ContactModel for PotentialContact {
         if self.needs_bodies() && !input.bodies.is_empty() {
             let joints = self.joints.as_ref().expect("faces rub by a law");
             let (candidates, integrals) = (&self.candidates, &self.integrals);
-            self.faces.add(input, candidates, integrals, joints, &mut self.forces, history);
+            let scene = FaceScene { input, candidates, integrals, joints };
+            self.faces.add(&scene, &mut self.forces, history);
         }
         let scene = crate::scatter::ScatterScene {
             blocks: input.blocks,
@@ -300,16 +301,15 @@ impl ContactModel for PotentialContact {
             if !force.touches {
                 continue;
             }
-            let hits = self.integrals.hits_of(f);
-            let pressure: f64 = hits.iter().map(|hit| hit.moments.total()).sum();
+            let sums = self.integrals.sums_of(f);
             facets.push(FacetContact {
                 facet: facet.triangle,
                 target: facet.target,
-                area_m2: hits.iter().map(|hit| hit.moments.area).sum(),
+                area_m2: sums.area,
                 normal: -force.push.normalize(),
-                center: pressure_center(f as u32, input, &self.candidates, &self.integrals),
-                push_n: pressure * force.push,
-                friction_n: pressure * force.shear,
+                center: sums.center(&input.blocks.triangle_corners(facet.triangle, input.position)),
+                push_n: sums.pressure * force.push,
+                friction_n: sums.pressure * force.shear,
                 sticks: force.sticks,
             });
         }

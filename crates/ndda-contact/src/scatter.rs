@@ -6,7 +6,7 @@ use ndda_mesh::BlockSet;
 
 use crate::candidates::Candidates;
 use crate::facets::FacetForce;
-use crate::integrals::{Hit, Integrals};
+use crate::integrals::{FacetSums, Hit, Integrals};
 use crate::model::ContactOutput;
 
 /// Facets per half below which a second thread costs more than it brings.
@@ -140,13 +140,7 @@ impl BlockNodes<'_> {
         if !force.touches {
             return;
         }
-        let (mut pressure, mut slope) = ([0.0; 3], [0.0; 3]);
-        for hit in scene.integrals.hits_of(f) {
-            for a in 0..3 {
-                pressure[a] += hit.moments.pressure[a];
-                slope[a] += hit.moments.slope[a];
-            }
-        }
+        let FacetSums { weights: pressure, slope, .. } = scene.integrals.sums_of(f);
         let nodes = scene.blocks.triangles[facet.triangle.index()];
         for a in 0..3 {
             self.add(nodes[a].index(), pressure[a], force, scene.stiffness(f, slope[a], pressure[a]));
