@@ -1,14 +1,18 @@
 """Pictures of docs/evidence/paper from its CSV, in the form of the paper's figures. Needs matplotlib."""
 
+import io
+
 import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
+from PIL import Image
 
 from results import read_curves
 
 SCHEMES = ("paper", "Midpoint", "GeneralizedAlpha", "Midpoint, contact at the end")
 NAMES = {"paper": "the paper's scheme"}
+SHARED = {"sharex": True, "sharey": True, "constrained_layout": True}
 # What the paper's text prints: curves it names, and the size that it gives their errors.
 CLAIMS = {
     "fig5": [(1e-4, "paper, k_n = 1e-5 E: 1e-4"), (1e-3, "paper, k_n = 1e-6 E: 1e-3")],
@@ -24,28 +28,28 @@ def parts(label):
     return (*label.split(" | "), "", "")[:3]
 
 
-def panel(axes, name, curves, start):
+def panel(axes, name, start, times, curves):
     """Curves of one scheme and one start over time."""
     varied = list(dict.fromkeys(parts(label)[0] for label in curves))
-    times, own = curves["time"], {k: v for k, v in curves.items() if k != "time"}
     colours = plt.colormaps["viridis"]
-    for label, values in own.items():
+    for label, values in curves.items():
         kind, scheme, begins = parts(label)
         if scheme == name and begins == start:
-            place = (varied.index(kind) - 1) / max(len(varied) - 2, 1)
-            axes.semilogy(times, [abs(v) for v in values], linewidth=0.8, color=colours(0.95 * place), label=kind)
+            colour = colours(0.88 * varied.index(kind) / max(len(varied) - 1, 1))
+            axes.semilogy(times, [abs(v) for v in values], linewidth=0.8, color=colour, label=kind)
     axes.set_title(", ".join(filter(None, (NAMES.get(name, name), start if start == "at rest" else ""))), fontsize=9)
 
 
-def errors(figure, folder, curves):
+def errors(figure, folder, times, curves):
     """One panel per scheme and start, all with the same axes."""
-    starts = list(dict.fromkeys(parts(label)[2] for label in curves if label != "time"))
+    starts = list(dict.fromkeys(parts(label)[2] for label in curves))
     schemes = [s for s in SCHEMES if any(parts(label)[1] == s for label in curves)]
-    canvas, grid = plt.subplots(len(starts), len(schemes), figsize=(3.0 * len(schemes) + 1.6, 2.7 * len(starts)), sharex=True, sharey=True, squeeze=False, constrained_layout=True)
+    size = (3.0 * len(schemes) + 1.6, 2.7 * len(starts))
+    canvas, grid = plt.subplots(len(starts), len(schemes), figsize=size, squeeze=False, **SHARED)
     for i, start in enumerate(starts):
         for j, scheme in enumerate(schemes):
             axes = grid[i][j]
-            panel(axes, scheme, curves, start)
+            panel(axes, scheme, start, times, curves)
             for k, (size, said) in enumerate(CLAIMS.get(figure, [])):
                 axes.axhline(size, color="#b5523b", linewidth=1, linestyle=("--", ":")[k], label=said)
             axes.set_ylim(1e-9, 1e3 if figure == "fig5" else 1)
@@ -64,18 +68,17 @@ def steps(folder):
     both = {}
     for figure, step in (("fig5", "Δt = 1e-4 s"), ("fig6", "Δt = 1e-5 s")):
         times, curves = read_curves(folder / f"{figure}.csv")
-        both["time"] = times
         for label, values in curves.items():
             kind, scheme, start = parts(label)
             if kind == "k_n = 1e-5 E" and scheme in SCHEMES[:3]:
                 both[" | ".join((step, scheme, start))] = values
-    errors("fig7", folder, both)
+    errors("fig7", folder, times, both)
 
 
 def momentum(folder):
     """Fig. 3: momentum over time, a panel per case and scheme."""
     times, curves = read_curves(folder / "fig3.csv")
-    canvas, grid = plt.subplots(2, 3, figsize=(9, 4.6), sharex=True, sharey=True, constrained_layout=True)
+    canvas, grid = plt.subplots(2, 3, figsize=(9, 4.6), **SHARED)
     for i, case in enumerate("12"):
         for j, scheme in enumerate(SCHEMES[:3]):
             axes = grid[i][j]
@@ -93,8 +96,11 @@ def momentum(folder):
 
 
 def save(canvas, path):
-    canvas.savefig(path, dpi=90, pil_kwargs={"optimize": True})
+    """As a PNG of few colours, which is a third of the size."""
+    pixels = io.BytesIO()
+    canvas.savefig(pixels, dpi=90)
     plt.close(canvas)
+    Image.open(pixels).convert("RGB").quantize(64, dither=Image.Dither.NONE).save(path, optimize=True)
 
 
 def draw(folder):
@@ -102,5 +108,5 @@ def draw(folder):
     momentum(folder)
     for figure in ("fig5", "fig6", "fig8", "fig9", "fig10", "fig11"):
         times, curves = read_curves(folder / f"{figure}.csv")
-        errors(figure, folder, {"time": times} | curves)
+        errors(figure, folder, times, curves)
     steps(folder)

@@ -92,9 +92,25 @@ def angles(figure):
     return make
 
 
+TIMES = {
+    "problem": "problem",
+    "setting": "setting",
+    "step_s": "Δt [s]",
+    "steps": "steps",
+    "error": "error",
+    "limit": "to reach",
+    "wall_s": "run [s]",
+    "cpu_s": "processor [s]",
+    "wall_ratio": "times quicker",
+    "cpu_ratio": "… by processor",
+    "contact_s": "contact [s]",
+    "blocks_s": "blocks [s]",
+    "rest_s": "the rest [s]",
+}
+
+
 def times(rows):
-    line = lambda row: [row["problem"], row["setting"], row["step_s"], row["error"], row["limit"], row["wall_s"], row["cpu_s"], row["wall_ratio"], row["cpu_ratio"]]
-    return table(["problem", "setting", "Δt [s]", "error", "to reach", "run [s]", "processor [s]", "quicker", "… by processor time"], map(line, rows))
+    return table(list(TIMES.values()), ([row[name] for name in TIMES] for row in rows))
 
 
 TABLES = {"fig3": collision, "fig5": penalties("fig5"), "fig6": penalties("fig6"), "fig7": steps, "fig8": laws("fig8"), "fig9": laws("fig9")}
