@@ -97,6 +97,7 @@ TIMES = {
     "setting": "setting",
     "step_s": "Δt [s]",
     "steps": "steps",
+    "runs": "runs",
     "error": "error",
     "limit": "to reach",
     "wall_s": "run [s]",
