@@ -18,6 +18,7 @@ mod loads_over_time;
 mod lumped_mass;
 mod masonry_arch;
 mod one_block_alone;
+mod paper;
 mod prescribed_motion;
 mod release_of_initial_stress;
 mod rocking_block;

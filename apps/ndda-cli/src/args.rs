@@ -173,6 +173,9 @@ pub struct StudyHow {
     /// Print nothing but errors and results.
     #[arg(long, short)]
     pub quiet: bool,
+    /// Override a value of the base scene by its path; may be repeated. What the study itself sets comes after it.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub overrides: Vec<String>,
 }
 
 /// What runs the cases.

@@ -59,8 +59,10 @@ struct Opened<'a> {
 impl<'a> Opened<'a> {
     fn new(study: &Path, how: &'a StudyHow) -> Result<Self, StudyError> {
         let loaded = study::load(study).map_err(StudyError::Scene)?;
-        let cases = case::cases(&loaded)?;
-        let references = case::reference_cases(&loaded, &cases)?;
+        let mut cases = case::cases(&loaded)?;
+        case::set_first(&mut cases, &how.overrides);
+        let mut references = case::reference_cases(&loaded, &cases)?;
+        case::set_first(&mut references, &how.overrides);
         let name = study.file_stem().map_or_else(|| "study".into(), |s| s.to_string_lossy().into_owned());
         let out = how.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_study")));
         Ok(Self { loaded, name, cases, references, out, how })
@@ -80,8 +82,8 @@ impl<'a> Opened<'a> {
 fn run_all(study: &Path, args: &StudyArgs) -> Result<u8, StudyError> {
     let opened = Opened::new(study, &args.how)?;
     if let Some(kind) = args.emit {
-        let (out, threads) = (opened.out.as_path(), args.how.threads);
-        say(&emit::script(&Plan { study, out, jobs: args.jobs, threads }, &opened.runs(), kind));
+        let plan = Plan { study, out: &opened.out, jobs: args.jobs, how: &args.how };
+        say(&emit::script(&plan, &opened.runs(), kind));
         return Ok(exit::DONE);
     }
     make_folder(&opened.out)?;

@@ -145,6 +145,18 @@ fn a_scheduler_gets_commands_that_run_one_case_each() {
 }
 
 #[test]
+fn values_of_the_base_scene_are_set_before_those_of_the_study() {
+    let folder = folder(RUNS);
+    let set = ["study", "study.ron", "--set", "time.end_s=0.2", "--set", "time.step_s=1"];
+    let done = ndda(folder.path(), &set);
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    let results = json(folder.path().join("out/study_study/study.json"));
+    let steps: Vec<_> =
+        results["cases"].as_array().unwrap().iter().map(|case| case["figures"]["steps"].as_u64()).collect();
+    assert_eq!(steps, [Some(20), Some(40)]);
+}
+
+#[test]
 fn a_wrong_study_is_refused_at_its_place() {
     let folder = folder(&STUDY.replace("time.step_s", "blocks.nobody.at_m"));
     let done = ndda(folder.path(), &["study", "study.ron"]);
@@ -156,9 +168,11 @@ fn a_wrong_study_is_refused_at_its_place() {
 
 #[test]
 fn the_scenes_of_the_example_studies_are_right() {
-    let studies = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/studies");
-    for entry in fs::read_dir(studies).unwrap() {
-        let path = entry.unwrap().path();
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    let files = |folder: &str| fs::read_dir(scenes.join(folder)).unwrap().map(|entry| entry.unwrap().path());
+    // Beside the paper's studies are their scenes and scripts.
+    let is_figure = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().starts_with("fig");
+    for path in files("studies").chain(files("paper").filter(is_figure)) {
         let loaded = ndda_io::study::load(&path).unwrap_or_else(|errors| panic!("{errors}"));
         let cases = case::cases(&loaded).unwrap();
         let references = case::reference_cases(&loaded, &cases).unwrap();

@@ -90,6 +90,13 @@ pub fn reference_cases(loaded: &LoadedStudy, cases: &[Case]) -> Result<Vec<Case>
     Ok(runs.map(case).to_vec())
 }
 
+/// Puts values of the base scene before what the study sets.
+pub fn set_first(cases: &mut [Case], overrides: &[String]) {
+    for case in cases {
+        case.overrides.splice(0..0, overrides.iter().cloned());
+    }
+}
+
 /// `axis=choice__axis=choice`, with nothing in it that a file system or a shell could mistake.
 fn name(labels: &[(String, String)]) -> String {
     let part = |(axis, label): &(String, String)| format!("{}={}", plain(axis), plain(label));

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::case::Case;
-use crate::args::Emit;
+use crate::args::{Emit, StudyHow};
 
 /// How a scheduler is to run the cases.
 pub struct Plan<'a> {
@@ -13,44 +13,44 @@ pub struct Plan<'a> {
     pub out: &'a Path,
     /// Cases at a time.
     pub jobs: u16,
-    /// Threads of each.
-    pub threads: u16,
+    /// What every part of it is told.
+    pub how: &'a StudyHow,
 }
 
 /// A script that runs all cases.
 pub fn script(plan: &Plan, cases: &[Case], emit: Emit) -> String {
-    let command = format!("ndda study case {}", quoted(plan.study));
-    let options = format!("--out {} --threads {}", quoted(plan.out), plan.threads);
+    let study = quoted(&plan.study.display().to_string());
+    let command = format!("ndda study case {study}");
+    let mut options =
+        format!("--out {} --threads {}", quoted(&plan.out.display().to_string()), plan.how.threads);
+    plan.how.overrides.iter().for_each(|one| options += &format!(" --set {}", quoted(one)));
     let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
     match emit {
         Emit::List => {
             names.iter().map(|name| format!("{command} {name} {options}")).collect::<Vec<_>>().join("\n")
         }
         Emit::Parallel => format!(
-            "#!/bin/sh\nparallel --jobs {} {command} {{}} {options} ::: \\\n  {}\nndda study collect {} {options}",
+            "#!/bin/sh\nparallel --jobs {} {command} {{}} {options} ::: \\\n  {}\nndda study collect {study} {options}",
             plan.jobs,
             names.join(" \\\n  "),
-            quoted(plan.study),
         ),
         Emit::Slurm => format!(
             "#!/bin/sh\n#SBATCH --array=0-{}%{}\n#SBATCH --cpus-per-task={}\n\
-             # Afterwards: ndda study collect {} {options}\nset -- \\\n  {}\nshift \"$SLURM_ARRAY_TASK_ID\"\n\
+             # Afterwards: ndda study collect {study} {options}\nset -- \\\n  {}\nshift \"$SLURM_ARRAY_TASK_ID\"\n\
              exec {command} \"$1\" {options}",
             cases.len() - 1,
             plan.jobs,
-            plan.threads,
-            quoted(plan.study),
+            plan.how.threads,
             names.join(" \\\n  "),
         ),
     }
 }
 
-/// A path as one word of a shell.
-fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
+/// One word of a shell.
+fn quoted(text: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=".contains(c);
     if !text.is_empty() && text.chars().all(plain) {
-        text
+        text.to_string()
     } else {
         format!("'{}'", text.replace('\'', "'\\''"))
     }
@@ -63,13 +63,14 @@ mod tests {
     fn emitted(emit: Emit) -> String {
         let case =
             |name: &str| Case { name: name.into(), labels: Vec::new(), overrides: Vec::new(), repeats: 1 };
-        let plan = Plan { study: Path::new("it's.ron"), out: Path::new("out/s"), jobs: 3, threads: 2 };
+        let how = StudyHow { out: None, threads: 2, quiet: false, overrides: vec!["time.end_s=(1)".into()] };
+        let plan = Plan { study: Path::new("it's.ron"), out: Path::new("out/s"), jobs: 3, how: &how };
         script(&plan, &[case("a=1"), case("a=2")], emit)
     }
 
     #[test]
     fn a_list_has_one_command_per_case() {
-        let first = "ndda study case 'it'\\''s.ron' a=1 --out out/s --threads 2";
+        let first = "ndda study case 'it'\\''s.ron' a=1 --out out/s --threads 2 --set 'time.end_s=(1)'";
         assert_eq!(emitted(Emit::List).lines().next(), Some(first));
         assert_eq!(emitted(Emit::List).lines().count(), 2);
     }

@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""The paper's figures: runs the studies of this folder, keeps their data in docs/evidence/paper, fills the tables of docs/paper.md
+and draws the pictures.
+
+Usage: python3 scenes/paper/run.py            all of it, with `cargo run --release`; goes on where it was interrupted
+       python3 scenes/paper/run.py --thin     short runs of every case and nothing kept: does it all still run?
+       python3 scenes/paper/run.py --check    are the tables of docs/paper.md those of the data?
+       python3 scenes/paper/run.py --times    the times alone: on a machine that does nothing else
+       python3 scenes/paper/run.py --draw     pictures and tables from the data, without a run
+
+Needs python 3.9 or later; matplotlib for the pictures only.
+"""
+
+import argparse
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import results
+import tables
+import times
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+DATA = ROOT / "docs" / "evidence" / "paper"
+TEXT = ROOT / "docs" / "paper.md"
+# What makes a study short: the first moments, and for the collision a longer step.
+SHORT = {"fig3": ["time.step_s=1e-5"]}
+SHORT_OTHERS = ["time.end_s=0.024", "output.history_rows=6"]
+
+
+def build():
+    subprocess.run(["cargo", "build", "--release", "--quiet", "-p", "ndda-cli"], cwd=ROOT, check=True)
+    return ROOT / "target" / "release" / "ndda"
+
+
+def study(program, name, out, extra=(), jobs=1):
+    """Runs a study; a case that fails is part of what is found."""
+    command = [program, "study", HERE / f"{name}.ron", "--out", out / name, "--quiet", "--jobs", str(jobs)]
+    command += [part for one in extra for part in ("--set", one)]
+    done = subprocess.run(command, cwd=ROOT, stdout=subprocess.DEVNULL)
+    if done.returncode != 0:
+        raise SystemExit(f"{name}: ndda study ended with {done.returncode}")
+    return results.gather(out / name, name)
+
+
+def full(program):
+    DATA.mkdir(parents=True, exist_ok=True)
+    cases = []
+    for name in results.FIGURES:
+        rows, curves = study(program, name, ROOT / "out" / "paper")
+        results.write_curves(DATA / f"{name}.csv", curves)
+        cases += rows
+        print(f"{name}: {len(rows)} cases", flush=True)
+    results.write_rows(DATA / "cases.csv", cases)
+
+
+def time(program):
+    """Times are measured on files in memory where there are any: a disk that keeps runs waiting is no part of a scheme."""
+    memory = Path("/dev/shm")
+    with tempfile.TemporaryDirectory(dir=memory if memory.is_dir() else None) as folder:
+        timed = times.measure_all(program, HERE, Path(folder) / "run")
+    results.write_rows(DATA / "times.csv", timed, times.COLUMNS)
+
+
+def thin(program):
+    """Every case for its first moments."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = Path(folder)
+        for name in results.FIGURES:
+            rows, _ = study(program, name, out, SHORT.get(name, SHORT_OTHERS), jobs=2)
+            stopped = [row for row in rows if row["status"] != "done"]
+            print(f"{name}: {len(rows)} cases, {len(stopped)} stopped")
+            if any((row["figure"], row["scheme"]) != ("fig5", "GeneralizedAlpha") for row in stopped):
+                raise SystemExit(f"{name}: {stopped}")
+
+
+def text():
+    """docs/paper.md as it is, and as the data says."""
+    now = TEXT.read_text(encoding="utf-8")
+    return now, tables.fill(now, results.read_rows(DATA / "cases.csv"), results.read_rows(DATA / "times.csv"))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in ("--thin", "--check", "--times", "--draw"):
+        parser.add_argument(name, action="store_true")
+    asked = parser.parse_args()
+    if asked.thin:
+        return thin(build())
+    if not (asked.check or asked.draw):
+        program = build()
+        if not asked.times:
+            full(program)
+        time(program)
+    now, made = text()
+    if asked.check:
+        return None if now == made else "docs/paper.md: its tables are not those of docs/evidence/paper: run scenes/paper/run.py --draw"
+    TEXT.write_text(made, encoding="utf-8")
+    import draw
+
+    draw.draw(DATA)
+    return None
+
+
+if __name__ == "__main__":
+    sys.exit(main())
