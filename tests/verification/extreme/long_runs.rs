@@ -25,7 +25,7 @@ fn a_block_that_coasts_is_where_its_velocity_takes_it() {
 
 #[test]
 fn a_block_that_spins_keeps_its_volume_and_has_no_false_stress() {
-    for step_s in ["1e-3", "1e-4", "1e-5"] {
+    for step_s in ["1e-2", "1e-3", "1e-4"] {
         let mut simulation = extreme("spin", &[&format!("time.step_s={step_s}")]).simulation;
         let volume =
             |s: &ndda_solver::Simulation| volume_m3(&s.shape(BlockId(0)).operator, &s.state().position);
@@ -40,7 +40,7 @@ fn a_block_that_spins_keeps_its_volume_and_has_no_false_stress() {
         }
         row(
             "X16",
-            &format!("change of volume in {steps} steps of {step_s} s at 10 rad/s"),
+            &format!("change of volume in {steps} steps of {step_s} s at 1 rad/s"),
             drift,
             AtMost(1e-9),
         );

@@ -12,7 +12,7 @@ use crate::evidence::row;
 
 #[test]
 fn cubes_face_to_face_stay_where_they_are() {
-    for (body, most_m) in [("Rigid", 0.0), ("Elastic", 1e-12)] {
+    for body in ["Rigid", "Elastic"] {
         let bodies: Vec<String> = (0..8).map(|i| format!("blocks[{i}].body={body}")).collect();
         let mut simulation =
             extreme("coincident", &bodies.iter().map(String::as_str).collect::<Vec<_>>()).simulation;
@@ -21,7 +21,7 @@ fn cubes_face_to_face_stay_where_they_are() {
             "X10",
             &format!("motion of eight {body} cubes face to face in 1000 steps [m]"),
             farthest(&simulation),
-            AtMost(most_m),
+            AtMost(1e-12),
         );
     }
 }
@@ -61,7 +61,10 @@ fn a_pair_of_cubes_feels_the_same_force_however_it_is_turned() {
         [test_box([0.0; 3], [1.0; 3], [2, 2, 2]), test_box([0.31, 0.17, 0.97], [1.0; 3], [2, 2, 2])];
     let forces: Vec<f64> = turns_of_a_cube()
         .iter()
-        .map(|turn| force(lower.clone().placed(turn, &Vec3::zeros()), upper.clone().placed(turn, &Vec3::zeros())).norm())
+        .map(|turn| {
+            force(lower.clone().placed(turn, &Vec3::zeros()), upper.clone().placed(turn, &Vec3::zeros()))
+                .norm()
+        })
         .collect();
     assert_eq!(forces.len(), 24);
     let spread = forces.iter().map(|f| (f / forces[0] - 1.0).abs()).fold(0.0, f64::max);
@@ -78,11 +81,11 @@ fn standing(from: Vec3, cells: u32) -> BlockMesh {
 fn corners_and_edges_meet_without_a_jump() {
     let down = Rotation3::from_axis_angle(&Vec3::x_axis(), std::f64::consts::PI).into_inner();
     let cases = [
-        // The force of corners goes with the fourth power of the depth: area times slope; that of crossed edges with the third.
-        ("corner on corner", Vec3::new(1.0, 1.0, 1.0), Vec3::zeros(), 3.0),
-        ("edge across edge", Vec3::new(0.0, 1.0, 1.0), Vec3::new(-0.5, 0.0, 0.0), 2.0),
+        // What they share goes with the third power of the depth, and its energy with the fourth.
+        ("corner on corner", Vec3::new(1.0, 1.0, 1.0), Vec3::zeros()),
+        ("edge across edge", Vec3::new(0.0, 1.0, 1.0), Vec3::new(-0.5, 0.0, 0.0)),
     ];
-    for (name, from, shift, power) in cases {
+    for (name, from, shift) in cases {
         let across = Rotation3::from_axis_angle(&Vec3::z_axis(), std::f64::consts::FRAC_PI_2).into_inner();
         let upper = standing(from, 2).placed(&Mat3::identity(), &shift);
         let lower =
@@ -100,7 +103,7 @@ fn corners_and_edges_meet_without_a_jump() {
             "{name}: {forces:?}"
         );
         let order = (at(-1e-3) / at(-5e-4)).log2();
-        row("X11", &format!("{name}: power of the depth that the force goes with"), order, Near(power, 0.05));
+        row("X11", &format!("{name}: power of the depth that the force goes with"), order, Near(3.0, 0.05));
     }
 }
 

@@ -11,7 +11,7 @@ use crate::evidence::row;
 fn a_slab_of_a_million_times_the_mass_sinks_as_deep_as_statics_says() {
     let mut simulation = extreme("heavy_on_light", &[]).simulation;
     simulation.sample().unwrap();
-    for _ in 0..30 {
+    for _ in 0..35 {
         advance(&mut simulation, 1000);
         simulation.sample().unwrap();
     }
