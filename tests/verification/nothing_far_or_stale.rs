@@ -76,15 +76,25 @@ fn a_cube_at_rest_for_ten_seconds_does_not_tilt() {
           ],
           contact: Potential(penalty_pa: 1e7, friction: (friction_deg: 30)))",
     );
-    simulation.settle(&Settle { tolerance: 1e-4, most_steps: 100_000 }).unwrap();
-    for _ in 0..20_000 {
+    simulation.settle(&Settle { tolerance: 1e-6, most_steps: 100_000 }).unwrap();
+    let early = second_of(&mut simulation);
+    (0..16_000).for_each(|_| drop(simulation.step().unwrap()));
+    let late = second_of(&mut simulation);
+    let moved: Vec<Vec3> = late.iter().zip(&early).map(|(late, early)| late - early).collect();
+    let (low, high) =
+        moved.iter().fold((f64::INFINITY, -f64::INFINITY), |(l, h), u| (l.min(u.z), h.max(u.z)));
+    row("V21", "tilt of a cube at rest from the first second to the tenth [rad]", high - low, AtMost(1e-8));
+    row("V21", "drift of it [m]", moved.iter().map(|u| u.norm()).fold(0.0, f64::max), AtMost(1e-8));
+}
+
+/// Mean places of the cube's nodes over a second: a vibration is no tilt.
+fn second_of(simulation: &mut Simulation) -> Vec<Vec3> {
+    let (nodes, steps) = (simulation.blocks().nodes_of(BlockId(1)), 2000);
+    let mut mean = vec![Vec3::zeros(); nodes.len()];
+    for _ in 0..steps {
         simulation.step().unwrap();
+        let places = &simulation.state().position[nodes.clone()];
+        mean.iter_mut().zip(places).for_each(|(mean, x)| *mean += x / f64::from(steps));
     }
-    let nodes = simulation.blocks().nodes_of(BlockId(1));
-    let sink = |n: usize| simulation.start_position()[n].z - simulation.state().position[n].z;
-    let (low, high) = nodes.map(sink).fold((f64::INFINITY, -f64::INFINITY), |(l, h), s| (l.min(s), h.max(s)));
-    row("V21", "tilt of a cube at rest for 10 s [rad]", high - low, AtMost(1e-9));
-    let at = simulation.blocks().nodes_of(BlockId(1)).start;
-    let moved: Vec3 = simulation.state().position[at] - simulation.start_position()[at];
-    row("V21", "drift of it [m]", moved.norm(), AtMost(1e-9));
+    mean
 }

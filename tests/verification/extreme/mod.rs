@@ -1,6 +1,7 @@
 //! The catalogue of extreme cases (X3 to X21): each runs a scene of `scenes/extreme/`, whose header says what is expected.
 
 mod concave;
+mod locking;
 mod long_runs;
 mod ramp;
 mod scale;
