@@ -41,13 +41,19 @@ fn assert_same_bits(mut without: Simulation, mut with: Simulation, what: &str) {
     assert_eq!(without.state().velocity, with.state().velocity, "{what}");
 }
 
+fn advance(simulation: &mut Simulation, steps: u32) {
+    for _ in 0..steps {
+        simulation.step().unwrap();
+    }
+}
+
 #[test]
 fn blocks_that_never_meet_have_the_bits_of_blocks_without_contact_and_count_no_pairs() {
     let blocks = cube("a", 0.0, "spin_rad_s: (1, 2, 3)") + &cube("b", 30.0, "velocity_m_s: (1, 0, 0)");
     let contact = "contact: Potential(penalty_pa: 1e7, friction: (friction_deg: 30))";
     assert_same_bits(scene("", "", &blocks, "contact: Off"), scene("", "", &blocks, contact), "contact");
     let mut apart = scene("", "", &blocks, contact);
-    (0..100).for_each(|_| drop(apart.step().unwrap()));
+    advance(&mut apart, 100);
     let worst = apart.invariants();
     assert_eq!((worst.candidate_pairs_total, worst.contact_pairs_total), (0, 0));
     let memory = &apart.state().contact;
@@ -78,7 +84,7 @@ fn friction_of_zero_gives_the_bits_of_none_and_remembers_nothing() {
         let with = || scene("", "", &meeting(), &contact(&format!("friction: {friction}")));
         assert_same_bits(scene("", "", &meeting(), &contact("")), with(), friction);
         let mut simulation = with();
-        (0..100).for_each(|_| drop(simulation.step().unwrap()));
+        advance(&mut simulation, 100);
         assert!(simulation.invariants().contact_pairs_max > 0, "they do not meet");
         assert!(simulation.state().contact.facets.is_empty(), "{friction} is remembered");
     }
@@ -91,7 +97,7 @@ fn congruent_blocks_share_a_factor_and_a_constant_step_makes_each_once() {
     let blocks = cube("a", 0.0, "") + &cube("b", 3.0, "") + &cube("c", 6.0, "") + other;
     let mut simulation = scene("", "", &blocks, "contact: Potential(penalty_pa: 1e7)");
     assert_eq!(simulation.factors(), 2, "as many as distinct blocks");
-    (0..10).for_each(|_| drop(simulation.step().unwrap()));
+    advance(&mut simulation, 10);
     assert_eq!(simulation.factors(), 2);
     let users: Vec<usize> = simulation.plan().factors.iter().map(|factor| factor.blocks).collect();
     assert_eq!(users.iter().sum::<usize>(), 4, "{users:?}");

@@ -24,6 +24,12 @@ fn collision(more: &str) -> Simulation {
     ))
 }
 
+fn advance(simulation: &mut Simulation, steps: u32) {
+    for _ in 0..steps {
+        simulation.step().unwrap();
+    }
+}
+
 #[test]
 fn blocks_far_away_leave_every_bit_of_a_collision_as_it_is() {
     let (mut alone, mut with) = (
@@ -53,7 +59,7 @@ fn a_run_that_goes_on_from_a_snapshot_has_the_same_friction_to_the_bit() {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"));
         let start = || prepare(&path, &[]).unwrap().simulation;
         let mut whole = start();
-        (0..150).for_each(|_| drop(whole.step().unwrap()));
+        advance(&mut whole, 150);
         let mut resumed = start();
         resumed.restore(whole.snapshot()).unwrap();
         for _ in 0..150 {
@@ -78,7 +84,7 @@ fn a_cube_at_rest_for_ten_seconds_does_not_tilt() {
     );
     simulation.settle(&Settle { tolerance: 1e-6, most_steps: 100_000 }).unwrap();
     let early = second_of(&mut simulation);
-    (0..16_000).for_each(|_| drop(simulation.step().unwrap()));
+    advance(&mut simulation, 16_000);
     let late = second_of(&mut simulation);
     let moved: Vec<Vec3> = late.iter().zip(&early).map(|(late, early)| late - early).collect();
     let (low, high) =
