@@ -1,6 +1,8 @@
 //! V9b: a cantilever under its own weight against Timoshenko's beam, by refinement; and what ν → ½ does to linear
 //! tetrahedra.
 
+use crate::evidence::Answer::{AtMost, Near};
+use crate::evidence::row;
 use crate::simulation;
 
 const YOUNG_PA: f64 = 10e9;
@@ -44,16 +46,17 @@ fn deflection(n: u32, poisson: f64) -> f64 {
 fn a_cantilever_converges_to_the_beam_with_second_order() {
     let exact = beam(0.0);
     let errors = [2, 4, 8].map(|n| (n, 1.0 - deflection(n, 0.0) / exact));
-    for (n, error) in errors {
-        println!(
-            "{n} cells over the height: tip deflects {:.2} % less than Timoshenko's beam",
-            100.0 * error
+    for ((n, error), most) in errors.into_iter().zip([0.5, 0.2, 0.06]) {
+        assert!(error > 0.0, "linear tetrahedra are too stiff: {errors:?}");
+        row(
+            "V9b",
+            &format!("deflection that {n} cells over the height lack of the beam's"),
+            error,
+            AtMost(most),
         );
     }
-    let order = |coarse: usize| (errors[coarse].1 / errors[coarse + 1].1).log2();
-    println!("order {:.2}, {:.2}", order(0), order(1));
-    assert!((order(1) - 2.0).abs() < 0.3, "{errors:?}");
-    assert!(errors.iter().all(|(_, error)| *error > 0.0), "linear tetrahedra are too stiff: {errors:?}");
+    let order = (errors[1].1 / errors[2].1).log2();
+    row("V9b", "order of convergence, 4 to 8 cells", order, Near(2.0, 0.3));
 }
 
 #[test]
@@ -61,7 +64,11 @@ fn near_incompressible_rock_locks_and_says_so() {
     let soft = deflection(4, 0.25) / beam(0.25);
     for poisson in [0.49, 0.499, 0.4999] {
         let locked = deflection(4, poisson) / beam(poisson);
-        println!("ν = {poisson}: {:.3} of the beam's deflection, {soft:.3} at ν = 0.25", locked);
-        assert!(locked < soft, "{poisson}: {locked}");
+        row(
+            "X15",
+            &format!("deflection over the beam's at ν = {poisson}; {soft:.3} at 0.25"),
+            locked,
+            AtMost(soft),
+        );
     }
 }

@@ -2,6 +2,8 @@
 
 use ndda_mesh::Vec3;
 
+use crate::evidence::Answer::AtMost;
+use crate::evidence::row;
 use crate::{POISSON, YOUNG_PA, assert_uniform_strain, bar, rollers, settle};
 
 #[test]
@@ -14,5 +16,11 @@ fn a_compressed_bar_grows_until_it_is_free_of_stress() {
 
     let mut stress = vec![[0.0; 6]; simulation.blocks().tets.len()];
     simulation.recover_stress(&mut stress).unwrap();
-    assert!(stress.iter().flatten().all(|s| s.abs() < 1e-8 * pressure_pa), "{stress:?}");
+    let left = stress.iter().flatten().fold(0.0f64, |most, s| most.max(s.abs()));
+    row(
+        "initial",
+        "stress left of an initial one that is released, relative",
+        left / pressure_pa,
+        AtMost(1e-8),
+    );
 }

@@ -3,6 +3,8 @@
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Settle;
 
+use crate::evidence::Answer::{AtMost, Within};
+use crate::evidence::row;
 use crate::simulation;
 
 const SCENE: &str = "(title: \"stack\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: (0, 0, -9.8),
@@ -29,7 +31,7 @@ fn a_stack_that_has_settled_lies_as_deep_as_its_weight_asks_for_and_stays() {
     };
     let pressure = 2500.0 * 9.8 * 1.5;
     let expected = pressure / (2.0 * 2e8);
-    assert!((sunk(1) / expected - 1.0).abs() < 1e-2, "{} for {expected}", sunk(1));
+    row("settling", "depth of a stack that has settled [m]", sunk(1), Within(expected, 1e-2));
 
     assert_eq!(simulation.time_s(), 0.0);
     simulation.sample().unwrap();
@@ -38,7 +40,7 @@ fn a_stack_that_has_settled_lies_as_deep_as_its_weight_asks_for_and_stays() {
     }
     let moved = simulation.state().position.iter().zip(simulation.start_position());
     let furthest = moved.map(|(x, start)| (x - start).norm()).fold(0.0, f64::max);
-    assert!(furthest < 1e-4 * expected, "it moves by {furthest:e} m");
+    row("settling", "motion afterwards over that depth", furthest / expected, AtMost(1e-4));
     let sample = simulation.sample().unwrap();
     assert!(sample.load_j.abs() < 1e-4 * 2500.0 * 9.8 * 1.5 * expected, "{sample:?}");
 }

@@ -7,6 +7,9 @@ use ndda_contact::{
 };
 use ndda_mesh::{BlockId, Vec3};
 
+use crate::evidence::Answer::{AtLeast, AtMost};
+use crate::evidence::row;
+
 const DEPTH_M: f64 = 1e-3;
 
 /// The path of the cube, and the plate and the cube.
@@ -48,10 +51,18 @@ fn a_smooth_potential_ripples_a_twentieth_of_the_element_potential_or_less() {
     let element = ripple(Box::new(ElementPotential));
     let smooth = ripple(Box::new(SmoothPotential { reference_m: 1.0 }));
     let volume = ripple(Box::new(VolumePotential { exponent: 2.0, reference_m3: 1.0 }));
-    for (name, (normal, tangential)) in [("element", element), ("smooth", smooth), ("volume", volume)] {
-        println!("{name}: normal ripple {normal:.1e}, tangential ripple {tangential:.1e}");
+    let limit = (element.0 / 20.0, element.1 / 20.0);
+    for (name, (normal, along), most) in
+        [("Element", element, (1e-2, 1e-4)), ("Smooth", smooth, limit), ("Volume", volume, limit)]
+    {
+        row(
+            "borders",
+            &format!("std/mean of the normal force over element borders, {name}"),
+            normal,
+            AtMost(most.0),
+        );
+        row("borders", &format!("std/mean of the force along the path, {name}"), along, AtMost(most.1));
     }
-    assert!(smooth.0 <= element.0 / 20.0 && smooth.1 <= element.1 / 20.0, "{smooth:?} and {element:?}");
 }
 
 /// Friction over μ N, mean over the path, where a shear spring needs a slip of `mobilised_m` to reach it.
@@ -90,13 +101,10 @@ fn friction_that_is_remembered_per_element_is_lost_at_every_border() {
     // A cube that slides 1.9 m over elements of half a metre.
     for mobilised_m in [1e-3, 1e-2, 1e-1] {
         let [body, element] = [Memory::Body, Memory::Element].map(|m| friction_kept(m, mobilised_m));
-        println!(
-            "mobilised by {mobilised_m} m: {:.2} % of μN per body, {:.2} % per element",
-            100.0 * body,
-            100.0 * element
-        );
         // The first mobilisation is missing from both.
-        assert!(body > 1.0 - mobilised_m, "{body}");
-        assert!(element < body);
+        let named =
+            |whose: &str| format!("friction over μN, mobilised by {mobilised_m} m, remembered per {whose}");
+        row("borders", &named("body"), body, AtLeast(1.0 - mobilised_m));
+        row("borders", &named("element"), element, AtMost(body));
     }
 }

@@ -5,6 +5,8 @@ use std::fmt::Write;
 
 use ndda_solver::{Settle, StepError};
 
+use crate::evidence::Answer::{AtMost, Within};
+use crate::evidence::row;
 use crate::simulation;
 
 const WIDTH_M: f64 = 10.0;
@@ -83,19 +85,19 @@ fn scene(friction_deg: f64) -> String {
 fn the_limit_equilibrium_is_the_published_one() {
     // tan φ = 0.7855 in their Table 1.
     let limit = limit_deg().to_radians().tan();
-    assert!((limit / 0.7855 - 1.0).abs() < 5e-3, "tan φ = {limit}");
+    row("toppling", "tan φ of the limit equilibrium of Goodman and Bray", limit, Within(0.7855, 5e-3));
 }
 
 #[test]
 fn the_slope_stands_above_its_limit_friction_and_topples_below_it() {
     let settle = Settle { tolerance: 1e-3, most_steps: 6000 };
     let limit = limit_deg();
-    println!("limit equilibrium: φ = {limit:.2}°");
     let mut stands = simulation(&scene(limit + 0.5));
     let settled = stands.settle(&settle).unwrap();
-    println!("φ = {:.2}°: at rest in {} steps", limit + 0.5, settled.steps);
+    let named =
+        format!("speed left over the largest at φ = {:.2}°, half a degree above the limit", limit + 0.5);
+    row("toppling", &named, settled.speed_ratio, AtMost(1e-3));
     let mut falls = simulation(&scene(limit - 0.5));
     let refused = falls.settle(&settle).unwrap_err();
-    println!("φ = {:.2}°: {refused}", limit - 0.5);
     assert!(matches!(refused, StepError::NotSettled { .. }), "{refused}");
 }

@@ -16,6 +16,7 @@ use crate::guess::{self, Guess};
 use crate::input;
 use crate::monitor::Monitor;
 use crate::reference::Comparison;
+use crate::rounding;
 use crate::step_advice;
 use crate::wiring::{self, Fault};
 
@@ -48,15 +49,17 @@ impl Ready {
 ///
 /// # Errors
 /// As [`prepare`].
-pub fn prepare_loaded(loaded: LoadedScene, folder: &Path) -> Result<Ready, SceneErrors> {
+pub fn prepare_loaded(mut loaded: LoadedScene, folder: &Path) -> Result<Ready, SceneErrors> {
     let located = |faults: Vec<Fault>| {
         let diagnostics: Vec<Diagnostic> =
             faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();
         loaded.errors(diagnostics)
     };
     let blocks = wiring::blocks(&loaded.scene, folder).map_err(located)?;
+    let far = rounding::warning(&loaded, &blocks);
     let simulation = wiring::simulation(&loaded.scene, blocks, folder).map_err(located)?;
     let monitors = wiring::monitors(&loaded.scene, &simulation).map_err(located)?;
+    loaded.warnings.extend(far);
     Ok(Ready { loaded, simulation, monitors })
 }
 

@@ -30,6 +30,7 @@ pub mod recorder;
 pub mod reference;
 pub mod report;
 pub mod resume;
+pub mod rounding;
 pub mod run;
 pub mod run_log;
 #[cfg(feature = "schema")]

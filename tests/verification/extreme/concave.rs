@@ -1,0 +1,23 @@
+//! X20: a cube on the ledge of an L. The arch is tests/verification/masonry_arch.rs; that a concave block pushes as its convex
+//! parts do, and not itself, is tested in crates/ndda-contact/src/potential_contact.rs.
+
+use ndda_solver::Settle;
+
+use super::{advance, block, extreme, farthest};
+use crate::evidence::Answer::{AtMost, Within};
+use crate::evidence::row;
+
+#[test]
+fn a_concave_block_bears_what_rests_in_it_and_all_of_it_rests() {
+    let mut simulation = extreme("concave", &[]).simulation;
+    simulation.settle(&Settle { tolerance: 1e-3, most_steps: 1_000_000 }).unwrap();
+    let base = block(&simulation, "base");
+    let (mut force, steps) = (0.0, 1000);
+    for _ in 0..steps {
+        advance(&mut simulation, 1);
+        force += (simulation.reaction_n(base).z - 24.0 * 2500.0 * 9.8) / f64::from(steps);
+    }
+    // An L of 3 + 2 cells of 1 × 2 × 1 m, and a cube.
+    row("X20", "force under an L and a cube on its ledge [N]", force, Within(11.0 * 2500.0 * 9.8, 1e-3));
+    row("X20", "motion after settling [m]", farthest(&simulation), AtMost(1e-6));
+}

@@ -1,0 +1,52 @@
+//! The catalogue of extreme cases (X3 to X21): each runs a scene of `scenes/extreme/`, whose header says what is expected.
+
+mod concave;
+mod locking;
+mod long_runs;
+mod ramp;
+mod scale;
+mod sizes;
+mod slivers;
+mod springs;
+mod touching;
+mod unlike_neighbours;
+
+use std::path::Path;
+
+use ndda_cli::check::{self, Ready};
+use ndda_mesh::{BlockId, Vec3};
+use ndda_solver::Simulation;
+
+use crate::displacements;
+
+/// A scene of `scenes/extreme/`, ready to run.
+fn extreme(name: &str, overrides: &[&str]) -> Ready {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/extreme").join(format!("{name}.ron"));
+    let overrides: Vec<String> = overrides.iter().map(|text| text.to_string()).collect();
+    check::prepare(&path, &overrides).unwrap_or_else(|errors| panic!("{}", errors.render(false)))
+}
+
+fn advance(simulation: &mut Simulation, steps: u64) {
+    for _ in 0..steps {
+        simulation.step().unwrap();
+    }
+}
+
+fn block(simulation: &Simulation, name: &str) -> BlockId {
+    simulation.blocks().find(name).unwrap_or_else(|| panic!("no block {name}"))
+}
+
+/// Mean displacement of those nodes of a block whose place at rest is at a height [m].
+fn sunk(simulation: &Simulation, name: &str, height_m: f64) -> f64 {
+    let blocks = simulation.blocks();
+    let moved = displacements(simulation);
+    let there = |n: &usize| (blocks.rest_position[*n].z + blocks.origin_m.z - height_m).abs() < 1e-9;
+    let nodes: Vec<usize> = blocks.nodes_of(block(simulation, name)).filter(there).collect();
+    -nodes.iter().map(|&n| moved[n].z).sum::<f64>() / nodes.len() as f64
+}
+
+/// The farthest that a node has moved since the start [m].
+fn farthest(simulation: &Simulation) -> f64 {
+    let moved = simulation.state().position.iter().zip(simulation.start_position());
+    moved.map(|(x, start): (&Vec3, &Vec3)| (x - start).norm()).fold(0.0, f64::max)
+}

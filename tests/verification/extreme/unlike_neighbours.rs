@@ -1,0 +1,63 @@
+//! Neighbours of unlike mass (X3), stiffness (X4) and size (X13).
+
+use ndda_cli::step_advice;
+use ndda_solver::Settle;
+
+use super::{advance, block, extreme, sunk};
+use crate::evidence::Answer::{AtMost, Within};
+use crate::evidence::row;
+
+#[test]
+fn a_slab_of_a_million_times_the_mass_sinks_as_deep_as_statics_says() {
+    let mut simulation = extreme("heavy_on_light", &[]).simulation;
+    simulation.sample().unwrap();
+    for _ in 0..35 {
+        advance(&mut simulation, 1000);
+        simulation.sample().unwrap();
+    }
+    let depth = 2.5e6 * 9.8 * 0.25 / 2e10;
+    let below = sunk(&simulation, "light", 0.0);
+    let between = sunk(&simulation, "heavy", 0.5) - sunk(&simulation, "light", 0.5);
+    row("X3", "depth of the light slab in the base, mass ratio 1e6 [m]", below, Within(depth, 1e-2));
+    row("X3", "depth of the heavy slab in the light one [m]", between, Within(depth, 1e-2));
+    row("X3", "energy gained over the peak", simulation.invariants().energy_gain, AtMost(1e-2));
+}
+
+#[test]
+fn stiff_rock_on_soft_ground_bears_the_stress_of_springs_in_series() {
+    let mut simulation = extreme("stiff_on_soft", &[]).simulation;
+    simulation.settle(&Settle { tolerance: 1e-5, most_steps: 100_000 }).unwrap();
+    let mut stress = vec![[0.0; 6]; simulation.blocks().tets.len()];
+    simulation.recover_stress(&mut stress).unwrap();
+    let series = 1e-3 / (1.0 / 200e9 + 1.0 / 200e3 + 1.0 / 2e6);
+    for name in ["lower", "upper"] {
+        let part = &stress[simulation.blocks().tets_of(block(&simulation, name))];
+        let mean = -part.iter().map(|s| s[2]).sum::<f64>() / part.len() as f64;
+        row("X4", &format!("stress of the {name} bar, modulus ratio 1e6 [Pa]"), mean, Within(series, 2e-2));
+    }
+}
+
+#[test]
+fn the_advised_step_is_that_of_the_smallest_block_and_will_do() {
+    let ready = extreme("small_between_large", &[]);
+    let advice = step_advice::advise(&ready.loaded.scene, &ready.simulation).expect("there is contact");
+    assert_eq!(advice.block, "grain");
+    let mut simulation =
+        extreme("small_between_large", &[&format!("time.step_s={}", advice.step_s)]).simulation;
+    simulation.sample().unwrap();
+    let steps = (0.02 / advice.step_s) as u64;
+    advance(&mut simulation, steps);
+    row(
+        "X13",
+        "h at the step advised for a grain of 1 mm between 1 m",
+        simulation.invariants().max_h,
+        AtMost(2.0),
+    );
+    let mut simulation = ready.simulation;
+    simulation.sample().unwrap();
+    advance(&mut simulation, 4000);
+    let grain = simulation.blocks().nodes_of(block(&simulation, "grain"));
+    let velocity = &simulation.state().velocity[grain.clone()];
+    let speed = (velocity.iter().map(|v| v.z).sum::<f64>() / grain.len() as f64).abs();
+    row("X13", "speed of the grain after it has flown to and fro [m/s]", speed, Within(0.1, 1e-2));
+}
