@@ -5,6 +5,7 @@ Usage: error_and_time.py      (after docs/evidence/error_time/run.sh, which call
 """
 
 import csv
+import re
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent
@@ -61,7 +62,7 @@ def failed(folder):
     cases = read(folder / "study.csv")
     for row in cases:
         if row["status"] != "done":
-            reason = row["reason"].split(":")[0]
+            reason = re.search(r"\[([\w-]+)\]|$", row["reason"])[1] or row["reason"]
             reasons[reason] = reasons.get(reason, 0) + 1
     if not reasons:
         return f"{len(cases)} cases, none failed."

@@ -506,7 +506,8 @@ pub enum Contact {
     Off,
     /// A contact potential: energy of the volume that blocks share.
     Potential {
-        /// Normal penalty k_n [Pa].
+        /// Normal penalty k_n [Pa]. Contact gives way as E L₀/2k_n of rock does with `Smooth`; settlements and waves are
+        /// wrong by that over the size of the blocks, slides and rebounds hardly.
         penalty_pa: f64,
         /// What the potential is inside a block. Default: `Element`, the paper's.
         #[serde(default)]

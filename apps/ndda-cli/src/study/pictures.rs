@@ -14,7 +14,7 @@ use crate::picture::{self, Area, Drawn, colour, count_axis, log_axis, log_range,
 /// Width and height of the pictures with two frames [px].
 const SIZE: (u32, u32) = (1480, 560);
 /// Width of the part of it that tells colours [px].
-const KEY: u32 = 240;
+const KEY: u32 = 290;
 /// Colour of the front.
 const FRONT: RGBColor = RGBColor(190, 190, 190);
 /// Errors of exactly zero are drawn here.
@@ -122,7 +122,10 @@ fn frame(area: &Area, results: &Results, across: &Across, which: usize) -> Drawn
         chart.draw_series(LineSeries::new(ends, BLACK.stroke_width(1)))?;
     }
     for (i, places) in curves(results, &place).into_iter().enumerate() {
-        chart.draw_series(LineSeries::new(places.iter().copied(), colour(i).stroke_width(1)))?;
+        // Through the best of each curve: meshes, steps and penalties beside each other would be a zigzag.
+        let points: Vec<Point> = places.iter().map(|&(time_s, error)| Point { time_s, error }).collect();
+        let best = front(&points).into_iter().map(|k| places[k]);
+        chart.draw_series(LineSeries::new(best, colour(i).stroke_width(1)))?;
         chart.draw_series(places.into_iter().map(|place| Circle::new(place, 5, colour(i).filled())))?;
     }
     Ok(())
