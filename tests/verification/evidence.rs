@@ -2,6 +2,8 @@
 //! `docs/verification.py` finds every figure of docs/verification.md in the output of the tests.
 
 use std::fmt::{Display, Formatter, Result};
+use std::fs::OpenOptions;
+use std::io::Write;
 use std::panic::Location;
 
 /// What a measured figure is held against.
@@ -52,8 +54,19 @@ impl Display for Answer {
 /// Prints the row `id` (as V5 or X12), `what` was measured with its unit; panics unless the answer holds.
 #[track_caller]
 pub fn row(id: &str, what: &str, measured: f64, answer: Answer) {
-    let file = Location::caller().file();
+    let place = Location::caller();
+    let (file, line) = (place.file(), place.line());
     let error = answer.error(measured).map_or_else(|| "-".into(), |e| format!("{e:.1e}"));
-    println!("evidence\t{id}\t{file}\t{what}\t{measured:.5e}\t{answer}\t{error}");
+    let text = format!("evidence\t{id}\t{file}:{line}\t{what}\t{measured:.5e}\t{answer}\t{error}\n");
+    print!("{text}");
+    keep(&text);
     assert!(answer.holds(measured), "{id}: {what}: {measured:e}, expected {answer}");
+}
+
+/// Appends a line to the file that NDDA_EVIDENCE names, for runs whose output is captured.
+fn keep(line: &str) {
+    let Some(path) = std::env::var_os("NDDA_EVIDENCE") else { return };
+    let file = OpenOptions::new().create(true).append(true).open(path);
+    // Written at once: tests run side by side.
+    file.and_then(|mut file| file.write_all(line.as_bytes())).expect("NDDA_EVIDENCE names a file");
 }

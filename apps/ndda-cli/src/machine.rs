@@ -11,13 +11,14 @@ pub const RUSTC: &str = env!("NDDA_RUSTC");
 /// Cargo features that it was built with.
 pub const FEATURES: &str = env!("NDDA_FEATURES");
 
-/// This process and what it runs on, with its peak of memory so far.
+/// This process and what it runs on, with its peak of memory and its processor time so far.
 pub fn describe() -> Machine {
     Machine {
         processor: processor(),
         commit: COMMIT.into(),
         features: FEATURES.split_whitespace().map(String::from).collect(),
         peak_memory_b: peak_memory_bytes(),
+        processor_time_s: processor_time_s(),
     }
 }
 
@@ -32,6 +33,17 @@ pub fn peak_memory_bytes() -> Option<u64> {
     let text = fs::read_to_string("/proc/self/status").ok()?;
     let kibibytes: u64 = field(&text, "VmHWM")?.strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024)
+}
+
+/// Time that the threads of this process have been computing [s], where the system tells.
+pub fn processor_time_s() -> Option<f64> {
+    let mut nanoseconds = 0u64;
+    for thread in fs::read_dir("/proc/self/task").ok()? {
+        // `schedstat` counts to the nanosecond, `stat` in hundredths of a second.
+        let text = fs::read_to_string(thread.ok()?.path().join("schedstat")).ok()?;
+        nanoseconds += text.split_whitespace().next()?.parse::<u64>().ok()?;
+    }
+    Some(nanoseconds as f64 * 1e-9)
 }
 
 /// Value of the first line `name: value`.

@@ -27,8 +27,8 @@ const KEY_LINE: i32 = 22;
 /// Most marks of a logarithmic axis.
 const MOST_MARKS: usize = 8;
 
-/// Colours that differ in print and for the colour-blind (Okabe and Ito).
-const COLOURS: [RGBColor; 7] = [
+/// Colours that differ in print and for the colour-blind (Okabe and Ito; the last two are Tol's).
+const COLOURS: [RGBColor; 9] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -36,6 +36,8 @@ const COLOURS: [RGBColor; 7] = [
     RGBColor(86, 180, 233),
     RGBColor(230, 159, 0),
     RGBColor(90, 90, 90),
+    RGBColor(136, 34, 85),
+    RGBColor(153, 153, 51),
 ];
 
 /// Colour of the i-th series.

@@ -50,6 +50,13 @@ pub fn fall_m(velocity_m_s: &Vec3, gravity_m_s2: &Vec3, time_s: f64) -> Vec3 {
     velocity_m_s * time_s + 0.5 * gravity_m_s2 * time_s * time_s
 }
 
+/// Mean velocity [m/s] of an elastic bar of length L that flies at `speed_m_s`, touches a rigid wall at `touch_s` and is
+/// pressed by ρ c v₀ while its wave of speed c runs there and back (Doyen, Ern & Piperno 2011).
+pub fn bar_impact_m_s(speed_m_s: f64, touch_s: f64, there_and_back_s: f64, time_s: f64) -> f64 {
+    let part = ((time_s - touch_s) / there_and_back_s).clamp(0.0, 1.0);
+    speed_m_s * (1.0 - 2.0 * part)
+}
+
 /// Relative errors at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Errors {
@@ -103,6 +110,26 @@ pub enum Comparison {
         /// L about its mass centre at the start [kg m²/s].
         start: Vec3,
     },
+    /// A bar that hits a wall.
+    Impact {
+        /// The bar.
+        block: BlockId,
+        /// Its unit axis.
+        along: Vec3,
+        /// Its velocity at the start [m/s].
+        speed_m_s: f64,
+        /// When it touches the wall [s].
+        touch_s: f64,
+        /// 2 L/c [s].
+        there_and_back_s: f64,
+    },
+    /// A known displacement.
+    Displacement {
+        /// Index of the monitor.
+        monitor: usize,
+        /// What it is [m].
+        exact_m: Vec3,
+    },
 }
 
 /// Mass-mean velocity of a block [m/s].
@@ -153,6 +180,16 @@ impl Comparison {
             Reference::FreeSpin { block: name } => {
                 Self::Spin { block: block(name), start: block_spin(simulation, block(name)) }
             }
+            Reference::BarImpact { block: name, along, length_m, gap_m, .. } => {
+                let (block, along) = (block(name), Vec3::from(*along).normalize());
+                let speed_m_s = block_velocity(simulation, block).dot(&along);
+                let there_and_back_s = 2.0 * length_m / wave_speed_m_s(scene, name)?;
+                let touch_s = gap_m / speed_m_s.abs();
+                Self::Impact { block, along, speed_m_s, touch_s, there_and_back_s }
+            }
+            Reference::Displacement { monitor: name, displacement_m, .. } => {
+                Self::Displacement { monitor: monitor(name), exact_m: Vec3::from(*displacement_m) }
+            }
         })
     }
 
@@ -188,8 +225,24 @@ impl Comparison {
                 let error = (block_spin(simulation, *block) - start).norm();
                 Some(Errors { plain: relative(error, start.norm())?, stick_stage: None })
             }
+            Self::Impact { block, along, speed_m_s, touch_s, there_and_back_s } => {
+                let exact = bar_impact_m_s(*speed_m_s, *touch_s, *there_and_back_s, time_s);
+                let error = (block_velocity(simulation, *block).dot(along) - exact).abs();
+                Some(Errors { plain: relative(error, speed_m_s.abs())?, stick_stage: None })
+            }
+            Self::Displacement { monitor, exact_m } => {
+                let error = (monitors[*monitor].displacement(simulation) - exact_m).norm();
+                Some(Errors { plain: relative(error, exact_m.norm())?, stick_stage: None })
+            }
         }
     }
+}
+
+/// √(E/ρ) of a block's material [m/s].
+fn wave_speed_m_s(scene: &Scene, block: &str) -> Option<f64> {
+    let material = &scene.blocks.iter().find(|b| b.name == block)?.material;
+    let material = scene.materials.iter().find(|m| m.name == *material)?;
+    Some((material.young_pa / material.density_kg_m3).sqrt())
 }
 
 /// ω of the shear spring under a block of thickness L, √(k_s/(ρL)); `None` without friction.
@@ -208,6 +261,8 @@ pub fn kind(reference: &Reference) -> (&'static str, f64) {
         Reference::Collision { after_s, .. } => ("Collision", *after_s),
         Reference::FreeFall { after_s, .. } => ("FreeFall", *after_s),
         Reference::FreeSpin { .. } => ("FreeSpin", 0.0),
+        Reference::BarImpact { after_s, .. } => ("BarImpact", *after_s),
+        Reference::Displacement { after_s, .. } => ("Displacement", *after_s),
     }
 }
 
@@ -236,6 +291,14 @@ mod tests {
         let omega = f64::sqrt(200e9 / 2650.0);
         let error = slide_after_sticking_m(45.0, friction, 9.8, omega, 0.1) / plain - 1.0;
         assert!((error - 4.4e-3).abs() < 1e-4, "{error}");
+    }
+
+    #[test]
+    fn a_bar_stops_when_its_wave_has_run_to_its_end_and_turns_when_it_is_back() {
+        for (time_s, velocity) in [(0.0, -2.0), (1.0, -2.0), (2.0, -1.0), (3.0, 0.0), (5.0, 2.0), (9.0, 2.0)]
+        {
+            assert_eq!(bar_impact_m_s(-2.0, 1.0, 4.0, time_s), velocity);
+        }
     }
 
     #[test]

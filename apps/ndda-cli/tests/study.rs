@@ -38,6 +38,13 @@ const RUNS: &str = "(
     ),
 )";
 
+/// By processor time.
+#[cfg(target_os = "linux")]
+const PROCESSOR: &str = "(
+    title: \"falls\", scene: \"fall.ron\", repeats: 2, clock: Processor,
+    axes: [Vary(path: \"time.step_s\", values: [1e-2])],
+)";
+
 /// A folder with a scene and a study.
 fn folder(study: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -79,6 +86,7 @@ fn a_study_runs_lists_failures_and_goes_on_where_it_was() {
     let figures = &cases[0]["figures"];
     assert!(figures["error_max"].as_f64().unwrap() < 1e-12, "{figures}");
     assert_eq!(figures["walls_s"].as_array().unwrap().len(), 2);
+    assert_eq!((&figures["time_s"], &results["clock"]), (&figures["wall_s"], &"wall".into()));
     assert_eq!((&figures["steps"], &figures["counts"]["clips_total"]), (&Value::from(10), &Value::from(0)));
     assert!(figures["machine"]["commit"].is_string() && figures["machine"]["processor"].is_string());
     assert!(cases[1]["figures"].is_null() && cases[1]["reason"].as_str().unwrap().contains("poisson"));
@@ -166,13 +174,28 @@ fn a_wrong_study_is_refused_at_its_place() {
     assert_eq!(ndda(folder.path(), &["study"]).status.code(), Some(2));
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn runs_cost_what_their_threads_compute_when_the_clock_is_the_processors() {
+    let folder = folder(PROCESSOR);
+    let done = ndda(folder.path(), &["study", "study.ron"]);
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    assert!(said(&done).contains("processor time to error at the end"), "{}", said(&done));
+    let results = json(folder.path().join("out/study_study/study.json"));
+    let figures = &results["cases"][0]["figures"];
+    let times: Vec<f64> =
+        figures["processors_s"].as_array().unwrap().iter().map(|s| s.as_f64().unwrap()).collect();
+    assert!(times.len() == 2 && times.iter().all(|s| *s > 0.0), "{figures}");
+    assert_eq!(figures["time_s"].as_f64(), Some(times[0].min(times[1])));
+}
+
 #[test]
 fn the_scenes_of_the_example_studies_are_right() {
     let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let files = |folder: &str| fs::read_dir(scenes.join(folder)).unwrap().map(|entry| entry.unwrap().path());
-    // Beside the paper's studies are their scenes and scripts.
+    // Beside the paper's studies are their scenes and scripts, beside the others a folder of scenes.
     let is_figure = |path: &PathBuf| path.file_name().unwrap().to_string_lossy().starts_with("fig");
-    for path in files("studies").chain(files("paper").filter(is_figure)) {
+    for path in files("studies").filter(|path| path.is_file()).chain(files("paper").filter(is_figure)) {
         let loaded = ndda_io::study::load(&path).unwrap_or_else(|errors| panic!("{errors}"));
         let cases = case::cases(&loaded).unwrap();
         let references = case::reference_cases(&loaded, &cases).unwrap();

@@ -625,7 +625,33 @@ impl Check<'_> {
                 self.after(*after_s);
             }
             Some(Reference::FreeSpin { block }) => self.known_block(path("block"), block),
+            Some(Reference::BarImpact { block, along, length_m, gap_m, after_s }) => {
+                self.bar_impact(block, *length_m, *gap_m);
+                self.direction(path("along"), along);
+                self.after(*after_s);
+            }
+            Some(Reference::Displacement { monitor, displacement_m, after_s }) => {
+                self.known(path("monitor"), "monitor", monitor, &monitors);
+                self.direction(path("displacement_m"), displacement_m);
+                self.after(*after_s);
+            }
             None => {}
+        }
+    }
+
+    fn bar_impact(&mut self, block: &str, length_m: f64, gap_m: f64) {
+        self.known_block("reference.block".into(), block);
+        self.positive("reference.length_m".into(), length_m, "m");
+        if !(gap_m >= 0.0 && gap_m.is_finite()) {
+            let message = format!("{gap_m} m: must not be negative");
+            self.error("reference.gap_m", message, "0 for a bar that touches the wall");
+        }
+        let scene = self.scene;
+        let material = scene.blocks.iter().find(|b| b.name == block).map(|b| &b.material);
+        let poisson = scene.materials.iter().find(|m| Some(&m.name) == material).map(|m| m.poisson);
+        if poisson.is_some_and(|poisson| poisson != 0.0) {
+            let help = "set the bar's `poisson` to 0";
+            self.misfit("reference", "the closed form is that of a bar without lateral strain", help);
         }
     }
 

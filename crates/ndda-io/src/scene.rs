@@ -506,7 +506,8 @@ pub enum Contact {
     Off,
     /// A contact potential: energy of the volume that blocks share.
     Potential {
-        /// Normal penalty k_n [Pa].
+        /// Normal penalty k_n [Pa]. Contact gives way as E L₀/2k_n of rock does with `Smooth`; settlements and waves are
+        /// wrong by that over the size of the blocks, slides and rebounds hardly.
         penalty_pa: f64,
         /// What the potential is inside a block. Default: `Element`, the paper's.
         #[serde(default)]
@@ -695,6 +696,30 @@ pub enum Reference {
     FreeSpin {
         /// The block.
         block: String,
+    },
+    /// An elastic bar without lateral strain (ν = 0) that flies along its axis, hits a rigid wall and rebounds (Doyen, Ern
+    /// & Piperno 2011): its mean velocity turns from v₀ to −v₀ in 2 L/c, at a constant rate.
+    BarImpact {
+        /// The bar.
+        block: String,
+        /// Its axis; its length does not matter.
+        along: [f64; 3],
+        /// Its length L [m].
+        length_m: f64,
+        /// Its way to the wall [m]. Default: 0.
+        #[serde(default)]
+        gap_m: f64,
+        /// `error_max` is taken from here on [s].
+        after_s: f64,
+    },
+    /// A displacement that is known, that of a structure at rest under its load for instance.
+    Displacement {
+        /// The monitor.
+        monitor: String,
+        /// Its displacement [m].
+        displacement_m: [f64; 3],
+        /// `error_max` is taken from here on, when all has come to rest [s].
+        after_s: f64,
     },
 }
 

@@ -31,6 +31,9 @@ pub struct Study {
     /// Runs of each case, of which the fastest counts. Default: 5.
     #[serde(default = "five")]
     pub repeats: u32,
+    /// What a run costs. Default: `Wall`.
+    #[serde(default)]
+    pub clock: Clock,
     /// What results are compared with. Default: `ClosedForm`.
     #[serde(default)]
     pub reference: Reference,
@@ -67,6 +70,16 @@ pub struct Choice {
     pub label: String,
     /// Values by path.
     pub set: Values,
+}
+
+/// Time that counts as the cost of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+pub enum Clock {
+    /// That between its start and its end.
+    #[default]
+    Wall,
+    /// That which its threads computed, however busy the machine is with other things.
+    Processor,
 }
 
 /// What results are compared with.

@@ -147,6 +147,9 @@ pub struct Machine {
     /// Most memory that it held at a time \[B\]. Left out where the system does not tell.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_memory_b: Option<u64>,
+    /// Processor time of all its threads \[s\]. Left out where the system does not tell.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub processor_time_s: Option<f64>,
 }
 
 /// The largest violation of each invariant over the run.

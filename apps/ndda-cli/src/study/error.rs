@@ -24,6 +24,9 @@ pub enum StudyError {
     /// No closed form.
     #[error("error: the scene {} names no reference: write `reference: Runs(first: {{…}}, second: {{…}})`", .0.display())]
     NoReference(PathBuf),
+    /// The system does not tell processor times.
+    #[error("error: this system does not tell processor times: leave out `clock: Processor`")]
+    NoProcessorTime,
     /// No such case.
     #[error("error: the study has no case `{0}`: `ndda study STUDY --emit list` prints all")]
     NoCase(String),
@@ -70,7 +73,7 @@ impl StudyError {
     pub fn code(&self) -> u8 {
         match self {
             Self::Scene(_) | Self::Names(_) | Self::NoReference(_) | Self::NoCase(_) => exit::BAD_INPUT,
-            Self::Difference { .. } => exit::BAD_INPUT,
+            Self::Difference { .. } | Self::NoProcessorTime => exit::BAD_INPUT,
             Self::Reference { .. } => exit::STOPPED,
             Self::Table(_) | Self::Write(_) | Self::Record { .. } => exit::INPUT_OUTPUT,
             Self::Start(_) => exit::RESOURCE,

@@ -3,7 +3,7 @@
 /// One result: what it cost and how wrong it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// Wall time [s].
+    /// Time by the study's clock [s].
     pub time_s: f64,
     /// Relative error.
     pub error: f64,

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::case::Case;
 use super::difference::{Difference, difference};
 use super::error::StudyError;
-use super::launch::{Launch, least};
+use super::launch::{Launch, clocked, least};
 use super::record::{RESULTS, Record, RunOutcome, folder};
 use super::result::{CasePoint, Compared, Figures, Run};
 
@@ -67,9 +67,9 @@ impl Judge {
         record: Record,
         kind: &mut String,
     ) -> Result<CasePoint, StudyError> {
-        let (walls_s, summary) = match record.outcome {
+        let (walls_s, processors_s, summary) = match record.outcome {
             RunOutcome::Failed { reason, .. } => return Ok(CasePoint::failed(case, reason)),
-            RunOutcome::Done { walls_s, summary } => (walls_s, summary),
+            RunOutcome::Done { walls_s, processors_s, summary } => (walls_s, processors_s, summary),
         };
         let apart = match self {
             Self::ClosedForm => {
@@ -89,10 +89,19 @@ impl Judge {
             file: folder(launch.out, &case.name),
             reason: e.to_string(),
         })?;
-        let wall_s = least(&walls_s);
-        let (error_end, error_max) = (apart.end, apart.max);
-        let figures =
-            Figures { error_end, error_max, on_front: [false; 2], wall_s, walls_s, beyond_limits, run };
+        let time_s = least(clocked(launch.loaded.study.clock, &walls_s, &processors_s)?);
+        let (error_end, error_max, wall_s, on_front) = (apart.end, apart.max, least(&walls_s), [false; 2]);
+        let figures = Figures {
+            error_end,
+            error_max,
+            on_front,
+            time_s,
+            wall_s,
+            walls_s,
+            processors_s,
+            beyond_limits,
+            run,
+        };
         let (name, labels) = (case.name.clone(), Named(case.labels.clone()));
         Ok(CasePoint { name, labels, figures: Some(figures), reason: None })
     }

@@ -14,7 +14,7 @@ use crate::picture::{self, Area, Drawn, colour, count_axis, log_axis, log_range,
 /// Width and height of the pictures with two frames [px].
 const SIZE: (u32, u32) = (1480, 560);
 /// Width of the part of it that tells colours [px].
-const KEY: u32 = 240;
+const KEY: u32 = 290;
 /// Colour of the front.
 const FRONT: RGBColor = RGBColor(190, 190, 190);
 /// Errors of exactly zero are drawn here.
@@ -23,6 +23,8 @@ const ZERO: f64 = 1e-17;
 const BAR: u32 = 24;
 const WIDE: u32 = 1100;
 const NAMES: u32 = 330;
+/// Bars beyond which those of cases on no front are left out.
+const MOST_BARS: usize = 40;
 
 /// Draws and writes all of them.
 ///
@@ -32,7 +34,7 @@ pub fn all(out: &Path, results: &Results) -> Result<(), WriteError> {
     if results.points.iter().all(|point| point.figures.is_none()) {
         return Ok(());
     }
-    let bars = results.points.iter().filter(|point| point.figures.is_some()).count() as u32;
+    let bars = barred(results).len() as u32;
     for ending in picture::ENDINGS {
         let file = |name: &str| out.join(format!("{name}.{ending}"));
         picture::write(&file("error_time"), SIZE, |root| pair(root, results, &Across::Time))?;
@@ -51,15 +53,15 @@ enum Across {
 impl Across {
     fn of(&self, figures: &Figures) -> f64 {
         match self {
-            Self::Time => figures.wall_s,
+            Self::Time => figures.time_s,
             Self::Dofs => figures.run.counts.dofs as f64,
         }
     }
 
-    fn title(&self) -> &'static str {
+    fn title(&self, clock: &str) -> String {
         match self {
-            Self::Time => "wall time [s]",
-            Self::Dofs => "unknowns",
+            Self::Time => format!("{clock} time [s]"),
+            Self::Dofs => "unknowns".into(),
         }
     }
 }
@@ -102,7 +104,7 @@ fn frame(area: &Area, results: &Results, across: &Across, which: usize) -> Drawn
     chart
         .configure_mesh()
         .bold_line_style(RGBColor(215, 215, 215))
-        .x_desc(across.title())
+        .x_desc(across.title(results.clock))
         .y_desc(format!("{} [-]", WHICH[which]))
         .label_style(("sans-serif", 14))
         .axis_desc_style(("sans-serif", 16))
@@ -120,7 +122,10 @@ fn frame(area: &Area, results: &Results, across: &Across, which: usize) -> Drawn
         chart.draw_series(LineSeries::new(ends, BLACK.stroke_width(1)))?;
     }
     for (i, places) in curves(results, &place).into_iter().enumerate() {
-        chart.draw_series(LineSeries::new(places.iter().copied(), colour(i).stroke_width(1)))?;
+        // Through the best of each curve: meshes, steps and penalties beside each other would be a zigzag.
+        let points: Vec<Point> = places.iter().map(|&(time_s, error)| Point { time_s, error }).collect();
+        let best = front(&points).into_iter().map(|k| places[k]);
+        chart.draw_series(LineSeries::new(best, colour(i).stroke_width(1)))?;
         chart.draw_series(places.into_iter().map(|place| Circle::new(place, 5, colour(i).filled())))?;
     }
     Ok(())
@@ -135,10 +140,19 @@ fn curves(results: &Results, place: &dyn Fn(&Figures) -> (f64, f64)) -> Vec<Vec<
     results.curve_names().into_iter().map(curve).collect()
 }
 
+/// Cases that get a bar.
+fn barred(results: &Results) -> Vec<(&CasePoint, &Figures)> {
+    let done = results.points.iter().filter_map(|point| Some((point, point.figures.as_ref()?)));
+    let done: Vec<_> = done.collect();
+    if done.len() <= MOST_BARS {
+        return done;
+    }
+    done.into_iter().filter(|(_, figures)| figures.on_front.contains(&true)).collect()
+}
+
 /// One bar per case: the seconds of each stage.
 fn stages(root: &Area, results: &Results) -> Drawn {
-    let done: Vec<(&CasePoint, &Figures)> =
-        results.points.iter().filter_map(|point| Some((point, point.figures.as_ref()?))).collect();
+    let done = barred(results);
     let names: Vec<&String> = done[0].1.run.stages_s.keys().collect();
     let share =
         |f: &Figures, name: &str| f.run.stages_s.get(name).and_then(|s| s.as_f64()).unwrap_or(0.0) / f.wall_s;

@@ -1,5 +1,6 @@
 //! What a study has found: a point per case, its errors and figures, and the fronts.
 
+use ndda_io::study::Clock;
 use ndda_io::summary::Named;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
@@ -21,6 +22,8 @@ pub struct Results {
     pub scene: String,
     /// Axes that tell curves apart.
     pub curves: Vec<String>,
+    /// What a run costs: `wall` or `processor` time.
+    pub clock: &'static str,
     /// What errors are relative to.
     pub reference: Compared,
     /// One per case that has run.
@@ -85,10 +88,14 @@ pub struct Figures {
     pub error_max: f64,
     /// Whether no other case is both faster and more exact, at the end and over time.
     pub on_front: [bool; 2],
+    /// Time of the fastest run by the study's clock [s].
+    pub time_s: f64,
     /// Wall time of the fastest run [s].
     pub wall_s: f64,
     /// Wall time of each run [s].
     pub walls_s: Vec<f64>,
+    /// Processor time of each run [s]; none where the system does not tell.
+    pub processors_s: Vec<f64>,
     /// Invariants that were beyond their limits.
     pub beyond_limits: Vec<String>,
     /// What the fastest run says of itself.
@@ -171,7 +178,7 @@ impl Figures {
     /// Time and error, at the end (0) or the largest over time (1); an error below the floor counts as the floor.
     pub fn point(&self, which: usize, floor: f64) -> Point {
         let error = [self.error_end, self.error_max][which];
-        Point { time_s: self.wall_s, error: error.max(floor) }
+        Point { time_s: self.time_s, error: error.max(floor) }
     }
 }
 
@@ -207,6 +214,10 @@ impl Results {
             title,
             scene,
             curves: loaded.curves.clone(),
+            clock: match loaded.study.clock {
+                Clock::Wall => "wall",
+                Clock::Processor => "processor",
+            },
             reference,
             points,
             missing,

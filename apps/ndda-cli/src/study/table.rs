@@ -25,7 +25,7 @@ pub struct Row {
 pub struct Time {
     /// The error.
     pub error: f64,
-    /// Wall time [s]; none if no point of the curve is as exact.
+    /// Time by the study's clock [s]; none if no point of the curve is as exact.
     pub time_s: Option<f64>,
     /// That over the time of the fastest curve.
     pub relative: Option<f64>,
@@ -58,7 +58,12 @@ pub fn text(results: &Results) -> String {
     for (which, name) in WHICH.iter().enumerate() {
         let rows = rows(results, which);
         if rows.iter().any(|row| !row.times.is_empty()) {
-            let _ = writeln!(text, "time to {name} [s], and over that of the fastest\n{}", framed(&rows));
+            let _ = writeln!(
+                text,
+                "{} time to {name} [s], and over that of the fastest\n{}",
+                results.clock,
+                framed(&rows)
+            );
         }
     }
     text.push_str(&against(&results.reference));

@@ -19,6 +19,7 @@ struct Document<'a> {
     title: &'a str,
     scene: &'a str,
     curves: &'a [String],
+    clock: &'a str,
     reference: &'a Compared,
     cases: &'a [CasePoint],
     not_run: &'a [String],
@@ -45,6 +46,7 @@ pub fn all(out: &Path, results: &Results) -> Result<String, WriteError> {
         title: &results.title,
         scene: &results.scene,
         curves: &results.curves,
+        clock: results.clock,
         reference: &results.reference,
         cases: &results.points,
         not_run: &results.missing,
@@ -73,7 +75,7 @@ fn cases(results: &Results) -> Vec<Vec<String>> {
     let axes = results.points.first().map_or(&[][..], |point| &point.labels.0);
     let stages = results.points.iter().find_map(|point| point.figures.as_ref()).map(|f| &f.run.stages_s);
     let stages: Vec<&String> = stages.into_iter().flatten().map(|(name, _)| name).collect();
-    let fixed = "status reason error_end error_max front_end front_max wall_s walls_s steps step_s blocks tets \
+    let fixed = "status reason error_end error_max front_end front_max wall_s walls_s processors_s steps step_s blocks tets \
                  dofs candidate_pairs_total clips_total peak_memory_b threads processor commit version features \
                  beyond_limits";
     let mut header: Vec<String> = vec!["case".into()];
@@ -103,11 +105,12 @@ fn figures(point: &CasePoint, stages: &[&String]) -> Vec<String> {
         return vec!["failed".into(), point.reason.clone().unwrap_or_default()];
     };
     let (run, counts, machine) = (&f.run, &f.run.counts, &f.run.machine);
-    let walls = f.walls_s.iter().map(|wall_s| wall_s.to_string()).collect::<Vec<_>>().join(" ");
+    let all = |times_s: &[f64]| times_s.iter().map(|s| s.to_string()).collect::<Vec<_>>().join(" ");
     let mut cells: Vec<String> = vec!["done".into(), String::new()];
     cells.extend([f.error_end, f.error_max].map(|e| format!("{e:e}")));
     cells.extend(f.on_front.map(|on| on.to_string()));
-    cells.extend([f.wall_s.to_string(), walls, run.steps.to_string(), format!("{:e}", run.step_s)]);
+    cells.extend([f.wall_s.to_string(), all(&f.walls_s), all(&f.processors_s)]);
+    cells.extend([run.steps.to_string(), format!("{:e}", run.step_s)]);
     let totals = [counts.blocks, counts.tets, counts.dofs, counts.candidate_pairs_total, counts.clips_total];
     cells.extend(totals.map(|count| count.to_string()));
     cells.push(machine.peak_memory_b.map_or(String::new(), |b| b.to_string()));
