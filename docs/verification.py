@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 MANUAL = ROOT / "docs" / "verification.md"
 BEGIN, END = "<!-- figures: begin -->", "<!-- figures: end -->"
 # Test binaries whose rows are in the manual.
-TESTS = ["verification"]
+TESTS = ["verification", "scenes"]
 # Part of its tolerance by which a figure may be off before the manual is out of date.
 STALE = 0.05
 # Differences below this part of the answer, or of one, are rounding: another compiler has others.
