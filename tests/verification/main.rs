@@ -11,6 +11,7 @@ mod damping;
 mod elastic_waves;
 mod end_contact;
 mod evidence;
+mod extreme;
 mod glancing_collision;
 mod ground_stress;
 mod joint_friction;
