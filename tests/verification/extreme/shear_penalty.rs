@@ -16,6 +16,7 @@ fn stiffer_shear_springs_slide_more_as_if_there_were_none() {
                 format!("contact.friction.shear_penalty_pa_m={penalty}"),
                 format!("time.step_s={step_s}"),
                 "time.end_s=0.1".into(),
+                "reference.after_s=0.05".into(),
             ],
         );
         let summary = summary.expect("a scene that is sound");

@@ -21,10 +21,9 @@ fn whatever_jumps_through_a_plate_is_flagged_or_prevented() {
         through += u32::from(!controlled && wrong);
         prevented += u32::from(controlled && is_true(&summary));
     }
-    assert!(
-        through > 2 && prevented > 1,
-        "{through} wrong with fixed steps, {prevented} right with controlled ones"
-    );
+    assert!(through > 2, "only {through} of the fixed steps are too long: the scene is too easy");
+    let what = "of 7 collisions with a thin plate, those right with controlled steps";
+    row("X8", what, f64::from(prevented), Answer::AtLeast(5.0));
     row(
         "X8",
         "collisions with a thin plate whose label and closed form differ",
