@@ -86,8 +86,8 @@ def draw(name, rows, path):
     axes.plot([], [], "o", color="#1f4e9c", label="right, but not claimed")
     axes.plot([], [], "X", color="#c1121f", label="wrong, and claimed")
     axes.set(xlim=(-7.5, -0.5), ylim=(-6.5, 2.5), xlabel="log₁₀ Δt [s]", ylabel="log₁₀ k_n / E", title=name)
-    figure.legend(loc="lower center", ncol=3, fontsize=9, frameon=False)
-    figure.tight_layout(rect=(0, 0.1, 1, 1))
+    figure.legend(loc="lower center", bbox_to_anchor=(0.5, 0.01), ncol=3, fontsize=9, frameon=False)
+    figure.tight_layout(rect=(0, 0.12, 1, 1))
     figure.savefig(path, dpi=110)
     plt.close(figure)
 
