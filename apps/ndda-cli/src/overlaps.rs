@@ -10,6 +10,8 @@ use ndda_solver::{BodyKind, Simulation, StepError};
 /// Mean depth over the smaller of two blocks' smallest tetrahedron heights. Blocks that are laid as deep as contact carries
 /// them at rest are well below.
 const MOST_DEPTH: f64 = 0.01;
+/// Force of a pair over the largest one, below which it is rounding.
+const ROUNDING: f64 = 1e-6;
 /// Pairs that are listed.
 const MOST_LISTED: usize = 10;
 
@@ -21,9 +23,16 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
     if loaded.scene.settle.is_some() {
         return Ok(None);
     }
-    let mut facets = simulation.contacts_at_start()?;
-    let mut pairs: Vec<(PairResultant, f64)> = resultants(simulation.blocks(), &mut facets)
+    let (report, mut facets) = simulation.contacts_at_start()?;
+    if report.past_centroid.is_none() && report.max_penetration_ratio <= MOST_DEPTH {
+        return Ok(None);
+    }
+    let found = resultants(simulation.blocks(), &mut facets);
+    let largest_n = found.iter().map(|pair| pair.force_n.norm()).fold(0.0, f64::max);
+    let mut pairs: Vec<(PairResultant, f64)> = found
         .into_iter()
+        // Faces that only just touch have pieces made of rounding, of any depth and without force.
+        .filter(|pair| pair.force_n.norm() > ROUNDING * largest_n)
         .filter(|pair| [pair.first, pair.second].iter().any(|&block| !is_fixed(simulation, block)))
         .map(|pair| (pair, pair.depth_m / height_m(simulation, &pair)))
         .filter(|(_, ratio)| *ratio > MOST_DEPTH)

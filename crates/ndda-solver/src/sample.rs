@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use ndda_contact::{ContactInput, FacetContact};
+use ndda_contact::{ContactInput, ContactReport, FacetContact};
 use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
 use ndda_mesh::{BlockId, TetId, Vec3};
 
@@ -85,7 +85,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`StepError::Contact`] when contact cannot be computed.
-    pub fn contacts_at_start(&mut self) -> Result<Vec<FacetContact>, StepError> {
+    pub fn contacts_at_start(&mut self) -> Result<(ContactReport, Vec<FacetContact>), StepError> {
         let (remembered, force) = (self.state.contact.clone(), self.force.clone());
         self.contact_position.copy_from_slice(&self.state.position);
         let found = self.add_contact_forces(None);
@@ -96,7 +96,7 @@ impl Simulation {
             model.add_facets(&input, &self.state.contact, &mut facets);
         }
         (self.state.contact, self.force) = (remembered, force);
-        found.map(|_| facets)
+        found.map(|report| (report, facets))
     }
 
     /// Contact force on each node in the last step [N], friction included; zero before the first step.
