@@ -122,6 +122,7 @@ fn every_scene_passes_its_criterion_and_fills_its_summary() {
             let what = format!("{scene}: largest error against the stick stage's closed form");
             row("V2b", &what, error("stick_stage_max"), AtMost(*most));
         }
+        assert_eq!(summary["label"]["word"], "accurate", "{scene}: {}", summary["label"]);
         has_the_promised_keys(scene, &summary);
     }
 }
@@ -138,12 +139,13 @@ fn scenes_of_many_blocks_begin_without_a_complaint() {
         for (name, verdict) in summary["verdicts"].as_object().unwrap() {
             assert_eq!(verdict["verdict"], "pass", "{scene}: {name}");
         }
+        assert_eq!(summary["label"]["word"], "accurate", "{scene}");
     }
 }
 
 fn has_the_promised_keys(scene: &str, summary: &Value) {
     let promised: [(&str, &[&str]); 5] = [
-        ("", &["scene", "status", "steps", "step_s", "end_s", "wall_s", "threads"]),
+        ("", &["scene", "status", "label", "steps", "step_s", "end_s", "wall_s", "threads"]),
         (
             "/counts",
             &["blocks", "nodes", "tets", "dofs", "factors", "candidate_pairs_max", "contact_pairs_max"],

@@ -15,6 +15,7 @@ use crate::exit;
 use crate::guess::{self, Guess};
 use crate::input;
 use crate::monitor::Monitor;
+use crate::overlaps;
 use crate::reference::Comparison;
 use crate::rounding;
 use crate::step_advice;
@@ -57,7 +58,11 @@ pub fn prepare_loaded(mut loaded: LoadedScene, folder: &Path) -> Result<Ready, S
     };
     let blocks = wiring::blocks(&loaded.scene, folder).map_err(located)?;
     let far = rounding::warning(&loaded, &blocks);
-    let simulation = wiring::simulation(&loaded.scene, blocks, folder).map_err(located)?;
+    let mut simulation = wiring::simulation(&loaded.scene, blocks, folder).map_err(located)?;
+    // What contact cannot compute at the start stops the run with its own cause.
+    if let Ok(Some(refused)) = overlaps::refusal(&loaded, &mut simulation) {
+        return Err(loaded.errors(vec![refused]));
+    }
     let monitors = wiring::monitors(&loaded.scene, &simulation).map_err(located)?;
     loaded.warnings.extend(far);
     Ok(Ready { loaded, simulation, monitors })

@@ -21,6 +21,7 @@ pub mod machine;
 pub mod mesh;
 pub mod monitor;
 pub mod new;
+pub mod overlaps;
 #[cfg(feature = "plots")]
 pub mod picture;
 #[cfg(feature = "plots")]
@@ -39,4 +40,5 @@ pub mod schema;
 pub mod shell;
 pub mod step_advice;
 pub mod study;
+pub mod verdict;
 pub mod wiring;

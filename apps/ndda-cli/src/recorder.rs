@@ -124,6 +124,7 @@ impl Recorder {
             self.error_max = Some(Errors {
                 plain: old.plain.max(errors.plain),
                 stick_stage: larger(old.stick_stage, errors.stick_stage),
+                place: larger(old.place, errors.place),
             });
         }
         Some(errors)

@@ -64,6 +64,8 @@ pub struct Errors {
     pub plain: f64,
     /// Against the closed form with the stick stage of the shear spring, where it applies.
     pub stick_stage: Option<f64>,
+    /// After a collision: distance from where hard blocks would be, over the smallest tetrahedron height.
+    pub place: Option<f64>,
 }
 
 /// A closed form bound to the blocks and monitors of a run.
@@ -91,8 +93,12 @@ pub enum Comparison {
         along: Vec3,
         /// Their final velocities [m/s].
         after_m_s: [f64; 2],
-        /// Their relative velocity at the start [m/s].
-        scale_m_s: f64,
+        /// Their velocities at the start [m/s].
+        before_m_s: [f64; 2],
+        /// Their distance at the start along the line [m].
+        gap_m: f64,
+        /// Smallest height of their tetrahedra [m].
+        height_m: f64,
     },
     /// Free flight.
     Fall {
@@ -139,6 +145,26 @@ pub fn block_velocity(simulation: &Simulation, block: BlockId) -> Vec3 {
     operator.momentum(&simulation.state().velocity[range]) / operator.mass_kg
 }
 
+/// Mass-mean displacement of a block since the start [m].
+fn block_displacement(simulation: &Simulation, block: BlockId) -> Vec3 {
+    let operator = &simulation.shape(block).operator;
+    let range = simulation.blocks().nodes_of(block);
+    operator.center(&simulation.state().position[range.clone()])
+        - operator.center(&simulation.start_position()[range])
+}
+
+/// Distance from the first block to the second along a line [m].
+fn gap_m(simulation: &Simulation, blocks: [BlockId; 2], along: &Vec3) -> f64 {
+    let places = blocks.map(|block| {
+        let nodes = &simulation.state().position[simulation.blocks().nodes_of(block)];
+        nodes
+            .iter()
+            .map(|x| x.dot(along))
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| (a.min(s), b.max(s)))
+    });
+    places[1].0 - places[0].1
+}
+
 /// Angular momentum of a block about its mass centre [kg m²/s].
 pub fn block_spin(simulation: &Simulation, block: BlockId) -> Vec3 {
     let operator = &simulation.shape(block).operator;
@@ -169,8 +195,17 @@ impl Comparison {
                 let along = Vec3::from(*along).normalize();
                 let mass = blocks.map(|b| simulation.shape(b).operator.mass_kg);
                 let before = blocks.map(|b| block_velocity(simulation, b).dot(&along));
-                let scale_m_s = (before[0] - before[1]).abs();
-                Self::Collision { blocks, along, after_m_s: collide_m_s(mass, before), scale_m_s }
+                Self::Collision {
+                    blocks,
+                    along,
+                    after_m_s: collide_m_s(mass, before),
+                    before_m_s: before,
+                    gap_m: gap_m(simulation, blocks, &along),
+                    height_m: f64::min(
+                        simulation.shape(blocks[0]).smallest_height_m,
+                        simulation.shape(blocks[1]).smallest_height_m,
+                    ),
+                }
             }
             Reference::FreeFall { monitor: name, .. } => {
                 let index = monitor(name);
@@ -208,31 +243,38 @@ impl Comparison {
                     let exact = slide_after_sticking_m(*slope_deg, *friction, *gravity_m_s2, omega, time_s);
                     (slid - exact).abs() / scale
                 };
-                Some(Errors { plain, stick_stage: omega_rad_s.map(stuck) })
+                Some(Errors { plain, stick_stage: omega_rad_s.map(stuck), place: None })
             }
-            Self::Collision { blocks, along, after_m_s, scale_m_s } => {
+            Self::Collision { blocks, along, after_m_s, before_m_s, gap_m, height_m } => {
                 let error =
                     |i: usize| (block_velocity(simulation, blocks[i]).dot(along) - after_m_s[i]).abs();
-                let plain = relative(error(0).max(error(1)), *scale_m_s)?;
-                Some(Errors { plain, stick_stage: None })
+                let closing_m_s = before_m_s[0] - before_m_s[1];
+                let plain = relative(error(0).max(error(1)), closing_m_s.abs())?;
+                let hit_s = (gap_m / closing_m_s).max(0.0);
+                let place = |i: usize| {
+                    let exact = before_m_s[i] * hit_s + after_m_s[i] * (time_s - hit_s);
+                    (block_displacement(simulation, blocks[i]).dot(along) - exact).abs() / height_m
+                };
+                let place = (time_s >= hit_s).then(|| place(0).max(place(1)));
+                Some(Errors { plain, stick_stage: None, place })
             }
             Self::Fall { monitor, velocity_m_s, gravity_m_s2 } => {
                 let exact = fall_m(velocity_m_s, gravity_m_s2, time_s);
                 let error = (monitors[*monitor].displacement(simulation) - exact).norm();
-                Some(Errors { plain: relative(error, exact.norm())?, stick_stage: None })
+                Some(Errors { plain: relative(error, exact.norm())?, stick_stage: None, place: None })
             }
             Self::Spin { block, start } => {
                 let error = (block_spin(simulation, *block) - start).norm();
-                Some(Errors { plain: relative(error, start.norm())?, stick_stage: None })
+                Some(Errors { plain: relative(error, start.norm())?, stick_stage: None, place: None })
             }
             Self::Impact { block, along, speed_m_s, touch_s, there_and_back_s } => {
                 let exact = bar_impact_m_s(*speed_m_s, *touch_s, *there_and_back_s, time_s);
                 let error = (block_velocity(simulation, *block).dot(along) - exact).abs();
-                Some(Errors { plain: relative(error, speed_m_s.abs())?, stick_stage: None })
+                Some(Errors { plain: relative(error, speed_m_s.abs())?, stick_stage: None, place: None })
             }
             Self::Displacement { monitor, exact_m } => {
                 let error = (monitors[*monitor].displacement(simulation) - exact_m).norm();
-                Some(Errors { plain: relative(error, exact_m.norm())?, stick_stage: None })
+                Some(Errors { plain: relative(error, exact_m.norm())?, stick_stage: None, place: None })
             }
         }
     }

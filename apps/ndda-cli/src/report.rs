@@ -3,7 +3,8 @@
 use ndda_fem::stress::volume_m3;
 use ndda_io::scene::{Integrator, Scene};
 use ndda_io::summary::{
-    BlockEnd, Counts, Invariants, Judgement, MonitorEnd, Named, ReferenceError, Status, Summary, Verdict,
+    BlockEnd, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError, Status, Summary,
+    Verdict,
 };
 use ndda_mesh::Vec3;
 use ndda_solver::{Simulation, StepCounts};
@@ -12,6 +13,7 @@ use crate::columns::columns;
 use crate::machine;
 use crate::recorder::Recorder;
 use crate::reference;
+use crate::verdict;
 
 /// What the summary needs besides the simulation.
 pub struct Outcome<'a> {
@@ -40,7 +42,8 @@ pub struct Outcome<'a> {
 /// The summary of a run.
 pub fn summarise(simulation: &Simulation, recorder: &Recorder, outcome: Outcome) -> Summary {
     let worst = simulation.invariants();
-    let verdicts = verdicts(simulation);
+    let verdicts = verdict::verdicts(simulation);
+    let label = verdict::label(simulation, outcome.stopped_by.as_deref());
     let failed = outcome.strict && verdicts.0.iter().any(|(_, v)| v.verdict == Judgement::Fail);
     let status = match (&outcome.stopped_by, failed) {
         (Some(_), _) => Status::Stopped,
@@ -56,6 +59,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, outcome: Outcome)
         title: outcome.scene.title.clone(),
         status,
         stopped_by: outcome.stopped_by,
+        label,
         steps: simulation.state().step,
         step_s: simulation.step_s(),
         end_s: simulation.time_s(),
@@ -105,55 +109,6 @@ fn stages(simulation: &Simulation, outside: Vec<(String, f64)>, wall_s: f64) -> 
     let known: f64 = stages.iter().map(|stage| stage.1).sum();
     stages.push(("other".into(), (wall_s - known).max(0.0)));
     Named(stages)
-}
-
-/// A value that should not exceed `warn`, and fails the run beyond `fail`.
-fn judged(value: f64, warn: f64, fail: f64) -> Verdict {
-    let verdict = if value > fail {
-        Judgement::Fail
-    } else if value > warn {
-        Judgement::Warn
-    } else {
-        Judgement::Pass
-    };
-    Verdict { value: Some(value), limit: Some(warn), verdict }
-}
-
-fn shown(value: f64) -> Verdict {
-    Verdict { value: Some(value), limit: None, verdict: Judgement::Pass }
-}
-
-/// The invariants I1–I8 against their limits.
-fn verdicts(simulation: &Simulation) -> Named<Verdict> {
-    let worst = simulation.invariants();
-    // Held blocks exchange angular momentum with their supports through strains that the books do not see.
-    let closed = simulation.is_closed();
-    let angular =
-        if closed { judged(worst.angular_momentum, 1e-8, 1e-4) } else { shown(worst.angular_momentum) };
-    let h = match simulation.contact_bound() {
-        Some(bound) => judged(worst.max_h, bound, f64::INFINITY),
-        None => shown(worst.max_h),
-    };
-    // How far a block moves in a step matters only where it may jump through another.
-    let travel = match simulation.has_contact() {
-        true => judged(worst.max_travel_ratio, 0.5, f64::INFINITY),
-        false => shown(worst.max_travel_ratio),
-    };
-    let volume_ratio = worst.smallest_volume_ratio;
-    let upright = if volume_ratio > 0.0 { Judgement::Pass } else { Judgement::Fail };
-    let entries = [
-        ("I1 finite state", Verdict { value: None, limit: None, verdict: Judgement::Pass }),
-        ("I2 linear momentum", judged(worst.linear_momentum, 1e-10, 1e-6)),
-        ("I3 angular momentum", angular),
-        ("I4 energy gain", judged(worst.energy_gain, 0.01, 0.02)),
-        ("I4 energy loss", shown(worst.energy_loss)),
-        ("I5 penetration / height", judged(worst.max_penetration_ratio, 0.05, 0.25)),
-        ("I6 action = reaction", judged(worst.action_reaction, 1e-12, 1e-9)),
-        ("I7 smallest det F", Verdict { value: Some(volume_ratio), limit: Some(0.0), verdict: upright }),
-        ("I8 h = ω_c Δt", h),
-        ("I8 travel / height", travel),
-    ];
-    Named(entries.map(|(name, verdict)| (name.to_string(), verdict)).to_vec())
 }
 
 /// What a person should do about the numbers.
@@ -240,6 +195,7 @@ fn reference_error(scene: &Scene, recorder: &Recorder) -> Option<ReferenceError>
         kind: kind.into(),
         error_end: end.plain,
         error_max: max.plain,
+        place_end: end.place,
         after_s,
         stick_stage_end: end.stick_stage,
         stick_stage_max: max.stick_stage,
@@ -279,6 +235,12 @@ pub fn table(summary: &Summary) -> String {
     }
     for warning in &summary.warnings {
         text.push_str(&format!("warning: {warning}\n"));
+    }
+    if summary.label.word != LabelWord::Stopped {
+        text.push_str(&format!("label: {}\n", summary.label.word.as_str()));
+        for reason in &summary.label.reasons {
+            text.push_str(&format!("  {reason}\n"));
+        }
     }
     if let Some(cause) = &summary.stopped_by {
         text.push_str(&format!("stopped: {cause}\n"));

@@ -41,6 +41,8 @@ pub enum Code {
     DoesNotFit,
     /// Something cannot be built as it is written.
     CannotBuild,
+    /// Blocks that are in each other at the start.
+    Overlap,
     /// A value that looks like one in another unit.
     UnitSlip,
     /// Results will be worse than they look.
@@ -51,7 +53,7 @@ pub enum Code {
 
 impl Code {
     /// All codes.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         Self::Unreadable,
         Self::Syntax,
         Self::Truncated,
@@ -70,6 +72,7 @@ impl Code {
         Self::MissingFile,
         Self::DoesNotFit,
         Self::CannotBuild,
+        Self::Overlap,
         Self::UnitSlip,
         Self::Inexact,
         Self::NoEffect,

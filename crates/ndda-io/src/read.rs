@@ -34,13 +34,13 @@ pub struct LoadedScene {
 impl LoadedScene {
     /// An error about the value at `path`, with its place in the text.
     pub fn diagnose(&self, path: &str, message: String) -> Diagnostic {
-        let found = Diagnostic::error(
-            Code::CannotBuild,
-            path,
-            message,
-            place(&locate::tree(&self.text), &self.text, path),
-        );
+        let found = self.diagnose_as(Code::CannotBuild, path, message);
         found.with_help("`ndda mesh` measures and draws the blocks as they are placed")
+    }
+
+    /// A message of a kind about the value at `path`.
+    pub fn diagnose_as(&self, code: Code, path: &str, message: String) -> Diagnostic {
+        Diagnostic::error(code, path, message, place(&locate::tree(&self.text), &self.text, path))
     }
 
     /// Messages about this scene.

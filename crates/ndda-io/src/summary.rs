@@ -66,6 +66,8 @@ pub struct Summary {
     /// Why it stopped before its end. Left out when it did not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped_by: Option<String>,
+    /// What the run says of its own result.
+    pub label: Label,
     /// Steps done.
     pub steps: u64,
     /// Step Δt \[s\].
@@ -110,6 +112,39 @@ pub enum Status {
     Stopped,
     /// A person or the system ended it.
     Interrupted,
+}
+
+/// What a run says of its own result, and why.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Label {
+    /// Whether its motion is to be trusted.
+    pub word: LabelWord,
+    /// Why it is not; empty for an accurate run.
+    pub reasons: Vec<String>,
+}
+
+/// Whether the motion of a run is to be trusted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LabelWord {
+    /// Speeds are right to 1 % of the largest, places to a tenth of the height of the tetrahedra in contact.
+    #[default]
+    Accurate,
+    /// They may not be.
+    Inaccurate,
+    /// It ended before it could be wrong.
+    Stopped,
+}
+
+impl LabelWord {
+    /// The word itself.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Accurate => "accurate",
+            Self::Inaccurate => "inaccurate",
+            Self::Stopped => "stopped",
+        }
+    }
 }
 
 /// Sizes of the problem.
@@ -232,6 +267,9 @@ pub struct ReferenceError {
     pub error_end: f64,
     /// Largest relative error after `after_s`.
     pub error_max: f64,
+    /// After a collision, how far the blocks are from where hard ones would be, over the smallest tetrahedron height.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub place_end: Option<f64>,
     /// From when on the largest error is taken \[s\].
     pub after_s: f64,
     /// Relative error at the end against the closed form with the shear spring's stick stage.
@@ -287,6 +325,7 @@ mod tests {
             title: "Block on a ramp".into(),
             status: Status::Done,
             stopped_by: None,
+            label: Label { word: LabelWord::Inaccurate, reasons: vec!["too deep".into()] },
             steps: 10_000,
             step_s: 1e-4,
             end_s: 1.0,
@@ -307,6 +346,7 @@ mod tests {
                 kind: "SlidingBlock".into(),
                 error_end: 1e-7,
                 error_max: 2e-7,
+                place_end: None,
                 after_s: 0.02,
                 stick_stage_end: None,
                 stick_stage_max: Some(3e-7),
@@ -331,9 +371,10 @@ mod tests {
     #[test]
     fn the_promised_keys_are_there() {
         let (_, value) = written(&example());
-        let top = "scene status steps step_s end_s wall_s threads machine counts stages_s invariants monitors blocks reference";
+        let top = "scene status label steps step_s end_s wall_s threads machine counts stages_s invariants monitors blocks reference";
         let promised = [
             ("", top),
+            ("/label", "word reasons"),
             ("/machine", "processor commit features"),
             (
                 "/counts",

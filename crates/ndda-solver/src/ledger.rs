@@ -64,6 +64,10 @@ pub struct Invariants {
     pub energy_gain: f64,
     /// I4: largest energy loss over the peak energy.
     pub energy_loss: f64,
+    /// I4: largest gain that does not come back when contact parts, over the peak energy.
+    pub lasting_gain: f64,
+    /// I4: largest loss that does not come back when contact parts, over the peak energy.
+    pub lasting_loss: f64,
     /// I5: penetration over tet height.
     pub max_penetration_ratio: f64,
     /// I6: |action + reaction| / |force| over the pairs.
@@ -72,7 +76,7 @@ pub struct Invariants {
     pub smallest_volume_ratio: f64,
     /// I8: h = ω_c Δt, ω_c² bounded by the row sums of the contact stiffness over nodal masses.
     pub max_h: f64,
-    /// I8: travel of a step over the smallest tet height of the block.
+    /// I8: travel of a step over the smallest tet height of all blocks.
     pub max_travel_ratio: f64,
     /// Most pairs looked at in a step.
     pub candidate_pairs_max: usize,
@@ -106,6 +110,8 @@ pub struct Ledger {
     peak_angular: f64,
     largest_gain_j: f64,
     largest_loss_j: f64,
+    lasting_gain_j: f64,
+    lasting_loss_j: f64,
     momentum_error: f64,
     angular_error: f64,
     worst: Invariants,
@@ -120,6 +126,8 @@ impl Ledger {
             angular_momentum: 0.0,
             energy_gain: 0.0,
             energy_loss: 0.0,
+            lasting_gain: 0.0,
+            lasting_loss: 0.0,
             max_penetration_ratio: 0.0,
             action_reaction: 0.0,
             smallest_volume_ratio: 1.0,
@@ -148,6 +156,8 @@ impl Ledger {
             peak_angular: 0.0,
             largest_gain_j: 0.0,
             largest_loss_j: 0.0,
+            lasting_gain_j: 0.0,
+            lasting_loss_j: 0.0,
             momentum_error: 0.0,
             angular_error: 0.0,
             worst,
@@ -208,7 +218,10 @@ impl Ledger {
     }
 
     /// Balances a sample against the books and keeps the extremes; the first sample opens the books.
-    pub fn balance(&mut self, mut sample: Sample) -> Sample {
+    ///
+    /// Where contact is explicit and stable, what it keeps is v² (1 − h²/4)/2 + ω² x²/2: up to h²/4 of its own energy is
+    /// missing while blocks are pressed, and comes back when they part. `explicit_contact` says that it is.
+    pub fn balance(&mut self, mut sample: Sample, explicit_contact: bool) -> Sample {
         let start = *self.start.get_or_insert(sample);
         sample.friction_work_j = self.friction_work_j;
         sample.motion_work_j = self.motion_work_j;
@@ -221,6 +234,10 @@ impl Ledger {
         self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());
         self.largest_gain_j = self.largest_gain_j.max(sample.balance_j);
         self.largest_loss_j = self.largest_loss_j.max(-sample.balance_j);
+        let h = if explicit_contact { self.worst.max_h } else { 0.0 };
+        let comes_back_j = 0.25 * h * h * sample.contact_j;
+        self.lasting_gain_j = self.lasting_gain_j.max(sample.balance_j - comes_back_j);
+        self.lasting_loss_j = self.lasting_loss_j.max(-sample.balance_j - comes_back_j);
         // What supports and loads exchange rounds as they do, however little it leaves to move.
         self.peak_momentum = self.peak_momentum.max(sample.momentum_scale).max(self.load_impulse);
         self.peak_angular = self.peak_angular.max(sample.angular_scale);
@@ -241,6 +258,8 @@ impl Ledger {
             angular_momentum: over(self.angular_error, self.peak_angular),
             energy_gain: over(self.largest_gain_j, self.peak_energy_j),
             energy_loss: over(self.largest_loss_j, self.peak_energy_j),
+            lasting_gain: over(self.lasting_gain_j, self.peak_energy_j),
+            lasting_loss: over(self.lasting_loss_j, self.peak_energy_j),
             ..self.worst
         }
     }
@@ -255,22 +274,35 @@ mod tests {
     #[test]
     fn energy_that_friction_took_is_not_a_loss() {
         let mut ledger = Ledger::new(&[]);
-        ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() });
+        ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
         ledger.add_work(-4.0, 0.0, 0.0, 0.0);
-        let sample = ledger.balance(Sample { kinetic_j: 5.0, ..Sample::default() });
+        let sample = ledger.balance(Sample { kinetic_j: 5.0, ..Sample::default() }, true);
         assert_eq!(sample.balance_j, -1.0);
         assert_eq!(ledger.invariants().energy_loss, 0.1);
         assert_eq!(ledger.invariants().energy_gain, 0.0);
     }
 
     #[test]
+    fn what_explicit_contact_holds_back_is_not_lost_but_what_is_gone_after_it_is() {
+        let mut ledger = Ledger::new(&[]);
+        ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
+        ledger.watch(&StepReport { h: 1.0, ..StepReport::default() });
+        ledger.balance(Sample { contact_j: 8.0, ..Sample::default() }, true);
+        assert_eq!((ledger.invariants().energy_loss, ledger.invariants().lasting_loss), (0.2, 0.0));
+        ledger.balance(Sample { kinetic_j: 9.0, ..Sample::default() }, true);
+        assert_eq!((ledger.invariants().lasting_loss, ledger.invariants().lasting_gain), (0.1, 0.0));
+        ledger.balance(Sample { contact_j: 8.0, ..Sample::default() }, false);
+        assert_eq!(ledger.invariants().lasting_loss, 0.2);
+    }
+
+    #[test]
     fn an_impulse_from_outside_explains_momentum() {
         let mut ledger = Ledger::new(&[]);
-        ledger.balance(Sample::default());
+        ledger.balance(Sample::default(), true);
         let weights = Midpoint { theta: 0.5 }.weights(0.5);
         ledger.add_impulse(0.5, &weights, Vec3::x(), Vec3::zeros());
         let momentum = Vec3::new(0.5, 0.0, 0.1);
-        ledger.balance(Sample { momentum, momentum_scale: 0.5, ..Sample::default() });
+        ledger.balance(Sample { momentum, momentum_scale: 0.5, ..Sample::default() }, true);
         assert!((ledger.invariants().linear_momentum - 0.2).abs() < 1e-15);
     }
 }

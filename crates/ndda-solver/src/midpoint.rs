@@ -58,6 +58,10 @@ impl TimeIntegrator for Midpoint {
     fn contact_bound(&self) -> Option<f64> {
         Some(2.0)
     }
+
+    fn damps_elasticity(&self) -> bool {
+        self.theta > 0.5
+    }
 }
 
 #[cfg(test)]

@@ -61,6 +61,10 @@ impl TimeIntegrator for Newmark {
     fn contact_bound(&self) -> Option<f64> {
         None
     }
+
+    fn damps_elasticity(&self) -> bool {
+        self.delta > 0.5
+    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use ndda_contact::{ContactInput, FacetContact};
+use ndda_contact::{ContactInput, ContactReport, FacetContact};
 use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
 use ndda_mesh::{BlockId, TetId, Vec3};
 
@@ -31,7 +31,7 @@ impl Simulation {
             let energy_j = model.energy_j(&input, &self.state.contact);
             sample.contact_j = energy_j.map_err(|source| StepError::Contact { time_s, source })?;
         }
-        let sample = self.ledger.balance(sample);
+        let sample = self.ledger.balance(sample, self.contact_bound().is_some());
         self.stages.ledger_s += started.elapsed().as_secs_f64();
         Ok(sample)
     }
@@ -79,6 +79,24 @@ impl Simulation {
     /// [watched](Self::watch_contacts), nor before the first step.
     pub fn contacts(&self) -> &[FacetContact] {
         self.contacts.as_deref().unwrap_or(&[])
+    }
+
+    /// What facets do to each other where the blocks are now; nothing of it is remembered.
+    ///
+    /// # Errors
+    /// [`StepError::Contact`] when contact cannot be computed.
+    pub fn contacts_at_start(&mut self) -> Result<(ContactReport, Vec<FacetContact>), StepError> {
+        let (remembered, force) = (self.state.contact.clone(), self.force.clone());
+        self.contact_position.copy_from_slice(&self.state.position);
+        let found = self.add_contact_forces(None);
+        let mut facets = Vec::new();
+        if let Some(model) = &self.contact {
+            let input =
+                ContactInput::new(&self.blocks, &self.contact_position, &self.state.velocity, self.part_s);
+            model.add_facets(&input, &self.state.contact, &mut facets);
+        }
+        (self.state.contact, self.force) = (remembered, force);
+        found.map(|report| (report, facets))
     }
 
     /// Contact force on each node in the last step [N], friction included; zero before the first step.

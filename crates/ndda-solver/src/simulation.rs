@@ -31,7 +31,7 @@ pub struct StepReport {
     pub contact: ContactReport,
     /// h = ω_c Δt, ω_c² taken as the largest row sum of contact's stiffness over the node's lumped mass.
     pub h: f64,
-    /// Travel of the step over the smallest tet height of the block, largest over the blocks.
+    /// Travel of the step over the smallest tet height of all blocks, largest over the blocks.
     pub travel_ratio: f64,
     /// What solving for contact took; none where it is taken at predicted positions.
     pub iterations: Iterations,
@@ -313,7 +313,7 @@ impl Simulation {
     fn keep_books(&mut self, contact: ContactReport, iterations: Iterations) -> StepReport {
         let (mut force, mut torque) = (self.loads.force(), Vec3::zeros());
         self.ledger.watch_load(force.norm());
-        let (mut rate2, mut travel_ratio) = (0.0f64, 0.0f64);
+        let (mut rate2, mut travel_m) = (0.0f64, 0.0f64);
         let (mut friction_j, mut motion_j, mut load_j, mut damping_j) = (0.0, 0.0, 0.0, 0.0);
         for body in &self.bodies {
             let report = &body.report;
@@ -324,9 +324,11 @@ impl Simulation {
             load_j += report.load_work_j;
             damping_j += report.damping_work_j;
             rate2 = rate2.max(report.contact_rate2);
-            let height_m = self.shapes[body.shape].smallest_height_m;
-            travel_ratio = travel_ratio.max(report.speed_m_s * self.part_s / height_m);
+            travel_m = travel_m.max(report.speed_m_s * self.part_s);
         }
+        // Whatever moves may meet the thinnest block of all.
+        let height_m = self.shapes.iter().map(|shape| shape.smallest_height_m).fold(f64::INFINITY, f64::min);
+        let travel_ratio = travel_m / height_m;
         let h = self.part_s * rate2.sqrt();
         self.ledger.add_impulse(self.part_s, &self.weights, force, torque);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
@@ -460,6 +462,20 @@ impl Simulation {
     /// Largest stable h = ω_c Δt; none where contact is solved for, or never stable.
     pub fn contact_bound(&self) -> Option<f64> {
         if self.newton.is_some() { None } else { self.integrator.contact_bound() }
+    }
+
+    /// Largest h at which steps resolve contact at predicted positions: the bound, or a third of a contact's half period where
+    /// no step is stable; none where contact is solved for.
+    pub fn resolved_h(&self) -> Option<f64> {
+        if self.newton.is_some() { None } else { Some(self.integrator.contact_bound().unwrap_or(1.0)) }
+    }
+
+    /// Whether a loss of energy is wrong: not where an integrator is asked to damp what elastic blocks do, unless contact at
+    /// the end of steps takes energy, too.
+    pub fn should_keep_energy(&self) -> bool {
+        let asked = self.integrator.damps_elasticity();
+        let rigid = |shape: &Shape| matches!(shape.kind, BodyKind::Rigid | BodyKind::Fixed);
+        self.newton.is_some() || !asked || self.shapes.iter().all(rigid)
     }
 
     /// The worst of the run so far.

@@ -103,4 +103,9 @@ pub trait TimeIntegrator: Send + Sync {
 
     /// Largest stable h = ω_c Δt for contact evaluated explicitly; `None` if there is none above zero.
     fn contact_bound(&self) -> Option<f64>;
+
+    /// Whether it was chosen to damp elastic modes, those that a step resolves included.
+    fn damps_elasticity(&self) -> bool {
+        false
+    }
 }

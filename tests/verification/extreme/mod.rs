@@ -1,14 +1,21 @@
-//! The catalogue of extreme cases (X3 to X21): each runs a scene of `scenes/extreme/`, whose header says what is expected.
+//! Extreme cases (X1 to X22): each runs a scene of `scenes/extreme/`, whose header says what is expected. The promise: a bounded,
+//! reported answer, or a clean stop that names the cause; a run that is wrong and calls itself accurate is the only failure.
 
 mod concave;
+mod initial_overlap;
+mod label;
+mod labelled;
 mod locking;
 mod long_runs;
 mod ramp;
 mod scale;
+mod shear_penalty;
 mod sizes;
 mod slivers;
 mod springs;
+mod stability;
 mod touching;
+mod tunnelling;
 mod unlike_neighbours;
 
 use std::path::Path;

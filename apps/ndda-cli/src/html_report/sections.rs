@@ -1,7 +1,7 @@
 //! The parts of the page that are text: what was run, what became of it, what it cost.
 
 use maud::{Markup, html};
-use ndda_io::summary::{Judgement, Status, Summary, Verdict};
+use ndda_io::summary::{Judgement, LabelWord, Status, Summary, Verdict};
 
 /// Blocks that are listed; a table of more is no help.
 const MOST_BLOCKS: usize = 200;
@@ -20,11 +20,24 @@ pub fn header(summary: &Summary) -> Markup {
                 (status(summary))
                 @if failed > 0 { span.badge.fail { (failed) " beyond the limit" } }
                 @if warned > 0 { span.badge.warn { (warned) " to look at" } }
+                (label(summary))
                 @if failed + warned == 0 { span.badge.pass { "invariants hold" } }
                 @if let Some(reference) = &summary.reference {
                     span.badge.info { "error " (format!("{:.1e}", reference.error_end)) }
                 }
             }
+        }
+    }
+}
+
+/// What the run says of itself; the status has said that it stopped.
+fn label(summary: &Summary) -> Markup {
+    let word = summary.label.word;
+    html! {
+        @match word {
+            LabelWord::Accurate => span.badge.pass { (word.as_str()) },
+            LabelWord::Inaccurate => span.badge.warn { (word.as_str()) },
+            LabelWord::Stopped => {},
         }
     }
 }
@@ -43,6 +56,9 @@ fn status(summary: &Summary) -> Markup {
 pub fn warnings(summary: &Summary) -> Markup {
     html! {
         @if let Some(cause) = &summary.stopped_by { p.alert.fail { strong { "Stopped " } (cause) } }
+        @if summary.label.word == LabelWord::Inaccurate {
+            @for reason in &summary.label.reasons { p.alert.warn { strong { "Inaccurate " } (reason) } }
+        }
         @for warning in &summary.warnings { p.alert.warn { (warning) } }
     }
 }

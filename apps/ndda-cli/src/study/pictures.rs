@@ -19,6 +19,8 @@ const KEY: u32 = 290;
 const FRONT: RGBColor = RGBColor(190, 190, 190);
 /// Errors of exactly zero are drawn here.
 const ZERO: f64 = 1e-17;
+/// Errors beyond this are drawn here: how wrong a useless run is does not matter, and axes of 300 decades cannot be drawn.
+const MOST: f64 = 1e6;
 /// Height of a bar with its room, width of the picture of stages, room for names beside the bars [px].
 const BAR: u32 = 24;
 const WIDE: u32 = 1100;
@@ -88,7 +90,7 @@ fn pair(root: &Area, results: &Results, across: &Across) -> Drawn {
 /// Errors of one kind, one colour per curve; the front is a grey band.
 fn frame(area: &Area, results: &Results, across: &Across, which: usize) -> Drawn {
     let floor = results.reference.floors()[which];
-    let place = |f: &Figures| (across.of(f), f.point(which, floor.max(ZERO)).error);
+    let place = |f: &Figures| (across.of(f), f.point(which, floor.max(ZERO)).error.min(MOST));
     let all: Vec<(f64, f64)> = results.points.iter().filter_map(|p| p.figures.as_ref()).map(place).collect();
     let (x, y) = (log_range(all.iter().map(|p| p.0)), log_range(all.iter().map(|p| p.1)));
     let (ends, seen) = ([(x.start, floor), (x.end, floor)], y.contains(&floor));

@@ -1,7 +1,7 @@
 //! What a study has found: a point per case, its errors and figures, and the fronts.
 
 use ndda_io::study::Clock;
-use ndda_io::summary::Named;
+use ndda_io::summary::{Invariants, Label, Named, ReferenceError};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -108,6 +108,12 @@ pub struct Figures {
 pub struct Run {
     /// Version of ndda.
     pub version: String,
+    /// What the run says of itself.
+    pub label: Label,
+    /// The largest violation of each invariant.
+    pub invariants: Invariants,
+    /// Comparison with the closed form, where the scene names one.
+    pub reference: Option<ReferenceError>,
     /// Steps.
     pub steps: u64,
     /// Step [s].

@@ -75,9 +75,9 @@ fn cases(results: &Results) -> Vec<Vec<String>> {
     let axes = results.points.first().map_or(&[][..], |point| &point.labels.0);
     let stages = results.points.iter().find_map(|point| point.figures.as_ref()).map(|f| &f.run.stages_s);
     let stages: Vec<&String> = stages.into_iter().flatten().map(|(name, _)| name).collect();
-    let fixed = "status reason error_end error_max front_end front_max wall_s walls_s processors_s steps step_s blocks tets \
-                 dofs candidate_pairs_total clips_total peak_memory_b threads processor commit version features \
-                 beyond_limits";
+    let fixed = "status reason label label_reasons error_end error_max place_end h front_end front_max wall_s \
+                 walls_s processors_s steps step_s blocks tets dofs candidate_pairs_total clips_total \
+                 peak_memory_b threads processor commit version features beyond_limits";
     let mut header: Vec<String> = vec!["case".into()];
     header.extend(axes.iter().map(|(axis, _)| axis.clone()));
     header.extend(fixed.split_whitespace().map(String::from));
@@ -106,8 +106,12 @@ fn figures(point: &CasePoint, stages: &[&String]) -> Vec<String> {
     };
     let (run, counts, machine) = (&f.run, &f.run.counts, &f.run.machine);
     let all = |times_s: &[f64]| times_s.iter().map(|s| s.to_string()).collect::<Vec<_>>().join(" ");
-    let mut cells: Vec<String> = vec!["done".into(), String::new()];
+    let label = &run.label;
+    let mut cells = vec!["done".into(), String::new(), label.word.as_str().into(), label.reasons.join("; ")];
     cells.extend([f.error_end, f.error_max].map(|e| format!("{e:e}")));
+    let place = run.reference.as_ref().and_then(|reference| reference.place_end);
+    cells.push(place.map_or(String::new(), |place| format!("{place:e}")));
+    cells.push(format!("{:e}", run.invariants.max_h));
     cells.extend(f.on_front.map(|on| on.to_string()));
     cells.extend([f.wall_s.to_string(), all(&f.walls_s), all(&f.processors_s)]);
     cells.extend([run.steps.to_string(), format!("{:e}", run.step_s)]);

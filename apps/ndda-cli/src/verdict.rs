@@ -1,0 +1,158 @@
+//! What a run says of itself: the invariants I1–I8 against their limits, and whether its motion is to be trusted.
+
+use ndda_io::summary::{Judgement, Label, LabelWord, Named, Verdict};
+use ndda_solver::Simulation;
+
+/// Energy gained or lost for good over the largest energy. Speeds are as its root: twice the 1 % that they may be off.
+const MOST_ENERGY: f64 = 0.02;
+/// Penetration over the height of the tetrahedron. A collision that goes d deep delays blocks by up to π d / 2, which is
+/// within the tenth of a height that places may be off.
+const MOST_DEPTH: f64 = 0.05;
+/// Travel of a step over the smallest height of all tetrahedra: two blocks that meet jump over one height together.
+const MOST_TRAVEL: f64 = 0.5;
+
+/// An invariant, and what it means for the motion.
+struct Entry {
+    name: &'static str,
+    verdict: Verdict,
+    /// From which judgement on the motion is not to be trusted.
+    spoils_at: Judgement,
+    /// What it is then.
+    reason: String,
+}
+
+impl Entry {
+    fn new(name: &'static str, verdict: Verdict, spoils_at: Judgement, reason: String) -> Self {
+        Self { name, verdict, spoils_at, reason }
+    }
+
+    fn spoils(&self) -> bool {
+        let found = self.verdict.verdict;
+        found == Judgement::Fail || (found == Judgement::Warn && self.spoils_at == Judgement::Warn)
+    }
+}
+
+/// The invariants I1–I8 against their limits.
+pub fn verdicts(simulation: &Simulation) -> Named<Verdict> {
+    entries(simulation).into_iter().map(|entry| (entry.name.to_string(), entry.verdict)).collect()
+}
+
+/// Whether the motion of a run is to be trusted so far, and why not.
+pub fn label(simulation: &Simulation, stopped_by: Option<&str>) -> Label {
+    if let Some(cause) = stopped_by {
+        return Label { word: LabelWord::Stopped, reasons: vec![cause.to_string()] };
+    }
+    let spoiled = entries(simulation).into_iter().filter(Entry::spoils);
+    let reasons: Vec<String> = spoiled.map(|entry| entry.reason).collect();
+    let word = if reasons.is_empty() { LabelWord::Accurate } else { LabelWord::Inaccurate };
+    Label { word, reasons }
+}
+
+fn entries(simulation: &Simulation) -> Vec<Entry> {
+    let upright = simulation.invariants().smallest_volume_ratio;
+    let sound = Verdict { value: None, limit: None, verdict: Judgement::Pass };
+    let fail = Judgement::Fail;
+    let mut entries = vec![Entry::new("I1 finite state", sound, fail, String::new())];
+    entries.extend(momentum(simulation));
+    entries.extend(energy(simulation));
+    entries.extend(contact(simulation));
+    let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
+    let verdict = Verdict { value: Some(upright), limit: Some(0.0), verdict };
+    entries.push(Entry::new("I7 smallest det F", verdict, fail, "an element is inside out".into()));
+    entries.extend(resolution(simulation));
+    entries
+}
+
+fn momentum(simulation: &Simulation) -> [Entry; 2] {
+    let worst = simulation.invariants();
+    let (linear, angular) = (worst.linear_momentum, worst.angular_momentum);
+    // Held blocks exchange angular momentum with their supports through strains that the books do not see.
+    let turning = if simulation.is_closed() { judged(angular, 1e-8, 1e-4) } else { shown(angular) };
+    let reason = |what: &str, value: f64| format!("{what} came from nowhere: {value:.1e} of the largest");
+    [
+        Entry::new(
+            "I2 linear momentum",
+            judged(linear, 1e-10, 1e-6),
+            Judgement::Fail,
+            reason("momentum", linear),
+        ),
+        Entry::new("I3 angular momentum", turning, Judgement::Fail, reason("angular momentum", angular)),
+    ]
+}
+
+fn energy(simulation: &Simulation) -> [Entry; 3] {
+    let worst = simulation.invariants();
+    let lost = if simulation.should_keep_energy() { worst.lasting_loss } else { 0.0 };
+    let lasting = worst.lasting_gain.max(lost);
+    let what = if worst.lasting_gain >= lost { "gained" } else { "lost" };
+    let reason = format!(
+        "{:.1} % of the energy was {what} for good, limit {:.0} %: speeds are off by half as much",
+        100.0 * lasting,
+        100.0 * MOST_ENERGY
+    );
+    let gained = format!("{:.1} % of the energy came from nowhere for a time", 100.0 * worst.energy_gain);
+    [
+        Entry::new("I4 energy gain", judged(worst.energy_gain, 0.01, 0.02), Judgement::Fail, gained),
+        Entry::new("I4 energy loss", shown(worst.energy_loss), Judgement::Fail, String::new()),
+        Entry::new("I4 lasting change", judged(lasting, MOST_ENERGY, f64::INFINITY), Judgement::Warn, reason),
+    ]
+}
+
+fn contact(simulation: &Simulation) -> [Entry; 2] {
+    let worst = simulation.invariants();
+    let depth = worst.max_penetration_ratio;
+    let reason = format!(
+        "blocks went {:.1} % of a tetrahedron's height into each other, limit {:.0} %",
+        100.0 * depth,
+        100.0 * MOST_DEPTH
+    );
+    let unequal = format!("action and reaction of a pair differ by {:.1e}", worst.action_reaction);
+    [
+        Entry::new("I5 penetration / height", judged(depth, MOST_DEPTH, 0.25), Judgement::Warn, reason),
+        Entry::new(
+            "I6 action = reaction",
+            judged(worst.action_reaction, 1e-12, 1e-9),
+            Judgement::Fail,
+            unequal,
+        ),
+    ]
+}
+
+/// Whether steps are short enough for contact.
+fn resolution(simulation: &Simulation) -> [Entry; 2] {
+    let worst = simulation.invariants();
+    let (h, bound) = (worst.max_h, simulation.resolved_h());
+    let coarse =
+        format!("steps are too long for contact: h = {h:.2}, bound {:.2}", bound.unwrap_or_default());
+    let h = bound.map_or(shown(h), |bound| judged(h, bound, f64::INFINITY));
+    let travel = worst.max_travel_ratio;
+    let jumped = format!(
+        "a node moved {travel:.2} times the smallest height of a tetrahedron in a step, limit {MOST_TRAVEL}: blocks may \
+         have passed through each other"
+    );
+    // How far a block moves in a step matters only where it may jump through another.
+    let travel = match simulation.has_contact() {
+        true => judged(travel, MOST_TRAVEL, f64::INFINITY),
+        false => shown(travel),
+    };
+    [
+        Entry::new("I8 h = ω_c Δt", h, Judgement::Warn, coarse),
+        Entry::new("I8 travel / height", travel, Judgement::Warn, jumped),
+    ]
+}
+
+/// A value that should not exceed `warn`, and fails the run beyond `fail`.
+fn judged(value: f64, warn: f64, fail: f64) -> Verdict {
+    let verdict = if value > fail {
+        Judgement::Fail
+    } else if value > warn {
+        Judgement::Warn
+    } else {
+        Judgement::Pass
+    };
+    Verdict { value: Some(value), limit: Some(warn), verdict }
+}
+
+fn shown(value: f64) -> Verdict {
+    Verdict { value: Some(value), limit: None, verdict: Judgement::Pass }
+}

@@ -1,0 +1,53 @@
+//! X9: blocks that overlap at the start are refused with the list of pairs; with `settle` they come to rest first.
+
+use ndda_cli::check::prepare;
+use ndda_solver::Settle;
+
+use super::labelled::scene;
+use crate::evidence::{Answer, row};
+
+const DEPTHS: [&str; 7] = ["0.01", "0.05", "0.1", "0.25", "0.5", "0.75", "0.9"];
+
+/// Where the cube is put.
+fn sunk(depth: &str) -> String {
+    format!("blocks.cube.at_m[2]=-{depth}")
+}
+
+#[test]
+fn blocks_that_overlap_at_the_start_are_refused_with_their_names_and_depth() {
+    let path = scene("extreme/overlap.ron");
+    assert!(prepare(&path, &[]).is_ok(), "blocks that only touch are no overlap");
+    let mut refused = 0;
+    for depth in DEPTHS {
+        let Err(errors) = prepare(&path, &[sunk(depth)]) else { continue };
+        let text = errors.render(false);
+        let named =
+            ["error[overlap]", "`slab` and `cube`", "settle: ()"].iter().all(|word| text.contains(word));
+        refused += u32::from(named);
+    }
+    row(
+        "X9",
+        "overlaps of 1 to 90 %, of 7, refused with the pair",
+        f64::from(refused),
+        Answer::Near(7.0, 0.0),
+    );
+}
+
+#[test]
+fn blocks_that_overlap_come_to_rest_on_request() {
+    let path = scene("extreme/overlap.ron");
+    for depth in ["0.01", "0.9"] {
+        let mut ready =
+            prepare(&path, &[sunk(depth), "settle=()".into(), "time.step_s=5e-4".into()]).unwrap();
+        ready.simulation.settle(&Settle { tolerance: 1e-4, most_steps: 1_000_000 }).unwrap();
+        let cube = ready.simulation.blocks().find("cube").unwrap();
+        let nodes = ready.simulation.blocks().nodes_of(cube);
+        let positions = &ready.simulation.state().position[nodes];
+        let lowest = positions.iter().map(|x| x.z).fold(f64::INFINITY, f64::min);
+        // ρ g L / 2 k_n times the reference length.
+        let statics = 2650.0 * 9.8 / (2.0 * 2e8);
+        let rests = -(lowest + ready.simulation.blocks().origin_m.z);
+        let what = format!("depth at which a cube rests that began {depth} m deep [m]");
+        row("X9", &what, rests, Answer::Within(statics, 0.01));
+    }
+}

@@ -1,0 +1,52 @@
+//! X1: penalties from 1e-6 to 100 E and steps from 1e-7 to 0.1 s, for every integrator: the label agrees with the closed form.
+//!
+//! Here the corners and both sides of the borders between accurate, inaccurate and stopped; `NDDA_LARGE=1` runs all 252
+//! cells, which `docs/evidence/stability/map.py` draws.
+
+use ndda_cli::study::case::{Case, cases};
+
+use super::labelled::{agrees, scene, summary_of, word};
+use crate::evidence::{Answer, row};
+
+/// Penalty over E and step [s] of the cells that always run.
+const CELLS: [(&str, &str); 12] = [
+    ("1e-6", "1e-4"),
+    ("1e-6", "1e-1"),
+    ("1e-5", "1e-4"),
+    ("1e-5", "1e-3"),
+    ("1e-4", "1e-4"),
+    ("1e-3", "1e-5"),
+    ("1e-3", "1e-4"),
+    ("1e-1", "1e-5"),
+    ("1e0", "1e-3"),
+    ("1e2", "1e-7"),
+    ("1e2", "1e-5"),
+    ("1e2", "1e-1"),
+];
+
+/// Choice of a case along an axis.
+fn choice<'a>(case: &'a Case, axis: &str) -> &'a str {
+    &case.labels.iter().find(|(name, _)| name == axis).unwrap().1
+}
+
+#[test]
+fn a_run_knows_whether_it_is_accurate_whatever_the_penalty_and_the_step() {
+    let study = ndda_io::study::load(&scene("extreme/stability.ron")).unwrap();
+    let all = std::env::var_os("NDDA_LARGE").is_some();
+    let wanted = |case: &&Case| all || CELLS.contains(&(choice(case, "penalty"), choice(case, "step")));
+    let cells = cases(&study).unwrap();
+    let (mut count, mut differ, mut words) = (0, 0, [0; 3]);
+    for case in cells.iter().filter(wanted) {
+        let (code, summary) = summary_of("extreme/collision.ron", &case.overrides);
+        let summary = summary.unwrap_or_else(|| panic!("{}: exit code {code}", case.name));
+        count += 1;
+        words[["accurate", "inaccurate", "stopped"].iter().position(|w| *w == word(&summary)).unwrap()] += 1;
+        if !agrees(&summary) {
+            differ += 1;
+            println!("{}: {} but {}", case.name, summary["label"], summary["reference"]);
+        }
+    }
+    assert!(words.iter().all(|n| *n > 0), "every label should be met: {words:?}");
+    let what = format!("cells of the stability map, of {count}, whose label and closed form differ");
+    row("X1", &what, f64::from(differ), Answer::AtMost(0.0));
+}
