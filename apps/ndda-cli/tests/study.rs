@@ -92,7 +92,8 @@ fn a_study_runs_lists_failures_and_goes_on_where_it_was() {
     assert!(cases[1]["figures"].is_null() && cases[1]["reason"].as_str().unwrap().contains("poisson"));
     let csv = fs::read_to_string(out.join("study.csv")).unwrap();
     assert!(
-        csv.starts_with("case,step_s,rock,status,reason,error_end") && csv.contains("\"bad, too\",failed,"),
+        csv.starts_with("case,step_s,rock,status,reason,label,label_reasons,error_end")
+            && csv.contains("\"bad, too\",failed,"),
         "{csv}"
     );
     if cfg!(feature = "png") {
