@@ -381,6 +381,7 @@ impl Simulation {
             }
         }
         (self.state, self.ledger, self.stages) = (state, ledger, stages);
+        self.control.iter_mut().for_each(|control| control.forget());
         Ok(())
     }
 

@@ -69,6 +69,8 @@ pub(crate) struct Control {
     spare: Vec<Vec<Option<Box<dyn Factor>>>>,
     /// Halvings that the factors in use are for.
     halvings: u32,
+    /// The balance of energy after a step \[J\], and after which: it is that before the next.
+    balance: Option<(u64, f64)>,
 }
 
 /// Why a step has to be done again.
@@ -95,7 +97,13 @@ impl Control {
             ledger: ledger.clone(),
             spare: Vec::new(),
             halvings: 0,
+            balance: None,
         }
+    }
+
+    /// Forgets what it knows of the last step, when another state takes its place.
+    pub(crate) fn forget(&mut self) {
+        self.balance = None;
     }
 }
 
@@ -103,12 +111,14 @@ impl Simulation {
     /// One step of the scene in as many parts as it needs.
     pub(crate) fn controlled_step(&mut self, control: &mut Control) -> Result<StepReport, StepError> {
         self.use_halvings(control, self.state.control.halvings)?;
+        let before_j = self.balance_before(control)?;
         control.state.clone_from(&self.state);
         control.ledger.clone_from(&self.ledger);
         let (mut last_gain, mut unhelpful) = (f64::INFINITY, 0);
         loop {
-            let rejection = match self.try_parts(&control.settings) {
-                Ok(report) => {
+            let rejection = match self.try_parts(&control.settings, before_j) {
+                Ok((report, after_j)) => {
+                    control.balance = after_j.map(|balance_j| (self.state.step, balance_j));
                     self.relax(&control.settings, &report);
                     return Ok(report);
                 }
@@ -147,11 +157,22 @@ impl Simulation {
         }
     }
 
-    /// All parts of a step; stops at the first that asks for too much.
-    fn try_parts(&mut self, settings: &AutoStep) -> Result<StepReport, Rejection> {
+    /// The balance of energy before a step \[J\], if it is asked for.
+    fn balance_before(&mut self, control: &Control) -> Result<Option<f64>, StepError> {
+        match control.balance {
+            _ if self.state.control.deaf > 0 => Ok(None),
+            Some((step, balance_j)) if step == self.state.step => Ok(Some(balance_j)),
+            _ => self.sample().map(|sample| Some(sample.balance_j)),
+        }
+    }
+
+    /// All parts of a step; stops at the first that asks for too much. With the balance of energy before, that after comes back.
+    fn try_parts(
+        &mut self,
+        settings: &AutoStep,
+        before_j: Option<f64>,
+    ) -> Result<(StepReport, Option<f64>), Rejection> {
         let bound = self.contact_bound().map(|bound| settings.safety * bound);
-        let listens = self.state.control.deaf == 0;
-        let before = if listens { Some(self.sample().map_err(Rejection::Failed)?) } else { None };
         let mut worst = StepReport::default();
         for _ in 0..1u64 << self.state.control.halvings {
             let report = self.part_step().map_err(Rejection::Failed)?;
@@ -161,14 +182,12 @@ impl Simulation {
                 return Err(Rejection::TooLong(times));
             }
         }
-        if let Some(before) = before {
-            let gain = self.sample().map_err(Rejection::Failed)?.balance_j - before.balance_j;
-            let gain = gain / self.ledger.peak_energy_j();
-            if gain > settings.energy {
-                return Err(Rejection::Energy(gain));
-            }
-        }
-        Ok(worst)
+        let Some(before_j) = before_j.filter(|_| self.state.control.deaf == 0) else {
+            return Ok((worst, None));
+        };
+        let after_j = self.sample().map_err(Rejection::Failed)?.balance_j;
+        let gain = (after_j - before_j) / self.ledger.peak_energy_j();
+        if gain > settings.energy { Err(Rejection::Energy(gain)) } else { Ok((worst, Some(after_j))) }
     }
 
     /// Half as many parts next time, when they would have done for a while.
