@@ -312,7 +312,7 @@ pub struct HowArgs {
     /// Threads; results do not depend on it [default: all cores].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Exit with code 1 when an invariant is beyond its limit.
+    /// Exit with code 1 when a run is not accurate by its own label, or an invariant is beyond its limit.
     #[arg(long)]
     pub strict: bool,
     /// Print nothing but errors.

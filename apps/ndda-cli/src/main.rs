@@ -4,6 +4,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use ndda_cli::args::{Cli, Verb};
+use ndda_cli::console::has_lost;
 #[cfg(feature = "report")]
 use ndda_cli::html_report;
 #[cfg(feature = "plots")]
@@ -12,10 +13,13 @@ use ndda_cli::plot;
 use ndda_cli::schema;
 #[cfg(feature = "shell")]
 use ndda_cli::shell;
-use ndda_cli::{check, explain, mesh, new, resume, run, study};
+use ndda_cli::{check, exit, explain, mesh, new, resume, run, study};
 
 fn main() -> ExitCode {
-    let outcome = match Cli::parse().verb {
+    let verb = Cli::parse().verb;
+    // Results of runs are in files; what others print is their result.
+    let results_in_files = matches!(verb, Verb::Run(_) | Verb::Resume(_));
+    let outcome = match verb {
         Verb::Run(args) => run::run(&args),
         Verb::Resume(args) => resume::resume(&args),
         Verb::Check(args) => check::check(&args),
@@ -36,5 +40,6 @@ fn main() -> ExitCode {
         #[cfg(feature = "plots")]
         Verb::Plot(args) => plot::plot(&args),
     };
-    ExitCode::from(outcome)
+    let lost = outcome == exit::DONE && !results_in_files && has_lost();
+    ExitCode::from(if lost { exit::INPUT_OUTPUT } else { outcome })
 }

@@ -44,7 +44,8 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, outcome: Outcome)
     let worst = simulation.invariants();
     let verdicts = verdict::verdicts(simulation);
     let label = verdict::label(simulation, outcome.stopped_by.as_deref());
-    let failed = outcome.strict && verdicts.0.iter().any(|(_, v)| v.verdict == Judgement::Fail);
+    let beyond = verdicts.0.iter().any(|(_, v)| v.verdict == Judgement::Fail);
+    let failed = outcome.strict && (beyond || label.word == LabelWord::Inaccurate);
     let status = match (&outcome.stopped_by, failed) {
         (Some(_), _) => Status::Stopped,
         (None, _) if outcome.interrupted => Status::Interrupted,
@@ -148,7 +149,7 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
     }
     if worst.max_penetration_ratio > 0.05 {
         advice.push(format!(
-            "penetration reached {:.1} % of a tet's height: raise penalty_pa (the potential gives way at 25 %)",
+            "penetration reached {:.1} % of a tet's height: raise penalty_pa",
             100.0 * worst.max_penetration_ratio
         ));
     }

@@ -1,12 +1,15 @@
 //! `ndda run`: a scene from its text to its files.
 
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use ndda_io::scene::Scene;
 use ndda_io::summary::{Judgement, Status, Summary};
 use ndda_io::{OutputFolder, WriteError, checkpoint, summary, tables};
-use ndda_solver::{RunError, Settle, Simulation, StepError};
+use ndda_solver::{RunError, Settle, Settled, Simulation, StepError};
 use serde::Serialize;
 
 use crate::args::{HowArgs, RunArgs};
@@ -23,6 +26,9 @@ use crate::reference::{self, Comparison};
 use crate::report::{self, Outcome};
 use crate::run_log::RunLog;
 use crate::{exit, input, interrupt, wiring};
+
+/// How often a scene that settles says how far it is.
+const SAY_SETTLING: Duration = Duration::from_secs(2);
 
 /// Runs a scene and reports; the result is the exit code.
 pub fn run(args: &RunArgs) -> u8 {
@@ -147,22 +153,49 @@ fn run_job(mut job: Job, options: &Options) -> Result<u8, WriteError> {
         },
     );
     let settling = Instant::now();
-    if let Err(error) = settle(&mut job, &mut log, options)? {
+    let asked_to_end = interrupt::watch();
+    if let Err(error) = settle(&mut job, &mut log, options, &asked_to_end)? {
         let message = format!("stopped {}", stop(&error));
         log.line(&message)?;
         return Ok(options.events.fail(exit::STOPPED, &message));
     }
     log.line(&format!("from step {} of {steps}", job.ready.simulation.state().step))?;
-    let setup = Setup { settled_s: settling.elapsed().as_secs_f64(), steps };
+    if asked_to_end.load(Ordering::Relaxed)
+        && job.ready.loaded.scene.settle.is_some()
+        && job.earlier.is_none()
+    {
+        let message = "interrupted while the scene settled: run it again";
+        log.line(message)?;
+        return Ok(options.events.fail(exit::INTERRUPTED, message));
+    }
+    let setup = Setup { settled_s: settling.elapsed().as_secs_f64(), steps, asked_to_end };
     let summary = step_to_end(job, setup, options, &mut log)?;
     Ok(conclude(&summary, options))
 }
 
 /// Brings the scene to rest, if it asks for that and has not been.
-fn settle(job: &mut Job, log: &mut RunLog, options: &Options) -> Result<Result<(), StepError>, WriteError> {
+fn settle(
+    job: &mut Job,
+    log: &mut RunLog,
+    options: &Options,
+    asked_to_end: &AtomicBool,
+) -> Result<Result<(), StepError>, WriteError> {
     let (Some(settle), None) = (&job.ready.loaded.scene.settle, &job.earlier) else { return Ok(Ok(())) };
     let settle = Settle { tolerance: settle.tolerance, most_steps: settle.most_steps };
-    match job.ready.simulation.settle(&settle) {
+    let mut said = Instant::now();
+    let mut watch = |settled: &Settled| {
+        if !options.quiet && said.elapsed() >= SAY_SETTLING {
+            said = Instant::now();
+            let Settled { steps, speed_ratio, .. } = settled;
+            let until = settle.tolerance;
+            complain(&format!(
+                "settling: {steps} steps, speed {speed_ratio:.1e} of the largest, until {until:e}"
+            ));
+        }
+        if asked_to_end.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    match job.ready.simulation.settle_watched(&settle, &mut watch) {
+        Ok(_) if asked_to_end.load(Ordering::Relaxed) => Ok(Ok(())),
         Ok(settled) => {
             let text = format!("settled in {} steps", settled.steps);
             log.line(&text)?;
@@ -180,17 +213,20 @@ struct Setup {
     /// Settling, whose steps are in the stages of steps [s].
     settled_s: f64,
     steps: u64,
+    /// Raised when somebody asks the run to end.
+    asked_to_end: Arc<AtomicBool>,
 }
 
 /// Runs, and writes all that there is to be known.
 fn step_to_end(job: Job, setup: Setup, options: &Options, log: &mut RunLog) -> Result<Summary, WriteError> {
     let Job { ready: Ready { loaded, mut simulation, monitors }, comparison, identity, folder, earlier } =
         job;
-    let (scene, Setup { settled_s, steps }) = (&loaded.scene, setup);
+    let (scene, Setup { settled_s, steps, asked_to_end }) = (&loaded.scene, setup);
     let (name, goes_on) = (identity.name.clone(), earlier.is_some());
     let earlier_s = earlier.as_ref().map_or(0.0, |earlier| earlier.wall_s);
     let points = (monitors, comparison);
-    let mut outputs = outputs(scene, &simulation, points, (identity, &folder, earlier), steps, options)?;
+    let mut outputs =
+        outputs(scene, &simulation, points, (identity, &folder, earlier), (steps, asked_to_end), options)?;
     let setup_s = options.started.elapsed().as_secs_f64() - settled_s;
     let ended = if goes_on {
         ndda_solver::resume(&mut simulation, steps, &mut [&mut outputs])
@@ -247,7 +283,7 @@ fn outputs<'a>(
     simulation: &Simulation,
     (monitors, comparison): (Vec<Monitor>, Option<Comparison>),
     (identity, folder, earlier): (Identity, &'a OutputFolder, Option<Earlier>),
-    steps: u64,
+    (steps, asked_to_end): (u64, Arc<AtomicBool>),
     options: &Options,
 ) -> Result<Outputs<'a>, WriteError> {
     let earlier_s = earlier.as_ref().map_or(0.0, |earlier| earlier.wall_s);
@@ -271,7 +307,7 @@ fn outputs<'a>(
         started: options.started,
         earlier_s,
         spent_s: 0.0,
-        asked_to_end: interrupt::watch(),
+        asked_to_end,
     })
 }
 

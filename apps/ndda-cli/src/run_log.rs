@@ -1,6 +1,6 @@
 //! `run.log`: what a run was, what it did and when, for a person.
 
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::io::Write;
 use std::path::PathBuf;
 use std::time::{Instant, SystemTime};
@@ -31,11 +31,16 @@ impl RunLog {
     /// Begins the log of a run, or goes on with the one that is there.
     ///
     /// # Errors
-    /// [`WriteError`] when it cannot be written.
+    /// [`WriteError`] when it cannot be written, or another run is writing it.
     pub fn open(folder: &OutputFolder, started: Instant) -> Result<Self, WriteError> {
         let path = folder.log();
         let file = File::options().create(true).append(true).open(&path);
-        Ok(Self { file: file.map_err(WriteError::io("open", &path))?, path, started })
+        let file = file.map_err(WriteError::io("open", &path))?;
+        // Held until the run ends, however it ends.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return Err(WriteError::InUse { path: folder.path().to_path_buf() });
+        }
+        Ok(Self { file, path, started })
     }
 
     /// Says what is about to run, and on what.

@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use ndda_io::WriteError;
-use ndda_io::study::{self, LoadedStudy};
+use ndda_io::study::{self, LoadedStudy, Reference};
 
 use crate::args::{StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 use crate::console::{complain, say};
@@ -68,6 +68,24 @@ impl<'a> Opened<'a> {
         Ok(Self { loaded, name, cases, references, out, how })
     }
 
+    /// Whether there is something to compare with, before anything runs.
+    fn check_reference(&self) -> Result<(), StudyError> {
+        let mut scenes = self.cases.iter().filter_map(|case| self.loaded.scene_with(&case.overrides).ok());
+        let Some(first) = scenes.next() else { return Ok(()) };
+        match &self.loaded.study.reference {
+            Reference::ClosedForm if first.scene.reference.is_none() => {
+                Err(StudyError::NoReference(self.loaded.scene.clone()))
+            }
+            Reference::Runs { monitors: Some(names), .. } => {
+                let known: Vec<&str> = first.scene.monitors.iter().map(|m| m.name.as_str()).collect();
+                let unknown = names.iter().find(|name| !known.contains(&name.as_str()));
+                let refuse = |name: &String| StudyError::NoMonitor(name.clone(), known.join(", "));
+                unknown.map_or(Ok(()), |name| Err(refuse(name)))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// All that runs, what the others are compared with first.
     fn runs(&self) -> Vec<Case> {
         self.references.iter().chain(&self.cases).cloned().collect()
@@ -86,6 +104,7 @@ fn run_all(study: &Path, args: &StudyArgs) -> Result<u8, StudyError> {
         say(&emit::script(&plan, &opened.runs(), kind));
         return Ok(exit::DONE);
     }
+    opened.check_reference()?;
     make_folder(&opened.out)?;
     let asked_to_end = interrupt::watch();
     opened.launch(args.jobs, &asked_to_end).run_all(&opened.runs())?;

@@ -20,6 +20,8 @@ use crate::tables;
 const MOST_STEPS: f64 = 1e9;
 /// More nodes than this per block are a slip of the keyboard.
 const MOST_NODES: f64 = 5e7;
+/// Numbers beyond it, or below its inverse where they must be positive, have products that overflow.
+const HUGE: f64 = 1e50;
 /// Speed of light [m/s].
 const LIGHT_M_S: f64 = 299_792_458.0;
 
@@ -85,6 +87,12 @@ impl Check<'_> {
                 format!("{value} {unit}: must be positive"),
                 format!("give a value above 0 {unit}"),
             );
+        } else if !(1.0 / HUGE..=HUGE).contains(&value) {
+            self.error(
+                path,
+                format!("{value:e} {unit}: must lie between {:e} and {HUGE:e}", 1.0 / HUGE),
+                "products of such numbers cannot be represented",
+            );
         }
     }
 
@@ -92,6 +100,9 @@ impl Check<'_> {
     fn numbers(&mut self, path: &str, values: &[f64]) {
         if values.iter().any(|v| !v.is_finite()) {
             self.error(path, "must be finite numbers", "write plain numbers");
+        } else if values.iter().any(|v| v.abs() > HUGE) {
+            let message = format!("must not be beyond {HUGE:e}");
+            self.error(path, message, "products of such numbers cannot be represented");
         }
     }
 

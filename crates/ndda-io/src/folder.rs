@@ -1,6 +1,6 @@
 //! The output folder: made ready before the run begins, and never at the cost of somebody's files.
 
-use std::fs::{self, File, FileType};
+use std::fs::{self, File, FileType, TryLockError};
 use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
@@ -67,12 +67,13 @@ impl OutputFolder {
     /// # Errors
     /// [`WriteError::IsFile`] when `path` is a file; without `force`, [`WriteError::EarlierRun`] or
     /// [`WriteError::NotOurs`] when the folder is not empty; [`WriteError::InTheWay`] when something of another
-    /// kind has one of our names; [`WriteError::Io`] when the folder cannot be created or written to.
+    /// kind has one of our names; [`WriteError::InUse`] while another run writes there; [`WriteError::Io`] when the folder cannot be created or written to.
     pub fn create(path: &Path, force: bool) -> Result<Self, WriteError> {
         if path.exists() && !path.is_dir() {
             return Err(WriteError::IsFile { path: path.to_path_buf() });
         }
         fs::create_dir_all(path).map_err(WriteError::io("create the folder", path))?;
+        refuse_while_in_use(path)?;
         if force {
             delete_earlier_run(path)?;
         } else {
@@ -90,9 +91,10 @@ impl OutputFolder {
     /// The folder of a run that is to go on, as it is.
     ///
     /// # Errors
-    /// [`WriteError`] when it is no folder, or nothing can be written there.
+    /// [`WriteError`] when it is no folder, another run is writing to it, or nothing can be written there.
     pub fn open(path: &Path) -> Result<Self, WriteError> {
         entries(path)?;
+        refuse_while_in_use(path)?;
         probe(path)?;
         Ok(Self { path: path.to_path_buf() })
     }
@@ -135,6 +137,15 @@ impl OutputFolder {
     /// Where the list of frames goes.
     pub fn fields_index(&self) -> PathBuf {
         self.path.join(FIELDS_INDEX)
+    }
+}
+
+/// A run holds a lock on its log; where files cannot be locked, none does.
+fn refuse_while_in_use(path: &Path) -> Result<(), WriteError> {
+    let log = File::open(path.join(LOG)).ok();
+    match log.map(|log| log.try_lock_shared()) {
+        Some(Err(TryLockError::WouldBlock)) => Err(WriteError::InUse { path: path.to_path_buf() }),
+        _ => Ok(()),
     }
 }
 

@@ -6,11 +6,14 @@ use miette::{GraphicalReportHandler, GraphicalTheme, LabeledSpan, NamedSource, S
 
 use crate::diagnostic::{Diagnostic, SceneErrors, Severity};
 
-/// A message with its line of the text; none without a place.
+/// Longest line that is drawn [bytes]: beyond 65535 columns miette panics, and nobody reads them.
+const LONGEST: usize = 2000;
+
+/// A message with its line of the text; none without a place, or where lines are too long to be looked at.
 pub(crate) fn draw(errors: &SceneErrors, diagnostic: &Diagnostic, colour: bool) -> Option<String> {
     let theme = if colour { GraphicalTheme::unicode() } else { GraphicalTheme::none() };
     let handler = GraphicalReportHandler::new_themed(theme).with_width(110).with_links(false);
-    diagnostic.span.as_ref()?;
+    diagnostic.span.as_ref().filter(|_| errors.text.lines().all(|line| line.len() <= LONGEST))?;
     let report = Located { diagnostic, source: NamedSource::new(&errors.file, errors.text.clone()) };
     let mut picture = String::new();
     handler.render_report(&mut picture, &report).ok().map(|()| picture)

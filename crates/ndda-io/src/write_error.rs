@@ -55,6 +55,12 @@ pub enum WriteError {
         /// What it has.
         what: String,
     },
+    /// Another run is writing there.
+    #[error("another run is writing to {}: wait for its end, or choose another folder", path.display())]
+    InUse {
+        /// The folder.
+        path: PathBuf,
+    },
     /// The output folder is a file.
     #[error("the output folder {} is a file: choose another folder with --out", path.display())]
     IsFile {

@@ -46,8 +46,10 @@ impl FixedBody {
         let to = shape.displacement_as_a_whole(context.end_s);
         let increment = to - shape.displacement_as_a_whole(context.time_s);
         let (old, velocity) = (nodes.velocity[0], increment / context.dt_s);
-        report.reaction += shape.operator.mass_kg / context.dt_s * (velocity - old);
-        report.motion_work_j = report.reaction.dot(&increment);
+        // Its own inertia is moved at the mean of both velocities, so that its kinetic energy is the work done on it.
+        let inertia = shape.operator.mass_kg * (velocity - old);
+        report.motion_work_j = report.reaction.dot(&increment) + 0.5 * inertia.dot(&(velocity + old));
+        report.reaction += inertia / context.dt_s;
         report.speed_m_s = velocity.norm();
         for (x, anchor) in nodes.position.iter_mut().zip(&self.anchor) {
             *x = anchor + to;

@@ -5,6 +5,8 @@
 //! stopped at once: each by itself, a stack of fifty would take 27 times the steps, since the quick swings of neighbours
 //! would stop the slow one of the whole again and again.
 
+use std::ops::ControlFlow;
+
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -88,6 +90,18 @@ impl Simulation {
     /// # Errors
     /// [`StepError::NotSettled`] when the steps do not suffice, or as [`step`](Self::step).
     pub fn settle(&mut self, settle: &Settle) -> Result<Settled, StepError> {
+        self.settle_watched(settle, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// The same, asking after each step whether to go on; where not, the scene is left in the middle of it.
+    ///
+    /// # Errors
+    /// As [`settle`](Self::settle).
+    pub fn settle_watched(
+        &mut self,
+        settle: &Settle,
+        watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
+    ) -> Result<Settled, StepError> {
         self.settling = true;
         let start = std::mem::take(&mut self.state.velocity);
         self.state.velocity = vec![Vec3::zeros(); start.len()];
@@ -110,6 +124,9 @@ impl Simulation {
                 self.state.velocity.fill(Vec3::zeros());
             }
             settled.speed_ratio = if highest_j > 0.0 { (swing.left_j() / highest_j).sqrt() } else { 0.0 };
+            if watch(&settled).is_break() {
+                return Ok(settled);
+            }
         }
         self.begin_at_rest(start);
         Ok(settled)

@@ -24,6 +24,9 @@ pub enum StudyError {
     /// No closed form.
     #[error("error: the scene {} names no reference: write `reference: Runs(first: {{…}}, second: {{…}})`", .0.display())]
     NoReference(PathBuf),
+    /// A monitor of the reference that the scene does not have.
+    #[error("error: reference.monitors: the scene has no monitor `{0}`: it has {1}")]
+    NoMonitor(String, String),
     /// The system does not tell processor times.
     #[error("error: this system does not tell processor times: leave out `clock: Processor`")]
     NoProcessorTime,
@@ -72,7 +75,11 @@ impl StudyError {
     /// The exit code for it.
     pub fn code(&self) -> u8 {
         match self {
-            Self::Scene(_) | Self::Names(_) | Self::NoReference(_) | Self::NoCase(_) => exit::BAD_INPUT,
+            Self::Scene(_)
+            | Self::Names(_)
+            | Self::NoReference(_)
+            | Self::NoMonitor(..)
+            | Self::NoCase(_) => exit::BAD_INPUT,
             Self::Difference { .. } | Self::NoProcessorTime => exit::BAD_INPUT,
             Self::Reference { .. } => exit::STOPPED,
             Self::Table(_) | Self::Write(_) | Self::Record { .. } => exit::INPUT_OUTPUT,
