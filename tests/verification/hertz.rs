@@ -97,7 +97,7 @@ fn pressed(thirds: u32) -> Simulation {
     wiring::simulation(&loaded.scene, blocks, folder).unwrap_or_else(|f| panic!("{f:?}"))
 }
 
-/// Force on the whole flat [N], and ∫ p r² dA over it [m²].
+/// Force F on the whole flat [N], and ∫ p r² dA / F [m²].
 fn force_and_spread(simulation: &Simulation) -> (f64, f64) {
     let blocks = simulation.blocks();
     let forces: Vec<Vec3> = simulation.contact_forces_n().collect();
