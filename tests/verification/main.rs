@@ -14,6 +14,7 @@ mod evidence;
 mod extreme;
 mod glancing_collision;
 mod ground_stress;
+mod hertz;
 mod joint_friction;
 mod jointed_column;
 mod loads_over_time;
