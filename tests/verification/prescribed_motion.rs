@@ -2,7 +2,7 @@
 
 use ndda_mesh::Vec3;
 
-use crate::evidence::Answer::AtMost;
+use crate::evidence::Answer::{AtMost, Within};
 use crate::evidence::row;
 use crate::simulation;
 
@@ -36,4 +36,30 @@ fn every_node_follows_the_table_and_rests_after_it() {
             AtMost(1e-15),
         );
     }
+}
+
+#[test]
+fn a_block_that_is_taken_along_has_the_energy_of_the_work_done_on_it() {
+    let mut simulation = simulation(
+        "(title: \"taken along\", time: (step_s: 1e-3, end_s: 1),
+          materials: [(name: \"rock\", young_pa: 1e9, poisson: 0.25, density_kg_m3: 2500)],
+          blocks: [(name: \"cube\", material: \"rock\", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+          supports: [(block: \"cube\", on: All, hold: Motion([
+              (time_s: 0, displacement_m: (0, 0, 0)), (time_s: 0.01, displacement_m: (0.01, 0, 0)),
+              (time_s: 0.02, displacement_m: (0.01, 0.03, 0)),
+          ]))])",
+    );
+    simulation.sample().unwrap();
+    for _ in 0..15 {
+        simulation.step().unwrap();
+    }
+    let sample = simulation.sample().unwrap();
+    let kinetic_j = 0.5 * 2500.0 * 9.0;
+    row(
+        "motion",
+        "kinetic energy of a block that is moved at 3 m/s [J]",
+        sample.kinetic_j,
+        Within(kinetic_j, 1e-12),
+    );
+    row("motion", "energy from nowhere over it", sample.balance_j.abs() / kinetic_j, AtMost(1e-12));
 }
