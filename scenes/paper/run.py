@@ -31,7 +31,7 @@ SHORT_OTHERS = ["time.end_s=0.024", "output.history_rows=6"]
 
 
 def build():
-    subprocess.run(["cargo", "build", "--release", "--quiet", "-p", "ndda-cli"], cwd=ROOT, check=True)
+    subprocess.run(["cargo", "build", "--release", "--quiet", "--bin", "ndda"], cwd=ROOT, check=True)
     return ROOT / "target" / "release" / "ndda"
 
 
