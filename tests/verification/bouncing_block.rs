@@ -2,6 +2,7 @@
 //! energy; the theory is that of a mass on a spring, ω_c Δt = h.
 
 use ndda_mesh::Vec3;
+use ndda_solver::{Simulation, StepError};
 
 use crate::evidence::Answer::{AtMost, Near, Within};
 use crate::evidence::row;
@@ -9,11 +10,10 @@ use crate::simulation;
 
 const SPEED_M_S: f64 = 0.5;
 
-/// Speed after over speed before, gain of the books over the energy at most, and h.
-fn bounce(integrator: &str, step_s: f64) -> (f64, f64, f64) {
-    // A tall block hits flat, fast enough to be gone before anything else happens.
-    let mut simulation = simulation(&format!(
-        "(title: \"bounce\", time: (step_s: {step_s}, end_s: 1, integrator: {integrator}),
+/// An elastic block, tall, so that it hits a held one flat and is gone before anything else happens.
+pub fn ball(integrator: &str, step_s: f64) -> Simulation {
+    simulation(&format!(
+        "(title: \"bounce\", time: (step_s: {step_s}, end_s: {}, integrator: {integrator}),
           materials: [(name: \"rock\", young_pa: 1e12, poisson: 0, density_kg_m3: 2500)],
           blocks: [
             (name: \"base\", material: \"rock\", shape: Box(size_m: (1, 1, 0.25), cells: (2, 2, 1))),
@@ -21,8 +21,19 @@ fn bounce(integrator: &str, step_s: f64) -> (f64, f64, f64) {
              velocity_m_s: (0, 0, -{SPEED_M_S})),
           ],
           supports: [(block: \"base\", on: All, hold: Fixed)],
-          contact: Potential(penalty_pa: 4e6, potential: Smooth(reference_m: 1)))"
-    ));
+          contact: Potential(penalty_pa: 4e6, potential: Smooth(reference_m: 1)))",
+        1e3 * step_s
+    ))
+}
+
+/// Speed of the ball over that before it hit.
+pub fn restitution(simulation: &mut Simulation) -> Result<f64, StepError> {
+    Ok(simulation.sample()?.momentum.z / (2500.0 * SPEED_M_S))
+}
+
+/// Speed after over speed before, gain of the books over the energy at most, and h.
+fn bounce(integrator: &str, step_s: f64) -> (f64, f64, f64) {
+    let mut simulation = ball(integrator, step_s);
     simulation.sample().unwrap();
     let (mut touched, mut h) = (false, 0.0f64);
     loop {
@@ -33,12 +44,11 @@ fn bounce(integrator: &str, step_s: f64) -> (f64, f64, f64) {
             break;
         }
     }
-    let momentum = simulation.sample().unwrap().momentum;
-    (momentum.z / (2500.0 * SPEED_M_S), simulation.invariants().energy_gain, h)
+    (restitution(&mut simulation).unwrap(), simulation.invariants().energy_gain, h)
 }
 
 /// ω_c of the block as one mass on the patch: two smooth fields of slope 1 over the reference length, 4 k A in all.
-fn contact_rate() -> f64 {
+pub fn contact_rate() -> f64 {
     (2.0 * 4e6 / 2500.0f64).sqrt()
 }
 

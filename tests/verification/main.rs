@@ -71,10 +71,14 @@ fn rollers(by: &str) -> String {
         .concat()
 }
 
-fn settle(simulation: &mut Simulation) {
-    for _ in 0..2000 {
+fn advance(simulation: &mut Simulation, steps: u64) {
+    for _ in 0..steps {
         simulation.step().unwrap();
     }
+}
+
+fn settle(simulation: &mut Simulation) {
+    advance(simulation, 2000);
 }
 
 /// Displacement of every node [m].

@@ -8,7 +8,7 @@ use ndda_solver::{Settle, Simulation};
 
 use crate::evidence::Answer::AtMost;
 use crate::evidence::row;
-use crate::simulation;
+use crate::{advance, simulation};
 
 /// Two cubes that meet; `more` are further blocks.
 fn collision(more: &str) -> Simulation {
@@ -22,12 +22,6 @@ fn collision(more: &str) -> Simulation {
           ],
           contact: Potential(penalty_pa: 1e7, friction: (friction_deg: 30, shear_penalty_pa_m: 1e7)))"
     ))
-}
-
-fn advance(simulation: &mut Simulation, steps: u32) {
-    for _ in 0..steps {
-        simulation.step().unwrap();
-    }
 }
 
 #[test]

@@ -50,7 +50,20 @@ impl Ready {
 ///
 /// # Errors
 /// As [`prepare`].
-pub fn prepare_loaded(mut loaded: LoadedScene, folder: &Path) -> Result<Ready, SceneErrors> {
+pub fn prepare_loaded(loaded: LoadedScene, folder: &Path) -> Result<Ready, SceneErrors> {
+    let mut ready = build(loaded, folder)?;
+    // What contact cannot compute at the start stops the run with its own cause.
+    match overlaps::refusal(&ready.loaded, &mut ready.simulation) {
+        Ok(Some(refused)) => Err(ready.loaded.errors(vec![refused])),
+        _ => Ok(ready),
+    }
+}
+
+/// The same without a look at contact at the start, for a run that is past it.
+///
+/// # Errors
+/// As [`prepare`], but for blocks that overlap.
+pub fn build(mut loaded: LoadedScene, folder: &Path) -> Result<Ready, SceneErrors> {
     let located = |faults: Vec<Fault>| {
         let diagnostics: Vec<Diagnostic> =
             faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();
@@ -58,11 +71,7 @@ pub fn prepare_loaded(mut loaded: LoadedScene, folder: &Path) -> Result<Ready, S
     };
     let blocks = wiring::blocks(&loaded.scene, folder).map_err(located)?;
     let far = rounding::warning(&loaded, &blocks);
-    let mut simulation = wiring::simulation(&loaded.scene, blocks, folder).map_err(located)?;
-    // What contact cannot compute at the start stops the run with its own cause.
-    if let Ok(Some(refused)) = overlaps::refusal(&loaded, &mut simulation) {
-        return Err(loaded.errors(vec![refused]));
-    }
+    let simulation = wiring::simulation(&loaded.scene, blocks, folder).map_err(located)?;
     let monitors = wiring::monitors(&loaded.scene, &simulation).map_err(located)?;
     loaded.warnings.extend(far);
     Ok(Ready { loaded, simulation, monitors })

@@ -6,7 +6,7 @@ use ndda_io::{OutputFolder, checkpoint, read};
 use serde::Serialize;
 
 use crate::args::ResumeArgs;
-use crate::check::prepare_loaded;
+use crate::check::build;
 use crate::checkpoint::SavedRun;
 use crate::console::say;
 use crate::exit;
@@ -48,7 +48,7 @@ fn resume_here(folder: &Path, options: &Options) -> u8 {
     let meshes = saved.identity.file.parent().unwrap_or(Path::new("."));
     let name = saved.identity.file.display().to_string();
     let loaded = read::load_text(&name, &saved.identity.text, &[], Some(meshes));
-    let mut ready = match loaded.and_then(|loaded| prepare_loaded(loaded, meshes)) {
+    let mut ready = match loaded.and_then(|loaded| build(loaded, meshes)) {
         Ok(ready) => ready,
         Err(errors) => return options.events.refuse(&errors),
     };

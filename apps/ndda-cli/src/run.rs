@@ -154,32 +154,23 @@ fn run_job(mut job: Job, options: &Options) -> Result<u8, WriteError> {
     );
     let settling = Instant::now();
     let asked_to_end = interrupt::watch();
-    if let Err(error) = settle(&mut job, &mut log, options, &asked_to_end)? {
-        let message = format!("stopped {}", stop(&error));
+    if let Err((code, message)) = settle(&mut job, &mut log, options, &asked_to_end)? {
         log.line(&message)?;
-        return Ok(options.events.fail(exit::STOPPED, &message));
+        return Ok(options.events.fail(code, &message));
     }
     log.line(&format!("from step {} of {steps}", job.ready.simulation.state().step))?;
-    if asked_to_end.load(Ordering::Relaxed)
-        && job.ready.loaded.scene.settle.is_some()
-        && job.earlier.is_none()
-    {
-        let message = "interrupted while the scene settled: run it again";
-        log.line(message)?;
-        return Ok(options.events.fail(exit::INTERRUPTED, message));
-    }
     let setup = Setup { settled_s: settling.elapsed().as_secs_f64(), steps, asked_to_end };
     let summary = step_to_end(job, setup, options, &mut log)?;
     Ok(conclude(&summary, options))
 }
 
-/// Brings the scene to rest, if it asks for that and has not been.
+/// Brings the scene to rest, if it asks for that and has not been; exit code and message where that comes to nothing.
 fn settle(
     job: &mut Job,
     log: &mut RunLog,
     options: &Options,
     asked_to_end: &AtomicBool,
-) -> Result<Result<(), StepError>, WriteError> {
+) -> Result<Result<(), (u8, String)>, WriteError> {
     let (Some(settle), None) = (&job.ready.loaded.scene.settle, &job.earlier) else { return Ok(Ok(())) };
     let settle = Settle { tolerance: settle.tolerance, most_steps: settle.most_steps };
     let mut said = Instant::now();
@@ -195,7 +186,9 @@ fn settle(
         if asked_to_end.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     match job.ready.simulation.settle_watched(&settle, &mut watch) {
-        Ok(_) if asked_to_end.load(Ordering::Relaxed) => Ok(Ok(())),
+        Ok(_) if asked_to_end.load(Ordering::Relaxed) => {
+            Ok(Err((exit::INTERRUPTED, "interrupted while the scene settled: run it again".into())))
+        }
         Ok(settled) => {
             let text = format!("settled in {} steps", settled.steps);
             log.line(&text)?;
@@ -204,7 +197,7 @@ fn settle(
             }
             Ok(Ok(()))
         }
-        Err(error) => Ok(Err(error)),
+        Err(error) => Ok(Err((exit::STOPPED, format!("stopped {}", stop(&error))))),
     }
 }
 

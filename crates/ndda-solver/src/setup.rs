@@ -72,6 +72,8 @@ impl Simulation {
         let (shapes, shape_of) =
             distinct_shapes(&blocks, &bodies, mass, (step_s, &weights), solver.as_ref())?;
         let nodes = blocks.rest_position.len();
+        let heights = shapes.iter().map(|shape| shape.smallest_height_m);
+        let smallest_height_m = heights.fold(f64::INFINITY, f64::min);
         // Contact between fewer than two blocks is left out altogether.
         let contact = contact.filter(|_| blocks.len() > 1);
         let friction_nodes = if contact.as_ref().is_some_and(|c| c.has_friction()) { nodes } else { 0 };
@@ -105,6 +107,7 @@ impl Simulation {
             stages: StageTimes::default(),
             blocks,
             shapes,
+            smallest_height_m,
             base_step_s: step_s,
             part_s: step_s,
             control: None,

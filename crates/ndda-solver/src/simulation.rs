@@ -73,6 +73,8 @@ pub struct RestoreError {
 pub struct Simulation {
     pub(crate) blocks: BlockSet,
     pub(crate) shapes: Vec<Shape>,
+    /// Of all tetrahedra: whatever moves may meet the thinnest block of all.
+    pub(crate) smallest_height_m: f64,
     pub(crate) bodies: Vec<Body>,
     pub(crate) runs: Runs,
     pub(crate) state: State,
@@ -326,9 +328,7 @@ impl Simulation {
             rate2 = rate2.max(report.contact_rate2);
             travel_m = travel_m.max(report.speed_m_s * self.part_s);
         }
-        // Whatever moves may meet the thinnest block of all.
-        let height_m = self.shapes.iter().map(|shape| shape.smallest_height_m).fold(f64::INFINITY, f64::min);
-        let travel_ratio = travel_m / height_m;
+        let travel_ratio = travel_m / self.smallest_height_m;
         let h = self.part_s * rate2.sqrt();
         self.ledger.add_impulse(self.part_s, &self.weights, force, torque);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);

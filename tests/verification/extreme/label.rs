@@ -4,30 +4,13 @@ use ndda_cli::verdict;
 use ndda_io::summary::LabelWord;
 
 use super::labelled::{SPEED, summary_of, word};
+use crate::bouncing_block::{ball, contact_rate, restitution};
 use crate::evidence::{Answer, row};
-use crate::simulation;
-
-const SPEED_M_S: f64 = 0.5;
-/// ω_c of the block as one mass on the patch: two smooth fields of slope 1 over the reference length, 4 k A in all.
-const RATE: f64 = 56.568_542_494_923_8;
 
 /// What is wrong with the restitution of a bounce, whether the run calls itself accurate, and the h that it reports over
 /// the bound that it knows.
 fn bounce(integrator: &str, h: f64) -> Option<(f64, bool, f64)> {
-    let step_s = h / RATE;
-    // Held, elastic and tall: it hits flat and is gone before anything else happens.
-    let mut simulation = simulation(&format!(
-        "(title: \"bounce\", time: (step_s: {step_s}, end_s: {}, integrator: {integrator}),
-          materials: [(name: \"rock\", young_pa: 1e12, poisson: 0, density_kg_m3: 2500)],
-          blocks: [
-            (name: \"base\", material: \"rock\", shape: Box(size_m: (1, 1, 0.25), cells: (2, 2, 1))),
-            (name: \"ball\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (2, 2, 2)), at_m: (0, 0, 0.251),
-             velocity_m_s: (0, 0, -{SPEED_M_S})),
-          ],
-          supports: [(block: \"base\", on: All, hold: Fixed)],
-          contact: Potential(penalty_pa: 4e6, potential: Smooth(reference_m: 1)))",
-        1e3 * step_s
-    ));
+    let mut simulation = ball(integrator, h / contact_rate());
     simulation.sample().unwrap();
     let (mut touched, mut free) = (false, 0);
     // A block that passes through never touches again, or never did.
@@ -40,7 +23,7 @@ fn bounce(integrator: &str, h: f64) -> Option<(f64, bool, f64)> {
             break;
         }
     }
-    let restitution = simulation.sample().ok()?.momentum.z / (2500.0 * SPEED_M_S);
+    let restitution = restitution(&mut simulation).ok()?;
     let says = verdict::label(&simulation, None).word == LabelWord::Accurate;
     let beyond = simulation.contact_bound().map_or(0.0, |bound| simulation.invariants().max_h / bound);
     Some(((restitution - 1.0).abs(), says, beyond))

@@ -24,19 +24,13 @@ use ndda_cli::check::{self, Ready};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Simulation;
 
-use crate::displacements;
+use crate::{advance, displacements};
 
 /// A scene of `scenes/extreme/`, ready to run.
 fn extreme(name: &str, overrides: &[&str]) -> Ready {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/extreme").join(format!("{name}.ron"));
     let overrides: Vec<String> = overrides.iter().map(|text| text.to_string()).collect();
     check::prepare(&path, &overrides).unwrap_or_else(|errors| panic!("{}", errors.render(false)))
-}
-
-fn advance(simulation: &mut Simulation, steps: u64) {
-    for _ in 0..steps {
-        simulation.step().unwrap();
-    }
 }
 
 fn block(simulation: &Simulation, name: &str) -> BlockId {

@@ -121,8 +121,7 @@ fn history(launch: &Launch, case: &Case) -> Result<Table, StudyError> {
 /// History and scene of a reference run.
 fn reference_history(launch: &Launch, case: &Case) -> Result<(Table, LoadedScene), StudyError> {
     let refuse = |reason: String| StudyError::Reference { name: case.name.clone(), reason };
-    let record = Record::read(&folder(launch.out, &case.name))?;
-    match record.filter(|record| record.identity == launch.identity(case)).map(|record| record.outcome) {
+    match launch.record(case)?.map(|record| record.outcome) {
         None => Err(refuse("it has not run".into())),
         Some(RunOutcome::Failed { reason, .. }) => Err(refuse(reason)),
         Some(RunOutcome::Done { .. }) => {

@@ -40,13 +40,21 @@ impl Launch<'_> {
         Identity::new(scene, self.threads, case.repeats)
     }
 
-    /// The record of a case that has run as it would run now.
+    /// The record of a case that was run as it would run now.
     ///
     /// # Errors
     /// [`StudyError::Record`] when its file is something else.
-    pub fn finished(&self, case: &Case) -> Result<Option<Record>, StudyError> {
+    pub fn record(&self, case: &Case) -> Result<Option<Record>, StudyError> {
         let record = Record::read(&folder(self.out, &case.name))?;
-        Ok(record.filter(|record| record.is_final() && record.identity == self.identity(case)))
+        Ok(record.filter(|record| record.identity == self.identity(case)))
+    }
+
+    /// The same, if it need not be run again.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    pub fn finished(&self, case: &Case) -> Result<Option<Record>, StudyError> {
+        Ok(self.record(case)?.filter(Record::is_final))
     }
 
     /// Runs what has not run yet, `jobs` at a time.
@@ -56,15 +64,12 @@ impl Launch<'_> {
     pub fn run_all(&self, cases: &[Case]) -> Result<(), StudyError> {
         let (next, failed) = (AtomicUsize::new(0), Mutex::new(None));
         let work = || {
-            while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(case) = cases.get(index) else { break };
                 match self.run_case(case) {
                     Ok(said) if !self.quiet => {
-                        complain(&format!(
-                            "{} of {}: {}: {said}",
-                            self.place(case, cases),
-                            cases.len(),
-                            case.name
-                        ));
+                        complain(&format!("{} of {}: {}: {said}", index + 1, cases.len(), case.name));
                     }
                     Ok(_) => {}
                     Err(error) => {
@@ -76,10 +81,6 @@ impl Launch<'_> {
         };
         std::thread::scope(|scope| (0..self.jobs).for_each(|_| drop(scope.spawn(work))));
         failed.into_inner().expect("no thread panics").map_or(Ok(()), Err)
-    }
-
-    fn place(&self, case: &Case, cases: &[Case]) -> usize {
-        cases.iter().position(|other| other.name == case.name).map_or(0, |i| i + 1)
     }
 
     /// Runs one case unless it has run; returns a few words on how it went.
