@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use crate::batch::Batches;
 use crate::candidates::{Candidates, Facet, Pair};
+use crate::hulls::Hulls;
 use crate::pair::{PairMoments, TetFrame};
 use crate::potential::Field;
 use crate::region::Region;
@@ -74,6 +75,8 @@ pub struct Scene<'a> {
     pub frames: &'a [TetFrame],
     /// φ.
     pub field: &'a Field,
+    /// What keeps facets out of whole blocks.
+    pub hulls: &'a Hulls,
 }
 
 /// A run of facets and the hits among their pairs.
@@ -134,7 +137,7 @@ impl Chunk {
         let corners = scene.blocks.triangle_corners(facet.triangle, scene.position);
         let area_vector = triangle_area_vector(&corners);
         let area = area_vector.norm();
-        if area == 0.0 {
+        if area == 0.0 || scene.hulls.keep_apart(facet.target, &corners) {
             return;
         }
         let normal = area_vector / area;

@@ -39,6 +39,8 @@ pub mod facets;
 #[cfg(feature = "potential")]
 pub mod friction;
 #[cfg(feature = "potential")]
+pub mod hulls;
+#[cfg(feature = "potential")]
 pub mod integrals;
 #[cfg(feature = "potential")]
 pub mod joints;

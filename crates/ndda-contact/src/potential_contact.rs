@@ -12,6 +12,7 @@ use crate::energy;
 use crate::faces::{FaceScene, Faces};
 use crate::facets::{FacetForce, FacetScene};
 use crate::friction::FrictionLaw;
+use crate::hulls::Hulls;
 use crate::integrals::{Integrals, Scene};
 use crate::joints::{Joints, Memory};
 use crate::model::{
@@ -38,6 +39,7 @@ pub struct PotentialContact {
     /// φ of the blocks last seen, and how many tetrahedra they had.
     field: Option<(usize, Field)>,
     candidates: Candidates,
+    hulls: Hulls,
     integrals: Integrals,
     scatter: crate::scatter::Scatter,
     frames: Vec<TetFrame>,
@@ -60,6 +62,7 @@ impl PotentialContact {
             joints: None,
             field: None,
             candidates: Candidates::default(),
+            hulls: Hulls::default(),
             integrals: Integrals::default(),
             scatter: Default::default(),
             frames: Vec::new(),
@@ -96,8 +99,9 @@ impl PotentialContact {
         self.find_pairs(input)?;
         let Some((_, field)) = &self.field else { return Ok(()) };
         let (blocks, position) = (input.blocks, input.position);
-        let (candidates, frames) = (&self.candidates, &self.frames[..]);
-        self.integrals.update(&Scene { blocks, position, candidates, frames, field });
+        self.hulls.place(blocks, position);
+        let (candidates, frames, hulls) = (&self.candidates, &self.frames[..], &self.hulls);
+        self.integrals.update(&Scene { blocks, position, candidates, frames, field, hulls });
         Ok(())
     }
 
@@ -106,6 +110,7 @@ impl PotentialContact {
         let tets = input.blocks.tets.len();
         if self.field.as_ref().is_none_or(|(known, _)| *known != tets) {
             let field = self.potential.field(input.blocks);
+            self.hulls.fit(input.blocks);
             if self.needs_bodies() {
                 self.faces.fit(input.blocks);
             }
