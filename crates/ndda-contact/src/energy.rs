@@ -26,6 +26,8 @@ pub fn has_centroid(integral_m3: f64, volume_m3: f64) -> bool {
 
 /// Pairs below which a second thread costs more than it brings.
 const GRAIN_PAIRS: usize = 512;
+/// The same for pairs of blocks.
+const GRAIN_BLOCK_PAIRS: usize = 4;
 
 /// U for each pair of blocks that may touch.
 #[derive(Default)]
@@ -60,9 +62,11 @@ impl BlockOverlaps {
         self.pairs.binary_search(&(a.min(b), a.max(b))).ok()
     }
 
-    fn list(&mut self, blocks: &BlockSet, candidates: &Candidates) {
+    /// Makes room for the pairs of blocks of these facets.
+    fn list(&mut self, blocks: &BlockSet, candidates: &Candidates, facets: impl Iterator<Item = u32>) {
         self.pairs.clear();
-        self.pairs.extend(candidates.facets.iter().map(|facet| {
+        self.pairs.extend(facets.map(|f| {
+            let facet = &candidates.facets[f as usize];
             let (a, b) = (blocks.triangle_block[facet.triangle.index()], facet.target);
             (a.min(b), a.max(b))
         }));
@@ -85,36 +89,33 @@ impl BlockOverlaps {
         match (field, law) {
             (_, OverlapLaw::Power { .. }) => self.add_surfaces(input, candidates, integrals),
             (Field::Element, _) => self.add_pieces(input, candidates, frames),
-            (Field::Pieces(table), _) => self.add_tets(input, candidates, table),
+            (Field::Pieces(table), _) => self.add_tets(input, candidates, integrals, table),
         }
     }
 
     /// The volume of overlaps, V = ⅓ ∮ (x − o)·n dS over the pieces of both surfaces.
     pub fn add_surfaces(&mut self, input: &ContactInput, candidates: &Candidates, integrals: &Integrals) {
-        self.list(input.blocks, candidates);
+        self.list(input.blocks, candidates, integrals.touching().iter().map(|touch| touch.facet));
         self.pressure_m2.clear();
         self.pressure_m2.resize(self.pairs.len(), 0.0);
         self.origin.clear();
         self.origin.resize(self.pairs.len(), None);
-        for (f, facet) in candidates.facets.iter().enumerate() {
-            let area: f64 = integrals.sums_of(f).area;
-            if area <= 0.0 {
-                continue;
-            }
+        for touch in integrals.touching() {
+            let facet = &candidates.facets[touch.facet as usize];
             let owner = input.blocks.triangle_block[facet.triangle.index()];
             let k = self.place(owner, facet.target).expect("listed above");
             let corners = input.blocks.triangle_corners(facet.triangle, input.position);
             let origin = *self.origin[k].get_or_insert(corners[0]);
             let normal = triangle_area_vector(&corners).normalize();
-            self.pressure_m2[k] += integrals.sums_of(f).pressure;
-            self.overlap_m3[k] += area * (corners[0] - origin).dot(&normal) / 3.0;
+            self.pressure_m2[k] += touch.sums.pressure;
+            self.overlap_m3[k] += touch.sums.area * (corners[0] - origin).dot(&normal) / 3.0;
         }
     }
 
     /// The element potential, from the flux through surface pieces.
     fn add_pieces(&mut self, input: &ContactInput, candidates: &Candidates, frames: &[TetFrame]) {
         let blocks = input.blocks;
-        self.list(blocks, candidates);
+        self.list(blocks, candidates, 0..candidates.facets.len() as u32);
         self.per_pair.clear();
         self.per_pair.resize(candidates.pairs.len(), 0.0);
         let place = |(pair, integral): (&Pair, &mut f64)| {
@@ -141,13 +142,19 @@ impl BlockOverlaps {
         }
     }
 
-    /// Any potential, over the overlaps of tetrahedra.
-    fn add_tets(&mut self, input: &ContactInput, candidates: &Candidates, table: &PieceTable) {
-        self.list(input.blocks, candidates);
-        for k in 0..self.pairs.len() {
-            let (a, b) = self.pairs[k];
-            self.overlap_m3[k] = overlap_of_blocks(input, a, b, table);
-        }
+    /// Any potential, over the overlaps of tetrahedra of blocks whose surfaces touch.
+    fn add_tets(
+        &mut self,
+        input: &ContactInput,
+        candidates: &Candidates,
+        integrals: &Integrals,
+        table: &PieceTable,
+    ) {
+        self.list(input.blocks, candidates, integrals.touching().iter().map(|touch| touch.facet));
+        let place = |(overlap, &(a, b)): (&mut f64, &(BlockId, BlockId))| {
+            *overlap = overlap_of_blocks(input, a, b, table);
+        };
+        self.overlap_m3.par_iter_mut().zip(&self.pairs).with_min_len(GRAIN_BLOCK_PAIRS).for_each(place);
     }
 }
 

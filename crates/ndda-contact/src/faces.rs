@@ -25,7 +25,7 @@ use crate::block_faces::BlockFaces;
 use crate::candidates::{Candidates, Facet};
 use crate::facets::{FacetForce, mass_per_area, reduced, relative_velocity};
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
-use crate::integrals::{FacetSums, Integrals};
+use crate::integrals::{FacetSums, Integrals, Touch};
 use crate::joints::Joints;
 use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
 
@@ -51,17 +51,30 @@ pub struct FaceScene<'a> {
 }
 
 impl FaceScene<'_> {
-    fn facet(&self, f: u32) -> &Facet {
-        &self.candidates.facets[f as usize]
+    fn touch(&self, t: u32) -> &Touch {
+        &self.integrals.touching()[t as usize]
     }
 
-    fn sums(&self, f: u32) -> &FacetSums {
-        self.integrals.sums_of(f as usize)
+    fn facet(&self, t: u32) -> &Facet {
+        &self.candidates.facets[self.touch(t).facet as usize]
+    }
+
+    fn sums(&self, t: u32) -> &FacetSums {
+        &self.touch(t).sums
+    }
+
+    fn owner(&self, t: u32) -> BlockId {
+        self.input.blocks.triangle_block[self.facet(t).triangle.index()]
+    }
+
+    /// The facets that touch, by number.
+    fn touching(&self) -> Range<u32> {
+        0..self.integrals.touching().len() as u32
     }
 
     /// Centre of pressure of a facet [m].
-    fn center(&self, f: u32) -> Vec3 {
-        self.sums(f).center(&self.input.blocks.triangle_corners(self.facet(f).triangle, self.input.position))
+    fn center(&self, t: u32) -> Vec3 {
+        self.sums(t).center(&self.input.blocks.triangle_corners(self.facet(t).triangle, self.input.position))
     }
 
     /// The law of the facets of a run, if it acts on faces.
@@ -72,7 +85,7 @@ impl FaceScene<'_> {
     }
 }
 
-/// (face, target, facet).
+/// (face, target, number of the touching facet).
 type Place = (u32, BlockId, u32);
 
 /// Facets by face and target, and room for what a step finds.
@@ -80,7 +93,7 @@ type Place = (u32, BlockId, u32);
 pub struct Faces {
     /// Face of each boundary triangle, numbered over all blocks.
     face_of: Vec<u32>,
-    /// Facets by face and target.
+    /// Touching facets by face and target.
     order: Vec<Place>,
     /// Those of each face and target, in `order`.
     runs: Vec<Range<usize>>,
@@ -135,13 +148,14 @@ impl Faces {
         }
     }
 
-    /// Sorts facets by face and target; needed when the list of facets has changed.
-    pub fn arrange(&mut self, candidates: &Candidates) {
+    /// Sorts touching facets by face and target; those of a block are together already, and its faces follow each other.
+    fn arrange(&mut self, scene: &FaceScene) {
         self.order.clear();
-        let place =
-            |(f, facet): (usize, &Facet)| (self.face_of[facet.triangle.index()], facet.target, f as u32);
-        self.order.extend(candidates.facets.iter().enumerate().map(place));
-        self.order.sort_unstable();
+        let place = |t: u32| (self.face_of[scene.facet(t).triangle.index()], scene.facet(t).target, t);
+        self.order.extend(scene.touching().map(place));
+        self.order
+            .chunk_by_mut(|a, b| scene.owner(a.2) == scene.owner(b.2))
+            .for_each(<[Place]>::sort_unstable);
         self.runs.clear();
         let mut start = 0;
         for run in self.order.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
@@ -152,6 +166,7 @@ impl Faces {
 
     /// Adds the friction of faces whose law asks for it to the facets' forces, and takes over what they remember.
     pub fn add(&mut self, scene: &FaceScene, forces: &mut [FacetForce], history: &mut ContactHistory) {
+        self.arrange(scene);
         self.sum_areas(scene);
         self.find_patches(scene, forces, history);
         self.push_bodies(scene, forces);
@@ -160,10 +175,10 @@ impl Faces {
         for (patch, run) in self.patches.iter().zip(&self.runs).filter(|(patch, _)| patch.presses()) {
             let run = &self.order[run.clone()];
             let twist = patch.torque_n_m / patch.pressure / patch.radius2;
-            for &(_, _, f) in run {
-                let arm = scene.center(f) - patch.center;
-                forces[f as usize].shear = patch.force_n / patch.pressure + twist * patch.normal.cross(&arm);
-                forces[f as usize].sticks = !patch.memory.slides;
+            for &(_, _, t) in run {
+                let arm = scene.center(t) - patch.center;
+                forces[t as usize].shear = patch.force_n / patch.pressure + twist * patch.normal.cross(&arm);
+                forces[t as usize].sticks = !patch.memory.slides;
             }
             let (face, target, _) = run[0];
             self.new_faces.push(FaceMemory { face, target, ..patch.memory });
@@ -198,13 +213,12 @@ impl Faces {
     fn push_bodies(&mut self, scene: &FaceScene, forces: &[FacetForce]) {
         self.bodies.clear();
         self.bodies.extend_from_slice(scene.input.bodies);
-        for (f, (facet, force)) in (0..).zip(scene.candidates.facets.iter().zip(forces)) {
+        for (t, force) in scene.touching().zip(forces) {
             if force.touches {
-                let center = scene.center(f);
-                let owner = scene.input.blocks.triangle_block[facet.triangle.index()];
-                let push = scene.sums(f).pressure * (force.push + force.shear);
-                self.bodies[owner.index()].push(&center, &push);
-                self.bodies[facet.target.index()].push(&center, &-push);
+                let center = scene.center(t);
+                let push = scene.sums(t).pressure * (force.push + force.shear);
+                self.bodies[scene.owner(t).index()].push(&center, &push);
+                self.bodies[scene.facet(t).target.index()].push(&center, &-push);
             }
         }
         for patch in &self.patches {
@@ -221,11 +235,10 @@ impl Faces {
     fn sum_areas(&mut self, scene: &FaceScene) {
         self.block_area.clear();
         self.block_area.resize(scene.input.blocks.len(), 0.0);
-        for (f, facet) in (0..).zip(&scene.candidates.facets) {
-            let area = scene.sums(f).area;
-            let owner = scene.input.blocks.triangle_block[facet.triangle.index()];
-            self.block_area[owner.index()] += area;
-            self.block_area[facet.target.index()] += area;
+        for t in scene.touching() {
+            let area = scene.sums(t).area;
+            self.block_area[scene.owner(t).index()] += area;
+            self.block_area[scene.facet(t).target.index()] += area;
         }
     }
 }
@@ -236,8 +249,7 @@ impl Patch {
         if scene.law(run).is_none() {
             return Self::default();
         }
-        let owner = scene.input.blocks.triangle_block[scene.facet(first).triangle.index()];
-        let mut patch = Self { owner, target, ..Self::default() };
+        let mut patch = Self { owner: scene.owner(first), target, ..Self::default() };
         patch.sum(run, scene, forces);
         if !patch.presses() {
             return Self::default();
@@ -254,13 +266,13 @@ impl Patch {
 
     fn sum(&mut self, run: &[Place], scene: &FaceScene, forces: &[FacetForce]) {
         let mut push = Vec3::zeros();
-        for &(_, _, f) in run {
-            let FacetSums { pressure, area, .. } = *scene.sums(f);
+        for &(_, _, t) in run {
+            let FacetSums { pressure, area, .. } = *scene.sums(t);
             if pressure > 0.0 {
                 self.pressure += pressure;
-                self.center += pressure * scene.center(f);
+                self.center += pressure * scene.center(t);
                 self.area_m2 += area;
-                push += pressure * forces[f as usize].push;
+                push += pressure * forces[t as usize].push;
             }
         }
         if self.pressure > 0.0 {
@@ -275,12 +287,12 @@ impl Patch {
     /// Radii and slip about the centre; a facet counts with its own size, so that one facet has a radius, too.
     fn measure(&mut self, run: &[Place], scene: &FaceScene) {
         let mut twist = 0.0;
-        for &(_, _, f) in run {
-            let FacetSums { pressure, area, .. } = *scene.sums(f);
+        for &(_, _, t) in run {
+            let FacetSums { pressure, area, .. } = *scene.sums(t);
             if pressure > 0.0 {
-                let hits = scene.integrals.hits_of(f as usize);
-                let arm = scene.center(f) - self.center;
-                let slip = relative_velocity(scene.facet(f), hits, scene.candidates, scene.input);
+                let hits = scene.integrals.hits_of(scene.touch(t));
+                let arm = scene.center(t) - self.center;
+                let slip = relative_velocity(scene.facet(t), hits, scene.candidates, scene.input);
                 // A disc of the same area: mean r² = A/2π.
                 let radius2 = arm.norm_squared() + area / std::f64::consts::TAU;
                 self.radius2 += pressure / self.pressure * radius2;

@@ -5,7 +5,7 @@ use ndda_mesh::{TetId, Vec3};
 
 use crate::candidates::{Candidates, Facet};
 use crate::friction::{FacetSlip, ShearMemory};
-use crate::integrals::{FacetSums, Hit};
+use crate::integrals::{FacetSums, Hit, Touch};
 use crate::joints::{Joints, Memory};
 use crate::model::{Body, ContactHistory, ContactInput, FacetMemory};
 
@@ -27,6 +27,8 @@ pub struct FacetForce {
     pub memory: Option<ShearMemory>,
     /// Whether there is a force at all.
     pub touches: bool,
+    /// In [`Candidates::facets`].
+    pub facet: u32,
 }
 
 /// What the evaluation of a facet reads.
@@ -45,13 +47,15 @@ pub struct FacetScene<'a> {
 impl FacetScene<'_> {
     /// Normal force −k n ∫ φ dA and friction of one facet.
     #[inline]
-    pub fn force(&self, facet: &Facet, (hits, sums): (&[Hit], &FacetSums), penalty_pa: f64) -> FacetForce {
+    pub fn force(&self, touch: &Touch, hits: &[Hit], penalty_pa: f64) -> FacetForce {
+        let (facet, sums) = (&self.candidates.facets[touch.facet as usize], &touch.sums);
+        let mut force = FacetForce { facet: touch.facet, ..FacetForce::default() };
         if sums.pressure <= 0.0 {
-            return FacetForce::default();
+            return force;
         }
         let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
         let normal = triangle_area_vector(&corners).normalize();
-        let mut force = FacetForce { push: -penalty_pa * normal, touches: true, ..FacetForce::default() };
+        (force.push, force.touches) = (-penalty_pa * normal, true);
         if let Some(joints) = self.joints {
             self.add_friction(joints, facet, (hits, sums), penalty_pa, &mut force);
         }

@@ -14,6 +14,7 @@ use crate::hulls::Hulls;
 use crate::pair::{PairMoments, TetFrame};
 use crate::potential::Field;
 use crate::region::Region;
+use crate::report::HitReport;
 
 /// Pairs of a chunk: one task for a thread.
 const CHUNK_PAIRS: usize = 512;
@@ -79,17 +80,29 @@ pub struct Scene<'a> {
     pub hulls: &'a Hulls,
 }
 
+/// A facet that touches.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Touch {
+    /// In [`Candidates::facets`].
+    pub facet: u32,
+    /// Where its hits are.
+    chunk: u32,
+    hits: Range<u32>,
+    /// What they come to.
+    pub sums: FacetSums,
+}
+
 /// A run of facets and the hits among their pairs.
 #[derive(Default)]
 pub struct Chunk {
     /// Facets of this chunk, in [`Candidates::facets`].
-    pub facets: Range<usize>,
+    facets: Range<usize>,
     /// Hits in the order of pairs.
     pub hits: Vec<Hit>,
-    /// End of each facet's hits.
-    ends: Vec<usize>,
-    /// Sums of each facet's hits.
-    sums: Vec<FacetSums>,
+    /// Facets that have some, ascending.
+    touching: Vec<Touch>,
+    /// What the hits tell of themselves.
+    pub report: HitReport,
 }
 
 /// What a thread needs while it is at a chunk.
@@ -102,24 +115,23 @@ struct Scratch {
 }
 
 impl Chunk {
-    /// The hits of the k-th facet of this chunk.
-    pub fn hits_of(&self, k: usize) -> &[Hit] {
-        let start = if k == 0 { 0 } else { self.ends[k - 1] };
-        &self.hits[start..self.ends[k]]
-    }
-
     fn integrate(&mut self, arch: Arch, scene: &Scene, scratch: &mut Scratch) {
         let facets = &scene.candidates.facets[self.facets.clone()];
         let pairs = facets.iter().map(|facet| facet.pairs.len()).sum::<usize>();
         self.hits.clear();
         // A contact that closes further rarely asks for more than a quarter.
         self.hits.reserve(pairs / 4);
-        self.ends.clear();
-        self.ends.reserve(facets.len());
+        self.touching.clear();
+        self.touching.reserve(facets.len());
         scratch.make_room(pairs);
-        for facet in facets {
+        for (k, facet) in facets.iter().enumerate() {
+            let first = self.hits.len() as u32;
             self.add_facet(arch, scene, facet, scratch);
-            self.ends.push(self.hits.len());
+            let hits = first..self.hits.len() as u32;
+            if !hits.is_empty() {
+                let facet = (self.facets.start + k) as u32;
+                self.touching.push(Touch { facet, hits, ..Touch::default() });
+            }
         }
         let hits = &mut self.hits;
         scratch.batches.finish(arch, |part| hits[part.pair as usize].moments.add_region(part));
@@ -127,10 +139,27 @@ impl Chunk {
             hit.moments.drop_rounding();
             hit.moments.share_with_target(lambda);
         }
-        let mut sums = std::mem::take(&mut self.sums);
-        sums.clear();
-        sums.extend((0..facets.len()).map(|k| FacetSums::of(self.hits_of(k))));
-        self.sums = sums;
+        self.drop_empty();
+        self.report = HitReport::of(&self.hits, scene.candidates, scene.field);
+    }
+
+    /// Keeps the hits that have an area, and the facets that have such hits; what is not a number stays to be reported.
+    fn drop_empty(&mut self) {
+        let (hits, mut kept) = (&mut self.hits, 0);
+        self.touching.retain_mut(|touch| {
+            let first = kept;
+            for k in touch.hits.start..touch.hits.end {
+                let hit = hits[k as usize];
+                if hit.moments.area != 0.0 {
+                    hits[kept as usize] = hit;
+                    kept += 1;
+                }
+            }
+            touch.hits = first..kept;
+            touch.sums = FacetSums::of(&hits[first as usize..kept as usize]);
+            first < kept
+        });
+        hits.truncate(kept as usize);
     }
 
     fn add_facet(&mut self, arch: Arch, scene: &Scene, facet: &Facet, scratch: &mut Scratch) {
@@ -212,13 +241,13 @@ pub struct Integrals {
     chunks: Vec<Chunk>,
     /// One for each thread.
     scratch: Vec<Mutex<Scratch>>,
-    /// Chunk of each facet.
-    chunk_of: Vec<u32>,
+    used: usize,
+    touching: Vec<Touch>,
 }
 
 impl Default for Integrals {
     fn default() -> Self {
-        Self { arch: Arch::new(), chunks: Vec::new(), scratch: Vec::new(), chunk_of: Vec::new() }
+        Self { arch: Arch::new(), chunks: Vec::new(), scratch: Vec::new(), used: 0, touching: Vec::new() }
     }
 }
 
@@ -226,7 +255,7 @@ impl Integrals {
     /// Integrates all pairs. The division into chunks depends on the list of pairs alone.
     pub fn update(&mut self, scene: &Scene) {
         self.divide(&scene.candidates.facets);
-        let (arch, used) = (self.arch, self.chunk_count());
+        let (arch, used) = (self.arch, self.used);
         let threads = rayon::current_num_threads().max(self.scratch.len());
         self.scratch.resize_with(threads, Mutex::default);
         let (chunks, scratch) = (&mut self.chunks[..used], &self.scratch);
@@ -238,10 +267,17 @@ impl Integrals {
             [only] => integrate(only),
             many => many.par_iter_mut().for_each(integrate),
         }
+        self.list_touching();
+    }
+
+    fn list_touching(&mut self) {
+        self.touching.clear();
+        for (k, chunk) in (0..).zip(&self.chunks[..self.used]) {
+            self.touching.extend(chunk.touching.iter().map(|touch| Touch { chunk: k, ..touch.clone() }));
+        }
     }
 
     fn divide(&mut self, facets: &[Facet]) {
-        self.chunk_of.clear();
         let (mut used, mut start) = (0, 0);
         while start < facets.len() {
             let first_pair = facets[start].pairs.start;
@@ -251,30 +287,24 @@ impl Integrals {
                 self.chunks.push(Chunk::default());
             }
             self.chunks[used].facets = start..end;
-            self.chunk_of.resize(end, used as u32);
             used += 1;
             start = end;
         }
-    }
-
-    fn chunk_count(&self) -> usize {
-        self.chunk_of.last().map_or(0, |&last| last as usize + 1)
+        self.used = used;
     }
 
     /// The chunks in use, in the order of facets.
     pub fn chunks(&self) -> &[Chunk] {
-        &self.chunks[..self.chunk_count()]
+        &self.chunks[..self.used]
     }
 
-    /// The hits of a facet.
-    pub fn hits_of(&self, facet: usize) -> &[Hit] {
-        let chunk = &self.chunks[self.chunk_of[facet] as usize];
-        chunk.hits_of(facet - chunk.facets.start)
+    /// The facets that touch, ascending.
+    pub fn touching(&self) -> &[Touch] {
+        &self.touching
     }
 
-    /// What the hits of a facet come to.
-    pub fn sums_of(&self, facet: usize) -> &FacetSums {
-        let chunk = &self.chunks[self.chunk_of[facet] as usize];
-        &chunk.sums[facet - chunk.facets.start]
+    /// The hits of a facet that touches, in the order of pairs.
+    pub fn hits_of(&self, touch: &Touch) -> &[Hit] {
+        &self.chunks[touch.chunk as usize].hits[touch.hits.start as usize..touch.hits.end as usize]
     }
 }

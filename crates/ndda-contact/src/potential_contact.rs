@@ -28,6 +28,8 @@ use crate::tangent;
 
 /// Facets below which a second thread costs more than it brings.
 const GRAIN_FACETS: usize = 128;
+/// The same for frames.
+const GRAIN_FRAMES: usize = 512;
 
 /// Normal forces −k_n n ∫ φ dA on boundary triangles, both ways, and friction on top of them.
 ///
@@ -116,62 +118,55 @@ impl PotentialContact {
             }
             self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
         }
-        if self.candidates.update(input) {
-            self.scatter.arrange(input.blocks, &self.candidates);
-            if self.needs_bodies() {
-                self.faces.arrange(&self.candidates);
-            }
-        }
+        self.candidates.update(input);
         self.place_frames(input)
     }
 
     fn place_frames(&mut self, input: &ContactInput) -> Result<(), ContactError> {
         let blocks = input.blocks;
-        self.frames.clear();
-        for (&tet, order) in self.candidates.tets.iter().zip(&self.candidates.order) {
-            let frame = TetFrame::in_order(&blocks.tet_corners(tet, input.position), order);
-            if frame.volume_m3.is_nan() || frame.volume_m3 <= 0.0 || !frame.has_heights() {
-                let block = blocks.tet_block[tet.index()];
-                return Err(ContactError::CollapsedTet { tet, block, volume_m3: frame.volume_m3 });
-            }
-            self.frames.push(frame);
-        }
-        Ok(())
+        let Candidates { tets, order, .. } = &self.candidates;
+        self.frames.resize(tets.len(), TetFrame::default());
+        let place = |(slot, frame): (usize, &mut TetFrame)| {
+            *frame = TetFrame::in_order(&blocks.tet_corners(tets[slot], input.position), &order[slot]);
+            let is_sound = frame.volume_m3 > 0.0 && frame.has_heights();
+            (!is_sound).then_some(slot)
+        };
+        let frames = self.frames.par_iter_mut().enumerate().with_min_len(GRAIN_FRAMES);
+        let Some(slot) = frames.filter_map(place).min() else { return Ok(()) };
+        let (tet, volume_m3) = (tets[slot], self.frames[slot].volume_m3);
+        Err(ContactError::CollapsedTet { tet, block: blocks.tet_block[tet.index()], volume_m3 })
     }
 
-    /// k_n dw/dU of each facet's pair of blocks [Pa].
+    /// k_n dw/dU of each touching facet's pair of blocks [Pa].
     fn place_penalties(&mut self, input: &ContactInput) {
-        let facets = &self.candidates.facets;
+        let touching = self.integrals.touching();
         self.penalty_of_facet.clear();
         self.curvature_of_facet.clear();
         if self.potential.law() == OverlapLaw::Linear {
-            self.penalty_of_facet.resize(facets.len(), self.penalty_pa);
+            self.penalty_of_facet.resize(touching.len(), self.penalty_pa);
             return;
         }
         self.overlaps.add_surfaces(input, &self.candidates, &self.integrals);
         let law = self.potential.law();
-        let blocks = &input.blocks.triangle_block;
-        let penalty = |facet: &crate::candidates::Facet| {
-            let overlap = self.overlaps.of(blocks[facet.triangle.index()], facet.target);
-            self.penalty_pa * law.slope(overlap)
-        };
-        self.penalty_of_facet.extend(facets.iter().map(penalty));
-        let curvature = |facet: &crate::candidates::Facet| {
-            let (a, b) = (blocks[facet.triangle.index()], facet.target);
-            self.penalty_pa * law.curvature(self.overlaps.of(a, b)) * self.overlaps.pressure_of(a, b)
-        };
-        self.curvature_of_facet.extend(facets.iter().map(curvature));
+        for touch in touching {
+            let facet = &self.candidates.facets[touch.facet as usize];
+            let (a, b) = (input.blocks.triangle_block[facet.triangle.index()], facet.target);
+            let overlap = self.overlaps.of(a, b);
+            self.penalty_of_facet.push(self.penalty_pa * law.slope(overlap));
+            let curvature = self.penalty_pa * law.curvature(overlap) * self.overlaps.pressure_of(a, b);
+            self.curvature_of_facet.push(curvature);
+        }
     }
 
     fn place_forces(&mut self, input: &ContactInput, history: &ContactHistory) {
         let scene = FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
-        let (facets, integrals) = (&self.candidates.facets, &self.integrals);
-        self.forces.resize(facets.len(), FacetForce::default());
+        let (touching, integrals) = (self.integrals.touching(), &self.integrals);
+        self.forces.resize(touching.len(), FacetForce::default());
         let penalties = &self.penalty_of_facet;
-        let place = |(f, force): (usize, &mut FacetForce)| {
-            *force = scene.force(&facets[f], (integrals.hits_of(f), integrals.sums_of(f)), penalties[f]);
+        let place = |(t, force): (usize, &mut FacetForce)| {
+            *force = scene.force(&touching[t], integrals.hits_of(&touching[t]), penalties[t]);
         };
-        if facets.len() > GRAIN_FACETS {
+        if touching.len() > GRAIN_FACETS {
             self.forces.par_iter_mut().enumerate().with_min_len(GRAIN_FACETS / 2).for_each(place);
         } else {
             self.forces.iter_mut().enumerate().for_each(place);
@@ -182,7 +177,8 @@ impl PotentialContact {
     fn remember(&mut self, input: &ContactInput, history: &mut ContactHistory) {
         self.new_facets.clear();
         let scene = FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
-        for (facet, force) in self.candidates.facets.iter().zip(&self.forces) {
+        for force in &self.forces {
+            let facet = &self.candidates.facets[force.facet as usize];
             if let Some(memory) = force.memory {
                 self.new_facets.push(FacetMemory {
                     facet: facet.triangle,
@@ -198,10 +194,14 @@ impl PotentialContact {
     }
 
     /// Stiffness of one facet's hits: normal contact, and the shear spring of a facet that sticks.
-    fn add_facet_stiffness(&self, f: usize, input: &ContactInput, stiffness: &mut Vec<PairStiffness>) {
-        let facet = &self.candidates.facets[f];
+    fn add_facet_stiffness(&self, t: usize, input: &ContactInput, stiffness: &mut Vec<PairStiffness>) {
+        let touch = &self.integrals.touching()[t];
+        let facet = &self.candidates.facets[touch.facet as usize];
+        let force = self.forces.binary_search_by_key(&touch.facet, |force| force.facet);
+        let held = force.ok().map(|place| &self.forces[place]);
+        let held = held.filter(|force| force.shear_slope > 0.0 && force.sticks);
         let corners = input.blocks.triangle_corners(facet.triangle, input.position);
-        for hit in self.integrals.hits_of(f).iter().filter(|hit| hit.moments.area > 0.0) {
+        for hit in self.integrals.hits_of(touch) {
             let tet = self.candidates.tet_of(hit.pair);
             let pieces = match &self.field {
                 Some((_, Field::Pieces(table))) => Some(table.of(tet)),
@@ -210,9 +210,8 @@ impl PotentialContact {
             let frame = &self.frames[self.candidates.pairs[hit.pair as usize].tet as usize];
             let triangle = &input.blocks.triangles[facet.triangle.index()];
             let mut pair = PairStiffness::new(triangle, &input.blocks.tets[tet.index()]);
-            tangent::add_pair(&mut pair, &corners, frame, pieces, self.penalty_of_facet[f]);
-            let force = &self.forces[f];
-            if force.shear_slope > 0.0 && force.sticks {
+            tangent::add_pair(&mut pair, &corners, frame, pieces, self.penalty_of_facet[t]);
+            if let Some(force) = held {
                 let normal = force.push.normalize();
                 let across = Mat3::identity() - normal * normal.transpose();
                 // The spring of a facet, shared among its hits by their pressure.
@@ -266,10 +265,10 @@ impl ContactModel for PotentialContact {
 
     fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError> {
         let law = self.potential.law();
-        match law {
-            // The volume of overlaps comes from the integrals, other energies from the pairs.
-            OverlapLaw::Power { .. } => self.integrate(input)?,
-            OverlapLaw::Linear => self.find_pairs(input)?,
+        match (law, &self.field) {
+            // The element potential's energy comes from the pairs, others from what touches.
+            (OverlapLaw::Linear, Some((_, Field::Element))) => self.find_pairs(input)?,
+            _ => self.integrate(input)?,
         }
         let Some((_, field)) = &self.field else { return Ok(0.0) };
         self.overlaps.integrate(input, &self.candidates, &self.integrals, &self.frames, field, law);
@@ -287,9 +286,8 @@ impl ContactModel for PotentialContact {
     ) -> Result<(), ContactError> {
         self.integrate(input)?;
         self.place_penalties(input);
-        self.forces.resize(self.candidates.facets.len(), FacetForce::default());
-        for f in 0..self.candidates.facets.len() {
-            self.add_facet_stiffness(f, input, stiffness);
+        for t in 0..self.integrals.touching().len() {
+            self.add_facet_stiffness(t, input, stiffness);
         }
         if let Some(joints) = &self.joints {
             bonds::add_stiffness(joints, input, &history.bonds, stiffness);
@@ -302,11 +300,11 @@ impl ContactModel for PotentialContact {
     }
 
     fn add_facets(&self, input: &ContactInput, history: &ContactHistory, facets: &mut Vec<FacetContact>) {
-        for (f, (facet, force)) in self.candidates.facets.iter().zip(&self.forces).enumerate() {
+        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
             if !force.touches {
                 continue;
             }
-            let sums = self.integrals.sums_of(f);
+            let (sums, facet) = (&touch.sums, &self.candidates.facets[touch.facet as usize]);
             facets.push(FacetContact {
                 facet: facet.triangle,
                 target: facet.target,

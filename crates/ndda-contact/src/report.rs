@@ -21,6 +21,47 @@ enum Reach {
     Short,
 }
 
+/// What some hits tell of themselves.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct HitReport {
+    /// Difference of action and reaction over either.
+    action_reaction_error: f64,
+    max_penetration_ratio: f64,
+    /// In [`Candidates::pairs`]: the deepest, and the first whose force is not a number.
+    deepest: Option<u32>,
+    lost: Option<u32>,
+}
+
+impl HitReport {
+    /// The report on some hits.
+    pub fn of(hits: &[Hit], candidates: &Candidates, field: &Field) -> Self {
+        let mut report = Self::default();
+        for hit in hits {
+            let on_contactor = hit.moments.total();
+            let on_target: f64 = hit.moments.target_pressure.iter().sum();
+            if !on_contactor.is_finite() || !on_target.is_finite() {
+                report.lost = Some(hit.pair);
+                break;
+            }
+            // Nodal forces of a grazing pair may cancel: their sizes are what rounding is relative to.
+            let scale: f64 = hit.moments.pressure.iter().map(|w| w.abs()).sum();
+            if scale > 0.0 {
+                let error = (on_contactor - on_target).abs() / scale;
+                report.action_reaction_error = report.action_reaction_error.max(error);
+            }
+            report
+                .look_at(hit.pair, penetration_ratio(field, candidates.tet_of(hit.pair), hit.moments.depth));
+        }
+        report
+    }
+
+    fn look_at(&mut self, pair: u32, ratio: f64) {
+        if self.deepest.is_none() || ratio > self.max_penetration_ratio {
+            (self.max_penetration_ratio, self.deepest) = (ratio, Some(pair));
+        }
+    }
+}
+
 /// Memory for reports, used again and again.
 #[derive(Default)]
 pub struct Reporter {
@@ -42,26 +83,21 @@ impl Reporter {
     ) -> Result<ContactReport, ContactError> {
         let mut report =
             ContactReport { candidate_pairs: candidates.pairs.len(), ..ContactReport::default() };
-        for hit in hits(integrals) {
-            let (triangle, tet) = (candidates.pairs[hit.pair as usize].triangle, candidates.tet_of(hit.pair));
-            let on_contactor = hit.moments.total();
-            let on_target: f64 = hit.moments.target_pressure.iter().sum();
-            if !on_contactor.is_finite() || !on_target.is_finite() {
+        let place = |pair: u32| (candidates.pairs[pair as usize].triangle, candidates.tet_of(pair));
+        let mut all = HitReport::default();
+        for chunk in integrals.chunks() {
+            let part = &chunk.report;
+            if let Some((triangle, tet)) = part.lost.map(place) {
                 return Err(ContactError::NotFinite { triangle, tet });
             }
-            report.contact_pairs += 1;
-            // Nodal forces of a grazing pair may cancel: their sizes are what rounding is relative to.
-            let scale: f64 = hit.moments.pressure.iter().map(|w| w.abs()).sum();
-            if scale > 0.0 {
-                let error = (on_contactor - on_target).abs() / scale;
-                report.action_reaction_error = report.action_reaction_error.max(error);
-            }
-            let ratio = penetration_ratio(field, tet, hit.moments.depth);
-            if report.deepest.is_none() || ratio > report.max_penetration_ratio {
-                report.max_penetration_ratio = ratio;
-                report.deepest = Some((triangle, tet));
+            report.contact_pairs += chunk.hits.len();
+            report.action_reaction_error = report.action_reaction_error.max(part.action_reaction_error);
+            if let Some(deepest) = part.deepest {
+                all.look_at(deepest, part.max_penetration_ratio);
             }
         }
+        report.max_penetration_ratio = all.max_penetration_ratio;
+        report.deepest = all.deepest.map(place);
         if *field == Field::Element {
             report.past_centroid = self.past_centroid(input, candidates, integrals, frames);
         }
@@ -114,7 +150,7 @@ impl Reporter {
 
 /// The pairs that overlap.
 fn hits(integrals: &Integrals) -> impl Iterator<Item = &Hit> {
-    integrals.chunks().iter().flat_map(|chunk| &chunk.hits).filter(|hit| hit.moments.area > 0.0)
+    integrals.chunks().iter().flat_map(|chunk| &chunk.hits)
 }
 
 /// Depth over the height of the tetrahedron. For the element potential φ = 4 λ, and λ is that ratio.

@@ -12,12 +12,12 @@ use crate::model::ContactOutput;
 /// Facets per half below which a second thread costs more than it brings.
 const GRAIN_FACETS: usize = 200;
 
-/// Where each block's facets are, as contactor and as target.
+/// Where the touching facets of each block are, as contactor and as target.
 #[derive(Default)]
 pub struct Scatter {
-    /// First facet of each block; facets are sorted by contactor.
+    /// First of each block's own; facets are sorted by contactor.
     own_start: Vec<u32>,
-    /// Facets sorted by (target, facet), and where each block's begin.
+    /// Those on each block, by (target, facet), and where each block's begin.
     on_target: Vec<u32>,
     target_start: Vec<u32>,
 }
@@ -31,52 +31,58 @@ pub struct ScatterScene<'a> {
     pub candidates: &'a Candidates,
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,
-    /// One entry per facet.
+    /// One entry per touching facet.
     pub forces: &'a [FacetForce],
-    /// Stiffness per slope, one entry per facet [Pa].
+    /// Stiffness per slope, one entry per touching facet [Pa].
     pub stiffness_pa: &'a [f64],
-    /// Stiffness per pressure, one entry per facet, or none [Pa/m].
+    /// Stiffness per pressure, one entry per touching facet, or none [Pa/m].
     pub curvature_pa_m: &'a [f64],
 }
 
 impl ScatterScene<'_> {
-    fn stiffness(&self, facet: usize, slope: f64, pressure: f64) -> f64 {
-        let curvature = self.curvature_pa_m.get(facet).copied().unwrap_or(0.0);
-        let normal = self.stiffness_pa[facet] * slope + curvature * pressure.abs();
-        normal + self.forces[facet].shear_slope * pressure.abs()
+    fn stiffness(&self, touch: usize, slope: f64, pressure: f64) -> f64 {
+        let curvature = self.curvature_pa_m.get(touch).copied().unwrap_or(0.0);
+        let normal = self.stiffness_pa[touch] * slope + curvature * pressure.abs();
+        normal + self.forces[touch].shear_slope * pressure.abs()
     }
 }
 
 impl Scatter {
-    /// Sorts facets by block; needed when the list of facets has changed.
-    pub fn arrange(&mut self, blocks: &BlockSet, candidates: &Candidates) {
-        let facets = &candidates.facets;
-        self.own_start.clear();
-        self.own_start.resize(blocks.len() + 1, 0);
-        self.target_start.clear();
-        self.target_start.resize(blocks.len() + 1, 0);
-        for facet in facets {
-            let owner = blocks.triangle_block[facet.triangle.index()];
-            self.own_start[owner.index() + 1] += 1;
-            self.target_start[facet.target.index() + 1] += 1;
-        }
-        for b in 0..blocks.len() {
-            self.own_start[b + 1] += self.own_start[b];
-            self.target_start[b + 1] += self.target_start[b];
-        }
-        self.on_target.clear();
-        self.on_target.extend(0..facets.len() as u32);
-        self.on_target.sort_unstable_by_key(|&f| (facets[f as usize].target, f));
-    }
-
     /// Adds all forces to the nodes.
-    pub fn add(&self, scene: &ScatterScene, output: &mut ContactOutput) {
+    pub fn add(&mut self, scene: &ScatterScene, output: &mut ContactOutput) {
+        self.arrange(scene);
         let all = ContactOutput {
             force: output.force,
             friction_force: output.friction_force,
             stiffness: output.stiffness,
         };
         self.add_blocks(scene, 0..scene.blocks.len(), all);
+    }
+
+    /// Sorts facets by block.
+    fn arrange(&mut self, scene: &ScatterScene) {
+        let facets = || scene.integrals.touching().iter().map(|t| &scene.candidates.facets[t.facet as usize]);
+        for starts in [&mut self.own_start, &mut self.target_start] {
+            starts.clear();
+            starts.resize(scene.blocks.len() + 2, 0);
+        }
+        for facet in facets() {
+            let owner = scene.blocks.triangle_block[facet.triangle.index()];
+            self.own_start[owner.index() + 1] += 1;
+            self.target_start[facet.target.index() + 2] += 1;
+        }
+        for b in 0..scene.blocks.len() {
+            self.own_start[b + 1] += self.own_start[b];
+            self.target_start[b + 2] += self.target_start[b + 1];
+        }
+        // Each entry moves on from where its block begins to where the next one does.
+        self.on_target.clear();
+        self.on_target.resize(scene.integrals.touching().len(), 0);
+        for (t, facet) in (0..).zip(facets()) {
+            let place = &mut self.target_start[facet.target.index() + 1];
+            self.on_target[*place as usize] = t;
+            *place += 1;
+        }
     }
 
     fn facets_between(&self, blocks: &Range<usize>) -> usize {
@@ -109,12 +115,12 @@ impl Scatter {
     fn add_block(&self, scene: &ScatterScene, block: usize, output: ContactOutput) {
         let first = scene.blocks.node_starts()[block] as usize;
         let mut nodes = BlockNodes { first, output };
-        for f in self.own_start[block]..self.own_start[block + 1] {
-            nodes.add_contactor(scene, f as usize);
+        for t in self.own_start[block]..self.own_start[block + 1] {
+            nodes.add_contactor(scene, t as usize);
         }
         let range = self.target_start[block] as usize..self.target_start[block + 1] as usize;
-        for &f in &self.on_target[range] {
-            nodes.add_target(scene, f as usize);
+        for &t in &self.on_target[range] {
+            nodes.add_target(scene, t as usize);
         }
     }
 }
@@ -135,35 +141,36 @@ struct BlockNodes<'a> {
 
 impl BlockNodes<'_> {
     /// Nodal forces ∫ N dF of a facet of this block.
-    fn add_contactor(&mut self, scene: &ScatterScene, f: usize) {
-        let (facet, force) = (&scene.candidates.facets[f], &scene.forces[f]);
+    fn add_contactor(&mut self, scene: &ScatterScene, t: usize) {
+        let (touch, force) = (&scene.integrals.touching()[t], &scene.forces[t]);
         if !force.touches {
             return;
         }
-        let FacetSums { weights: pressure, slope, .. } = scene.integrals.sums_of(f);
+        let facet = &scene.candidates.facets[touch.facet as usize];
+        let FacetSums { weights: pressure, slope, .. } = &touch.sums;
         let nodes = scene.blocks.triangles[facet.triangle.index()];
         for a in 0..3 {
-            self.add(nodes[a].index(), pressure[a], force, scene.stiffness(f, slope[a], pressure[a]));
+            self.add(nodes[a].index(), pressure[a], force, scene.stiffness(t, slope[a], pressure[a]));
         }
     }
 
     /// The opposite of a facet of another block. Its weights are the contactor's seen from this block's shape
     /// functions, so force and moment balance to round-off.
-    fn add_target(&mut self, scene: &ScatterScene, f: usize) {
-        let force = &scene.forces[f];
+    fn add_target(&mut self, scene: &ScatterScene, t: usize) {
+        let force = &scene.forces[t];
         if !force.touches {
             return;
         }
-        for hit in scene.integrals.hits_of(f) {
-            self.add_hit(scene, hit, force, f);
+        for hit in scene.integrals.hits_of(&scene.integrals.touching()[t]) {
+            self.add_hit(scene, hit, force, t);
         }
     }
 
-    fn add_hit(&mut self, scene: &ScatterScene, hit: &Hit, force: &FacetForce, f: usize) {
+    fn add_hit(&mut self, scene: &ScatterScene, hit: &Hit, force: &FacetForce, t: usize) {
         let nodes = scene.blocks.tets[scene.candidates.tet_of(hit.pair).index()];
         let weights = hit.moments.target_pressure.iter().zip(hit.moments.target_slope);
         for (node, (pressure, slope)) in nodes.iter().zip(weights) {
-            self.add(node.index(), -pressure, force, scene.stiffness(f, slope.max(0.0), *pressure));
+            self.add(node.index(), -pressure, force, scene.stiffness(t, slope.max(0.0), *pressure));
         }
     }
 

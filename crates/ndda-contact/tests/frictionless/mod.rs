@@ -2,6 +2,7 @@
 
 use ndda_contact::candidates::Candidates;
 use ndda_contact::facets::FacetForce;
+use ndda_contact::hulls::Hulls;
 use ndda_contact::integrals::{Integrals, Scene};
 use ndda_contact::pair::TetFrame;
 use ndda_contact::report::Reporter;
@@ -15,6 +16,7 @@ use rayon::prelude::*;
 pub struct Frictionless {
     candidates: Candidates,
     frames: Vec<TetFrame>,
+    hulls: Hulls,
     integrals: Integrals,
     scatter: Scatter,
     reporter: Reporter,
@@ -32,8 +34,9 @@ impl Frictionless {
     ) -> ContactReport {
         let blocks = input.blocks;
         if self.candidates.update(input) {
-            self.scatter.arrange(blocks, &self.candidates);
+            self.hulls.fit(blocks);
         }
+        self.hulls.place(blocks, input.position);
         self.frames.clear();
         let tets = self.candidates.tets.iter().zip(&self.candidates.order);
         self.frames.extend(tets.map(|(&tet, order)| {
@@ -42,26 +45,29 @@ impl Frictionless {
             frame
         }));
         let (candidates, frames, field) = (&self.candidates, &self.frames[..], &Field::Element);
-        self.integrals.update(&Scene { blocks, position: input.position, candidates, frames, field });
+        let hulls = &self.hulls;
+        self.integrals.update(&Scene { blocks, position: input.position, candidates, frames, field, hulls });
         let (integrals, facets) = (&self.integrals, &candidates.facets);
+        let touching = integrals.touching();
         let report =
             self.reporter.report(input, candidates, integrals, frames, field).expect("finite forces");
-        self.forces.resize(facets.len(), FacetForce::default());
-        let push = |(f, force): (usize, &mut FacetForce)| {
+        self.forces.resize(touching.len(), FacetForce::default());
+        let push = |(t, force): (usize, &mut FacetForce)| {
             *force = FacetForce::default();
-            if integrals.hits_of(f).iter().map(|hit| hit.moments.total()).sum::<f64>() > 0.0 {
-                let corners = blocks.triangle_corners(facets[f].triangle, input.position);
+            if integrals.hits_of(&touching[t]).iter().map(|hit| hit.moments.total()).sum::<f64>() > 0.0 {
+                let corners =
+                    blocks.triangle_corners(facets[touching[t].facet as usize].triangle, input.position);
                 force.push = -penalty_pa * triangle_area_vector(&corners).normalize();
                 force.touches = true;
             }
         };
-        if facets.len() > 128 {
+        if touching.len() > 128 {
             self.forces.par_iter_mut().enumerate().with_min_len(64).for_each(push);
         } else {
             self.forces.iter_mut().enumerate().for_each(push);
         }
         self.stiffness_pa.clear();
-        self.stiffness_pa.resize(facets.len(), penalty_pa);
+        self.stiffness_pa.resize(touching.len(), penalty_pa);
         let scene = ScatterScene {
             blocks,
             candidates,
