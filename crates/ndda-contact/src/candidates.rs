@@ -28,7 +28,7 @@ pub struct Pair {
     pub triangle: TriangleId,
     /// Index of the target tetrahedron in `tets`.
     pub tet: u32,
-    /// Index of the combination (contactor block, target tetrahedron).
+    /// Index of the combination (contactor block, target tetrahedron), where these are numbered.
     pub overlap: u32,
 }
 
@@ -43,8 +43,10 @@ pub struct Candidates {
     pub tets: Vec<TetId>,
     /// Their corners in the order of node numbers, on which neighbours agree.
     pub order: Vec<[u8; 4]>,
-    /// The distinct (target tetrahedron, contactor block), block by block.
+    /// The distinct (target tetrahedron, contactor block), block by block; empty where nobody asks for them.
     pub overlaps: Vec<(TetId, BlockId)>,
+    /// Whether overlaps are numbered.
+    pub numbers_overlaps: bool,
     /// Whether facets end at the borders of target elements, too.
     pub split_by_element: bool,
     found: Vec<(TriangleId, TetId)>,
@@ -98,17 +100,16 @@ impl Candidates {
         let (tet_block, triangle_block) = (&input.blocks.tet_block, &input.blocks.triangle_block);
         // Blocks are contiguous in tetrahedra, so the pairs are in the order of target blocks, too.
         self.number_tets(input);
-        self.number_overlaps(triangle_block);
+        if self.numbers_overlaps {
+            self.number_overlaps(triangle_block);
+        }
         self.pairs.clear();
         make_room(&mut self.pairs, self.found.len());
         self.facets.clear();
         for (i, found) in self.found.iter().enumerate() {
             let (triangle, tet_id) = *found;
             let tet = self.slot_of[tet_id.index()];
-            let block = triangle_block[triangle.index()];
-            let first = self.overlap_start[block.index()] as usize;
-            let end = self.overlap_start.get(block.index() + 1).map_or(self.overlaps.len(), |&e| e as usize);
-            let overlap = (first + self.overlaps[first..end].partition_point(|o| o.0 < tet_id)) as u32;
+            let overlap = if self.numbers_overlaps { self.overlap_of(found, triangle_block) } else { 0 };
             self.pairs.push(Pair { triangle, tet, overlap });
             let target = tet_block[tet_id.index()];
             match self.facets.last_mut() {
@@ -120,6 +121,13 @@ impl Candidates {
                 _ => self.facets.push(Facet { triangle, target, pairs: i..i + 1 }),
             }
         }
+    }
+
+    fn overlap_of(&self, (triangle, tet): &(TriangleId, TetId), triangle_block: &[BlockId]) -> u32 {
+        let block = triangle_block[triangle.index()].index();
+        let first = self.overlap_start[block] as usize;
+        let end = self.overlap_start.get(block + 1).map_or(self.overlaps.len(), |&e| e as usize);
+        (first + self.overlaps[first..end].partition_point(|o| o.0 < *tet)) as u32
     }
 
     /// The distinct tetrahedra, ascending, and the place of each.

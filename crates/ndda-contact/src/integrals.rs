@@ -80,6 +80,33 @@ pub struct Scene<'a> {
     pub hulls: &'a Hulls,
 }
 
+impl Scene<'_> {
+    /// Whether all of the target is strictly before or behind the plane of a facet; not asked where it has more nodes than
+    /// the facet has pairs to ask.
+    #[inline]
+    fn is_on_one_side(&self, facet: &Facet, point: &Vec3, normal: &Vec3) -> bool {
+        let nodes = self.blocks.nodes_of(facet.target);
+        nodes.len() <= 4 * facet.pairs.len() && are_on_one_side(self.position[nodes].iter(), point, normal)
+    }
+
+    #[inline]
+    fn tet_is_on_one_side(&self, pair: &Pair, point: &Vec3, normal: &Vec3) -> bool {
+        let tet = self.candidates.tets[pair.tet as usize];
+        let corners = self.blocks.tets[tet.index()].iter().map(|n| &self.position[n.index()]);
+        are_on_one_side(corners, point, normal)
+    }
+}
+
+#[inline]
+fn are_on_one_side<'a>(points: impl Iterator<Item = &'a Vec3>, point: &Vec3, normal: &Vec3) -> bool {
+    let range = |(least, most): (f64, f64), x: &Vec3| {
+        let above = normal.dot(&(x - point));
+        (least.min(above), most.max(above))
+    };
+    let (least, most) = points.fold((f64::INFINITY, f64::NEG_INFINITY), range);
+    least > 0.0 || most < 0.0
+}
+
 /// A facet that touches.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Touch {
@@ -170,6 +197,9 @@ impl Chunk {
             return;
         }
         let normal = area_vector / area;
+        if scene.is_on_one_side(facet, &corners[0], &normal) {
+            return;
+        }
         let pieces = matches!(scene.field, Field::Pieces(_));
         for index in facet.pairs.clone() {
             let pair: &Pair = &scene.candidates.pairs[index];
@@ -177,6 +207,9 @@ impl Chunk {
             let in_plane = || Some(frame.lambda(&corners)).filter(|l| lies_in_a_plane_of(frame, l, &normal));
             let inside = frame.lambda_inside(&corners);
             let Some(lambda) = inside.or_else(|| if pieces { in_plane() } else { None }) else { continue };
+            if scene.tet_is_on_one_side(pair, &corners[0], &normal) {
+                continue;
+            }
             let hit = self.hits.len() as u32;
             self.hits.push(Hit { pair: index as u32, ..Hit::default() });
             scratch.lambda.push(lambda);

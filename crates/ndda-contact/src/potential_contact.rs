@@ -113,6 +113,7 @@ impl PotentialContact {
         if self.field.as_ref().is_none_or(|(known, _)| *known != tets) {
             let field = self.potential.field(input.blocks);
             self.hulls.fit(input.blocks);
+            self.candidates.numbers_overlaps = matches!(field, Ok(Field::Element));
             if self.needs_bodies() {
                 self.faces.fit(input.blocks);
             }

@@ -33,6 +33,7 @@ impl Frictionless {
         output: &mut ContactOutput,
     ) -> ContactReport {
         let blocks = input.blocks;
+        self.candidates.numbers_overlaps = true;
         if self.candidates.update(input) {
             self.hulls.fit(blocks);
         }
