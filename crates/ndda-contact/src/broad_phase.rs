@@ -32,29 +32,12 @@ impl BroadScene<'_> {
         Aabb::around(&self.position[self.blocks.nodes_of(block)]).inflated(self.margin_m[block.index()])
     }
 
-    /// Whether a plane of one of them keeps a triangle and a tetrahedron apart by more than both margins: any point of
-    /// either, while its nodes stay within the margin, is that near to a point where it is now.
-    pub fn are_apart(&self, triangle: usize, tet: usize) -> bool {
-        let (blocks, position) = (self.blocks, self.position);
-        let corners = blocks.triangle_corners(TriangleId(triangle as u32), position);
-        let others = blocks.tet_corners(TetId(tet as u32), position);
-        let reach_m = self.margin_m[blocks.triangle_block[triangle].index()]
-            + self.margin_m[blocks.tet_block[tet].index()];
-        // n·(x − p) > reach |n|, without a root.
-        let beyond = |normal: &Vec3, from: &Vec3, x: &Vec3| {
-            let distance = normal.dot(&(x - from));
-            distance > 0.0 && distance * distance > reach_m * reach_m * normal.norm_squared()
-        };
-        let apart_by_face = TET_FACES.iter().zip(&others).any(|(&[i, j, k], opposite)| {
-            let normal = triangle_area_vector(&[others[i], others[j], others[k]]);
-            // A tetrahedron may be inside out while it is looked at.
-            let outward = if normal.dot(&(opposite - others[i])) > 0.0 { -normal } else { normal };
-            corners.iter().all(|x| beyond(&outward, &others[i], x))
-        });
-        let normal = triangle_area_vector(&corners);
-        apart_by_face
-            || others.iter().all(|x| beyond(&normal, &corners[0], x))
-            || others.iter().all(|x| beyond(&-normal, &corners[0], x))
+    /// A triangle, to be compared with tetrahedra of a block.
+    pub fn triangle_at(&self, triangle: usize, other: BlockId) -> TriangleAt {
+        let corners = self.blocks.triangle_corners(TriangleId(triangle as u32), self.position);
+        let own = self.blocks.triangle_block[triangle];
+        let reach_m = self.margin_m[own.index()] + self.margin_m[other.index()];
+        TriangleAt { corners, normal: triangle_area_vector(&corners), reach_m }
     }
 
     fn around(&self, nodes: &[NodeId]) -> Aabb {
@@ -69,6 +52,39 @@ impl BroadScene<'_> {
             around.inflated(0.5 * around.diagonal())
         };
         rest(&self.blocks.triangles[triangle]).touches(&rest(&self.blocks.tets[tet]))
+    }
+}
+
+/// A boundary triangle, and how near it is to what it may soon be in.
+#[derive(Clone, Copy, Debug)]
+pub struct TriangleAt {
+    /// Corners [m].
+    pub corners: [Vec3; 3],
+    /// Area vector [m²].
+    normal: Vec3,
+    /// Margin of both blocks [m].
+    pub reach_m: f64,
+}
+
+impl TriangleAt {
+    /// Whether a plane of one of them keeps the triangle and a tetrahedron apart by more than both margins: any point of
+    /// either, while its nodes stay within the margin, is that near to a point where it is now.
+    pub fn is_apart_from(&self, others: &[Vec3; 4]) -> bool {
+        let [first, ..] = &self.corners;
+        self.are_beyond(&self.normal, first, others)
+            || self.are_beyond(&-self.normal, first, others)
+            || TET_FACES.iter().zip(others).any(|(&[i, j, k], opposite)| {
+                let normal = triangle_area_vector(&[others[i], others[j], others[k]]);
+                // A tetrahedron may be inside out while it is looked at.
+                let outward = if normal.dot(&(opposite - others[i])) > 0.0 { -normal } else { normal };
+                self.are_beyond(&outward, &others[i], &self.corners)
+            })
+    }
+
+    /// Whether n·(x − p) > reach |n| for all of the points, without a root.
+    fn are_beyond(&self, normal: &Vec3, from: &Vec3, points: &[Vec3]) -> bool {
+        let least = self.reach_m * self.reach_m * normal.norm_squared();
+        points.iter().map(|x| normal.dot(&(x - from))).all(|d| d > 0.0 && d * d > least)
     }
 }
 

@@ -255,10 +255,12 @@ impl Near<'_> {
     }
 
     fn find_tets(&self, i: usize, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
-        let (scene, triangle) = (self.scene, &self.boxes.triangles[i]);
+        let (scene, bounds) = (self.scene, &self.boxes.triangles[i]);
+        let triangle = scene.triangle_at(i, other);
         let tets = scene.blocks.tets_of(other);
         let mut add = |j: usize| {
-            let near = triangle.touches(&self.boxes.tets[j]) && !scene.are_apart(i, j);
+            let others = || scene.blocks.tet_corners(TetId(j as u32), scene.position);
+            let near = bounds.touches(&self.boxes.tets[j]) && !triangle.is_apart_from(&others());
             if near && !(block == other && scene.are_neighbours(i, j)) {
                 found.push((TriangleId(i as u32), TetId(j as u32)));
             }
@@ -266,9 +268,8 @@ impl Near<'_> {
         match &self.own[other.index()] {
             None => tets.for_each(&mut add),
             Some(own) => {
-                let corners = scene.blocks.triangle_corners(TriangleId(i as u32), scene.position);
-                let margin_m = scene.margin_m[block.index()] + scene.margin_m[other.index()];
-                own.tets_near_triangle(&corners, margin_m).for_each(|leaf| add(tets.start + leaf));
+                let near = own.tets_near_triangle(&triangle.corners, triangle.reach_m);
+                near.for_each(|leaf| add(tets.start + leaf));
             }
         }
     }

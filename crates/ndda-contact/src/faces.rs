@@ -72,11 +72,6 @@ impl FaceScene<'_> {
         0..self.integrals.touching().len() as u32
     }
 
-    /// Centre of pressure of a facet [m].
-    fn center(&self, t: u32) -> Vec3 {
-        self.sums(t).center(&self.input.blocks.triangle_corners(self.facet(t).triangle, self.input.position))
-    }
-
     /// The law of the facets of a run, if it acts on faces.
     fn law(&self, run: &[Place]) -> Option<&dyn FrictionLaw> {
         let (_, target, first) = run[0];
@@ -176,9 +171,10 @@ impl Faces {
             let run = &self.order[run.clone()];
             let twist = patch.torque_n_m / patch.pressure / patch.radius2;
             for &(_, _, t) in run {
-                let arm = scene.center(t) - patch.center;
-                forces[t as usize].shear = patch.force_n / patch.pressure + twist * patch.normal.cross(&arm);
-                forces[t as usize].sticks = !patch.memory.slides;
+                let force = &mut forces[t as usize];
+                let arm = force.center - patch.center;
+                force.shear = patch.force_n / patch.pressure + twist * patch.normal.cross(&arm);
+                force.sticks = !patch.memory.slides;
             }
             let (face, target, _) = run[0];
             self.new_faces.push(FaceMemory { face, target, ..patch.memory });
@@ -215,10 +211,9 @@ impl Faces {
         self.bodies.extend_from_slice(scene.input.bodies);
         for (t, force) in scene.touching().zip(forces) {
             if force.touches {
-                let center = scene.center(t);
                 let push = scene.sums(t).pressure * (force.push + force.shear);
-                self.bodies[scene.owner(t).index()].push(&center, &push);
-                self.bodies[scene.facet(t).target.index()].push(&center, &-push);
+                self.bodies[scene.owner(t).index()].push(&force.center, &push);
+                self.bodies[scene.facet(t).target.index()].push(&force.center, &-push);
             }
         }
         for patch in &self.patches {
@@ -254,7 +249,7 @@ impl Patch {
         if !patch.presses() {
             return Self::default();
         }
-        patch.measure(run, scene);
+        patch.measure(run, scene, forces);
         let old = remembered(history, face, target).filter(|old| old.normal.dot(&patch.normal) > 0.0);
         patch.old = old.map(|old| old.turned_to(&patch.normal));
         patch
@@ -270,7 +265,7 @@ impl Patch {
             let FacetSums { pressure, area, .. } = *scene.sums(t);
             if pressure > 0.0 {
                 self.pressure += pressure;
-                self.center += pressure * scene.center(t);
+                self.center += pressure * forces[t as usize].center;
                 self.area_m2 += area;
                 push += pressure * forces[t as usize].push;
             }
@@ -285,13 +280,13 @@ impl Patch {
     }
 
     /// Radii and slip about the centre; a facet counts with its own size, so that one facet has a radius, too.
-    fn measure(&mut self, run: &[Place], scene: &FaceScene) {
+    fn measure(&mut self, run: &[Place], scene: &FaceScene, forces: &[FacetForce]) {
         let mut twist = 0.0;
         for &(_, _, t) in run {
             let FacetSums { pressure, area, .. } = *scene.sums(t);
             if pressure > 0.0 {
                 let hits = scene.integrals.hits_of(scene.touch(t));
-                let arm = scene.center(t) - self.center;
+                let arm = forces[t as usize].center - self.center;
                 let slip = relative_velocity(scene.facet(t), hits, scene.candidates, scene.input);
                 // A disc of the same area: mean r² = A/2π.
                 let radius2 = arm.norm_squared() + area / std::f64::consts::TAU;

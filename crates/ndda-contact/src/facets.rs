@@ -27,6 +27,8 @@ pub struct FacetForce {
     pub memory: Option<ShearMemory>,
     /// Whether there is a force at all.
     pub touches: bool,
+    /// Centre of pressure [m].
+    pub center: Vec3,
     /// In [`Candidates::facets`].
     pub facet: u32,
 }
@@ -56,6 +58,7 @@ impl FacetScene<'_> {
         let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
         let normal = triangle_area_vector(&corners).normalize();
         (force.push, force.touches) = (-penalty_pa * normal, true);
+        force.center = sums.center(&corners);
         if let Some(joints) = self.joints {
             self.add_friction(joints, facet, (hits, sums), penalty_pa, &mut force);
         }

@@ -13,7 +13,7 @@ use crate::candidates::{Candidates, Facet, Pair};
 use crate::hulls::Hulls;
 use crate::pair::{PairMoments, TetFrame};
 use crate::potential::Field;
-use crate::region::Region;
+use crate::region::{Pieces, Region};
 use crate::report::HitReport;
 
 /// Pairs of a chunk: one task for a thread.
@@ -239,8 +239,9 @@ impl Scratch {
             }
             Field::Pieces(table) => {
                 let pieces = table.of(scene.candidates.tets[scene.candidates.pairs[index].tet as usize]);
+                let Some(seen) = Pieces::new(lambda, pieces, frame, normal) else { return };
                 for k in 0..pieces.len() {
-                    if region.set_piece(lambda, pieces, k, frame, normal) {
+                    if region.set_piece(&seen, k) {
                         self.batches.push(arch, hit, area, region);
                     }
                 }

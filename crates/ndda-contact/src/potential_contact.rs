@@ -311,7 +311,7 @@ impl ContactModel for PotentialContact {
                 target: facet.target,
                 area_m2: sums.area,
                 normal: -force.push.normalize(),
-                center: sums.center(&input.blocks.triangle_corners(facet.triangle, input.position)),
+                center: force.center,
                 push_n: sums.pressure * force.push,
                 friction_n: sums.pressure * force.shear,
                 sticks: force.sticks,

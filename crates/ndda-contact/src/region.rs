@@ -9,6 +9,7 @@
 use crate::clip::{Form, Polygon};
 use crate::kernel::MOST_CUTS;
 use crate::pair::TetFrame;
+use crate::potential::MOST_PIECES;
 use ndda_mesh::Vec3;
 
 /// A field by its values at the triangle's corners, that is positive in the region.
@@ -84,26 +85,19 @@ impl Region {
         is_somewhere(&outside[i])
     }
 
-    /// Where the k-th of the functions with these nodal values is the smallest. `normal` is the triangle's outward unit
-    /// normal. False if that is nowhere.
-    pub fn set_piece(
-        &mut self,
-        lambda: &[[f64; 3]; 4],
-        pieces: &[[f64; 4]],
-        k: usize,
-        frame: &TetFrame,
-        normal: &Vec3,
-    ) -> bool {
-        let at = |values: &[f64; 4]| [0, 1, 2].map(|a| (0..4).map(|b| values[b] * lambda[b][a]).sum::<f64>());
-        let own = at(&pieces[k]);
-        let gradient: Vec3 = (0..4).map(|b| pieces[k][b] * frame.gradient(b)).sum();
-        self.begin(own, gradient.dot(normal).abs());
-        let ahead = |j: usize| {
-            let rival = at(&pieces[j]);
-            Cut::new([0, 1, 2].map(|a| rival[a] - own[a]), k < j)
-        };
-        (0..4).all(|b| self.add(Cut::new(lambda[b], frame.owns_plane(b, normal))))
-            && (0..pieces.len()).all(|j| j == k || self.add(ahead(j)))
+    /// Where the k-th of the functions is the smallest. False if that is nowhere.
+    pub fn set_piece(&mut self, pieces: &Pieces, k: usize) -> bool {
+        let own = pieces.at[k];
+        let ahead = |j: usize| Cut::new([0, 1, 2].map(|a| pieces.at[j][a] - own[a]), k < j);
+        self.begin(own, 0.0);
+        for face in &pieces.faces[..pieces.faces_len] {
+            self.add(*face);
+        }
+        if !(0..pieces.values.len()).all(|j| j == k || self.add(ahead(j))) {
+            return false;
+        }
+        self.slope = (0..4).map(|b| pieces.values[k][b] * pieces.rise[b]).sum::<f64>().abs();
+        true
     }
 
     /// The region corner by corner.
@@ -113,6 +107,51 @@ impl Region {
             part.cut(&Form::through(&cut.field), cut.bound);
         }
         part
+    }
+}
+
+/// The functions of a tetrahedron of which the smallest is φ, as a triangle sees them.
+pub struct Pieces<'a> {
+    /// Their nodal values.
+    values: &'a [[f64; 4]],
+    /// Their values at the triangle's corners.
+    at: [[f64; 3]; MOST_PIECES],
+    /// ∇λ_b·n [1/m].
+    rise: [f64; 4],
+    /// The cuts by the tetrahedron's faces that cut something.
+    faces: [Cut; 4],
+    faces_len: usize,
+}
+
+impl<'a> Pieces<'a> {
+    /// The functions with these nodal values on a triangle with this outward unit normal; none if the triangle is
+    /// outside. `lambda[b][a]` is λ_b at corner a.
+    #[inline]
+    pub fn new(
+        lambda: &[[f64; 3]; 4],
+        values: &'a [[f64; 4]],
+        frame: &TetFrame,
+        normal: &Vec3,
+    ) -> Option<Self> {
+        let (mut faces, mut faces_len) = ([Cut::default(); 4], 0);
+        let rise = [0, 1, 2, 3].map(|b| frame.gradient(b).dot(normal));
+        for b in 0..4 {
+            // The faces inside a block belong to the tetrahedron on the triangle's inner side.
+            let cut = Cut::new(lambda[b], rise[b] < 0.0);
+            match cut.outside() {
+                0 => {}
+                3 => return None,
+                _ => {
+                    faces[faces_len] = cut;
+                    faces_len += 1;
+                }
+            }
+        }
+        let mut at = [[0.0; 3]; MOST_PIECES];
+        for (at, values) in at.iter_mut().zip(values) {
+            *at = [0, 1, 2].map(|a| (0..4).map(|b| values[b] * lambda[b][a]).sum::<f64>());
+        }
+        Some(Self { values, at, rise, faces, faces_len })
     }
 }
 

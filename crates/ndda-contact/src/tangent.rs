@@ -18,7 +18,7 @@ use ndda_mesh::{Mat3, Vec3};
 use crate::clip::Polygon;
 use crate::pair::TetFrame;
 use crate::pair_stiffness::PairStiffness;
-use crate::region::{Region, element_outside};
+use crate::region::{Pieces, Region, element_outside};
 
 /// Adds the part of the pair where φ is one linear function with this gradient.
 fn add_part(
@@ -77,13 +77,14 @@ pub fn add_pair(
         let product = normal * gradient.transpose();
         -0.5 * penalty_pa * (product + product.transpose())
     };
+    let seen = pieces.and_then(|pieces| Pieces::new(&lambda, pieces, frame, &normal));
     let (mut region, outside) = (Region::default(), element_outside(&lambda));
     for k in 0..pieces.map_or(4, <[_]>::len) {
         let (somewhere, gradient) = match pieces {
             None => (region.set_element(&lambda, &outside, k, 0.0), 4.0 * frame.gradient(k)),
             Some(pieces) => {
                 let gradient: Vec3 = (0..4).map(|b| pieces[k][b] * frame.gradient(b)).sum();
-                (region.set_piece(&lambda, pieces, k, frame, &normal), gradient)
+                (seen.as_ref().is_some_and(|seen| region.set_piece(seen, k)), gradient)
             }
         };
         if somewhere {
