@@ -32,7 +32,7 @@ fn joints_and(fill: Fill) -> (Blocks, Fill) {
 #[library_benchmark]
 #[bench::fewest(args = (Fill::Fewest), setup = joints_and)]
 #[bench::centre(args = (Fill::Centre), setup = joints_and)]
-#[bench::size(args = (Fill::Size { size_m: 12.0, finer: Vec::new() }), setup = joints_and)]
+#[bench::size(args = (Fill::Size { size_m: 30.0, finer: Vec::new() }), setup = joints_and)]
 fn fill((blocks, fill): (Blocks, Fill)) -> Vec<BlockMesh> {
     filled(black_box(&blocks), &fill)
 }
