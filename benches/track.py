@@ -85,7 +85,7 @@ def is_counted(root, crate):
 def measure(root, names, clocks):
     """A record of the crates of a working tree."""
     record = {
-        "commit": git(root, "rev-parse", "--short=12", "HEAD") + ("+" if git(root, "status", "--porcelain") else ""),
+        "commit": commit(root),
         "rustc": output(root, "rustc", "--version"),
         "processor": processor(),
         "instructions": {crate: instructions(root, crate) for crate in names if is_counted(root, crate)},
@@ -145,24 +145,24 @@ def compare_commits(before, after):
     return 0
 
 
-def record_of(commit, records):
+def record_of(name, records):
     """The last record of a commit, or one that is made of it now."""
-    full = output(ROOT, "git", "rev-parse", "--verify", "--quiet", f"{commit}^{{commit}}", may_fail=True)
-    start = full[:12] or commit
+    full = output(ROOT, "git", "rev-parse", "--verify", "--quiet", f"{name}^{{commit}}", may_fail=True)
+    start = full[:12] or name
     found = [record for record in records if record["commit"].startswith(start)]
     if found:
         return found[-1]
     if not full:
-        sys.exit(f"{commit} is neither in {FIGURES} nor a commit of this repository")
+        sys.exit(f"{name} is neither in {FIGURES} nor a commit of this repository")
     return measure_commit(full)
 
 
-def measure_commit(commit):
-    tree = TARGET / "track" / commit[:12]
-    print(f"{commit[:12]} has no record: its instructions are counted in {tree}", flush=True)
+def measure_commit(name):
+    tree = TARGET / "track" / name[:12]
+    print(f"{name[:12]} has no record: its instructions are counted in {tree}", flush=True)
     git(ROOT, "worktree", "prune")
     if not tree.exists():
-        git(ROOT, "worktree", "add", "--detach", str(tree), commit)
+        git(ROOT, "worktree", "add", "--detach", str(tree), name)
     try:
         return measure(tree, [crate for crate in crates(tree) if is_counted(tree, crate)], clocks=False)
     finally:
@@ -245,6 +245,11 @@ def processor():
         if name:
             return f"{name.group(1)}, {os.cpu_count()} cores"
     return f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores"
+
+
+def commit(root):
+    """The commit of a working tree, with a + where it has changed since."""
+    return git(root, "rev-parse", "--short=12", "HEAD") + ("+" if git(root, "status", "--porcelain") else "")
 
 
 def git(root, *arguments):
