@@ -67,7 +67,7 @@ def of_scale():
 
     def exponents(scene, threads, rows):
         found = (scale.slope(rows, column) for column in ("step_ms", "processor_ms", "peak_memory_mb", "candidate_pairs", "contact_pairs"))
-        return [scene, threads, f"{rows[0]['tets']} to {rows[-1]['tets']}", *("–" if value is None else f"{value:.2f}" for value in found)]
+        return [scene, str(threads), f"{rows[0]['tets']} to {rows[-1]['tets']}", *("–" if value is None else f"{value:.2f}" for value in found)]
 
     header = ["scene", "threads", "tetrahedra", "step", "processor", "memory", "candidates", "in contact"]
     slopes = table(header, [exponents(*name, rows) for name, rows in scale.series().items()])

@@ -31,9 +31,12 @@ STAGES = ("contact", "blocks", "ledger")
 COLUMNS = ["scene", "blocks", "tets", "threads", "step_ms", *(f"{stage}_ms" for stage in STAGES), "processor_ms", "setup_s", "peak_memory_mb", "candidate_pairs", "contact_pairs", "processor", "commit"]
 # Steps of the shorter and of the longer run; in the first, blocks meet.
 STEPS = {"blocks": (5, 15), "one_block": (2, 6), "one_block_direct": (2, 12)}
+# So many times more of them in a small block, whose steps are over in no time.
+MORE = 20
 STEP_S = {"blocks": 2e-4, "one_block": 1e-3, "one_block_direct": 1e-3}
-# Up to here a run is repeated, and the quickest taken; the factor of a larger block does not fit.
-REPEATED, REPEATS = 2e4, 3
+# Up to here sizes are small: a run is repeated, and the quickest taken.
+SMALL, REPEATS = 2e4, 3
+# The factor of a larger block does not fit.
 MOST_DIRECT = 1e5
 
 
@@ -41,10 +44,10 @@ def cases(smallest, largest):
     """Scene, tetrahedra and settings of each size."""
     for sides in BLOCKS:
         tets = 6 * math.prod(sides)
-        # One or two blocks are over in no time, most of which is no step's.
+        # The smallest sizes are over in no time, most of which is no step's.
         if sides[0] > 1 and smallest <= tets <= largest:
             yield "blocks", tets, [f"rock.rock.domain.max_m={sides}".replace(" ", "")]
-    for cells in CELLS:
+    for cells in CELLS[1:]:
         tets, shape = 6 * cells**3, f"blocks.block.shape.cells=({cells},{cells},{cells})"
         if smallest <= tets <= largest:
             yield "one_block", tets, [shape]
@@ -67,8 +70,9 @@ def summary(ndda, scene, settings, threads, steps):
 def measure(ndda, scene, tets, settings, threads):
     """A row of the table."""
     quickest, processor_s = [], []
-    for steps in STEPS[scene]:
-        runs = [summary(ndda, scene, settings, threads, steps) for _ in range(REPEATS if tets <= REPEATED else 1)]
+    short, long = STEPS[scene]
+    for steps in (short, long * (MORE if scene != "blocks" and tets <= SMALL else 1)):
+        runs = [summary(ndda, scene, settings, threads, steps) for _ in range(REPEATS if tets <= SMALL else 1)]
         quickest.append(min(runs, key=lambda run: sum(run["stages_s"][stage] for stage in STAGES)))
         processor_s.append(min(run["machine"]["processor_time_s"] for run in runs))
     short, long = quickest
