@@ -129,18 +129,24 @@ def slope(rows, column):
     return sum((x - mean_x) * (y - mean_y) for x, y in points) / sum((x - mean_x) ** 2 for x, _ in points)
 
 
+def grows(rows, column):
+    """The exponent in words."""
+    exponent = slope(rows, column)
+    return "" if exponent is None else f": size^{exponent:.2f}"
+
+
 def draw():
     plots.need_matplotlib()
     figure, axes = plots.panels(2, 2, (9, 6.4))
     for (scene, threads), rows in series().items():
         tets = [int(row["tets"]) for row in rows]
         label = f"{scene}, {threads} thread{'s' * (threads > 1)}"
-        axes[0 if scene == "blocks" else 1].loglog(tets, [float(row["step_ms"]) for row in rows], ".-", label=f"{label}: size^{slope(rows, 'step_ms'):.2f}")
+        axes[0 if scene == "blocks" else 1].loglog(tets, [float(row["step_ms"]) for row in rows], ".-", label=f"{label}{grows(rows, 'step_ms')}")
         if threads == 1:
-            axes[2].loglog(tets, [float(row["peak_memory_mb"]) for row in rows], ".-", label=f"{scene}: size^{slope(rows, 'peak_memory_mb'):.2f}")
+            axes[2].loglog(tets, [float(row["peak_memory_mb"]) for row in rows], ".-", label=f"{scene}{grows(rows, 'peak_memory_mb')}")
         if scene == "blocks" and threads == 1:
             for column, name in (("candidate_pairs", "candidates"), ("contact_pairs", "in contact")):
-                axes[3].loglog(tets, [float(row[column]) for row in rows], ".-", label=f"{name}: size^{slope(rows, column):.2f}")
+                axes[3].loglog(tets, [float(row[column]) for row in rows], ".-", label=f"{name}{grows(rows, column)}")
     titles = [("step of many blocks", "ms"), ("step of one block", "ms"), ("most memory", "MB"), ("pairs in a step, many blocks", "pairs")]
     for ax, (title, unit) in zip(axes, titles):
         plots.finish(ax, title, "tetrahedra", unit)
@@ -165,8 +171,7 @@ def main():
                 keep(row)
                 print(*list(row.values())[:-2], flush=True)
     for (scene, threads), rows in series().items():
-        exponents = [(name, slope(rows, column)) for name, column in (("step", "step_ms"), ("memory", "peak_memory_mb"), ("candidates", "candidate_pairs"))]
-        print(f"{scene}, {threads} thread(s): " + ", ".join(f"{name} as size^{value:.2f}" for name, value in exponents if value is not None))
+        print(f"{scene}, {threads} thread(s): step{grows(rows, 'step_ms')}, memory{grows(rows, 'peak_memory_mb')}")
 
 
 if __name__ == "__main__":
