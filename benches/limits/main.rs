@@ -31,6 +31,6 @@ fn main() {
     pool.build_global().expect("no pool before");
     let rates = machine::rates(&clock);
     kernel::table(&clock, &rates);
-    solve::table(&clock);
+    solve::table(&clock, &rates);
     pile::table(&clock);
 }

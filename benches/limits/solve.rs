@@ -2,7 +2,7 @@
 
 use ndda_solver::{Factor, Supernodal};
 
-use crate::machine::{Clock, read_gb_s};
+use crate::machine::{Clock, Rates, read_gb_s};
 use crate::{header, row};
 
 #[path = "../../crates/ndda-solver/benches/cases/mod.rs"]
@@ -14,7 +14,7 @@ use cases::{load, matrix};
 const CELLS: [u32; 3] = [4, 9, 19];
 
 /// Prints the table.
-pub fn table(clock: &Clock) {
+pub fn table(clock: &Clock, rates: &Rates) {
     header(
         "solve",
         &[
@@ -24,7 +24,8 @@ pub fn table(clock: &Clock) {
             "µs a block",
             "read at",
             "a bare read of as much",
-            "solve over read",
+            "time a block over that of the read",
+            "of the rate of arithmetic",
         ],
     );
     let cells = if clock.measured { &CELLS[..] } else { &CELLS[..1] };
@@ -34,6 +35,8 @@ pub fn table(clock: &Clock) {
         for (at_a_time, ns) in [(1.0, one_ns(clock, &factor)), (8.0, eight_ns(clock, &factor))] {
             // Each of the two sweeps reads all of it.
             let rate = 2.0 * factor.bytes() as f64 / ns;
+            // A product and a sum for each number read and each load.
+            let operations = 2.0 * at_a_time * 2.0 * factor.bytes() as f64 / 8.0;
             let cells = [
                 factor.unknowns().to_string(),
                 format!("{:.2} MB", factor.bytes() as f64 / 1e6),
@@ -41,7 +44,8 @@ pub fn table(clock: &Clock) {
                 format!("{:.2}", ns / at_a_time / 1e3),
                 format!("{rate:.1} GB/s"),
                 format!("{read:.1} GB/s"),
-                format!("{:.2}", read / rate),
+                format!("{:.2}", read / rate / at_a_time),
+                format!("{:.0} %", 100.0 * operations / ns / rates.separate),
             ];
             row("solve", &cells);
         }
