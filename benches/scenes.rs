@@ -3,12 +3,14 @@
 //! `NDDA_LARGE=1` adds piles of 1000 and 8000 blocks, and one block of 93 750 and of 998 250 tetrahedra, which take minutes to begin.
 #![allow(missing_docs)] // criterion's macro makes public functions
 
-use std::path::Path;
+#[path = "piles/mod.rs"]
+mod piles;
+
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use ndda_cli::check::prepare;
 use ndda_solver::Simulation;
+use piles::{fallen, prepared};
 
 /// A scene with some values changed, and the steps until its blocks are in contact for good.
 struct Case {
@@ -28,11 +30,11 @@ const CASES: [Case; 6] = [
     case("collision_equal", 2500),
     case("spinning_block", 10),
     case("column_phi5", 200),
-    case("pile_125", 850),
+    case("pile_125", piles::STEPS),
 ];
 
 const LARGE: [Case; 4] = [
-    case("pile_1000", 850),
+    case("pile_1000", piles::STEPS),
     Case {
         name: "pile_8000",
         scene: "pile_1000",
@@ -41,7 +43,7 @@ const LARGE: [Case; 4] = [
             "rock.cube.joints.east.spacing_m=0.5",
             "rock.cube.joints.north.spacing_m=0.5",
         ],
-        warm_up: 850,
+        warm_up: piles::STEPS,
     },
     Case {
         name: "one block of 93 750 tets",
@@ -59,9 +61,8 @@ const LARGE: [Case; 4] = [
 
 /// The scene after its first steps; these are left out where nothing is measured.
 fn begun(case: &Case) -> Simulation {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{}.ron", case.scene));
-    let settings: Vec<String> = case.settings.iter().map(ToString::to_string).collect();
-    let mut simulation = prepare(&file, &settings).expect("a sound scene").simulation;
+    let begin = if case.name.starts_with("pile") { fallen } else { prepared };
+    let mut simulation = begin(case.scene, case.settings);
     let measured = std::env::args().any(|argument| argument == "--bench");
     for _ in 0..if measured { case.warm_up } else { 0 } {
         simulation.step().expect("a step");

@@ -9,6 +9,8 @@
 mod kernel;
 mod machine;
 mod pile;
+#[path = "../piles/mod.rs"]
+mod piles;
 mod solve;
 mod twin;
 

@@ -1,9 +1,7 @@
 //! The step of a pile against the sum of what it cannot do without: its hits, its rejected candidates, its solves.
 
 use std::hint::black_box;
-use std::path::Path;
 
-use ndda_cli::check::prepare;
 use ndda_cli::machine;
 use ndda_contact::ContactInput;
 use ndda_contact::batch::Batches;
@@ -13,13 +11,11 @@ use ndda_mesh::Vec3;
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_solver::Simulation;
 use pulp::Arch;
-use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::machine::{Clock, read_gb_s};
+use crate::piles::{self, fallen};
 use crate::{header, row};
 
-/// Steps until the cubes have fallen on the ridge.
-const WARM_UP: u32 = 850;
 /// Steps that are timed.
 const STEPS: u32 = 40;
 /// Blocks that one reading of an inverse serves, and the doubles in one of its rows.
@@ -44,10 +40,9 @@ pub fn table(clock: &Clock) {
         ],
     );
     let scenes: &[&str] = if clock.measured { &["pile_125", "pile_1000"] } else { &["pile_125"] };
-    // The fall is not measured, and takes as many threads as there are; they stay, since processor time is that of all.
-    let pool = ThreadPoolBuilder::new().build().expect("threads");
     for scene in scenes {
-        let mut simulation = begun(scene, if clock.measured { WARM_UP } else { 1 }, &pool);
+        let mut simulation = fallen(scene, &["contact.potential=Element"]);
+        steps(&mut simulation, if clock.measured { piles::STEPS } else { 1 });
         let (step_ms, candidates) = steps(&mut simulation, if clock.measured { STEPS } else { 1 });
         let looks = Looks::of(&simulation);
         let (hit_ns, reject_ns) = (looks.hit_ns(clock), looks.reject_ns(clock));
@@ -60,14 +55,6 @@ pub fn table(clock: &Clock) {
         cells.push(format!("{:.1}", step_ms / sum));
         row("step", &cells);
     }
-}
-
-fn begun(scene: &str, steps: u32, pool: &ThreadPool) -> Simulation {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"));
-    let mut simulation =
-        prepare(&file, &["contact.potential=Element".into()]).expect("a sound scene").simulation;
-    pool.install(|| (0..steps).for_each(|_| _ = simulation.step().expect("a step")));
-    simulation
 }
 
 /// Mean processor time of a step [ms], and mean number of candidates.

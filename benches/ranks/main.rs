@@ -9,26 +9,21 @@
 //! Without `--bench`, as `cargo test` runs it, the pile is small and at its start.
 
 mod known;
+#[path = "../piles/mod.rs"]
+mod piles;
 mod split;
 mod traffic;
 
-use std::path::Path;
-
 use known::Known;
-use ndda_cli::check::prepare;
 use ndda_contact::ContactInput;
 use ndda_contact::candidates::Candidates;
 use split::Owners;
 use traffic::Traffic;
 
-/// Steps until the cubes have fallen on the ridge.
-const WARM_UP: u32 = 850;
-
 fn main() {
     let measured = std::env::args().any(|argument| argument == "--bench");
-    let (scene, steps) = if measured { ("pile_1000", WARM_UP) } else { ("pile_125", 2) };
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"));
-    let mut simulation = prepare(&file, &[]).expect("a sound scene").simulation;
+    let (scene, steps) = if measured { ("pile_1000", piles::STEPS) } else { ("pile_125", 1) };
+    let mut simulation = piles::fallen(scene, &[]);
     (0..steps).for_each(|_| _ = simulation.step().expect("a step"));
     let (blocks, state) = (simulation.blocks(), simulation.state());
     let input = ContactInput::new(blocks, &state.position, &state.velocity, simulation.step_s());
