@@ -39,7 +39,7 @@ pub struct Traffic {
     across: usize,
     hits_across: usize,
     messages: BTreeMap<(usize, usize), Message>,
-    surface_bytes: usize,
+    whole_bytes: usize,
 }
 
 /// Two blocks that are near: the one with the triangle and the other.
@@ -59,7 +59,7 @@ impl Traffic {
         "messages a rank",
         "kB a rank gets, mean",
         "largest",
-        "whole surfaces",
+        "whole near blocks, kB",
         "B per hit across",
         "evaluated once: B per hit across",
     ];
@@ -73,7 +73,7 @@ impl Traffic {
             across: 0,
             hits_across: 0,
             messages: BTreeMap::new(),
-            surface_bytes: 0,
+            whole_bytes: 0,
         };
         for facet in &candidates.facets {
             let contactor = input.blocks.triangle_block[facet.triangle.index()];
@@ -83,8 +83,8 @@ impl Traffic {
                 traffic.add(border, facet, candidates, input);
             }
         }
-        traffic.surface_bytes =
-            traffic.messages.values().flat_map(|m| &m.blocks).map(|b| surface(input, *b)).sum();
+        traffic.whole_bytes =
+            traffic.messages.values().flat_map(|m| &m.blocks).map(|b| whole(input, *b)).sum();
         traffic
     }
 
@@ -138,7 +138,7 @@ impl Traffic {
             format!("{:.1}", self.messages.len() as f64 / ranks),
             kilo(total as f64 / ranks),
             kilo(of(&got).1.unwrap_or(0) as f64),
-            kilo(self.surface_bytes as f64 / ranks),
+            kilo(self.whole_bytes as f64 / ranks),
             per_hit(total),
             per_hit(once),
         ]
@@ -151,9 +151,7 @@ fn hits(facet: &Facet, tet: TetId, input: &ContactInput) -> bool {
     TetFrame::new(&input.blocks.tet_corners(tet, input.position)).lambda_inside(&corners).is_some()
 }
 
-/// Positions and velocities of all of a block's surface, and its body [B].
-fn surface(input: &ContactInput, block: BlockId) -> usize {
-    let triangles = &input.blocks.triangles[input.blocks.triangles_of(block)];
-    let nodes: BTreeSet<NodeId> = triangles.iter().flatten().copied().collect();
-    NODE * nodes.len() + BODY
+/// Positions and velocities of all nodes of a block, and its body [B].
+fn whole(input: &ContactInput, block: BlockId) -> usize {
+    NODE * input.blocks.nodes_of(block).len() + BODY
 }
