@@ -58,7 +58,8 @@ pub fn table(clock: &Clock, rates: &Rates) {
         let bits = if same_bits { "" } else { ", whose last bits its twin does not have" };
         let few = &groups[..groups.len().min(GROUPS)];
         let ns = least_of_groups(clock, few) / (AGAIN * GROUP * few.len()) as f64;
-        say(format!("a region with {cuts} cuts, of {}{bits}", alike.len()), operations, ns);
+        let plural = if cuts == 1 { "" } else { "s" };
+        say(format!("a region with {cuts} cut{plural}{bits}"), operations, ns);
     }
     for (name, out, mut hits) in [("deep", 0.0, Hits::deep()), ("shallow", 0.97, Hits::shallow())] {
         let operations: u64 = regions_of_hits(out).iter().map(|region| twin::moments(region).1).sum();
