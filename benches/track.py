@@ -2,12 +2,15 @@
 """Figures of the benches, crate by crate, kept in benches/figures.json.
 
   benches/track.py keep [--clocks] [CRATE ...]     measure, and add a record
-  benches/track.py check [CRATE ...]               measure, compare with the last record, fail where it got slower
-  benches/track.py compare FROM TO                 two records, by the start of their commits
+  benches/track.py check [CRATE ...]               measure, compare with the last records, fail where instructions grew by more than 2 %
+  benches/track.py compare FROM [TO]               a table per crate of two commits; of the last records and FROM, if TO is not given
+  benches/track.py draw                            the figures over the records, as docs/evidence/performance/*.png
 
 A crate's counted benches (benches/counted.rs) give instructions, which repeat to the last digit on one compiler; with
---clocks its criterion benches are run, too, and give nanoseconds. Needs cargo and valgrind; the runner that counts is
-installed under target/tools. CRATE is the end of a name, contact for ndda-contact; without one, all.
+--clocks its criterion benches are run, too, and give nanoseconds. A commit that compare does not find in the records is
+checked out under target/track and its instructions are counted. Needs cargo and valgrind; the runner that counts is
+installed under target/tools, matplotlib for draw under target/ where it is missing. CRATE is the end of a name, contact for
+ndda-contact, and suite for the scenes in benches/; without one, all.
 """
 import argparse
 import json
@@ -22,8 +25,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 FIGURES = ROOT / "benches" / "figures.json"
+PICTURES = ROOT / "docs" / "evidence" / "performance"
 # More instructions than this are a loss; the same source differs by less between machines with AVX2.
 TOLERANCE = 0.02
+KINDS = {"instructions": "", "nanoseconds": " ns"}
 
 
 def main():
@@ -31,54 +36,69 @@ def main():
     commands = parser.add_subparsers(dest="command", required=True)
     keep = commands.add_parser("keep", help="measure, and add a record")
     keep.add_argument("--clocks", action="store_true", help="run the criterion benches, too")
-    keep.add_argument("crate", nargs="*")
-    check = commands.add_parser("check", help="measure, and compare with the last record")
-    check.add_argument("crate", nargs="*")
-    compare = commands.add_parser("compare", help="print a table of two records")
-    compare.add_argument("commits", nargs=2, metavar="COMMIT")
+    check = commands.add_parser("check", help="measure, and compare with the last records")
+    for command in (keep, check):
+        command.add_argument("crate", nargs="*")
+    compare = commands.add_parser("compare", help="print tables of two commits")
+    compare.add_argument("before", metavar="FROM")
+    compare.add_argument("after", metavar="TO", nargs="?")
+    commands.add_parser("draw", help="draw the figures over the records")
     options = parser.parse_args()
+    if options.command == "draw":
+        return draw(load())
     if options.command == "compare":
-        before, after = (record_of(commit) for commit in options.commits)
-        print_table(before, after)
-        return 0
-    crates = [crate for crate in counted_crates() if not options.crate or crate.split("-")[-1] in options.crate]
-    if not crates:
-        sys.exit(f"no crate with counted benches among {options.crate}")
-    record = measure(crates, options.command == "keep" and options.clocks)
-    kept = last_record(crates)
-    slower = print_table(kept, record)
+        return compare_commits(options.before, options.after)
+    clocks = options.command == "keep" and options.clocks
+    record = measure(ROOT, crates_asked_for(options.crate, clocks), clocks)
+    records = load()
+    slower = print_tables(lambda kind, crate: last(records, kind, crate), record)
     if options.command == "keep":
-        records = load() + [record]
-        FIGURES.write_text(json.dumps(records, indent=1) + "\n")
-        return 0
-    if kept and kept["rustc"] != record["rustc"]:
-        print(f"another compiler than the record's ({kept['rustc']}): shown, not judged")
+        FIGURES.write_text(json.dumps(records + [record], indent=1) + "\n")
         return 0
     for name in slower:
-        print(f"more instructions than kept: {name}", file=sys.stderr)
+        print(f"more than {100 * TOLERANCE:.0f} % more instructions than kept: {name}", file=sys.stderr)
     return 1 if slower else 0
 
 
-def counted_crates():
-    return sorted(path.parent.parent.name for path in ROOT.glob("crates/*/benches/counted.rs"))
+def crates_asked_for(names, clocks):
+    """Crates by their names or the ends of these; without clocks only those that are counted."""
+    found = [crate for crate in crates(ROOT) if not names or {crate, crate.split("-")[-1]} & set(names)]
+    found = [crate for crate in found if clocks or is_counted(ROOT, crate)]
+    if not found:
+        sys.exit(f"no crate with {'benches' if clocks else 'counted benches'} among {names}")
+    return found
 
 
-def measure(crates, clocks):
+def crates(root):
+    """Crates that have benches; the suite is the workspace itself."""
+    return [*sorted(path.parent.name for path in root.glob("crates/*/benches")), "ndda-suite"]
+
+
+def benches(root, crate):
+    return (root if crate == "ndda-suite" else root / "crates" / crate) / "benches"
+
+
+def is_counted(root, crate):
+    return (benches(root, crate) / "counted.rs").exists()
+
+
+def measure(root, names, clocks):
+    """A record of the crates of a working tree."""
     record = {
-        "commit": git("rev-parse", "--short=12", "HEAD") + ("+" if git("status", "--porcelain") else ""),
-        "rustc": output("rustc", "--version"),
+        "commit": commit(root),
+        "rustc": output(root, "rustc", "--version"),
         "processor": processor(),
-        "instructions": {crate: instructions(crate) for crate in crates},
+        "instructions": {crate: instructions(root, crate) for crate in names if is_counted(root, crate)},
     }
     if clocks:
-        record["nanoseconds"] = {crate: nanoseconds(crate) for crate in crates}
+        record["nanoseconds"] = {crate: nanoseconds(root, crate) for crate in names}
     return record
 
 
-def instructions(crate):
+def instructions(root, crate):
     folder = TARGET / "gungraun" / crate
     shutil.rmtree(folder, ignore_errors=True)
-    run("cargo", "bench", "--locked", "-p", crate, "--bench", "counted", runner=runner())
+    cargo(root, "bench", "--locked", "-p", crate, "--bench", "counted", runner=runner(root))
     totals = {}
     for path in sorted(folder.glob("counted/*/*/callgrind.*.out")):
         total = re.search(r"^(?:totals|summary): (\d+)", path.read_text(), re.MULTILINE)
@@ -88,11 +108,11 @@ def instructions(crate):
     return totals
 
 
-def nanoseconds(crate):
+def nanoseconds(root, crate):
     shutil.rmtree(TARGET / "criterion", ignore_errors=True)
-    benches = [p.stem for p in (ROOT / "crates" / crate / "benches").glob("*.rs") if p.stem != "counted"]
-    for bench in sorted(benches):
-        run("cargo", "bench", "--locked", "-p", crate, "--bench", bench)
+    for path in sorted(benches(root, crate).glob("*.rs")):
+        if "criterion" in path.read_text():
+            cargo(root, "bench", "--locked", "-p", crate, "--bench", path.stem)
     medians = {}
     for path in sorted((TARGET / "criterion").glob("**/new/estimates.json")):
         name = json.loads((path.parent / "benchmark.json").read_text())["full_id"]
@@ -100,56 +120,123 @@ def nanoseconds(crate):
     return medians
 
 
-def runner():
+def runner(root):
     """The runner has to be of the version of the library."""
-    lock = (ROOT / "Cargo.lock").read_text()
+    lock = (root / "Cargo.lock").read_text()
     version = re.search(r'name = "gungraun"\nversion = "([^"]+)"', lock).group(1)
     place = TARGET / "tools" / f"gungraun-{version}"
     binary = place / "bin" / "gungraun-runner"
     if not binary.exists():
-        run("cargo", "install", "--debug", "--locked", "--quiet", "--root", place, "--version", version, "gungraun-runner")
+        cargo(root, "install", "--debug", "--locked", "--quiet", "--root", place, "--version", version, "gungraun-runner")
     if not shutil.which("valgrind"):
         sys.exit("valgrind is not installed")
     return binary
 
 
-def print_table(before, after):
-    """Prints what changed; returns the names of counts that grew beyond the tolerance."""
+def compare_commits(before, after):
+    records = load()
+    if after is None:
+        newer = record_of(before, records)
+        older = [record for record in records if record is not newer]
+        print_tables(lambda kind, crate: last(older, kind, crate), newer)
+        return 0
+    older = record_of(before, records)
+    print_tables(lambda kind, crate: older, record_of(after, records))
+    return 0
+
+
+def record_of(name, records):
+    """The last record of a commit, or one that is made of it now."""
+    full = output(ROOT, "git", "rev-parse", "--verify", "--quiet", f"{name}^{{commit}}", may_fail=True)
+    start = full[:12] or name
+    found = [record for record in records if record["commit"].startswith(start)]
+    if found:
+        return found[-1]
+    if not full:
+        sys.exit(f"{name} is neither in {FIGURES} nor a commit of this repository")
+    return measure_commit(full)
+
+
+def measure_commit(name):
+    tree = TARGET / "track" / name[:12]
+    print(f"{name[:12]} has no record: its instructions are counted in {tree}", flush=True)
+    git(ROOT, "worktree", "prune")
+    if not tree.exists():
+        git(ROOT, "worktree", "add", "--detach", str(tree), name)
+    try:
+        return measure(tree, [crate for crate in crates(tree) if is_counted(tree, crate)], clocks=False)
+    finally:
+        git(ROOT, "worktree", "remove", "--force", str(tree))
+
+
+def last(records, kind, crate):
+    """The last record with figures of a crate."""
+    return next((record for record in reversed(records) if crate in record.get(kind, {})), None)
+
+
+def print_tables(before_of, after):
+    """A table per crate of what changed; returns the counts that grew beyond the tolerance under the same compiler.
+
+    What is in one of two records only, because it was renamed for instance, is shown as new or gone."""
     slower = []
-    for kind, unit in (("instructions", ""), ("nanoseconds", " ns")):
+    for kind, unit in KINDS.items():
         for crate, figures in after.get(kind, {}).items():
-            print(f"\n{crate}, {kind}, {before['commit'] if before else 'nothing'} to {after['commit']}")
-            old = (before or {}).get(kind, {}).get(crate, {})
-            for name, figure in figures.items():
-                change = f"{100 * (figure / old[name] - 1):+8.2f} %" if name in old else "     new"
-                print(f"  {name:58} {figure:>14,}{unit} {change}")
-                if kind == "instructions" and name in old and figure > (1 + TOLERANCE) * old[name]:
-                    slower.append(f"{crate} {name}")
+            before = before_of(kind, crate) or {}
+            old = before.get(kind, {}).get(crate, {})
+            print(f"\n{crate}, {kind}, {before.get('commit', 'nothing')} to {after['commit']}")
+            for name in dict.fromkeys([*old, *figures]):
+                print(f"  {name:58} {cell(old.get(name), unit)} {cell(figures.get(name), unit)} {change(old.get(name), figures.get(name))}")
+            if kind == "instructions" and before.get("rustc") == after["rustc"]:
+                grown = [name for name in figures if name in old and figures[name] > (1 + TOLERANCE) * old[name]]
+                slower += [f"{crate} {name} {change(old[name], figures[name]).strip()}" for name in grown]
+            elif kind == "instructions" and before:
+                print(f"  another compiler than the record's ({before['rustc']}): shown, not judged")
     return slower
+
+
+def cell(figure, unit):
+    return f"{figure:>16,}{unit}" if figure is not None else " " * (16 + len(unit))
+
+
+def change(old, new):
+    if old is None or new is None:
+        return "     gone" if new is None else "      new"
+    return f"{100 * (new / old - 1):+8.2f} %" if old else ""
+
+
+def draw(records):
+    """A panel per crate: each figure over that of its first record."""
+    sys.path.insert(0, str(ROOT / "docs"))
+    import plots
+
+    plots.need_matplotlib()
+    for kind in KINDS:
+        # Clocks of another processor say nothing about the program.
+        newest = next((r for r in reversed(records) if r.get(kind)), None)
+        kept = [r for r in records if r.get(kind) and (kind == "instructions" or r["processor"] == newest["processor"])]
+        names = sorted({crate for record in kept for crate in record[kind]})
+        if not names:
+            continue
+        figure, axes = plots.panels(-(-len(names) // 2), min(2, len(names)), (9, 3.2 * -(-len(names) // 2)))
+        for panel, crate in zip(axes, names):
+            draw_crate(panel, crate, kind, kept)
+            plots.finish(panel, crate, "", f"{kind} over those of the first record")
+        for panel in axes[len(names) :]:
+            panel.axis("off")
+        plots.save(figure, PICTURES / f"{kind}.png")
+        print(f"{PICTURES / kind}.png: {len(kept)} records")
+    return 0
+
+
+def draw_crate(axes, crate, kind, records):
+    for name in dict.fromkeys(name for record in records for name in record[kind].get(crate, {})):
+        points = [(i, record[kind][crate][name]) for i, record in enumerate(records) if name in record[kind].get(crate, {})]
+        axes.plot([i for i, _ in points], [value / points[0][1] for _, value in points], ".-", linewidth=0.9, label=name)
+    axes.set_xticks(range(len(records)), [record["commit"][:8] for record in records], rotation=30)
 
 
 def load():
     return json.loads(FIGURES.read_text()) if FIGURES.exists() else []
-
-
-def last_record(crates):
-    """The last figures of each crate, as one record."""
-    joined = None
-    for record in load():
-        for crate in set(crates) & set(record["instructions"]):
-            joined = joined or {"instructions": {}}
-            joined["instructions"][crate] = record["instructions"][crate]
-            if crate in record.get("nanoseconds", {}):
-                joined.setdefault("nanoseconds", {})[crate] = record["nanoseconds"][crate]
-            joined.update(commit=record["commit"], rustc=record["rustc"])
-    return joined
-
-
-def record_of(commit):
-    found = [record for record in load() if record["commit"].startswith(commit)]
-    if not found:
-        sys.exit(f"no record of {commit} in {FIGURES}")
-    return found[-1]
 
 
 def processor():
@@ -160,19 +247,27 @@ def processor():
     return f"{platform.processor() or platform.machine()}, {os.cpu_count()} cores"
 
 
-def git(*arguments):
-    return output("git", *arguments)
+def commit(root):
+    """The commit of a working tree, with a + where it has changed since."""
+    return git(root, "rev-parse", "--short=12", "HEAD") + ("+" if git(root, "status", "--porcelain") else "")
 
 
-def output(*command):
-    return subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout.strip()
+def git(root, *arguments):
+    return output(root, "git", *arguments)
 
 
-def run(*command, runner=None):
-    environment = dict(os.environ, **({"GUNGRAUN_RUNNER": str(runner)} if runner else {}))
-    result = subprocess.run([str(c) for c in command], cwd=ROOT, env=environment, capture_output=True, text=True)
+def output(root, *command, may_fail=False):
+    done = subprocess.run(command, cwd=root, check=not may_fail, capture_output=True, text=True)
+    return done.stdout.strip()
+
+
+def cargo(root, *arguments, runner=None):
+    """Runs cargo in a working tree; all of them share one target folder."""
+    environment = dict(os.environ, CARGO_TARGET_DIR=str(TARGET), **({"GUNGRAUN_RUNNER": str(runner)} if runner else {}))
+    command = ["cargo", *map(str, arguments)]
+    result = subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True)
     if result.returncode != 0:
-        sys.exit(f"{' '.join(map(str, command))}\n{result.stdout}\n{result.stderr}")
+        sys.exit(f"{' '.join(command)}\n{result.stdout}\n{result.stderr}")
 
 
 if __name__ == "__main__":

@@ -70,14 +70,17 @@ def failed(folder):
     return f"{len(cases)} cases; failed: {listed}."
 
 
+def between(text, name, made):
+    """The text with what is between the markers of a name made anew."""
+    begin, end = (marker.format(name) for marker in (BEGIN, END))
+    before, rest = text.split(begin)
+    return f"{before}{begin}\n\n{made}\n\n{end}{rest.split(end)[1]}"
+
+
 def main():
     text = PAGE.read_text(encoding="utf-8")
     for folder in sorted(path for path in KEPT.iterdir() if path.is_dir()):
-        begin, end = (marker.format(folder.name) for marker in (BEGIN, END))
-        before, rest = text.split(begin)
-        after = rest.split(end)[1]
-        parts = "\n\n".join((times(folder), front(folder), failed(folder)))
-        text = f"{before}{begin}\n\n{parts}\n\n{end}{after}"
+        text = between(text, folder.name, "\n\n".join((times(folder), front(folder), failed(folder))))
     PAGE.write_text(text, encoding="utf-8")
 
 

@@ -1,4 +1,4 @@
-//! Instructions, counted by callgrind: clocks are noisy, these are not. `benches/counts.py` keeps and compares them.
+//! Instructions, counted by callgrind: clocks are noisy, these are not. `benches/track.py` keeps and compares them.
 #![allow(missing_docs)] // the macros make public functions
 
 mod cases;

@@ -1,34 +1,24 @@
 //! A hundred thousand blocks from three joint sets, Voronoi cells, and tetrahedra in blocks.
 #![allow(missing_docs)] // criterion's macro makes public functions
 
+mod cases;
+
+use cases::{SCATTERED, by_joints, by_seeds, domain, filled, sets};
 use criterion::{Criterion, criterion_group, criterion_main};
-use ndda_mesh::BlockMesh;
-use ndda_mesh::Vec3;
 use ndda_mesh::cut::{
-    CutOptions, Discontinuity, Domain, JointSet, OrientationScatter, VoronoiOptions, cut_blocks,
-    random_seeds, voronoi_blocks,
+    CutOptions, OrientationScatter, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
 };
 use ndda_mesh::quality::quality;
 use ndda_mesh::tetrahedralise::Fill;
 
-/// Three oblique sets, about `per_side`³ blocks in a cube of 100 m.
-fn sets(per_side: f64, orientation: OrientationScatter) -> Vec<Discontinuity> {
-    let spacing_m = 100.0 / per_side;
-    [("a", 75.0, 30.0), ("b", 65.0, 140.0), ("c", 15.0, 250.0)]
-        .map(|(name, dip, direction)| {
-            Discontinuity::Set(JointSet { orientation, ..JointSet::new(name, dip, direction, spacing_m) })
-        })
-        .to_vec()
-}
-
 fn cut(c: &mut Criterion) {
-    let domain = Domain::cuboid(Vec3::zeros(), Vec3::repeat(100.0)).expect("a cube");
+    let domain = domain();
     let mut group = c.benchmark_group("cut");
     group.sample_size(10);
     for (name, per_side, orientation) in [
         ("10 000 blocks, parallel sets", 19.5, OrientationScatter::None),
         ("100 000 blocks, parallel sets", 44.0, OrientationScatter::None),
-        ("100 000 blocks, Fisher 200", 44.0, OrientationScatter::Fisher { kappa: 200.0 }),
+        ("100 000 blocks, Fisher 200", 44.0, SCATTERED),
     ] {
         let sets = sets(per_side, orientation);
         let options = CutOptions { seed: 1, sliver_width_m: 0.01, ..CutOptions::default() };
@@ -48,7 +38,7 @@ fn cut(c: &mut Criterion) {
 }
 
 fn voronoi(c: &mut Criterion) {
-    let domain = Domain::cuboid(Vec3::zeros(), Vec3::repeat(100.0)).expect("a cube");
+    let domain = domain();
     let mut group = c.benchmark_group("voronoi");
     group.sample_size(10);
     for (name, cells, apart_m) in [("10 000 cells", 10_000, 2.0), ("100 000 cells", 100_000, 1.0)] {
@@ -63,27 +53,24 @@ fn voronoi(c: &mut Criterion) {
 
 /// Prints how many tetrahedra a fill gives a block and how good they are.
 fn fill(c: &mut Criterion) {
-    let domain = Domain::cuboid(Vec3::zeros(), Vec3::repeat(100.0)).expect("a cube");
-    let sets = sets(7.0, OrientationScatter::Fisher { kappa: 200.0 });
-    let by_joints = cut_blocks(&domain, &sets, &CutOptions::default()).expect("blocks");
-    let seeds = random_seeds(&domain, 400, 5.0, 1);
-    let by_seeds = voronoi_blocks(&domain, &seeds, &VoronoiOptions::default()).expect("cells");
     let mut group = c.benchmark_group("fill");
     group.sample_size(10);
-    for (system, blocks) in [("joints", &by_joints), ("Voronoi", &by_seeds)] {
+    for (system, blocks) in [("joints", by_joints()), ("Voronoi", by_seeds(400))] {
         for (name, fill) in [
             ("fewest", Fill::Fewest),
             ("centre", Fill::Centre),
             ("8 m", Fill::Size { size_m: 8.0, finer: Vec::new() }),
         ] {
-            let groups = blocks.groups();
-            let filled = || -> Vec<BlockMesh> {
-                groups.iter().filter_map(|group| blocks.mesh_glued(group, &fill).ok()).collect()
-            };
-            let meshes = filled();
+            let meshes = filled(&blocks, &fill);
             let report = quality(meshes.iter().map(|mesh| ("", mesh)));
-            println!("{system}, {name}: {} of {} blocks filled; {report}", meshes.len(), groups.len());
-            group.bench_function(format!("{} blocks of {system}, {name}", meshes.len()), |b| b.iter(filled));
+            println!(
+                "{system}, {name}: {} of {} blocks filled; {report}",
+                meshes.len(),
+                blocks.groups().len()
+            );
+            group.bench_function(format!("{} blocks of {system}, {name}", meshes.len()), |b| {
+                b.iter(|| filled(&blocks, &fill))
+            });
         }
     }
     group.finish();

@@ -3,36 +3,18 @@
 //! With a directory in `NDDA_PEER`, instead writes the matrices there and prints for each: unknowns, bytes of the factor,
 //! milliseconds to make it, microseconds of a solve, of one of eight at once, and of both with the inverse.
 
+mod cases;
+
 use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
+use cases::{load, matrix};
 use criterion::{Criterion, criterion_group};
-use ndda_fem::{BlockOperator, BlockSupports, LinearElastic};
-use ndda_mesh::generate::{BoxPattern, box_block};
-use ndda_solver::unknowns::Unknowns;
-use ndda_solver::{
-    ConjugateGradients, DenseInverse, Factor, LinearSolver, Midpoint, StepDamping, Supernodal,
-    SymmetricMatrix, TimeIntegrator,
-};
+use ndda_solver::{ConjugateGradients, DenseInverse, Factor, LinearSolver, Supernodal, SymmetricMatrix};
 
 /// Cells along the edge of the cubes: 24, 192, 375, 3000 and 24 000 unknowns.
 const CELLS: [u32; 5] = [1, 3, 4, 9, 19];
-
-/// K̃ of a cube of n³ cells in a step of 0.1 ms.
-fn matrix(n: u32) -> SymmetricMatrix {
-    let mesh = box_block([1.0; 3], [n; 3], BoxPattern::Six).expect("a cube");
-    let rock = LinearElastic::new(20e9, 0.25, 2650.0).expect("rock");
-    let operator = BlockOperator::new(&mesh.nodes, mesh.tets, &rock);
-    let supports = BlockSupports::new(&operator, &[]).expect("no supports");
-    let weights = Midpoint { theta: 0.5 }.weights(1e-4);
-    Unknowns::nodal(operator.nodes(), &supports).matrix(
-        &operator,
-        &supports,
-        &weights,
-        &StepDamping::default(),
-    )
-}
 
 fn solve(c: &mut Criterion) {
     for matrix in CELLS.map(matrix) {
@@ -46,7 +28,7 @@ fn solve(c: &mut Criterion) {
         for (name, solver) in solvers {
             let factor = solver.factor(&matrix).expect("positive definite");
             let mut scratch = factor.new_scratch_of_eight();
-            let load: Vec<f64> = (0..matrix.n).map(|i| (i as f64).sin()).collect();
+            let load = load(matrix.n);
             let mut x = load.clone();
             c.bench_function(&format!("{} unknowns/{name}", matrix.n), |b| {
                 b.iter(|| {
@@ -83,7 +65,7 @@ fn least_us(mut run: impl FnMut()) -> f64 {
 /// Times of one solve and of eight at once, per block [µs].
 fn times(factor: &dyn Factor) -> [f64; 2] {
     let mut scratch = factor.new_scratch_of_eight();
-    let load: Vec<f64> = (0..factor.unknowns()).map(|i| (i as f64).sin()).collect();
+    let load = load(factor.unknowns());
     let mut x = load.clone();
     let one = least_us(|| {
         x.copy_from_slice(&load);

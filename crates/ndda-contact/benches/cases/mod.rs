@@ -80,7 +80,8 @@ impl Hits {
     }
 }
 
-fn hit(a: &[Vec3; 4], b: &[Vec3; 4], out: f64) -> Option<([[f64; 3]; 4], [f64; 4], f64)> {
+/// λ at the corners of a face of `a` moved `out` of its way out of `b`, the slopes of φ, and its area; none where it is outside.
+pub fn hit(a: &[Vec3; 4], b: &[Vec3; 4], out: f64) -> Option<([[f64; 3]; 4], [f64; 4], f64)> {
     let frame = TetFrame::new(b);
     let corners = TET_FACES[0].map(|i| a[i]);
     let lambda = frame.lambda_inside(&corners)?;
