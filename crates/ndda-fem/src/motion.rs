@@ -22,6 +22,23 @@ impl Motion {
         }
     }
 
+    /// How far its rows between two times are off the straight way from the one place to the other [m].
+    pub fn off_the_way_m(&self, from_s: f64, to_s: f64) -> f64 {
+        let (start, end) = (self.displacement(from_s), self.displacement(to_s));
+        let way = end - start;
+        let off = |u: Vec3| {
+            let along = way.dot(&(u - start)) / way.norm_squared().max(f64::MIN_POSITIVE);
+            (u - start - along.clamp(0.0, 1.0) * way).norm()
+        };
+        let farthest = |most: f64, time_s: f64| most.max(off(self.displacement(time_s)));
+        match self {
+            Self::Rows(rows) => within(rows, |row| row.0, from_s, to_s).iter().map(|r| r.0).fold(0.0, farthest),
+            Self::Record(record) => {
+                within(&record.rows, |row| row[0], from_s, to_s).iter().map(|r| r[0]).fold(0.0, farthest)
+            }
+        }
+    }
+
     /// Whether anything ever moves, or moves along a direction.
     pub fn moves(&self, along: Option<&Vec3>) -> bool {
         let part = |v: &Vec3| along.map_or(v.norm(), |n| v.dot(n).abs()) > 0.0;
@@ -30,6 +47,13 @@ impl Motion {
             Self::Record(record) => part(&record.direction),
         }
     }
+}
+
+/// The rows between two times, which are ascending.
+fn within<T>(rows: &[T], time_s: impl Fn(&T) -> f64, from_s: f64, to_s: f64) -> &[T] {
+    let first = rows.partition_point(|row| time_s(row) <= from_s);
+    let end = rows.partition_point(|row| time_s(row) < to_s);
+    &rows[first..end.max(first)]
 }
 
 /// A motion along one direction whose acceleration is linear between the rows of a record and zero outside of it.
@@ -89,6 +113,18 @@ mod tests {
         assert_eq!(motion.displacement(0.0), Vec3::zeros());
         assert_eq!(motion.displacement(2.0), 0.5 * Vec3::x());
         assert_eq!(motion.displacement(9.0), Vec3::x());
+    }
+
+    #[test]
+    fn a_motion_there_and_back_between_two_times_goes_off_the_way() {
+        let there_and_back = Motion::Rows(vec![(1.0, Vec3::zeros()), (2.0, Vec3::x()), (3.0, Vec3::zeros())]);
+        assert_eq!(there_and_back.off_the_way_m(0.5, 4.0), 1.0);
+        assert_eq!(there_and_back.off_the_way_m(0.5, 1.5), 0.0);
+        assert_eq!(there_and_back.off_the_way_m(1.5, 3.5), 0.5);
+        // Up to 1 m at 2 s, and half of the way back at 3 s.
+        let rows = [(0.0, 1.0), (1.0, 1.0), (1.0 + 1e-9, -1.0), (2.0, -1.0), (3.0, -1.0)];
+        let off = Motion::Record(Record::new(Vec3::y(), &rows)).off_the_way_m(0.0, 3.0);
+        assert!((off - 0.5).abs() < 1e-8, "{off}");
     }
 
     #[test]

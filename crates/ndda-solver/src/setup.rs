@@ -188,10 +188,15 @@ impl Simulation {
         for (block, setup) in self.blocks.ids().zip(bodies) {
             let range = self.blocks.nodes_of(block);
             let rest = &self.blocks.rest_position[range.clone()];
+            let movable = self.shape(block).kind != BodyKind::Fixed;
+            let mass_kg = if movable { self.shape(block).operator.mass_kg } else { f64::INFINITY };
             add_gravity(&self.shape(block).operator, gravity_m_s2, &mut weight[range.clone()]);
             let mut add = |forces: Vec<Vec3>, factor: &Option<Table>| match factor {
                 None => constant[range.clone()].iter_mut().zip(forces).for_each(|(sum, f)| *sum += f),
-                Some(factor) => varying.push(VaryingLoad::new(range.start, &forces, factor.clone())),
+                Some(factor) => {
+                    let pace_m_s2 = forces.iter().map(|f| f.norm()).sum::<f64>() / mass_kg;
+                    varying.push(VaryingLoad::new(range.start, &forces, factor.clone(), pace_m_s2));
+                }
             };
             for traction in &setup.tractions {
                 let mut forces = vec![Vec3::zeros(); rest.len()];
@@ -206,7 +211,7 @@ impl Simulation {
         }
         match gravity_factor {
             None => constant.iter_mut().zip(weight).for_each(|(sum, f)| *sum += f),
-            Some(factor) => varying.push(VaryingLoad::new(0, &weight, factor)),
+            Some(factor) => varying.push(VaryingLoad::new(0, &weight, factor, gravity_m_s2.norm())),
         }
         self.loads = Loads::new(constant, varying);
     }

@@ -125,9 +125,10 @@ impl Simulation {
         Ok(report)
     }
 
-    /// f ← gravity, tractions and forces at the time at which the integrator takes them.
+    /// f ← gravity, tractions and forces, as their mean over a step about the time at which the integrator takes them.
     fn gather_loads(&mut self) {
-        self.loads.place(self.clock_s(self.weights.load_lead));
+        let lead = self.weights.load_lead;
+        self.loads.place(self.clock_s(lead - 0.5), self.clock_s(lead + 0.5));
         self.force.copy_from_slice(self.loads.total());
     }
 
@@ -351,7 +352,7 @@ impl Simulation {
         self.state.inertia.fill(Inertia::default());
         self.state.step = 0;
         self.settling = false;
-        self.loads.place(0.0);
+        self.loads.place(0.0, 0.0);
         self.ledger = Ledger::new(&self.state.inertia);
     }
 

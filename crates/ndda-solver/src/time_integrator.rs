@@ -19,7 +19,7 @@ pub struct StepWeights {
     pub contact_lead: f64,
     /// lead₂.
     pub contact_lead_acceleration: f64,
-    /// Loads that change over time act as they are at start + lead · Δt.
+    /// Loads that change over time act by their mean over the Δt about start + lead · Δt.
     pub load_lead: f64,
     /// γ: the momentum changes by Δt [(1 − γ) f_old + γ f_new].
     pub new_force: f64,
