@@ -32,7 +32,9 @@ impl Motion {
         };
         let farthest = |most: f64, time_s: f64| most.max(off(self.displacement(time_s)));
         match self {
-            Self::Rows(rows) => within(rows, |row| row.0, from_s, to_s).iter().map(|r| r.0).fold(0.0, farthest),
+            Self::Rows(rows) => {
+                within(rows, |row| row.0, from_s, to_s).iter().map(|r| r.0).fold(0.0, farthest)
+            }
             Self::Record(record) => {
                 within(&record.rows, |row| row[0], from_s, to_s).iter().map(|r| r[0]).fold(0.0, farthest)
             }

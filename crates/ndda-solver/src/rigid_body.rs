@@ -34,6 +34,11 @@ impl RigidInertia {
         let inverse = |m: Mat3| m.try_inverse().expect("a validated block is not flat");
         Self { inertia, inverse: inverse(inertia), inverse_lumped: inverse(lumped) }
     }
+
+    /// dω/dt of a block that turns freely, as seen in its frame, J⁻¹ (J ω × ω) [rad/s²].
+    pub fn change_of_spin(&self, spin: &Vec3) -> Vec3 {
+        self.inverse * (self.inertia * spin).cross(spin)
+    }
 }
 
 /// Memory of one rigid block.

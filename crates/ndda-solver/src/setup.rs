@@ -99,9 +99,10 @@ impl Simulation {
             friction_force: vec![Vec3::zeros(); friction_nodes],
             contact_stiffness: vec![0.0; contact_nodes],
             contact_position: blocks.rest_position.clone(),
+            moved: vec![Vec3::zeros(); contact_nodes],
             contact_bodies: Vec::new(),
             contacts: None,
-            ledger: Ledger::new(&[]),
+            ledger: Ledger::new(&[], Vec::new()),
             stages: StageTimes::default(),
             blocks,
             shapes,
@@ -221,8 +222,14 @@ impl Simulation {
         if self.weights.needs_acceleration {
             self.place_accelerations(solver)?;
         }
-        self.ledger = Ledger::new(&self.state.inertia);
+        self.ledger = self.new_ledger();
         Ok(())
+    }
+
+    /// Empty books.
+    pub(crate) fn new_ledger(&self) -> Ledger {
+        let scales = self.blocks.ids().map(|block| self.shape(block).scale()).collect();
+        Ledger::new(&self.state.inertia, scales)
     }
 
     /// M a = f − ∫Bᵀσ₀ at the start, contact being part of f.

@@ -108,4 +108,9 @@ pub trait TimeIntegrator: Send + Sync {
     fn damps_elasticity(&self) -> bool {
         false
     }
+
+    /// Whether vibrations that a step does not resolve die out.
+    fn damps_vibrations(&self) -> bool {
+        self.damps_elasticity()
+    }
 }
