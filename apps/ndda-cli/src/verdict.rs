@@ -113,7 +113,7 @@ fn energy_of_the_lighter(simulation: &Simulation) -> Entry {
     let (gain, loss) = (worst.block_gain, worst.block_loss);
     let (what, most) = if gain.value >= loss.value { ("gave", gain) } else { ("took", loss) };
     let reason = format!(
-        "contact {what} block `{}` {:.1} % of its energy at the largest speed for good, limit {:.0} %",
+        "contact {what} block `{}` {:.1} % of an energy for good, limit {:.0} %: its speed is off by half as much of the largest",
         name(simulation, most),
         100.0 * most.value,
         100.0 * MOST_ENERGY

@@ -22,23 +22,45 @@ impl Motion {
         }
     }
 
-    /// How far its rows between two times are off the straight way from the one place to the other [m].
-    pub fn off_the_way_m(&self, from_s: f64, to_s: f64) -> f64 {
-        let (start, end) = (self.displacement(from_s), self.displacement(to_s));
-        let way = end - start;
-        let off = |u: Vec3| {
-            let along = way.dot(&(u - start)) / way.norm_squared().max(f64::MIN_POSITIVE);
-            (u - start - along.clamp(0.0, 1.0) * way).norm()
-        };
-        let farthest = |most: f64, time_s: f64| most.max(off(self.displacement(time_s)));
+    /// Velocity just after a time [m/s].
+    fn velocity(&self, time_s: f64) -> Vec3 {
         match self {
             Self::Rows(rows) => {
-                within(rows, |row| row.0, from_s, to_s).iter().map(|r| r.0).fold(0.0, farthest)
+                let next = rows.partition_point(|row| row.0 <= time_s);
+                match (next.checked_sub(1).and_then(|i| rows.get(i)), rows.get(next)) {
+                    (Some(&(t0, u0)), Some(&(t1, u1))) => (u1 - u0) / (t1 - t0),
+                    _ => Vec3::zeros(),
+                }
+            }
+            Self::Record(record) => record.velocity(time_s),
+        }
+    }
+
+    /// How far the velocity at rows between two times is from anything between those at both ends [m/s]: what comes and goes in
+    /// between.
+    pub fn unseen_m_s(&self, from_s: f64, to_s: f64) -> f64 {
+        match self {
+            Self::Rows(rows) => {
+                let inside = within(rows, |row| row.0, from_s, to_s);
+                let Some(last) = inside.last() else { return 0.0 };
+                self.farthest_velocity(from_s, last.0, inside.iter().map(|row| row.0))
             }
             Self::Record(record) => {
-                within(&record.rows, |row| row[0], from_s, to_s).iter().map(|r| r[0]).fold(0.0, farthest)
+                let inside = within(&record.rows, |row| row[0], from_s, to_s);
+                self.farthest_velocity(from_s, to_s, inside.iter().map(|row| row[0]))
             }
         }
+    }
+
+    /// Largest distance of the velocities at some times from those between the velocities at two [m/s].
+    fn farthest_velocity(&self, from_s: f64, to_s: f64, times_s: impl Iterator<Item = f64>) -> f64 {
+        let (start, end) = (self.velocity(from_s), self.velocity(to_s));
+        let way = end - start;
+        let off = |v: Vec3| {
+            let along = way.dot(&(v - start)) / way.norm_squared().max(f64::MIN_POSITIVE);
+            (v - start - along.clamp(0.0, 1.0) * way).norm()
+        };
+        times_s.fold(0.0, |most, time_s| most.max(off(self.velocity(time_s))))
     }
 
     /// Whether anything ever moves, or moves along a direction.
@@ -86,14 +108,23 @@ impl Record {
 
     /// Displacement at a time [m].
     pub fn displacement(&self, time_s: f64) -> Vec3 {
+        self.along(time_s).1 * self.direction
+    }
+
+    /// Velocity at a time [m/s].
+    pub fn velocity(&self, time_s: f64) -> Vec3 {
+        self.along(time_s).0 * self.direction
+    }
+
+    /// Velocity and displacement along the direction.
+    fn along(&self, time_s: f64) -> (f64, f64) {
         let next = self.rows.partition_point(|row| row[0] <= time_s);
-        let Some(&row) = next.checked_sub(1).and_then(|i| self.rows.get(i)) else { return Vec3::zeros() };
+        let Some(&row) = next.checked_sub(1).and_then(|i| self.rows.get(i)) else { return (0.0, 0.0) };
         let tau = time_s - row[0];
-        let along = match self.rows.get(next) {
-            Some(&[t, a, ..]) => after(&row, a, t - row[0], tau).1,
-            None => row[3] + row[2] * tau,
-        };
-        along * self.direction
+        match self.rows.get(next) {
+            Some(&[t, a, ..]) => after(&row, a, t - row[0], tau),
+            None => (row[2], row[3] + row[2] * tau),
+        }
     }
 }
 
@@ -118,15 +149,19 @@ mod tests {
     }
 
     #[test]
-    fn a_motion_there_and_back_between_two_times_goes_off_the_way() {
-        let there_and_back = Motion::Rows(vec![(1.0, Vec3::zeros()), (2.0, Vec3::x()), (3.0, Vec3::zeros())]);
-        assert_eq!(there_and_back.off_the_way_m(0.5, 4.0), 1.0);
-        assert_eq!(there_and_back.off_the_way_m(0.5, 1.5), 0.0);
-        assert_eq!(there_and_back.off_the_way_m(1.5, 3.5), 0.5);
-        // Up to 1 m at 2 s, and half of the way back at 3 s.
-        let rows = [(0.0, 1.0), (1.0, 1.0), (1.0 + 1e-9, -1.0), (2.0, -1.0), (3.0, -1.0)];
-        let off = Motion::Record(Record::new(Vec3::y(), &rows)).off_the_way_m(0.0, 3.0);
-        assert!((off - 0.5).abs() < 1e-8, "{off}");
+    fn a_velocity_that_comes_and_goes_between_two_times_is_found() {
+        let rows = vec![(1.0, Vec3::zeros()), (2.0, Vec3::x()), (3.0, Vec3::zeros()), (9.0, Vec3::zeros())];
+        let there_and_back = Motion::Rows(rows);
+        assert_eq!(there_and_back.unseen_m_s(0.5, 4.0), 1.0);
+        // A start, a turn and a stop are seen from both ends.
+        for (from, to) in [(0.5, 1.5), (1.5, 2.5), (2.5, 4.0), (4.0, 99.0)] {
+            assert_eq!(there_and_back.unseen_m_s(from, to), 0.0, "{from} to {to}");
+        }
+        // Up to 1 m/s in a second, and down again in another.
+        let rows = [(0.0, 1.0), (1.0, 1.0), (1.0 + 1e-9, -1.0), (2.0, -1.0)];
+        let record = Motion::Record(Record::new(Vec3::y(), &rows));
+        assert!((record.unseen_m_s(-1.0, 2.0) - 1.0).abs() < 1e-8);
+        assert!(record.unseen_m_s(0.2, 0.9) < 1e-15);
     }
 
     #[test]

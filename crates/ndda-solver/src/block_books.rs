@@ -1,8 +1,8 @@
 //! The books of single blocks: what contact gives the lighter one of each pair, and how far a turn is behind.
 //!
 //! Energy of all blocks together hides the error of a small one. Contact of a pair brings energy from nowhere where the
-//! work of its forces on both blocks is not what its potential energy loses; the lighter block feels it, and its own energy
-//! at the largest speed of the run is the measure: 2 % of that is 1 % of the speed.
+//! work of its forces on both blocks is not what its potential energy loses. The lighter block feels it: where two meet at v,
+//! an error of energy δE is one of its speed δv = δE/(m v), whatever the other weighs.
 
 use ndda_mesh::BlockId;
 use serde::{Deserialize, Serialize};
@@ -37,6 +37,11 @@ struct Book {
     /// Work and energy at the first sample [J].
     start_j: f64,
     largest_contact_j: f64,
+    /// The work, times m over the reduced mass of each pair [J], and its largest so far.
+    swing_j: f64,
+    largest_swing_j: f64,
+    /// Farthest that it fell below that: ½ m v² for the speed v at which contact met its block.
+    met_j: f64,
     lasting_gain_j: f64,
     lasting_loss_j: f64,
     /// Angle by which it is not where its spin would have taken it [rad].
@@ -97,7 +102,18 @@ impl BlockBooks {
     /// Books work of contact between two blocks, on both [J].
     pub fn add_work(&mut self, a: BlockId, b: BlockId, work_j: f64) {
         let lighter = self.lighter(a, b);
-        self.books[lighter].work_j += work_j;
+        let heavier = if lighter == a.index() { b.index() } else { a.index() };
+        let book = &mut self.books[lighter];
+        book.work_j += work_j;
+        book.swing_j += work_j * (1.0 + self.scales[lighter].mass_kg / self.scales[heavier].weight());
+    }
+
+    /// Keeps how fast contact has met each block, once all work of a step is booked.
+    pub fn close_step(&mut self) {
+        for book in &mut self.books {
+            book.largest_swing_j = book.largest_swing_j.max(book.swing_j);
+            book.met_j = book.met_j.max(book.largest_swing_j - book.swing_j);
+        }
     }
 
     /// Forgets the energies of contact before new ones are noted.
@@ -134,13 +150,14 @@ impl BlockBooks {
         self.turned_m_s = self.turned_m_s.max(book.lag_rad * spin_rad_s * scale.radius_m);
     }
 
-    /// Largest lasting gain and loss of a lighter block, over its energy at the largest speed of the run or, if that is more,
-    /// its largest energy of contact; what rounding may have done does not count.
+    /// Largest lasting gain and loss of a lighter block, over ½ m v V; what rounding may have done does not count. V is the largest speed of
+    /// the run, v that at which contact met the block. Where contact stores more than ½ m V², that is what counts.
     pub fn lasting(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
         let (mut gain, mut loss) = (Worst::default(), Worst::default());
         for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
             let moving_j = 0.5 * scale.mass_kg * speed_m_s * speed_m_s;
-            let energy_j = moving_j.max(book.largest_contact_j);
+            let met_j = book.met_j.max(book.largest_contact_j);
+            let energy_j = if met_j < moving_j { (met_j * moving_j).sqrt() } else { met_j };
             let over =
                 |error_j: f64| if error_j > rounding_j { (error_j - rounding_j) / energy_j } else { 0.0 };
             gain.take(over(book.lasting_gain_j), block);
@@ -177,14 +194,16 @@ mod tests {
     fn the_lighter_of_two_answers_for_what_contact_makes() {
         let mut books = books();
         books.balance(0.0);
-        // A block of 2 kg leaves a heavy one, and a held one, with 1 J more than it came with.
-        for other in [0, 2] {
-            books.add_work(BlockId(1), BlockId(other), 1.0);
-        }
+        // A block of 2 kg meets a held one at 5 m/s, and leaves it with 1 J more than it came with.
+        books.add_work(BlockId(1), BlockId(2), -25.0);
+        books.close_step();
+        books.add_work(BlockId(2), BlockId(1), 26.0);
+        books.close_step();
         books.balance(0.0);
         let (gain, loss) = books.lasting(10.0, 0.0);
         assert_eq!((gain, loss), (Worst { value: 0.02, block: 1 }, Worst::default()));
-        assert_eq!(books.lasting(10.0, 1.5).0.value, 0.005);
+        assert_eq!(books.lasting(10.0, 0.5).0.value, 0.01);
+        assert_eq!(books.lasting(1.0, 0.0).0.value, 1.0 / 25.0);
     }
 
     #[test]

@@ -72,7 +72,8 @@ pub struct Invariants {
     pub lasting_gain: f64,
     /// I4: largest loss that does not come back when contact parts, over the peak energy.
     pub lasting_loss: f64,
-    /// I4: largest lasting gain of the lighter block of a pair, over its energy at the largest speed, or its largest of contact.
+    /// I4: largest lasting gain of the lighter block of a pair, over ½ m v V for the speed v at which contact met it and the largest
+    /// speed V, or its largest energy of contact.
     pub block_gain: Worst,
     /// I4: largest lasting loss of it, over the same.
     pub block_loss: Worst,

@@ -40,7 +40,9 @@ impl Simulation {
             sample.contact_j = energy_j.map_err(|source| StepError::Contact { time_s, source })?;
             let books = self.ledger.blocks();
             books.clear_energies();
-            model.each_energy(&mut |a, b, energy_j| books.add_energy(a, b, energy_j));
+            if self.weights.forces_do_their_work() {
+                model.each_energy(&mut |a, b, energy_j| books.add_energy(a, b, energy_j));
+            }
         }
         let sample = self.ledger.balance(sample, self.contact_bound().is_some());
         self.stages.ledger_s += started.elapsed().as_secs_f64();

@@ -345,22 +345,23 @@ impl Simulation {
         report
     }
 
-    /// Books what normal contact did in the step on both blocks of each pair.
+    /// Books what normal contact did in the step on both blocks of each pair, where that is what changed their energy.
     fn book_work_of_contact(&mut self, contact: &ContactReport) {
-        let Some(model) = self.contact.as_mut().filter(|_| contact.contact_pairs > 0) else { return };
+        let works = contact.contact_pairs > 0 && self.weights.forces_do_their_work();
+        let Some(model) = self.contact.as_mut().filter(|_| works) else { return };
         for (moved, x) in self.moved.iter_mut().zip(&self.state.position) {
             *moved = x - *moved;
         }
         let books = self.ledger.blocks();
         model.each_work(&self.blocks, &self.moved, &mut |a, b, work_j| books.add_work(a, b, work_j));
+        books.close_step();
     }
 
     /// Speed that loads and motions bring and take back within the step, where nobody sees it [m/s].
     fn unseen_m_s(&self) -> f64 {
         let (now_s, end_s) = (self.clock_s(0.0), self.clock_s(1.0));
         let motions = self.shapes.iter().flat_map(|shape| &shape.supports.motions);
-        // There and back is twice the way.
-        let fastest = motions.map(|m| 2.0 * m.off_the_way_m(now_s, end_s) / self.part_s).fold(0.0, f64::max);
+        let fastest = motions.map(|motion| motion.unseen_m_s(now_s, end_s)).fold(0.0, f64::max);
         self.loads.unseen_m_s().max(fastest)
     }
 

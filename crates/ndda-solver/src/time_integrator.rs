@@ -35,6 +35,11 @@ impl StepWeights {
         self.contact_lead == 0.5 && self.mean_velocity
     }
 
+    /// Whether the work of a force over a step is what it changes of kinetic energy.
+    pub fn forces_do_their_work(&self) -> bool {
+        self.mean_velocity && self.new_force == 1.0 && self.old_inertia == 0.0
+    }
+
     /// M a at the end of a step that `force` drives from M a = `old` at its start; the same holds for torques.
     pub fn inertia(&self, force: &Vec3, old: &Vec3) -> Vec3 {
         (force - self.old_inertia * old) / (1.0 - self.old_inertia)
