@@ -48,6 +48,9 @@ struct Book {
     lag_rad: f64,
     /// How fast that grew at the last sample [rad/s].
     lag_rate_rad_s: f64,
+    /// Elastic energy at the first sample, and at the last [J].
+    strain_start_j: f64,
+    strain_j: f64,
 }
 
 /// The worst of all blocks, with the block that it is of.
@@ -140,6 +143,23 @@ impl BlockBooks {
             book.lasting_loss_j = book.lasting_loss_j.max(-error_j - back_j);
         }
         self.begun = true;
+    }
+
+    /// Notes the elastic energy of a block [J].
+    pub fn note_strain(&mut self, block: BlockId, energy_j: f64) {
+        let book = &mut self.books[block.index()];
+        book.strain_j = energy_j.abs();
+        if !self.begun {
+            book.strain_start_j = book.strain_j;
+        }
+    }
+
+    /// Square of the speed at which a block would have the elastic energy that it began with or, where vibrations die out, that it has
+    /// now [m²/s²].
+    pub fn strain_speed2(&self, block: BlockId, die_out: bool) -> f64 {
+        let (book, scale) = (&self.books[block.index()], &self.scales[block.index()]);
+        let borne_j = if die_out { book.strain_start_j.max(book.strain_j) } else { book.strain_start_j };
+        2.0 * borne_j / scale.mass_kg
     }
 
     /// Books how far a block's turn falls behind, `since_s` after the last sample, at a spin [rad/s] and a rate [rad/s] now.

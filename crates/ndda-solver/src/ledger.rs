@@ -11,6 +11,26 @@ use crate::time_integrator::{Inertia, StepWeights};
 /// Part of the largest speed of which it does not matter how much turns over in a step.
 const LITTLE: f64 = 1e-3;
 
+/// Vibrations of a block that a step turns over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Vibration {
+    /// Their speed [m/s].
+    pub speed_m_s: f64,
+    /// What they are little beside, whatever moves: see [`BlockBooks::strain_speed2`] [m²/s²].
+    pub borne_m2_s2: f64,
+}
+
+impl Vibration {
+    /// Over the largest speed and what the block bears.
+    pub fn over(&self, largest_m_s: f64) -> f64 {
+        if self.speed_m_s == 0.0 {
+            0.0
+        } else {
+            self.speed_m_s / (largest_m_s * largest_m_s + self.borne_m2_s2).sqrt()
+        }
+    }
+}
+
 /// Energies and momenta of all blocks at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
@@ -91,8 +111,8 @@ pub struct Invariants {
     pub turn_place: Worst,
     /// I8: error of a velocity over the largest speed, for turns that are behind.
     pub turn_speed: f64,
-    /// I8: speed of elastic vibrations that turns over in a step, over the largest speed; zero below 0.001, and that of the last
-    /// sample where the integrator lets them die out.
+    /// I8: speed of elastic vibrations that turns over in a step, over the largest speed and what the block bears; none below 0.001,
+    /// and that of the last sample where the integrator lets them die out.
     pub vibration: f64,
     /// I8: speed that loads and motions bring and take back within a step, over the largest speed.
     pub unseen_speed: f64,
@@ -133,7 +153,7 @@ pub struct Ledger {
     momentum_error: f64,
     angular_error: f64,
     largest_speed_m_s: f64,
-    vibration_m_s: f64,
+    vibration: Vibration,
     unseen_m_s: f64,
     rounding_j: f64,
     last_sample_s: f64,
@@ -191,7 +211,7 @@ impl Ledger {
             momentum_error: 0.0,
             angular_error: 0.0,
             largest_speed_m_s: 0.0,
-            vibration_m_s: 0.0,
+            vibration: Vibration::default(),
             unseen_m_s: 0.0,
             rounding_j: 0.0,
             last_sample_s: 0.0,
@@ -254,15 +274,22 @@ impl Ledger {
         time_s - self.last_sample_s
     }
 
-    /// Speed of vibrations that a step turns over that would be nothing new [m/s].
-    pub fn known_vibration_m_s(&self, die_out: bool) -> f64 {
-        let little_m_s = LITTLE * self.largest_speed_m_s;
-        if die_out { little_m_s } else { self.vibration_m_s.max(little_m_s) }
+    /// A part of what vibrations are held against that would be nothing new.
+    pub fn known_vibration(&self, die_out: bool) -> f64 {
+        if die_out { LITTLE } else { self.vibration.over(self.largest_speed_m_s).max(LITTLE) }
     }
 
-    /// Keeps the speed of vibrations that a step turns over: the largest, or the last where they die out [m/s].
-    pub fn watch_vibration(&mut self, speed_m_s: f64, die_out: bool) {
-        self.vibration_m_s = if die_out { speed_m_s } else { self.vibration_m_s.max(speed_m_s) };
+    /// Largest speed of a node so far [m/s].
+    pub fn largest_speed_m_s(&self) -> f64 {
+        self.largest_speed_m_s
+    }
+
+    /// Keeps vibrations that a step turns over: the worst, or the last where they die out.
+    pub fn watch_vibration(&mut self, found: Vibration, die_out: bool) {
+        let speed_m_s = self.largest_speed_m_s;
+        if die_out || found.over(speed_m_s) > self.vibration.over(speed_m_s) {
+            self.vibration = found;
+        }
     }
 
     /// Energy that rounding alone may have brought [J].
@@ -347,7 +374,7 @@ impl Ledger {
             block_loss,
             turn_place: self.blocks.turned_over_height(),
             turn_speed: speed(self.blocks.turned_m_s()),
-            vibration: speed(self.vibration_m_s),
+            vibration: self.vibration.over(self.largest_speed_m_s),
             unseen_speed: speed(self.unseen_m_s),
             ..self.worst
         }

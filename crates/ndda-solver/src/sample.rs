@@ -7,7 +7,7 @@ use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
 use ndda_mesh::{BlockId, Mat3, TetId, Vec3};
 
 use crate::body::BodyKind;
-use crate::ledger::Sample;
+use crate::ledger::{Sample, Vibration};
 use crate::shape::Shape;
 use crate::simulation::Simulation;
 use crate::step_error::StepError;
@@ -25,12 +25,12 @@ impl Simulation {
         self.ledger.watch_rounding(rounding_j);
         let mut sample = Sample { step: self.state.step, time_s, ..Sample::default() };
         sample.smallest_volume_ratio = (f64::INFINITY, 0);
-        let mut vibration_m_s = 0.0f64;
+        let mut vibration = Vibration::default();
         for block in self.blocks.ids() {
             self.add_block_to(&mut sample, block)?;
-            vibration_m_s = vibration_m_s.max(self.vibration_m_s(block, vibration_m_s)?);
+            vibration = self.worse_vibration(block, vibration)?;
         }
-        self.ledger.watch_vibration(vibration_m_s, self.integrator.damps_vibrations());
+        self.ledger.watch_vibration(vibration, self.integrator.damps_vibrations());
         let loads = self.loads.constant().iter().zip(&self.state.position).zip(self.start_position());
         sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
         if let Some(model) = &mut self.contact {
@@ -77,28 +77,34 @@ impl Simulation {
         }
         let failed = |source| StepError::Block { time_s, block: name(), source };
         let strain = elastic.strain_energy_j(shape, position);
-        sample.strain_j += strain.map_err(|source| failed(source.into()))?;
+        let strain_j = strain.map_err(|source| failed(source.into()))?;
+        sample.strain_j += strain_j;
+        self.ledger.blocks().note_strain(block, strain_j);
         sample.spring_j += elastic.spring_energy_j(shape, position, time_s);
         Ok(())
     }
 
-    /// Speed of a block's vibrations that a step turns over, where that is more than what is known of others, of what was before, or
-    /// of rounding [m/s].
-    fn vibration_m_s(&mut self, block: BlockId, known_m_s: f64) -> Result<f64, StepError> {
-        let known_m_s = known_m_s.max(self.ledger.known_vibration_m_s(self.integrator.damps_vibrations()));
-        let time_s = self.time_s();
+    /// Vibrations of a block that a step turns over, if they are worse than those found so far, those of before, and rounding.
+    fn worse_vibration(&mut self, block: BlockId, found: Vibration) -> Result<Vibration, StepError> {
+        let die_out = self.integrator.damps_vibrations();
+        let largest_m_s = self.ledger.largest_speed_m_s();
+        let known = self.ledger.known_vibration(die_out).max(found.over(largest_m_s));
+        let borne_m2_s2 = self.ledger.blocks().strain_speed2(block, die_out);
+        let known_m_s = known * (largest_m_s * largest_m_s + borne_m2_s2).sqrt();
         let (range, body) = (self.blocks.nodes_of(block), &mut self.bodies[block.index()]);
         let shape = &self.shapes[body.shape];
-        let Some(elastic) = body.elastic() else { return Ok(0.0) };
+        let Some(elastic) = body.elastic() else { return Ok(found) };
         let motion = (&self.state.position[range.clone()], &self.state.velocity[range]);
-        let speed_m_s = elastic.vibration_m_s(shape, (&self.weights, self.part_s), motion, known_m_s);
-        let speed_m_s = speed_m_s.map_err(|source| StepError::Block {
-            time_s,
-            block: self.blocks.names[block.index()].clone(),
-            source,
-        })?;
+        let speed_m_s = match elastic.vibration_m_s(shape, (&self.weights, self.part_s), motion, known_m_s) {
+            Ok(speed_m_s) => speed_m_s,
+            Err(source) => {
+                let block = self.blocks.names[block.index()].clone();
+                return Err(StepError::Block { time_s: self.time_s(), block, source });
+            }
+        };
         let energy_j = 0.5 * shape.operator.mass_kg * speed_m_s * speed_m_s;
-        Ok(if energy_j > self.ledger.rounding_j() { speed_m_s } else { 0.0 })
+        let worse = speed_m_s > known_m_s && energy_j > self.ledger.rounding_j();
+        Ok(if worse { Vibration { speed_m_s, borne_m2_s2 } } else { found })
     }
 
     /// Energy that rounding alone may have brought by now [J]: what it takes to move every node by the last digit of its place
