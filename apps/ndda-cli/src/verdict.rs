@@ -1,13 +1,19 @@
 //! What a run says of itself: the invariants I1–I8 against their limits, and whether its motion is to be trusted.
 
 use ndda_io::summary::{Judgement, Label, LabelWord, Named, Verdict};
-use ndda_solver::Simulation;
+use ndda_solver::{Simulation, Worst};
 
 /// Energy gained or lost for good over the largest energy. Speeds are as its root: twice the 1 % that they may be off.
 const MOST_ENERGY: f64 = 0.02;
 /// Penetration over the height of the tetrahedron. A collision that goes d deep delays blocks by up to π d / 2, which is
 /// within the tenth of a height that places may be off.
 const MOST_DEPTH: f64 = 0.05;
+/// What the promise allows: speeds over the largest, and places over a height.
+const SPEED: f64 = 0.01;
+const PLACE: f64 = 0.1;
+/// Speed of vibrations that a step turns over, over the largest speed: θ² of one that turns by θ in a step. It is late by θ²/12 of
+/// each radian, as contact within its bound is.
+const MOST_VIBRATION: f64 = 12.0 * SPEED;
 /// Travel of a step over the smallest height of all tetrahedra: two blocks that meet jump over one height together.
 const MOST_TRAVEL: f64 = 0.5;
 
@@ -55,11 +61,14 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     let mut entries = vec![Entry::new("I1 finite state", sound, fail, String::new())];
     entries.extend(momentum(simulation));
     entries.extend(energy(simulation));
+    entries.push(energy_of_the_lighter(simulation));
     entries.extend(contact(simulation));
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
     let verdict = Verdict { value: Some(upright), limit: Some(0.0), verdict };
     entries.push(Entry::new("I7 smallest det F", verdict, fail, "an element is inside out".into()));
     entries.extend(resolution(simulation));
+    entries.extend(turns(simulation));
+    entries.extend(within_a_step(simulation));
     entries
 }
 
@@ -96,6 +105,25 @@ fn energy(simulation: &Simulation) -> [Entry; 3] {
         Entry::new("I4 energy loss", shown(worst.energy_loss), Judgement::Fail, String::new()),
         Entry::new("I4 lasting change", judged(lasting, MOST_ENERGY, f64::INFINITY), Judgement::Warn, reason),
     ]
+}
+
+/// Energy that contact makes or takes, pair by pair.
+fn energy_of_the_lighter(simulation: &Simulation) -> Entry {
+    let worst = simulation.invariants();
+    let (gain, loss) = (worst.block_gain, worst.block_loss);
+    let (what, most) = if gain.value >= loss.value { ("gave", gain) } else { ("took", loss) };
+    let reason = format!(
+        "contact {what} block `{}` {:.1} % of an energy for good, limit {:.0} %: its speed is off by half as much of the largest",
+        name(simulation, most),
+        100.0 * most.value,
+        100.0 * MOST_ENERGY
+    );
+    let verdict = judged(most.value, MOST_ENERGY, f64::INFINITY);
+    Entry::new("I4 lighter of a pair", verdict, Judgement::Warn, reason)
+}
+
+fn name(simulation: &Simulation, worst: Worst) -> &str {
+    &simulation.blocks().names[worst.block as usize]
 }
 
 fn contact(simulation: &Simulation) -> [Entry; 2] {
@@ -138,6 +166,49 @@ fn resolution(simulation: &Simulation) -> [Entry; 2] {
     [
         Entry::new("I8 h = ω_c Δt", h, Judgement::Warn, coarse),
         Entry::new("I8 travel / height", travel, Judgement::Warn, jumped),
+    ]
+}
+
+/// Whether blocks have turned as far as their spin takes them.
+fn turns(simulation: &Simulation) -> [Entry; 2] {
+    let worst = simulation.invariants();
+    let (place, speed) = (worst.turn_place, worst.turn_speed);
+    let where_it_is = format!(
+        "block `{}` turns too far in a step: it is behind by {:.2} of its smallest height, limit {PLACE}",
+        name(simulation, place),
+        place.value
+    );
+    let how_fast = format!(
+        "a block turns too far in a step: its velocities are off by {:.1} % of the largest, limit {:.0} %",
+        100.0 * speed,
+        100.0 * SPEED
+    );
+    let warn = Judgement::Warn;
+    [
+        Entry::new("I8 turn / height", judged(place.value, PLACE, f64::INFINITY), warn, where_it_is),
+        Entry::new("I8 turn / speed", judged(speed, SPEED, f64::INFINITY), warn, how_fast),
+    ]
+}
+
+/// Whether anything comes and goes within a step.
+fn within_a_step(simulation: &Simulation) -> [Entry; 2] {
+    let worst = simulation.invariants();
+    let percent = |value: f64| 100.0 * value;
+    let vibration = format!(
+        "vibrations that steps do not resolve: {:.1} % of the largest speed turns over in one, limit {:.0} %",
+        percent(worst.vibration),
+        percent(MOST_VIBRATION)
+    );
+    let unseen = format!(
+        "loads or motions bring and take back {:.1} % of the largest speed within a step, limit {:.0} %",
+        percent(worst.unseen_speed),
+        percent(SPEED)
+    );
+    let verdict = |value, limit| judged(value, limit, f64::INFINITY);
+    let warn = Judgement::Warn;
+    [
+        Entry::new("I8 vibration / speed", verdict(worst.vibration, MOST_VIBRATION), warn, vibration),
+        Entry::new("I8 unseen / speed", verdict(worst.unseen_speed, SPEED), warn, unseen),
     ]
 }
 

@@ -58,6 +58,11 @@ impl BlockOverlaps {
         self.overlap_m3.iter().map(|&overlap| law.energy_m3(overlap)).sum()
     }
 
+    /// Pairs of blocks and their w(U) [m³].
+    pub fn each_energy_m3(&self, law: OverlapLaw) -> impl Iterator<Item = (BlockId, BlockId, f64)> {
+        self.pairs.iter().zip(&self.overlap_m3).map(move |(&(a, b), &u)| (a, b, law.energy_m3(u)))
+    }
+
     fn place(&self, a: BlockId, b: BlockId) -> Option<usize> {
         self.pairs.binary_search(&(a.min(b), a.max(b))).ok()
     }

@@ -1,7 +1,7 @@
 //! What one facet does: normal force, slip and friction.
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{TetId, Vec3};
+use ndda_mesh::{BlockSet, TetId, Vec3};
 
 use crate::candidates::{Candidates, Facet};
 use crate::friction::{FacetSlip, ShearMemory};
@@ -128,7 +128,16 @@ impl FacetScene<'_> {
 
 /// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.
 pub fn relative_velocity(facet: &Facet, hits: &[Hit], candidates: &Candidates, input: &ContactInput) -> Vec3 {
-    let (blocks, velocity) = (input.blocks, input.velocity);
+    relative_motion(facet, hits, candidates, (input.blocks, input.velocity))
+}
+
+/// The same of any vectors per node.
+pub fn relative_motion(
+    facet: &Facet,
+    hits: &[Hit],
+    candidates: &Candidates,
+    (blocks, velocity): (&BlockSet, &[Vec3]),
+) -> Vec3 {
     let triangle = blocks.triangles[facet.triangle.index()];
     let mut sum = Vec3::zeros();
     for hit in hits {

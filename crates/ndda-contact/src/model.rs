@@ -229,6 +229,20 @@ pub trait ContactModel: Send + Sync {
     /// As [`add_forces`](Self::add_forces).
     fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError>;
 
+    /// Work of the normal forces of the last [`add_forces`](Self::add_forces) over displacements of the nodes [m]: blocks and
+    /// work [J], one call for each facet, always in the same order. A model that does not say is not judged pair by pair.
+    fn each_work(
+        &mut self,
+        _blocks: &BlockSet,
+        _moved: &[Vec3],
+        _add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+    }
+
+    /// Energies of normal contact as [`energy_j`](Self::energy_j) found them in the call before: two blocks and their
+    /// energy [J], at most one call for each pair.
+    fn each_energy(&self, _add: &mut dyn FnMut(BlockId, BlockId, f64)) {}
+
     /// ∂f/∂x where forces were added last, for steps that solve for contact: symmetric blocks of seven nodes, some of
     /// which may be in several. It need not be exact; the closer it is, the fewer iterations a step takes.
     ///

@@ -2,7 +2,7 @@
 
 mod plan;
 
-use ndda_mesh::Mat3;
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use rayon::prelude::*;
 
 use crate::bonds;
@@ -10,10 +10,10 @@ use crate::candidates::Candidates;
 use crate::element_potential::ElementPotential;
 use crate::energy;
 use crate::faces::{FaceScene, Faces};
-use crate::facets::{FacetForce, FacetScene};
+use crate::facets::{FacetForce, FacetScene, relative_motion};
 use crate::friction::FrictionLaw;
 use crate::hulls::Hulls;
-use crate::integrals::{Integrals, Scene};
+use crate::integrals::{Integrals, Scene, Touch};
 use crate::joints::{Joints, Memory};
 use crate::model::{
     ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
@@ -53,6 +53,7 @@ pub struct PotentialContact {
     overlaps: energy::BlockOverlaps,
     reporter: Reporter,
     new_facets: Vec<FacetMemory>,
+    work_of_facet: Vec<f64>,
 }
 
 impl PotentialContact {
@@ -75,6 +76,7 @@ impl PotentialContact {
             overlaps: Default::default(),
             reporter: Reporter::default(),
             new_facets: Vec::new(),
+            work_of_facet: Vec::new(),
         }
     }
 
@@ -296,6 +298,32 @@ impl ContactModel for PotentialContact {
         Ok(())
     }
 
+    fn each_work(&mut self, blocks: &BlockSet, moved: &[Vec3], add: &mut dyn FnMut(BlockId, BlockId, f64)) {
+        let (candidates, integrals, forces) = (&self.candidates, &self.integrals, &self.forces);
+        let touching = integrals.touching();
+        let facet_of = |touch: &Touch| &candidates.facets[touch.facet as usize];
+        let work_of = |(t, work_j): (usize, &mut f64)| {
+            let (facet, hits) = (facet_of(&touching[t]), integrals.hits_of(&touching[t]));
+            *work_j = forces[t].push.dot(&relative_motion(facet, hits, candidates, (blocks, moved)));
+        };
+        self.work_of_facet.resize(touching.len(), 0.0);
+        let works = &mut self.work_of_facet;
+        if works.len() > GRAIN_FACETS {
+            works.par_iter_mut().enumerate().with_min_len(GRAIN_FACETS / 2).for_each(work_of);
+        } else {
+            works.iter_mut().enumerate().for_each(work_of);
+        }
+        for (touch, &work_j) in touching.iter().zip(&self.work_of_facet) {
+            let facet = facet_of(touch);
+            add(blocks.triangle_block[facet.triangle.index()], facet.target, work_j);
+        }
+    }
+
+    fn each_energy(&self, add: &mut dyn FnMut(BlockId, BlockId, f64)) {
+        let energies = self.overlaps.each_energy_m3(self.potential.law());
+        energies.for_each(|(a, b, energy_m3)| add(a, b, self.penalty_pa * energy_m3));
+    }
+
     fn plan(&self) -> Vec<Part> {
         plan::parts(self)
     }
@@ -337,7 +365,6 @@ mod tests {
     use crate::coulomb::Coulomb;
     use crate::testing::{check_model, evaluate, test_box, test_set};
     use ndda_mesh::geometry::tet_heights;
-    use ndda_mesh::{BlockId, Vec3};
 
     #[test]
     fn it_keeps_the_contract_of_a_contact_model_with_and_without_friction() {

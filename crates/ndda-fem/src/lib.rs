@@ -26,5 +26,5 @@ pub use loads::InitialStress;
 pub use material::{Damping, Material, Voigt};
 pub use motion::{Motion, Record};
 pub use supports::{BlockSupports, Hold, NodeSupport, SupportError};
-pub use table::Table;
+pub use table::{Between, Table};
 pub use transversely_isotropic::{Bedding, TransverselyIsotropic};

@@ -22,6 +22,47 @@ impl Motion {
         }
     }
 
+    /// Velocity just after a time [m/s].
+    fn velocity(&self, time_s: f64) -> Vec3 {
+        match self {
+            Self::Rows(rows) => {
+                let next = rows.partition_point(|row| row.0 <= time_s);
+                match (next.checked_sub(1).and_then(|i| rows.get(i)), rows.get(next)) {
+                    (Some(&(t0, u0)), Some(&(t1, u1))) => (u1 - u0) / (t1 - t0),
+                    _ => Vec3::zeros(),
+                }
+            }
+            Self::Record(record) => record.velocity(time_s),
+        }
+    }
+
+    /// How far the velocity at rows between two times is from anything between those at both ends [m/s]: what comes and goes in
+    /// between.
+    pub fn unseen_m_s(&self, from_s: f64, to_s: f64) -> f64 {
+        match self {
+            Self::Rows(rows) => {
+                let inside = within(rows, |row| row.0, from_s, to_s);
+                let Some(last) = inside.last() else { return 0.0 };
+                self.farthest_velocity(from_s, last.0, inside.iter().map(|row| row.0))
+            }
+            Self::Record(record) => {
+                let inside = within(&record.rows, |row| row[0], from_s, to_s);
+                self.farthest_velocity(from_s, to_s, inside.iter().map(|row| row[0]))
+            }
+        }
+    }
+
+    /// Largest distance of the velocities at some times from those between the velocities at two [m/s].
+    fn farthest_velocity(&self, from_s: f64, to_s: f64, times_s: impl Iterator<Item = f64>) -> f64 {
+        let (start, end) = (self.velocity(from_s), self.velocity(to_s));
+        let way = end - start;
+        let off = |v: Vec3| {
+            let along = way.dot(&(v - start)) / way.norm_squared().max(f64::MIN_POSITIVE);
+            (v - start - along.clamp(0.0, 1.0) * way).norm()
+        };
+        times_s.fold(0.0, |most, time_s| most.max(off(self.velocity(time_s))))
+    }
+
     /// Whether anything ever moves, or moves along a direction.
     pub fn moves(&self, along: Option<&Vec3>) -> bool {
         let part = |v: &Vec3| along.map_or(v.norm(), |n| v.dot(n).abs()) > 0.0;
@@ -30,6 +71,13 @@ impl Motion {
             Self::Record(record) => part(&record.direction),
         }
     }
+}
+
+/// The rows between two times, which are ascending.
+fn within<T>(rows: &[T], time_s: impl Fn(&T) -> f64, from_s: f64, to_s: f64) -> &[T] {
+    let first = rows.partition_point(|row| time_s(row) <= from_s);
+    let end = rows.partition_point(|row| time_s(row) < to_s);
+    &rows[first..end.max(first)]
 }
 
 /// A motion along one direction whose acceleration is linear between the rows of a record and zero outside of it.
@@ -60,14 +108,23 @@ impl Record {
 
     /// Displacement at a time [m].
     pub fn displacement(&self, time_s: f64) -> Vec3 {
+        self.along(time_s).1 * self.direction
+    }
+
+    /// Velocity at a time [m/s].
+    pub fn velocity(&self, time_s: f64) -> Vec3 {
+        self.along(time_s).0 * self.direction
+    }
+
+    /// Velocity and displacement along the direction.
+    fn along(&self, time_s: f64) -> (f64, f64) {
         let next = self.rows.partition_point(|row| row[0] <= time_s);
-        let Some(&row) = next.checked_sub(1).and_then(|i| self.rows.get(i)) else { return Vec3::zeros() };
+        let Some(&row) = next.checked_sub(1).and_then(|i| self.rows.get(i)) else { return (0.0, 0.0) };
         let tau = time_s - row[0];
-        let along = match self.rows.get(next) {
-            Some(&[t, a, ..]) => after(&row, a, t - row[0], tau).1,
-            None => row[3] + row[2] * tau,
-        };
-        along * self.direction
+        match self.rows.get(next) {
+            Some(&[t, a, ..]) => after(&row, a, t - row[0], tau),
+            None => (row[2], row[3] + row[2] * tau),
+        }
     }
 }
 
@@ -89,6 +146,22 @@ mod tests {
         assert_eq!(motion.displacement(0.0), Vec3::zeros());
         assert_eq!(motion.displacement(2.0), 0.5 * Vec3::x());
         assert_eq!(motion.displacement(9.0), Vec3::x());
+    }
+
+    #[test]
+    fn a_velocity_that_comes_and_goes_between_two_times_is_found() {
+        let rows = vec![(1.0, Vec3::zeros()), (2.0, Vec3::x()), (3.0, Vec3::zeros()), (9.0, Vec3::zeros())];
+        let there_and_back = Motion::Rows(rows);
+        assert_eq!(there_and_back.unseen_m_s(0.5, 4.0), 1.0);
+        // A start, a turn and a stop are seen from both ends.
+        for (from, to) in [(0.5, 1.5), (1.5, 2.5), (2.5, 4.0), (4.0, 99.0)] {
+            assert_eq!(there_and_back.unseen_m_s(from, to), 0.0, "{from} to {to}");
+        }
+        // Up to 1 m/s in a second, and down again in another.
+        let rows = [(0.0, 1.0), (1.0, 1.0), (1.0 + 1e-9, -1.0), (2.0, -1.0)];
+        let record = Motion::Record(Record::new(Vec3::y(), &rows));
+        assert!((record.unseen_m_s(-1.0, 2.0) - 1.0).abs() < 1e-8);
+        assert!(record.unseen_m_s(0.2, 0.9) < 1e-15);
     }
 
     #[test]

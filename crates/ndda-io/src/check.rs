@@ -424,6 +424,24 @@ impl Check<'_> {
             );
         }
         rows.iter().for_each(|row| self.numbers(path, &row.displacement_m));
+        let along = |a: &[f64; 3], b: &[f64; 3]| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+        let way = |i: usize| -> [f64; 3] {
+            std::array::from_fn(|k| rows[i + 1].displacement_m[k] - rows[i].displacement_m[k])
+        };
+        let times: Vec<f64> = rows.iter().map(|row| row.time_s).collect();
+        self.turns(&format!("{path}[0]"), &times, |i| along(&way(i - 1), &way(i)) < 0.0);
+    }
+
+    /// Warns of the first row at which a table turns back between two neighbours that are less than a step apart.
+    fn turns(&mut self, path: &str, times: &[f64], turns_at: impl Fn(usize) -> bool) {
+        let step_s = self.scene.time.step_s;
+        let unseen = |i: &usize| times[i + 1] - times[i - 1] < step_s && turns_at(*i);
+        if let Some(i) = (1..times.len().saturating_sub(1)).find(unseen) {
+            let gap_s = times[i + 1] - times[i - 1];
+            let message = format!("turns back within {gap_s:.3e} s, less than a step of {step_s:.3e} s");
+            let help = "a step knows its mean only: reduce time.step_s to see what is between";
+            self.warn(Code::Inexact, format!("{path}[{i}].time_s"), message, help);
+        }
     }
 
     fn loads(&mut self) {
@@ -473,6 +491,9 @@ impl Check<'_> {
             let message = format!("{} s does not come after {} s", rows[i].time_s, rows[i - 1].time_s);
             self.error(format!("{path}[{i}].time_s"), message, "sort the rows by time_s");
         }
+        let times: Vec<f64> = rows.iter().map(|row| row.time_s).collect();
+        let rises = |i: usize| rows[i + 1].factor - rows[i].factor;
+        self.turns(path, &times, |i| rises(i - 1) * rises(i) < 0.0);
     }
 
     fn potential(&mut self, potential: &Potential) {

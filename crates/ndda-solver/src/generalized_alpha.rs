@@ -75,6 +75,10 @@ impl TimeIntegrator for GeneralizedAlpha {
     fn contact_bound(&self) -> Option<f64> {
         Some(2.0)
     }
+
+    fn damps_vibrations(&self) -> bool {
+        self.radius < 1.0
+    }
 }
 
 #[cfg(test)]

@@ -1,11 +1,35 @@
 //! The books of a run: energy, momentum, and the worst of everything that has a limit.
 
-use crate::simulation::StepReport;
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::block_books::{BlockBooks, BlockScale, Worst};
+use crate::simulation::StepReport;
 use crate::step_control::StepCounts;
 use crate::time_integrator::{Inertia, StepWeights};
+
+/// Part of the largest speed of which it does not matter how much turns over in a step.
+const LITTLE: f64 = 1e-3;
+
+/// Vibrations of a block that a step turns over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Vibration {
+    /// Their speed [m/s].
+    pub speed_m_s: f64,
+    /// What they are little beside, whatever moves: see [`BlockBooks::strain_speed2`] [m²/s²].
+    pub borne_m2_s2: f64,
+}
+
+impl Vibration {
+    /// Over the largest speed and what the block bears.
+    pub fn over(&self, largest_m_s: f64) -> f64 {
+        if self.speed_m_s == 0.0 {
+            0.0
+        } else {
+            self.speed_m_s / (largest_m_s * largest_m_s + self.borne_m2_s2).sqrt()
+        }
+    }
+}
 
 /// Energies and momenta of all blocks at one instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -68,6 +92,11 @@ pub struct Invariants {
     pub lasting_gain: f64,
     /// I4: largest loss that does not come back when contact parts, over the peak energy.
     pub lasting_loss: f64,
+    /// I4: largest lasting gain of the lighter block of a pair, over ½ m v V for the speed v at which contact met it and the largest
+    /// speed V, or its largest energy of contact.
+    pub block_gain: Worst,
+    /// I4: largest lasting loss of it, over the same.
+    pub block_loss: Worst,
     /// I5: penetration over tet height.
     pub max_penetration_ratio: f64,
     /// I6: |action + reaction| / |force| over the pairs.
@@ -78,6 +107,15 @@ pub struct Invariants {
     pub max_h: f64,
     /// I8: travel of a step over the smallest tet height of all blocks.
     pub max_travel_ratio: f64,
+    /// I8: error of a place over the smallest tet height of its block, for turns that are behind.
+    pub turn_place: Worst,
+    /// I8: error of a velocity over the largest speed, for turns that are behind.
+    pub turn_speed: f64,
+    /// I8: speed of elastic vibrations that turns over in a step, over the largest speed and what the block bears; none below 0.001,
+    /// and that of the last sample where the integrator lets them die out.
+    pub vibration: f64,
+    /// I8: speed that loads and motions bring and take back within a step, over the largest speed.
+    pub unseen_speed: f64,
     /// Most pairs looked at in a step.
     pub candidate_pairs_max: usize,
     /// Most pairs in contact in a step.
@@ -114,13 +152,19 @@ pub struct Ledger {
     lasting_loss_j: f64,
     momentum_error: f64,
     angular_error: f64,
+    largest_speed_m_s: f64,
+    vibration: Vibration,
+    unseen_m_s: f64,
+    rounding_j: f64,
+    last_sample_s: f64,
+    blocks: BlockBooks,
     worst: Invariants,
 }
 
 impl Ledger {
-    /// Empty books; `inertia` is that of each block at the start, supports and contact included, if the integrator asks
-    /// for it.
-    pub fn new(inertia: &[Inertia]) -> Self {
+    /// Empty books of some blocks; `inertia` is that of each at the start, supports and contact included, if the
+    /// integrator asks for it.
+    pub fn new(inertia: &[Inertia], blocks: Vec<BlockScale>) -> Self {
         let worst = Invariants {
             linear_momentum: 0.0,
             angular_momentum: 0.0,
@@ -128,11 +172,17 @@ impl Ledger {
             energy_loss: 0.0,
             lasting_gain: 0.0,
             lasting_loss: 0.0,
+            block_gain: Worst::default(),
+            block_loss: Worst::default(),
             max_penetration_ratio: 0.0,
             action_reaction: 0.0,
             smallest_volume_ratio: 1.0,
             max_h: 0.0,
             max_travel_ratio: 0.0,
+            turn_place: Worst::default(),
+            turn_speed: 0.0,
+            vibration: 0.0,
+            unseen_speed: 0.0,
             candidate_pairs_max: 0,
             contact_pairs_max: 0,
             candidate_pairs_total: 0,
@@ -160,6 +210,12 @@ impl Ledger {
             lasting_loss_j: 0.0,
             momentum_error: 0.0,
             angular_error: 0.0,
+            largest_speed_m_s: 0.0,
+            vibration: Vibration::default(),
+            unseen_m_s: 0.0,
+            rounding_j: 0.0,
+            last_sample_s: 0.0,
+            blocks: BlockBooks::new(blocks),
             worst,
         }
     }
@@ -203,6 +259,55 @@ impl Ledger {
         self.damping_work_j += damping_j;
     }
 
+    /// The books of single blocks.
+    pub fn blocks(&mut self) -> &mut BlockBooks {
+        &mut self.blocks
+    }
+
+    /// Number of blocks.
+    pub fn block_count(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// Time since the last sample [s].
+    pub fn since_sample_s(&self, time_s: f64) -> f64 {
+        time_s - self.last_sample_s
+    }
+
+    /// A part of what vibrations are held against that would be nothing new.
+    pub fn known_vibration(&self, die_out: bool) -> f64 {
+        if die_out { LITTLE } else { self.vibration.over(self.largest_speed_m_s).max(LITTLE) }
+    }
+
+    /// Largest speed of a node so far [m/s].
+    pub fn largest_speed_m_s(&self) -> f64 {
+        self.largest_speed_m_s
+    }
+
+    /// Keeps vibrations that a step turns over: the worst, or the last where they die out.
+    pub fn watch_vibration(&mut self, found: Vibration, die_out: bool) {
+        let speed_m_s = self.largest_speed_m_s;
+        if die_out || found.over(speed_m_s) > self.vibration.over(speed_m_s) {
+            self.vibration = found;
+        }
+    }
+
+    /// Energy that rounding alone may have brought [J].
+    pub fn rounding_j(&self) -> f64 {
+        self.rounding_j
+    }
+
+    /// Keeps the largest energy that rounding alone may have brought by now [J].
+    pub fn watch_rounding(&mut self, energy_j: f64) {
+        self.rounding_j = self.rounding_j.max(energy_j);
+    }
+
+    /// Keeps the largest of all speeds, and of those that came and went within a step [m/s].
+    pub fn watch_speeds(&mut self, speed_m_s: f64, unseen_m_s: f64) {
+        self.largest_speed_m_s = self.largest_speed_m_s.max(speed_m_s);
+        self.unseen_m_s = self.unseen_m_s.max(unseen_m_s);
+    }
+
     /// Keeps the extremes of a step.
     pub fn watch(&mut self, report: &StepReport) {
         let (worst, contact) = (&mut self.worst, &report.contact);
@@ -236,6 +341,8 @@ impl Ledger {
         self.largest_loss_j = self.largest_loss_j.max(-sample.balance_j);
         let h = if explicit_contact { self.worst.max_h } else { 0.0 };
         let comes_back_j = 0.25 * h * h * sample.contact_j;
+        self.blocks.balance(0.25 * h * h);
+        self.last_sample_s = sample.time_s;
         self.lasting_gain_j = self.lasting_gain_j.max(sample.balance_j - comes_back_j);
         self.lasting_loss_j = self.lasting_loss_j.max(-sample.balance_j - comes_back_j);
         // What supports and loads exchange rounds as they do, however little it leaves to move.
@@ -253,13 +360,22 @@ impl Ledger {
     /// The worst of the run so far.
     pub fn invariants(&self) -> Invariants {
         let over = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
+        let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
+        let (block_gain, block_loss) = self.blocks.lasting(self.largest_speed_m_s, self.rounding_j);
+        let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
         Invariants {
             linear_momentum: over(self.momentum_error, self.peak_momentum),
             angular_momentum: over(self.angular_error, self.peak_angular),
-            energy_gain: over(self.largest_gain_j, self.peak_energy_j),
-            energy_loss: over(self.largest_loss_j, self.peak_energy_j),
-            lasting_gain: over(self.lasting_gain_j, self.peak_energy_j),
-            lasting_loss: over(self.lasting_loss_j, self.peak_energy_j),
+            energy_gain: energy(self.largest_gain_j),
+            energy_loss: energy(self.largest_loss_j),
+            lasting_gain: energy(self.lasting_gain_j),
+            lasting_loss: energy(self.lasting_loss_j),
+            block_gain,
+            block_loss,
+            turn_place: self.blocks.turned_over_height(),
+            turn_speed: speed(self.blocks.turned_m_s()),
+            vibration: self.vibration.over(self.largest_speed_m_s),
+            unseen_speed: speed(self.unseen_m_s),
             ..self.worst
         }
     }
@@ -273,7 +389,7 @@ mod tests {
 
     #[test]
     fn energy_that_friction_took_is_not_a_loss() {
-        let mut ledger = Ledger::new(&[]);
+        let mut ledger = Ledger::new(&[], Vec::new());
         ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
         ledger.add_work(-4.0, 0.0, 0.0, 0.0);
         let sample = ledger.balance(Sample { kinetic_j: 5.0, ..Sample::default() }, true);
@@ -284,7 +400,7 @@ mod tests {
 
     #[test]
     fn what_explicit_contact_holds_back_is_not_lost_but_what_is_gone_after_it_is() {
-        let mut ledger = Ledger::new(&[]);
+        let mut ledger = Ledger::new(&[], Vec::new());
         ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
         ledger.watch(&StepReport { h: 1.0, ..StepReport::default() });
         ledger.balance(Sample { contact_j: 8.0, ..Sample::default() }, true);
@@ -297,7 +413,7 @@ mod tests {
 
     #[test]
     fn an_impulse_from_outside_explains_momentum() {
-        let mut ledger = Ledger::new(&[]);
+        let mut ledger = Ledger::new(&[], Vec::new());
         ledger.balance(Sample::default(), true);
         let weights = Midpoint { theta: 0.5 }.weights(0.5);
         ledger.add_impulse(0.5, &weights, Vec3::x(), Vec3::zeros());

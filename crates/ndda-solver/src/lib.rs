@@ -5,6 +5,7 @@
 //! [`TimeIntegrator`], linear algebra through [`LinearSolver`].
 
 pub mod batch;
+pub mod block_books;
 pub mod body;
 pub mod conjugate_gradients;
 pub mod dense_inverse;
@@ -35,6 +36,7 @@ pub mod testing;
 pub mod time_integrator;
 pub mod unknowns;
 
+pub use block_books::Worst;
 pub use body::{BlockError, BodyKind};
 pub use conjugate_gradients::ConjugateGradients;
 pub use dense_inverse::DenseInverse;

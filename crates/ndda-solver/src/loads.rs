@@ -1,6 +1,6 @@
 //! What acts on the nodes from outside, at any time of a run.
 
-use ndda_fem::Table;
+use ndda_fem::{Between, Table};
 use ndda_mesh::Vec3;
 
 /// Nodal forces that grow and shrink together.
@@ -10,13 +10,15 @@ pub struct VaryingLoad {
     pub forces: Vec<(u32, Vec3)>,
     /// The factor over time.
     pub factor: Table,
+    /// How fast the block that feels it most is made by a factor of one [m/s²].
+    pub pace_m_s2: f64,
 }
 
 impl VaryingLoad {
     /// Forces on a run of nodes from `first` on; those that are zero are left out.
-    pub fn new(first: usize, forces: &[Vec3], factor: Table) -> Self {
+    pub fn new(first: usize, forces: &[Vec3], factor: Table, pace_m_s2: f64) -> Self {
         let some = forces.iter().enumerate().filter(|(_, force)| **force != Vec3::zeros());
-        Self { forces: some.map(|(i, force)| ((first + i) as u32, *force)).collect(), factor }
+        Self { forces: some.map(|(i, force)| ((first + i) as u32, *force)).collect(), factor, pace_m_s2 }
     }
 }
 
@@ -30,6 +32,8 @@ pub struct Loads {
     total: Vec<Vec3>,
     /// Sum over the nodes of all of them [N].
     force: Vec3,
+    /// Speed that the varying ones bring and take back unseen within the step [m/s].
+    unseen_m_s: f64,
 }
 
 impl Loads {
@@ -43,19 +47,22 @@ impl Loads {
             changing: vec![Vec3::zeros(); nodes],
             total: vec![Vec3::zeros(); nodes],
             force,
+            unseen_m_s: 0.0,
         };
-        loads.place(0.0);
+        loads.place(0.0, 0.0);
         loads
     }
 
-    /// Brings the varying ones to a time [s].
-    pub fn place(&mut self, time_s: f64) {
+    /// Makes the varying ones their means between two times [s].
+    pub fn place(&mut self, from_s: f64, to_s: f64) {
         if self.varying.is_empty() {
             return;
         }
         self.changing.fill(Vec3::zeros());
+        self.unseen_m_s = 0.0;
         for load in &self.varying {
-            let factor = load.factor.at(time_s);
+            let Between { mean: factor, beyond_s } = load.factor.between(from_s, to_s);
+            self.unseen_m_s += load.pace_m_s2 * beyond_s;
             load.forces.iter().for_each(|(node, force)| self.changing[*node as usize] += factor * force);
         }
         let sums = self.constant.iter().zip(&self.changing);
@@ -77,6 +84,12 @@ impl Loads {
     pub fn total(&self) -> &[Vec3] {
         if self.varying.is_empty() { &self.constant } else { &self.total }
     }
+
+    /// Speed that they bring and take back within the step, where nobody sees it [m/s].
+    pub fn unseen_m_s(&self) -> f64 {
+        self.unseen_m_s
+    }
+
     /// Their sum over all nodes [N].
     pub fn force(&self) -> Vec3 {
         self.force

@@ -34,7 +34,8 @@ impl TimeIntegrator for Newmark {
             mean_velocity: self.delta == 2.0 * self.alpha,
             contact_lead: 0.0,
             contact_lead_acceleration: 0.0,
-            load_lead: 1.0,
+            // With δ = 1 the forces of a step are all that changes its momentum.
+            load_lead: if self.delta == 1.0 { 0.5 } else { 1.0 },
             new_force: self.delta,
             old_inertia: 0.0,
             needs_acceleration: self.alpha != 0.5 || self.delta != 1.0,

@@ -34,6 +34,11 @@ impl RigidInertia {
         let inverse = |m: Mat3| m.try_inverse().expect("a validated block is not flat");
         Self { inertia, inverse: inverse(inertia), inverse_lumped: inverse(lumped) }
     }
+
+    /// dω/dt of a block that turns freely, as seen in its frame, J⁻¹ (J ω × ω) [rad/s²].
+    pub fn change_of_spin(&self, spin: &Vec3) -> Vec3 {
+        self.inverse * (self.inertia * spin).cross(spin)
+    }
 }
 
 /// Memory of one rigid block.
@@ -131,7 +136,7 @@ impl RigidBody {
             .ok_or(BlockError::TooQuick { spin_rad_s: start.spin.norm() })?;
         let momentum = inertia.inertia * start.spin + context.dt_s * local
             - drag * context.dt_s * (inertia.inertia * angle);
-        let turned = cayley(&angle);
+        let turned = rotation_by(&angle);
         let rotation = start.rotation * turned;
         let spin = rotation * (inertia.inverse * turned.tr_mul(&momentum));
         let center = start.center + gone;
@@ -225,15 +230,16 @@ fn turn_drag(shape: &Shape, context: &StepContext) -> f64 {
     shape.damping.mass_per_s2 * context.weights.new_force / (1.0 - context.weights.old_inertia)
 }
 
-/// The turn θ of a step, as a Cayley vector in the block's frame, under a torque T there (Simo & Wong 1991, with
-/// Cayley's map for the exponential):
+/// The turn θ of a step, axis times angle in the block's frame, under a torque T there (Simo & Wong 1991):
 ///
 /// ```text
-/// (I + ½ θ̂) J (2 θ/Δt − ω₀) = (I − ½ θ̂) p        p = J ω₀ + Δt (T − d J θ)
+/// exp(θ̂) J (2 θ/Δt − ω₀) = p        p = J ω₀ + Δt (T − d J θ)
+/// (I + ½ τ θ̂) J (2 θ/Δt − ω₀) = (I − ½ τ θ̂) p        τ = tan(½ |θ|)/(½ |θ|)
 /// ```
 ///
-/// The spin at the end is J ω₁ = cay(θ)ᵀ p, so angular momentum changes by Δt T exactly; ω₀ + ω₁ = 2 θ/Δt, so energy
-/// changes by the work of T exactly. Nothing where no turn fits: spin times Δt is far beyond what a step resolves.
+/// both being the same. The spin at the end is J ω₁ = exp(θ̂)ᵀ p, so angular momentum changes by Δt T exactly; ω₀ + ω₁ = 2 θ/Δt and
+/// exp(θ̂) θ = θ, so energy changes by the work of T exactly; a block that spins about a principal axis turns by ω Δt exactly. Nothing
+/// where no turn fits, which is half a turn at most.
 fn turn(inertia: &RigidInertia, spin: &Vec3, torque: &Vec3, dt_s: f64, drag: f64) -> Option<Vec3> {
     let j = &inertia.inertia;
     let old = j * spin;
@@ -242,10 +248,14 @@ fn turn(inertia: &RigidInertia, spin: &Vec3, torque: &Vec3, dt_s: f64, drag: f64
     let mut last = f64::INFINITY;
     for _ in 0..MOST_ITERATIONS {
         let (mean, p) = (2.0 / dt_s * (j * angle) - old, driven - drag * dt_s * (j * angle));
-        let misfit = mean + 0.5 * angle.cross(&mean) - p + 0.5 * angle.cross(&p);
-        let cross = angle.cross_matrix();
-        let slope = (Mat3::identity() + 0.5 * cross) * (2.0 / dt_s * j) - 0.5 * (mean + p).cross_matrix()
-            + (Mat3::identity() - 0.5 * cross) * (drag * dt_s * j);
+        let (stretch, growth) = half_angle_stretch(angle.norm_squared())?;
+        let moment = angle.cross(&(mean + p));
+        let misfit = mean - p + 0.5 * stretch * moment;
+        let cross = stretch * angle.cross_matrix();
+        let slope = (Mat3::identity() + 0.5 * cross) * (2.0 / dt_s * j)
+            - 0.5 * stretch * (mean + p).cross_matrix()
+            + (Mat3::identity() - 0.5 * cross) * (drag * dt_s * j)
+            + growth * moment * angle.transpose();
         let change = slope.try_inverse()? * misfit;
         angle -= change;
         let (size, scale) = (change.norm(), angle.norm() + dt_s * spin.norm());
@@ -258,10 +268,28 @@ fn turn(inertia: &RigidInertia, spin: &Vec3, torque: &Vec3, dt_s: f64, drag: f64
     None
 }
 
-/// Cayley's map, cay(θ) = I + (θ̂ + ½ θ̂²)/(1 + ¼ θ²): a turn by 2 atan(½ |θ|).
-fn cayley(angle: &Vec3) -> Mat3 {
-    let cross = angle.cross_matrix();
-    Mat3::identity() + (cross + 0.5 * cross * cross) / (1.0 + 0.25 * angle.norm_squared())
+/// τ = tan(½ θ)/(½ θ) and dτ/dθ² for θ², as long as that is less than half a turn.
+fn half_angle_stretch(angle2: f64) -> Option<(f64, f64)> {
+    if angle2 < 1e-3 {
+        let x = 0.25 * angle2;
+        let stretch = 1.0 + x * (1.0 / 3.0 + x * (2.0 / 15.0 + x * 17.0 / 315.0));
+        return Some((stretch, 0.25 * (1.0 / 3.0 + x * (4.0 / 15.0 + x * 17.0 / 105.0))));
+    }
+    let half = 0.5 * angle2.sqrt();
+    // Also where the angle is not a number.
+    if half.is_nan() || half >= std::f64::consts::FRAC_PI_2 {
+        return None;
+    }
+    let stretch = half.tan() / half;
+    Some((stretch, 0.5 * (1.0 + half * half * stretch * stretch - stretch) / angle2))
+}
+
+/// exp(θ̂), the turn about θ by |θ|, less than half a turn: I + (t̂ + ½ t̂²)/(1 + ¼ t²) for t = τ θ.
+fn rotation_by(angle: &Vec3) -> Mat3 {
+    let (stretch, _) = half_angle_stretch(angle.norm_squared()).unwrap_or((1.0, 0.0));
+    let t = stretch * angle;
+    let cross = t.cross_matrix();
+    Mat3::identity() + (cross + 0.5 * cross * cross) / (1.0 + 0.25 * t.norm_squared())
 }
 
 #[cfg(test)]
@@ -275,10 +303,25 @@ mod tests {
     }
 
     #[test]
-    fn cayley_turns_without_stretching() {
-        let turned = cayley(&Vec3::new(0.3, -2.0, 1.1));
-        assert!((turned.transpose() * turned - Mat3::identity()).amax() < 1e-15);
-        assert!((turned.determinant() - 1.0).abs() < 1e-15);
+    fn a_rotation_turns_by_its_angle_without_stretching() {
+        for size in [1e-9, 1e-3, 0.03, 0.032, 1.0, 3.0] {
+            let angle = size * Vec3::new(0.3, -2.0, 1.1).normalize();
+            let turned = rotation_by(&angle);
+            assert!((turned.transpose() * turned - Mat3::identity()).amax() < 1e-15);
+            let exact = nalgebra::Rotation3::new(angle);
+            assert!((turned - exact.matrix()).amax() < 2e-15, "{size}: {}", (turned - exact.matrix()).amax());
+        }
+    }
+
+    #[test]
+    fn the_stretch_of_a_half_angle_has_its_own_slope() {
+        for angle2 in [1e-4, 0.9e-3, 1.1e-3, 0.5, 4.0, 9.0] {
+            let at = |x: f64| half_angle_stretch(x).expect("less than half a turn");
+            let change = 1e-4 * angle2;
+            let slope = (at(angle2 + change).0 - at(angle2 - change).0) / (2.0 * change);
+            assert!((slope / at(angle2).1 - 1.0).abs() < 1e-5, "{angle2}: {slope} and {}", at(angle2).1);
+        }
+        assert_eq!(half_angle_stretch(9.9), None);
     }
 
     #[test]
@@ -288,7 +331,7 @@ mod tests {
         for torque in [Vec3::zeros(), Vec3::new(1.0, -2.0, 0.5)] {
             let spin = Vec3::new(1.0, 3.0, -2.0);
             let angle = turn(&block, &spin, &torque, dt_s, 0.0).expect("a turn");
-            let end = block.inverse * cayley(&angle).tr_mul(&(block.inertia * spin + dt_s * torque));
+            let end = block.inverse * rotation_by(&angle).tr_mul(&(block.inertia * spin + dt_s * torque));
             let gain = energy(&end) - energy(&spin) - torque.dot(&angle);
             assert!(gain.abs() < 1e-14 * energy(&spin), "{gain}");
             assert!((0.5 * dt_s * (spin + end) - angle).norm() < 1e-15);

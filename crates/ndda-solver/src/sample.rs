@@ -4,11 +4,14 @@ use std::time::Instant;
 
 use ndda_contact::{ContactInput, ContactReport, FacetContact};
 use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
-use ndda_mesh::{BlockId, TetId, Vec3};
+use ndda_mesh::{BlockId, Mat3, TetId, Vec3};
 
-use crate::ledger::Sample;
+use crate::body::BodyKind;
+use crate::ledger::{Sample, Vibration};
+use crate::shape::Shape;
 use crate::simulation::Simulation;
 use crate::step_error::StepError;
+use crate::time_integrator::StepWeights;
 
 impl Simulation {
     /// Energies and momenta now, balanced against the books.
@@ -18,11 +21,16 @@ impl Simulation {
     pub fn sample(&mut self) -> Result<Sample, StepError> {
         let started = Instant::now();
         let time_s = self.time_s();
+        let rounding_j = self.rounding_j();
+        self.ledger.watch_rounding(rounding_j);
         let mut sample = Sample { step: self.state.step, time_s, ..Sample::default() };
         sample.smallest_volume_ratio = (f64::INFINITY, 0);
+        let mut vibration = Vibration::default();
         for block in self.blocks.ids() {
             self.add_block_to(&mut sample, block)?;
+            vibration = self.worse_vibration(block, vibration)?;
         }
+        self.ledger.watch_vibration(vibration, self.integrator.damps_vibrations());
         let loads = self.loads.constant().iter().zip(&self.state.position).zip(self.start_position());
         sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
         if let Some(model) = &mut self.contact {
@@ -30,6 +38,11 @@ impl Simulation {
             let input = ContactInput::new(&self.blocks, position, velocity, self.part_s);
             let energy_j = model.energy_j(&input, &self.state.contact);
             sample.contact_j = energy_j.map_err(|source| StepError::Contact { time_s, source })?;
+            let books = self.ledger.blocks();
+            books.clear_energies();
+            if self.weights.forces_do_their_work() {
+                model.each_energy(&mut |a, b, energy_j| books.add_energy(a, b, energy_j));
+            }
         }
         let sample = self.ledger.balance(sample, self.contact_bound().is_some());
         self.stages.ledger_s += started.elapsed().as_secs_f64();
@@ -48,6 +61,9 @@ impl Simulation {
             sample.momentum_scale += m * v.norm();
             sample.angular_scale += m * x.norm() * v.norm();
         }
+        let since_s = self.ledger.since_sample_s(time_s);
+        let (spin_rad_s, rate_rad_s) = lag_rate(shape, &self.weights, self.part_s, position, velocity);
+        self.ledger.blocks().add_lag(block, since_s, spin_rad_s, rate_rad_s);
         let Some(elastic) = body.elastic() else { return Ok(()) };
         let name = || self.blocks.names[block.index()].clone();
         let (volume_ratio, tet) = smallest_volume_ratio(&shape.operator, position);
@@ -59,13 +75,50 @@ impl Simulation {
         if volume_ratio < sample.smallest_volume_ratio.0 {
             sample.smallest_volume_ratio = (volume_ratio, tet);
         }
-        sample.strain_j += elastic.strain_energy_j(shape, position).map_err(|source| StepError::Block {
-            time_s,
-            block: name(),
-            source: source.into(),
-        })?;
+        let failed = |source| StepError::Block { time_s, block: name(), source };
+        let strain = elastic.strain_energy_j(shape, position);
+        let strain_j = strain.map_err(|source| failed(source.into()))?;
+        sample.strain_j += strain_j;
+        self.ledger.blocks().note_strain(block, strain_j);
         sample.spring_j += elastic.spring_energy_j(shape, position, time_s);
         Ok(())
+    }
+
+    /// Vibrations of a block that a step turns over, if they are worse than those found so far, those of before, and rounding.
+    fn worse_vibration(&mut self, block: BlockId, found: Vibration) -> Result<Vibration, StepError> {
+        let die_out = self.integrator.damps_vibrations();
+        let largest_m_s = self.ledger.largest_speed_m_s();
+        let known = self.ledger.known_vibration(die_out).max(found.over(largest_m_s));
+        let borne_m2_s2 = self.ledger.blocks().strain_speed2(block, die_out);
+        let known_m_s = known * (largest_m_s * largest_m_s + borne_m2_s2).sqrt();
+        let (range, body) = (self.blocks.nodes_of(block), &mut self.bodies[block.index()]);
+        let shape = &self.shapes[body.shape];
+        let Some(elastic) = body.elastic() else { return Ok(found) };
+        let motion = (&self.state.position[range.clone()], &self.state.velocity[range]);
+        let speed_m_s = match elastic.vibration_m_s(shape, (&self.weights, self.part_s), motion, known_m_s) {
+            Ok(speed_m_s) => speed_m_s,
+            Err(source) => {
+                let block = self.blocks.names[block.index()].clone();
+                return Err(StepError::Block { time_s: self.time_s(), block, source });
+            }
+        };
+        let energy_j = 0.5 * shape.operator.mass_kg * speed_m_s * speed_m_s;
+        let worse = speed_m_s > known_m_s && energy_j > self.ledger.rounding_j();
+        Ok(if worse { Vibration { speed_m_s, borne_m2_s2 } } else { found })
+    }
+
+    /// Energy that rounding alone may have brought by now [J]: what it takes to move every node by the last digit of its place
+    /// against elasticity and contact, once in each step.
+    fn rounding_j(&self) -> f64 {
+        let last_digit = |x: &Vec3| f64::EPSILON * x.amax();
+        let elastic = self.blocks.ids().map(|block| {
+            let position = &self.state.position[self.blocks.nodes_of(block)];
+            let digit_m = position.iter().map(last_digit).fold(0.0, f64::max);
+            self.shape(block).stiffness_n_m * digit_m * digit_m
+        });
+        let contact = self.contact_stiffness.iter().zip(&self.state.position);
+        let contact = contact.map(|(stiffness, x)| stiffness * last_digit(x).powi(2));
+        0.5 * (elastic.sum::<f64>() + contact.sum::<f64>()) * self.state.step as f64
     }
 
     /// Whether the next steps note what each facet does.
@@ -141,4 +194,33 @@ impl Simulation {
         }
         Ok(())
     }
+}
+
+/// Rate of rotation of a block [rad/s], and how fast its turn falls behind it [rad/s].
+///
+/// Nodes that deform go along chords: in a steady turn by φ per step the integrator has ω Δt = 2 tan ½φ (1 + (β − ½ γ) φ²), so φ is
+/// less by (1/12 + β − ½ γ) φ³. Rigid blocks turn by ω Δt exactly as long as their spin keeps its axis; where it does not, a
+/// step takes its mean for its course, which leaves up to ¼ Δt³ |ω| |dω/dt|: Δt³/12 of the second derivative of the spin,
+/// about 2 |ω| |dω/dt|, and of the commutator ω × dω/dt.
+fn lag_rate(
+    shape: &Shape,
+    weights: &StepWeights,
+    dt_s: f64,
+    position: &[Vec3],
+    velocity: &[Vec3],
+) -> (f64, f64) {
+    if shape.kind == BodyKind::Fixed {
+        return (0.0, 0.0);
+    }
+    let motion = shape.operator.rigid_motion(position, velocity);
+    let spin = motion.spin_rad_s;
+    let rate = if let Some(inertia) = &shape.rigid {
+        let rotation = shape.supports.frame.rotation(&shape.operator, position, &motion.center);
+        let rotation = rotation.unwrap_or_else(|_| Mat3::identity());
+        0.25 * spin.norm() * inertia.change_of_spin(&rotation.tr_mul(&spin)).norm()
+    } else {
+        let chord = weights.new_force * (1.0 / (weights.velocity_per_m * dt_s) - 0.5);
+        (1.0 / 12.0 + chord).abs() * spin.norm().powi(3)
+    };
+    (spin.norm(), rate * dt_s * dt_s)
 }

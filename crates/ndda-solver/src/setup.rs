@@ -101,9 +101,10 @@ impl Simulation {
             friction_force: vec![Vec3::zeros(); friction_nodes],
             contact_stiffness: vec![0.0; contact_nodes],
             contact_position: blocks.rest_position.clone(),
+            moved: vec![Vec3::zeros(); contact_nodes],
             contact_bodies: Vec::new(),
             contacts: None,
-            ledger: Ledger::new(&[]),
+            ledger: Ledger::new(&[], Vec::new()),
             stages: StageTimes::default(),
             blocks,
             shapes,
@@ -191,10 +192,15 @@ impl Simulation {
         for (block, setup) in self.blocks.ids().zip(bodies) {
             let range = self.blocks.nodes_of(block);
             let rest = &self.blocks.rest_position[range.clone()];
+            let movable = self.shape(block).kind != BodyKind::Fixed;
+            let mass_kg = if movable { self.shape(block).operator.mass_kg } else { f64::INFINITY };
             add_gravity(&self.shape(block).operator, gravity_m_s2, &mut weight[range.clone()]);
             let mut add = |forces: Vec<Vec3>, factor: &Option<Table>| match factor {
                 None => constant[range.clone()].iter_mut().zip(forces).for_each(|(sum, f)| *sum += f),
-                Some(factor) => varying.push(VaryingLoad::new(range.start, &forces, factor.clone())),
+                Some(factor) => {
+                    let pace_m_s2 = forces.iter().map(|f| f.norm()).sum::<f64>() / mass_kg;
+                    varying.push(VaryingLoad::new(range.start, &forces, factor.clone(), pace_m_s2));
+                }
             };
             for traction in &setup.tractions {
                 let mut forces = vec![Vec3::zeros(); rest.len()];
@@ -209,7 +215,7 @@ impl Simulation {
         }
         match gravity_factor {
             None => constant.iter_mut().zip(weight).for_each(|(sum, f)| *sum += f),
-            Some(factor) => varying.push(VaryingLoad::new(0, &weight, factor)),
+            Some(factor) => varying.push(VaryingLoad::new(0, &weight, factor, gravity_m_s2.norm())),
         }
         self.loads = Loads::new(constant, varying);
     }
@@ -219,8 +225,14 @@ impl Simulation {
         if self.weights.needs_acceleration {
             self.place_accelerations(solver)?;
         }
-        self.ledger = Ledger::new(&self.state.inertia);
+        self.ledger = self.new_ledger();
         Ok(())
+    }
+
+    /// Empty books.
+    pub(crate) fn new_ledger(&self) -> Ledger {
+        let scales = self.blocks.ids().map(|block| self.shape(block).scale()).collect();
+        Ledger::new(&self.state.inertia, scales)
     }
 
     /// M a = f − ∫Bᵀσ₀ at the start, contact being part of f.

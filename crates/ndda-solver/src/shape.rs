@@ -8,6 +8,7 @@ use ndda_fem::{
 };
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
+use crate::block_books::BlockScale;
 use crate::body::BodyKind;
 use crate::linear_solver::{Factor, FactorError, LinearSolver, SolveError};
 use crate::rigid_body::RigidInertia;
@@ -131,6 +132,8 @@ pub struct Shape {
     pub rigid: Option<RigidInertia>,
     /// Smallest height of its elements at rest [m].
     pub smallest_height_m: f64,
+    /// Trace of K [N/m].
+    pub stiffness_n_m: f64,
 }
 
 impl Shape {
@@ -177,6 +180,11 @@ impl Shape {
             .iter()
             .flat_map(|tet| ndda_mesh::geometry::tet_heights(&tet.map(|n| operator.rest[n as usize])));
         let smallest_height_m = heights.fold(f64::INFINITY, f64::min);
+        let diagonal = |i: usize| operator.row(i).filter(move |(j, ..)| *j == i).map(|(_, k, _)| k.trace());
+        let stiffness_n_m = match kind {
+            BodyKind::Elastic | BodyKind::Affine => (0..operator.nodes()).flat_map(diagonal).sum(),
+            BodyKind::Rigid | BodyKind::Fixed => 0.0,
+        };
         let material = setup.material.clone();
         let mut shape = Self {
             kind,
@@ -188,6 +196,7 @@ impl Shape {
             damping,
             rigid,
             smallest_height_m,
+            stiffness_n_m,
         };
         let factor = shape.factored(weights, solver);
         shape.factor = factor.map_err(|source| SetupError::Factor { block: name(), source })?;
@@ -217,6 +226,16 @@ impl Shape {
     /// Whether nothing holds the block, so that its momentum changes by outside forces only.
     pub fn is_free(&self) -> bool {
         self.kind != BodyKind::Fixed && self.supports.held.is_empty() && self.supports.springs.is_empty()
+    }
+
+    /// What the books must know of the block.
+    pub fn scale(&self) -> BlockScale {
+        BlockScale {
+            mass_kg: self.operator.mass_kg,
+            is_held: !self.is_free(),
+            radius_m: self.operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max),
+            height_m: self.smallest_height_m,
+        }
     }
 
     /// What contact may know of the block's inertia. Supports that leave no rigid motion make it immovable.

@@ -94,6 +94,8 @@ pub struct Simulation {
     pub(crate) friction_force: Vec<Vec3>,
     pub(crate) contact_stiffness: Vec<f64>,
     pub(crate) contact_position: Vec<Vec3>,
+    /// Where nodes were before the step, later how far it moved them [m]; empty without contact.
+    pub(crate) moved: Vec<Vec3>,
     pub(crate) contact_bodies: Vec<ContactBody>,
     /// What facets did in the last step, if somebody wants to know.
     pub(crate) contacts: Option<Vec<FacetContact>>,
@@ -117,6 +119,8 @@ impl Simulation {
         self.gather_loads();
         let (contact, iterations) = self.gather_contact()?;
         self.note_contacts();
+        let before = &self.state.position[..self.moved.len()];
+        self.moved.copy_from_slice(before);
         let contact_done = Instant::now();
         self.solve_blocks()?;
         let solved = Instant::now();
@@ -127,9 +131,10 @@ impl Simulation {
         Ok(report)
     }
 
-    /// f ← gravity, tractions and forces at the time at which the integrator takes them.
+    /// f ← gravity, tractions and forces, as their mean over a step about the time at which the integrator takes them.
     fn gather_loads(&mut self) {
-        self.loads.place(self.clock_s(self.weights.load_lead));
+        let lead = self.weights.load_lead;
+        self.loads.place(self.clock_s(lead - 0.5), self.clock_s(lead + 0.5));
         self.force.copy_from_slice(self.loads.total());
     }
 
@@ -315,7 +320,7 @@ impl Simulation {
     fn keep_books(&mut self, contact: ContactReport, iterations: Iterations) -> StepReport {
         let (mut force, mut torque) = (self.loads.force(), Vec3::zeros());
         self.ledger.watch_load(force.norm());
-        let (mut rate2, mut travel_m) = (0.0f64, 0.0f64);
+        let (mut rate2, mut speed_m_s) = (0.0f64, 0.0f64);
         let (mut friction_j, mut motion_j, mut load_j, mut damping_j) = (0.0, 0.0, 0.0, 0.0);
         for body in &self.bodies {
             let report = &body.report;
@@ -326,16 +331,38 @@ impl Simulation {
             load_j += report.load_work_j;
             damping_j += report.damping_work_j;
             rate2 = rate2.max(report.contact_rate2);
-            travel_m = travel_m.max(report.speed_m_s * self.part_s);
+            speed_m_s = speed_m_s.max(report.speed_m_s);
         }
-        let travel_ratio = travel_m / self.smallest_height_m;
+        let travel_ratio = speed_m_s * self.part_s / self.smallest_height_m;
         let h = self.part_s * rate2.sqrt();
         self.ledger.add_impulse(self.part_s, &self.weights, force, torque);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
+        self.book_work_of_contact(&contact);
+        self.ledger.watch_speeds(speed_m_s, self.unseen_m_s());
         let report = StepReport { contact, h, travel_ratio, iterations };
         self.ledger.watch(&report);
         self.advance_clock();
         report
+    }
+
+    /// Books what normal contact did in the step on both blocks of each pair, where that is what changed their energy.
+    fn book_work_of_contact(&mut self, contact: &ContactReport) {
+        let works = contact.contact_pairs > 0 && self.weights.forces_do_their_work();
+        let Some(model) = self.contact.as_mut().filter(|_| works) else { return };
+        for (moved, x) in self.moved.iter_mut().zip(&self.state.position) {
+            *moved = x - *moved;
+        }
+        let books = self.ledger.blocks();
+        model.each_work(&self.blocks, &self.moved, &mut |a, b, work_j| books.add_work(a, b, work_j));
+        books.close_step();
+    }
+
+    /// Speed that loads and motions bring and take back within the step, where nobody sees it [m/s].
+    fn unseen_m_s(&self) -> f64 {
+        let (now_s, end_s) = (self.clock_s(0.0), self.clock_s(1.0));
+        let motions = self.shapes.iter().flat_map(|shape| &shape.supports.motions);
+        let fastest = motions.map(|motion| motion.unseen_m_s(now_s, end_s)).fold(0.0, f64::max);
+        self.loads.unseen_m_s().max(fastest)
     }
 
     /// Where each node was when time began [m].
@@ -351,8 +378,8 @@ impl Simulation {
         self.state.inertia.fill(Inertia::default());
         self.state.step = 0;
         self.settling = false;
-        self.loads.place(0.0);
-        self.ledger = Ledger::new(&self.state.inertia);
+        self.loads.place(0.0, 0.0);
+        self.ledger = self.new_ledger();
     }
 
     /// A copy of all that changes.
@@ -375,6 +402,7 @@ impl Simulation {
             (state.internal_force.len(), internal),
             (state.inertia.len(), self.state.inertia.len()),
             (state.contact_force.len(), self.state.contact_force.len()),
+            (ledger.block_count(), self.blocks.len()),
         ] {
             if found != expected {
                 return Err(RestoreError { found, expected });

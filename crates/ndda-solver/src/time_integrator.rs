@@ -19,7 +19,7 @@ pub struct StepWeights {
     pub contact_lead: f64,
     /// lead₂.
     pub contact_lead_acceleration: f64,
-    /// Loads that change over time act as they are at start + lead · Δt.
+    /// Loads that change over time act by their mean over the Δt about start + lead · Δt.
     pub load_lead: f64,
     /// γ: the momentum changes by Δt [(1 − γ) f_old + γ f_new].
     pub new_force: f64,
@@ -33,6 +33,11 @@ impl StepWeights {
     /// Whether the arms of contact are those of the middle of the step, so that a block's momentum has no moment.
     pub fn contact_in_the_middle(&self) -> bool {
         self.contact_lead == 0.5 && self.mean_velocity
+    }
+
+    /// Whether the work of a force over a step is what it changes of kinetic energy.
+    pub fn forces_do_their_work(&self) -> bool {
+        self.mean_velocity && self.new_force == 1.0 && self.old_inertia == 0.0
     }
 
     /// M a at the end of a step that `force` drives from M a = `old` at its start; the same holds for torques.
@@ -107,5 +112,10 @@ pub trait TimeIntegrator: Send + Sync {
     /// Whether it was chosen to damp elastic modes, those that a step resolves included.
     fn damps_elasticity(&self) -> bool {
         false
+    }
+
+    /// Whether vibrations that a step does not resolve die out.
+    fn damps_vibrations(&self) -> bool {
+        self.damps_elasticity()
     }
 }

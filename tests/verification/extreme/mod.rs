@@ -5,8 +5,10 @@ mod concave;
 mod initial_overlap;
 mod label;
 mod labelled;
+mod lighter;
 mod locking;
 mod long_runs;
+mod pulse;
 mod ramp;
 mod scale;
 mod shear_penalty;
@@ -16,7 +18,9 @@ mod springs;
 mod stability;
 mod touching;
 mod tunnelling;
+mod turning;
 mod unlike_neighbours;
+mod vibration;
 
 use std::path::Path;
 

@@ -1,0 +1,256 @@
+//! The books of single blocks: what contact gives the lighter one of each pair, and how far a turn is behind.
+//!
+//! Energy of all blocks together hides the error of a small one. Contact of a pair brings energy from nowhere where the
+//! work of its forces on both blocks is not what its potential energy loses. The lighter block feels it: where two meet at v,
+//! an error of energy δE is one of its speed δv = δE/(m v), whatever the other weighs.
+
+use ndda_mesh::BlockId;
+use serde::{Deserialize, Serialize};
+
+/// What the books must know of a block.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BlockScale {
+    /// Mass [kg].
+    pub mass_kg: f64,
+    /// Whether supports hold it, so that no contact moves it as a whole.
+    pub is_held: bool,
+    /// Farthest node from the mass centre [m].
+    pub radius_m: f64,
+    /// Smallest height of its tetrahedra [m].
+    pub height_m: f64,
+}
+
+impl BlockScale {
+    /// What of two blocks is the lighter one, held ones being heavier than all.
+    fn weight(&self) -> f64 {
+        if self.is_held { f64::INFINITY } else { self.mass_kg }
+    }
+}
+
+/// The books of one block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Book {
+    /// Work of contact with heavier blocks, on both [J].
+    work_j: f64,
+    /// Energy of contact with heavier blocks at the last sample [J].
+    contact_j: f64,
+    /// Work and energy at the first sample [J].
+    start_j: f64,
+    largest_contact_j: f64,
+    /// The work, times m over the reduced mass of each pair [J], and its largest so far.
+    swing_j: f64,
+    largest_swing_j: f64,
+    /// Farthest that it fell below that: ½ m v² for the speed v at which contact met its block.
+    met_j: f64,
+    lasting_gain_j: f64,
+    lasting_loss_j: f64,
+    /// Angle by which it is not where its spin would have taken it [rad].
+    lag_rad: f64,
+    /// How fast that grew at the last sample [rad/s].
+    lag_rate_rad_s: f64,
+    /// Elastic energy at the first sample, and at the last [J].
+    strain_start_j: f64,
+    strain_j: f64,
+}
+
+/// The worst of all blocks, with the block that it is of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Worst {
+    /// The value.
+    pub value: f64,
+    /// Index of the block.
+    pub block: u32,
+}
+
+impl Worst {
+    fn take(&mut self, value: f64, block: usize) {
+        if value > self.value {
+            *self = Self { value, block: block as u32 };
+        }
+    }
+}
+
+/// The books of all blocks.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BlockBooks {
+    scales: Vec<BlockScale>,
+    books: Vec<Book>,
+    begun: bool,
+    /// Largest error of a velocity for being turned too little [m/s].
+    turned_m_s: f64,
+}
+
+impl BlockBooks {
+    /// Empty books.
+    pub fn new(scales: Vec<BlockScale>) -> Self {
+        let books = vec![Book::default(); scales.len()];
+        Self { scales, books, begun: false, turned_m_s: 0.0 }
+    }
+
+    /// Number of blocks.
+    pub fn len(&self) -> usize {
+        self.books.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.books.is_empty()
+    }
+
+    fn lighter(&self, a: BlockId, b: BlockId) -> usize {
+        let (first, second) = (a.min(b).index(), a.max(b).index());
+        if self.scales[second].weight() < self.scales[first].weight() { second } else { first }
+    }
+
+    /// Books work of contact between two blocks, on both [J].
+    pub fn add_work(&mut self, a: BlockId, b: BlockId, work_j: f64) {
+        let lighter = self.lighter(a, b);
+        let heavier = if lighter == a.index() { b.index() } else { a.index() };
+        let book = &mut self.books[lighter];
+        book.work_j += work_j;
+        book.swing_j += work_j * (1.0 + self.scales[lighter].mass_kg / self.scales[heavier].weight());
+    }
+
+    /// Keeps how fast contact has met each block, once all work of a step is booked.
+    pub fn close_step(&mut self) {
+        for book in &mut self.books {
+            book.largest_swing_j = book.largest_swing_j.max(book.swing_j);
+            book.met_j = book.met_j.max(book.largest_swing_j - book.swing_j);
+        }
+    }
+
+    /// Forgets the energies of contact before new ones are noted.
+    pub fn clear_energies(&mut self) {
+        self.books.iter_mut().for_each(|book| book.contact_j = 0.0);
+    }
+
+    /// Notes the energy of contact between two blocks [J].
+    pub fn add_energy(&mut self, a: BlockId, b: BlockId, energy_j: f64) {
+        let lighter = self.lighter(a, b);
+        self.books[lighter].contact_j += energy_j;
+    }
+
+    /// Balances work against energies; `comes_back` is the part of contact's energy that explicit steps hold back.
+    pub fn balance(&mut self, comes_back: f64) {
+        for book in &mut self.books {
+            let sum_j = book.work_j + book.contact_j;
+            if !self.begun {
+                book.start_j = sum_j;
+            }
+            let (error_j, back_j) = (sum_j - book.start_j, comes_back * book.contact_j);
+            book.largest_contact_j = book.largest_contact_j.max(book.contact_j);
+            book.lasting_gain_j = book.lasting_gain_j.max(error_j - back_j);
+            book.lasting_loss_j = book.lasting_loss_j.max(-error_j - back_j);
+        }
+        self.begun = true;
+    }
+
+    /// Notes the elastic energy of a block [J].
+    pub fn note_strain(&mut self, block: BlockId, energy_j: f64) {
+        let book = &mut self.books[block.index()];
+        book.strain_j = energy_j.abs();
+        if !self.begun {
+            book.strain_start_j = book.strain_j;
+        }
+    }
+
+    /// Square of the speed at which a block would have the elastic energy that it began with or, where vibrations die out, that it has
+    /// now [m²/s²].
+    pub fn strain_speed2(&self, block: BlockId, die_out: bool) -> f64 {
+        let (book, scale) = (&self.books[block.index()], &self.scales[block.index()]);
+        let borne_j = if die_out { book.strain_start_j.max(book.strain_j) } else { book.strain_start_j };
+        2.0 * borne_j / scale.mass_kg
+    }
+
+    /// Books how far a block's turn falls behind, `since_s` after the last sample, at a spin [rad/s] and a rate [rad/s] now.
+    pub fn add_lag(&mut self, block: BlockId, since_s: f64, spin_rad_s: f64, rate_rad_s: f64) {
+        let (book, scale) = (&mut self.books[block.index()], &self.scales[block.index()]);
+        book.lag_rad += 0.5 * since_s * (book.lag_rate_rad_s + rate_rad_s);
+        book.lag_rate_rad_s = rate_rad_s;
+        self.turned_m_s = self.turned_m_s.max(book.lag_rad * spin_rad_s * scale.radius_m);
+    }
+
+    /// Largest lasting gain and loss of a lighter block, over ½ m v V; what rounding may have done does not count. V is the largest speed of
+    /// the run, v that at which contact met the block. Where contact stores more than ½ m V², that is what counts.
+    pub fn lasting(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
+        let (mut gain, mut loss) = (Worst::default(), Worst::default());
+        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
+            let moving_j = 0.5 * scale.mass_kg * speed_m_s * speed_m_s;
+            let met_j = book.met_j.max(book.largest_contact_j);
+            let energy_j = if met_j < moving_j { (met_j * moving_j).sqrt() } else { met_j };
+            let over =
+                |error_j: f64| if error_j > rounding_j { (error_j - rounding_j) / energy_j } else { 0.0 };
+            gain.take(over(book.lasting_gain_j), block);
+            loss.take(over(book.lasting_loss_j), block);
+        }
+        (gain, loss)
+    }
+
+    /// Largest error of a place for being turned too little, over the smallest height of the block's tetrahedra.
+    pub fn turned_over_height(&self) -> Worst {
+        let mut worst = Worst::default();
+        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
+            worst.take(book.lag_rad * scale.radius_m / scale.height_m, block);
+        }
+        worst
+    }
+
+    /// Largest error of a velocity for being turned too little [m/s].
+    pub fn turned_m_s(&self) -> f64 {
+        self.turned_m_s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn books() -> BlockBooks {
+        let scale = |mass_kg, is_held| BlockScale { mass_kg, is_held, radius_m: 2.0, height_m: 0.5 };
+        BlockBooks::new(vec![scale(1e6, false), scale(2.0, false), scale(1.0, true)])
+    }
+
+    #[test]
+    fn the_lighter_of_two_answers_for_what_contact_makes() {
+        let mut books = books();
+        books.balance(0.0);
+        // A block of 2 kg meets a held one at 5 m/s, and leaves it with 1 J more than it came with.
+        books.add_work(BlockId(1), BlockId(2), -25.0);
+        books.close_step();
+        books.add_work(BlockId(2), BlockId(1), 26.0);
+        books.close_step();
+        books.balance(0.0);
+        let (gain, loss) = books.lasting(10.0, 0.0);
+        assert_eq!((gain, loss), (Worst { value: 0.02, block: 1 }, Worst::default()));
+        assert_eq!(books.lasting(10.0, 0.5).0.value, 0.01);
+        assert_eq!(books.lasting(1.0, 0.0).0.value, 1.0 / 25.0);
+    }
+
+    #[test]
+    fn what_contact_stores_is_not_lost() {
+        let mut books = books();
+        books.balance(0.25);
+        books.add_work(BlockId(0), BlockId(1), -8.0);
+        books.add_energy(BlockId(0), BlockId(1), 8.0);
+        books.balance(0.25);
+        assert_eq!(books.lasting(1.0, 0.0), (Worst::default(), Worst::default()));
+        // 2 J are missing while 8 J are stored: that part comes back. Once it is over, they are lost.
+        books.add_work(BlockId(0), BlockId(1), -2.0);
+        books.balance(0.25);
+        assert_eq!(books.lasting(1.0, 0.0).1.value, 0.0);
+        books.clear_energies();
+        books.add_work(BlockId(0), BlockId(1), 8.0);
+        books.balance(0.25);
+        assert_eq!(books.lasting(1.0, 0.0).1, Worst { value: 0.25, block: 1 });
+    }
+
+    #[test]
+    fn a_lag_grows_by_the_mean_rate_and_moves_nodes_by_the_radius() {
+        let mut books = books();
+        books.add_lag(BlockId(1), 0.0, 3.0, 0.2);
+        books.add_lag(BlockId(1), 0.5, 3.0, 0.4);
+        let lag = 0.5 * 0.5 * 0.6;
+        assert_eq!(books.turned_over_height(), Worst { value: lag * 2.0 / 0.5, block: 1 });
+        assert!((books.turned_m_s() - lag * 6.0).abs() < 1e-15);
+    }
+}
