@@ -1,6 +1,7 @@
 """Which settings of which program each problem is run with, and with which steps.
 
-Each program has its fastest sensible settings, found by trying integrators, cones, solvers, stiffnesses and iterations."""
+Each program has its fastest sensible settings, found by trying integrators, cones, solvers,
+stiffnesses and iterations."""
 
 STIFF = {"solref": "{two_steps} 1"}
 ELASTIC = {"solimp": "0.99 0.99 0.001"}
@@ -35,7 +36,11 @@ PILE_OF_NDDA = [
 ]
 PILE = {
     "mujoco": [
-        ("implicitfast, CG to 1e-4, stiff", mujoco(STIFF, integrator="implicitfast", solver="CG", tolerance=1e-4), (4e-3, 2e-3, 1e-3)),
+        (
+            "implicitfast, CG to 1e-4, stiff",
+            mujoco(STIFF, integrator="implicitfast", solver="CG", tolerance=1e-4),
+            (4e-3, 2e-3, 1e-3),
+        ),
         ("implicitfast, Newton, stiff", mujoco(STIFF, integrator="implicitfast"), (2e-3,)),
     ],
     "rapier": [("4 iterations", {"iterations": 4}, (4e-3, 2e-3, 1e-3))],
@@ -66,7 +71,11 @@ CASES = {
         ],
         "mujoco": [
             ("implicitfast", mujoco({}, integrator="implicitfast"), (1e-2, 2e-3, 1e-3, 2e-4)),
-            ("discrete, time constant 5 ms", mujoco({"solref": "0.005 1"}, integrator="discrete"), (1e-2, 2e-3, 1e-3, 2e-4)),
+            (
+                "discrete, time constant 5 ms",
+                mujoco({"solref": "0.005 1"}, integrator="discrete"),
+                (1e-2, 2e-3, 1e-3, 2e-4),
+            ),
             ("Runge-Kutta", mujoco({}, integrator="RK4"), (1e-2, 2e-3, 1e-3, 2e-4)),
         ],
         "rapier": [
@@ -82,8 +91,16 @@ CASES = {
             ("elastic, element, k_n = 500 kPa", bodies("Elastic", 5e5, "Element"), (5e-3, 4e-3, 2e-3)),
         ],
         "mujoco": [
-            ("implicitfast, 1000/s², no damping", mujoco({"solref": "-1000 0", **ELASTIC}, integrator="implicitfast"), (1e-2, 1e-3, 1e-4)),
-            ("Runge-Kutta, 1000/s², no damping", mujoco({"solref": "-1000 0", **ELASTIC}, integrator="RK4"), (1e-2, 1e-3, 1e-4)),
+            (
+                "implicitfast, 1000/s², no damping",
+                mujoco({"solref": "-1000 0", **ELASTIC}, integrator="implicitfast"),
+                (1e-2, 1e-3, 1e-4),
+            ),
+            (
+                "Runge-Kutta, 1000/s², no damping",
+                mujoco({"solref": "-1000 0", **ELASTIC}, integrator="RK4"),
+                (1e-2, 1e-3, 1e-4),
+            ),
         ],
         "rapier": [("4 iterations, restitution 1", {"iterations": 4}, (1e-2, 1e-3, 1e-4))],
         "yade": [
@@ -91,9 +108,21 @@ CASES = {
             ("k_n = 100 MPa/m", {"young": 1e8, "shear": 0.5}, (1e-3, 1e-4, 2e-5)),
         ],
         "calculix": [
-            ("implicit, one brick per cube, node to surface, 2 MPa/m", {"cells": 1, "pair": "NODE TO SURFACE", "slope_pa_m": 2e6}, (4e-3, 2e-3, 1e-3)),
-            ("implicit, one brick per cube, surface to surface, 2 MPa/m", {"cells": 1, "pair": "SURFACE TO SURFACE", "slope_pa_m": 2e6}, (2e-3, 1e-3)),
-            ("implicit, 2³ bricks per cube, node to surface, 2 MPa/m", {"cells": 2, "pair": "NODE TO SURFACE", "slope_pa_m": 2e6}, (2e-3,)),
+            (
+                "implicit, one brick per cube, node to surface, 2 MPa/m",
+                {"cells": 1, "pair": "NODE TO SURFACE", "slope_pa_m": 2e6},
+                (4e-3, 2e-3, 1e-3),
+            ),
+            (
+                "implicit, one brick per cube, surface to surface, 2 MPa/m",
+                {"cells": 1, "pair": "SURFACE TO SURFACE", "slope_pa_m": 2e6},
+                (2e-3, 1e-3),
+            ),
+            (
+                "implicit, 2³ bricks per cube, node to surface, 2 MPa/m",
+                {"cells": 2, "pair": "NODE TO SURFACE", "slope_pa_m": 2e6},
+                (2e-3,),
+            ),
         ],
     },
     "pile_125": {"ndda": PILE_OF_NDDA, **PILE},

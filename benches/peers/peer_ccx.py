@@ -1,37 +1,45 @@
-"""The collision of problems.py in CalculiX: peer_ccx.py PROBLEM.json SETTING.json runs ccx and prints its state at the end.
+"""The collision of problems.py in CalculiX: peer_ccx.py PROBLEM.json SETTING.json prints its state at the end.
 
 Each cube is a mesh of eight-node bricks; contact is a penalty between faces, pressure = slope · overlap."""
+
 import json
-import os
 import re
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
+
+import timed
 
 YOUNG_PA, POISSON = 20e9, 0.25
 
 
 def main():
-    problem, setting = (json.load(open(path)) for path in sys.argv[1:3])
+    problem, setting = (json.loads(Path(path).read_text()) for path in sys.argv[1:3])
     grids = [grid(body, setting["cells"], first) for first, body in bodies_with_first_nodes(problem, setting["cells"])]
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "run.inp").write_text(deck(problem, setting, grids))
-        wall = time.perf_counter()
-        run = subprocess.Popen(["ccx", "run"], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-        said = run.stdout.read()
-        _, status, usage = os.wait4(run.pid, 0)
-        wall_s, cpu_s = time.perf_counter() - wall, usage.ru_utime + usage.ru_stime
+        ended = timed.run(["ccx", "run"], cwd=folder)
         printed = Path(folder, "run.dat").read_text() if Path(folder, "run.dat").exists() else ""
     velocities = last_velocities(printed, problem["end_s"])
-    if status or not velocities:
-        sys.exit(f"ccx stopped: {said[-400:]}")
-    print(json.dumps({
-        "version": version(), "steps": round(problem["end_s"] / setting["step_s"]), "step_cpu_s": cpu_s, "step_wall_s": wall_s,
-        "process_cpu_s": cpu_s, "process_wall_s": wall_s, "energies_j": [], "corners_m": [], "centres_m": [],
-        "velocities_m_s": [mean_velocity(nodes, weights, velocities) for nodes, weights, _ in grids],
-    }))
+    if ended.code or not velocities:
+        sys.exit(f"ccx stopped: {ended.out[-400:]}")
+    print(
+        json.dumps(
+            {
+                "version": version(),
+                "steps": round(problem["end_s"] / setting["step_s"]),
+                "step_cpu_s": ended.cpu_s,
+                "step_wall_s": ended.wall_s,
+                "cpu_s": ended.cpu_s,
+                "wall_s": ended.wall_s,
+                "energies_j": [],
+                "corners_m": [],
+                "centres_m": [],
+                "velocities_m_s": [mean_velocity(nodes, weights, velocities) for nodes, weights, _ in grids],
+            }
+        )
+    )
 
 
 def version():
@@ -52,7 +60,9 @@ def grid(body, cells, first):
     around = ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1))
     bricks = [
         [number[i + a, j + b, k + c] for a, b, c in around]
-        for k in range(cells) for j in range(cells) for i in range(cells)
+        for k in range(cells)
+        for j in range(cells)
+        for i in range(cells)
     ]
     return nodes, weights, bricks
 
@@ -66,30 +76,49 @@ def share(place, cells):
 
 
 def deck(problem, setting, grids):
-    lines, first = [], 1
-    for name, (nodes, _, bricks) in zip("AB", grids):
-        lines += [f"*NODE, NSET=N{name}"] + [f"{n}, {p[0]:.17g}, {p[1]:.17g}, {p[2]:.17g}" for n, p in nodes.items()]
-        lines += [f"*ELEMENT, TYPE=C3D8, ELSET=E{name}"]
-        lines += [f"{first + i}, {', '.join(map(str, brick))}" for i, brick in enumerate(bricks)]
-        # Faces of a brick: S4 looks to +x, S6 to -x.
-        column = 1 if name == "B" else setting["cells"]
-        lines += [f"*SURFACE, NAME=S{name}"]
-        lines += [
-            f"{first + i}, {'S6' if name == 'B' else 'S4'}"
-            for i in range(len(bricks)) if i % setting["cells"] + 1 == column
-        ]
-        first += len(bricks)
-    bodies, steps = problem["bodies"], round(problem["end_s"] / setting["step_s"])
-    lines += [
-        "*MATERIAL, NAME=ROCK", "*ELASTIC", f"{YOUNG_PA:g}, {POISSON:g}", "*DENSITY", f"{problem['density_kg_m3']:g}",
-        "*SOLID SECTION, ELSET=EA, MATERIAL=ROCK", "*SOLID SECTION, ELSET=EB, MATERIAL=ROCK",
-        "*SURFACE INTERACTION, NAME=TOUCH", "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR", f"{setting['slope_pa_m']:g}",
-        f"*CONTACT PAIR, INTERACTION=TOUCH, TYPE={setting['pair']}", "SA, SB",
-        "*INITIAL CONDITIONS, TYPE=VELOCITY", f"NA, 1, {bodies[0]['velocity_m_s'][0]:g}", f"NB, 1, {bodies[1]['velocity_m_s'][0]:g}",
-        "*STEP, NLGEOM, INC=1000000", "*DYNAMIC, DIRECT", f"{setting['step_s']:g}, {problem['end_s']:g}",
-        f"*NODE PRINT, NSET=NA, FREQUENCY={steps}", "V", f"*NODE PRINT, NSET=NB, FREQUENCY={steps}", "V", "*END STEP",
-    ]
-    return "\n".join(lines) + "\n"
+    (speed_a, *_), (speed_b, *_) = (body["velocity_m_s"] for body in problem["bodies"])
+    steps = round(problem["end_s"] / setting["step_s"])
+    # Faces of a brick: S4 looks to +x, S6 to -x.
+    cells, bricks = setting["cells"], len(grids[0][2])
+    cubes = cube_lines("A", grids[0], 1, "S4", range(cells - 1, bricks, cells))
+    cubes += cube_lines("B", grids[1], 1 + bricks, "S6", range(0, bricks, cells))
+    return (
+        "\n".join(cubes)
+        + f"""
+*MATERIAL, NAME=ROCK
+*ELASTIC
+{YOUNG_PA:g}, {POISSON:g}
+*DENSITY
+{problem["density_kg_m3"]:g}
+*SOLID SECTION, ELSET=EA, MATERIAL=ROCK
+*SOLID SECTION, ELSET=EB, MATERIAL=ROCK
+*SURFACE INTERACTION, NAME=TOUCH
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+{setting["slope_pa_m"]:g}
+*CONTACT PAIR, INTERACTION=TOUCH, TYPE={setting["pair"]}
+SA, SB
+*INITIAL CONDITIONS, TYPE=VELOCITY
+NA, 1, {speed_a:g}
+NB, 1, {speed_b:g}
+*STEP, NLGEOM, INC=1000000
+*DYNAMIC, DIRECT
+{setting["step_s"]:g}, {problem["end_s"]:g}
+*NODE PRINT, NSET=NA, FREQUENCY={steps}
+V
+*NODE PRINT, NSET=NB, FREQUENCY={steps}
+V
+*END STEP
+"""
+    )
+
+
+def cube_lines(name, grid, first, face, touching):
+    """Nodes, elements from number `first` on, and the surface that their `touching` ones have."""
+    nodes, _, bricks = grid
+    lines = [f"*NODE, NSET=N{name}", *(f"{n}, {p[0]:.17g}, {p[1]:.17g}, {p[2]:.17g}" for n, p in nodes.items())]
+    lines += [f"*ELEMENT, TYPE=C3D8, ELSET=E{name}"]
+    lines += [f"{first + i}, {', '.join(map(str, brick))}" for i, brick in enumerate(bricks)]
+    return [*lines, f"*SURFACE, NAME=S{name}", *(f"{first + i}, {face}" for i in touching)]
 
 
 def last_velocities(printed, end_s):

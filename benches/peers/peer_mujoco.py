@@ -1,14 +1,16 @@
 """A problem of problems.py in MuJoCo: peer_mujoco.py PROBLEM.json SETTING.json prints its state at the end."""
+
 import json
 import sys
 import time
+from pathlib import Path
 
 import mujoco
 import numpy as np
 
 
 def main():
-    problem, setting = (json.load(open(path)) for path in sys.argv[1:3])
+    problem, setting = (json.loads(Path(path).read_text()) for path in sys.argv[1:3])
     model = mujoco.MjModel.from_xml_string(scene(problem, setting))
     data = mujoco.MjData(model)
     for number, body in enumerate(problem["bodies"]):
@@ -25,22 +27,36 @@ def main():
         energies.append(energy(model, data))
     mujoco.mj_kinematics(model, data)
     bodies = range(1, model.nbody)
-    print(json.dumps({
-        "version": mujoco.__version__, "steps": steps, "step_cpu_s": cpu_s, "step_wall_s": wall_s, "energies_j": energies,
-        "corners_m": [corners(data, number, body) for number, body in zip(bodies, problem["bodies"])],
-        "centres_m": [data.xipos[number].tolist() for number in bodies],
-        "velocities_m_s": [data.qvel[6 * n : 6 * n + 3].tolist() for n in range(model.nbody - 1)],
-    }))
+    print(
+        json.dumps(
+            {
+                "version": mujoco.__version__,
+                "steps": steps,
+                "step_cpu_s": cpu_s,
+                "step_wall_s": wall_s,
+                "energies_j": energies,
+                "corners_m": [corners(data, number, body) for number, body in zip(bodies, problem["bodies"])],
+                "centres_m": [data.xipos[number].tolist() for number in bodies],
+                "velocities_m_s": [data.qvel[6 * n : 6 * n + 3].tolist() for n in range(model.nbody - 1)],
+            }
+        )
+    )
 
 
 def scene(problem, setting):
-    """MJCF; half-spaces for supports where a program may take them. `{two_steps}` stands for the stiffest time constant of contact."""
+    """MJCF; half-spaces for supports where a program may take them.
+
+    `{two_steps}` stands for the stiffest time constant of contact that MuJoCo advises."""
     assets, geoms, bodies = [], [], []
     geom = {name: value.format(two_steps=2 * setting["step_s"]) for name, value in setting["geom"].items()}
-    surface = f'friction="{problem["friction"]:.17g} 0 0" condim="{3 if problem["friction"] else 1}" ' + attributes(geom)
+    surface = f'friction="{problem["friction"]:.17g} 0 0" condim="{3 if problem["friction"] else 1}" ' + attributes(
+        geom
+    )
     for support in problem["supports"]:
         if plane := support["plane"]:
-            geoms.append(f'<geom type="plane" size="0 0 1" pos="{row(plane["point_m"])}" zaxis="{row(plane["normal"])}" {surface}/>')
+            geoms.append(
+                f'<geom type="plane" size="0 0 1" pos="{row(plane["point_m"])}" zaxis="{row(plane["normal"])}" {surface}/>'
+            )
         else:
             centre, corners = hull(support["corners_m"])
             assets.append(f'<mesh name="{support["name"]}" vertex="{row(corners)}"/>')
@@ -53,8 +69,10 @@ def scene(problem, setting):
         bodies.append(f'<body pos="{row(body["centre_m"])}"><freejoint/>{geom}</body>')
     options = f'timestep="{setting["step_s"]}" gravity="{row(problem["gravity_m_s2"])}" {attributes(setting["option"])}'
     # Room for the contacts of a pile.
-    return (f'<mujoco><option {options}/><size memory="200M"/>'
-            f'<asset>{"".join(assets)}</asset><worldbody>{"".join(geoms)}{"".join(bodies)}</worldbody></mujoco>')
+    return (
+        f'<mujoco><option {options}/><size memory="200M"/>'
+        f"<asset>{''.join(assets)}</asset><worldbody>{''.join(geoms)}{''.join(bodies)}</worldbody></mujoco>"
+    )
 
 
 def hull(corners):

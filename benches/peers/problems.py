@@ -1,4 +1,5 @@
 """The problems that all programs are given, their answers, and how far off a program's result is."""
+
 import math
 
 DENSITY_KG_M3 = 2650.0
@@ -22,20 +23,37 @@ def problem(name):
 
 def frame(name, end_s, gravity, friction, supports, bodies, restitution=0.0, samples=1):
     return {
-        "name": name, "end_s": end_s, "gravity_m_s2": [0.0, 0.0, -gravity], "density_kg_m3": DENSITY_KG_M3,
-        "friction": friction, "restitution": restitution, "supports": supports, "bodies": bodies, "samples": samples,
+        "name": name,
+        "end_s": end_s,
+        "gravity_m_s2": [0.0, 0.0, -gravity],
+        "density_kg_m3": DENSITY_KG_M3,
+        "friction": friction,
+        "restitution": restitution,
+        "supports": supports,
+        "bodies": bodies,
+        "samples": samples,
     }
 
 
 def cube(name, centre, velocity=(0.0, 0.0, 0.0)):
     corners = [[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
-    return {"name": name, "centre_m": list(centre), "corners_m": corners, "half_m": [0.5, 0.5, 0.5], "velocity_m_s": list(velocity)}
+    return {
+        "name": name,
+        "centre_m": list(centre),
+        "corners_m": corners,
+        "half_m": [0.5, 0.5, 0.5],
+        "velocity_m_s": list(velocity),
+    }
 
 
 def ramp():
     """A wedge whose slope of 45° falls towards +x; a program may take the half-space under the slope instead."""
     corners = [[x, y, z] for x, z in ((0.0, 0.0), (1.5, 0.0), (0.0, 1.5)) for y in (-0.3, 0.3)]
-    return {"name": "ramp", "corners_m": corners, "plane": {"point_m": [1.5, 0.0, 0.0], "normal": [ROOT_HALF, 0.0, ROOT_HALF]}}
+    return {
+        "name": "ramp",
+        "corners_m": corners,
+        "plane": {"point_m": [1.5, 0.0, 0.0], "normal": [ROOT_HALF, 0.0, ROOT_HALF]},
+    }
 
 
 def prism():
@@ -43,7 +61,9 @@ def prism():
     outline = ((0.1, -0.15), (0.1, 0.15), (-0.2, 0.0))
     base = (0.3 * ROOT_HALF, 0.0, 1.5 - 0.3 * ROOT_HALF)
     world = [
-        [base[0] + ROOT_HALF * (x + z), base[1] + y, base[2] + ROOT_HALF * (z - x)] for x, y in outline for z in (0.0, 0.06)
+        [base[0] + ROOT_HALF * (x + z), base[1] + y, base[2] + ROOT_HALF * (z - x)]
+        for x, y in outline
+        for z in (0.0, 0.06)
     ]
     centre = mean(world)
     corners = [[p - c for p, c in zip(point, centre)] for point in world]
@@ -56,8 +76,11 @@ def pile(name, edge):
     ridge = [[x, y, z] for x, z in ((-1.0, 0.0), (1.0, 0.0), (0.1, 0.7)) for y in (-wall, wall)]
     supports = [{"name": "ridge", "corners_m": ridge, "plane": None}]
     for side, point, normal in (
-        ("floor", (0, 0, 0), (0, 0, 1)), ("west", (-wall, 0, 0), (1, 0, 0)), ("east", (wall, 0, 0), (-1, 0, 0)),
-        ("south", (0, -wall, 0), (0, 1, 0)), ("north", (0, wall, 0), (0, -1, 0)),
+        ("floor", (0, 0, 0), (0, 0, 1)),
+        ("west", (-wall, 0, 0), (1, 0, 0)),
+        ("east", (wall, 0, 0), (-1, 0, 0)),
+        ("south", (0, -wall, 0), (0, 1, 0)),
+        ("north", (0, wall, 0), (0, -1, 0)),
     ):
         plane = {"point_m": [float(c) for c in point], "normal": [float(c) for c in normal]}
         supports.append({"name": side, "corners_m": None, "plane": plane})

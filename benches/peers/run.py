@@ -10,6 +10,7 @@ docs/evidence/peers/results.csv, where they replace those of the same problem an
 tables of docs/performance.md. ndda and Rapier are built by cargo, MuJoCo is installed under target/; YADE and CalculiX
 must be there (Debian: apt install yade calculix-ccx) or are left out.
 """
+
 import argparse
 import csv
 import json
@@ -23,6 +24,7 @@ import time
 from pathlib import Path
 
 import table
+import timed
 from cases import CASES
 from problems import NAMES, judge, problem
 
@@ -39,8 +41,27 @@ MODELS = {
     "calculix": "elastic finite elements, penalty between faces",
 }
 COLUMNS = (
-    "problem", "program", "version", "models", "setting", "step_s", "steps", "error", "error_what", "step_cpu_s", "step_wall_s", "cpu_s", "wall_s",
-    "height_m", "depth_m", "off_slope_m", "label", "runs", "load", "processor", "failed",
+    "problem",
+    "program",
+    "version",
+    "models",
+    "setting",
+    "step_s",
+    "steps",
+    "error",
+    "error_what",
+    "step_cpu_s",
+    "step_wall_s",
+    "cpu_s",
+    "wall_s",
+    "height_m",
+    "depth_m",
+    "off_slope_m",
+    "label",
+    "runs",
+    "load",
+    "processor",
+    "failed",
 )
 REPEATS = 5
 # No further run of a case that has taken this long together, and none that takes longer alone [s].
@@ -75,7 +96,10 @@ def prepare(program):
         return [sys.executable, HERE / "peer_ndda.py"]
     if program == "rapier":
         manifest, target = HERE / "rapier" / "Cargo.toml", TARGET / "peers" / "rapier"
-        subprocess.run(["cargo", "build", "--locked", "--release", "--quiet", "--manifest-path", manifest, "--target-dir", target], check=True)
+        subprocess.run(
+            ["cargo", "build", "--locked", "--release", "--quiet", "--manifest-path", manifest, "--target-dir", target],
+            check=True,
+        )
         return [target / "release" / "peer-rapier"]
     if program == "mujoco":
         return [mujoco_python(), HERE / "peer_mujoco.py"]
@@ -83,7 +107,11 @@ def prepare(program):
     if not shutil.which(needs):
         print(f"left out: {program}, for there is no `{needs}`; Debian: apt install yade calculix-ccx", file=sys.stderr)
         return None
-    return ["yade", "-j1", "-n", "-x", HERE / "peer_yade.py"] if program == "yade" else [sys.executable, HERE / "peer_ccx.py"]
+    return (
+        ["yade", "-j1", "-n", "-x", HERE / "peer_yade.py"]
+        if program == "yade"
+        else [sys.executable, HERE / "peer_ccx.py"]
+    )
 
 
 def mujoco_python():
@@ -95,52 +123,45 @@ def mujoco_python():
 
 
 def run_case(name, program, command, label, step_s, setting):
-    """The fastest run of a case, as a row of results; it is printed, too."""
-    given = problem(name)
-    row = {
-        "program": program, "problem": name, "setting": label, "step_s": step_s, "models": MODELS[program],
-        "load": round(os.getloadavg()[0], 2), "processor": processor(),
-    }
-    started, best, runs = time.monotonic(), None, 0
-    with tempfile.TemporaryDirectory() as folder:
-        paths = [Path(folder, "problem.json"), Path(folder, "setting.json")]
-        for path, value in zip(paths, (given, {"step_s": step_s, **setting})):
-            path.write_text(json.dumps(value))
-        while runs < REPEATS and time.monotonic() - started < ENOUGH_S:
-            state, failed = run_once([*command, *paths])
-            runs += 1
-            if failed:
-                row["failed"] = failed
-                break
-            if best is None or state["step_cpu_s"] < best["step_cpu_s"]:
-                best = state
-    if best:
-        row["error"], row["error_what"], figures = judge(given, best)
-        row |= figures | {"version": best.get("version") or rapier_version(), "runs": runs}
-        row |= {"cpu_s": best["process_cpu_s"], "wall_s": best["process_wall_s"]}
-        row |= {key: best.get(key) for key in ("steps", "step_cpu_s", "step_wall_s", "label")}
+    """The least times of a case, as a row of results; it is printed, too."""
+    given, load = problem(name), os.getloadavg()[0]
+    states, failed = run_often(command, given, {"step_s": step_s, **setting})
+    row = {"program": program, "problem": name, "setting": label, "step_s": step_s, "models": MODELS[program]}
+    row |= {"load": round(load, 2), "processor": processor(), "runs": len(states), "failed": failed}
+    if states:
+        row["error"], row["error_what"], figures = judge(given, states[0])
+        row |= figures | {"version": states[0].get("version") or rapier_version()}
+        row |= {key: states[0].get(key) for key in ("steps", "label")}
+        row |= {key: min(state[key] for state in states) for key in ("step_cpu_s", "step_wall_s", "cpu_s", "wall_s")}
     print(json.dumps(row), flush=True)
     return row
+
+
+def run_often(command, given, setting):
+    """What a program said of the end of each run, and why one failed, if so."""
+    started, states = time.monotonic(), []
+    with tempfile.TemporaryDirectory() as folder:
+        paths = [Path(folder, "problem.json"), Path(folder, "setting.json")]
+        for path, value in zip(paths, (given, setting)):
+            path.write_text(json.dumps(value))
+        while len(states) < REPEATS and time.monotonic() - started < ENOUGH_S:
+            state, failed = run_once([*command, *paths])
+            if failed:
+                return [], failed
+            states.append(state)
+    return states, None
 
 
 def run_once(command):
     """What a program says of its end, and why it did not, if so."""
     one_thread = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-    wall = time.perf_counter()
-    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
-        run = subprocess.Popen(["timeout", str(TOO_LONG_S), *command], stdout=out, stderr=err, env={**os.environ, **one_thread})
-        _, status, usage = os.wait4(run.pid, 0)
-        run.returncode = os.waitstatus_to_exitcode(status)
-        wall_s = time.perf_counter() - wall
-        out.seek(0), err.seek(0)
-        said = [line for line in out.read().splitlines() if line.startswith("{")]
-        if run.returncode or not said:
-            reason = " ".join(err.read().split())[-200:]
-            return None, f"longer than {TOO_LONG_S} s" if run.returncode == 124 else reason or f"exit code {run.returncode}"
-    state = json.loads(said[-1])
-    state.setdefault("process_cpu_s", usage.ru_utime + usage.ru_stime)
-    state.setdefault("process_wall_s", wall_s)
-    return state, None
+    ended = timed.run(["timeout", str(TOO_LONG_S), *command], env={**os.environ, **one_thread})
+    said = [line for line in ended.out.splitlines() if line.startswith("{")]
+    if ended.code == 124:
+        return None, f"longer than {TOO_LONG_S} s"
+    if ended.code or not said:
+        return None, " ".join(ended.err.split())[-200:] or f"exit code {ended.code}"
+    return {"cpu_s": ended.cpu_s, "wall_s": ended.wall_s} | json.loads(said[-1]), None
 
 
 def keep(name, program, rows):
@@ -166,7 +187,9 @@ def short(value):
 
 
 def rapier_version():
-    return re.search(r'name = "rapier3d-f64"\nversion = "([^"]+)"', (HERE / "rapier" / "Cargo.lock").read_text()).group(1)
+    return re.search(r'name = "rapier3d-f64"\nversion = "([^"]+)"', (HERE / "rapier" / "Cargo.lock").read_text()).group(
+        1
+    )
 
 
 def processor():

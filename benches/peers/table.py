@@ -1,12 +1,16 @@
 """The tables of docs/performance.md that come from the results of run.py."""
+
 import math
 import re
 
 BEGIN, END = "<!-- tables of the peers: begin -->", "<!-- tables of the peers: end -->"
 HEAD = "# Performance\n\n## Peers\n\n"
 TITLES = {
-    "ramp": "Ramp of 45°, φ = 0", "ramp_phi35": "Ramp of 45°, φ = 35°", "collision": "Collision of two cubes",
-    "pile_125": "Pile of 125 cubes", "pile_512": "Pile of 512 cubes",
+    "ramp": "Ramp of 45°, φ = 0",
+    "ramp_phi35": "Ramp of 45°, φ = 35°",
+    "collision": "Collision of two cubes",
+    "pile_125": "Pile of 125 cubes",
+    "pile_512": "Pile of 512 cubes",
 }
 TARGETS = {"ramp": (2e-3, 2e-4, 1e-6), "ramp_phi35": (1e-2, 2e-3, 5e-4), "collision": (1e-2, 1e-3, 1e-5)}
 
@@ -16,7 +20,11 @@ def write(page, rows, models, problems):
     text = page.read_text() if page.exists() else f"{HEAD}{BEGIN}\n{END}\n"
     parts = [section(problem, [row for row in rows if row["problem"] == problem], models) for problem in problems]
     loads = [float(row["load"]) for row in rows]
-    parts.append(f"{'; '.join(sorted({row['processor'] for row in rows}))}; load {min(loads):.1f} to {max(loads):.1f} meanwhile.\n" if loads else "")
+    parts.append(
+        f"{'; '.join(sorted({row['processor'] for row in rows}))}; load {min(loads):.1f} to {max(loads):.1f} meanwhile.\n"
+        if loads
+        else ""
+    )
     before, after = text.split(BEGIN)[0], text.split(END)[1]
     page.write_text(f"{before}{BEGIN}\n\n{chr(10).join(part for part in parts if part)}\n{END}{after}")
 
@@ -33,7 +41,9 @@ def time_to_error(problem, rows, models):
     if problem not in TARGETS:
         return ""
     lines = [
-        "| time [ms] to error, steps / whole program (over ndda's) | " + " | ".join(f"{target:.0e}".replace("e-0", "e-") for target in TARGETS[problem]) + " |",
+        "| time [ms] to error, steps / whole program (over ndda's) | "
+        + " | ".join(f"{target:.0e}".replace("e-0", "e-") for target in TARGETS[problem])
+        + " |",
         "|---" * (len(TARGETS[problem]) + 1) + "|",
     ]
     ours = [row for row in rows if row["program"] == "ndda"]
@@ -51,7 +61,9 @@ def fastest(rows, target):
 
 
 def as_fine(rows, row):
-    return [other for other in rows if other["setting"] == row["setting"] and float(other["step_s"]) <= float(row["step_s"])]
+    return [
+        other for other in rows if other["setting"] == row["setting"] and float(other["step_s"]) <= float(row["step_s"])
+    ]
 
 
 def accurate(row, target):
@@ -67,13 +79,24 @@ def times(row, ours):
     if not row:
         return "not reached"
     over = [f"{float(row[key]) / float(ours[key]):.2g}" for key in ("step_cpu_s", "cpu_s")] if ours else []
-    return f"{milliseconds(row['step_cpu_s'])} / {milliseconds(row['cpu_s'])}" + (f" ({' / '.join(over)})" if over else "")
+    return f"{milliseconds(row['step_cpu_s'])} / {milliseconds(row['cpu_s'])}" + (
+        f" ({' / '.join(over)})" if over else ""
+    )
 
 
 def settings(problem, rows):
     """Every case, program by program."""
     pile = problem.startswith("pile")
-    columns = ["program", "setting", "Δt [s]", "energy gained" if pile else "error", "steps, processor [ms]", "steps, wall [ms]", "program, processor [ms]", "wall [ms]"]
+    columns = [
+        "program",
+        "setting",
+        "Δt [s]",
+        "energy gained" if pile else "error",
+        "steps, processor [ms]",
+        "steps, wall [ms]",
+        "program, processor [ms]",
+        "wall [ms]",
+    ]
     columns += ["centre of mass at the end [m]", "deepest corner at the end [mm]", "label"] if pile else []
     lines = ["| " + " | ".join(columns) + " |", "|---" * len(columns) + "|"]
     for row in rows:
@@ -81,8 +104,12 @@ def settings(problem, rows):
         if row["failed"]:
             cells += [f"failed: {re.sub(r'[|]', '/', row['failed'])[-80:]}"] + [""] * (len(columns) - 4)
         else:
-            cells += [f"{float(row['error']):.1e}"] + [milliseconds(row[key]) for key in ("step_cpu_s", "step_wall_s", "cpu_s", "wall_s")]
-            cells += [f"{float(row['height_m']):.3f}", f"{1e3 * float(row['depth_m']):.1f}", row["label"]] if pile else []
+            cells += [f"{float(row['error']):.1e}"] + [
+                milliseconds(row[key]) for key in ("step_cpu_s", "step_wall_s", "cpu_s", "wall_s")
+            ]
+            cells += (
+                [f"{float(row['height_m']):.3f}", f"{1e3 * float(row['depth_m']):.1f}", row["label"]] if pile else []
+            )
         lines.append("| " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
