@@ -45,7 +45,8 @@ const TOP_FILES: [&str; 11] = [
     SUMMARY,
 ];
 const PROBE: &str = "ndda-probe.tmp";
-const PROBE_BYTES: usize = 1 << 20;
+// Enough to show a full disk; a mebibyte takes as long as the steps of a small scene.
+const PROBE_BYTES: usize = 1 << 17;
 
 /// Name of a frame's file: `frame_000012.vtu`.
 pub fn frame_name(number: usize) -> String {
@@ -62,7 +63,7 @@ impl OutputFolder {
     /// Makes the folder at `path` ready for a run; parents are created.
     ///
     /// With `force` the files of an earlier run are deleted: those that ndda writes, by name, and nothing else.
-    /// A mebibyte is written and removed again, so that a read-only folder or a full disk shows up now.
+    /// 128 kibibytes are written and removed again, so that a read-only folder or a full disk shows up now.
     ///
     /// # Errors
     /// [`WriteError::IsFile`] when `path` is a file; without `force`, [`WriteError::EarlierRun`] or
