@@ -28,6 +28,8 @@ FIGURES = ROOT / "benches" / "figures.json"
 PICTURES = ROOT / "docs" / "evidence" / "performance"
 # More instructions than this are a loss; the same source differs by less between machines with AVX2.
 TOLERANCE = 0.02
+# Names in a panel of a picture.
+NAMED = 10
 KINDS = {"instructions": "", "nanoseconds": " ns"}
 
 
@@ -229,9 +231,14 @@ def draw(records):
 
 
 def draw_crate(axes, crate, kind, records):
+    """All figures, of which those that have changed most are named."""
+    curves = {}
     for name in dict.fromkeys(name for record in records for name in record[kind].get(crate, {})):
         points = [(i, record[kind][crate][name]) for i, record in enumerate(records) if name in record[kind].get(crate, {})]
-        axes.plot([i for i, _ in points], [value / points[0][1] for _, value in points], ".-", linewidth=0.9, label=name)
+        curves[name] = [(i, value / points[0][1]) for i, value in points if points[0][1]]
+    by_change = sorted((name for name in curves if curves[name]), key=lambda name: -abs(curves[name][-1][1] - 1))
+    for k, name in enumerate(by_change):
+        axes.plot(*zip(*curves[name]), ".-", linewidth=0.9, label=name if k < NAMED else None)
     axes.set_xticks(range(len(records)), [record["commit"][:8] for record in records], rotation=30)
 
 

@@ -44,7 +44,7 @@ def finish(axes, title, x, y):
     axes.tick_params(which="both", labelsize=7)
     axes.grid(alpha=0.25)
     if axes.get_legend_handles_labels()[0]:
-        axes.legend(fontsize=7, frameon=False)
+        axes.legend(fontsize=7, frameon=False).set_in_layout(False)
 
 
 def save(figure, path):
