@@ -3,7 +3,7 @@
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::block_books::{BlockBooks, BlockScale, Worst};
+use crate::block_books::{BlockBooks, Worst};
 use crate::simulation::StepReport;
 use crate::step_control::StepCounts;
 use crate::time_integrator::{Inertia, StepWeights};
@@ -164,7 +164,7 @@ pub struct Ledger {
 impl Ledger {
     /// Empty books of some blocks; `inertia` is that of each at the start, supports and contact included, if the
     /// integrator asks for it.
-    pub fn new(inertia: &[Inertia], blocks: Vec<BlockScale>) -> Self {
+    pub fn new(inertia: &[Inertia], blocks: BlockBooks) -> Self {
         let worst = Invariants {
             linear_momentum: 0.0,
             angular_momentum: 0.0,
@@ -215,7 +215,7 @@ impl Ledger {
             unseen_m_s: 0.0,
             rounding_j: 0.0,
             last_sample_s: 0.0,
-            blocks: BlockBooks::new(blocks),
+            blocks,
             worst,
         }
     }
@@ -389,7 +389,7 @@ mod tests {
 
     #[test]
     fn energy_that_friction_took_is_not_a_loss() {
-        let mut ledger = Ledger::new(&[], Vec::new());
+        let mut ledger = Ledger::new(&[], BlockBooks::default());
         ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
         ledger.add_work(-4.0, 0.0, 0.0, 0.0);
         let sample = ledger.balance(Sample { kinetic_j: 5.0, ..Sample::default() }, true);
@@ -400,7 +400,7 @@ mod tests {
 
     #[test]
     fn what_explicit_contact_holds_back_is_not_lost_but_what_is_gone_after_it_is() {
-        let mut ledger = Ledger::new(&[], Vec::new());
+        let mut ledger = Ledger::new(&[], BlockBooks::default());
         ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
         ledger.watch(&StepReport { h: 1.0, ..StepReport::default() });
         ledger.balance(Sample { contact_j: 8.0, ..Sample::default() }, true);
@@ -413,7 +413,7 @@ mod tests {
 
     #[test]
     fn an_impulse_from_outside_explains_momentum() {
-        let mut ledger = Ledger::new(&[], Vec::new());
+        let mut ledger = Ledger::new(&[], BlockBooks::default());
         ledger.balance(Sample::default(), true);
         let weights = Midpoint { theta: 0.5 }.weights(0.5);
         ledger.add_impulse(0.5, &weights, Vec3::x(), Vec3::zeros());

@@ -8,6 +8,7 @@ use ndda_fem::loads::{add_gravity, add_traction};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use crate::batch::{Batch, ENOUGH_TOGETHER};
+use crate::block_books::BlockBooks;
 use crate::body::{BlockReport, Body, BodyKind, Motion};
 use crate::elastic_body::ElasticBody;
 use crate::end_contact::{EndContact, Newton};
@@ -104,7 +105,7 @@ impl Simulation {
             moved: vec![Vec3::zeros(); contact_nodes],
             contact_bodies: Vec::new(),
             contacts: None,
-            ledger: Ledger::new(&[], Vec::new()),
+            ledger: Ledger::new(&[], BlockBooks::default()),
             stages: StageTimes::default(),
             blocks,
             shapes,
@@ -232,7 +233,7 @@ impl Simulation {
     /// Empty books.
     pub(crate) fn new_ledger(&self) -> Ledger {
         let scales = self.blocks.ids().map(|block| self.shape(block).scale()).collect();
-        Ledger::new(&self.state.inertia, scales)
+        Ledger::new(&self.state.inertia, BlockBooks::new(scales, self.newton.is_some()))
     }
 
     /// M a = f − ∫Bᵀσ₀ at the start, contact being part of f.
