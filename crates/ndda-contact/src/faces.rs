@@ -23,7 +23,7 @@ use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
 use crate::candidates::{Candidates, Facet};
-use crate::facets::{FacetForce, mass_per_area, reduced, relative_motion};
+use crate::facets::{FacetForce, mass_per_area, reduced, relative_velocity};
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
 use crate::integrals::{FacetSums, Integrals, Touch};
 use crate::joints::Joints;
@@ -287,9 +287,7 @@ impl Patch {
             if pressure > 0.0 {
                 let hits = scene.integrals.hits_of(scene.touch(t));
                 let arm = forces[t as usize].center - self.center;
-                let facet = (scene.facet(t), scene.sums(t), hits);
-                let moving = (scene.input.blocks, scene.input.velocity);
-                let slip = relative_motion(facet, scene.candidates, moving);
+                let slip = relative_velocity(scene.facet(t), hits, scene.candidates, scene.input);
                 // A disc of the same area: mean r² = A/2π.
                 let radius2 = arm.norm_squared() + area / std::f64::consts::TAU;
                 self.radius2 += pressure / self.pressure * radius2;

@@ -97,8 +97,7 @@ impl FacetScene<'_> {
         penalty_pa: f64,
     ) -> FacetSlip {
         let in_basis = |v: &Vec3| [v.dot(&basis[0]), v.dot(&basis[1])];
-        let moving = (self.input.blocks, self.input.velocity);
-        let velocity = relative_motion((facet, sums, hits), self.candidates, moving) / sums.pressure;
+        let velocity = relative_velocity(facet, hits, self.candidates, self.input) / sums.pressure;
         FacetSlip {
             normal_n: penalty_pa * sums.pressure,
             area_m2: sums.area,
@@ -127,19 +126,27 @@ impl FacetScene<'_> {
     }
 }
 
-/// ∫ φ (v_contactor − v_target) dA of any vectors per node: of velocities that is the slip velocity at the centre of
-/// pressure, times the pressure.
+/// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.
+pub fn relative_velocity(facet: &Facet, hits: &[Hit], candidates: &Candidates, input: &ContactInput) -> Vec3 {
+    relative_motion(facet, hits, candidates, (input.blocks, input.velocity))
+}
+
+/// The same of any vectors per node.
 pub fn relative_motion(
-    (facet, sums, hits): (&Facet, &FacetSums, &[Hit]),
+    facet: &Facet,
+    hits: &[Hit],
     candidates: &Candidates,
-    (blocks, of_node): (&BlockSet, &[Vec3]),
+    (blocks, velocity): (&BlockSet, &[Vec3]),
 ) -> Vec3 {
     let triangle = blocks.triangles[facet.triangle.index()];
-    let mut sum: Vec3 = triangle.iter().zip(sums.weights).map(|(node, w)| w * of_node[node.index()]).sum();
+    let mut sum = Vec3::zeros();
     for hit in hits {
         let tet = blocks.tets[candidates.tet_of(hit.pair).index()];
+        for (node, w) in triangle.iter().zip(hit.moments.pressure) {
+            sum += w * velocity[node.index()];
+        }
         for (node, w) in tet.iter().zip(hit.moments.target_pressure) {
-            sum -= w * of_node[node.index()];
+            sum -= w * velocity[node.index()];
         }
     }
     sum

@@ -303,9 +303,8 @@ impl ContactModel for PotentialContact {
         let touching = integrals.touching();
         let facet_of = |touch: &Touch| &candidates.facets[touch.facet as usize];
         let work_of = |(t, work_j): (usize, &mut f64)| {
-            let touch = &touching[t];
-            let facet = (facet_of(touch), &touch.sums, integrals.hits_of(touch));
-            *work_j = forces[t].push.dot(&relative_motion(facet, candidates, (blocks, moved)));
+            let (facet, hits) = (facet_of(&touching[t]), integrals.hits_of(&touching[t]));
+            *work_j = forces[t].push.dot(&relative_motion(facet, hits, candidates, (blocks, moved)));
         };
         self.work_of_facet.resize(touching.len(), 0.0);
         let works = &mut self.work_of_facet;
