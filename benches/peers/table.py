@@ -2,9 +2,12 @@
 
 import math
 import re
+import sys
+from pathlib import Path
 
-BEGIN, END = "<!-- tables of the peers: begin -->", "<!-- tables of the peers: end -->"
-HEAD = "# Performance\n\n## Peers\n\n"
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs"))
+from error_and_time import between, table
+
 TITLES = {
     "ramp": "Ramp of 45°, φ = 0",
     "ramp_phi35": "Ramp of 45°, φ = 35°",
@@ -16,43 +19,35 @@ TARGETS = {"ramp": (2e-3, 2e-4, 1e-6), "ramp_phi35": (1e-2, 2e-3, 5e-4), "collis
 
 
 def write(page, rows, models, problems):
-    """Puts the tables between their marks; makes the page where there is none."""
-    text = page.read_text() if page.exists() else f"{HEAD}{BEGIN}\n{END}\n"
+    """Puts the tables between their marks."""
     parts = [section(problem, [row for row in rows if row["problem"] == problem], models) for problem in problems]
     loads = [float(row["load"]) for row in rows]
-    parts.append(
-        f"{'; '.join(sorted({row['processor'] for row in rows}))}; load {min(loads):.1f} to {max(loads):.1f} meanwhile.\n"
-        if loads
-        else ""
-    )
-    before, after = text.split(BEGIN)[0], text.split(END)[1]
-    page.write_text(f"{before}{BEGIN}\n\n{chr(10).join(part for part in parts if part)}\n{END}{after}")
+    if loads:
+        parts.append(f"{'; '.join(sorted({row['processor'] for row in rows}))}; load {min(loads):.1f} to {max(loads):.1f} meanwhile.")
+    page.write_text(between(page.read_text(), "the peers", "\n\n".join(part for part in parts if part)))
 
 
 def section(problem, rows, models):
     if not rows:
         return ""
     tables = [time_to_error(problem, rows, models), settings(problem, rows)]
-    return f"### {TITLES[problem]}\n\n" + "\n".join(table for table in tables if table)
+    return "\n\n".join([f"### {TITLES[problem]}", *(made for made in tables if made)])
 
 
 def time_to_error(problem, rows, models):
     """Least processor time of the steps to an error that all shorter steps of the setting keep, too."""
     if problem not in TARGETS:
         return ""
-    lines = [
-        "| time [ms] to error, steps / whole program (over ndda's) | "
-        + " | ".join(f"{target:.0e}".replace("e-0", "e-") for target in TARGETS[problem])
-        + " |",
-        "|---" * (len(TARGETS[problem]) + 1) + "|",
-    ]
+    header = ["time [ms] to error, steps / whole program (over ndda's)"]
+    header += [f"{target:.0e}".replace("e-0", "e-") for target in TARGETS[problem]]
+    lines = []
     ours = [row for row in rows if row["program"] == "ndda"]
     for program in models:
         own = [row for row in rows if row["program"] == program]
         if own:
             reached = [(fastest(own, target), fastest(ours, target)) for target in TARGETS[problem]]
-            lines.append(f"| {program} {version(own)} | " + " | ".join(times(*pair) for pair in reached) + " |")
-    return "\n".join(lines) + "\n"
+            lines.append([f"{program} {version(own)}", *(times(*pair) for pair in reached)])
+    return table(header, lines)
 
 
 def fastest(rows, target):
@@ -98,7 +93,7 @@ def settings(problem, rows):
         "wall [ms]",
     ]
     columns += ["centre of mass at the end [m]", "deepest corner at the end [mm]", "label"] if pile else []
-    lines = ["| " + " | ".join(columns) + " |", "|---" * len(columns) + "|"]
+    lines = []
     for row in rows:
         cells = [row["program"], row["setting"], f"{float(row['step_s']):g}"]
         if row["failed"]:
@@ -110,8 +105,8 @@ def settings(problem, rows):
             cells += (
                 [f"{float(row['height_m']):.3f}", f"{1e3 * float(row['depth_m']):.1f}", row["label"]] if pile else []
             )
-        lines.append("| " + " | ".join(cells) + " |")
-    return "\n".join(lines) + "\n"
+        lines.append(cells)
+    return table(columns, lines)
 
 
 def milliseconds(seconds):

@@ -34,6 +34,11 @@ pub struct BlockFaces {
 }
 
 impl BlockFaces {
+    /// The faces of all blocks.
+    pub fn of_all(blocks: &BlockSet) -> Vec<Self> {
+        blocks.ids().map(|block| Self::new(blocks, block)).collect()
+    }
+
     /// The faces of a block.
     pub fn new(blocks: &BlockSet, block: BlockId) -> Self {
         let triangles = &blocks.triangles[blocks.triangles_of(block)];

@@ -125,14 +125,13 @@ struct Patch {
 }
 
 impl Faces {
-    /// Finds the faces of all blocks; once per set of blocks.
-    pub fn fit(&mut self, blocks: &BlockSet) {
+    /// Takes the faces of all blocks; once per set of blocks.
+    pub fn fit(&mut self, blocks: &BlockSet, surfaces: &[BlockFaces]) {
         self.face_of.clear();
         let mut next = 0;
-        for block in blocks.ids() {
-            let faces = BlockFaces::new(blocks, block).of_triangle;
-            let surfaces = &blocks.triangle_surface[blocks.triangles_of(block)];
-            let parts: Vec<_> = faces.into_iter().zip(surfaces).collect();
+        for (block, BlockFaces { of_triangle, .. }) in blocks.ids().zip(surfaces) {
+            let named = &blocks.triangle_surface[blocks.triangles_of(block)];
+            let parts: Vec<_> = of_triangle.iter().zip(named).collect();
             let mut distinct = parts.clone();
             distinct.sort_unstable();
             distinct.dedup();

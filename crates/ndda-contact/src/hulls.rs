@@ -38,16 +38,15 @@ pub struct Hulls {
 }
 
 impl Hulls {
-    /// Finds the faces of all blocks; once per set of blocks.
-    pub fn fit(&mut self, blocks: &BlockSet) {
+    /// Takes the faces of all blocks; once per set of blocks.
+    pub fn fit(&mut self, blocks: &BlockSet, surfaces: &[BlockFaces]) {
         self.faces.clear();
         self.start.clear();
         self.start.push(0);
-        for block in blocks.ids() {
-            let surface = BlockFaces::new(blocks, block);
+        for (block, surface) in blocks.ids().zip(surfaces) {
             if surface.convex && surface.planes.len() <= MOST_FACES {
                 let faces = 0..surface.planes.len();
-                self.faces.extend(faces.map(|face| largest_of(blocks, block, &surface, face)));
+                self.faces.extend(faces.map(|face| largest_of(blocks, block, surface, face)));
             }
             self.start.push(self.faces.len() as u32);
         }

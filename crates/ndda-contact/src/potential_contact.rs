@@ -5,6 +5,7 @@ mod plan;
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use rayon::prelude::*;
 
+use crate::block_faces::BlockFaces;
 use crate::bonds;
 use crate::candidates::Candidates;
 use crate::element_potential::ElementPotential;
@@ -114,10 +115,11 @@ impl PotentialContact {
         let tets = input.blocks.tets.len();
         if self.field.as_ref().is_none_or(|(known, _)| *known != tets) {
             let field = self.potential.field(input.blocks);
-            self.hulls.fit(input.blocks);
+            let surfaces = BlockFaces::of_all(input.blocks);
+            self.hulls.fit(input.blocks, &surfaces);
             self.candidates.numbers_overlaps = matches!(field, Ok(Field::Element));
             if self.needs_bodies() {
-                self.faces.fit(input.blocks);
+                self.faces.fit(input.blocks, &surfaces);
             }
             self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
         }
@@ -169,11 +171,7 @@ impl PotentialContact {
         let place = |(t, force): (usize, &mut FacetForce)| {
             *force = scene.force(&touching[t], integrals.hits_of(&touching[t]), penalties[t]);
         };
-        if touching.len() > GRAIN_FACETS {
-            self.forces.par_iter_mut().enumerate().with_min_len(GRAIN_FACETS / 2).for_each(place);
-        } else {
-            self.forces.iter_mut().enumerate().for_each(place);
-        }
+        for_each_facet(&mut self.forces, place);
     }
 
     /// Takes over what facets remember; what did not touch is forgotten.
@@ -226,6 +224,15 @@ impl PotentialContact {
             }
             stiffness.push(pair);
         }
+    }
+}
+
+/// Fills a list with one entry per facet, on all threads if it is long.
+fn for_each_facet<T: Send>(entries: &mut [T], fill: impl Fn((usize, &mut T)) + Send + Sync) {
+    if entries.len() > GRAIN_FACETS {
+        entries.par_iter_mut().enumerate().with_min_len(GRAIN_FACETS / 2).for_each(fill);
+    } else {
+        entries.iter_mut().enumerate().for_each(fill);
     }
 }
 
@@ -307,12 +314,7 @@ impl ContactModel for PotentialContact {
             *work_j = forces[t].push.dot(&relative_motion(facet, hits, candidates, (blocks, moved)));
         };
         self.work_of_facet.resize(touching.len(), 0.0);
-        let works = &mut self.work_of_facet;
-        if works.len() > GRAIN_FACETS {
-            works.par_iter_mut().enumerate().with_min_len(GRAIN_FACETS / 2).for_each(work_of);
-        } else {
-            works.iter_mut().enumerate().for_each(work_of);
-        }
+        for_each_facet(&mut self.work_of_facet, work_of);
         for (touch, &work_j) in touching.iter().zip(&self.work_of_facet) {
             let facet = facet_of(touch);
             add(blocks.triangle_block[facet.triangle.index()], facet.target, work_j);

@@ -119,8 +119,9 @@ impl Simulation {
         self.gather_loads();
         let (contact, iterations) = self.gather_contact()?;
         self.note_contacts();
-        let before = &self.state.position[..self.moved.len()];
-        self.moved.copy_from_slice(before);
+        if self.contact_does_work(&contact) {
+            self.moved.copy_from_slice(&self.state.position);
+        }
         let contact_done = Instant::now();
         self.solve_blocks()?;
         let solved = Instant::now();
@@ -345,9 +346,14 @@ impl Simulation {
         report
     }
 
-    /// Books what normal contact did in the step on both blocks of each pair, where that is what changed their energy.
+    /// Whether anything touches, and the work of its forces is what changes the energy of blocks.
+    fn contact_does_work(&self, contact: &ContactReport) -> bool {
+        contact.contact_pairs > 0 && self.weights.forces_do_their_work()
+    }
+
+    /// Books what normal contact did in the step on both blocks of each pair.
     fn book_work_of_contact(&mut self, contact: &ContactReport) {
-        let works = contact.contact_pairs > 0 && self.weights.forces_do_their_work();
+        let works = self.contact_does_work(contact);
         let Some(model) = self.contact.as_mut().filter(|_| works) else { return };
         for (moved, x) in self.moved.iter_mut().zip(&self.state.position) {
             *moved = x - *moved;

@@ -1,5 +1,6 @@
 //! The contact model built without a line of friction: what switching friction off must be equal to.
 
+use ndda_contact::block_faces::BlockFaces;
 use ndda_contact::candidates::Candidates;
 use ndda_contact::facets::FacetForce;
 use ndda_contact::hulls::Hulls;
@@ -35,7 +36,7 @@ impl Frictionless {
         let blocks = input.blocks;
         self.candidates.numbers_overlaps = true;
         if self.candidates.update(input) {
-            self.hulls.fit(blocks);
+            self.hulls.fit(blocks, &BlockFaces::of_all(blocks));
         }
         self.hulls.place(blocks, input.position);
         self.frames.clear();
