@@ -9,6 +9,7 @@ use ndda_mesh::{BlockSet, Mat3, TriangleId, Vec3};
 
 use crate::candidates::Candidates;
 use crate::friction::FrictionLaw;
+use crate::hulls::Hulls;
 use crate::joints::Joints;
 use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput, FacetContact};
 use crate::pair::TetFrame;
@@ -20,13 +21,13 @@ const TOUCHING: f64 = 1e-6;
 /// Adds the forces of bonds, and drops those that break.
 pub fn add_forces(
     joints: &Joints,
-    candidates: &Candidates,
+    found: (&Candidates, &Hulls),
     input: &ContactInput,
     history: &mut ContactHistory,
     output: &mut ContactOutput,
 ) {
     if !history.begun {
-        form(joints, candidates, input, &mut history.bonds);
+        form(joints, found, input, &mut history.bonds);
     }
     let ContactHistory { bonds, facets, .. } = history;
     bonds.retain(|bond| {
@@ -39,7 +40,12 @@ pub fn add_forces(
     });
 }
 
-fn form(joints: &Joints, candidates: &Candidates, input: &ContactInput, bonds: &mut Vec<Bond>) {
+fn form(
+    joints: &Joints,
+    (candidates, hulls): (&Candidates, &Hulls),
+    input: &ContactInput,
+    bonds: &mut Vec<Bond>,
+) {
     let blocks = input.blocks;
     for facet in &candidates.facets {
         let tension_pa = joints.law(blocks, facet.triangle, facet.target).map_or(0.0, |law| law.tension_pa());
@@ -52,7 +58,10 @@ fn form(joints: &Joints, candidates: &Candidates, input: &ContactInput, bonds: &
             let tet = candidates.tet_of(pair as u32);
             let frame = TetFrame::new(&blocks.tet_corners(tet, input.position));
             let lambda = frame.lambda(&[centroid; 3]).map(|at| at[0]);
-            let inside = lambda.iter().all(|&l| l >= -TOUCHING);
+            let inside = match hulls.whole(facet.target) {
+                Some(whole) => hulls.depth_phi(facet.target, &centroid) >= -TOUCHING * whole.most_phi,
+                None => lambda.iter().all(|&l| l >= -TOUCHING),
+            };
             inside.then_some(Bond { facet: facet.triangle, tet, lambda })
         });
         bonds.extend(bond);

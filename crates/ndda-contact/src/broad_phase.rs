@@ -3,6 +3,8 @@
 use ndda_mesh::geometry::{Aabb, TET_FACES, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
 
+use crate::hulls::{Face, Hulls};
+
 /// Blocks where they were when they were last looked at.
 #[derive(Clone, Copy, Debug)]
 pub struct BroadScene<'a> {
@@ -12,6 +14,8 @@ pub struct BroadScene<'a> {
     pub position: &'a [Vec3],
     /// How far the nodes of each block may move while the answer is in use [m].
     pub margin_m: &'a [f64],
+    /// Which blocks are taken whole: the only tetrahedron of these is their host, and stands for all of the block.
+    pub hulls: &'a Hulls,
 }
 
 impl BroadScene<'_> {
@@ -21,10 +25,14 @@ impl BroadScene<'_> {
         self.around(&self.blocks.triangles[triangle]).inflated(self.margin_m[block.index()])
     }
 
-    /// Box around a tetrahedron, with the margin of its block.
+    /// Box around a tetrahedron, or around the block that it stands for, with the margin of its block.
     pub fn tet_box(&self, tet: usize) -> Aabb {
         let block = self.blocks.tet_block[tet];
-        self.around(&self.blocks.tets[tet]).inflated(self.margin_m[block.index()])
+        match self.hulls.whole(block) {
+            Some(whole) if whole.host.index() == tet => self.block_box(block),
+            Some(_) => Aabb::empty(),
+            None => self.around(&self.blocks.tets[tet]).inflated(self.margin_m[block.index()]),
+        }
     }
 
     /// Box around a block, with its margin.
@@ -45,8 +53,11 @@ impl BroadScene<'_> {
     }
 
     /// Whether a triangle and a tetrahedron of one block are too near each other at rest to be contact later: they
-    /// share a node, or are no further apart than they are large.
+    /// share a node, or are no further apart than they are large, or the block is taken whole.
     pub fn are_neighbours(&self, triangle: usize, tet: usize) -> bool {
+        if self.hulls.whole(self.blocks.tet_block[tet]).is_some() {
+            return true;
+        }
         let rest = |nodes: &[NodeId]| {
             let around = Aabb::around(nodes.iter().map(|n| &self.blocks.rest_position[n.index()]));
             around.inflated(0.5 * around.diagonal())
@@ -70,15 +81,27 @@ impl TriangleAt {
     /// Whether a plane of one of them keeps the triangle and a tetrahedron apart by more than both margins: any point of
     /// either, while its nodes stay within the margin, is that near to a point where it is now.
     pub fn is_apart_from(&self, others: &[Vec3; 4]) -> bool {
-        let [first, ..] = &self.corners;
-        self.are_beyond(&self.normal, first, others)
-            || self.are_beyond(&-self.normal, first, others)
+        self.are_on_one_side(others)
             || TET_FACES.iter().zip(others).any(|(&[i, j, k], opposite)| {
                 let normal = triangle_area_vector(&[others[i], others[j], others[k]]);
                 // A tetrahedron may be inside out while it is looked at.
                 let outward = if normal.dot(&(opposite - others[i])) > 0.0 { -normal } else { normal };
                 self.are_beyond(&outward, &others[i], &self.corners)
             })
+    }
+
+    /// The same of a convex block with these nodes and faces.
+    pub fn is_apart_from_whole(&self, nodes: &[Vec3], faces: &[Face], position: &[Vec3]) -> bool {
+        let is_beyond = |face: &Face| {
+            let corners = face.corners.map(|n| position[n.index()]);
+            self.are_beyond(&triangle_area_vector(&corners), &corners[0], &self.corners)
+        };
+        faces.iter().any(is_beyond) || self.are_on_one_side(nodes)
+    }
+
+    fn are_on_one_side(&self, points: &[Vec3]) -> bool {
+        let [first, ..] = &self.corners;
+        self.are_beyond(&self.normal, first, points) || self.are_beyond(&-self.normal, first, points)
     }
 
     /// Whether n·(x − p) > reach |n| for all of the points, without a root.

@@ -2,7 +2,9 @@
 
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 
+use crate::block_faces::BlockFaces;
 use crate::broad_phase::{AllPairs, BroadPhase, BroadScene};
+use crate::hulls::Hulls;
 use crate::pair::{TetFrame, is_outside};
 use crate::testing::{Random, test_box, test_horseshoe, test_set};
 
@@ -29,7 +31,7 @@ pub struct BroadCounts {
 }
 
 /// Panics unless a broad phase keeps the contract of [`BroadPhase`]: over random blocks of sizes from 1 to 1000, some
-/// concave, of which some turn, shift and deform in each step, no pair that overlaps within the margin is missed, and
+/// concave, of which some turn, shift and deform in each step and some are taken whole, no pair that overlaps within the margin is missed, and
 /// every pair is one of [`AllPairs`].
 pub fn check_broad_phase<P: BroadPhase>(new: impl Fn() -> P) -> BroadCounts {
     let mut random = Random(1);
@@ -41,6 +43,7 @@ pub fn check_broad_phase<P: BroadPhase>(new: impl Fn() -> P) -> BroadCounts {
             position: random.bent(&blocks),
             margin_m: vec![0.0; blocks.len()],
             renewed: blocks.ids().collect(),
+            hulls: random.hulls(&blocks),
         };
         let (mut found, mut before) = (Vec::new(), Vec::new());
         for step in 0..STEPS {
@@ -72,7 +75,7 @@ fn compare(input: &BroadScene, moved: &[Vec3], found: &[(TriangleId, TetId)], co
     counts.extra += found.iter().filter(|pair| touching.binary_search(pair).is_err()).count();
     for pair in &touching {
         let listed = found.binary_search(pair).is_ok();
-        let overlaps = overlap(input.blocks, moved, pair);
+        let overlaps = overlap(input, moved, pair);
         assert!(listed || !overlaps, "{pair:?} overlap and are not in the list");
         counts.apart += usize::from(!listed);
         counts.overlapping += usize::from(overlaps);
@@ -81,14 +84,22 @@ fn compare(input: &BroadScene, moved: &[Vec3], found: &[(TriangleId, TetId)], co
     }
 }
 
-fn overlap(blocks: &BlockSet, position: &[Vec3], pair: &(TriangleId, TetId)) -> bool {
-    let frame = TetFrame::new(&blocks.tet_corners(pair.1, position));
-    let lambda = frame.lambda(&blocks.triangle_corners(pair.0, position));
-    let mut area = 0.0;
-    crate::region::element_regions(&lambda, &[0.0; 4], |_, region| {
-        area += region.polygon().fan().map(|(_, part)| part).sum::<f64>();
-    });
-    !is_outside(&lambda) && area > 0.0
+/// Whether a triangle overlaps a tetrahedron, or any of a block that is taken whole.
+fn overlap(input: &BroadScene, position: &[Vec3], (triangle, tet): &(TriangleId, TetId)) -> bool {
+    let (blocks, block) = (input.blocks, input.blocks.tet_block[tet.index()]);
+    let corners = blocks.triangle_corners(*triangle, position);
+    let overlaps = |tet: usize| {
+        let frame = TetFrame::new(&blocks.tet_corners(TetId(tet as u32), position));
+        let (lambda, mut area) = (frame.lambda(&corners), 0.0);
+        crate::region::element_regions(&lambda, &[0.0; 4], |_, region| {
+            area += region.polygon().fan().map(|(_, part)| part).sum::<f64>();
+        });
+        !is_outside(&lambda) && area > 0.0
+    };
+    match input.hulls.whole(block) {
+        Some(_) => blocks.tets_of(block).any(overlaps),
+        None => overlaps(tet.index()),
+    }
 }
 
 /// Where blocks are listed.
@@ -96,11 +107,12 @@ struct Place {
     position: Vec<Vec3>,
     margin_m: Vec<f64>,
     renewed: Vec<BlockId>,
+    hulls: Hulls,
 }
 
 impl Place {
     fn scene<'a>(&'a self, blocks: &'a BlockSet) -> BroadScene<'a> {
-        BroadScene { blocks, position: &self.position, margin_m: &self.margin_m }
+        BroadScene { blocks, position: &self.position, margin_m: &self.margin_m, hulls: &self.hulls }
     }
 
     /// Turns, shifts and deforms what is to be renewed, and gives it another margin.
@@ -110,10 +122,11 @@ impl Place {
             let nodes = blocks.nodes_of(block);
             let center = self.position[nodes.start];
             let shift = 0.2 * random.vector();
+            let (is_whole, stretch) = (self.hulls.whole(block).is_some(), 0.01 * random.vector());
             for x in &mut self.position[nodes] {
-                let strain = 0.01 * random.vector();
+                let strain = if is_whole { stretch } else { 0.01 * random.vector() };
                 let arm = turn * (*x - center);
-                *x = center + shift + arm + strain * arm.norm();
+                *x = center + shift + arm + strain * if is_whole { arm.x + arm.y } else { arm.norm() };
             }
             self.margin_m[block.index()] = 0.02 * random.unit();
         }
@@ -142,6 +155,14 @@ impl Random {
         test_set(meshes)
     }
 
+    /// Some of the convex blocks are taken whole.
+    fn hulls(&mut self, blocks: &BlockSet) -> Hulls {
+        let (mut hulls, share) = (Hulls::default(), 1.5 * self.unit() - 0.25);
+        let affine: Vec<bool> = blocks.ids().map(|_| self.unit() < share).collect();
+        hulls.fit(blocks, &BlockFaces::of_all(blocks), Some(1.0), &affine);
+        hulls
+    }
+
     /// The rest shape with the upper ends of horseshoes drawn together, some of them past each other.
     fn bent(&mut self, blocks: &BlockSet) -> Vec<Vec3> {
         let mut position = blocks.rest_position.clone();
@@ -159,8 +180,14 @@ impl Random {
     fn jostled(&mut self, blocks: &BlockSet, place: &Place) -> Vec<Vec3> {
         let mut moved = place.position.clone();
         for block in blocks.ids() {
-            let margin_m = place.margin_m[block.index()];
-            moved[blocks.nodes_of(block)].iter_mut().for_each(|x| *x += 1.15 * margin_m * self.vector());
+            let way_m = 1.15 * place.margin_m[block.index()];
+            let shift = self.vector();
+            let is_whole = place.hulls.whole(block).is_some();
+            let shifts = || if is_whole { shift } else { self.vector() };
+            moved[blocks.nodes_of(block)]
+                .iter_mut()
+                .zip(std::iter::repeat_with(shifts))
+                .for_each(|(x, shift)| *x += way_m * shift);
         }
         moved
     }

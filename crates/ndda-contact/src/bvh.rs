@@ -257,6 +257,13 @@ impl Near<'_> {
     fn find_tets(&self, i: usize, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
         let (scene, bounds) = (self.scene, &self.boxes.triangles[i]);
         let triangle = scene.triangle_at(i, other);
+        if let Some(whole) = scene.hulls.whole(other) {
+            let nodes = &scene.position[scene.blocks.nodes_of(other)];
+            if !triangle.is_apart_from_whole(nodes, scene.hulls.faces_of(other), scene.position) {
+                found.push((TriangleId(i as u32), whole.host));
+            }
+            return;
+        }
         let tets = scene.blocks.tets_of(other);
         let mut add = |j: usize| {
             let others = || scene.blocks.tet_corners(TetId(j as u32), scene.position);

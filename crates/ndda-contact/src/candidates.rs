@@ -6,6 +6,7 @@ use ndda_mesh::{BlockId, TetId, TriangleId};
 
 use crate::broad_phase::BroadPhase;
 use crate::bvh::{TreeBroadPhase, make_room};
+use crate::hulls::Hulls;
 use crate::listed::Listed;
 use crate::model::ContactInput;
 
@@ -20,7 +21,7 @@ pub struct Facet {
     pub pairs: Range<usize>,
 }
 
-/// One pair; the tetrahedron is an index into [`Candidates::tets`], the overlap one into a list as long as
+/// One pair; the tetrahedron, which may stand for a block that is taken whole, is an index into [`Candidates::tets`], the overlap one into a list as long as
 /// [`Candidates::overlaps`] says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
@@ -71,12 +72,12 @@ impl Candidates {
 
     /// Brings the list up to date and says whether it changed: the pairs of blocks that have moved no further than
     /// their margin since they were listed stay.
-    pub fn update(&mut self, input: &ContactInput) -> bool {
+    pub fn update(&mut self, input: &ContactInput, hulls: &Hulls) -> bool {
         let begins = self.listed.renew(input);
         if self.listed.renewed().is_empty() && !begins {
             return false;
         }
-        let scene = self.listed.scene(input.blocks);
+        let scene = self.listed.scene(input.blocks, hulls);
         let changed = self.broad_phase.find_pairs(&scene, self.listed.renewed(), &mut self.found);
         if changed || begins {
             self.arrange(input);

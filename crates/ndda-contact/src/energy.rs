@@ -9,9 +9,10 @@ use ndda_mesh::{BlockId, BlockSet, TetId, Vec3};
 use rayon::prelude::*;
 
 use crate::candidates::{Candidates, Pair};
+use crate::hulls::Hulls;
 use crate::integrals::Integrals;
 use crate::model::ContactInput;
-use crate::overlap::{Linear, overlap_of};
+use crate::overlap::{Linear, Polyhedron, faces_of};
 use crate::pair::{TetFrame, pair_energy};
 use crate::potential::{Field, OverlapLaw, PieceTable};
 
@@ -28,6 +29,21 @@ pub fn has_centroid(integral_m3: f64, volume_m3: f64) -> bool {
 const GRAIN_PAIRS: usize = 512;
 /// The same for pairs of blocks.
 const GRAIN_BLOCK_PAIRS: usize = 4;
+
+/// What U is integrated from.
+#[derive(Clone, Copy)]
+pub struct OverlapParts<'a> {
+    /// Pairs and facets.
+    pub candidates: &'a Candidates,
+    /// What touches.
+    pub integrals: &'a Integrals,
+    /// A frame for each of [`Candidates::tets`].
+    pub frames: &'a [TetFrame],
+    /// φ.
+    pub field: &'a Field,
+    /// Blocks that are taken whole.
+    pub hulls: &'a Hulls,
+}
 
 /// U for each pair of blocks that may touch.
 #[derive(Default)]
@@ -82,19 +98,15 @@ impl BlockOverlaps {
     }
 
     /// U of any potential.
-    pub fn integrate(
-        &mut self,
-        input: &ContactInput,
-        candidates: &Candidates,
-        integrals: &Integrals,
-        frames: &[TetFrame],
-        field: &Field,
-        law: OverlapLaw,
-    ) {
+    pub fn integrate(&mut self, input: &ContactInput, parts: &OverlapParts, law: OverlapLaw) {
+        let OverlapParts { candidates, integrals, frames, field, hulls } = *parts;
         match (field, law) {
             (_, OverlapLaw::Power { .. }) => self.add_surfaces(input, candidates, integrals),
             (Field::Element, _) => self.add_pieces(input, candidates, frames),
-            (Field::Pieces(table), _) => self.add_tets(input, candidates, integrals, table),
+            (Field::Pieces(table), _) => {
+                self.list(input.blocks, candidates, integrals.touching().iter().map(|touch| touch.facet));
+                self.add_cells(&Cells { input, table, hulls });
+            }
         }
     }
 
@@ -147,55 +159,88 @@ impl BlockOverlaps {
         }
     }
 
-    /// Any potential, over the overlaps of tetrahedra of blocks whose surfaces touch.
-    fn add_tets(
-        &mut self,
-        input: &ContactInput,
-        candidates: &Candidates,
-        integrals: &Integrals,
-        table: &PieceTable,
-    ) {
-        self.list(input.blocks, candidates, integrals.touching().iter().map(|touch| touch.facet));
-        let place = |(overlap, &(a, b)): (&mut f64, &(BlockId, BlockId))| {
-            *overlap = overlap_of_blocks(input, a, b, table);
-        };
+    /// Any potential, over the overlaps of the cells of blocks whose surfaces touch.
+    fn add_cells(&mut self, cells: &Cells) {
+        let place = |(overlap, &(a, b)): (&mut f64, &(BlockId, BlockId))| *overlap = cells.overlap_of(a, b);
         self.overlap_m3.par_iter_mut().zip(&self.pairs).with_min_len(GRAIN_BLOCK_PAIRS).for_each(place);
     }
 }
 
-/// U of two blocks: every pair of their tetrahedra whose boxes touch.
-fn overlap_of_blocks(input: &ContactInput, a: BlockId, b: BlockId, table: &PieceTable) -> f64 {
-    let (blocks, position) = (input.blocks, input.position);
-    let box_of = |tet: usize| Aabb::around(blocks.tets[tet].iter().map(|n| &position[n.index()]));
-    let block_box = |block: BlockId| Aabb::around(&position[blocks.nodes_of(block)]);
-    let near = |block: BlockId, other: &Aabb| -> Vec<(usize, Aabb)> {
-        let tets = blocks.tets_of(block).map(|tet| (tet, box_of(tet)));
+/// What blocks consist of: a block that is taken whole is one cell, others are their tetrahedra.
+struct Cells<'a> {
+    input: &'a ContactInput<'a>,
+    table: &'a PieceTable,
+    hulls: &'a Hulls,
+}
+
+impl Cells<'_> {
+    /// U of two blocks: every pair of their cells whose boxes touch.
+    fn overlap_of(&self, a: BlockId, b: BlockId) -> f64 {
+        let block_box = |block| Aabb::around(&self.input.position[self.input.blocks.nodes_of(block)]);
+        let (box_a, box_b) = (block_box(a), block_box(b));
+        let (of_a, of_b) = (self.near(a, &box_a, &box_b), self.near(b, &box_b, &box_a));
+        let mut sum = 0.0;
+        for (c, c_box) in &of_a {
+            let within = of_b.iter().take_while(|(_, t_box)| t_box.min.x <= c_box.max.x);
+            for (t, t_box) in within.filter(|(t, t_box)| (a != b || t > c) && t_box.touches(c_box)) {
+                sum += self.overlap_of_cells((*c, c_box), (*t, t_box));
+            }
+        }
+        sum
+    }
+
+    /// The cells of a block that touch a box, from left to right.
+    fn near(&self, block: BlockId, own: &Aabb, other: &Aabb) -> Vec<(TetId, Aabb)> {
+        let (blocks, position) = (self.input.blocks, self.input.position);
+        if let Some(whole) = self.hulls.whole(block) {
+            return vec![(whole.host, *own)];
+        }
+        let box_of = |tet: usize| Aabb::around(blocks.tets[tet].iter().map(|n| &position[n.index()]));
+        let tets = blocks.tets_of(block).map(|tet| (TetId(tet as u32), box_of(tet)));
         let mut near: Vec<_> = tets.filter(|(_, bounds)| bounds.touches(other)).collect();
         near.sort_by(|(_, x), (_, y)| x.min.x.total_cmp(&y.min.x));
         near
-    };
-    let (of_a, of_b) = (near(a, &block_box(b)), near(b, &block_box(a)));
-    let mut sum = 0.0;
-    for (c, c_box) in &of_a {
-        let within = of_b.iter().take_while(|(_, t_box)| t_box.min.x <= c_box.max.x);
-        for (t, _) in within.filter(|(t, t_box)| (a != b || t > c) && t_box.touches(c_box)) {
-            sum += overlap_of_tets(input, TetId(*c as u32), TetId(*t as u32), table);
-        }
     }
-    sum
+
+    /// ∫ (φ_c + φ_t) dV over c ∩ t.
+    fn overlap_of_cells(&self, (c, c_box): (TetId, &Aabb), (t, t_box): (TetId, &Aabb)) -> f64 {
+        let origin = self.input.blocks.tet_corners(c, self.input.position)[0];
+        let (of_c, of_t) = (self.cell(c, &origin), self.cell(t, &origin));
+        let bounds =
+            Aabb { min: c_box.min.sup(&t_box.min) - origin, max: c_box.max.inf(&t_box.max) - origin };
+        let whole = || Polyhedron::cuboid(&bounds);
+        let mut overlap = of_c.corners.as_ref().map_or_else(whole, Polyhedron::tet);
+        let own = of_c.sides.iter().filter(|_| of_c.corners.is_none());
+        for side in own.chain(&of_t.sides) {
+            overlap.cut(side);
+            if overlap.is_empty() {
+                return 0.0;
+            }
+        }
+        overlap.integral_of_smallest(&of_c.phi) + overlap.integral_of_smallest(&of_t.phi)
+    }
+
+    fn cell(&self, tet: TetId, origin: &Vec3) -> Cell {
+        let blocks = self.input.blocks;
+        let block = blocks.tet_block[tet.index()];
+        if self.hulls.whole(block).is_some() {
+            let phi: Vec<Linear> =
+                self.hulls.faces_of(block).iter().map(|face| face.linear(origin)).collect();
+            return Cell { corners: None, sides: phi.clone(), phi };
+        }
+        let corners = blocks.tet_corners(tet, self.input.position);
+        let frame = TetFrame::new(&corners);
+        let phi = self.table.of(tet).iter().map(|values| Linear::of_corners(&frame, values, origin));
+        let corners = Some(corners.map(|x| x - origin));
+        Cell { corners, sides: faces_of(&frame, origin).to_vec(), phi: phi.collect() }
+    }
 }
 
-/// ∫ (φ_c + φ_t) dV over c ∩ t.
-fn overlap_of_tets(input: &ContactInput, c: TetId, t: TetId, table: &PieceTable) -> f64 {
-    let corners = |tet: TetId| input.blocks.tet_corners(tet, input.position);
-    let (frame_c, frame_t) = (TetFrame::new(&corners(c)), TetFrame::new(&corners(t)));
-    let origin = corners(c)[0];
-    let overlap = overlap_of(&corners(c), &frame_t, &origin);
-    if overlap.is_empty() {
-        return 0.0;
-    }
-    let phi = |tet: TetId, frame: &TetFrame| -> Vec<Linear> {
-        table.of(tet).iter().map(|values| Linear::of_corners(frame, values, &origin)).collect()
-    };
-    overlap.integral_of_smallest(&phi(c, &frame_c)) + overlap.integral_of_smallest(&phi(t, &frame_t))
+/// A convex part of a block, in which φ is the smallest of linear functions.
+struct Cell {
+    /// Its corners, if it is a tetrahedron.
+    corners: Option<[Vec3; 4]>,
+    /// What is not negative in it.
+    sides: Vec<Linear>,
+    phi: Vec<Linear>,
 }

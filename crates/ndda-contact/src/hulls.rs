@@ -1,15 +1,25 @@
-//! Planes that hold a convex block back: what is beyond one of them is not in the block.
+//! The faces of convex blocks, and blocks that are taken whole.
 //!
-//! Blocks that lie side by side have many boundary triangles that touch each other's edges and are in nothing. One
-//! comparison with the faces of the whole block says so, where its tetrahedra would be asked one by one.
+//! What is beyond one face of a convex block is not in the block. Blocks that lie side by side have many boundary
+//! triangles that touch each other's edges and are in nothing; one comparison with the faces of the whole block says
+//! so, where its tetrahedra would be asked one by one.
+//!
+//! A convex block that moves by an affine map x = F X + c (a rigid one, an affine one, one that is held as a whole)
+//! keeps its faces plane. If φ is the depth below the nearest of them, it stays the smallest of the same linear
+//! functions all over the block, and the block needs no tetrahedra: it is one target, with one function per face.
+//! Forces on it go to the corners of its largest tetrahedron, the *host*, whose λ are coordinates of the whole space.
 
 use std::ops::Range;
 
-use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{BlockId, BlockSet, NodeId, Vec3};
+use nalgebra::{Matrix4, Vector4};
+use ndda_mesh::geometry::{tet_volume, triangle_area_vector};
+use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, Vec3};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
+use crate::kernel::MOST_CUTS;
+use crate::overlap::Linear;
+use crate::pair::TetFrame;
 
 /// Faces below which a second thread costs more than it brings.
 const GRAIN_FACES: usize = 1024;
@@ -17,16 +27,32 @@ const GRAIN_FACES: usize = 1024;
 /// A block of more faces is asked by its tetrahedra.
 const MOST_FACES: usize = 32;
 
-/// A face of a convex block, and where all of the block is behind it.
+/// A face of a convex block, and how far the block reaches behind it.
 #[derive(Clone, Debug)]
-struct Face {
+pub struct Face {
     block: BlockId,
     /// Its largest triangle, which carries the plane along.
-    corners: [NodeId; 3],
+    pub corners: [NodeId; 3],
+    /// The node furthest below it at rest, and φ there, in a block that is taken whole.
+    furthest: Option<(NodeId, f64)>,
+    /// n of φ = n·(p − x) in a block that is taken whole [1/m], in others of any length.
     normal: Vec3,
     point: Vec3,
     /// Largest n·(x − p) of the block's nodes.
     reach: f64,
+}
+
+/// A convex block that is taken whole.
+#[derive(Clone, Debug)]
+pub struct Whole {
+    /// Its largest tetrahedron, whose corners take its forces.
+    pub host: TetId,
+    /// Largest φ of a node below a face.
+    pub most_phi: f64,
+    /// Volume share of each node, a quarter of that of its tetrahedra.
+    pub share: Vec<f64>,
+    /// Λ⁻¹, Λ = Σ share λ λᵀ over the nodes, λ those of the host.
+    pub inverse_spread: Matrix4<f64>,
 }
 
 /// The faces of all convex blocks, where they are now.
@@ -35,20 +61,34 @@ pub struct Hulls {
     faces: Vec<Face>,
     /// First face of each block; one that is concave or round has none.
     start: Vec<u32>,
+    whole: Vec<Option<Whole>>,
 }
 
 impl Hulls {
-    /// Takes the faces of all blocks; once per set of blocks.
-    pub fn fit(&mut self, blocks: &BlockSet, surfaces: &[BlockFaces]) {
+    /// Takes the faces of all blocks; once per set of blocks. `phi_per_m` is φ per depth below the nearest face, if it is that;
+    /// then the blocks of which `affine` says that they move by an affine map are taken whole.
+    pub fn fit(
+        &mut self,
+        blocks: &BlockSet,
+        surfaces: &[BlockFaces],
+        phi_per_m: Option<f64>,
+        affine: &[bool],
+    ) {
         self.faces.clear();
+        self.whole.clear();
         self.start.clear();
         self.start.push(0);
         for (block, surface) in blocks.ids().zip(surfaces) {
-            if surface.convex && surface.planes.len() <= MOST_FACES {
-                let faces = 0..surface.planes.len();
-                self.faces.extend(faces.map(|face| largest_of(blocks, block, surface, face)));
+            let count = surface.planes.len();
+            let is_affine = affine.get(block.index()) == Some(&true);
+            let phi_per_m = phi_per_m.filter(|_| is_affine && surface.convex && count <= MOST_CUTS);
+            if surface.convex && count <= MOST_FACES {
+                let face = |face| Face::new(blocks, block, surface, face, phi_per_m);
+                self.faces.extend((0..count).map(face));
             }
             self.start.push(self.faces.len() as u32);
+            let own = &self.faces[self.of(block)];
+            self.whole.push(phi_per_m.map(|_| Whole::new(blocks, block, own)));
         }
     }
 
@@ -64,15 +104,59 @@ impl Hulls {
         self.faces[self.of(block)].iter().any(|face| triangle.iter().all(|x| face.is_beyond(x)))
     }
 
+    /// The faces of a block; none of one that is concave or round.
+    #[inline]
+    pub fn faces_of(&self, block: BlockId) -> &[Face] {
+        &self.faces[self.of(block)]
+    }
+
+    /// A block that is taken whole.
+    #[inline]
+    pub fn whole(&self, block: BlockId) -> Option<&Whole> {
+        self.whole.get(block.index()).and_then(Option::as_ref)
+    }
+
+    /// φ at a point of a block that is taken whole; negative outside.
+    pub fn depth_phi(&self, block: BlockId, x: &Vec3) -> f64 {
+        self.faces_of(block).iter().map(|face| face.phi(x)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How many blocks are taken whole.
+    pub fn count_whole(&self) -> usize {
+        self.whole.iter().flatten().count()
+    }
+
     fn of(&self, block: BlockId) -> Range<usize> {
         self.start[block.index()] as usize..self.start[block.index() + 1] as usize
     }
 }
 
 impl Face {
+    fn new(
+        blocks: &BlockSet,
+        block: BlockId,
+        surface: &BlockFaces,
+        face: usize,
+        phi_per_m: Option<f64>,
+    ) -> Self {
+        let corners = largest_of(blocks, block, surface, face);
+        let furthest = phi_per_m.map(|phi_per_m| {
+            let depth = |n: usize| surface.planes[face].depth_m(&blocks.rest_position[n]);
+            let deeper = |a: &usize, b: &usize| depth(*a).total_cmp(&depth(*b));
+            let node = blocks.nodes_of(block).max_by(deeper).expect("a block has nodes");
+            (NodeId(node as u32), phi_per_m * depth(node))
+        });
+        Self { block, corners, furthest, normal: Vec3::zeros(), point: Vec3::zeros(), reach: f64::INFINITY }
+    }
+
     fn place(&mut self, nodes: &[Vec3], position: &[Vec3]) {
         let corners = self.corners.map(|n| position[n.index()]);
         (self.normal, self.point) = (triangle_area_vector(&corners), corners[0]);
+        if let Some((node, phi)) = self.furthest {
+            self.normal *= phi / self.normal.dot(&(self.point - position[node.index()]));
+            self.reach = 0.0;
+            return;
+        }
         let above = |x: &Vec3| self.normal.dot(&(x - self.point));
         self.reach = nodes.iter().map(above).fold(0.0, f64::max);
     }
@@ -81,13 +165,63 @@ impl Face {
     fn is_beyond(&self, x: &Vec3) -> bool {
         self.normal.dot(&(x - self.point)) >= self.reach
     }
+
+    /// φ of this face, in a block that is taken whole.
+    #[inline(always)]
+    pub fn phi(&self, x: &Vec3) -> f64 {
+        self.normal.dot(&(self.point - x))
+    }
+
+    /// ∇φ [1/m].
+    #[inline(always)]
+    pub fn gradient(&self) -> Vec3 {
+        -self.normal
+    }
+
+    /// φ as a function of place, seen from `origin`.
+    pub fn linear(&self, origin: &Vec3) -> Linear {
+        Linear { value: self.phi(origin), gradient: self.gradient() }
+    }
 }
 
-/// A face by its largest triangle.
-fn largest_of(blocks: &BlockSet, block: BlockId, surface: &BlockFaces, face: usize) -> Face {
+impl Whole {
+    fn new(blocks: &BlockSet, block: BlockId, faces: &[Face]) -> Self {
+        let tets = || blocks.tets_of(block).map(|tet| TetId(tet as u32));
+        let corners = |tet: TetId| blocks.tet_corners(tet, &blocks.rest_position);
+        let volume = |tet: TetId| tet_volume(&corners(tet));
+        let larger = |a: &TetId, b: &TetId| volume(*a).total_cmp(&volume(*b));
+        let host = tets().max_by(larger).expect("a block has tetrahedra");
+        let nodes = blocks.nodes_of(block);
+        let quarter = 0.25 / tets().map(volume).sum::<f64>();
+        let mut share = vec![0.0; nodes.len()];
+        for tet in tets() {
+            for node in blocks.tets[tet.index()] {
+                share[node.index() - nodes.start] += quarter * volume(tet);
+            }
+        }
+        let frame = TetFrame::new(&corners(host));
+        let outer = |(x, share): (&Vec3, &f64)| {
+            let lambda = Vector4::from(frame.lambda_at(x));
+            *share * lambda * lambda.transpose()
+        };
+        let spread: Matrix4<f64> = blocks.rest_position[nodes].iter().zip(&share).map(outer).sum();
+        let inverse_spread = spread.try_inverse().expect("a block fills space");
+        let most_phi = faces.iter().filter_map(|face| face.furthest).map(|(_, phi)| phi).fold(0.0, f64::max);
+        Self { host, most_phi, share, inverse_spread }
+    }
+
+    /// A bound of ω² over K/M when points of the block, given by λ of the host, are held by springs: S = Σ k λ λᵀ. The
+    /// nodes of an affine block follow four motions, and √(tr (Λ⁻¹S)²) is no less than the largest eigenvalue.
+    pub fn rate(&self, springs: &Matrix4<f64>) -> f64 {
+        let product = self.inverse_spread * springs;
+        product.component_mul(&product.transpose()).sum().max(0.0).sqrt()
+    }
+}
+
+/// The largest triangle of a face.
+fn largest_of(blocks: &BlockSet, block: BlockId, surface: &BlockFaces, face: usize) -> [NodeId; 3] {
     let triangles = &blocks.triangles[blocks.triangles_of(block)];
     let area = |t: &[NodeId; 3]| triangle_area_vector(&t.map(|n| blocks.rest_position[n.index()])).norm();
     let own = triangles.iter().zip(&surface.of_triangle).filter(|(_, of)| **of == face).map(|(t, _)| t);
-    let corners = *own.max_by(|a, b| area(a).total_cmp(&area(b))).expect("a face has triangles");
-    Face { block, corners, normal: Vec3::zeros(), point: Vec3::zeros(), reach: f64::INFINITY }
+    *own.max_by(|a, b| area(a).total_cmp(&area(b))).expect("a face has triangles")
 }

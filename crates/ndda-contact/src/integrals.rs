@@ -18,6 +18,8 @@ use crate::report::HitReport;
 
 /// Pairs of a chunk: one task for a thread.
 const CHUNK_PAIRS: usize = 512;
+/// Nodes of a block that is taken whole up to which it is asked on which side of a triangle it is.
+const FEW_NODES: usize = 64;
 
 /// A candidate pair that does overlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -138,6 +140,7 @@ struct Scratch {
     /// λ of each hit.
     lambda: Vec<[[f64; 3]; 4]>,
     region: Region,
+    pieces: Pieces,
     batches: Batches,
 }
 
@@ -167,7 +170,7 @@ impl Chunk {
             hit.moments.share_with_target(lambda);
         }
         self.drop_empty();
-        self.report = HitReport::of(&self.hits, scene.candidates, scene.field);
+        self.report = HitReport::of(&self.hits, scene);
     }
 
     /// Keeps the hits that have an area, and the facets that have such hits; what is not a number stays to be reported.
@@ -193,11 +196,15 @@ impl Chunk {
         let corners = scene.blocks.triangle_corners(facet.triangle, scene.position);
         let area_vector = triangle_area_vector(&corners);
         let area = area_vector.norm();
-        if area == 0.0 || scene.hulls.keep_apart(facet.target, &corners) {
+        if area == 0.0 {
             return;
         }
         let normal = area_vector / area;
-        if scene.is_on_one_side(facet, &corners[0], &normal) {
+        if scene.hulls.whole(facet.target).is_some() {
+            return self.add_whole(arch, scene, facet, (&corners, &normal, area), scratch);
+        }
+        if scene.hulls.keep_apart(facet.target, &corners) || scene.is_on_one_side(facet, &corners[0], &normal)
+        {
             return;
         }
         let pieces = matches!(scene.field, Field::Pieces(_));
@@ -223,6 +230,31 @@ impl Chunk {
     }
 }
 
+impl Chunk {
+    /// A facet on a block that is taken whole.
+    fn add_whole(
+        &mut self,
+        arch: Arch,
+        scene: &Scene,
+        facet: &Facet,
+        (corners, normal, area): (&[Vec3; 3], &Vec3, f64),
+        scratch: &mut Scratch,
+    ) {
+        let nodes = scene.blocks.nodes_of(facet.target);
+        if !scratch.pieces.set_whole(scene.hulls.faces_of(facet.target), corners, normal)
+            || (nodes.len() <= FEW_NODES
+                && are_on_one_side(scene.position[nodes].iter(), &corners[0], normal))
+        {
+            return;
+        }
+        let (hit, index) = (self.hits.len() as u32, facet.pairs.start);
+        self.hits.push(Hit { pair: index as u32, ..Hit::default() });
+        let frame = &scene.frames[scene.candidates.pairs[index].tet as usize];
+        scratch.lambda.push(frame.lambda(corners));
+        scratch.push_pieces(arch, hit, area);
+    }
+}
+
 impl Scratch {
     fn make_room(&mut self, pairs: usize) {
         let pairs = pairs.max(CHUNK_PAIRS);
@@ -232,19 +264,25 @@ impl Scratch {
     }
 
     fn add_regions(&mut self, arch: Arch, scene: &Scene, hit: u32, placed: &Placed) {
-        let (region, Placed { index, frame, lambda, normal, area }) = (&mut self.region, *placed);
+        let Placed { index, frame, lambda, normal, area } = *placed;
         match scene.field {
             Field::Element => {
                 self.batches.push_element(arch, hit, area, lambda, &frame.slopes(normal));
             }
             Field::Pieces(table) => {
-                let pieces = table.of(scene.candidates.tets[scene.candidates.pairs[index].tet as usize]);
-                let Some(seen) = Pieces::new(lambda, pieces, frame, normal) else { return };
-                for k in 0..pieces.len() {
-                    if region.set_piece(&seen, k) {
-                        self.batches.push(arch, hit, area, region);
-                    }
+                let values = table.of(scene.candidates.tets[scene.candidates.pairs[index].tet as usize]);
+                if self.pieces.set(lambda, values, frame, normal) {
+                    self.push_pieces(arch, hit, area);
                 }
+            }
+        }
+    }
+
+    /// The regions of the pieces as they are.
+    fn push_pieces(&mut self, arch: Arch, hit: u32, area: f64) {
+        for k in 0..self.pieces.len() {
+            if self.region.set_piece(&self.pieces, k) {
+                self.batches.push(arch, hit, area, &self.region);
             }
         }
     }

@@ -12,8 +12,8 @@ use pulp::{Arch, Simd, WithSimd};
 
 /// Regions in a group; a multiple of every lane count.
 pub const GROUP: usize = 8;
-/// Most cuts of a region: four faces, and its rivals.
-pub const MOST_CUTS: usize = 16;
+/// Most cuts of a region: four faces of a tetrahedron and its rivals, or as many as a block that is taken whole has faces.
+pub const MOST_CUTS: usize = 24;
 
 /// One number for each region of a group.
 pub type Row = [f64; GROUP];

@@ -5,6 +5,7 @@ use ndda_mesh::{BlockId, BlockSet, NodeId, Vec3};
 use rayon::prelude::*;
 
 use crate::broad_phase::{BroadScene, shape_of};
+use crate::hulls::Hulls;
 use crate::model::ContactInput;
 
 /// Skin over the mean size of a block's boundary triangles: twice the way that a resting block may creep.
@@ -61,8 +62,8 @@ impl Listed {
     }
 
     /// The blocks where they are recorded.
-    pub fn scene<'a>(&'a self, blocks: &'a BlockSet) -> BroadScene<'a> {
-        BroadScene { blocks, position: &self.position, margin_m: &self.margin_m }
+    pub fn scene<'a>(&'a self, blocks: &'a BlockSet, hulls: &'a Hulls) -> BroadScene<'a> {
+        BroadScene { blocks, position: &self.position, margin_m: &self.margin_m, hulls }
     }
 
     fn begin(&mut self, blocks: &BlockSet) {

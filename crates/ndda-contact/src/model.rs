@@ -17,6 +17,8 @@ pub struct ContactInput<'a> {
     pub velocity: &'a [Vec3],
     /// Step Δt [s].
     pub dt_s: f64,
+    /// Which blocks move by an affine map of their rest shape, whatever acts on them; empty if that is not known.
+    pub affine: &'a [bool],
     /// Rigid motion of each block; empty unless the model [`needs_bodies`](ContactModel::needs_bodies).
     pub bodies: &'a [Body],
 }
@@ -24,7 +26,7 @@ pub struct ContactInput<'a> {
 impl<'a> ContactInput<'a> {
     /// An input about blocks of which only the nodes' motion is known.
     pub fn new(blocks: &'a BlockSet, position: &'a [Vec3], velocity: &'a [Vec3], dt_s: f64) -> Self {
-        Self { blocks, position, velocity, dt_s, bodies: &[] }
+        Self { blocks, position, velocity, dt_s, affine: &[], bodies: &[] }
     }
 }
 

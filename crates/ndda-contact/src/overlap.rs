@@ -10,8 +10,8 @@ use ndda_mesh::geometry::{Aabb, tet_volume};
 use crate::pair::TetFrame;
 
 /// Three faces meet in each corner, so F faces have 2 F − 4 corners: 18 for two tetrahedra and three rivals of a
-/// potential. The rest is for potentials of many pieces.
-const MOST_CORNERS: usize = 96;
+/// potential, 148 for two blocks of [`MOST_CUTS`](crate::kernel::MOST_CUTS) faces in a box, and their rivals.
+const MOST_CORNERS: usize = 152;
 
 /// Part of the product of three edges below which a volume is rounding.
 const FLAT: f64 = 8.0 * f64::EPSILON / 6.0;
@@ -181,6 +181,22 @@ impl Polyhedron {
         };
         all.position[..4].copy_from_slice(corners);
         all.neighbours[..4].copy_from_slice(&[[1, 3, 2], [2, 3, 0], [0, 3, 1], [1, 2, 0]]);
+        all
+    }
+
+    /// A box along the axes.
+    pub fn cuboid(bounds: &Aabb) -> Self {
+        let mut all = Self::tet(&[Vec3::zeros(); 4]);
+        all.len = 8;
+        for corner in 0..8 {
+            let upper = |axis: usize| corner >> axis & 1 == 1;
+            let at = |axis: usize| if upper(axis) { bounds.max[axis] } else { bounds.min[axis] };
+            all.position[corner] = Vec3::from_fn(|axis, _| at(axis));
+            let along = [0, 1, 2].map(|axis| (corner ^ 1 << axis) as u8);
+            // Seen from inside out, neighbours turn the other way round where an odd number of axes is turned.
+            let [x, y, z] = along;
+            all.neighbours[corner] = if corner.count_ones() % 2 == 0 { [x, z, y] } else { along };
+        }
         all
     }
 

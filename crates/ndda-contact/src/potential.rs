@@ -11,7 +11,8 @@ use ndda_mesh::{BlockSet, TetId};
 use crate::kernel::MOST_CUTS;
 
 /// Most linear functions of a tetrahedron: each is cut by four faces and by its rivals.
-pub const MOST_PIECES: usize = MOST_CUTS - 3;
+pub const MOST_PIECES: usize = 13;
+const _: () = assert!(MOST_PIECES + 3 <= MOST_CUTS);
 
 /// A contact potential.
 ///
@@ -26,6 +27,12 @@ pub trait ContactPotential: Send + Sync {
     /// # Errors
     /// [`PotentialError`] naming the block that it cannot serve.
     fn field(&self, blocks: &BlockSet) -> Result<Field, PotentialError>;
+
+    /// φ per depth below the nearest face of a convex block [1/m], if it is that: such a block is taken whole where it moves by an
+    /// affine map, see [`hulls`](crate::hulls).
+    fn phi_per_m(&self) -> Option<f64> {
+        None
+    }
 
     /// What W is of U.
     fn law(&self) -> OverlapLaw {

@@ -9,7 +9,7 @@ use crate::block_faces::BlockFaces;
 use crate::bonds;
 use crate::candidates::Candidates;
 use crate::element_potential::ElementPotential;
-use crate::energy;
+use crate::energy::{self, OverlapParts};
 use crate::faces::{FaceScene, Faces};
 use crate::facets::{FacetForce, FacetScene, relative_motion};
 use crate::friction::FrictionLaw;
@@ -25,7 +25,7 @@ use crate::pair_stiffness::PairStiffness;
 use crate::plan::Part;
 use crate::potential::{ContactPotential, Field, OverlapLaw};
 use crate::report::Reporter;
-use crate::tangent;
+use crate::tangent::{self, Target};
 
 /// Facets below which a second thread costs more than it brings.
 const GRAIN_FACETS: usize = 128;
@@ -104,7 +104,6 @@ impl PotentialContact {
         self.find_pairs(input)?;
         let Some((_, field)) = &self.field else { return Ok(()) };
         let (blocks, position) = (input.blocks, input.position);
-        self.hulls.place(blocks, position);
         let (candidates, frames, hulls) = (&self.candidates, &self.frames[..], &self.hulls);
         self.integrals.update(&Scene { blocks, position, candidates, frames, field, hulls });
         Ok(())
@@ -116,14 +115,17 @@ impl PotentialContact {
         if self.field.as_ref().is_none_or(|(known, _)| *known != tets) {
             let field = self.potential.field(input.blocks);
             let surfaces = BlockFaces::of_all(input.blocks);
-            self.hulls.fit(input.blocks, &surfaces);
+            // Memory per element needs the elements.
+            let phi_per_m = self.potential.phi_per_m().filter(|_| !self.candidates.split_by_element);
+            self.hulls.fit(input.blocks, &surfaces, phi_per_m, input.affine);
             self.candidates.numbers_overlaps = matches!(field, Ok(Field::Element));
             if self.needs_bodies() {
                 self.faces.fit(input.blocks, &surfaces);
             }
             self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
         }
-        self.candidates.update(input);
+        self.candidates.update(input, &self.hulls);
+        self.hulls.place(input.blocks, input.position);
         self.place_frames(input)
     }
 
@@ -204,14 +206,15 @@ impl PotentialContact {
         let corners = input.blocks.triangle_corners(facet.triangle, input.position);
         for hit in self.integrals.hits_of(touch) {
             let tet = self.candidates.tet_of(hit.pair);
-            let pieces = match &self.field {
-                Some((_, Field::Pieces(table))) => Some(table.of(tet)),
-                _ => None,
+            let target = match (&self.field, self.hulls.whole(facet.target)) {
+                (_, Some(_)) => Target::Whole(self.hulls.faces_of(facet.target)),
+                (Some((_, Field::Pieces(table))), None) => Target::Pieces(table.of(tet)),
+                _ => Target::Element,
             };
             let frame = &self.frames[self.candidates.pairs[hit.pair as usize].tet as usize];
             let triangle = &input.blocks.triangles[facet.triangle.index()];
             let mut pair = PairStiffness::new(triangle, &input.blocks.tets[tet.index()]);
-            tangent::add_pair(&mut pair, &corners, frame, pieces, self.penalty_of_facet[t]);
+            tangent::add_pair(&mut pair, &corners, frame, target, self.penalty_of_facet[t]);
             if let Some(force) = held {
                 let normal = force.push.normalize();
                 let across = Mat3::identity() - normal * normal.transpose();
@@ -259,13 +262,14 @@ impl ContactModel for PotentialContact {
             blocks: input.blocks,
             candidates: &self.candidates,
             integrals: &self.integrals,
+            hulls: &self.hulls,
             forces: &self.forces,
             stiffness_pa: &self.penalty_of_facet,
             curvature_pa_m: &self.curvature_of_facet,
         };
         self.scatter.add(&scene, output);
         if let Some(joints) = self.joints.as_ref().filter(|joints| joints.carry_tension()) {
-            bonds::add_forces(joints, &self.candidates, input, history, output);
+            bonds::add_forces(joints, (&self.candidates, &self.hulls), input, history, output);
         }
         if self.joints.is_some() {
             self.remember(input, history);
@@ -281,7 +285,14 @@ impl ContactModel for PotentialContact {
             _ => self.integrate(input)?,
         }
         let Some((_, field)) = &self.field else { return Ok(0.0) };
-        self.overlaps.integrate(input, &self.candidates, &self.integrals, &self.frames, field, law);
+        let parts = OverlapParts {
+            candidates: &self.candidates,
+            integrals: &self.integrals,
+            frames: &self.frames,
+            field,
+            hulls: &self.hulls,
+        };
+        self.overlaps.integrate(input, &parts, law);
         let bonds = self.joints.as_ref().map_or(0.0, |joints| bonds::energy_j(joints, input, &history.bonds));
         Ok(self.penalty_pa * self.overlaps.energy_m3(law) + bonds)
     }

@@ -7,9 +7,9 @@
 //! in none.
 
 use crate::clip::{Form, Polygon};
+use crate::hulls::Face;
 use crate::kernel::MOST_CUTS;
 use crate::pair::TetFrame;
-use crate::potential::MOST_PIECES;
 use ndda_mesh::Vec3;
 
 /// A field by its values at the triangle's corners, that is positive in the region.
@@ -85,19 +85,19 @@ impl Region {
         is_somewhere(&outside[i])
     }
 
-    /// Where the k-th of the functions is the smallest. False if that is nowhere.
+    /// Where the k-th of the functions is the smallest, and positive in a block that is taken whole. False if that is nowhere.
+    #[inline]
     pub fn set_piece(&mut self, pieces: &Pieces, k: usize) -> bool {
-        let own = pieces.at[k];
+        let (own, slope) = (pieces.at[k], pieces.slope[k]);
         let ahead = |j: usize| Cut::new([0, 1, 2].map(|a| pieces.at[j][a] - own[a]), k < j);
-        self.begin(own, 0.0);
+        self.begin(own, slope.abs());
         for face in &pieces.faces[..pieces.faces_len] {
             self.add(*face);
         }
-        if !(0..pieces.values.len()).all(|j| j == k || self.add(ahead(j))) {
+        if pieces.are_of_whole && !self.add(Cut::new(own, slope < 0.0)) {
             return false;
         }
-        self.slope = (0..4).map(|b| pieces.values[k][b] * pieces.rise[b]).sum::<f64>().abs();
-        true
+        (0..pieces.len).all(|j| j == k || self.add(ahead(j)))
     }
 
     /// The region corner by corner.
@@ -110,48 +110,99 @@ impl Region {
     }
 }
 
-/// The functions of a tetrahedron of which the smallest is φ, as a triangle sees them.
-pub struct Pieces<'a> {
-    /// Their nodal values.
-    values: &'a [[f64; 4]],
+/// The functions of a tetrahedron, or of a block that is taken whole, of which the smallest is φ, as a triangle sees them;
+/// used again and again.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Pieces {
     /// Their values at the triangle's corners.
-    at: [[f64; 3]; MOST_PIECES],
-    /// ∇λ_b·n [1/m].
-    rise: [f64; 4],
+    at: [[f64; 3]; MOST_CUTS],
+    /// ∂φ/∂n [1/m].
+    slope: [f64; MOST_CUTS],
+    /// Which of the functions of the tetrahedron or block each is.
+    which: [u8; MOST_CUTS],
+    len: usize,
     /// The cuts by the tetrahedron's faces that cut something.
     faces: [Cut; 4],
     faces_len: usize,
+    are_of_whole: bool,
 }
 
-impl<'a> Pieces<'a> {
-    /// The functions with these nodal values on a triangle with this outward unit normal; none if the triangle is
+impl Pieces {
+    /// The functions with these nodal values on a triangle with this outward unit normal; false if the triangle is
     /// outside. `lambda[b][a]` is λ_b at corner a.
     #[inline]
-    pub fn new(
+    pub fn set(
+        &mut self,
         lambda: &[[f64; 3]; 4],
-        values: &'a [[f64; 4]],
+        values: &[[f64; 4]],
         frame: &TetFrame,
         normal: &Vec3,
-    ) -> Option<Self> {
-        let (mut faces, mut faces_len) = ([Cut::default(); 4], 0);
+    ) -> bool {
+        (self.len, self.faces_len, self.are_of_whole) = (0, 0, false);
         let rise = [0, 1, 2, 3].map(|b| frame.gradient(b).dot(normal));
         for b in 0..4 {
             // The faces inside a block belong to the tetrahedron on the triangle's inner side.
             let cut = Cut::new(lambda[b], rise[b] < 0.0);
             match cut.outside() {
                 0 => {}
-                3 => return None,
+                3 => return false,
                 _ => {
-                    faces[faces_len] = cut;
-                    faces_len += 1;
+                    self.faces[self.faces_len] = cut;
+                    self.faces_len += 1;
                 }
             }
         }
-        let mut at = [[0.0; 3]; MOST_PIECES];
-        for (at, values) in at.iter_mut().zip(values) {
-            *at = [0, 1, 2].map(|a| (0..4).map(|b| values[b] * lambda[b][a]).sum::<f64>());
+        for (k, values) in values.iter().enumerate() {
+            let at = [0, 1, 2].map(|a| (0..4).map(|b| values[b] * lambda[b][a]).sum::<f64>());
+            self.push(k, at, (0..4).map(|b| values[b] * rise[b]).sum());
         }
-        Some(Self { values, at, rise, faces, faces_len })
+        true
+    }
+
+    /// The functions of a block that is taken whole, but for those that another is everywhere below; false if the triangle is
+    /// beyond a face.
+    #[inline]
+    pub fn set_whole(&mut self, faces: &[Face], corners: &[Vec3; 3], normal: &Vec3) -> bool {
+        (self.len, self.faces_len, self.are_of_whole) = (0, 0, true);
+        let mut enough = f64::INFINITY;
+        for (k, face) in faces.iter().enumerate() {
+            let at = corners.each_ref().map(|x| face.phi(x));
+            let largest = at[0].max(at[1]).max(at[2]);
+            if largest <= 0.0 {
+                return false;
+            }
+            enough = enough.min(largest);
+            self.push(k, at, face.gradient().dot(normal));
+        }
+        let mut kept = 0;
+        for k in 0..self.len {
+            let [x, y, z] = self.at[k];
+            (self.at[kept], self.slope[kept], self.which[kept]) = (self.at[k], self.slope[k], self.which[k]);
+            kept += usize::from(!(x > enough && y > enough && z > enough));
+        }
+        self.len = kept;
+        true
+    }
+
+    #[inline(always)]
+    fn push(&mut self, which: usize, at: [f64; 3], slope: f64) {
+        (self.at[self.len], self.slope[self.len], self.which[self.len]) = (at, slope, which as u8);
+        self.len += 1;
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Which function of the tetrahedron or block the k-th is.
+    pub fn which(&self, k: usize) -> usize {
+        usize::from(self.which[k])
     }
 }
 

@@ -5,7 +5,7 @@ use ndda_mesh::{TetId, TriangleId};
 
 use crate::candidates::Candidates;
 use crate::energy::has_centroid;
-use crate::integrals::{Hit, Integrals};
+use crate::integrals::{Hit, Integrals, Scene};
 use crate::model::{ContactError, ContactInput, ContactReport};
 use crate::pair::{TetFrame, pair_energy};
 use crate::potential::Field;
@@ -34,7 +34,7 @@ pub struct HitReport {
 
 impl HitReport {
     /// The report on some hits.
-    pub fn of(hits: &[Hit], candidates: &Candidates, field: &Field) -> Self {
+    pub fn of(hits: &[Hit], scene: &Scene) -> Self {
         let mut report = Self::default();
         for hit in hits {
             let on_contactor = hit.moments.total();
@@ -49,8 +49,7 @@ impl HitReport {
                 let error = (on_contactor - on_target).abs() / scale;
                 report.action_reaction_error = report.action_reaction_error.max(error);
             }
-            report
-                .look_at(hit.pair, penetration_ratio(field, candidates.tet_of(hit.pair), hit.moments.depth));
+            report.look_at(hit.pair, penetration_ratio(scene, hit));
         }
         report
     }
@@ -153,13 +152,14 @@ fn hits(integrals: &Integrals) -> impl Iterator<Item = &Hit> {
     integrals.chunks().iter().flat_map(|chunk| &chunk.hits)
 }
 
-/// Depth over the height of the tetrahedron. For the element potential φ = 4 λ, and λ is that ratio.
-fn penetration_ratio(field: &Field, tet: TetId, phi: f64) -> f64 {
-    match field {
-        Field::Pieces(table) => {
-            let most = table.of(tet).iter().flatten().copied().fold(0.0, f64::max);
-            if most > 0.0 { phi / most } else { 0.0 }
-        }
-        Field::Element => 0.25 * phi,
-    }
+/// Depth over the height of the tetrahedron, or of the block that is taken whole. For the element potential φ = 4 λ, and λ is
+/// that ratio.
+fn penetration_ratio(scene: &Scene, hit: &Hit) -> f64 {
+    let tet = scene.candidates.tet_of(hit.pair);
+    let most = match (scene.hulls.whole(scene.blocks.tet_block[tet.index()]), scene.field) {
+        (Some(whole), _) => whole.most_phi,
+        (None, Field::Pieces(table)) => table.of(tet).iter().flatten().copied().fold(0.0, f64::max),
+        (None, Field::Element) => 4.0,
+    };
+    if most > 0.0 { hit.moments.depth / most } else { 0.0 }
 }

@@ -2,10 +2,12 @@
 
 use std::ops::Range;
 
-use ndda_mesh::BlockSet;
+use nalgebra::{Matrix4, Vector4};
+use ndda_mesh::{BlockId, BlockSet};
 
 use crate::candidates::Candidates;
 use crate::facets::FacetForce;
+use crate::hulls::{Hulls, Whole};
 use crate::integrals::{FacetSums, Hit, Integrals};
 use crate::model::ContactOutput;
 
@@ -31,6 +33,8 @@ pub struct ScatterScene<'a> {
     pub candidates: &'a Candidates,
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,
+    /// Blocks that are taken whole.
+    pub hulls: &'a Hulls,
     /// One entry per touching facet.
     pub forces: &'a [FacetForce],
     /// Stiffness per slope, one entry per touching facet [Pa].
@@ -119,8 +123,10 @@ impl Scatter {
             nodes.add_contactor(scene, t as usize);
         }
         let range = self.target_start[block] as usize..self.target_start[block + 1] as usize;
-        for &t in &self.on_target[range] {
-            nodes.add_target(scene, t as usize);
+        let on_block = &self.on_target[range];
+        on_block.iter().for_each(|&t| nodes.add_target(scene, t as usize));
+        if let Some(whole) = scene.hulls.whole(BlockId(block as u32)).filter(|_| !on_block.is_empty()) {
+            nodes.add_rate(scene, whole, on_block);
         }
     }
 }
@@ -167,10 +173,37 @@ impl BlockNodes<'_> {
     }
 
     fn add_hit(&mut self, scene: &ScatterScene, hit: &Hit, force: &FacetForce, t: usize) {
-        let nodes = scene.blocks.tets[scene.candidates.tet_of(hit.pair).index()];
+        let tet = scene.candidates.tet_of(hit.pair);
+        let is_whole = scene.hulls.whole(scene.blocks.tet_block[tet.index()]).is_some();
         let weights = hit.moments.target_pressure.iter().zip(hit.moments.target_slope);
-        for (node, (pressure, slope)) in nodes.iter().zip(weights) {
-            self.add(node.index(), -pressure, force, scene.stiffness(t, slope.max(0.0), *pressure));
+        for (node, (pressure, slope)) in scene.blocks.tets[tet.index()].iter().zip(weights) {
+            // The corners of a host may be far from where it is pressed: `add_rate` knows better.
+            let stiffness = if is_whole { 0.0 } else { scene.stiffness(t, slope.max(0.0), *pressure) };
+            self.add(node.index(), -pressure, force, stiffness);
+        }
+    }
+
+    /// What presses on a block that is taken whole makes all its nodes as stiff as its fastest affine motion; each hit counts
+    /// as a spring at the mean of its slopes.
+    fn add_rate(&mut self, scene: &ScatterScene, whole: &Whole, on_block: &[u32]) {
+        let mut springs = Matrix4::zeros();
+        for &t in on_block.iter().filter(|&&t| scene.forces[t as usize].touches) {
+            for Hit { moments, .. } in scene.integrals.hits_of(&scene.integrals.touching()[t as usize]) {
+                let slope = moments.slope.iter().sum::<f64>();
+                let (weights, total) = match slope > 0.0 {
+                    true => (moments.target_slope, slope),
+                    false => (moments.target_pressure, moments.total()),
+                };
+                if total > 0.0 {
+                    let lambda = Vector4::from(weights) / total;
+                    springs +=
+                        scene.stiffness(t as usize, slope, moments.total()) * lambda * lambda.transpose();
+                }
+            }
+        }
+        let rate = whole.rate(&springs);
+        for (sum, share) in self.output.stiffness.iter_mut().zip(&whole.share) {
+            *sum += 2.0 * share * rate;
         }
     }
 

@@ -24,6 +24,10 @@ impl ContactPotential for SmoothPotential {
         "Smooth"
     }
 
+    fn phi_per_m(&self) -> Option<f64> {
+        Some(1.0 / self.reference_m)
+    }
+
     fn field(&self, blocks: &BlockSet) -> Result<Field, PotentialError> {
         let mut table = PieceTable::new();
         for block in blocks.ids() {

@@ -16,6 +16,7 @@ use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::clip::Polygon;
+use crate::hulls::Face;
 use crate::pair::TetFrame;
 use crate::pair_stiffness::PairStiffness;
 use crate::region::{Pieces, Region, element_outside};
@@ -54,13 +55,23 @@ fn second_moments(part: &Polygon, area_m2: f64) -> [[f64; 3]; 3] {
     h
 }
 
-/// Adds the stiffness of a triangle in a tetrahedron. `pieces` are the nodal values of the linear functions whose
-/// smallest is φ; none for the element potential.
+/// What φ is in the target of a pair.
+#[derive(Clone, Copy)]
+pub enum Target<'a> {
+    /// 4 min λᵢ.
+    Element,
+    /// The smallest of linear functions with these nodal values.
+    Pieces(&'a [[f64; 4]]),
+    /// The smallest of the functions of these faces of a block that is taken whole; λ are those of its host.
+    Whole(&'a [Face]),
+}
+
+/// Adds the stiffness of a triangle in a tetrahedron or a block that is taken whole.
 pub fn add_pair(
     stiffness: &mut PairStiffness,
     corners: &[Vec3; 3],
     frame: &TetFrame,
-    pieces: Option<&[[f64; 4]]>,
+    target: Target,
     penalty_pa: f64,
 ) {
     let lambda = frame.lambda(corners);
@@ -77,15 +88,23 @@ pub fn add_pair(
         let product = normal * gradient.transpose();
         -0.5 * penalty_pa * (product + product.transpose())
     };
-    let seen = pieces.and_then(|pieces| Pieces::new(&lambda, pieces, frame, &normal));
-    let (mut region, outside) = (Region::default(), element_outside(&lambda));
-    for k in 0..pieces.map_or(4, <[_]>::len) {
-        let (somewhere, gradient) = match pieces {
-            None => (region.set_element(&lambda, &outside, k, 0.0), 4.0 * frame.gradient(k)),
-            Some(pieces) => {
-                let gradient: Vec3 = (0..4).map(|b| pieces[k][b] * frame.gradient(b)).sum();
-                (seen.as_ref().is_some_and(|seen| region.set_piece(seen, k)), gradient)
-            }
+    let (mut region, mut seen) = (Region::default(), Pieces::default());
+    let outside = element_outside(&lambda);
+    let pieces = match target {
+        Target::Element => 4,
+        Target::Pieces(values) if seen.set(&lambda, values, frame, &normal) => seen.len(),
+        Target::Whole(faces) if seen.set_whole(faces, corners, &normal) => seen.len(),
+        _ => 0,
+    };
+    for k in 0..pieces {
+        let somewhere = match target {
+            Target::Element => region.set_element(&lambda, &outside, k, 0.0),
+            _ => region.set_piece(&seen, k),
+        };
+        let gradient: Vec3 = match target {
+            Target::Element => 4.0 * frame.gradient(k),
+            Target::Pieces(values) => (0..4).map(|b| values[seen.which(k)][b] * frame.gradient(b)).sum(),
+            Target::Whole(faces) => faces[seen.which(k)].gradient(),
         };
         if somewhere {
             add_part(stiffness, &region.polygon(), &shapes, &tensor(&gradient), area);

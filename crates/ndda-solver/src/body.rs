@@ -28,6 +28,13 @@ pub enum BodyKind {
     Fixed,
 }
 
+impl BodyKind {
+    /// Whether all its nodes move by one affine map, so that plane faces stay plane.
+    pub fn is_affine(self) -> bool {
+        self != Self::Elastic
+    }
+}
+
 /// Why a block could not take a step.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum BlockError {

@@ -292,6 +292,7 @@ impl Simulation {
             position: &self.contact_position,
             velocity: &newton.velocity,
             dt_s: self.part_s,
+            affine: &self.affine,
             bodies: &self.contact_bodies,
         };
         let found = model.add_stiffness(&input, &self.state.contact, &mut newton.pairs);

@@ -35,7 +35,10 @@ impl Simulation {
         sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
         if let Some(model) = &mut self.contact {
             let (position, velocity) = (&self.state.position, &self.state.velocity);
-            let input = ContactInput::new(&self.blocks, position, velocity, self.part_s);
+            let input = ContactInput {
+                affine: &self.affine,
+                ..ContactInput::new(&self.blocks, position, velocity, self.part_s)
+            };
             let energy_j = model.energy_j(&input, &self.state.contact);
             sample.contact_j = energy_j.map_err(|source| StepError::Contact { time_s, source })?;
             let books = self.ledger.blocks();

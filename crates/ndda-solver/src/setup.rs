@@ -103,6 +103,7 @@ impl Simulation {
             contact_stiffness: vec![0.0; contact_nodes],
             contact_position: blocks.rest_position.clone(),
             moved: vec![Vec3::zeros(); contact_nodes],
+            affine: Vec::new(),
             contact_bodies: Vec::new(),
             contacts: None,
             ledger: Ledger::new(&[], BlockBooks::default()),
@@ -123,6 +124,10 @@ impl Simulation {
         }
         simulation.group_congruent(&shape_of);
         simulation.add_loads(&bodies, &gravity_m_s2, gravity_factor);
+        if simulation.contact.is_some() {
+            let kinds = simulation.blocks.ids().map(|block| simulation.shape(block).kind);
+            simulation.affine = kinds.map(BodyKind::is_affine).collect();
+        }
         if simulation.contact.as_ref().is_some_and(|c| c.needs_bodies()) {
             let bodies = simulation.blocks.ids().map(|block| simulation.shape(block).contact_body());
             simulation.contact_bodies = bodies.collect();

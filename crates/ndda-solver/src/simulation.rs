@@ -96,6 +96,8 @@ pub struct Simulation {
     pub(crate) contact_position: Vec<Vec3>,
     /// Where nodes were before the step, later how far it moved them [m]; empty without contact.
     pub(crate) moved: Vec<Vec3>,
+    /// Which blocks move by an affine map; empty without contact.
+    pub(crate) affine: Vec<bool>,
     pub(crate) contact_bodies: Vec<ContactBody>,
     /// What facets did in the last step, if somebody wants to know.
     pub(crate) contacts: Option<Vec<FacetContact>>,
@@ -214,6 +216,7 @@ impl Simulation {
             position: &self.contact_position,
             velocity: facet_velocity.filter(|_| !model.needs_bodies()).unwrap_or(&self.state.velocity),
             dt_s: self.part_s,
+            affine: &self.affine,
             bodies: &self.contact_bodies,
         };
         let mut output = ContactOutput {
