@@ -6,6 +6,7 @@ use ndda_cli::machine;
 use ndda_contact::ContactInput;
 use ndda_contact::batch::Batches;
 use ndda_contact::candidates::Candidates;
+use ndda_contact::hulls::Hulls;
 use ndda_contact::pair::TetFrame;
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::triangle_area_vector;
@@ -93,7 +94,10 @@ impl Looks {
     fn of(simulation: &Simulation) -> Self {
         let (blocks, state) = (simulation.blocks(), simulation.state());
         let mut candidates = Candidates::default();
-        candidates.update(&ContactInput::new(blocks, &state.position, &state.velocity, simulation.step_s()));
+        candidates.update(
+            &ContactInput::new(blocks, &state.position, &state.velocity, simulation.step_s()),
+            &Hulls::default(),
+        );
         let frame = |(tet, order): (&_, &[u8; 4])| {
             TetFrame::in_order(&blocks.tet_corners(*tet, &state.position), order)
         };

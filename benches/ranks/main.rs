@@ -17,6 +17,7 @@ mod traffic;
 use known::Known;
 use ndda_contact::ContactInput;
 use ndda_contact::candidates::Candidates;
+use ndda_contact::hulls::Hulls;
 use split::Owners;
 use traffic::Traffic;
 
@@ -28,7 +29,7 @@ fn main() {
     let (blocks, state) = (simulation.blocks(), simulation.state());
     let input = ContactInput::new(blocks, &state.position, &state.velocity, simulation.step_s());
     let mut candidates = Candidates::default();
-    candidates.update(&input);
+    candidates.update(&input, &Hulls::default());
     println!("ranks\t{}", Traffic::HEADER.join("\t"));
     for ranks in [2, 4, 8] {
         let owners = Owners::new(&simulation, ranks);

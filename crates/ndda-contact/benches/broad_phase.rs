@@ -8,6 +8,7 @@ mod twins;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use ndda_contact::candidates::Candidates;
+use ndda_contact::hulls::Hulls;
 use ndda_contact::testing::{Random, test_set};
 use ndda_contact::{ContactHistory, ContactInput, ContactModel, ContactOutput, PotentialContact};
 use ndda_mesh::generate::{BoxPattern, box_block};
@@ -40,30 +41,30 @@ fn update(c: &mut Criterion) {
             let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
             let mut position = blocks.rest_position.clone();
             let count = n * n * n;
-            let mut kept = Candidates::default();
-            kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4));
+            let (mut kept, none) = (Candidates::default(), Hulls::default());
+            kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4), &none);
             kept.forget();
-            kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4));
+            kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4), &none);
             let bytes = kept.heap_bytes() as f64 / count as f64;
             println!(
                 "{count} blocks, {:.1} pairs and {bytes:.0} B each",
                 kept.pairs.len() as f64 / count as f64
             );
             group.bench_function(BenchmarkId::new("keep the list", count), |b| {
-                b.iter(|| kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4)))
+                b.iter(|| kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4), &none))
             });
             let middle = blocks.nodes_of(BlockId((count / 2 + n / 2 * (n + 1)) as u32));
             let top = blocks.nodes_of(BlockId(count as u32 - 1));
             for (name, nodes, way) in [("one block shakes", middle, 0.031), ("one block flies", top, 10.0)] {
                 let home = position.clone();
                 position[nodes.clone()].iter_mut().for_each(|x| x.z += 3.0 * way);
-                kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4));
+                kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4), &none);
                 let mut sign = 1.0;
                 group.bench_function(BenchmarkId::new(name, count), |b| {
                     b.iter(|| {
                         sign = -sign;
                         position[nodes.clone()].iter_mut().for_each(|x| x.z += sign * way);
-                        kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4))
+                        kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4), &none)
                     })
                 });
                 position = home;
@@ -71,7 +72,7 @@ fn update(c: &mut Criterion) {
             group.bench_function(BenchmarkId::new("make the list", count), |b| {
                 b.iter(|| {
                     kept.forget();
-                    kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4))
+                    kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4), &none)
                 })
             });
         }

@@ -212,16 +212,13 @@ impl Polyhedron {
 
     /// Keeps the part where the function is not negative.
     pub fn cut(&mut self, side: &Linear) {
-        let mut sides = [0.0; MOST_CORNERS];
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (value, x) in sides.iter_mut().zip(&self.position[..self.len]) {
-            *value = side.at(x);
-            (least, most) = (least.min(*value), most.max(*value));
-        }
+        let (least, most) = self.range_of(side);
         // A polyhedron that only touches the plane has no volume in front of it.
         if most <= 0.0 {
             self.len = 0;
         } else if least < 0.0 {
+            let mut sides = [0.0; MOST_CORNERS];
+            sides.iter_mut().zip(&self.position[..self.len]).for_each(|(value, x)| *value = side.at(x));
             let old = self.len;
             self.add_crossings(&sides);
             if self.outgrown {
@@ -231,6 +228,13 @@ impl Polyhedron {
             self.close_cut(old);
             self.drop_behind(&sides, old);
         }
+    }
+
+    /// The least and the largest value of a function; at corners, for it is linear.
+    fn range_of(&self, function: &Linear) -> (f64, f64) {
+        let wider = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
+        let values = self.position[..self.len].iter().map(|x| function.at(x));
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), wider)
     }
 
     /// A new corner on each edge that crosses the plane, between its kept end and nothing yet.
@@ -348,19 +352,29 @@ impl Polyhedron {
 
     /// ∫ min f dV over linear functions: each over the part where it is the smallest.
     pub fn integral_of_smallest(&self, functions: &[Linear]) -> f64 {
-        if let [only] = functions {
-            return self.integral(only);
-        }
-        let part = |i: usize| {
-            let mut region = self.clone();
-            for (j, rival) in functions.iter().enumerate() {
-                if j != i && !region.is_empty() {
-                    region.cut(&rival.minus(&functions[i]));
-                }
-            }
-            region.integral(&functions[i])
+        // What is everywhere above another's largest value is nowhere the smallest.
+        let enough = functions.iter().map(|f| self.range_of(f).1).fold(f64::INFINITY, f64::min);
+        // One that is not a number has no range, and counts.
+        let counts = |f: &&Linear| {
+            let (least, _) = self.range_of(f);
+            least <= enough || !least.is_finite()
         };
-        (0..functions.len()).map(part).sum()
+        let part = |f: &Linear| {
+            let mut rivals =
+                functions.iter().filter(counts).filter(|rival| !std::ptr::eq(*rival, f)).peekable();
+            if rivals.peek().is_none() {
+                return self.integral(f);
+            }
+            let mut region = self.clone();
+            for rival in rivals {
+                if region.is_empty() {
+                    return 0.0;
+                }
+                region.cut(&rival.minus(f));
+            }
+            region.integral(f)
+        };
+        functions.iter().filter(counts).map(part).sum()
     }
 }
 

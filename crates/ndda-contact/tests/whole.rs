@@ -221,8 +221,7 @@ fn memory_per_element_keeps_the_elements() {
     ]);
     let still = vec![Vec3::zeros(); blocks.rest_position.len()];
     let answer = |affine: &[bool]| {
-        let mut joints =
-            Joints::everywhere(Box::new(Coulomb::new(30.0, 1e9)));
+        let mut joints = Joints::everywhere(Box::new(Coulomb::new(30.0, 1e9)));
         joints.memory = Memory::Element;
         let mut model = model().with_joints(joints);
         evaluate(

@@ -35,8 +35,8 @@ impl Frictionless {
     ) -> ContactReport {
         let blocks = input.blocks;
         self.candidates.numbers_overlaps = true;
-        if self.candidates.update(input) {
-            self.hulls.fit(blocks, &BlockFaces::of_all(blocks));
+        if self.candidates.update(input, &self.hulls) {
+            self.hulls.fit(blocks, &BlockFaces::of_all(blocks), None, &[]);
         }
         self.hulls.place(blocks, input.position);
         self.frames.clear();
@@ -74,6 +74,7 @@ impl Frictionless {
             blocks,
             candidates,
             integrals,
+            hulls: &self.hulls,
             forces: &self.forces,
             stiffness_pa: &self.stiffness_pa,
             curvature_pa_m: &[],
