@@ -5,6 +5,9 @@ use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
 
 use crate::hulls::{Face, Hulls};
 
+/// Blocks of more nodes are compared by their elements only.
+const FEW_NODES: usize = 64;
+
 /// Blocks where they were when they were last looked at.
 #[derive(Clone, Copy, Debug)]
 pub struct BroadScene<'a> {
@@ -46,6 +49,26 @@ impl BroadScene<'_> {
         let own = self.blocks.triangle_block[triangle];
         let reach_m = self.margin_m[own.index()] + self.margin_m[other.index()];
         TriangleAt { corners, normal: triangle_area_vector(&corners), reach_m }
+    }
+
+    /// Whether a face of one of two blocks keeps them apart by more than both margins; not asked of blocks of many nodes.
+    pub fn are_apart(&self, a: BlockId, b: BlockId) -> bool {
+        let nodes = |block| &self.position[self.blocks.nodes_of(block)];
+        let (of_a, of_b) = (nodes(a), nodes(b));
+        let reach_m = self.margin_m[a.index()] + self.margin_m[b.index()];
+        of_a.len().max(of_b.len()) <= FEW_NODES
+            && (self.face_between(a, (of_a, of_b), reach_m) || self.face_between(b, (of_b, of_a), reach_m))
+    }
+
+    fn face_between(&self, block: BlockId, (own, other): (&[Vec3], &[Vec3]), reach_m: f64) -> bool {
+        self.hulls.faces_of(block).iter().any(|face| {
+            let corners = face.corners.map(|n| self.position[n.index()]);
+            let normal = triangle_area_vector(&corners);
+            let above = |x: &Vec3| normal.dot(&(x - corners[0]));
+            let furthest = own.iter().map(above).fold(0.0, f64::max);
+            let least = reach_m * reach_m * normal.norm_squared();
+            other.iter().map(|x| above(x) - furthest).all(|gap| gap > 0.0 && gap * gap > least)
+        })
     }
 
     fn around(&self, nodes: &[NodeId]) -> Aabb {

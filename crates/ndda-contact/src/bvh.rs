@@ -241,6 +241,9 @@ struct Near<'a> {
 impl Near<'_> {
     /// Adds the pairs of triangles of `block` that reach into the box of `other` and its tetrahedra.
     fn find(&self, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
+        if block != other && self.scene.are_apart(block, other) {
+            return;
+        }
         let triangles = self.scene.blocks.triangles_of(block);
         let there = &self.boxes.blocks[other.index()];
         let reaches = |i: &usize| self.boxes.triangles[*i].touches(there);

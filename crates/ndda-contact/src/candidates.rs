@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use ndda_mesh::{BlockId, TetId, TriangleId};
+use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId};
 
 use crate::broad_phase::BroadPhase;
 use crate::bvh::{TreeBroadPhase, make_room};
@@ -19,6 +19,8 @@ pub struct Facet {
     pub target: BlockId,
     /// Its pairs in [`Candidates::pairs`].
     pub pairs: Range<usize>,
+    /// Its two blocks in [`Candidates::neighbours`].
+    pub neighbours: u32,
 }
 
 /// One pair; the tetrahedron, which may stand for a block that is taken whole, is an index into [`Candidates::tets`], the overlap one into a list as long as
@@ -40,6 +42,8 @@ pub struct Candidates {
     pub pairs: Vec<Pair>,
     /// Runs of pairs with one triangle and one target block.
     pub facets: Vec<Facet>,
+    /// The distinct pairs of blocks, (smaller, larger), ascending.
+    pub neighbours: Vec<(BlockId, BlockId)>,
     /// The distinct target tetrahedra, ascending.
     pub tets: Vec<TetId>,
     /// Their corners in the order of node numbers, on which neighbours agree.
@@ -52,6 +56,8 @@ pub struct Candidates {
     pub split_by_element: bool,
     found: Vec<(TriangleId, TetId)>,
     slot_of: Vec<u32>,
+    /// Of each target block of the contactor that it was last seen with, its place in `neighbours`.
+    place_of: Vec<(BlockId, u32)>,
     sorted: Vec<TetId>,
     /// First overlap of each contactor block.
     overlap_start: Vec<u32>,
@@ -92,7 +98,8 @@ impl Candidates {
             + self.order.capacity() * size_of::<[u8; 4]>();
         let found = self.found.capacity() * size_of::<(TriangleId, TetId)>();
         let overlaps = self.overlaps.capacity() * size_of::<(TetId, BlockId)>();
-        let places = (self.slot_of.capacity() + self.overlap_start.capacity()) * size_of::<u32>();
+        let places = (self.slot_of.capacity() + self.overlap_start.capacity()) * size_of::<u32>()
+            + (self.place_of.capacity() + self.neighbours.capacity()) * size_of::<(BlockId, u32)>();
         pairs + tets + found + overlaps + places + self.listed.heap_bytes() + self.broad_phase.heap_bytes()
     }
 
@@ -119,8 +126,40 @@ impl Candidates {
                 {
                     last.pairs.end = i + 1
                 }
-                _ => self.facets.push(Facet { triangle, target, pairs: i..i + 1 }),
+                _ => self.facets.push(Facet { triangle, target, pairs: i..i + 1, neighbours: 0 }),
             }
+        }
+        self.list_neighbours(input.blocks);
+    }
+
+    /// The distinct pairs of blocks, and the place of each facet's.
+    fn list_neighbours(&mut self, blocks: &BlockSet) {
+        let Self { facets, neighbours, place_of, .. } = self;
+        let owner = |facet: &Facet| blocks.triangle_block[facet.triangle.index()];
+        let both = |a: BlockId, b: BlockId| (a.min(b), a.max(b));
+        // Facets of a block follow each other, and most targets were seen with its last triangle.
+        let forget = |place_of: &mut Vec<(BlockId, u32)>| {
+            place_of.clear();
+            place_of.resize(blocks.len(), (BlockId(u32::MAX), 0));
+        };
+        neighbours.clear();
+        forget(place_of);
+        for facet in facets.iter() {
+            let (own, seen) = (owner(facet), &mut place_of[facet.target.index()].0);
+            if std::mem::replace(seen, own) != own {
+                neighbours.push(both(own, facet.target));
+            }
+        }
+        neighbours.sort_unstable();
+        neighbours.dedup();
+        forget(place_of);
+        for facet in facets.iter_mut() {
+            let (own, (seen, place)) = (owner(facet), &mut place_of[facet.target.index()]);
+            if std::mem::replace(seen, own) != own {
+                let found = neighbours.binary_search(&both(own, facet.target));
+                *place = found.expect("listed above") as u32;
+            }
+            facet.neighbours = *place;
         }
     }
 

@@ -9,7 +9,7 @@ use ndda_mesh::{BlockId, BlockSet, TetId, Vec3};
 use rayon::prelude::*;
 
 use crate::candidates::{Candidates, Pair};
-use crate::hulls::Hulls;
+use crate::hulls::{Face, Hulls};
 use crate::integrals::Integrals;
 use crate::model::ContactInput;
 use crate::overlap::{Linear, Polyhedron, faces_of};
@@ -104,7 +104,9 @@ impl BlockOverlaps {
             (_, OverlapLaw::Power { .. }) => self.add_surfaces(input, candidates, integrals),
             (Field::Element, _) => self.add_pieces(input, candidates, frames),
             (Field::Pieces(table), _) => {
-                self.list(input.blocks, candidates, integrals.touching().iter().map(|touch| touch.facet));
+                self.pairs.clear();
+                let near = (0..).zip(&candidates.neighbours).filter(|(k, _)| !hulls.are_apart(*k));
+                self.pairs.extend(near.map(|(_, pair)| *pair));
                 self.add_cells(&Cells { input, table, hulls });
             }
         }
@@ -159,8 +161,10 @@ impl BlockOverlaps {
         }
     }
 
-    /// Any potential, over the overlaps of the cells of blocks whose surfaces touch.
+    /// Any potential, over the overlaps of the cells of blocks that no face keeps apart.
     fn add_cells(&mut self, cells: &Cells) {
+        self.overlap_m3.clear();
+        self.overlap_m3.resize(self.pairs.len(), 0.0);
         let place = |(overlap, &(a, b)): (&mut f64, &(BlockId, BlockId))| *overlap = cells.overlap_of(a, b);
         self.overlap_m3.par_iter_mut().zip(&self.pairs).with_min_len(GRAIN_BLOCK_PAIRS).for_each(place);
     }
@@ -178,69 +182,74 @@ impl Cells<'_> {
     fn overlap_of(&self, a: BlockId, b: BlockId) -> f64 {
         let block_box = |block| Aabb::around(&self.input.position[self.input.blocks.nodes_of(block)]);
         let (box_a, box_b) = (block_box(a), block_box(b));
-        let (of_a, of_b) = (self.near(a, &box_a, &box_b), self.near(b, &box_b, &box_a));
+        // Near the overlap, so that map coordinates lose no digits.
+        let origin = box_a.min.sup(&box_b.min);
+        let (of_a, of_b) = (self.near(a, (&box_a, &box_b), &origin), self.near(b, (&box_b, &box_a), &origin));
         let mut sum = 0.0;
-        for (c, c_box) in &of_a {
-            let within = of_b.iter().take_while(|(_, t_box)| t_box.min.x <= c_box.max.x);
-            for (t, t_box) in within.filter(|(t, t_box)| (a != b || t > c) && t_box.touches(c_box)) {
-                sum += self.overlap_of_cells((*c, c_box), (*t, t_box));
+        for (k, c) in of_a.iter().enumerate() {
+            let within = of_b.iter().take_while(|t| t.bounds.min.x <= c.bounds.max.x);
+            let is_new = |at: usize| a != b || at > k;
+            for (_, t) in within.enumerate().filter(|(at, t)| is_new(*at) && t.bounds.touches(&c.bounds)) {
+                sum += c.overlap_with(t);
             }
         }
         sum
     }
 
-    /// The cells of a block that touch a box, from left to right.
-    fn near(&self, block: BlockId, own: &Aabb, other: &Aabb) -> Vec<(TetId, Aabb)> {
+    /// The cells of a block that touch a box, from left to right, seen from `origin`.
+    fn near(&self, block: BlockId, (own, other): (&Aabb, &Aabb), origin: &Vec3) -> Vec<Cell> {
         let (blocks, position) = (self.input.blocks, self.input.position);
-        if let Some(whole) = self.hulls.whole(block) {
-            return vec![(whole.host, *own)];
-        }
-        let box_of = |tet: usize| Aabb::around(blocks.tets[tet].iter().map(|n| &position[n.index()]));
-        let tets = blocks.tets_of(block).map(|tet| (TetId(tet as u32), box_of(tet)));
-        let mut near: Vec<_> = tets.filter(|(_, bounds)| bounds.touches(other)).collect();
-        near.sort_by(|(_, x), (_, y)| x.min.x.total_cmp(&y.min.x));
-        near
-    }
-
-    /// ∫ (φ_c + φ_t) dV over c ∩ t.
-    fn overlap_of_cells(&self, (c, c_box): (TetId, &Aabb), (t, t_box): (TetId, &Aabb)) -> f64 {
-        let origin = self.input.blocks.tet_corners(c, self.input.position)[0];
-        let (of_c, of_t) = (self.cell(c, &origin), self.cell(t, &origin));
-        let bounds =
-            Aabb { min: c_box.min.sup(&t_box.min) - origin, max: c_box.max.inf(&t_box.max) - origin };
-        let whole = || Polyhedron::cuboid(&bounds);
-        let mut overlap = of_c.corners.as_ref().map_or_else(whole, Polyhedron::tet);
-        let own = of_c.sides.iter().filter(|_| of_c.corners.is_none());
-        for side in own.chain(&of_t.sides) {
-            overlap.cut(side);
-            if overlap.is_empty() {
-                return 0.0;
-            }
-        }
-        overlap.integral_of_smallest(&of_c.phi) + overlap.integral_of_smallest(&of_t.phi)
-    }
-
-    fn cell(&self, tet: TetId, origin: &Vec3) -> Cell {
-        let blocks = self.input.blocks;
-        let block = blocks.tet_block[tet.index()];
         if self.hulls.whole(block).is_some() {
-            let phi: Vec<Linear> =
-                self.hulls.faces_of(block).iter().map(|face| face.linear(origin)).collect();
-            return Cell { corners: None, sides: phi.clone(), phi };
+            return vec![Cell::of_faces(self.hulls.faces_of(block), own, origin)];
         }
-        let corners = blocks.tet_corners(tet, self.input.position);
-        let frame = TetFrame::new(&corners);
-        let phi = self.table.of(tet).iter().map(|values| Linear::of_corners(&frame, values, origin));
-        let corners = Some(corners.map(|x| x - origin));
-        Cell { corners, sides: faces_of(&frame, origin).to_vec(), phi: phi.collect() }
+        let near = |tet: usize| {
+            let corners = blocks.tet_corners(TetId(tet as u32), position);
+            let bounds = Aabb::around(&corners);
+            let values = || self.table.of(TetId(tet as u32));
+            bounds.touches(other).then(|| Cell::of_tet(&corners, values(), bounds, origin))
+        };
+        let mut near: Vec<_> = blocks.tets_of(block).filter_map(near).collect();
+        near.sort_by(|x, y| x.bounds.min.x.total_cmp(&y.bounds.min.x));
+        near
     }
 }
 
 /// A convex part of a block, in which φ is the smallest of linear functions.
 struct Cell {
-    /// Its corners, if it is a tetrahedron.
-    corners: Option<[Vec3; 4]>,
+    bounds: Aabb,
+    /// It as a polyhedron, if it is a tetrahedron.
+    tet: Option<[Vec3; 4]>,
     /// What is not negative in it.
     sides: Vec<Linear>,
     phi: Vec<Linear>,
+    origin: Vec3,
+}
+
+impl Cell {
+    fn of_tet(corners: &[Vec3; 4], values: &[[f64; 4]], bounds: Aabb, origin: &Vec3) -> Self {
+        let frame = TetFrame::new(corners);
+        let phi = values.iter().map(|values| Linear::of_corners(&frame, values, origin)).collect();
+        let (tet, sides) = (Some(corners.map(|x| x - origin)), faces_of(&frame, origin).to_vec());
+        Self { bounds, tet, sides, phi, origin: *origin }
+    }
+
+    fn of_faces(faces: &[Face], bounds: &Aabb, origin: &Vec3) -> Self {
+        let phi: Vec<Linear> = faces.iter().map(|face| face.linear(origin)).collect();
+        Self { bounds: *bounds, tet: None, sides: phi.clone(), phi, origin: *origin }
+    }
+
+    /// ∫ (φ + φ_t) dV over the overlap with t.
+    fn overlap_with(&self, t: &Self) -> f64 {
+        let (min, max) = (self.bounds.min.sup(&t.bounds.min), self.bounds.max.inf(&t.bounds.max));
+        let cuboid = || Polyhedron::cuboid(&Aabb { min: min - self.origin, max: max - self.origin });
+        let mut overlap = self.tet.as_ref().map_or_else(cuboid, Polyhedron::tet);
+        let own = self.sides.iter().filter(|_| self.tet.is_none());
+        for side in own.chain(&t.sides) {
+            overlap.cut(side);
+            if overlap.is_empty() {
+                return 0.0;
+            }
+        }
+        overlap.integral_of_smallest(&self.phi) + overlap.integral_of_smallest(&t.phi)
+    }
 }

@@ -24,6 +24,9 @@ use crate::pair::TetFrame;
 /// Faces below which a second thread costs more than it brings.
 const GRAIN_FACES: usize = 1024;
 
+/// The same for pairs of blocks.
+const GRAIN_PAIRS: usize = 128;
+
 /// A block of more faces is asked by its tetrahedra.
 const MOST_FACES: usize = 32;
 
@@ -62,6 +65,8 @@ pub struct Hulls {
     /// First face of each block; one that is concave or round has none.
     start: Vec<u32>,
     whole: Vec<Option<Whole>>,
+    /// Whether a face keeps the two blocks of a pair apart.
+    are_apart: Vec<bool>,
 }
 
 impl Hulls {
@@ -98,6 +103,25 @@ impl Hulls {
         self.faces.par_iter_mut().with_min_len(GRAIN_FACES).for_each(place);
     }
 
+    /// Looks for a face between the two blocks of each pair.
+    pub fn separate(&mut self, blocks: &BlockSet, position: &[Vec3], pairs: &[(BlockId, BlockId)]) {
+        let mut are_apart = std::mem::take(&mut self.are_apart);
+        are_apart.resize(pairs.len(), false);
+        let nodes = |block| &position[blocks.nodes_of(block)];
+        let keeps = |block, other| {
+            self.faces[self.of(block)].iter().any(|face| nodes(other).iter().all(|x| face.is_beyond(x)))
+        };
+        let look = |(apart, &(a, b)): (&mut bool, &(BlockId, BlockId))| *apart = keeps(a, b) || keeps(b, a);
+        are_apart.par_iter_mut().zip(pairs).with_min_len(GRAIN_PAIRS).for_each(look);
+        self.are_apart = are_apart;
+    }
+
+    /// Whether a face keeps the k-th pair of blocks apart; touching is not overlap.
+    #[inline]
+    pub fn are_apart(&self, k: u32) -> bool {
+        self.are_apart[k as usize]
+    }
+
     /// Whether a face of the block keeps it from the triangle; touching is not overlap.
     #[inline]
     pub fn keep_apart(&self, block: BlockId, triangle: &[Vec3; 3]) -> bool {
@@ -127,7 +151,8 @@ impl Hulls {
     }
 
     fn of(&self, block: BlockId) -> Range<usize> {
-        self.start[block.index()] as usize..self.start[block.index() + 1] as usize
+        let start = |block: usize| self.start.get(block).map_or(0, |&start| start as usize);
+        start(block.index())..start(block.index() + 1)
     }
 }
 

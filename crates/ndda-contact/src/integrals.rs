@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{BlockSet, Vec3};
+use ndda_mesh::{BlockSet, TriangleId, Vec3};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -134,6 +134,24 @@ pub struct Chunk {
     pub report: HitReport,
 }
 
+/// A contactor's triangle.
+#[derive(Clone, Copy)]
+struct Triangle {
+    corners: [Vec3; 3],
+    /// Outward unit normal.
+    normal: Vec3,
+    area: f64,
+}
+
+impl Triangle {
+    fn new(scene: &Scene, triangle: TriangleId) -> Self {
+        let corners = scene.blocks.triangle_corners(triangle, scene.position);
+        let area_vector = triangle_area_vector(&corners);
+        let area = area_vector.norm();
+        Self { corners, normal: area_vector / area, area }
+    }
+}
+
 /// What a thread needs while it is at a chunk.
 #[derive(Default)]
 struct Scratch {
@@ -154,9 +172,19 @@ impl Chunk {
         self.touching.clear();
         self.touching.reserve(facets.len());
         scratch.make_room(pairs);
+        let mut last = None;
         for (k, facet) in facets.iter().enumerate() {
+            if scene.hulls.are_apart(facet.neighbours) {
+                continue;
+            }
+            // Facets of one triangle follow each other.
+            let triangle = match last {
+                Some((id, triangle)) if id == facet.triangle => triangle,
+                _ => Triangle::new(scene, facet.triangle),
+            };
+            last = Some((facet.triangle, triangle));
             let first = self.hits.len() as u32;
-            self.add_facet(arch, scene, facet, scratch);
+            self.add_facet(arch, scene, facet, &triangle, scratch);
             let hits = first..self.hits.len() as u32;
             if !hits.is_empty() {
                 let facet = (self.facets.start + k) as u32;
@@ -192,16 +220,20 @@ impl Chunk {
         hits.truncate(kept as usize);
     }
 
-    fn add_facet(&mut self, arch: Arch, scene: &Scene, facet: &Facet, scratch: &mut Scratch) {
-        let corners = scene.blocks.triangle_corners(facet.triangle, scene.position);
-        let area_vector = triangle_area_vector(&corners);
-        let area = area_vector.norm();
+    fn add_facet(
+        &mut self,
+        arch: Arch,
+        scene: &Scene,
+        facet: &Facet,
+        triangle: &Triangle,
+        scratch: &mut Scratch,
+    ) {
+        let Triangle { corners, normal, area } = *triangle;
         if area == 0.0 {
             return;
         }
-        let normal = area_vector / area;
         if scene.hulls.whole(facet.target).is_some() {
-            return self.add_whole(arch, scene, facet, (&corners, &normal, area), scratch);
+            return self.add_whole(arch, scene, facet, triangle, scratch);
         }
         if scene.hulls.keep_apart(facet.target, &corners) || scene.is_on_one_side(facet, &corners[0], &normal)
         {
@@ -237,7 +269,7 @@ impl Chunk {
         arch: Arch,
         scene: &Scene,
         facet: &Facet,
-        (corners, normal, area): (&[Vec3; 3], &Vec3, f64),
+        Triangle { corners, normal, area }: &Triangle,
         scratch: &mut Scratch,
     ) {
         let nodes = scene.blocks.nodes_of(facet.target);
@@ -251,7 +283,7 @@ impl Chunk {
         self.hits.push(Hit { pair: index as u32, ..Hit::default() });
         let frame = &scene.frames[scene.candidates.pairs[index].tet as usize];
         scratch.lambda.push(frame.lambda(corners));
-        scratch.push_pieces(arch, hit, area);
+        scratch.push_pieces(arch, hit, *area);
     }
 }
 

@@ -126,6 +126,7 @@ impl PotentialContact {
         }
         self.candidates.update(input, &self.hulls);
         self.hulls.place(input.blocks, input.position);
+        self.hulls.separate(input.blocks, input.position, &self.candidates.neighbours);
         self.place_frames(input)
     }
 
@@ -280,8 +281,8 @@ impl ContactModel for PotentialContact {
     fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError> {
         let law = self.potential.law();
         match (law, &self.field) {
-            // The element potential's energy comes from the pairs, others from what touches.
-            (OverlapLaw::Linear, Some((_, Field::Element))) => self.find_pairs(input)?,
+            // Forces are not asked for, but to see what touches.
+            (OverlapLaw::Linear, Some(_)) => self.find_pairs(input)?,
             _ => self.integrate(input)?,
         }
         let Some((_, field)) = &self.field else { return Ok(0.0) };

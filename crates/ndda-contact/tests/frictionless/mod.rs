@@ -39,6 +39,7 @@ impl Frictionless {
             self.hulls.fit(blocks, &BlockFaces::of_all(blocks), None, &[]);
         }
         self.hulls.place(blocks, input.position);
+        self.hulls.separate(blocks, input.position, &self.candidates.neighbours);
         self.frames.clear();
         let tets = self.candidates.tets.iter().zip(&self.candidates.order);
         self.frames.extend(tets.map(|(&tet, order)| {
