@@ -184,20 +184,26 @@ impl Cells<'_> {
         let (box_a, box_b) = (block_box(a), block_box(b));
         // Near the overlap, so that map coordinates lose no digits.
         let origin = box_a.min.sup(&box_b.min);
-        let (of_a, of_b) = (self.near(a, (&box_a, &box_b), &origin), self.near(b, (&box_b, &box_a), &origin));
-        let mut sum = 0.0;
+        let (of_a, of_b) =
+            (self.near((a, &box_a), (b, &box_b), &origin), self.near((b, &box_b), (a, &box_a), &origin));
+        let (mut room, mut sum) = ([Polyhedron::default(), Polyhedron::default()], 0.0);
         for (k, c) in of_a.iter().enumerate() {
             let within = of_b.iter().take_while(|t| t.bounds.min.x <= c.bounds.max.x);
             let is_new = |at: usize| a != b || at > k;
             for (_, t) in within.enumerate().filter(|(at, t)| is_new(*at) && t.bounds.touches(&c.bounds)) {
-                sum += c.overlap_with(t);
+                sum += c.overlap_with(t, &mut room);
             }
         }
         sum
     }
 
-    /// The cells of a block that touch a box, from left to right, seen from `origin`.
-    fn near(&self, block: BlockId, (own, other): (&Aabb, &Aabb), origin: &Vec3) -> Vec<Cell> {
+    /// The cells of a block that may reach into another, from left to right, seen from `origin`; blocks come with their boxes.
+    fn near(
+        &self,
+        (block, own): (BlockId, &Aabb),
+        (other, around): (BlockId, &Aabb),
+        origin: &Vec3,
+    ) -> Vec<Cell> {
         let (blocks, position) = (self.input.blocks, self.input.position);
         if self.hulls.whole(block).is_some() {
             return vec![Cell::of_faces(self.hulls.faces_of(block), own, origin)];
@@ -206,7 +212,8 @@ impl Cells<'_> {
             let corners = blocks.tet_corners(TetId(tet as u32), position);
             let bounds = Aabb::around(&corners);
             let values = || self.table.of(TetId(tet as u32));
-            bounds.touches(other).then(|| Cell::of_tet(&corners, values(), bounds, origin))
+            let reaches = bounds.touches(around) && !self.hulls.keep_apart(other, &corners);
+            reaches.then(|| Cell::of_tet(&corners, values(), bounds, origin))
         };
         let mut near: Vec<_> = blocks.tets_of(block).filter_map(near).collect();
         near.sort_by(|x, y| x.bounds.min.x.total_cmp(&y.bounds.min.x));
@@ -239,10 +246,12 @@ impl Cell {
     }
 
     /// ∫ (φ + φ_t) dV over the overlap with t.
-    fn overlap_with(&self, t: &Self) -> f64 {
+    fn overlap_with(&self, t: &Self, [overlap, part]: &mut [Polyhedron; 2]) -> f64 {
         let (min, max) = (self.bounds.min.sup(&t.bounds.min), self.bounds.max.inf(&t.bounds.max));
-        let cuboid = || Polyhedron::cuboid(&Aabb { min: min - self.origin, max: max - self.origin });
-        let mut overlap = self.tet.as_ref().map_or_else(cuboid, Polyhedron::tet);
+        match &self.tet {
+            Some(corners) => overlap.set_tet(corners),
+            None => overlap.set_cuboid(&Aabb { min: min - self.origin, max: max - self.origin }),
+        }
         let own = self.sides.iter().filter(|_| self.tet.is_none());
         for side in own.chain(&t.sides) {
             overlap.cut(side);
@@ -250,6 +259,6 @@ impl Cell {
                 return 0.0;
             }
         }
-        overlap.integral_of_smallest(&self.phi) + overlap.integral_of_smallest(&t.phi)
+        overlap.integral_of_smallest(&self.phi, part) + overlap.integral_of_smallest(&t.phi, part)
     }
 }

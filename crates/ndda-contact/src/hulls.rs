@@ -122,10 +122,10 @@ impl Hulls {
         self.are_apart[k as usize]
     }
 
-    /// Whether a face of the block keeps it from the triangle; touching is not overlap.
+    /// Whether a face of the block keeps it from a triangle or tetrahedron with these corners; touching is not overlap.
     #[inline]
-    pub fn keep_apart(&self, block: BlockId, triangle: &[Vec3; 3]) -> bool {
-        self.faces[self.of(block)].iter().any(|face| triangle.iter().all(|x| face.is_beyond(x)))
+    pub fn keep_apart<const N: usize>(&self, block: BlockId, corners: &[Vec3; N]) -> bool {
+        self.faces[self.of(block)].iter().any(|face| corners.iter().all(|x| face.is_beyond(x)))
     }
 
     /// The faces of a block; none of one that is concave or round.

@@ -11,7 +11,7 @@ use crate::model::ContactInput;
 /// Skin over the mean size of a block's boundary triangles: twice the way that a resting block may creep.
 const SKIN: f64 = 0.005;
 /// Steps that the pairs of a fast block should last.
-const LASTING_STEPS: f64 = 8.0;
+const LASTING_STEPS: f64 = 12.0;
 /// Widest margin over the mean size of boundary triangles.
 const WIDEST: f64 = 0.5;
 /// Blocks below which a second thread costs more than it brings.

@@ -98,9 +98,10 @@ impl ScaledPair {
         let overlap = overlap_of(c, &frames[1], &origin);
         let (volume, moment) = overlap.volume_and_moment();
         let cubed = |v: f64| v * self.unit_m * self.unit_m * self.unit_m;
+        let mut part = Polyhedron::default();
         let phi = frames.map(|frame| {
             let of_region = faces_of(&frame, &origin).map(|lambda| lambda.times(4.0));
-            cubed(overlap.integral_of_smallest(&of_region))
+            cubed(overlap.integral_of_smallest(&of_region, &mut part))
         });
         let volume_m3 = cubed(volume);
         // The quotient of two small numbers may be anywhere.
@@ -160,7 +161,7 @@ impl Linear {
     }
 }
 
-/// A convex polyhedron; lives on the stack.
+/// A convex polyhedron; lives on the stack, and is large: room for one is used again and again.
 #[derive(Clone, Debug)]
 pub struct Polyhedron {
     position: [Vec3; MOST_CORNERS],
@@ -170,34 +171,48 @@ pub struct Polyhedron {
     outgrown: bool,
 }
 
+impl Default for Polyhedron {
+    /// Nothing.
+    fn default() -> Self {
+        let (position, neighbours) = ([Vec3::zeros(); MOST_CORNERS], [[0; 3]; MOST_CORNERS]);
+        Self { position, neighbours, len: 0, outgrown: false }
+    }
+}
+
 impl Polyhedron {
     /// A tetrahedron with these corners [m], of positive volume.
     pub fn tet(corners: &[Vec3; 4]) -> Self {
-        let mut all = Self {
-            position: [Vec3::zeros(); MOST_CORNERS],
-            neighbours: [[0; 3]; MOST_CORNERS],
-            len: 4,
-            outgrown: false,
-        };
-        all.position[..4].copy_from_slice(corners);
-        all.neighbours[..4].copy_from_slice(&[[1, 3, 2], [2, 3, 0], [0, 3, 1], [1, 2, 0]]);
+        let mut all = Self::default();
+        all.set_tet(corners);
         all
     }
 
-    /// A box along the axes.
-    pub fn cuboid(bounds: &Aabb) -> Self {
-        let mut all = Self::tet(&[Vec3::zeros(); 4]);
-        all.len = 8;
+    /// Becomes a tetrahedron with these corners [m], of positive volume.
+    pub fn set_tet(&mut self, corners: &[Vec3; 4]) {
+        (self.len, self.outgrown) = (4, false);
+        self.position[..4].copy_from_slice(corners);
+        self.neighbours[..4].copy_from_slice(&[[1, 3, 2], [2, 3, 0], [0, 3, 1], [1, 2, 0]]);
+    }
+
+    /// Becomes what another is.
+    fn set(&mut self, other: &Self) {
+        (self.len, self.outgrown) = (other.len, other.outgrown);
+        self.position[..self.len].copy_from_slice(&other.position[..other.len]);
+        self.neighbours[..self.len].copy_from_slice(&other.neighbours[..other.len]);
+    }
+
+    /// Becomes a box along the axes.
+    pub fn set_cuboid(&mut self, bounds: &Aabb) {
+        (self.len, self.outgrown) = (8, false);
         for corner in 0..8 {
             let upper = |axis: usize| corner >> axis & 1 == 1;
             let at = |axis: usize| if upper(axis) { bounds.max[axis] } else { bounds.min[axis] };
-            all.position[corner] = Vec3::from_fn(|axis, _| at(axis));
+            self.position[corner] = Vec3::from_fn(|axis, _| at(axis));
             let along = [0, 1, 2].map(|axis| (corner ^ 1 << axis) as u8);
             // Seen from inside out, neighbours turn the other way round where an odd number of axes is turned.
             let [x, y, z] = along;
-            all.neighbours[corner] = if corner.count_ones() % 2 == 0 { [x, z, y] } else { along };
+            self.neighbours[corner] = if corner.count_ones() % 2 == 0 { [x, z, y] } else { along };
         }
-        all
     }
 
     /// Whether nothing is left.
@@ -350,8 +365,8 @@ impl Polyhedron {
         f.value * volume + f.gradient.dot(&moment)
     }
 
-    /// ∫ min f dV over linear functions: each over the part where it is the smallest.
-    pub fn integral_of_smallest(&self, functions: &[Linear]) -> f64 {
+    /// ∫ min f dV over linear functions: each over the part where it is the smallest, for which `part` is room.
+    pub fn integral_of_smallest(&self, functions: &[Linear], part: &mut Self) -> f64 {
         // What is everywhere above another's largest value is nowhere the smallest.
         let enough = functions.iter().map(|f| self.range_of(f).1).fold(f64::INFINITY, f64::min);
         // One that is not a number has no range, and counts.
@@ -359,22 +374,22 @@ impl Polyhedron {
             let (least, _) = self.range_of(f);
             least <= enough || !least.is_finite()
         };
-        let part = |f: &Linear| {
+        let over_part = |f: &Linear| {
             let mut rivals =
                 functions.iter().filter(counts).filter(|rival| !std::ptr::eq(*rival, f)).peekable();
             if rivals.peek().is_none() {
                 return self.integral(f);
             }
-            let mut region = self.clone();
+            part.set(self);
             for rival in rivals {
-                if region.is_empty() {
+                if part.is_empty() {
                     return 0.0;
                 }
-                region.cut(&rival.minus(f));
+                part.cut(&rival.minus(f));
             }
-            region.integral(f)
+            part.integral(f)
         };
-        functions.iter().filter(counts).map(part).sum()
+        functions.iter().filter(counts).map(over_part).sum()
     }
 }
 
@@ -414,6 +429,18 @@ mod tests {
         let (volume, moment) = Polyhedron::tet(&unit([1.0, 2.0, 3.0], 1.0)).volume_and_moment();
         assert!((volume - 1.0 / 6.0).abs() < 1e-15, "{volume}");
         assert!((moment / volume - Vec3::new(1.25, 2.25, 3.25)).norm() < 1e-13);
+    }
+
+    #[test]
+    fn a_box_has_its_volume_and_centroid_whole_and_cut() {
+        let mut cuboid = Polyhedron::default();
+        cuboid.set_cuboid(&Aabb { min: Vec3::new(1.0, 2.0, 3.0), max: Vec3::new(2.0, 4.0, 6.0) });
+        let (volume, moment) = cuboid.volume_and_moment();
+        assert!((volume - 6.0).abs() < 1e-14, "{volume}");
+        assert!((moment / volume - Vec3::new(1.5, 3.0, 4.5)).norm() < 1e-14);
+        // A corner is left: x + y + z ≤ 7.
+        cuboid.cut(&Linear { value: 7.0, gradient: Vec3::repeat(-1.0) });
+        assert!((cuboid.volume_and_moment().0 - 1.0 / 6.0).abs() < 1e-14);
     }
 
     #[test]
