@@ -6,7 +6,7 @@ use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
 use crate::hulls::{Face, Hulls};
 
 /// Blocks of more nodes are compared by their elements only.
-const FEW_NODES: usize = 64;
+pub const FEW_NODES: usize = 64;
 
 /// Blocks where they were when they were last looked at.
 #[derive(Clone, Copy, Debug)]
@@ -51,26 +51,6 @@ impl BroadScene<'_> {
         TriangleAt { corners, normal: triangle_area_vector(&corners), reach_m }
     }
 
-    /// Whether a face of one of two blocks keeps them apart by more than both margins; not asked of blocks of many nodes.
-    pub fn are_apart(&self, a: BlockId, b: BlockId) -> bool {
-        let nodes = |block| &self.position[self.blocks.nodes_of(block)];
-        let (of_a, of_b) = (nodes(a), nodes(b));
-        let reach_m = self.margin_m[a.index()] + self.margin_m[b.index()];
-        of_a.len().max(of_b.len()) <= FEW_NODES
-            && (self.face_between(a, (of_a, of_b), reach_m) || self.face_between(b, (of_b, of_a), reach_m))
-    }
-
-    fn face_between(&self, block: BlockId, (own, other): (&[Vec3], &[Vec3]), reach_m: f64) -> bool {
-        self.hulls.faces_of(block).iter().any(|face| {
-            let corners = face.corners.map(|n| self.position[n.index()]);
-            let normal = triangle_area_vector(&corners);
-            let above = |x: &Vec3| normal.dot(&(x - corners[0]));
-            let furthest = own.iter().map(above).fold(0.0, f64::max);
-            let least = reach_m * reach_m * normal.norm_squared();
-            other.iter().map(|x| above(x) - furthest).all(|gap| gap > 0.0 && gap * gap > least)
-        })
-    }
-
     fn around(&self, nodes: &[NodeId]) -> Aabb {
         Aabb::around(nodes.iter().map(|n| &self.position[n.index()]))
     }
@@ -113,16 +93,8 @@ impl TriangleAt {
             })
     }
 
-    /// The same of a convex block with these nodes and faces.
-    pub fn is_apart_from_whole(&self, nodes: &[Vec3], faces: &[Face], position: &[Vec3]) -> bool {
-        let is_beyond = |face: &Face| {
-            let corners = face.corners.map(|n| position[n.index()]);
-            self.are_beyond(&triangle_area_vector(&corners), &corners[0], &self.corners)
-        };
-        faces.iter().any(is_beyond) || self.are_on_one_side(nodes)
-    }
-
-    fn are_on_one_side(&self, points: &[Vec3]) -> bool {
+    /// Whether the points are before the triangle's plane or behind it by more than the margin.
+    pub fn are_on_one_side(&self, points: &[Vec3]) -> bool {
         let [first, ..] = &self.corners;
         self.are_beyond(&self.normal, first, points) || self.are_beyond(&-self.normal, first, points)
     }
@@ -131,6 +103,42 @@ impl TriangleAt {
     fn are_beyond(&self, normal: &Vec3, from: &Vec3, points: &[Vec3]) -> bool {
         let least = self.reach_m * self.reach_m * normal.norm_squared();
         points.iter().map(|x| normal.dot(&(x - from))).all(|d| d > 0.0 && d * d > least)
+    }
+}
+
+/// A face of a convex block, where the block was when it was last looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Side {
+    normal: Vec3,
+    point: Vec3,
+    /// |n|.
+    length: f64,
+    /// Largest n·(x − p) of the block.
+    furthest: f64,
+}
+
+impl Side {
+    /// The side of a face.
+    pub fn new(scene: &BroadScene, face: &Face) -> Self {
+        let corners = face.corners.map(|n| scene.position[n.index()]);
+        let normal = triangle_area_vector(&corners);
+        let above = |x: &Vec3| normal.dot(&(x - corners[0]));
+        let nodes = &scene.position[scene.blocks.nodes_of(face.block)];
+        let furthest = match nodes.len() <= FEW_NODES {
+            true => nodes.iter().map(above).fold(0.0, f64::max),
+            false if scene.hulls.whole(face.block).is_some() => 0.0,
+            // It would take longer to know than it saves.
+            false => f64::INFINITY,
+        };
+        Self { normal, point: corners[0], length: normal.norm(), furthest }
+    }
+
+    /// Whether the points are beyond the block by more than `reach_m`; then whatever they span stays out of it until the margins
+    /// of both are used up.
+    #[inline]
+    pub fn is_before(&self, points: &[Vec3], reach_m: f64) -> bool {
+        let least = self.furthest + reach_m * self.length;
+        points.iter().all(|x| self.normal.dot(&(x - self.point)) > least)
     }
 }
 

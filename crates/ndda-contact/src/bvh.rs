@@ -5,12 +5,12 @@
 //! grid find all pairs of boxes a few times quicker, but have to be filled anew when one box has moved.
 
 use ndda_mesh::geometry::Aabb;
-use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId};
+use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
-use crate::broad_phase::{BroadPhase, BroadScene, shape_of};
+use crate::broad_phase::{BroadPhase, BroadScene, FEW_NODES, Side, shape_of};
 use crate::own_trees::{OwnTrees, node_touches, to_parry};
 
 /// Blocks below which a second thread costs more than it brings.
@@ -75,6 +75,8 @@ struct Boxes {
     blocks: Vec<Aabb>,
     triangles: Vec<Aabb>,
     tets: Vec<Aabb>,
+    /// One for each of [`Hulls::faces`](crate::hulls::Hulls::faces), without a margin.
+    sides: Vec<Side>,
 }
 
 impl Boxes {
@@ -88,12 +90,16 @@ impl Boxes {
         all(blocks.len(), &mut self.blocks, &|i| scene.block_box(BlockId(i as u32)));
         all(blocks.triangles.len(), &mut self.triangles, &|i| scene.triangle_box(i));
         all(blocks.tets.len(), &mut self.tets, &|i| scene.tet_box(i));
+        let faces = scene.hulls.faces().par_iter().with_min_len(GRAIN_BOXES);
+        faces.map(|face| Side::new(scene, face)).collect_into_vec(&mut self.sides);
     }
 
     fn place(&mut self, scene: &BroadScene, block: BlockId) {
         self.blocks[block.index()] = scene.block_box(block);
         scene.blocks.triangles_of(block).for_each(|i| self.triangles[i] = scene.triangle_box(i));
         scene.blocks.tets_of(block).for_each(|i| self.tets[i] = scene.tet_box(i));
+        let sides = self.sides[scene.hulls.places_of(block)].iter_mut();
+        sides.zip(scene.hulls.faces_of(block)).for_each(|(side, face)| *side = Side::new(scene, face));
     }
 }
 
@@ -222,12 +228,13 @@ impl TreeBroadPhase {
         let own =
             self.own.iter().flatten().map(|own| size_of::<OwnTrees>() + own.heap_bytes()).sum::<usize>();
         let boxes = &self.boxes;
+        let sides = boxes.sides.capacity() * size_of::<Side>();
         let boxes = boxes.blocks.capacity() + boxes.triangles.capacity() + boxes.tets.capacity();
         let of_found = |found: &Found| found.pairs.capacity() + found.fresh.capacity();
         let found = self.found.iter().map(of_found).sum::<usize>() * size_of::<(TriangleId, TetId)>();
         let per_block = size_of::<Option<Box<OwnTrees>>>() + size_of::<Found>() + 3 * size_of::<bool>();
         let tree = self.tree.heap_memory_size();
-        own + boxes * size_of::<Aabb>() + found + per_block * self.found.capacity() + tree
+        own + boxes * size_of::<Aabb>() + sides + found + per_block * self.found.capacity() + tree
     }
 }
 
@@ -241,7 +248,7 @@ struct Near<'a> {
 impl Near<'_> {
     /// Adds the pairs of triangles of `block` that reach into the box of `other` and its tetrahedra.
     fn find(&self, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
-        if block != other && self.scene.are_apart(block, other) {
+        if block != other && (self.is_apart(block, other) || self.is_apart(other, block)) {
             return;
         }
         let triangles = self.scene.blocks.triangles_of(block);
@@ -257,12 +264,26 @@ impl Near<'_> {
         }
     }
 
+    /// Whether a side of a block keeps all of another from it; not asked of one of many nodes.
+    fn is_apart(&self, block: BlockId, other: BlockId) -> bool {
+        let nodes = self.scene.blocks.nodes_of(other);
+        nodes.len() <= FEW_NODES && self.has_before(block, other, &self.scene.position[nodes])
+    }
+
+    fn has_before(&self, block: BlockId, other: BlockId, points: &[Vec3]) -> bool {
+        let reach_m = self.scene.margin_m[block.index()] + self.scene.margin_m[other.index()];
+        let sides = &self.boxes.sides[self.scene.hulls.places_of(block)];
+        sides.iter().any(|side| side.is_before(points, reach_m))
+    }
+
     fn find_tets(&self, i: usize, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
         let (scene, bounds) = (self.scene, &self.boxes.triangles[i]);
         let triangle = scene.triangle_at(i, other);
+        if block != other && self.has_before(other, block, &triangle.corners) {
+            return;
+        }
         if let Some(whole) = scene.hulls.whole(other) {
-            let nodes = &scene.position[scene.blocks.nodes_of(other)];
-            if !triangle.is_apart_from_whole(nodes, scene.hulls.faces_of(other), scene.position) {
+            if !triangle.are_on_one_side(&scene.position[scene.blocks.nodes_of(other)]) {
                 found.push((TriangleId(i as u32), whole.host));
             }
             return;

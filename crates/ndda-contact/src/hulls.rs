@@ -33,7 +33,8 @@ const MOST_FACES: usize = 32;
 /// A face of a convex block, and how far the block reaches behind it.
 #[derive(Clone, Debug)]
 pub struct Face {
-    block: BlockId,
+    /// Its block.
+    pub block: BlockId,
     /// Its largest triangle, which carries the plane along.
     pub corners: [NodeId; 3],
     /// The node furthest below it at rest, and φ there, in a block that is taken whole.
@@ -132,6 +133,16 @@ impl Hulls {
     #[inline]
     pub fn faces_of(&self, block: BlockId) -> &[Face] {
         &self.faces[self.of(block)]
+    }
+
+    /// The faces of all blocks, block by block.
+    pub fn faces(&self) -> &[Face] {
+        &self.faces
+    }
+
+    /// Where the faces of a block are among those of all.
+    pub fn places_of(&self, block: BlockId) -> Range<usize> {
+        self.of(block)
     }
 
     /// A block that is taken whole.

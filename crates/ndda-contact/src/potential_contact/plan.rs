@@ -18,6 +18,7 @@ pub(super) fn parts(model: &PotentialContact) -> Vec<Part> {
             "trees of boxes; pairs of blocks are listed anew once one has moved beyond its margin",
         ),
         Part::included("contact potential", format!("{name}, k_n = {penalty_pa:e} Pa, integrated exactly")),
+        whole_blocks(model),
         Part::of(
             "volume of overlaps",
             curved,
@@ -33,6 +34,17 @@ pub(super) fn parts(model: &PotentialContact) -> Vec<Part> {
         Some(joints) => parts.extend(friction(joints)),
     }
     parts
+}
+
+fn whole_blocks(model: &PotentialContact) -> Part {
+    let count = model.hulls.count_whole();
+    let why_not = match model.potential.phi_per_m() {
+        None => format!("the potential {} lives in tetrahedra", model.potential.name()),
+        Some(_) => "no convex block moves by an affine map, or friction remembers elements".into(),
+    };
+    let what =
+        format!("{count} convex blocks that move by affine maps are one target each, without tetrahedra");
+    Part::of("whole blocks", count > 0, what, why_not)
 }
 
 fn friction(joints: &Joints) -> [Part; 3] {
