@@ -46,6 +46,7 @@ fn tet_pair(pairs: Vec<[[Vec3; 4]; 2]>) -> Vec<[[Vec3; 4]; 2]> {
 #[library_benchmark]
 #[bench::element(args = (("element", "none")), setup = evaluation)]
 #[bench::smooth(args = (("smooth", "none")), setup = evaluation)]
+#[bench::whole(args = (("whole", "none")), setup = evaluation)]
 #[bench::volume(args = (("volume", "none")), setup = evaluation)]
 #[bench::coulomb(args = (("element", "spring")), setup = evaluation)]
 fn step(mut case: Evaluation) -> usize {

@@ -34,7 +34,7 @@ fn all_elements(c: &mut Criterion) {
 }
 
 fn laws(c: &mut Criterion) {
-    for potential in ["smooth", "volume"] {
+    for potential in ["smooth", "whole", "volume"] {
         let mut case = Evaluation::new(16, potential, "none");
         c.bench_function(&format!("{potential}_potential/16x16 facets"), |b| b.iter(|| case.step()));
     }

@@ -138,6 +138,8 @@ pub struct Evaluation {
     force: Vec<Vec3>,
     shear: Vec<Vec3>,
     stiffness: Vec<f64>,
+    /// Which blocks may be taken whole.
+    affine: Vec<bool>,
 }
 
 impl Evaluation {
@@ -150,7 +152,7 @@ impl Evaluation {
         let model = PotentialContact::new(1e9);
         let model = match potential {
             "element" => model.with_potential(Box::new(ElementPotential)),
-            "smooth" => model.with_potential(Box::new(SmoothPotential { reference_m: 1.0 })),
+            "smooth" | "whole" => model.with_potential(Box::new(SmoothPotential { reference_m: 1.0 })),
             _ => model.with_potential(Box::new(VolumePotential { exponent: 2.0, reference_m3: 1.0 })),
         };
         let model = match friction {
@@ -168,6 +170,7 @@ impl Evaluation {
             // As the solver does it.
             shear: vec![Vec3::zeros(); if friction == "none" { 0 } else { nodes }],
             stiffness: vec![0.0; nodes],
+            affine: vec![potential == "whole"; blocks.len()],
             blocks,
         };
         evaluation.step();
@@ -177,7 +180,10 @@ impl Evaluation {
 
     /// One evaluation.
     pub fn step(&mut self) -> ContactReport {
-        let input = ContactInput::new(&self.blocks, &self.blocks.rest_position, &self.velocity, 1e-5);
+        let input = ContactInput {
+            affine: &self.affine,
+            ..ContactInput::new(&self.blocks, &self.blocks.rest_position, &self.velocity, 1e-5)
+        };
         let mut output = ContactOutput {
             force: &mut self.force,
             friction_force: &mut self.shear,
