@@ -2,7 +2,7 @@
 
 use ndda_mesh::{BlockId, BlockSet, TriangleId};
 
-use crate::friction::FrictionLaw;
+use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
 
 /// What a facet's friction history belongs to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -130,6 +130,18 @@ impl Joints {
     /// Whether a law acts on whole faces.
     pub fn act_on_faces(&self) -> bool {
         self.laws.iter().any(|law| law.acts_on_faces())
+    }
+
+    /// Friction over normal force that bears at least, whatever touches.
+    pub fn least_friction(&self) -> f64 {
+        let unit = FacetSlip { normal_n: 1.0, ..FacetSlip::default() };
+        let bears = |law: &u32| self.laws[*law as usize].capacity_n(&unit, &ShearMemory::default());
+        let on_surfaces = self.on_surface.iter().filter_map(|rule| match rule {
+            OnSurface::Own(law) => Some(law),
+            OnSurface::Materials => None,
+        });
+        let laws = self.law_of.iter().chain(on_surfaces);
+        laws.map(|law| law.as_ref().map_or(0.0, bears)).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a law carries tension.

@@ -359,6 +359,10 @@ impl ContactModel for PotentialContact {
     fn has_friction(&self) -> bool {
         self.joints.is_some()
     }
+
+    fn least_friction(&self) -> f64 {
+        self.joints.as_ref().map_or(0.0, Joints::least_friction)
+    }
 }
 
 #[cfg(test)]
