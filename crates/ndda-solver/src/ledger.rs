@@ -368,8 +368,7 @@ impl Ledger {
         let over = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
         let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
         let (block_gain, block_loss) = self.blocks.lasting(self.largest_speed_m_s, self.rounding_j);
-        let (squeezed_speed, squeezed_place) =
-            self.blocks.squeezed(self.largest_speed_m_s, self.rounding_j);
+        let (squeezed_speed, squeezed_place) = self.blocks.squeezed(self.largest_speed_m_s, self.rounding_j);
         let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
         Invariants {
             linear_momentum: over(self.momentum_error, self.peak_momentum),

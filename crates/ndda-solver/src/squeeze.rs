@@ -9,9 +9,6 @@ use ndda_mesh::Vec3;
 use crate::body::{BlockReport, StepContext};
 use crate::shape::Shape;
 
-/// Sum of forces over their resultant from which a block is pressed from both sides.
-const PRESSED: f64 = 2.0;
-
 /// Velocity that forces of unknown direction give a block [m/s].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sideways {
@@ -36,7 +33,7 @@ impl Sideways {
         let pressed = Pressed::by(context);
         let unknown_n = context.loose * pressed.sum_n;
         // Where friction is at work, a little more or less of it bears that.
-        if pressed.sum_n <= PRESSED * pressed.resultant.norm() || pressed.friction_n > unknown_n {
+        if pressed.friction_n > unknown_n {
             return Self::default();
         }
         let Some(axis) = pressed.axis(context) else { return Self::default() };
@@ -66,7 +63,7 @@ impl Pressed {
         pressed
     }
 
-    /// The line along which the block is pressed.
+    /// The line along which the block is pressed, which is that of the resultant where no forces oppose each other.
     fn axis(&self, context: &StepContext) -> Option<Vec3> {
         let aligned = |i| {
             let force = normal_force(context, i);
