@@ -104,7 +104,9 @@ impl PotentialContact {
         self.find_pairs(input)?;
         let Some((_, field)) = &self.field else { return Ok(()) };
         let (blocks, position) = (input.blocks, input.position);
-        self.hulls.place(blocks, position);
+        if !self.candidates.pairs.is_empty() {
+            self.hulls.place(blocks, position);
+        }
         let (candidates, frames, hulls) = (&self.candidates, &self.frames[..], &self.hulls);
         self.integrals.update(&Scene { blocks, position, candidates, frames, field, hulls });
         Ok(())
