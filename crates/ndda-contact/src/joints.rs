@@ -149,3 +149,22 @@ impl Joints {
         self.laws.iter().any(|law| law.tension_pa() > 0.0)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::coulomb::Coulomb;
+
+    #[test]
+    fn the_least_friction_is_that_of_the_slipperiest_pair() {
+        let law = |friction_deg: f64| -> Box<dyn FrictionLaw> { Box::new(Coulomb::new(friction_deg, 1e9)) };
+        assert!((Joints::everywhere(law(45.0)).least_friction() - 1.0).abs() < 1e-15);
+        let mut joints = Joints::between(vec![0, 1], 2);
+        joints.set(&[(0, 0), (1, 1)], Some(law(45.0)));
+        assert_eq!(joints.least_friction(), 0.0);
+        joints.set(&[(0, 1)], Some(law(30.0)));
+        assert!((joints.least_friction() - 30f64.to_radians().tan()).abs() < 1e-15);
+        joints.set_on(&[0], None);
+        assert_eq!(joints.least_friction(), 0.0);
+    }
+}

@@ -165,3 +165,45 @@ fn are_within(most_m: f64, was: &[Vec3], now: &[Vec3]) -> bool {
     }
     within
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{test_box, test_set};
+
+    /// How often a block that moves by a millimetre a step is recorded in so many steps.
+    fn records(steps: usize, pairs: &[(TriangleId, TetId)]) -> usize {
+        let blocks =
+            test_set(vec![test_box([0.0; 3], [1.0; 3], [2, 2, 2]), test_box([9.0; 3], [1.0; 3], [2, 2, 2])]);
+        let mut position = blocks.rest_position.clone();
+        let mut velocity = vec![Vec3::zeros(); position.len()];
+        let moving = blocks.nodes_of(BlockId(0));
+        velocity[moving.clone()].fill(Vec3::x());
+        let (mut listed, mut records) = (Listed::default(), 0);
+        for _ in 0..steps {
+            position[moving.clone()].iter_mut().for_each(|x| x.x += 1e-3);
+            let begins = listed.renew(&ContactInput::new(&blocks, &position, &velocity, 1e-3));
+            listed.note_pairs(&blocks, pairs);
+            records += usize::from(!begins && !listed.renewed().is_empty());
+            assert!(listed.renewed().iter().all(|block| begins || *block == BlockId(0)));
+        }
+        records
+    }
+
+    #[test]
+    fn a_block_without_pairs_is_left_alone_for_longer_and_longer() {
+        let first = |blocks: &BlockSet| (TriangleId(0), TetId(blocks.tets_of(BlockId(1)).start as u32));
+        let blocks =
+            test_set(vec![test_box([0.0; 3], [1.0; 3], [2, 2, 2]), test_box([9.0; 3], [1.0; 3], [2, 2, 2])]);
+        let (alone, near) = (records(900, &[]), records(900, &[first(&blocks)]));
+        assert!((3..=12).contains(&alone) && near >= 90, "{alone} and {near}");
+    }
+
+    #[test]
+    fn a_node_that_is_nowhere_has_moved() {
+        let here = [Vec3::zeros()];
+        assert!(are_within(0.0, &here, &here));
+        assert!(!are_within(1.0, &here, &[Vec3::new(0.0, f64::NAN, 0.0)]));
+        assert!(!are_within(1.0, &here, &[Vec3::new(0.0, 0.0, -1.1)]));
+    }
+}
