@@ -63,6 +63,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(energy(simulation));
     entries.push(energy_of_the_lighter(simulation));
     entries.extend(contact(simulation));
+    entries.extend(squeezed(simulation));
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
     let verdict = Verdict { value: Some(upright), limit: Some(0.0), verdict };
     entries.push(Entry::new("I7 smallest det F", verdict, fail, "an element is inside out".into()));
@@ -143,6 +144,30 @@ fn contact(simulation: &Simulation) -> [Entry; 2] {
             Judgement::Fail,
             unequal,
         ),
+    ]
+}
+
+/// Whether blocks were squeezed out by forces whose direction is not known.
+fn squeezed(simulation: &Simulation) -> [Entry; 2] {
+    let worst = simulation.invariants();
+    let (place, speed) = (worst.squeezed_place, worst.squeezed_speed);
+    let why = "by forces sideways that are as small as contact is deep, and nothing holds it there";
+    let where_it_is = format!(
+        "block `{}` is squeezed out by {:.2} of its smallest height, limit {PLACE}, {why}",
+        name(simulation, place),
+        place.value
+    );
+    let how_fast = format!(
+        "block `{}` is squeezed out at {:.1} % of the largest speed, limit {:.0} %, {why}",
+        name(simulation, speed),
+        100.0 * speed.value,
+        100.0 * SPEED
+    );
+    let verdict = |value, limit| judged(value, limit, f64::INFINITY);
+    let warn = Judgement::Warn;
+    [
+        Entry::new("I5 squeezed / height", verdict(place.value, PLACE), warn, where_it_is),
+        Entry::new("I5 squeezed / speed", verdict(speed.value, SPEED), warn, how_fast),
     ]
 }
 

@@ -2,7 +2,7 @@
 
 use ndda_mesh::{BlockId, BlockSet, TriangleId};
 
-use crate::friction::FrictionLaw;
+use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
 
 /// What a facet's friction history belongs to.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -132,8 +132,39 @@ impl Joints {
         self.laws.iter().any(|law| law.acts_on_faces())
     }
 
+    /// Friction over normal force that bears at least, whatever touches.
+    pub fn least_friction(&self) -> f64 {
+        let unit = FacetSlip { normal_n: 1.0, ..FacetSlip::default() };
+        let bears = |law: &u32| self.laws[*law as usize].capacity_n(&unit, &ShearMemory::default());
+        let on_surfaces = self.on_surface.iter().filter_map(|rule| match rule {
+            OnSurface::Own(law) => Some(law),
+            OnSurface::Materials => None,
+        });
+        let laws = self.law_of.iter().chain(on_surfaces);
+        laws.map(|law| law.as_ref().map_or(0.0, bears)).fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether a law carries tension.
     pub fn carry_tension(&self) -> bool {
         self.laws.iter().any(|law| law.tension_pa() > 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::coulomb::Coulomb;
+
+    #[test]
+    fn the_least_friction_is_that_of_the_slipperiest_pair() {
+        let law = |friction_deg: f64| -> Box<dyn FrictionLaw> { Box::new(Coulomb::new(friction_deg, 1e9)) };
+        assert!((Joints::everywhere(law(45.0)).least_friction() - 1.0).abs() < 1e-15);
+        let mut joints = Joints::between(vec![0, 1], 2);
+        joints.set(&[(0, 0), (1, 1)], Some(law(45.0)));
+        assert_eq!(joints.least_friction(), 0.0);
+        joints.set(&[(0, 1)], Some(law(30.0)));
+        assert!((joints.least_friction() - 30f64.to_radians().tan()).abs() < 1e-15);
+        joints.set_on(&[0], None);
+        assert_eq!(joints.least_friction(), 0.0);
     }
 }

@@ -1,7 +1,7 @@
 //! Where the blocks were when their pairs were listed, and how far each may move before they are listed again.
 
 use ndda_mesh::geometry::Aabb;
-use ndda_mesh::{BlockId, BlockSet, NodeId, Vec3};
+use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
 use rayon::prelude::*;
 
 use crate::broad_phase::{BroadScene, shape_of};
@@ -10,8 +10,9 @@ use crate::model::ContactInput;
 
 /// Skin over the mean size of a block's boundary triangles: twice the way that a resting block may creep.
 const SKIN: f64 = 0.005;
-/// Steps that the pairs of a fast block should last.
+/// Steps that the pairs of a fast block should last, and the most that a block without any is left alone.
 const LASTING_STEPS: f64 = 12.0;
+const ALONE_STEPS: f64 = 512.0;
 /// Widest margin over the mean size of boundary triangles.
 const WIDEST: f64 = 0.5;
 /// Blocks below which a second thread costs more than it brings.
@@ -27,6 +28,9 @@ pub struct Listed {
     reach_m: Vec<f64>,
     /// That and the rounding of coordinates [m].
     margin_m: Vec<f64>,
+    /// Steps that the answer about each block should last.
+    lasting: Vec<f64>,
+    has_pairs: Vec<bool>,
     moved: Vec<bool>,
     renewed: Vec<BlockId>,
     /// Of the set that all this is about; none makes the next record take all blocks.
@@ -56,6 +60,22 @@ impl Listed {
         begins
     }
 
+    /// Learns which blocks have pairs. One that has, but was to be left alone for long, is looked at anew as soon as it moves: with
+    /// less margin it may have none.
+    pub fn note_pairs(&mut self, blocks: &BlockSet, pairs: &[(TriangleId, TetId)]) {
+        self.has_pairs.fill(false);
+        for (triangle, tet) in pairs {
+            for block in [blocks.triangle_block[triangle.index()], blocks.tet_block[tet.index()]] {
+                self.has_pairs[block.index()] = true;
+            }
+        }
+        for (block, _) in self.has_pairs.iter().enumerate().filter(|(_, has)| **has) {
+            if self.lasting[block] > LASTING_STEPS {
+                (self.lasting[block], self.reach_m[block]) = (LASTING_STEPS, 0.0);
+            }
+        }
+    }
+
     /// The blocks of the last [`renew`](Self::renew), ascending.
     pub fn renewed(&self) -> &[BlockId] {
         &self.renewed
@@ -79,6 +99,10 @@ impl Listed {
             per_block.clear();
             per_block.resize(blocks.len(), 0.0);
         }
+        self.lasting.clear();
+        self.lasting.resize(blocks.len(), LASTING_STEPS);
+        self.has_pairs.clear();
+        self.has_pairs.resize(blocks.len(), true);
         self.position.clear();
         self.position.resize(blocks.rest_position.len(), Vec3::zeros());
         self.moved.clear();
@@ -91,8 +115,11 @@ impl Listed {
         let (position, reach_m) = (&self.position, &self.reach_m);
         let has_moved = |block: usize| {
             let nodes = input.blocks.nodes_of(BlockId(block as u32));
-            let (most, was) = (reach_m[block] * reach_m[block], &position[nodes.clone()]);
-            !was.iter().zip(&input.position[nodes]).all(|(x, y)| (x - y).norm_squared() <= most)
+            let (was, now) = (&position[nodes.clone()], &input.position[nodes]);
+            !are_within(reach_m[block] / 3f64.sqrt(), was, now) && {
+                let most = reach_m[block] * reach_m[block];
+                !was.iter().zip(now).all(|(x, y)| (x - y).norm_squared() <= most)
+            }
         };
         let look = |(block, moved): (usize, &mut bool)| *moved = has_moved(block);
         if self.moved.len() > GRAIN_BLOCKS {
@@ -107,7 +134,9 @@ impl Listed {
         let (now, velocity) = (&input.position[nodes.clone()], &input.velocity[nodes.clone()]);
         self.position[nodes].copy_from_slice(now);
         let fastest = velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
-        let travel = (LASTING_STEPS * fastest * input.dt_s).min(WIDEST * self.size_m[b]);
+        let alone = (2.0 * self.lasting[b]).min(ALONE_STEPS);
+        self.lasting[b] = if self.has_pairs[b] { LASTING_STEPS } else { alone };
+        let travel = (self.lasting[b] * fastest * input.dt_s).min(WIDEST * self.size_m[b]);
         self.reach_m[b] = travel.max(0.5 * SKIN * self.size_m[b]);
         let furthest = now.iter().map(|x| x.amax()).fold(0.0, f64::max);
         self.margin_m[b] = self.reach_m[b] + 8.0 * f64::EPSILON * furthest;
@@ -115,10 +144,67 @@ impl Listed {
 
     /// Memory on the heap [B].
     pub fn heap_bytes(&self) -> usize {
-        let numbers = self.size_m.capacity() + self.reach_m.capacity() + self.margin_m.capacity();
+        let numbers = self.size_m.capacity()
+            + self.reach_m.capacity()
+            + self.margin_m.capacity()
+            + self.lasting.capacity();
         self.position.capacity() * size_of::<Vec3>()
             + numbers * size_of::<f64>()
             + self.moved.capacity()
+            + self.has_pairs.capacity()
             + self.renewed.capacity() * size_of::<BlockId>()
+    }
+}
+
+/// Whether no coordinate has changed by more than that: quicker than distances, since no number needs its neighbours.
+fn are_within(most_m: f64, was: &[Vec3], now: &[Vec3]) -> bool {
+    let mut within = true;
+    for (x, y) in was.iter().zip(now) {
+        for i in 0..3 {
+            within &= (x[i] - y[i]).abs() <= most_m;
+        }
+    }
+    within
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{test_box, test_set};
+
+    /// How often a block that moves by a millimetre a step is recorded in so many steps.
+    fn records(steps: usize, pairs: &[(TriangleId, TetId)]) -> usize {
+        let blocks =
+            test_set(vec![test_box([0.0; 3], [1.0; 3], [2, 2, 2]), test_box([9.0; 3], [1.0; 3], [2, 2, 2])]);
+        let mut position = blocks.rest_position.clone();
+        let mut velocity = vec![Vec3::zeros(); position.len()];
+        let moving = blocks.nodes_of(BlockId(0));
+        velocity[moving.clone()].fill(Vec3::x());
+        let (mut listed, mut records) = (Listed::default(), 0);
+        for _ in 0..steps {
+            position[moving.clone()].iter_mut().for_each(|x| x.x += 1e-3);
+            let begins = listed.renew(&ContactInput::new(&blocks, &position, &velocity, 1e-3));
+            listed.note_pairs(&blocks, pairs);
+            records += usize::from(!begins && !listed.renewed().is_empty());
+            assert!(listed.renewed().iter().all(|block| begins || *block == BlockId(0)));
+        }
+        records
+    }
+
+    #[test]
+    fn a_block_without_pairs_is_left_alone_for_longer_and_longer() {
+        let first = |blocks: &BlockSet| (TriangleId(0), TetId(blocks.tets_of(BlockId(1)).start as u32));
+        let blocks =
+            test_set(vec![test_box([0.0; 3], [1.0; 3], [2, 2, 2]), test_box([9.0; 3], [1.0; 3], [2, 2, 2])]);
+        let (alone, near) = (records(900, &[]), records(900, &[first(&blocks)]));
+        assert!((3..=12).contains(&alone) && near >= 60, "{alone} and {near}");
+    }
+
+    #[test]
+    fn a_node_that_is_nowhere_has_moved() {
+        let here = [Vec3::zeros()];
+        assert!(are_within(0.0, &here, &here));
+        assert!(!are_within(1.0, &here, &[Vec3::new(0.0, f64::NAN, 0.0)]));
+        assert!(!are_within(1.0, &here, &[Vec3::new(0.0, 0.0, -1.1)]));
     }
 }

@@ -277,4 +277,9 @@ pub trait ContactModel: Send + Sync {
     fn has_friction(&self) -> bool {
         false
     }
+
+    /// Friction over normal force that bears at least between any two blocks.
+    fn least_friction(&self) -> f64 {
+        0.0
+    }
 }

@@ -125,8 +125,10 @@ impl PotentialContact {
             self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
         }
         self.candidates.update(input, &self.hulls);
-        self.hulls.place(input.blocks, input.position);
-        self.hulls.separate(input.blocks, input.position, &self.candidates.neighbours);
+        if !self.candidates.pairs.is_empty() {
+            self.hulls.place(input.blocks, input.position);
+            self.hulls.separate(input.blocks, input.position, &self.candidates.neighbours);
+        }
         self.place_frames(input)
     }
 
@@ -370,6 +372,10 @@ impl ContactModel for PotentialContact {
 
     fn has_friction(&self) -> bool {
         self.joints.is_some()
+    }
+
+    fn least_friction(&self) -> f64 {
+        self.joints.as_ref().map_or(0.0, Joints::least_friction)
     }
 }
 

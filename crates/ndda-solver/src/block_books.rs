@@ -4,8 +4,10 @@
 //! work of its forces on both blocks is not what its potential energy loses. The lighter block feels it: where two meet at v,
 //! an error of energy δE is one of its speed δv = δE/(m v), whatever the other weighs.
 
-use ndda_mesh::BlockId;
+use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
+
+use crate::squeeze::Sideways;
 
 /// Part of ½ m V² that an error of V/100 is measured by where blocks meet at next to no speed: m v δv + ½ m δv².
 const SLOW: f64 = 0.005;
@@ -51,6 +53,13 @@ struct Book {
     lag_rad: f64,
     /// How fast that grew at the last sample [rad/s].
     lag_rate_rad_s: f64,
+    /// Velocity of unknown direction that squeezing gave it, of its mass centre and of its turn [m/s], the largest, and where they took it [m].
+    shift_m_s: Vec3,
+    turn_m_s: Vec3,
+    largest_sideways_m_s: f64,
+    shift_m: Vec3,
+    turn_m: Vec3,
+    largest_sideways_m: f64,
     /// Elastic energy at the first sample, and at the last [J].
     strain_start_j: f64,
     strain_j: f64,
@@ -173,6 +182,32 @@ impl BlockBooks {
         book.lag_rad += 0.5 * since_s * (book.lag_rate_rad_s + rate_rad_s);
         book.lag_rate_rad_s = rate_rad_s;
         self.turned_m_s = self.turned_m_s.max(book.lag_rad * spin_rad_s * scale.radius_m);
+    }
+
+    /// Books what squeezing gave a block in a step.
+    pub fn add_sideways(&mut self, block: BlockId, dt_s: f64, sideways: &Sideways) {
+        let book = &mut self.books[block.index()];
+        book.shift_m_s += sideways.shift_m_s;
+        book.turn_m_s += sideways.turn_m_s;
+        book.shift_m += dt_s * book.shift_m_s;
+        book.turn_m += dt_s * book.turn_m_s;
+        let both = |shift: &Vec3, turn: &Vec3| shift.norm().max(turn.norm());
+        book.largest_sideways_m_s = book.largest_sideways_m_s.max(both(&book.shift_m_s, &book.turn_m_s));
+        book.largest_sideways_m = book.largest_sideways_m.max(both(&book.shift_m, &book.turn_m));
+    }
+
+    /// Largest velocity that squeezing gave a block, over a speed, and largest error of a place for it, over the smallest height of the block's
+    /// tetrahedra; what rounding may have done does not count.
+    pub fn squeezed(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
+        let (mut speed, mut place) = (Worst::default(), Worst::default());
+        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
+            let sideways_m_s = book.largest_sideways_m_s;
+            if 0.5 * scale.mass_kg * sideways_m_s * sideways_m_s > rounding_j {
+                speed.take(sideways_m_s / speed_m_s, block);
+                place.take(book.largest_sideways_m / scale.height_m, block);
+            }
+        }
+        (speed, place)
     }
 
     /// Largest lasting gain and loss of a lighter block, over ½ m v V; what rounding may have done does not count. V is the largest speed of

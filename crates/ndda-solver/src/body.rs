@@ -11,6 +11,7 @@ use crate::for_each_block::{NodeSlices, Nodes};
 use crate::linear_solver::{Factor, SolveError};
 use crate::rigid_body::RigidBody;
 use crate::shape::Shape;
+use crate::squeeze::Sideways;
 use crate::time_integrator::{Inertia, StepWeights, TimeIntegrator};
 
 /// How a block may move.
@@ -89,6 +90,8 @@ pub struct StepContext<'a> {
     pub friction_force: &'a [Vec3],
     /// Row sums of the contact stiffness [N/m]; empty without contact.
     pub contact_stiffness: &'a [f64],
+    /// Part of a contact force whose direction is not known, and that no friction bears.
+    pub loose: f64,
     /// M a of the block as a whole at the start; zero where it does not matter.
     pub inertia: Inertia,
 }
@@ -119,6 +122,8 @@ pub struct BlockReport {
     pub speed_m_s: f64,
     /// Largest Σ|k| / m over the nodes [1/s²]: a bound of ω_c².
     pub contact_rate2: f64,
+    /// Velocity that it owes to the unknown direction of contact forces.
+    pub sideways: Sideways,
     /// M a of the block as a whole at the end; for free blocks only.
     pub inertia: Inertia,
 }
@@ -236,7 +241,7 @@ impl Body {
 }
 
 impl BlockReport {
-    /// Torque of loads, work of friction and of changing loads, and the contact rate of a step u [m].
+    /// Torque of loads, work of friction and of changing loads, the contact rate of a step u [m], and what squeezes the block.
     pub(crate) fn book(&mut self, shape: &Shape, context: &StepContext, increment: &[Vec3]) {
         for (x, f) in context.contact_position.iter().zip(context.external) {
             self.outside_torque += x.cross(f);
@@ -249,6 +254,9 @@ impl BlockReport {
         }
         for (stiffness, mass) in context.contact_stiffness.iter().zip(&shape.operator.node_mass) {
             self.contact_rate2 = self.contact_rate2.max(stiffness / mass);
+        }
+        if self.contact_rate2 > 0.0 && context.loose > 0.0 {
+            self.sideways = Sideways::of(shape, context, self);
         }
     }
 }

@@ -5,7 +5,9 @@ use ndda_fem::supports::HeldNode;
 use ndda_fem::{FrameError, Voigt};
 use ndda_mesh::{Mat3, Vec3};
 
-use crate::body::{BlockError, BlockReport, StepContext, checked_speed, displacement_at, whole_torque};
+use crate::body::{
+    BlockError, BlockReport, BodyKind, StepContext, checked_speed, displacement_at, whole_torque,
+};
 use crate::for_each_block::{NodeSlices, Nodes};
 use crate::linear_solver::{Scratch, SolveError};
 use crate::shape::Shape;
@@ -217,12 +219,9 @@ impl ElasticBody {
                 *load -= context.weights.old_inertia * inertia;
             }
         }
-        let anchors = &self.anchor[shape.supports.held.len()..];
-        for (spring, anchor) in shape.supports.springs.iter().zip(anchors) {
-            let node = spring.node as usize;
-            let place = nodes.position[node] + theta * self.predicted[node];
-            let stretch = place - anchor - displacement_at(shape, spring.motion, context.theta_time_s());
-            self.load[node] -= spring.stiffness_n_m * along(spring.along.as_ref(), &stretch);
+        for (k, spring) in shape.supports.springs.iter().enumerate() {
+            let pull = self.pull_of_spring(shape, context, k, nodes.position);
+            self.load[spring.node as usize] += pull;
         }
         for load in &mut self.load {
             *load = rotation.tr_mul(load);
@@ -230,6 +229,16 @@ impl ElasticBody {
         if !shape.damping.is_none() {
             self.drag(shape, rotation);
         }
+    }
+
+    /// Force of the k-th spring at x + θ û [N]; what u adds to it is in K̃.
+    fn pull_of_spring(&self, shape: &Shape, context: &StepContext, k: usize, position: &[Vec3]) -> Vec3 {
+        let spring = &shape.supports.springs[k];
+        let node = spring.node as usize;
+        let place = position[node] + context.weights.stiffness * self.predicted[node];
+        let anchor = self.anchor[shape.supports.held.len() + k];
+        let stretch = place - anchor - displacement_at(shape, spring.motion, context.theta_time_s());
+        -spring.stiffness_n_m * along(spring.along.as_ref(), &stretch)
     }
 
     /// load ← load − C Rᵀ û/Δt; the rest of −C u/Δt is in K̃.
@@ -330,18 +339,13 @@ impl ElasticBody {
 
     /// What supports must exert for held components and springs to do as they do.
     fn collect_reactions(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, nodes: &Nodes) {
-        let StepWeights { stiffness: theta, mass_per_s2: c, .. } = context.weights;
         self.collect_springs(shape, context, rotation, nodes);
+        if shape.kind == BodyKind::Affine {
+            return self.collect_as_a_whole(shape, context, rotation, nodes);
+        }
         for held in &shape.supports.held {
             let i = held.node as usize;
-            let row = shape.operator.row(i);
-            let (a, b) = (c + shape.damping.mass_per_s2, shape.damping.stiffness);
-            let inertia = row.fold(Vec3::zeros(), |sum, (j, stiffness, mass)| {
-                let drag = if b > 0.0 { b * (stiffness * self.correction[j]) } else { Vec3::zeros() };
-                sum + a * mass * self.correction[j] + drag
-            });
-            let unbalanced = inertia + theta * self.elastic[i] - self.load[i];
-            let reaction = rotation * onto(&held.held, &unbalanced);
+            let reaction = rotation * onto(&held.held, &self.unbalanced(shape, context, i));
             let increment = self.predicted[i] + rotation * self.correction[i];
             self.add_reaction(&reaction, &(nodes.position[i] + 0.5 * increment));
             if held.motion.is_some() {
@@ -350,20 +354,45 @@ impl ElasticBody {
         }
     }
 
-    /// Forces of the springs at x + θ u; what u adds to them also goes to `load`, for nodes that are held, too.
+    /// The same of a block that is kept affine: what keeps it so acts on each node, but has no resultant and no torque, so that of all
+    /// nodes together is that of the supports.
+    fn collect_as_a_whole(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, nodes: &Nodes) {
+        for i in 0..shape.operator.nodes() {
+            let force = rotation * self.unbalanced(shape, context, i);
+            let increment = self.predicted[i] + rotation * self.correction[i];
+            self.add_reaction(&force, &(nodes.position[i] + 0.5 * increment));
+        }
+    }
+
+    /// Force on a node that its equation of motion lacks, in the block's frame [N].
+    fn unbalanced(&self, shape: &Shape, context: &StepContext, node: usize) -> Vec3 {
+        let StepWeights { stiffness: theta, mass_per_s2: c, .. } = context.weights;
+        let (a, b) = (c + shape.damping.mass_per_s2, shape.damping.stiffness);
+        let inertia = shape.operator.row(node).fold(Vec3::zeros(), |sum, (j, stiffness, mass)| {
+            let drag = if b > 0.0 { b * (stiffness * self.correction[j]) } else { Vec3::zeros() };
+            sum + a * mass * self.correction[j] + drag
+        });
+        inertia + theta * self.elastic[node] - self.load[node]
+    }
+
+    /// Forces of the springs at x + θ u; what u adds to them also goes to `load`, for nodes that are held, too. Those of an affine block
+    /// leave `load`, to be found as what it lacks as a whole: its unknowns move all nodes, and round as the stiffest spring does.
     fn collect_springs(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, nodes: &Nodes) {
         let theta = context.weights.stiffness;
         for (k, spring) in shape.supports.springs.iter().enumerate() {
             let i = spring.node as usize;
             let turned = rotation * self.correction[i];
             let increment = self.predicted[i] + turned;
-            let anchor = self.anchor[shape.supports.held.len() + k];
-            let target = anchor + displacement_at(shape, spring.motion, context.theta_time_s());
-            let stretch = nodes.position[i] + theta * increment - target;
-            let reaction = -spring.stiffness_n_m * along(spring.along.as_ref(), &stretch);
+            // As it is solved for: a stiff spring would feel the last digit of x + u.
             let added = -spring.stiffness_n_m * theta * along(spring.along.as_ref(), &turned);
-            self.load[i] += rotation.tr_mul(&added);
-            self.add_reaction(&reaction, &(nodes.position[i] + 0.5 * increment));
+            let pull = self.pull_of_spring(shape, context, k, nodes.position);
+            let reaction = pull + added;
+            if shape.kind == BodyKind::Affine {
+                self.load[i] -= rotation.tr_mul(&pull);
+            } else {
+                self.load[i] += rotation.tr_mul(&added);
+                self.add_reaction(&reaction, &(nodes.position[i] + 0.5 * increment));
+            }
             let travel = displacement_at(shape, spring.motion, context.end_s)
                 - displacement_at(shape, spring.motion, context.time_s);
             self.report.motion_work_j += reaction.dot(&travel);

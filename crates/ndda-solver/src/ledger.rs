@@ -99,6 +99,10 @@ pub struct Invariants {
     pub block_loss: Worst,
     /// I5: penetration over tet height.
     pub max_penetration_ratio: f64,
+    /// I5: largest velocity that a block owes to the unknown direction of the forces that squeeze it, over the largest speed.
+    pub squeezed_speed: Worst,
+    /// I5: where that took it, over the smallest tet height of its block.
+    pub squeezed_place: Worst,
     /// I6: |action + reaction| / |force| over the pairs.
     pub action_reaction: f64,
     /// I7: smallest det F.
@@ -175,6 +179,8 @@ impl Ledger {
             block_gain: Worst::default(),
             block_loss: Worst::default(),
             max_penetration_ratio: 0.0,
+            squeezed_speed: Worst::default(),
+            squeezed_place: Worst::default(),
             action_reaction: 0.0,
             smallest_volume_ratio: 1.0,
             max_h: 0.0,
@@ -362,6 +368,7 @@ impl Ledger {
         let over = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
         let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
         let (block_gain, block_loss) = self.blocks.lasting(self.largest_speed_m_s, self.rounding_j);
+        let (squeezed_speed, squeezed_place) = self.blocks.squeezed(self.largest_speed_m_s, self.rounding_j);
         let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
         Invariants {
             linear_momentum: over(self.momentum_error, self.peak_momentum),
@@ -372,6 +379,8 @@ impl Ledger {
             lasting_loss: energy(self.lasting_loss_j),
             block_gain,
             block_loss,
+            squeezed_speed,
+            squeezed_place,
             turn_place: self.blocks.turned_over_height(),
             turn_speed: speed(self.blocks.turned_m_s()),
             vibration: self.vibration.over(self.largest_speed_m_s),

@@ -28,6 +28,7 @@ pub mod setup;
 pub mod shape;
 pub mod simulation;
 pub mod sink;
+pub mod squeeze;
 pub mod state;
 pub mod step_control;
 pub mod step_error;

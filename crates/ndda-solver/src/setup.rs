@@ -102,6 +102,8 @@ impl Simulation {
             friction_force: vec![Vec3::zeros(); friction_nodes],
             contact_stiffness: vec![0.0; contact_nodes],
             contact_position: blocks.rest_position.clone(),
+            loose: 0.0,
+            least_friction: contact.as_ref().map_or(0.0, |model| model.least_friction()),
             moved: vec![Vec3::zeros(); contact_nodes],
             affine: Vec::new(),
             contact_bodies: Vec::new(),

@@ -94,6 +94,9 @@ pub struct Simulation {
     pub(crate) friction_force: Vec<Vec3>,
     pub(crate) contact_stiffness: Vec<f64>,
     pub(crate) contact_position: Vec<Vec3>,
+    /// Part of contact forces whose direction is not known in this step, and that no friction bears.
+    pub(crate) loose: f64,
+    pub(crate) least_friction: f64,
     /// Where nodes were before the step, later how far it moved them [m]; empty without contact.
     pub(crate) moved: Vec<Vec3>,
     /// Which blocks move by an affine map; empty without contact.
@@ -120,6 +123,8 @@ impl Simulation {
         let started = Instant::now();
         self.gather_loads();
         let (contact, iterations) = self.gather_contact()?;
+        let depth = contact.max_penetration_ratio;
+        self.loose = if depth > self.least_friction { depth } else { 0.0 };
         self.note_contacts();
         if self.contact_does_work(&contact) {
             self.moved.copy_from_slice(&self.state.position);
@@ -256,6 +261,7 @@ impl Simulation {
             changing: self.loads.changing().get(range.clone()).unwrap_or(&[]),
             friction_force: self.friction_force.get(range.clone()).unwrap_or(&[]),
             contact_stiffness: self.contact_stiffness.get(range).unwrap_or(&[]),
+            loose: self.loose,
             inertia: self.state.inertia.get(index).copied().unwrap_or_default(),
         }
     }
@@ -342,6 +348,9 @@ impl Simulation {
         self.ledger.add_impulse(self.part_s, &self.weights, force, torque);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
         self.book_work_of_contact(&contact);
+        if self.loose > 0.0 {
+            self.book_squeezing();
+        }
         self.ledger.watch_speeds(speed_m_s, self.unseen_m_s());
         let report = StepReport { contact, h, travel_ratio, iterations };
         self.ledger.watch(&report);
@@ -364,6 +373,14 @@ impl Simulation {
         let books = self.ledger.blocks();
         model.each_work(&self.blocks, &self.moved, &mut |a, b, work_j| books.add_work(a, b, work_j));
         books.close_step();
+    }
+
+    /// Books what the step gave blocks that are squeezed.
+    fn book_squeezing(&mut self) {
+        let books = self.ledger.blocks();
+        for (block, body) in self.blocks.ids().zip(&self.bodies) {
+            books.add_sideways(block, self.part_s, &body.report.sideways);
+        }
     }
 
     /// Speed that loads and motions bring and take back within the step, where nobody sees it [m/s].

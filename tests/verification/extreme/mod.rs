@@ -15,6 +15,7 @@ mod shear_penalty;
 mod sizes;
 mod slivers;
 mod springs;
+mod squeezed;
 mod stability;
 mod touching;
 mod tunnelling;
