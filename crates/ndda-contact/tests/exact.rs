@@ -247,9 +247,9 @@ fn odd_and_exponent(v: f64) -> (i64, i32) {
         return (0, 0);
     }
     let digits = v.to_bits() & ((1 << 52) - 1);
-    let (n, exponent) = match (v.to_bits() >> 52 & 0x7ff) as i32 {
+    let (n, exponent) = match ((v.to_bits() >> 52) & 0x7ff) as i32 {
         0 => (digits as i64, -1074),
-        biased => ((digits | 1 << 52) as i64, biased - 1075),
+        biased => ((digits | (1 << 52)) as i64, biased - 1075),
     };
     let zeros = n.trailing_zeros();
     (if v < 0.0 { -(n >> zeros) } else { n >> zeros }, exponent + zeros as i32)
