@@ -20,6 +20,7 @@ import re
 import shutil
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
@@ -90,24 +91,41 @@ def measure(root, names, clocks):
         "commit": commit(root),
         "rustc": output(root, "rustc", "--version"),
         "processor": processor(),
-        "instructions": {crate: instructions(root, crate) for crate in names if is_counted(root, crate)},
+        "instructions": instructions(root, [crate for crate in names if is_counted(root, crate)]),
     }
     if clocks:
         record["nanoseconds"] = {crate: nanoseconds(root, crate) for crate in names}
     return record
 
 
-def instructions(root, crate):
+def instructions(root, names):
+    """Crates side by side: what is counted does not see the clock."""
+    binaries = counted_binaries(root) if names else {}
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        return dict(zip(names, pool.map(lambda crate: totals(root, crate, binaries[crate]), names)))
+
+
+def counted_binaries(root):
+    """All counted benches by crate, built at once: crate by crate, each has other features of what they share."""
+    built = cargo(
+        root, "bench", "--locked", "--workspace", "--bench", "counted", "--no-run", "--message-format=json", runner=runner(root)
+    )
+    artifacts = [json.loads(line) for line in built.splitlines()]
+    return {Path(a["manifest_path"]).parent.name: a["executable"] for a in artifacts if a.get("executable")}
+
+
+def totals(root, crate, binary):
     folder = TARGET / "gungraun" / crate
     shutil.rmtree(folder, ignore_errors=True)
-    cargo(root, "bench", "--locked", "-p", crate, "--bench", "counted", runner=runner(root))
-    totals = {}
+    environment = dict(os.environ, CARGO_TARGET_DIR=str(TARGET), CARGO_PKG_NAME=crate)
+    run([binary, "--bench"], benches(root, crate).parent, environment)
+    found = {}
     for path in sorted(folder.glob("counted/*/*/callgrind.*.out")):
         total = re.search(r"^(?:totals|summary): (\d+)", path.read_text(), re.MULTILINE)
-        totals[path.parent.name] = int(total.group(1))
-    if not totals:
+        found[path.parent.name] = int(total.group(1))
+    if not found:
         sys.exit(f"{crate}: callgrind left no totals in {folder}")
-    return totals
+    return found
 
 
 def nanoseconds(root, crate):
@@ -129,7 +147,10 @@ def runner(root):
     place = TARGET / "tools" / f"gungraun-{version}"
     binary = place / "bin" / "gungraun-runner"
     if not binary.exists():
-        cargo(root, "install", "--debug", "--locked", "--quiet", "--root", place, "--version", version, "gungraun-runner")
+        build = TARGET / "tools" / "build"
+        command = ["install", "--debug", "--locked", "--quiet", "--root", place, "--target-dir", build]
+        cargo(root, *command, "--config", "profile.dev.debug=0", "--version", version, "gungraun-runner")
+        shutil.rmtree(build)
     if not shutil.which("valgrind"):
         sys.exit("valgrind is not installed")
     return binary
@@ -269,12 +290,16 @@ def output(root, *command, may_fail=False):
 
 
 def cargo(root, *arguments, runner=None):
-    """Runs cargo in a working tree; all of them share one target folder."""
+    """Standard output of cargo in a working tree; all of them share one target folder."""
     environment = dict(os.environ, CARGO_TARGET_DIR=str(TARGET), **({"GUNGRAUN_RUNNER": str(runner)} if runner else {}))
-    command = ["cargo", *map(str, arguments)]
-    result = subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True)
+    return run(["cargo", *map(str, arguments)], root, environment)
+
+
+def run(command, folder, environment):
+    result = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     if result.returncode != 0:
         sys.exit(f"{' '.join(command)}\n{result.stdout}\n{result.stderr}")
+    return result.stdout
 
 
 if __name__ == "__main__":

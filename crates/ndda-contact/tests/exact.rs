@@ -15,7 +15,6 @@ use ndda_contact::tet_pair::{NodalForces, PairError, pair_forces};
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::{TET_FACES, tet_heights, tet_volume};
 use num_bigint::{BigInt, Sign};
-use num_rational::BigRational;
 
 /// Volume over L³, energy over k L³, force over k L²: the bound for each, L the size of the larger tetrahedron.
 const BOUND: f64 = 1e-12;
@@ -241,17 +240,34 @@ fn pressure(owner: &Tet, t: &Tet) -> Point {
     sum
 }
 
+/// v = n 2^exponent with n odd, or nothing times one.
+fn odd_and_exponent(v: f64) -> (i64, i32) {
+    assert!(v.is_finite());
+    if v == 0.0 {
+        return (0, 0);
+    }
+    let digits = v.to_bits() & ((1 << 52) - 1);
+    let (n, exponent) = match ((v.to_bits() >> 52) & 0x7ff) as i32 {
+        0 => (digits as i64, -1074),
+        biased => ((digits | (1 << 52)) as i64, biased - 1075),
+    };
+    let zeros = n.trailing_zeros();
+    (if v < 0.0 { -(n >> zeros) } else { n >> zeros }, exponent + zeros as i32)
+}
+
 /// Corners on a common grid with the origin at the first, refined fourfold, and the binary exponent of its unit.
 fn on_grid(c: &[Vec3; 4], t: &[Vec3; 4]) -> ([[Point; 4]; 2], i32) {
-    let read = |v: f64| BigRational::from_float(v).expect("finite");
     let all = || c.iter().chain(t).flat_map(|x| x.iter());
-    let finest = all().map(|&v| read(v).denom().clone()).max();
-    let unit: BigInt = finest.unwrap_or_else(|| BigInt::from(1)) * 4;
-    let scale = BigRational::from_integer(unit.clone());
-    let whole = |x: &Vec3| [x.x, x.y, x.z].map(|v| (read(v) * &scale).to_integer());
+    let unit = all().map(|&v| odd_and_exponent(v).1).min().expect("corners").min(0) - 2;
+    let whole = |x: &Vec3| {
+        [x.x, x.y, x.z].map(|v| {
+            let (n, exponent) = odd_and_exponent(v);
+            BigInt::from(n) << (exponent - unit)
+        })
+    };
     let origin = whole(&c[0]);
     let local = |tet: &[Vec3; 4]| from_fn(|i| minus(&whole(&tet[i]), &origin));
-    ([local(c), local(t)], 1 - unit.bits() as i32)
+    ([local(c), local(t)], unit)
 }
 
 /// n 2^exponent as a float, to an ulp or two.

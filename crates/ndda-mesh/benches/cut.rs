@@ -55,7 +55,7 @@ fn voronoi(c: &mut Criterion) {
 fn fill(c: &mut Criterion) {
     let mut group = c.benchmark_group("fill");
     group.sample_size(10);
-    for (system, blocks) in [("joints", by_joints()), ("Voronoi", by_seeds(400))] {
+    for (system, blocks) in [("joints", by_joints(7.0)), ("Voronoi", by_seeds(400))] {
         for (name, fill) in [
             ("fewest", Fill::Fewest),
             ("centre", Fill::Centre),

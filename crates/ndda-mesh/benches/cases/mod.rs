@@ -27,9 +27,9 @@ pub fn sets(per_side: f64, orientation: OrientationScatter) -> Vec<Discontinuity
 /// Joints that scatter about their means.
 pub const SCATTERED: OrientationScatter = OrientationScatter::Fisher { kappa: 200.0 };
 
-/// Some hundred blocks between joints.
-pub fn by_joints() -> Blocks {
-    cut_blocks(&domain(), &sets(7.0, SCATTERED), &CutOptions::default()).expect("blocks")
+/// About `per_side`³ blocks between joints that scatter.
+pub fn by_joints(per_side: f64) -> Blocks {
+    cut_blocks(&domain(), &sets(per_side, SCATTERED), &CutOptions::default()).expect("blocks")
 }
 
 /// Cells around seeds.
