@@ -100,7 +100,7 @@ fn pressed(thirds: u32) -> Simulation {
 /// Force F on the whole flat [N], and ∫ p r² dA / F [m²].
 fn force_and_spread(simulation: &Simulation) -> (f64, f64) {
     let blocks = simulation.blocks();
-    let forces: Vec<Vec3> = simulation.contact_forces_n().collect();
+    let forces = simulation.contact_forces_n();
     let (mut force, mut moment) = (0.0, 0.0);
     for node in blocks.nodes_of(BlockId(0)) {
         let at = blocks.rest_position[node] + blocks.origin_m;

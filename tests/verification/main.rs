@@ -6,6 +6,7 @@ mod block_on_a_slope;
 mod body_kinds;
 mod bouncing_block;
 mod cantilever;
+mod contact_fields;
 mod contact_patch;
 mod damping;
 mod elastic_waves;

@@ -92,7 +92,9 @@ impl FieldWriter {
 
 impl Sink for FieldWriter {
     fn wants_contacts(&self, step: u64) -> bool {
-        self.fields.contains(&Field::FrictionState) && is_due(step, self.steps, self.frames)
+        let of_facets =
+            |field| matches!(field, &Field::FrictionState | &Field::ContactForce | &Field::ContactTraction);
+        self.fields.iter().any(of_facets) && is_due(step, self.steps, self.frames)
     }
 
     fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
@@ -158,7 +160,7 @@ fn frame(
                 frame.add_points(Values::states("friction_state", friction_states(simulation)));
             }
             Field::ContactForce => {
-                let force = simulation.contact_forces_n();
+                let force = simulation.contact_forces_n().into_iter();
                 frame.add_points(Values::vectors("contact_force_n", force, precision));
             }
             Field::ContactTraction => frame.add_points(traction(simulation, precision)),
@@ -189,7 +191,11 @@ fn motion(field: Field, simulation: &Simulation, precision: Precision) -> Values
 fn traction(simulation: &Simulation, precision: Precision) -> Values {
     let areas = node_areas_m2(simulation.blocks(), &simulation.state().position);
     let over = |(force, &area): (Vec3, &f64)| if area > 0.0 { force / area } else { Vec3::zeros() };
-    Values::vectors("contact_traction_pa", simulation.contact_forces_n().zip(&areas).map(over), precision)
+    Values::vectors(
+        "contact_traction_pa",
+        simulation.contact_forces_n().into_iter().zip(&areas).map(over),
+        precision,
+    )
 }
 
 /// Each node's share of the surface, a third of its triangles.

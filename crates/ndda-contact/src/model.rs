@@ -268,6 +268,11 @@ pub trait ContactModel: Send + Sync {
     /// A model of other things than facets adds none.
     fn add_facets(&self, _input: &ContactInput, _history: &ContactHistory, _facets: &mut Vec<FacetContact>) {}
 
+    /// Whether forces on a block go to a few of its nodes wherever they press, because it moves by an affine map.
+    fn gathers(&self, _block: BlockId) -> bool {
+        false
+    }
+
     /// Whether [`ContactInput::bodies`] is read; `false` lets the solver leave them out.
     fn needs_bodies(&self) -> bool {
         false

@@ -340,6 +340,10 @@ impl ContactModel for PotentialContact {
         energies.for_each(|(a, b, energy_m3)| add(a, b, self.penalty_pa * energy_m3));
     }
 
+    fn gathers(&self, block: BlockId) -> bool {
+        self.hulls.whole(block).is_some()
+    }
+
     fn plan(&self) -> Vec<Part> {
         plan::parts(self)
     }

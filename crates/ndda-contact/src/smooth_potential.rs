@@ -1,5 +1,6 @@
 //! The potential that grows with depth below the block's surface.
 
+use ndda_mesh::geometry::distance_to_triangle;
 use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, Vec3};
 
 use crate::block_faces::{BlockFaces, Plane};
@@ -113,21 +114,6 @@ fn depth_of_nodes(blocks: &BlockSet, block: BlockId) -> Vec<f64> {
     };
     let nodes = blocks.rest_position[range.clone()].iter();
     nodes.zip(&on_surface).map(|(x, &on)| if on { 0.0 } else { distance(x) }).collect()
-}
-
-/// Distance of a point to a triangle [m] (Ericson 2005, §5.1.5).
-fn distance_to_triangle(p: &Vec3, [a, b, c]: &[Vec3; 3]) -> f64 {
-    let normal = (b - a).cross(&(c - a));
-    let inside = |u: &Vec3, v: &Vec3| (v - u).cross(&(p - u)).dot(&normal) >= 0.0;
-    if inside(a, b) && inside(b, c) && inside(c, a) {
-        return (p - a).dot(&normal).abs() / normal.norm();
-    }
-    let to_edge = |u: &Vec3, v: &Vec3| {
-        let along = v - u;
-        let t = ((p - u).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
-        (p - (u + along * t)).norm()
-    };
-    to_edge(a, b).min(to_edge(b, c)).min(to_edge(c, a))
 }
 
 #[cfg(test)]

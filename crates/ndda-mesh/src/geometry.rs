@@ -14,6 +14,21 @@ pub fn triangle_area_vector(corners: &[Vec3; 3]) -> Vec3 {
     (b - a).cross(&(c - a)) * 0.5
 }
 
+/// Distance of a point to a triangle [m] (Ericson 2005, §5.1.5).
+pub fn distance_to_triangle(p: &Vec3, [a, b, c]: &[Vec3; 3]) -> f64 {
+    let normal = (b - a).cross(&(c - a));
+    let inside = |u: &Vec3, v: &Vec3| (v - u).cross(&(p - u)).dot(&normal) >= 0.0;
+    if inside(a, b) && inside(b, c) && inside(c, a) {
+        return (p - a).dot(&normal).abs() / normal.norm();
+    }
+    let to_edge = |u: &Vec3, v: &Vec3| {
+        let along = v - u;
+        let t = ((p - u).dot(&along) / along.norm_squared()).clamp(0.0, 1.0);
+        (p - (u + along * t)).norm()
+    };
+    to_edge(a, b).min(to_edge(b, c)).min(to_edge(c, a))
+}
+
 /// Heights of a tetrahedron over its four faces [m]: 3 V / A, face `i` being opposite to corner `i`.
 pub fn tet_heights(corners: &[Vec3; 4]) -> [f64; 4] {
     let volume = tet_volume(corners).abs();

@@ -8,6 +8,7 @@ pub mod batch;
 pub mod block_books;
 pub mod body;
 pub mod conjugate_gradients;
+mod contact_fields;
 pub mod dense_inverse;
 pub mod direct;
 pub mod elastic_body;

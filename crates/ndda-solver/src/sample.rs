@@ -155,13 +155,6 @@ impl Simulation {
         found.map(|report| (report, facets))
     }
 
-    /// Contact force on each node in the last step [N], friction included; zero before the first step.
-    pub fn contact_forces_n(&self) -> impl ExactSizeIterator<Item = Vec3> {
-        let begun = self.state.step > 0;
-        let contact = move |(force, load): (&Vec3, &Vec3)| if begun { force - load } else { Vec3::zeros() };
-        self.force.iter().zip(self.loads.total()).map(contact)
-    }
-
     /// Asks contact what it just did, before anything else asks it for something.
     pub(crate) fn note_contacts(&mut self) {
         let (Some(contacts), Some(model)) = (&mut self.contacts, &self.contact) else { return };
