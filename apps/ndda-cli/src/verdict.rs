@@ -104,7 +104,7 @@ fn energy(simulation: &Simulation) -> [Entry; 3] {
     [
         Entry::new("I4 energy gain", judged(worst.energy_gain, 0.01, 0.02), Judgement::Fail, gained),
         Entry::new("I4 energy loss", shown(worst.energy_loss), Judgement::Fail, String::new()),
-        Entry::new("I4 lasting change", judged(lasting, MOST_ENERGY, f64::INFINITY), Judgement::Warn, reason),
+        warned("I4 lasting change", lasting, MOST_ENERGY, reason),
     ]
 }
 
@@ -119,8 +119,7 @@ fn energy_of_the_lighter(simulation: &Simulation) -> Entry {
         100.0 * most.value,
         100.0 * MOST_ENERGY
     );
-    let verdict = judged(most.value, MOST_ENERGY, f64::INFINITY);
-    Entry::new("I4 lighter of a pair", verdict, Judgement::Warn, reason)
+    warned("I4 lighter of a pair", most.value, MOST_ENERGY, reason)
 }
 
 fn name(simulation: &Simulation, worst: Worst) -> &str {
@@ -163,11 +162,9 @@ fn squeezed(simulation: &Simulation) -> [Entry; 2] {
         100.0 * speed.value,
         100.0 * SPEED
     );
-    let verdict = |value, limit| judged(value, limit, f64::INFINITY);
-    let warn = Judgement::Warn;
     [
-        Entry::new("I5 squeezed / height", verdict(place.value, PLACE), warn, where_it_is),
-        Entry::new("I5 squeezed / speed", verdict(speed.value, SPEED), warn, how_fast),
+        warned("I5 squeezed / height", place.value, PLACE, where_it_is),
+        warned("I5 squeezed / speed", speed.value, SPEED, how_fast),
     ]
 }
 
@@ -208,10 +205,9 @@ fn turns(simulation: &Simulation) -> [Entry; 2] {
         100.0 * speed,
         100.0 * SPEED
     );
-    let warn = Judgement::Warn;
     [
-        Entry::new("I8 turn / height", judged(place.value, PLACE, f64::INFINITY), warn, where_it_is),
-        Entry::new("I8 turn / speed", judged(speed, SPEED, f64::INFINITY), warn, how_fast),
+        warned("I8 turn / height", place.value, PLACE, where_it_is),
+        warned("I8 turn / speed", speed, SPEED, how_fast),
     ]
 }
 
@@ -229,11 +225,9 @@ fn within_a_step(simulation: &Simulation) -> [Entry; 2] {
         percent(worst.unseen_speed),
         percent(SPEED)
     );
-    let verdict = |value, limit| judged(value, limit, f64::INFINITY);
-    let warn = Judgement::Warn;
     [
-        Entry::new("I8 vibration / speed", verdict(worst.vibration, MOST_VIBRATION), warn, vibration),
-        Entry::new("I8 unseen / speed", verdict(worst.unseen_speed, SPEED), warn, unseen),
+        warned("I8 vibration / speed", worst.vibration, MOST_VIBRATION, vibration),
+        warned("I8 unseen / speed", worst.unseen_speed, SPEED, unseen),
     ]
 }
 
@@ -247,6 +241,11 @@ fn judged(value: f64, warn: f64, fail: f64) -> Verdict {
         Judgement::Pass
     };
     Verdict { value: Some(value), limit: Some(warn), verdict }
+}
+
+/// A value that warns beyond its limit, and never fails the run.
+fn warned(what: &'static str, value: f64, limit: f64, reason: String) -> Entry {
+    Entry::new(what, judged(value, limit, f64::INFINITY), Judgement::Warn, reason)
 }
 
 fn shown(value: f64) -> Verdict {

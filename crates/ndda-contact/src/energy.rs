@@ -5,7 +5,7 @@
 //! U, except where its law is not linear; energies are asked for when results are written.
 
 use ndda_mesh::geometry::{Aabb, triangle_area_vector};
-use ndda_mesh::{BlockId, BlockSet, TetId, Vec3};
+use ndda_mesh::{BlockId, TetId, Vec3};
 use rayon::prelude::*;
 
 use crate::candidates::{Candidates, Pair};
@@ -83,14 +83,10 @@ impl BlockOverlaps {
         self.pairs.binary_search(&(a.min(b), a.max(b))).ok()
     }
 
-    /// Makes room for the pairs of blocks of these facets.
-    fn list(&mut self, blocks: &BlockSet, candidates: &Candidates, facets: impl Iterator<Item = u32>) {
+    /// Makes room for these pairs of [`Candidates::neighbours`].
+    fn list(&mut self, candidates: &Candidates, pairs: impl Iterator<Item = u32>) {
         self.pairs.clear();
-        self.pairs.extend(facets.map(|f| {
-            let facet = &candidates.facets[f as usize];
-            let (a, b) = (blocks.triangle_block[facet.triangle.index()], facet.target);
-            (a.min(b), a.max(b))
-        }));
+        self.pairs.extend(pairs.map(|k| candidates.neighbours[k as usize]));
         self.pairs.sort_unstable();
         self.pairs.dedup();
         self.overlap_m3.clear();
@@ -104,9 +100,8 @@ impl BlockOverlaps {
             (_, OverlapLaw::Power { .. }) => self.add_surfaces(input, candidates, integrals),
             (Field::Element, _) => self.add_pieces(input, candidates, frames),
             (Field::Pieces(table), _) => {
-                self.pairs.clear();
-                let near = (0..).zip(&candidates.neighbours).filter(|(k, _)| !hulls.are_apart(*k));
-                self.pairs.extend(near.map(|(_, pair)| *pair));
+                let all = 0..candidates.neighbours.len() as u32;
+                self.list(candidates, all.filter(|&k| !hulls.are_apart(k)));
                 self.add_cells(&Cells { input, table, hulls });
             }
         }
@@ -114,7 +109,8 @@ impl BlockOverlaps {
 
     /// The volume of overlaps, V = ⅓ ∮ (x − o)·n dS over the pieces of both surfaces.
     pub fn add_surfaces(&mut self, input: &ContactInput, candidates: &Candidates, integrals: &Integrals) {
-        self.list(input.blocks, candidates, integrals.touching().iter().map(|touch| touch.facet));
+        let facets = integrals.touching().iter().map(|touch| &candidates.facets[touch.facet as usize]);
+        self.list(candidates, facets.map(|facet| facet.neighbours));
         self.pressure_m2.clear();
         self.pressure_m2.resize(self.pairs.len(), 0.0);
         self.origin.clear();
@@ -134,7 +130,7 @@ impl BlockOverlaps {
     /// The element potential, from the flux through surface pieces.
     fn add_pieces(&mut self, input: &ContactInput, candidates: &Candidates, frames: &[TetFrame]) {
         let blocks = input.blocks;
-        self.list(blocks, candidates, 0..candidates.facets.len() as u32);
+        self.list(candidates, 0..candidates.neighbours.len() as u32);
         self.per_pair.clear();
         self.per_pair.resize(candidates.pairs.len(), 0.0);
         let place = |(pair, integral): (&Pair, &mut f64)| {
@@ -163,8 +159,6 @@ impl BlockOverlaps {
 
     /// Any potential, over the overlaps of the cells of blocks that no face keeps apart.
     fn add_cells(&mut self, cells: &Cells) {
-        self.overlap_m3.clear();
-        self.overlap_m3.resize(self.pairs.len(), 0.0);
         let place = |(overlap, &(a, b)): (&mut f64, &(BlockId, BlockId))| *overlap = cells.overlap_of(a, b);
         self.overlap_m3.par_iter_mut().zip(&self.pairs).with_min_len(GRAIN_BLOCK_PAIRS).for_each(place);
     }

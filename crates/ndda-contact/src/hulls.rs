@@ -93,7 +93,7 @@ impl Hulls {
                 self.faces.extend((0..count).map(face));
             }
             self.start.push(self.faces.len() as u32);
-            let own = &self.faces[self.of(block)];
+            let own = &self.faces[self.places_of(block)];
             self.whole.push(phi_per_m.map(|_| Whole::new(blocks, block, own)));
         }
     }
@@ -110,7 +110,9 @@ impl Hulls {
         are_apart.resize(pairs.len(), false);
         let nodes = |block| &position[blocks.nodes_of(block)];
         let keeps = |block, other| {
-            self.faces[self.of(block)].iter().any(|face| nodes(other).iter().all(|x| face.is_beyond(x)))
+            self.faces[self.places_of(block)]
+                .iter()
+                .any(|face| nodes(other).iter().all(|x| face.is_beyond(x)))
         };
         let look = |(apart, &(a, b)): (&mut bool, &(BlockId, BlockId))| *apart = keeps(a, b) || keeps(b, a);
         are_apart.par_iter_mut().zip(pairs).with_min_len(GRAIN_PAIRS).for_each(look);
@@ -126,23 +128,18 @@ impl Hulls {
     /// Whether a face of the block keeps it from a triangle or tetrahedron with these corners; touching is not overlap.
     #[inline]
     pub fn keep_apart<const N: usize>(&self, block: BlockId, corners: &[Vec3; N]) -> bool {
-        self.faces[self.of(block)].iter().any(|face| corners.iter().all(|x| face.is_beyond(x)))
+        self.faces[self.places_of(block)].iter().any(|face| corners.iter().all(|x| face.is_beyond(x)))
     }
 
     /// The faces of a block; none of one that is concave or round.
     #[inline]
     pub fn faces_of(&self, block: BlockId) -> &[Face] {
-        &self.faces[self.of(block)]
+        &self.faces[self.places_of(block)]
     }
 
     /// The faces of all blocks, block by block.
     pub fn faces(&self) -> &[Face] {
         &self.faces
-    }
-
-    /// Where the faces of a block are among those of all.
-    pub fn places_of(&self, block: BlockId) -> Range<usize> {
-        self.of(block)
     }
 
     /// A block that is taken whole.
@@ -161,7 +158,8 @@ impl Hulls {
         self.whole.iter().flatten().count()
     }
 
-    fn of(&self, block: BlockId) -> Range<usize> {
+    /// Where the faces of a block are among those of all.
+    pub fn places_of(&self, block: BlockId) -> Range<usize> {
         let start = |block: usize| self.start.get(block).map_or(0, |&start| start as usize);
         start(block.index())..start(block.index() + 1)
     }

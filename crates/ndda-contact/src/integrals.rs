@@ -9,6 +9,7 @@ use pulp::Arch;
 use rayon::prelude::*;
 
 use crate::batch::Batches;
+use crate::broad_phase::FEW_NODES;
 use crate::candidates::{Candidates, Facet, Pair};
 use crate::hulls::Hulls;
 use crate::pair::{PairMoments, TetFrame};
@@ -18,8 +19,6 @@ use crate::report::HitReport;
 
 /// Pairs of a chunk: one task for a thread.
 const CHUNK_PAIRS: usize = 512;
-/// Nodes of a block that is taken whole up to which it is asked on which side of a triangle it is.
-const FEW_NODES: usize = 64;
 
 /// A candidate pair that does overlap.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -260,9 +259,7 @@ impl Chunk {
             );
         }
     }
-}
 
-impl Chunk {
     /// A facet on a block that is taken whole.
     fn add_whole(
         &mut self,

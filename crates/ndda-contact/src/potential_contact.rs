@@ -282,10 +282,10 @@ impl ContactModel for PotentialContact {
 
     fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError> {
         let law = self.potential.law();
-        match (law, &self.field) {
-            // Forces are not asked for, but to see what touches.
-            (OverlapLaw::Linear, Some(_)) => self.find_pairs(input)?,
-            _ => self.integrate(input)?,
+        match law {
+            OverlapLaw::Linear => self.find_pairs(input)?,
+            // The law is of what touches.
+            OverlapLaw::Power { .. } => self.integrate(input)?,
         }
         let Some((_, field)) = &self.field else { return Ok(0.0) };
         let parts = OverlapParts {
