@@ -15,7 +15,7 @@ use crate::hulls::Hulls;
 use crate::pair::{PairMoments, TetFrame};
 use crate::potential::Field;
 use crate::region::{Pieces, Region};
-use crate::report::HitReport;
+use crate::report::{HitReport, list_past_centroid};
 
 /// Pairs of a chunk: one task for a thread.
 const CHUNK_PAIRS: usize = 512;
@@ -131,6 +131,8 @@ pub struct Chunk {
     touching: Vec<Touch>,
     /// What the hits tell of themselves.
     pub report: HitReport,
+    /// Pairs whose triangle has passed the tetrahedron's centroid, where φ is largest there.
+    pub past: Vec<u32>,
 }
 
 /// A contactor's triangle.
@@ -198,6 +200,9 @@ impl Chunk {
         }
         self.drop_empty();
         self.report = HitReport::of(&self.hits, scene);
+        if *scene.field == Field::Element {
+            list_past_centroid(&self.hits, scene, &mut self.past);
+        }
     }
 
     /// Keeps the hits that have an area, and the facets that have such hits; what is not a number stays to be reported.

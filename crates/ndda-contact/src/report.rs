@@ -10,15 +10,14 @@ use crate::model::{ContactError, ContactInput, ContactReport};
 use crate::pair::{TetFrame, pair_energy};
 use crate::potential::Field;
 
-/// On which sides of a tetrahedron's centroid the pieces of another block are.
-#[derive(Clone, Copy, Default, PartialEq)]
-enum Reach {
-    #[default]
-    Nowhere,
-    /// The triangle has passed the centroid.
-    Past(u32),
-    /// A triangle is between: the centroid is outside.
-    Short,
+/// The pieces of a block in a tetrahedron, one of which has passed its centroid.
+struct Passed {
+    /// One that has, in [`Candidates::pairs`].
+    pair: u32,
+    /// Another has not: the centroid is outside.
+    falls_short: bool,
+    /// Of the potential, through all of them [m³].
+    flux: f64,
 }
 
 /// What some hits tell of themselves.
@@ -64,7 +63,9 @@ impl HitReport {
 /// Memory for reports, used again and again.
 #[derive(Default)]
 pub struct Reporter {
-    reach: Vec<Reach>,
+    passed: Vec<Passed>,
+    /// Of each of [`Candidates::overlaps`], its place in `passed`, from one; zero for those without.
+    place_of: Vec<u32>,
 }
 
 impl Reporter {
@@ -112,44 +113,63 @@ impl Reporter {
         integrals: &Integrals,
         frames: &[TetFrame],
     ) -> Option<(TriangleId, TetId)> {
-        self.reach.clear();
-        self.reach.resize(candidates.overlaps.len(), Reach::Nowhere);
-        for hit in hits(integrals) {
+        self.list_passed(candidates, integrals);
+        let Self { passed, place_of } = self;
+        if passed.is_empty() {
+            return None;
+        }
+        let placed = |hit: &Hit| {
             let pair = &candidates.pairs[hit.pair as usize];
             let corners = input.blocks.triangle_corners(pair.triangle, input.position);
-            let normal = triangle_area_vector(&corners);
-            let distance = frames[pair.tet as usize].centroid_distance(&corners[0], &normal);
-            let reach = &mut self.reach[pair.overlap as usize];
-            *reach = match *reach {
-                Reach::Short => Reach::Short,
-                _ if distance <= 0.0 => Reach::Short,
-                _ => Reach::Past(hit.pair),
-            };
-        }
-        // Faces that only just touch have pieces made of rounding, on any side: the integral tells.
-        let swallowed = |pair: u32| {
-            let pair = &candidates.pairs[pair as usize];
-            let frame = &frames[pair.tet as usize];
-            let flux = |hit: &Hit| {
-                let other = &candidates.pairs[hit.pair as usize];
-                let corners = input.blocks.triangle_corners(other.triangle, input.position);
-                pair_energy(&corners, &triangle_area_vector(&corners), frame)
-            };
-            let pieces =
-                hits(integrals).filter(|hit| candidates.pairs[hit.pair as usize].overlap == pair.overlap);
-            has_centroid(pieces.map(flux).sum(), frame.volume_m3)
+            (corners, triangle_area_vector(&corners), &frames[pair.tet as usize])
         };
-        let past = self.reach.iter().find_map(|reach| match reach {
-            Reach::Past(pair) if swallowed(*pair) => Some(*pair),
-            _ => None,
-        })?;
+        let overlap_of = |pair: u32| candidates.pairs[pair as usize].overlap as usize;
+        let place_at = |hit: &Hit| place_of[overlap_of(hit.pair)].checked_sub(1).map(|place| place as usize);
+        let all = || integrals.chunks().iter().flat_map(|chunk| &chunk.hits);
+        let hits = || all().filter_map(|hit| Some((hit, place_at(hit)?)));
+        for (hit, place) in hits() {
+            let (corners, normal, frame) = placed(hit);
+            passed[place].falls_short |= frame.centroid_distance(&corners[0], &normal) <= 0.0;
+        }
+        for (hit, place) in hits() {
+            if !passed[place].falls_short {
+                let (corners, normal, frame) = placed(hit);
+                passed[place].flux += pair_energy(&corners, &normal, frame);
+            }
+        }
+        passed.iter().for_each(|found| place_of[overlap_of(found.pair)] = 0);
+        // Faces that only just touch have pieces made of rounding, on any side: the integral tells.
+        let frame_of = |pair: u32| &frames[candidates.pairs[pair as usize].tet as usize];
+        let is_in = |p: &&Passed| !p.falls_short && has_centroid(p.flux, frame_of(p.pair).volume_m3);
+        let past = passed.iter().find(is_in)?.pair;
         Some((candidates.pairs[past as usize].triangle, candidates.tet_of(past)))
+    }
+
+    /// The overlaps of which a piece has passed the centroid.
+    fn list_passed(&mut self, candidates: &Candidates, integrals: &Integrals) {
+        self.passed.clear();
+        self.place_of.resize(candidates.overlaps.len(), 0);
+        for &pair in integrals.chunks().iter().flat_map(|chunk| &chunk.past) {
+            let place = &mut self.place_of[candidates.pairs[pair as usize].overlap as usize];
+            if *place == 0 {
+                self.passed.push(Passed { pair, falls_short: false, flux: 0.0 });
+                *place = self.passed.len() as u32;
+            }
+        }
     }
 }
 
-/// The pairs that overlap.
-fn hits(integrals: &Integrals) -> impl Iterator<Item = &Hit> {
-    integrals.chunks().iter().flat_map(|chunk| &chunk.hits)
+/// The hits whose triangle has passed the centroid of the tetrahedron.
+pub fn list_past_centroid(hits: &[Hit], scene: &Scene, past: &mut Vec<u32>) {
+    past.clear();
+    past.reserve(hits.len());
+    let has_passed = |hit: &&Hit| {
+        let pair = &scene.candidates.pairs[hit.pair as usize];
+        let corners = scene.blocks.triangle_corners(pair.triangle, scene.position);
+        let frame = &scene.frames[pair.tet as usize];
+        frame.centroid_distance(&corners[0], &triangle_area_vector(&corners)) > 0.0
+    };
+    past.extend(hits.iter().filter(has_passed).map(|hit| hit.pair));
 }
 
 /// Depth over the height of the tetrahedron, or of the block that is taken whole. For the element potential φ = 4 λ, and λ is
