@@ -149,8 +149,9 @@ impl TreeBroadPhase {
         self.found.clear();
         self.found.resize_with(blocks.len(), Found::default);
         self.boxes = Boxes::default();
-        let everywhere = blocks.ids().map(|id| (id.index(), to_parry(&Aabb::around(&blocks.rest_position))));
-        self.tree = Bvh::from_iter(BvhBuildStrategy::Binned, everywhere);
+        let everywhere = to_parry(&Aabb::around(&blocks.rest_position));
+        let leaves = blocks.ids().map(|id| (id.index(), everywhere));
+        self.tree = Bvh::from_iter(BvhBuildStrategy::Binned, leaves);
         self.displaced = 0;
     }
 
