@@ -50,6 +50,8 @@ pub struct Candidates {
     pub order: Vec<[u8; 4]>,
     /// The distinct (target tetrahedron, contactor block), block by block; empty where nobody asks for them.
     pub overlaps: Vec<(TetId, BlockId)>,
+    /// Counts the changes of the list.
+    pub version: u64,
     /// Whether overlaps are numbered.
     pub numbers_overlaps: bool,
     /// Whether facets end at the borders of target elements, too.
@@ -106,6 +108,7 @@ impl Candidates {
 
     /// Numbers what the pairs share.
     fn arrange(&mut self, input: &ContactInput) {
+        self.version += 1;
         let (tet_block, triangle_block) = (&input.blocks.tet_block, &input.blocks.triangle_block);
         // Blocks are contiguous in tetrahedra, so the pairs are in the order of target blocks, too.
         self.number_tets(input);

@@ -117,13 +117,13 @@ impl BlockOverlaps {
         self.origin.resize(self.pairs.len(), None);
         for touch in integrals.touching() {
             let facet = &candidates.facets[touch.facet as usize];
-            let owner = input.blocks.triangle_block[facet.triangle.index()];
-            let k = self.place(owner, facet.target).expect("listed above");
+            let k = self.place(touch.owner, touch.target).expect("listed above");
+            let sums = integrals.sums_of(touch);
             let corners = input.blocks.triangle_corners(facet.triangle, input.position);
             let origin = *self.origin[k].get_or_insert(corners[0]);
             let normal = triangle_area_vector(&corners).normalize();
-            self.pressure_m2[k] += touch.sums.pressure;
-            self.overlap_m3[k] += touch.sums.area * (corners[0] - origin).dot(&normal) / 3.0;
+            self.pressure_m2[k] += sums.pressure;
+            self.overlap_m3[k] += sums.area * (corners[0] - origin).dot(&normal) / 3.0;
         }
     }
 
@@ -159,8 +159,9 @@ impl BlockOverlaps {
 
     /// Any potential, over the overlaps of the cells of blocks that no face keeps apart.
     fn add_cells(&mut self, cells: &Cells) {
-        let place = |(overlap, &(a, b)): (&mut f64, &(BlockId, BlockId))| *overlap = cells.overlap_of(a, b);
-        self.overlap_m3.par_iter_mut().zip(&self.pairs).with_min_len(GRAIN_BLOCK_PAIRS).for_each(place);
+        let room = || Box::new([Polyhedron::default(), Polyhedron::default()]);
+        let pairs = self.overlap_m3.par_iter_mut().zip(&self.pairs).with_min_len(GRAIN_BLOCK_PAIRS);
+        pairs.for_each_init(room, |room, (overlap, &(a, b))| *overlap = cells.overlap_of(a, b, room));
     }
 }
 
@@ -173,19 +174,19 @@ struct Cells<'a> {
 
 impl Cells<'_> {
     /// U of two blocks: every pair of their cells whose boxes touch.
-    fn overlap_of(&self, a: BlockId, b: BlockId) -> f64 {
+    fn overlap_of(&self, a: BlockId, b: BlockId, room: &mut [Polyhedron; 2]) -> f64 {
         let block_box = |block| Aabb::around(&self.input.position[self.input.blocks.nodes_of(block)]);
         let (box_a, box_b) = (block_box(a), block_box(b));
         // Near the overlap, so that map coordinates lose no digits.
         let origin = box_a.min.sup(&box_b.min);
         let (of_a, of_b) =
             (self.near((a, &box_a), (b, &box_b), &origin), self.near((b, &box_b), (a, &box_a), &origin));
-        let (mut room, mut sum) = ([Polyhedron::default(), Polyhedron::default()], 0.0);
+        let mut sum = 0.0;
         for (k, c) in of_a.iter().enumerate() {
             let within = of_b.iter().take_while(|t| t.bounds.min.x <= c.bounds.max.x);
             let is_new = |at: usize| a != b || at > k;
             for (_, t) in within.enumerate().filter(|(at, t)| is_new(*at) && t.bounds.touches(&c.bounds)) {
-                sum += c.overlap_with(t, &mut room);
+                sum += c.overlap_with(t, room);
             }
         }
         sum
@@ -218,10 +219,8 @@ impl Cells<'_> {
 /// A convex part of a block, in which φ is the smallest of linear functions.
 struct Cell {
     bounds: Aabb,
-    /// It as a polyhedron, if it is a tetrahedron.
-    tet: Option<[Vec3; 4]>,
-    /// What is not negative in it.
-    sides: Vec<Linear>,
+    /// Its corners, and what is not negative in it, if it is a tetrahedron.
+    tet: Option<([Vec3; 4], [Linear; 4])>,
     phi: Vec<Linear>,
     origin: Vec3,
 }
@@ -230,24 +229,32 @@ impl Cell {
     fn of_tet(corners: &[Vec3; 4], values: &[[f64; 4]], bounds: Aabb, origin: &Vec3) -> Self {
         let frame = TetFrame::new(corners);
         let phi = values.iter().map(|values| Linear::of_corners(&frame, values, origin)).collect();
-        let (tet, sides) = (Some(corners.map(|x| x - origin)), faces_of(&frame, origin).to_vec());
-        Self { bounds, tet, sides, phi, origin: *origin }
+        let tet = Some((corners.map(|x| x - origin), faces_of(&frame, origin)));
+        Self { bounds, tet, phi, origin: *origin }
     }
 
     fn of_faces(faces: &[Face], bounds: &Aabb, origin: &Vec3) -> Self {
-        let phi: Vec<Linear> = faces.iter().map(|face| face.linear(origin)).collect();
-        Self { bounds: *bounds, tet: None, sides: phi.clone(), phi, origin: *origin }
+        let phi = faces.iter().map(|face| face.linear(origin)).collect();
+        Self { bounds: *bounds, tet: None, phi, origin: *origin }
+    }
+
+    /// What is not negative in it: φ itself in a block that is taken whole.
+    fn sides(&self) -> &[Linear] {
+        match &self.tet {
+            Some((_, sides)) => sides,
+            None => &self.phi,
+        }
     }
 
     /// ∫ (φ + φ_t) dV over the overlap with t.
     fn overlap_with(&self, t: &Self, [overlap, part]: &mut [Polyhedron; 2]) -> f64 {
         let (min, max) = (self.bounds.min.sup(&t.bounds.min), self.bounds.max.inf(&t.bounds.max));
         match &self.tet {
-            Some(corners) => overlap.set_tet(corners),
+            Some((corners, _)) => overlap.set_tet(corners),
             None => overlap.set_cuboid(&Aabb { min: min - self.origin, max: max - self.origin }),
         }
-        let own = self.sides.iter().filter(|_| self.tet.is_none());
-        for side in own.chain(&t.sides) {
+        let own = self.sides().iter().filter(|_| self.tet.is_none());
+        for side in own.chain(t.sides()) {
             overlap.cut(side);
             if overlap.is_empty() {
                 return 0.0;

@@ -60,11 +60,11 @@ impl FaceScene<'_> {
     }
 
     fn sums(&self, t: u32) -> &FacetSums {
-        &self.touch(t).sums
+        self.integrals.sums_of(self.touch(t))
     }
 
     fn owner(&self, t: u32) -> BlockId {
-        self.input.blocks.triangle_block[self.facet(t).triangle.index()]
+        self.touch(t).owner
     }
 
     /// The facets that touch, by number.

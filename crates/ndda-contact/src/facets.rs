@@ -5,7 +5,7 @@ use ndda_mesh::{BlockSet, TetId, Vec3};
 
 use crate::candidates::{Candidates, Facet};
 use crate::friction::{FacetSlip, ShearMemory};
-use crate::integrals::{FacetSums, Hit, Touch};
+use crate::integrals::{FacetSums, Hit};
 use crate::joints::{Joints, Memory};
 use crate::model::{Body, ContactHistory, ContactInput, FacetMemory};
 
@@ -49,9 +49,9 @@ pub struct FacetScene<'a> {
 impl FacetScene<'_> {
     /// Normal force −k n ∫ φ dA and friction of one facet.
     #[inline]
-    pub fn force(&self, touch: &Touch, hits: &[Hit], penalty_pa: f64) -> FacetForce {
-        let (facet, sums) = (&self.candidates.facets[touch.facet as usize], &touch.sums);
-        let mut force = FacetForce { facet: touch.facet, ..FacetForce::default() };
+    pub fn force(&self, facet_id: u32, hits: &[Hit], sums: &FacetSums, penalty_pa: f64) -> FacetForce {
+        let facet = &self.candidates.facets[facet_id as usize];
+        let mut force = FacetForce { facet: facet_id, ..FacetForce::default() };
         if sums.pressure <= 0.0 {
             return force;
         }

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{BlockSet, TriangleId, Vec3};
+use ndda_mesh::{BlockId, BlockSet, TriangleId, Vec3};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -109,15 +109,26 @@ fn are_on_one_side<'a>(points: impl Iterator<Item = &'a Vec3>, point: &Vec3, nor
 }
 
 /// A facet that touches.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Touch {
     /// In [`Candidates::facets`].
     pub facet: u32,
-    /// Where its hits are.
+    /// The block that it is of.
+    pub owner: BlockId,
+    /// The block that it touches.
+    pub target: BlockId,
+    /// Where the rest is.
     chunk: u32,
+    place: u32,
+}
+
+/// The hits of a facet that touches, and what they come to.
+#[derive(Clone, Debug, PartialEq)]
+struct FacetHits {
+    /// In [`Candidates::facets`].
+    facet: u32,
     hits: Range<u32>,
-    /// What they come to.
-    pub sums: FacetSums,
+    sums: FacetSums,
 }
 
 /// A run of facets and the hits among their pairs.
@@ -128,7 +139,7 @@ pub struct Chunk {
     /// Hits in the order of pairs.
     pub hits: Vec<Hit>,
     /// Facets that have some, ascending.
-    touching: Vec<Touch>,
+    touching: Vec<FacetHits>,
     /// What the hits tell of themselves.
     pub report: HitReport,
     /// Pairs whose triangle has passed the tetrahedron's centroid, where φ is largest there.
@@ -189,7 +200,7 @@ impl Chunk {
             let hits = first..self.hits.len() as u32;
             if !hits.is_empty() {
                 let facet = (self.facets.start + k) as u32;
-                self.touching.push(Touch { facet, hits, ..Touch::default() });
+                self.touching.push(FacetHits { facet, hits, sums: FacetSums::default() });
             }
         }
         let hits = &mut self.hits;
@@ -349,18 +360,31 @@ pub struct Integrals {
     scratch: Vec<Mutex<Scratch>>,
     used: usize,
     touching: Vec<Touch>,
+    /// The list that the chunks are of.
+    list: Option<u64>,
 }
 
 impl Default for Integrals {
     fn default() -> Self {
-        Self { arch: Arch::new(), chunks: Vec::new(), scratch: Vec::new(), used: 0, touching: Vec::new() }
+        Self {
+            arch: Arch::new(),
+            chunks: Vec::new(),
+            scratch: Vec::new(),
+            used: 0,
+            touching: Vec::new(),
+            list: None,
+        }
     }
 }
 
 impl Integrals {
     /// Integrates all pairs. The division into chunks depends on the list of pairs alone.
     pub fn update(&mut self, scene: &Scene) {
-        self.divide(&scene.candidates.facets);
+        let list = Some(scene.candidates.version);
+        if self.list != list {
+            self.divide(&scene.candidates.facets);
+            self.list = list;
+        }
         let (arch, used) = (self.arch, self.used);
         let threads = rayon::current_num_threads().max(self.scratch.len());
         self.scratch.resize_with(threads, Mutex::default);
@@ -373,13 +397,17 @@ impl Integrals {
             [only] => integrate(only),
             many => many.par_iter_mut().for_each(integrate),
         }
-        self.list_touching();
+        self.list_touching(scene);
     }
 
-    fn list_touching(&mut self) {
+    fn list_touching(&mut self, scene: &Scene) {
         self.touching.clear();
-        for (k, chunk) in (0..).zip(&self.chunks[..self.used]) {
-            self.touching.extend(chunk.touching.iter().map(|touch| Touch { chunk: k, ..touch.clone() }));
+        for (chunk, of_chunk) in (0..).zip(&self.chunks[..self.used]) {
+            self.touching.extend((0..).zip(&of_chunk.touching).map(|(place, touch)| {
+                let Facet { triangle, target, .. } = scene.candidates.facets[touch.facet as usize];
+                let owner = scene.blocks.triangle_block[triangle.index()];
+                Touch { facet: touch.facet, owner, target, chunk, place }
+            }));
         }
     }
 
@@ -411,6 +439,16 @@ impl Integrals {
 
     /// The hits of a facet that touches, in the order of pairs.
     pub fn hits_of(&self, touch: &Touch) -> &[Hit] {
-        &self.chunks[touch.chunk as usize].hits[touch.hits.start as usize..touch.hits.end as usize]
+        let Range { start, end } = self.in_chunk(touch).hits;
+        &self.chunks[touch.chunk as usize].hits[start as usize..end as usize]
+    }
+
+    /// What the hits of a facet that touches come to.
+    pub fn sums_of(&self, touch: &Touch) -> &FacetSums {
+        &self.in_chunk(touch).sums
+    }
+
+    fn in_chunk(&self, touch: &Touch) -> &FacetHits {
+        &self.chunks[touch.chunk as usize].touching[touch.place as usize]
     }
 }

@@ -169,13 +169,17 @@ pub struct Polyhedron {
     len: usize,
     /// Whether a cut would have needed more corners than there is room for; integrals are then not numbers.
     outgrown: bool,
+    /// Room for what a cut finds at the corners.
+    sides: [f64; MOST_CORNERS],
+    new_place: [u8; MOST_CORNERS],
 }
 
 impl Default for Polyhedron {
     /// Nothing.
     fn default() -> Self {
         let (position, neighbours) = ([Vec3::zeros(); MOST_CORNERS], [[0; 3]; MOST_CORNERS]);
-        Self { position, neighbours, len: 0, outgrown: false }
+        let (sides, new_place) = ([0.0; MOST_CORNERS], [0; MOST_CORNERS]);
+        Self { position, neighbours, len: 0, outgrown: false, sides, new_place }
     }
 }
 
@@ -227,21 +231,23 @@ impl Polyhedron {
 
     /// Keeps the part where the function is not negative.
     pub fn cut(&mut self, side: &Linear) {
-        let (least, most) = self.range_of(side);
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (value, x) in self.sides.iter_mut().zip(&self.position[..self.len]) {
+            *value = side.at(x);
+            (least, most) = (least.min(*value), most.max(*value));
+        }
         // A polyhedron that only touches the plane has no volume in front of it.
         if most <= 0.0 {
             self.len = 0;
         } else if least < 0.0 {
-            let mut sides = [0.0; MOST_CORNERS];
-            sides.iter_mut().zip(&self.position[..self.len]).for_each(|(value, x)| *value = side.at(x));
             let old = self.len;
-            self.add_crossings(&sides);
+            self.add_crossings();
             if self.outgrown {
                 self.len = 0;
                 return;
             }
             self.close_cut(old);
-            self.drop_behind(&sides, old);
+            self.drop_behind(old);
         }
     }
 
@@ -253,19 +259,23 @@ impl Polyhedron {
     }
 
     /// A new corner on each edge that crosses the plane, between its kept end and nothing yet.
-    fn add_crossings(&mut self, sides: &[f64; MOST_CORNERS]) {
+    fn add_crossings(&mut self) {
         let old = self.len;
-        for i in (0..old).filter(|&i| sides[i] >= 0.0) {
+        for i in 0..old {
+            let is_kept = self.sides[i] >= 0.0;
+            if !is_kept {
+                continue;
+            }
             for k in 0..3 {
                 let j = self.neighbours[i][k] as usize;
-                if j >= old || sides[j] >= 0.0 {
+                if j >= old || self.sides[j] >= 0.0 {
                     continue;
                 }
                 if self.len == MOST_CORNERS {
                     self.outgrown = true;
                     return;
                 }
-                let t = sides[i] / (sides[i] - sides[j]);
+                let t = self.sides[i] / (self.sides[i] - self.sides[j]);
                 self.position[self.len] = self.position[i] + t * (self.position[j] - self.position[i]);
                 self.neighbours[self.len] = [i as u8, 0, 0];
                 self.neighbours[i][k] = self.len as u8;
@@ -297,18 +307,18 @@ impl Polyhedron {
         around[(k + 1) % 3] as usize
     }
 
-    fn drop_behind(&mut self, sides: &[f64; MOST_CORNERS], old: usize) {
-        let mut new_place = [0u8; MOST_CORNERS];
+    fn drop_behind(&mut self, old: usize) {
         let mut kept = 0;
         for i in 0..self.len {
-            if i >= old || sides[i] >= 0.0 {
-                new_place[i] = kept as u8;
+            if i >= old || self.sides[i] >= 0.0 {
+                self.new_place[i] = kept as u8;
                 self.position[kept] = self.position[i];
                 self.neighbours[kept] = self.neighbours[i];
                 kept += 1;
             }
         }
         self.len = kept;
+        let new_place = &self.new_place;
         for around in &mut self.neighbours[..kept] {
             *around = around.map(|n| new_place[n as usize]);
         }
@@ -337,19 +347,20 @@ impl Polyhedron {
     }
 
     fn for_each_triangle(&self, mut triangle: impl FnMut([Vec3; 3])) {
-        let mut seen = [[false; 3]; MOST_CORNERS];
+        // A bit for each of the three ways from a corner.
+        let mut seen = [0u8; MOST_CORNERS];
         for start in 0..self.len {
             for first in 0..3 {
-                if seen[start][first] {
+                if seen[start] >> first & 1 == 1 {
                     continue;
                 }
-                seen[start][first] = true;
+                seen[start] |= 1 << first;
                 let (mut here, mut next) = (start, self.neighbours[start][first] as usize);
                 loop {
                     let turned = self.turn(next, here);
                     let k = self.neighbours[next].iter().position(|&n| n as usize == turned).unwrap_or(0);
                     (here, next) = (next, turned);
-                    seen[here][k] = true;
+                    seen[here] |= 1 << k;
                     if next == start {
                         break;
                     }

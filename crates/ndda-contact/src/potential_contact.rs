@@ -14,7 +14,7 @@ use crate::faces::{FaceScene, Faces};
 use crate::facets::{FacetForce, FacetScene, relative_motion};
 use crate::friction::FrictionLaw;
 use crate::hulls::Hulls;
-use crate::integrals::{Integrals, Scene, Touch};
+use crate::integrals::{Integrals, Scene};
 use crate::joints::{Joints, Memory};
 use crate::model::{
     ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
@@ -159,8 +159,7 @@ impl PotentialContact {
         self.overlaps.add_surfaces(input, &self.candidates, &self.integrals);
         let law = self.potential.law();
         for touch in touching {
-            let facet = &self.candidates.facets[touch.facet as usize];
-            let (a, b) = (input.blocks.triangle_block[facet.triangle.index()], facet.target);
+            let (a, b) = (touch.owner, touch.target);
             let overlap = self.overlaps.of(a, b);
             self.penalty_of_facet.push(self.penalty_pa * law.slope(overlap));
             let curvature = self.penalty_pa * law.curvature(overlap) * self.overlaps.pressure_of(a, b);
@@ -174,7 +173,8 @@ impl PotentialContact {
         self.forces.resize(touching.len(), FacetForce::default());
         let penalties = &self.penalty_of_facet;
         let place = |(t, force): (usize, &mut FacetForce)| {
-            *force = scene.force(&touching[t], integrals.hits_of(&touching[t]), penalties[t]);
+            let (hits, sums) = (integrals.hits_of(&touching[t]), integrals.sums_of(&touching[t]));
+            *force = scene.force(touching[t].facet, hits, sums, penalties[t]);
         };
         for_each_facet(&mut self.forces, place);
     }
@@ -322,16 +322,15 @@ impl ContactModel for PotentialContact {
     fn each_work(&mut self, blocks: &BlockSet, moved: &[Vec3], add: &mut dyn FnMut(BlockId, BlockId, f64)) {
         let (candidates, integrals, forces) = (&self.candidates, &self.integrals, &self.forces);
         let touching = integrals.touching();
-        let facet_of = |touch: &Touch| &candidates.facets[touch.facet as usize];
         let work_of = |(t, work_j): (usize, &mut f64)| {
-            let (facet, hits) = (facet_of(&touching[t]), integrals.hits_of(&touching[t]));
+            let facet = &candidates.facets[touching[t].facet as usize];
+            let hits = integrals.hits_of(&touching[t]);
             *work_j = forces[t].push.dot(&relative_motion(facet, hits, candidates, (blocks, moved)));
         };
         self.work_of_facet.resize(touching.len(), 0.0);
         for_each_facet(&mut self.work_of_facet, work_of);
         for (touch, &work_j) in touching.iter().zip(&self.work_of_facet) {
-            let facet = facet_of(touch);
-            add(blocks.triangle_block[facet.triangle.index()], facet.target, work_j);
+            add(touch.owner, touch.target, work_j);
         }
     }
 
@@ -353,7 +352,8 @@ impl ContactModel for PotentialContact {
             if !force.touches {
                 continue;
             }
-            let (sums, facet) = (&touch.sums, &self.candidates.facets[touch.facet as usize]);
+            let facet = &self.candidates.facets[touch.facet as usize];
+            let sums = self.integrals.sums_of(touch);
             facets.push(FacetContact {
                 facet: facet.triangle,
                 target: facet.target,

@@ -65,15 +65,14 @@ impl Scatter {
 
     /// Sorts facets by block.
     fn arrange(&mut self, scene: &ScatterScene) {
-        let facets = || scene.integrals.touching().iter().map(|t| &scene.candidates.facets[t.facet as usize]);
+        let touching = scene.integrals.touching();
         for starts in [&mut self.own_start, &mut self.target_start] {
             starts.clear();
             starts.resize(scene.blocks.len() + 2, 0);
         }
-        for facet in facets() {
-            let owner = scene.blocks.triangle_block[facet.triangle.index()];
-            self.own_start[owner.index() + 1] += 1;
-            self.target_start[facet.target.index() + 2] += 1;
+        for touch in touching {
+            self.own_start[touch.owner.index() + 1] += 1;
+            self.target_start[touch.target.index() + 2] += 1;
         }
         for b in 0..scene.blocks.len() {
             self.own_start[b + 1] += self.own_start[b];
@@ -81,9 +80,9 @@ impl Scatter {
         }
         // Each entry moves on from where its block begins to where the next one does.
         self.on_target.clear();
-        self.on_target.resize(scene.integrals.touching().len(), 0);
-        for (t, facet) in (0..).zip(facets()) {
-            let place = &mut self.target_start[facet.target.index() + 1];
+        self.on_target.resize(touching.len(), 0);
+        for (t, touch) in (0..).zip(touching) {
+            let place = &mut self.target_start[touch.target.index() + 1];
             self.on_target[*place as usize] = t;
             *place += 1;
         }
@@ -153,7 +152,7 @@ impl BlockNodes<'_> {
             return;
         }
         let facet = &scene.candidates.facets[touch.facet as usize];
-        let FacetSums { weights: pressure, slope, .. } = &touch.sums;
+        let FacetSums { weights: pressure, slope, .. } = scene.integrals.sums_of(touch);
         let nodes = scene.blocks.triangles[facet.triangle.index()];
         for a in 0..3 {
             self.add(nodes[a].index(), pressure[a], force, scene.stiffness(t, slope[a], pressure[a]));
