@@ -7,6 +7,7 @@
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::{Aabb, tet_volume};
 
+use crate::kernel::MOST_CUTS;
 use crate::pair::TetFrame;
 
 /// Three faces meet in each corner, so F faces have 2 F − 4 corners: 18 for two tetrahedra and three rivals of a
@@ -379,15 +380,18 @@ impl Polyhedron {
     /// ∫ min f dV over linear functions: each over the part where it is the smallest, for which `part` is room.
     pub fn integral_of_smallest(&self, functions: &[Linear], part: &mut Self) -> f64 {
         // What is everywhere above another's largest value is nowhere the smallest.
-        let enough = functions.iter().map(|f| self.range_of(f).1).fold(f64::INFINITY, f64::min);
+        let mut least = [0.0; MOST_CUTS];
+        let mut enough = f64::INFINITY;
+        for (least, f) in least.iter_mut().zip(functions) {
+            let range = self.range_of(f);
+            *least = range.0;
+            enough = enough.min(range.1);
+        }
         // One that is not a number has no range, and counts.
-        let counts = |f: &&Linear| {
-            let (least, _) = self.range_of(f);
-            least <= enough || !least.is_finite()
-        };
-        let over_part = |f: &Linear| {
-            let mut rivals =
-                functions.iter().filter(counts).filter(|rival| !std::ptr::eq(*rival, f)).peekable();
+        let counts = |k: &usize| least[*k] <= enough || !least[*k].is_finite();
+        let over_part = |k: usize| {
+            let f = &functions[k];
+            let mut rivals = (0..functions.len()).filter(|j| *j != k).filter(counts).peekable();
             if rivals.peek().is_none() {
                 return self.integral(f);
             }
@@ -396,11 +400,11 @@ impl Polyhedron {
                 if part.is_empty() {
                     return 0.0;
                 }
-                part.cut(&rival.minus(f));
+                part.cut(&functions[rival].minus(f));
             }
             part.integral(f)
         };
-        functions.iter().filter(counts).map(over_part).sum()
+        (0..functions.len()).filter(counts).map(over_part).sum()
     }
 }
 
