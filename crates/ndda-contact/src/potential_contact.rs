@@ -280,6 +280,10 @@ impl ContactModel for PotentialContact {
         Ok(report)
     }
 
+    fn has_acted(&self) -> bool {
+        !self.forces.is_empty() || self.joints.as_ref().is_some_and(Joints::carry_tension)
+    }
+
     fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError> {
         let law = self.potential.law();
         match (law, &self.field) {
