@@ -40,7 +40,8 @@ pub fn in_pool(how: &HowArgs, work: impl FnOnce(&Options) -> u8 + Send) -> u8 {
     let started = Instant::now();
     let events = Events::new(how.json, events::RUN);
     let threads = how.threads.map_or(0, usize::from);
-    let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+    // This thread is the first of them: a small scene is over before another has woken up.
+    let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).use_current_thread().build() {
         Ok(pool) => pool,
         Err(error) => {
             let message = format!("cannot start {threads} threads: {error}; use a smaller --threads");
