@@ -476,8 +476,9 @@ mod tests {
         let mut lifted = apart.clone();
         lifted[upper.clone()].iter_mut().for_each(|x| x.z += 1.0);
         input.position = &lifted;
+        assert!(model.has_acted());
         evaluate(&mut model, &input, &mut history);
-        assert!(history.facets.is_empty());
+        assert!(history.facets.is_empty() && !model.has_acted());
     }
 
     #[test]
