@@ -40,7 +40,10 @@ pub fn in_pool(how: &HowArgs, work: impl FnOnce(&Options) -> u8 + Send) -> u8 {
     let started = Instant::now();
     let events = Events::new(how.json, events::RUN);
     let threads = how.threads.map_or(0, usize::from);
-    let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    // This thread is the first of them, if it is in no pool yet: a small scene is over before another has woken up.
+    let pool = if rayon::current_thread_index().is_none() { pool.use_current_thread() } else { pool };
+    let pool = match pool.build() {
         Ok(pool) => pool,
         Err(error) => {
             let message = format!("cannot start {threads} threads: {error}; use a smaller --threads");

@@ -94,6 +94,8 @@ pub struct Faces {
     runs: Vec<Range<usize>>,
     block_area: Vec<f64>,
     bodies: Vec<Body>,
+    /// Whose motion to come a face asks for.
+    is_asked: Vec<bool>,
     /// One per run.
     patches: Vec<Patch>,
     new_faces: Vec<FaceMemory>,
@@ -113,7 +115,7 @@ struct Patch {
     /// Means of r² and r from the centre, weighted by pressure.
     radius2: f64,
     radius: f64,
-    /// Slip velocity, and spin about the normal, weighted by pressure.
+    /// Slip velocity, and spin about the normal, weighted by pressure; zero where nobody asks for them.
     velocity_m_s: Vec3,
     spin_rad_s: f64,
     /// Friction of the last step, turned with the face; none at first touch.
@@ -204,15 +206,23 @@ impl Faces {
         self.patches.par_iter_mut().zip(&self.runs).with_min_len(GRAIN_PATCHES).for_each(rub);
     }
 
-    /// All blocks under their loads, the normal forces of this step and the friction of the last one.
+    /// All blocks under their loads; those whose motion to come is asked for under the normal forces of this step and the friction
+    /// of the last one, too.
     fn push_bodies(&mut self, scene: &FaceScene, forces: &[FacetForce]) {
         self.bodies.clear();
         self.bodies.extend_from_slice(scene.input.bodies);
-        for (t, force) in scene.touching().zip(forces) {
-            if force.touches {
+        self.is_asked.clear();
+        self.is_asked.resize(self.bodies.len(), false);
+        for patch in self.patches.iter().filter(|patch| patch.presses() && !patch.is_held()) {
+            self.is_asked[patch.owner.index()] = true;
+            self.is_asked[patch.target.index()] = true;
+        }
+        for (t, force) in scene.touching().zip(forces).filter(|(_, force)| force.touches) {
+            let [own, other] = [scene.owner(t), scene.facet(t).target].map(BlockId::index);
+            if self.is_asked[own] || self.is_asked[other] {
                 let push = scene.sums(t).pressure * (force.push + force.shear);
-                self.bodies[scene.owner(t).index()].push(&force.center, &push);
-                self.bodies[scene.facet(t).target.index()].push(&force.center, &-push);
+                self.bodies[own].push(&force.center, &push);
+                self.bodies[other].push(&force.center, &-push);
             }
         }
         for patch in &self.patches {
@@ -251,7 +261,15 @@ impl Patch {
         patch.measure(run, scene, forces);
         let old = remembered(history, face, target).filter(|old| old.normal.dot(&patch.normal) > 0.0);
         patch.old = old.map(|old| old.turned_to(&patch.normal));
+        if patch.is_held() {
+            patch.measure_slip(run, scene, forces);
+        }
         patch
+    }
+
+    /// Whether it stuck in the last step: then its own slip counts, otherwise that of the rigid motions to come.
+    fn is_held(&self) -> bool {
+        self.old.is_some_and(|old| !old.slides)
     }
 
     fn presses(&self) -> bool {
@@ -278,23 +296,29 @@ impl Patch {
         }
     }
 
-    /// Radii and slip about the centre; a facet counts with its own size, so that one facet has a radius, too.
+    /// Radii about the centre; a facet counts with its own size, so that one facet has a radius, too.
     fn measure(&mut self, run: &[Place], scene: &FaceScene, forces: &[FacetForce]) {
-        let mut twist = 0.0;
         for &(_, _, t) in run {
             let FacetSums { pressure, area, .. } = *scene.sums(t);
             if pressure > 0.0 {
-                let hits = scene.integrals.hits_of(scene.touch(t));
                 let arm = forces[t as usize].center - self.center;
-                let slip = relative_velocity(scene.facet(t), hits, scene.candidates, scene.input);
                 // A disc of the same area: mean r² = A/2π.
                 let radius2 = arm.norm_squared() + area / std::f64::consts::TAU;
                 self.radius2 += pressure / self.pressure * radius2;
                 self.radius += pressure / self.pressure * radius2.sqrt();
-                let slip = slip / self.pressure;
-                self.velocity_m_s += slip;
-                twist += arm.cross(&slip).dot(&self.normal);
             }
+        }
+    }
+
+    /// Slip velocity, and spin about the centre.
+    fn measure_slip(&mut self, run: &[Place], scene: &FaceScene, forces: &[FacetForce]) {
+        let mut twist = 0.0;
+        for &(_, _, t) in run.iter().filter(|(_, _, t)| scene.sums(*t).pressure > 0.0) {
+            let hits = scene.integrals.hits_of(scene.touch(t));
+            let arm = forces[t as usize].center - self.center;
+            let slip = relative_velocity(scene.facet(t), hits, scene.candidates, scene.input) / self.pressure;
+            self.velocity_m_s += slip;
+            twist += arm.cross(&slip).dot(&self.normal);
         }
         self.velocity_m_s -= self.normal * self.normal.dot(&self.velocity_m_s);
         self.spin_rad_s = twist / self.radius2;

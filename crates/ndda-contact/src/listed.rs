@@ -2,6 +2,7 @@
 
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
+use pulp::Arch;
 use rayon::prelude::*;
 
 use crate::broad_phase::{BroadScene, shape_of};
@@ -112,11 +113,11 @@ impl Listed {
 
     /// Finds the blocks that have moved; a node that is nowhere has.
     fn look(&mut self, input: &ContactInput) {
-        let (position, reach_m) = (&self.position, &self.reach_m);
+        let (position, reach_m, arch) = (&self.position, &self.reach_m, Arch::new());
         let has_moved = |block: usize| {
             let nodes = input.blocks.nodes_of(BlockId(block as u32));
             let (was, now) = (&position[nodes.clone()], &input.position[nodes]);
-            !are_within(reach_m[block] / 3f64.sqrt(), was, now) && {
+            !are_within(arch, reach_m[block] / 3f64.sqrt(), was, now) && {
                 let most = reach_m[block] * reach_m[block];
                 !was.iter().zip(now).all(|(x, y)| (x - y).norm_squared() <= most)
             }
@@ -157,14 +158,20 @@ impl Listed {
 }
 
 /// Whether no coordinate has changed by more than that: quicker than distances, since no number needs its neighbours.
-fn are_within(most_m: f64, was: &[Vec3], now: &[Vec3]) -> bool {
-    let mut within = true;
-    for (x, y) in was.iter().zip(now) {
-        for i in 0..3 {
-            within &= (x[i] - y[i]).abs() <= most_m;
-        }
-    }
-    within
+fn are_within(arch: Arch, most_m: f64, was: &[Vec3], now: &[Vec3]) -> bool {
+    // Compiled for each kind of processor.
+    arch.dispatch(
+        #[inline(always)]
+        || {
+            let mut within = true;
+            for (x, y) in was.iter().zip(now) {
+                for i in 0..3 {
+                    within &= (x[i] - y[i]).abs() <= most_m;
+                }
+            }
+            within
+        },
+    )
 }
 
 #[cfg(test)]
@@ -203,8 +210,9 @@ mod tests {
     #[test]
     fn a_node_that_is_nowhere_has_moved() {
         let here = [Vec3::zeros()];
-        assert!(are_within(0.0, &here, &here));
-        assert!(!are_within(1.0, &here, &[Vec3::new(0.0, f64::NAN, 0.0)]));
-        assert!(!are_within(1.0, &here, &[Vec3::new(0.0, 0.0, -1.1)]));
+        let are_within = |most_m, now: Vec3| are_within(Arch::new(), most_m, &here, &[now]);
+        assert!(are_within(0.0, here[0]));
+        assert!(!are_within(1.0, Vec3::new(0.0, f64::NAN, 0.0)));
+        assert!(!are_within(1.0, Vec3::new(0.0, 0.0, -1.1)));
     }
 }

@@ -273,6 +273,11 @@ pub trait ContactModel: Send + Sync {
         false
     }
 
+    /// Whether the last [`add_forces`](Self::add_forces) may have added anything; `false` lets the solver leave out its bookkeeping.
+    fn has_acted(&self) -> bool {
+        true
+    }
+
     /// Whether [`ContactInput::bodies`] is read; `false` lets the solver leave them out.
     fn needs_bodies(&self) -> bool {
         false

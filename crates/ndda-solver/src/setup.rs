@@ -101,6 +101,7 @@ impl Simulation {
             force: vec![Vec3::zeros(); nodes],
             friction_force: vec![Vec3::zeros(); friction_nodes],
             contact_stiffness: vec![0.0; contact_nodes],
+            contact_has_acted: false,
             contact_position: blocks.rest_position.clone(),
             loose: 0.0,
             least_friction: contact.as_ref().map_or(0.0, |model| model.least_friction()),

@@ -93,6 +93,8 @@ pub struct Simulation {
     pub(crate) force: Vec<Vec3>,
     pub(crate) friction_force: Vec<Vec3>,
     pub(crate) contact_stiffness: Vec<f64>,
+    /// Whether forces of friction and stiffness of contact may be other than zero.
+    pub(crate) contact_has_acted: bool,
     pub(crate) contact_position: Vec<Vec3>,
     /// Part of contact forces whose direction is not known in this step, and that no friction bears.
     pub(crate) loose: f64,
@@ -214,8 +216,10 @@ impl Simulation {
         self.place_bodies();
         let time_s = self.time_s();
         let Some(model) = &mut self.contact else { return Ok(ContactReport::default()) };
-        self.friction_force.fill(Vec3::zeros());
-        self.contact_stiffness.fill(0.0);
+        if std::mem::replace(&mut self.contact_has_acted, true) {
+            self.friction_force.fill(Vec3::zeros());
+            self.contact_stiffness.fill(0.0);
+        }
         let input = ContactInput {
             blocks: &self.blocks,
             position: &self.contact_position,
@@ -230,6 +234,7 @@ impl Simulation {
             stiffness: &mut self.contact_stiffness,
         };
         let report = model.add_forces(&input, &mut self.state.contact, &mut output);
+        self.contact_has_acted = report.is_err() || model.has_acted();
         report.map_err(|source| StepError::Contact { time_s, source })
     }
 
@@ -249,6 +254,7 @@ impl Simulation {
     /// What block `index` needs to know of a step.
     pub(crate) fn context(&self, index: usize) -> StepContext<'_> {
         let range = self.blocks.nodes_of(BlockId(index as u32));
+        let acted = if self.contact_has_acted { range.clone() } else { 0..0 };
         StepContext {
             integrator: self.integrator.as_ref(),
             weights: self.weights,
@@ -259,8 +265,8 @@ impl Simulation {
             force: &self.force[range.clone()],
             external: &self.loads.total()[range.clone()],
             changing: self.loads.changing().get(range.clone()).unwrap_or(&[]),
-            friction_force: self.friction_force.get(range.clone()).unwrap_or(&[]),
-            contact_stiffness: self.contact_stiffness.get(range).unwrap_or(&[]),
+            friction_force: self.friction_force.get(acted.clone()).unwrap_or(&[]),
+            contact_stiffness: self.contact_stiffness.get(acted).unwrap_or(&[]),
             loose: self.loose,
             inertia: self.state.inertia.get(index).copied().unwrap_or_default(),
         }
