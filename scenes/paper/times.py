@@ -28,6 +28,9 @@ def step(step_s):
     return {"time.step_s": step_s}
 
 
+# Not the longest step that reaches the error: at some longer ones the first bounce nearly stops the prism (steps_30.ron).
+ROBUST_30 = step("0.0003333333333333333")
+
 PAPER = "the paper's scheme"
 OURS = "defaults"
 # Problem: scene, what all settings share, the error that the paper prints (none: that of its scheme is the limit), settings.
@@ -46,8 +49,8 @@ PROBLEMS = {
     }),
     "ramp of 30°, φ = 25°": ("ramp_30", LATE, 1e-2, {
         PAPER: step("1e-5"),
-        OURS: MIDPOINT | VELOCITIES | step("5e-4"),
-        "rigid": MIDPOINT | VELOCITIES | RIGID_RAMP | step("5e-4"),
+        OURS: MIDPOINT | VELOCITIES | ROBUST_30,
+        "rigid": MIDPOINT | VELOCITIES | RIGID_RAMP | ROBUST_30,
     }),
     "equal cubes": ("collision", {}, None, {
         PAPER: step("1e-6"),
