@@ -138,13 +138,15 @@ def grows(rows, column):
 def draw():
     plots.need_matplotlib()
     figure, axes = plots.panels(2, 2, (9, 6.4))
+    # Memory and pairs are those of any number of threads, and the most threads have the largest sizes.
+    most = max(threads for _, threads in series())
     for (scene, threads), rows in series().items():
         tets = [int(row["tets"]) for row in rows]
         label = f"{scene}, {threads} thread{'s' * (threads > 1)}"
         axes[0 if scene == "blocks" else 1].loglog(tets, [float(row["step_ms"]) for row in rows], ".-", label=f"{label}{grows(rows, 'step_ms')}")
-        if threads == 1:
+        if threads == most:
             axes[2].loglog(tets, [float(row["peak_memory_mb"]) for row in rows], ".-", label=f"{scene}{grows(rows, 'peak_memory_mb')}")
-        if scene == "blocks" and threads == 1:
+        if scene == "blocks" and threads == most:
             for column, name in (("candidate_pairs", "candidates"), ("contact_pairs", "in contact")):
                 axes[3].loglog(tets, [float(row[column]) for row in rows], ".-", label=f"{name}{grows(rows, column)}")
     titles = [("step of many blocks", "ms"), ("step of one block", "ms"), ("most memory", "MB"), ("pairs in a step, many blocks", "pairs")]
