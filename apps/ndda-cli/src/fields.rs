@@ -214,7 +214,7 @@ fn friction_states(simulation: &Simulation) -> Vec<u8> {
     let mut states = vec![0; blocks.rest_position.len()];
     for contact in simulation.contacts() {
         let state = if contact.sticks { STICKS } else { SLIDES };
-        for node in blocks.triangles[contact.facet.index()] {
+        for node in simulation.pressing_triangle(contact) {
             states[node.index()] = state.max(states[node.index()]);
         }
     }

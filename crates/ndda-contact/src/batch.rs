@@ -2,7 +2,7 @@
 
 use pulp::Arch;
 
-use crate::clip::{Form, Polygon};
+use crate::clip::{Form, Outline, Polygon};
 use crate::kernel::{GROUP, GroupMoments, RegionGroup, region_moments};
 use crate::pair::PairMoments;
 use crate::region::{Cut, Region, element_cuts, element_outside, is_somewhere};
@@ -10,11 +10,14 @@ use crate::region::{Cut, Region, element_cuts, element_outside, is_somewhere};
 /// Regions with this many cuts or more wait together.
 const MANY_CUTS: usize = 5;
 
-/// The regions of many pairs, by the number of their cuts. What comes out does not depend on the company that a region
+/// Batches of regions on triangles, as many for those on contactors of up to four corners, and one for all others.
+const BATCHES: usize = 2 * (MANY_CUTS + 1) + 1;
+
+/// The regions of many pairs, by the corners of the contactor and the number of their cuts. What comes out does not depend on the company that a region
 /// was computed in.
 #[derive(Default)]
 pub struct Batches {
-    waiting: [Batch; MANY_CUTS + 1],
+    waiting: [Batch; BATCHES],
     parts: Vec<RegionMoments>,
     moments: GroupMoments,
 }
@@ -40,16 +43,22 @@ impl Batches {
         self.parts.reserve(4 * pairs);
     }
 
-    /// Adds a region of a pair, on a triangle of this area [m²].
-    pub fn push(&mut self, arch: Arch, pair: u32, area_m2: f64, region: &Region) {
+    /// Adds a region of a pair, on a contactor whose triangle has this area [m²].
+    pub fn push(&mut self, arch: Arch, pair: u32, area_m2: f64, region: &Region, outline: &Outline) {
         let cuts = region.cuts();
-        let batch = &mut self.waiting[cuts.len().min(MANY_CUTS)];
+        let which = match outline.corners().len() {
+            _ if outline.is_triangle() => cuts.len().min(MANY_CUTS),
+            3 | 4 => MANY_CUTS + 1 + cuts.len().min(MANY_CUTS),
+            _ => BATCHES - 1,
+        };
+        let batch = &mut self.waiting[which];
         batch.make_room(cuts.len());
+        batch.set_outline(outline);
         for (k, cut) in cuts.iter().enumerate() {
             batch.set_cut(k, cut);
         }
         batch.set(self.parts.len(), area_m2, &region.phi, region.slope);
-        self.added(arch, pair, cuts.len().min(MANY_CUTS));
+        self.added(arch, pair, which);
     }
 
     /// Adds the regions of the element potential on a triangle of this area [m²]; `slopes` are |∂φ/∂n| there [1/m].
@@ -117,6 +126,18 @@ impl Batch {
     }
 
     #[inline(always)]
+    fn set_outline(&mut self, outline: &Outline) {
+        let (lane, group) = (self.group.len, &mut self.group);
+        if outline.is_triangle() {
+            return;
+        }
+        group.corners = group.corners.max(outline.corners().len()).max(4);
+        for ([x, y], psi) in group.outline.iter_mut().zip(outline.padded()) {
+            (x[lane], y[lane]) = (psi[0], psi[1]);
+        }
+    }
+
+    #[inline(always)]
     fn set_cut(&mut self, k: usize, cut: &Cut) {
         let lane = self.group.len;
         let [x, y, z] = &mut self.group.fields[k];
@@ -150,7 +171,17 @@ impl Batch {
             }
             (part.area, part.depth) = (area * moments.area[lane], moments.depth[lane]);
         }
-        (self.group.len, self.group.cuts) = (0, 0);
+        (self.group.len, self.group.cuts, self.group.corners) = (0, 0, 3);
+    }
+
+    fn outline_of(&self, lane: usize) -> Outline {
+        let corners = self.group.outline.each_ref().map(|[x, y]| [x[lane], y[lane]]);
+        match self.group.corners {
+            3 => Outline::TRIANGLE,
+            count => {
+                Outline::of_face(&corners[..count]).expect("a group has no more corners than an outline")
+            }
+        }
     }
 
     /// A region that the lanes doubt.
@@ -158,7 +189,7 @@ impl Batch {
         let group = &self.group;
         let form = |rows: &[[f64; GROUP]; 3]| Form::through(&rows.each_ref().map(|row| row[lane]));
         let cuts = group.fields.iter().zip(&group.bounds).take(group.cuts);
-        let mut polygon = Polygon::triangle();
+        let mut polygon = Polygon::all_of(&self.outline_of(lane));
         cuts.for_each(|(field, bound)| polygon.cut(&form(field), bound[lane]));
         let mut moments = PairMoments::default();
         moments.add(&polygon, &form(&group.phi), group.slope[lane], self.area[lane]);

@@ -3,6 +3,7 @@
 use ndda_mesh::geometry::{Aabb, TET_FACES, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
 
+use crate::contactors::Contactor;
 use crate::hulls::{Face, Hulls};
 
 /// Blocks of more nodes are compared by their elements only.
@@ -41,6 +42,12 @@ impl BroadScene<'_> {
     /// Box around a block, with its margin.
     pub fn block_box(&self, block: BlockId) -> Aabb {
         Aabb::around(&self.position[self.blocks.nodes_of(block)]).inflated(self.margin_m[block.index()])
+    }
+
+    /// Box around a face that is put into blocks taken whole, with the margin of its block.
+    pub fn face_box(&self, face: &Contactor) -> Aabb {
+        let block = self.blocks.triangle_block[face.triangle.index()];
+        face.bounds(self.position).inflated(self.margin_m[block.index()])
     }
 
     /// A triangle, to be compared with tetrahedra of a block.
@@ -177,8 +184,17 @@ impl BroadPhase for AllPairs {
         let blocks = scene.blocks;
         let tet_boxes: Vec<Aabb> = (0..blocks.tets.len()).map(|tet| scene.tet_box(tet)).collect();
         for i in 0..blocks.triangles.len() {
-            let triangle = scene.triangle_box(i);
+            let (id, triangle_box) = (TriangleId(i as u32), scene.triangle_box(i));
             for (j, tet) in tet_boxes.iter().enumerate() {
+                let (own, target) = (blocks.triangle_block[i], blocks.tet_block[j]);
+                // One triangle stands for all of its face.
+                let triangle = match scene.hulls.contactors(own, target) {
+                    [] => triangle_box,
+                    _ => match scene.hulls.contactor(id, target) {
+                        Some(face) => scene.face_box(face),
+                        None => continue,
+                    },
+                };
                 let one_block = blocks.triangle_block[i] == blocks.tet_block[j];
                 if triangle.touches(tet) && !(one_block && scene.are_neighbours(i, j)) {
                     pairs.push((TriangleId(i as u32), TetId(j as u32)));

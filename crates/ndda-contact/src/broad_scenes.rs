@@ -4,8 +4,9 @@ use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 
 use crate::block_faces::BlockFaces;
 use crate::broad_phase::{AllPairs, BroadPhase, BroadScene};
+use crate::clip::{Form, Outline, Polygon};
 use crate::hulls::Hulls;
-use crate::pair::{TetFrame, is_outside};
+use crate::pair::TetFrame;
 use crate::testing::{Random, test_box, test_horseshoe, test_set};
 
 /// Scenes of [`check_broad_phase`].
@@ -88,13 +89,15 @@ fn compare(input: &BroadScene, moved: &[Vec3], found: &[(TriangleId, TetId)], co
 fn overlap(input: &BroadScene, position: &[Vec3], (triangle, tet): &(TriangleId, TetId)) -> bool {
     let (blocks, block) = (input.blocks, input.blocks.tet_block[tet.index()]);
     let corners = blocks.triangle_corners(*triangle, position);
+    let contactor = input.hulls.contactor(*triangle, block);
+    let outline = contactor.map_or(&Outline::TRIANGLE, |face| &face.outline);
     let overlaps = |tet: usize| {
         let frame = TetFrame::new(&blocks.tet_corners(TetId(tet as u32), position));
-        let (lambda, mut area) = (frame.lambda(&corners), 0.0);
-        crate::region::element_regions(&lambda, &[0.0; 4], |_, region| {
-            area += region.polygon().fan().map(|(_, part)| part).sum::<f64>();
-        });
-        !is_outside(&lambda) && area > 0.0
+        let lambda = frame.lambda(&corners);
+        // Inside of all four faces.
+        let mut part = Polygon::all_of(outline);
+        lambda.iter().for_each(|at| part.cut(&Form::through(at), 0.0));
+        part.fan().map(|(_, part)| part).sum::<f64>() > 0.0
     };
     match input.hulls.whole(block) {
         Some(_) => blocks.tets_of(block).any(overlaps),
@@ -159,7 +162,7 @@ impl Random {
     fn hulls(&mut self, blocks: &BlockSet) -> Hulls {
         let (mut hulls, share) = (Hulls::default(), 1.5 * self.unit() - 0.25);
         let affine: Vec<bool> = blocks.ids().map(|_| self.unit() < share).collect();
-        hulls.fit(blocks, &BlockFaces::of_all(blocks), Some(1.0), &affine);
+        hulls.fit(blocks, &BlockFaces::of_all(blocks), Some(1.0), &affine, self.unit() < 0.5);
         hulls
     }
 

@@ -11,6 +11,8 @@ use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
 use crate::broad_phase::{BroadPhase, BroadScene, FEW_NODES, Side, shape_of};
+use crate::clip::MOST_CORNERS;
+use crate::contactors::Contactor;
 use crate::own_trees::{OwnTrees, node_touches, to_parry};
 
 /// Blocks below which a second thread costs more than it brings.
@@ -252,8 +254,18 @@ impl Near<'_> {
         if block != other && (self.is_apart(block, other) || self.is_apart(other, block)) {
             return;
         }
-        let triangles = self.scene.blocks.triangles_of(block);
         let there = &self.boxes.blocks[other.index()];
+        let faces = self.scene.hulls.contactors(block, other);
+        if !faces.is_empty() {
+            let mut room = [Vec3::zeros(); MOST_CORNERS];
+            let reaches = |face: &&Contactor| self.scene.face_box(face).touches(there);
+            for face in faces.iter().filter(reaches) {
+                let corners = face.place(self.scene.position, &mut room);
+                self.find_whole(face.triangle, corners, (block, other), found);
+            }
+            return;
+        }
+        let triangles = self.scene.blocks.triangles_of(block);
         let reaches = |i: &usize| self.boxes.triangles[*i].touches(there);
         match &self.own[block.index()] {
             None => triangles.filter(reaches).for_each(|i| self.find_tets(i, block, other, found)),
@@ -277,16 +289,31 @@ impl Near<'_> {
         sides.iter().any(|side| side.is_before(points, reach_m))
     }
 
+    /// Adds a contactor, a triangle or the face that it stands for, that may reach into a block taken whole.
+    fn find_whole(
+        &self,
+        triangle: TriangleId,
+        corners: &[Vec3],
+        (block, other): (BlockId, BlockId),
+        found: &mut Vec<(TriangleId, TetId)>,
+    ) {
+        let scene = self.scene;
+        let Some(whole) = scene.hulls.whole(other) else { return };
+        let others = &scene.position[scene.blocks.nodes_of(other)];
+        let is_apart = (block != other && self.has_before(other, block, corners))
+            || scene.triangle_at(triangle.index(), other).are_on_one_side(others);
+        if !is_apart {
+            found.push((triangle, whole.host));
+        }
+    }
+
     fn find_tets(&self, i: usize, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
         let (scene, bounds) = (self.scene, &self.boxes.triangles[i]);
         let triangle = scene.triangle_at(i, other);
-        if block != other && self.has_before(other, block, &triangle.corners) {
-            return;
+        if scene.hulls.whole(other).is_some() {
+            return self.find_whole(TriangleId(i as u32), &triangle.corners, (block, other), found);
         }
-        if let Some(whole) = scene.hulls.whole(other) {
-            if !triangle.are_on_one_side(&scene.position[scene.blocks.nodes_of(other)]) {
-                found.push((TriangleId(i as u32), whole.host));
-            }
+        if block != other && self.has_before(other, block, &triangle.corners) {
             return;
         }
         let tets = scene.blocks.tets_of(other);

@@ -1,13 +1,101 @@
-//! The part of a boundary triangle where some linear fields are positive, corner by corner, in order.
+//! The part of a contactor where some linear fields are positive, corner by corner, in order.
 //!
-//! Everything happens in the triangle's own barycentric coordinates (ψ₁, ψ₂). A corner is classified once for each
+//! Everything happens in the barycentric coordinates (ψ₁, ψ₂) of its triangle. A corner is classified once for each
 //! cut, by the sign of the field there, so the rim is closed whatever rounding does. [`kernel`](crate::kernel) does
 //! the same for many pairs at a time and hands the few that it doubts to this one.
 
 use crate::kernel::MOST_CUTS;
 
-/// A triangle has 3 corners, and each cut adds at most one.
-const MOST: usize = 3 + MOST_CUTS;
+/// Most corners of a contactor.
+pub const MOST_CORNERS: usize = 10;
+
+/// Each cut adds at most one corner.
+const MOST: usize = MOST_CORNERS + MOST_CUTS;
+
+/// The outline of a contactor, a convex polygon in the coordinates (ψ₁, ψ₂) of its triangle, counter-clockwise: that triangle, or a face
+/// that it is part of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outline {
+    corners: [[f64; 2]; MOST_CORNERS],
+    len: usize,
+    is_triangle: bool,
+}
+
+impl Default for Outline {
+    fn default() -> Self {
+        Self::TRIANGLE
+    }
+}
+
+impl Outline {
+    /// The triangle itself.
+    pub const TRIANGLE: Self = {
+        let mut corners = [[0.0; 2]; MOST_CORNERS];
+        corners[1] = [1.0, 0.0];
+        corners[2] = [0.0, 1.0];
+        Self { corners, len: 3, is_triangle: true }
+    };
+
+    /// A face with these corners; none if they are too many.
+    pub fn of_face(face: &[[f64; 2]]) -> Option<Self> {
+        let mut corners = [*face.last()?; MOST_CORNERS];
+        corners.get_mut(..face.len())?.copy_from_slice(face);
+        Some(Self { corners, len: face.len(), is_triangle: false })
+    }
+
+    /// Its corners in order.
+    pub fn corners(&self) -> &[[f64; 2]] {
+        &self.corners[..self.len]
+    }
+
+    /// Its corners, and the last one again until they are as many as there may be.
+    pub fn padded(&self) -> &[[f64; 2]; MOST_CORNERS] {
+        &self.corners
+    }
+
+    /// Whether it is the triangle itself.
+    #[inline(always)]
+    pub fn is_triangle(&self) -> bool {
+        self.is_triangle
+    }
+
+    /// Whether a property of a field, given by its values at the triangle's corners, holds at none or at all corners of the outline.
+    #[inline(always)]
+    pub fn extent(&self, at: &[f64; 3], holds: impl Fn(f64) -> bool) -> Extent {
+        let (count, all) = match self.is_triangle {
+            true => (at.iter().filter(|&&v| holds(v)).count(), 3),
+            false => {
+                let form = Form::through(at);
+                (self.corners().iter().filter(|psi| holds(form.at(psi))).count(), self.len)
+            }
+        };
+        match count {
+            0 => Extent::Nowhere,
+            _ if count == all => Extent::Everywhere,
+            _ => Extent::Partly,
+        }
+    }
+
+    /// The largest value of a field, at a corner.
+    pub fn largest(&self, at: &[f64; 3]) -> f64 {
+        if self.is_triangle {
+            return at[0].max(at[1]).max(at[2]);
+        }
+        let form = Form::through(at);
+        self.corners().iter().map(|psi| form.at(psi)).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// At which corners something holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Extent {
+    /// At none.
+    Nowhere,
+    /// At some.
+    Partly,
+    /// At all.
+    Everywhere,
+}
 
 /// A linear form c₀ + c₁ ψ₁ + c₂ ψ₂.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -15,17 +103,19 @@ pub struct Form(pub [f64; 3]);
 
 impl Form {
     /// The form with these values at the triangle's corners.
+    #[inline(always)]
     pub fn through(at: &[f64; 3]) -> Self {
         Self([at[0], at[1] - at[0], at[2] - at[0]])
     }
 
     /// Its value at (ψ₁, ψ₂).
+    #[inline(always)]
     pub fn at(&self, psi: &[f64; 2]) -> f64 {
         self.0[0] + (self.0[1] * psi[0] + self.0[2] * psi[1])
     }
 }
 
-/// A convex polygon in the triangle; lives on the stack.
+/// A convex polygon in the contactor; lives on the stack.
 #[derive(Clone, Copy, Debug)]
 pub struct Polygon {
     corners: [[f64; 2]; MOST],
@@ -33,11 +123,11 @@ pub struct Polygon {
 }
 
 impl Polygon {
-    /// The whole triangle, counter-clockwise.
-    pub fn triangle() -> Self {
+    /// All of a contactor, counter-clockwise.
+    pub fn all_of(outline: &Outline) -> Self {
         let mut corners = [[0.0; 2]; MOST];
-        (corners[1], corners[2]) = ([1.0, 0.0], [0.0, 1.0]);
-        Self { corners, len: 3 }
+        corners[..outline.len].copy_from_slice(outline.corners());
+        Self { corners, len: outline.len }
     }
 
     /// Its corners (ψ₁, ψ₂) in order.

@@ -9,10 +9,10 @@ use ndda_mesh::{BlockId, TetId, Vec3};
 use rayon::prelude::*;
 
 use crate::candidates::{Candidates, Pair};
-use crate::hulls::{Face, Hulls};
+use crate::hulls::Hulls;
 use crate::integrals::Integrals;
 use crate::model::ContactInput;
-use crate::overlap::{Linear, Polyhedron, faces_of};
+use crate::overlap::{Carried, Linear, Polyhedron, faces_of};
 use crate::pair::{TetFrame, pair_energy};
 use crate::potential::{Field, OverlapLaw, PieceTable};
 
@@ -198,10 +198,12 @@ impl Cells<'_> {
         (block, own): (BlockId, &Aabb),
         (other, around): (BlockId, &Aabb),
         origin: &Vec3,
-    ) -> Vec<Cell> {
+    ) -> Vec<Cell<'_>> {
         let (blocks, position) = (self.input.blocks, self.input.position);
-        if self.hulls.whole(block).is_some() {
-            return vec![Cell::of_faces(self.hulls.faces_of(block), own, origin)];
+        if let Some(whole) = self.hulls.whole(block) {
+            let phi = self.hulls.faces_of(block).iter().map(|face| face.linear(origin)).collect();
+            let host = blocks.tet_corners(whole.host, position).map(|x| x - origin);
+            return vec![Cell { bounds: *own, shape: Shape::Whole(&whole.shape, host), phi }];
         }
         let near = |tet: usize| {
             let corners = blocks.tet_corners(TetId(tet as u32), position);
@@ -217,44 +219,43 @@ impl Cells<'_> {
 }
 
 /// A convex part of a block, in which φ is the smallest of linear functions.
-struct Cell {
+struct Cell<'a> {
     bounds: Aabb,
-    /// Its corners, and what is not negative in it, if it is a tetrahedron.
-    tet: Option<([Vec3; 4], [Linear; 4])>,
+    shape: Shape<'a>,
     phi: Vec<Linear>,
-    origin: Vec3,
 }
 
-impl Cell {
+/// What a cell is, seen from an origin.
+enum Shape<'a> {
+    /// A tetrahedron with these corners, in which these functions are not negative.
+    Tet([Vec3; 4], [Linear; 4]),
+    /// A block that is taken whole, and the corners of its host; φ itself is not negative in it.
+    Whole(&'a Carried, [Vec3; 4]),
+}
+
+impl Cell<'_> {
     fn of_tet(corners: &[Vec3; 4], values: &[[f64; 4]], bounds: Aabb, origin: &Vec3) -> Self {
         let frame = TetFrame::new(corners);
         let phi = values.iter().map(|values| Linear::of_corners(&frame, values, origin)).collect();
-        let tet = Some((corners.map(|x| x - origin), faces_of(&frame, origin)));
-        Self { bounds, tet, phi, origin: *origin }
+        let shape = Shape::Tet(corners.map(|x| x - origin), faces_of(&frame, origin));
+        Self { bounds, shape, phi }
     }
 
-    fn of_faces(faces: &[Face], bounds: &Aabb, origin: &Vec3) -> Self {
-        let phi = faces.iter().map(|face| face.linear(origin)).collect();
-        Self { bounds: *bounds, tet: None, phi, origin: *origin }
-    }
-
-    /// What is not negative in it: φ itself in a block that is taken whole.
+    /// What is not negative in it.
     fn sides(&self) -> &[Linear] {
-        match &self.tet {
-            Some((_, sides)) => sides,
-            None => &self.phi,
+        match &self.shape {
+            Shape::Tet(_, sides) => sides,
+            Shape::Whole(..) => &self.phi,
         }
     }
 
     /// ∫ (φ + φ_t) dV over the overlap with t.
     fn overlap_with(&self, t: &Self, [overlap, part]: &mut [Polyhedron; 2]) -> f64 {
-        let (min, max) = (self.bounds.min.sup(&t.bounds.min), self.bounds.max.inf(&t.bounds.max));
-        match &self.tet {
-            Some((corners, _)) => overlap.set_tet(corners),
-            None => overlap.set_cuboid(&Aabb { min: min - self.origin, max: max - self.origin }),
+        match &self.shape {
+            Shape::Tet(corners, _) => overlap.set_tet(corners),
+            Shape::Whole(body, host) => overlap.set_carried(body, host),
         }
-        let own = self.sides().iter().filter(|_| self.tet.is_none());
-        for side in own.chain(t.sides()) {
+        for side in t.sides() {
             overlap.cut(side);
             if overlap.is_empty() {
                 return 0.0;

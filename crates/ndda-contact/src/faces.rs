@@ -67,6 +67,10 @@ impl FaceScene<'_> {
         self.touch(t).owner
     }
 
+    fn target(&self, t: u32) -> BlockId {
+        self.touch(t).target
+    }
+
     /// The facets that touch, by number.
     fn touching(&self) -> Range<u32> {
         0..self.integrals.touching().len() as u32
@@ -147,7 +151,7 @@ impl Faces {
     /// Sorts touching facets by face and target; those of a block are together already, and its faces follow each other.
     fn arrange(&mut self, scene: &FaceScene) {
         self.order.clear();
-        let place = |t: u32| (self.face_of[scene.facet(t).triangle.index()], scene.facet(t).target, t);
+        let place = |t: u32| (self.face_of[scene.facet(t).triangle.index()], scene.target(t), t);
         self.order.extend(scene.touching().map(place));
         self.order
             .chunk_by_mut(|a, b| scene.owner(a.2) == scene.owner(b.2))
@@ -218,7 +222,7 @@ impl Faces {
             self.is_asked[patch.target.index()] = true;
         }
         for (t, force) in scene.touching().zip(forces).filter(|(_, force)| force.touches) {
-            let [own, other] = [scene.owner(t), scene.facet(t).target].map(BlockId::index);
+            let [own, other] = [scene.owner(t), scene.target(t)].map(BlockId::index);
             if self.is_asked[own] || self.is_asked[other] {
                 let push = scene.sums(t).pressure * (force.push + force.shear);
                 self.bodies[own].push(&force.center, &push);
@@ -242,7 +246,7 @@ impl Faces {
         for t in scene.touching() {
             let area = scene.sums(t).area;
             self.block_area[scene.owner(t).index()] += area;
-            self.block_area[scene.facet(t).target.index()] += area;
+            self.block_area[scene.target(t).index()] += area;
         }
     }
 }

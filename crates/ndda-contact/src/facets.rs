@@ -31,6 +31,17 @@ pub struct FacetForce {
     pub center: Vec3,
     /// In [`Candidates::facets`].
     pub facet: u32,
+    /// What a target that is taken whole feels on its host: it need not look for the hit, which is far away in memory.
+    pub on_host: Option<OnHost>,
+}
+
+/// Integrals over a contactor, seen from the host of the block that it is in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnHost {
+    /// ∫ φ λ_b dA [m²].
+    pub pressure: [f64; 4],
+    /// ∫ |∂φ/∂n| λ_b dA [m].
+    pub slope: [f64; 4],
 }
 
 /// What the evaluation of a facet reads.

@@ -7,18 +7,20 @@
 //! A convex block that moves by an affine map x = F X + c (a rigid one, an affine one, one that is held as a whole)
 //! keeps its faces plane. If φ is the depth below the nearest of them, it stays the smallest of the same linear
 //! functions all over the block, and the block needs no tetrahedra: it is one target, with one function per face.
-//! Forces on it go to the corners of its largest tetrahedron, the *host*, whose λ are coordinates of the whole space.
+//! Forces on it go to the corners of its largest tetrahedron, the *host*, whose λ are coordinates of the whole space. Its own faces
+//! are contactors, see [`contactors`](crate::contactors).
 
 use std::ops::Range;
 
 use nalgebra::{Matrix4, Vector4};
-use ndda_mesh::geometry::{tet_volume, triangle_area_vector};
-use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, Vec3};
+use ndda_mesh::geometry::{Aabb, tet_volume, triangle_area_vector};
+use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
+use crate::contactors::{Contactor, Contactors};
 use crate::kernel::MOST_CUTS;
-use crate::overlap::Linear;
+use crate::overlap::{Carried, Linear};
 use crate::pair::TetFrame;
 
 /// Faces below which a second thread costs more than it brings.
@@ -53,6 +55,8 @@ pub struct Whole {
     pub host: TetId,
     /// Largest φ of a node below a face.
     pub most_phi: f64,
+    /// Its shape, carried by the host.
+    pub shape: Carried,
     /// Volume share of each node, a quarter of that of its tetrahedra.
     pub share: Vec<f64>,
     /// Λ⁻¹, Λ = Σ share λ λᵀ over the nodes, λ those of the host.
@@ -66,24 +70,28 @@ pub struct Hulls {
     /// First face of each block; one that is concave or round has none.
     start: Vec<u32>,
     whole: Vec<Option<Whole>>,
+    contactors: Contactors,
     /// Whether a face keeps the two blocks of a pair apart.
     are_apart: Vec<bool>,
 }
 
 impl Hulls {
     /// Takes the faces of all blocks; once per set of blocks. `phi_per_m` is φ per depth below the nearest face, if it is that;
-    /// then the blocks of which `affine` says that they move by an affine map are taken whole.
+    /// then the blocks of which `affine` says that they move by an affine map are taken whole, and their faces are contactors unless
+    /// triangles are asked for.
     pub fn fit(
         &mut self,
         blocks: &BlockSet,
         surfaces: &[BlockFaces],
         phi_per_m: Option<f64>,
         affine: &[bool],
+        by_triangle: bool,
     ) {
         self.faces.clear();
         self.whole.clear();
         self.start.clear();
         self.start.push(0);
+        self.contactors.clear(blocks);
         for (block, surface) in blocks.ids().zip(surfaces) {
             let count = surface.planes.len();
             let is_affine = affine.get(block.index()) == Some(&true);
@@ -94,7 +102,15 @@ impl Hulls {
             }
             self.start.push(self.faces.len() as u32);
             let own = &self.faces[self.places_of(block)];
-            self.whole.push(phi_per_m.map(|_| Whole::new(blocks, block, own)));
+            let whole = phi_per_m.map(|_| Whole::new(blocks, block, own));
+            match &whole {
+                Some(whole) if !by_triangle => {
+                    let host = TetFrame::new(&blocks.tet_corners(whole.host, &blocks.rest_position));
+                    self.contactors.take(blocks, block, surface, &host);
+                }
+                _ => self.contactors.skip(),
+            }
+            self.whole.push(whole);
         }
     }
 
@@ -146,6 +162,18 @@ impl Hulls {
     #[inline]
     pub fn whole(&self, block: BlockId) -> Option<&Whole> {
         self.whole.get(block.index()).and_then(Option::as_ref)
+    }
+
+    /// The faces of a block as contactors in another; none where it is put into that triangle by triangle.
+    #[inline]
+    pub fn contactors(&self, block: BlockId, target: BlockId) -> &[Contactor] {
+        if self.whole(target).is_some() { self.contactors.of_block(block) } else { &[] }
+    }
+
+    /// The face that a triangle stands for as a contactor in another block.
+    #[inline]
+    pub fn contactor(&self, triangle: TriangleId, target: BlockId) -> Option<&Contactor> {
+        self.whole(target).and_then(|_| self.contactors.of_triangle(triangle))
     }
 
     /// φ at a point of a block that is taken whole; negative outside.
@@ -241,7 +269,14 @@ impl Whole {
         let spread: Matrix4<f64> = blocks.rest_position[nodes].iter().zip(&share).map(outer).sum();
         let inverse_spread = spread.try_inverse().expect("a block fills space");
         let most_phi = faces.iter().filter_map(|face| face.furthest).map(|(_, phi)| phi).fold(0.0, f64::max);
-        Self { host, most_phi, share, inverse_spread }
+        let sides = faces.iter().map(|face| {
+            let mut face = face.clone();
+            face.place(&[], &blocks.rest_position);
+            face.linear(&Vec3::zeros())
+        });
+        let bounds = Aabb::around(&blocks.rest_position[blocks.nodes_of(block)]);
+        let shape = Carried::new(&bounds, sides, &frame);
+        Self { host, most_phi, shape, share, inverse_spread }
     }
 
     /// A bound of ω² over K/M when points of the block, given by λ of the host, are held by springs: S = Σ k λ λᵀ. The

@@ -11,8 +11,9 @@ use rayon::prelude::*;
 use crate::batch::Batches;
 use crate::broad_phase::FEW_NODES;
 use crate::candidates::{Candidates, Facet, Pair};
+use crate::clip::Outline;
 use crate::hulls::Hulls;
-use crate::pair::{PairMoments, TetFrame};
+use crate::pair::{PairMoments, PsiRange, TetFrame};
 use crate::potential::Field;
 use crate::region::{Pieces, Region};
 use crate::report::{HitReport, list_past_centroid};
@@ -142,7 +143,7 @@ pub struct Chunk {
     touching: Vec<FacetHits>,
     /// What the hits tell of themselves.
     pub report: HitReport,
-    /// Pairs whose triangle has passed the tetrahedron's centroid, where φ is largest there.
+    /// Pairs of hits whose triangle has passed the tetrahedron's centroid, in their order, where φ is largest there.
     pub past: Vec<u32>,
 }
 
@@ -164,11 +165,19 @@ impl Triangle {
     }
 }
 
+/// What a contactor sees of its target.
+struct Seen {
+    /// λ_b of the target at the corners of the contactor's triangle, as `[b][a]`.
+    lambda: [[f64; 3]; 4],
+    /// Where the contactor is a face.
+    range: Option<PsiRange>,
+}
+
 /// What a thread needs while it is at a chunk.
 #[derive(Default)]
 struct Scratch {
-    /// λ of each hit.
-    lambda: Vec<[[f64; 3]; 4]>,
+    /// Of each hit.
+    seen: Vec<Seen>,
     region: Region,
     pieces: Pieces,
     batches: Batches,
@@ -205,9 +214,12 @@ impl Chunk {
         }
         let hits = &mut self.hits;
         scratch.batches.finish(arch, |part| hits[part.pair as usize].moments.add_region(part));
-        for (hit, lambda) in hits.iter_mut().zip(&scratch.lambda) {
-            hit.moments.drop_rounding();
-            hit.moments.share_with_target(lambda);
+        for (hit, seen) in hits.iter_mut().zip(&scratch.seen) {
+            match &seen.range {
+                None => hit.moments.drop_rounding(),
+                Some(range) => hit.moments.drop_rounding_within(range),
+            }
+            hit.moments.share_with_target(&seen.lambda);
         }
         self.drop_empty();
         self.report = HitReport::of(&self.hits, scene);
@@ -266,7 +278,7 @@ impl Chunk {
             }
             let hit = self.hits.len() as u32;
             self.hits.push(Hit { pair: index as u32, ..Hit::default() });
-            scratch.lambda.push(lambda);
+            scratch.seen.push(Seen { lambda, range: None });
             scratch.add_regions(
                 arch,
                 scene,
@@ -286,7 +298,9 @@ impl Chunk {
         scratch: &mut Scratch,
     ) {
         let nodes = scene.blocks.nodes_of(facet.target);
-        if !scratch.pieces.set_whole(scene.hulls.faces_of(facet.target), corners, normal)
+        let contactor = scene.hulls.contactor(facet.triangle, facet.target);
+        let outline = contactor.map_or(&Outline::TRIANGLE, |face| &face.outline);
+        if !scratch.pieces.set_whole(scene.hulls.faces_of(facet.target), corners, normal, outline)
             || (nodes.len() <= FEW_NODES
                 && are_on_one_side(scene.position[nodes].iter(), &corners[0], normal))
         {
@@ -295,7 +309,8 @@ impl Chunk {
         let (hit, index) = (self.hits.len() as u32, facet.pairs.start);
         self.hits.push(Hit { pair: index as u32, ..Hit::default() });
         let frame = &scene.frames[scene.candidates.pairs[index].tet as usize];
-        scratch.lambda.push(frame.lambda(corners));
+        let range = contactor.map(|face| face.range);
+        scratch.seen.push(Seen { lambda: frame.lambda(corners), range });
         scratch.push_pieces(arch, hit, *area);
     }
 }
@@ -303,8 +318,8 @@ impl Chunk {
 impl Scratch {
     fn make_room(&mut self, pairs: usize) {
         let pairs = pairs.max(CHUNK_PAIRS);
-        self.lambda.clear();
-        self.lambda.reserve(pairs);
+        self.seen.clear();
+        self.seen.reserve(pairs);
         self.batches.make_room(pairs);
     }
 
@@ -327,7 +342,7 @@ impl Scratch {
     fn push_pieces(&mut self, arch: Arch, hit: u32, area: f64) {
         for k in 0..self.pieces.len() {
             if self.region.set_piece(&self.pieces, k) {
-                self.batches.push(arch, hit, area, &self.region);
+                self.batches.push(arch, hit, area, &self.region, self.pieces.outline());
             }
         }
     }

@@ -132,6 +132,11 @@ impl Joints {
         self.laws.iter().any(|law| law.acts_on_faces())
     }
 
+    /// Whether all of them do, and none holds together what touches: then facets have nothing to remember.
+    pub fn act_on_faces_only(&self) -> bool {
+        self.laws.iter().all(|law| law.acts_on_faces()) && !self.carry_tension()
+    }
+
     /// Friction over normal force that bears at least, whatever touches.
     pub fn least_friction(&self) -> f64 {
         let unit = FacetSlip { normal_n: 1.0, ..FacetSlip::default() };

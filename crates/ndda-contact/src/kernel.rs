@@ -1,6 +1,6 @@
 //! Many regions at a time: the integrals over [`region`](crate::region)s for as many as the processor has lanes.
 //!
-//! A lane never branches. A convex polygon in the triangle is a set of directed edges, in no order: a cut shortens
+//! A lane never branches. A convex polygon in the contactor is a set of directed edges, in no order: a cut shortens
 //! each edge on its own and adds one, from where the rim leaves the half-plane to where it comes back. Integrals are
 //! fans of the edges about one of their ends. Every field is a linear form in ψ given by its values at the corners.
 //!
@@ -10,6 +10,8 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
+use crate::clip::MOST_CORNERS;
+
 /// Regions in a group; a multiple of every lane count.
 pub const GROUP: usize = 8;
 /// Most cuts of a region: four faces of a tetrahedron and its rivals, or as many as a block that is taken whole has faces.
@@ -18,9 +20,13 @@ pub const MOST_CUTS: usize = 24;
 /// One number for each region of a group.
 pub type Row = [f64; GROUP];
 
-/// A group of regions; a field is given by its values at the triangle's corners.
-#[derive(Clone, Copy, Debug, Default)]
+/// A group of regions; a field is given by its values at the corners of the contactor's triangle.
+#[derive(Clone, Copy, Debug)]
 pub struct RegionGroup {
+    /// Outlines of the contactors, (ψ₁, ψ₂) of their corners; not asked for where they are triangles.
+    pub outline: [[Row; 2]; MOST_CORNERS],
+    /// Corners in use.
+    pub corners: usize,
     /// φ.
     pub phi: [Row; 3],
     /// |∂φ/∂n| [1/m].
@@ -33,6 +39,23 @@ pub struct RegionGroup {
     pub cuts: usize,
     /// Regions in use.
     pub len: usize,
+}
+
+impl Default for RegionGroup {
+    /// Triangles.
+    fn default() -> Self {
+        let zero = [0.0; GROUP];
+        Self {
+            outline: [[zero; 2]; MOST_CORNERS],
+            corners: 3,
+            phi: [zero; 3],
+            slope: zero,
+            fields: [[zero; 3]; MOST_CUTS],
+            bounds: [zero; MOST_CUTS],
+            cuts: 0,
+            len: 0,
+        }
+    }
 }
 
 /// The integrals of a group, over the triangle's area. ψ are the shape functions of the triangle.
@@ -53,33 +76,50 @@ pub struct GroupMoments {
 /// The integrals of a group of regions.
 pub fn region_moments(arch: Arch, group: &RegionGroup, moments: &mut GroupMoments) {
     // Room for the edges is a constant, so that a few cuts are unrolled.
-    match group.cuts {
-        0 => arch.dispatch(RegionKernel::<0, 3> { group, moments }),
-        1 => arch.dispatch(RegionKernel::<1, 4> { group, moments }),
-        2 => arch.dispatch(RegionKernel::<2, 5> { group, moments }),
-        3 => arch.dispatch(RegionKernel::<3, 6> { group, moments }),
-        4 => arch.dispatch(RegionKernel::<4, 7> { group, moments }),
-        _ => arch.dispatch(RegionKernel::<MOST_CUTS, { 3 + MOST_CUTS }> { group, moments }),
+    match (group.corners, group.cuts) {
+        (3, 0) => arch.dispatch(RegionKernel::<3, 0, 3> { group, moments }),
+        (3, 1) => arch.dispatch(RegionKernel::<3, 1, 4> { group, moments }),
+        (3, 2) => arch.dispatch(RegionKernel::<3, 2, 5> { group, moments }),
+        (3, 3) => arch.dispatch(RegionKernel::<3, 3, 6> { group, moments }),
+        (3, 4) => arch.dispatch(RegionKernel::<3, 4, 7> { group, moments }),
+        (3, _) => arch.dispatch(RegionKernel::<3, MOST_CUTS, { 3 + MOST_CUTS }> { group, moments }),
+        (4, 0) => arch.dispatch(RegionKernel::<4, 0, 4> { group, moments }),
+        (4, 1) => arch.dispatch(RegionKernel::<4, 1, 5> { group, moments }),
+        (4, 2) => arch.dispatch(RegionKernel::<4, 2, 6> { group, moments }),
+        (4, 3) => arch.dispatch(RegionKernel::<4, 3, 7> { group, moments }),
+        (4, 4) => arch.dispatch(RegionKernel::<4, 4, 8> { group, moments }),
+        _ => {
+            arch.dispatch(RegionKernel::<MOST_CORNERS, MOST_CUTS, { MOST_CORNERS + MOST_CUTS }> {
+                group,
+                moments,
+            });
+        }
     }
 }
 
-struct RegionKernel<'a, const CUTS: usize, const EDGES: usize> {
+struct RegionKernel<'a, const CORNERS: usize, const CUTS: usize, const EDGES: usize> {
     group: &'a RegionGroup,
     moments: &'a mut GroupMoments,
 }
 
-impl<const CUTS: usize, const EDGES: usize> WithSimd for RegionKernel<'_, CUTS, EDGES> {
+impl<const CORNERS: usize, const CUTS: usize, const EDGES: usize> WithSimd
+    for RegionKernel<'_, CORNERS, CUTS, EDGES>
+{
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { group, moments } = self;
         let cuts = if CUTS < MOST_CUTS { CUTS } else { group.cuts };
+        let corners = if CORNERS < MOST_CORNERS { CORNERS } else { group.corners };
         for k in 0..group.len.div_ceil(S::F64_LANES) {
             let load = |row: &Row| S::as_simd_f64s(row).0[k];
             let field = |at: &[Row; 3]| Form::through(simd, [load(&at[0]), load(&at[1]), load(&at[2])]);
             let mut sums = Sums::zero(simd);
-            let mut edges = Edges::<S, EDGES>::triangle(simd);
+            let mut edges = match CORNERS {
+                3 => Edges::<S, EDGES>::triangle(simd),
+                _ => Edges::outline(simd, &group.outline[..corners], load),
+            };
             for (cut, bound) in group.fields.iter().zip(&group.bounds).take(cuts) {
                 edges.cut(simd, &field(cut), load(bound), &mut sums.doubtful);
             }
@@ -152,6 +192,18 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
         (x[1], y[1]) = ([l, o], [o, l]);
         (x[2], y[2]) = ([o, o], [l, o]);
         Self { x, y, len: 3 }
+    }
+
+    /// All of an outline, counter-clockwise.
+    #[inline(always)]
+    fn outline(simd: S, corners: &[[Row; 2]], load: impl Fn(&Row) -> S::f64s) -> Self {
+        let o = simd.splat_f64s(0.0);
+        let (mut x, mut y) = ([[o; 2]; MOST], [[o; 2]; MOST]);
+        for (k, from) in corners.iter().enumerate() {
+            let to = corners.get(k + 1).unwrap_or(&corners[0]);
+            (x[k], y[k]) = ([load(&from[0]), load(&to[0])], [load(&from[1]), load(&to[1])]);
+        }
+        Self { x, y, len: corners.len() }
     }
 
     /// Keeps what is inside: the field is not below the bound.
@@ -262,6 +314,7 @@ fn add_fan<S: Simd, const MOST: usize>(
 mod tests {
     use super::*;
     use crate::batch::Batches;
+    use crate::clip::Outline;
     use crate::pair::{TetFrame, element_moments, is_outside};
     use crate::region::element_regions;
     use ndda_mesh::Vec3;
@@ -300,7 +353,9 @@ mod tests {
             let slopes = frame.slopes(&(area_vector / area));
             let expected = element_moments(&lambda, &slopes, area);
             let mut batches = Batches::default();
-            element_regions(&lambda, &slopes, |_, region| batches.push(Arch::new(), 0, area, region));
+            element_regions(&lambda, &slopes, |_, region| {
+                batches.push(Arch::new(), 0, area, region, &Outline::TRIANGLE);
+            });
             let mut found = crate::pair::PairMoments::default();
             batches.finish(Arch::new(), |part| found.add_region(part));
             let close = |x: f64, y: f64, scale: f64| (x - y).abs() <= 1e-13 * scale;

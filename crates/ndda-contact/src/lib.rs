@@ -27,6 +27,8 @@ pub mod candidates;
 #[cfg(feature = "potential")]
 pub mod clip;
 #[cfg(feature = "potential")]
+pub mod contactors;
+#[cfg(feature = "potential")]
 pub mod coulomb;
 #[cfg(feature = "potential")]
 pub mod element_potential;

@@ -162,6 +162,25 @@ impl Linear {
     }
 }
 
+/// A convex polyhedron that moves along with a tetrahedron: its corners by their λ, and its graph.
+#[derive(Clone, Debug, Default)]
+pub struct Carried {
+    lambda: Vec<[f64; 4]>,
+    neighbours: Vec<[u8; 3]>,
+}
+
+impl Carried {
+    /// A convex body in a box, given by functions that are not negative in it, at rest where the tetrahedron is.
+    pub fn new(bounds: &Aabb, sides: impl Iterator<Item = Linear>, tet: &TetFrame) -> Self {
+        let mut body = Polyhedron::default();
+        // Sides that lie in those of the box would cut by rounding.
+        body.set_cuboid(&bounds.inflated(0.125 * bounds.diagonal()));
+        sides.for_each(|side| body.cut(&side));
+        let lambda = body.position[..body.len].iter().map(|x| tet.lambda_at(x)).collect();
+        Self { lambda, neighbours: body.neighbours[..body.len].to_vec() }
+    }
+}
+
 /// A convex polyhedron; lives on the stack, and is large: room for one is used again and again.
 #[derive(Clone, Debug)]
 pub struct Polyhedron {
@@ -204,6 +223,15 @@ impl Polyhedron {
         (self.len, self.outgrown) = (other.len, other.outgrown);
         self.position[..self.len].copy_from_slice(&other.position[..other.len]);
         self.neighbours[..self.len].copy_from_slice(&other.neighbours[..other.len]);
+    }
+
+    /// Becomes a body that moves along with a tetrahedron, which has these corners [m] now.
+    pub fn set_carried(&mut self, body: &Carried, [a, b, c, d]: &[Vec3; 4]) {
+        (self.len, self.outgrown) = (body.lambda.len(), false);
+        for (x, l) in self.position.iter_mut().zip(&body.lambda) {
+            *x = a * l[0] + b * l[1] + c * l[2] + d * l[3];
+        }
+        self.neighbours[..self.len].copy_from_slice(&body.neighbours);
     }
 
     /// Becomes a box along the axes.

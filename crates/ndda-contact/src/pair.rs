@@ -14,7 +14,7 @@
 use ndda_mesh::Vec3;
 
 use crate::batch::RegionMoments;
-use crate::clip::{Form, Polygon};
+use crate::clip::{Form, Outline, Polygon};
 use crate::region::element_regions;
 
 /// One number for each face of a tetrahedron; face b is opposite to corner b.
@@ -148,7 +148,10 @@ pub(crate) fn some_face_separates([x, y, z]: &[Faces; 3]) -> bool {
     separates
 }
 
-/// Integrals over the part of a triangle inside a tetrahedron. ψ are the shape functions of the triangle.
+/// Least and largest ψ_a on a contactor.
+pub type PsiRange = [[f64; 2]; 3];
+
+/// Integrals over the part of a contactor inside a tetrahedron or block. ψ are the shape functions of its triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PairMoments {
     /// ∫ φ ψ_a dA [m²]: everything about the normal force.
@@ -215,6 +218,23 @@ impl PairMoments {
         self.area = non_negative(self.area);
     }
 
+    /// The same where ψ is not positive all over: what the total and the range of ψ on the contactor leave room for.
+    pub fn drop_rounding_within(&mut self, range: &PsiRange) {
+        let within = |sums: &mut [f64; 3]| {
+            let total = sums.iter().sum::<f64>();
+            let total = if total < 0.0 { 0.0 } else { total };
+            for (sum, [least, most]) in sums.iter_mut().zip(range) {
+                let [least, most] = [total * least, total * most];
+                // What is not a number stays so.
+                *sum = if *sum < least { least } else { *sum };
+                *sum = if *sum > most { most } else { *sum };
+            }
+        };
+        within(&mut self.pressure);
+        within(&mut self.slope);
+        self.area = if self.area < 0.0 { 0.0 } else { self.area };
+    }
+
     /// Fills in what the target's nodes feel; `lambda[b][a]` is λ_b at corner a.
     pub fn share_with_target(&mut self, lambda: &[[f64; 3]; 4]) {
         for (b, lambda) in lambda.iter().enumerate() {
@@ -258,7 +278,7 @@ pub fn pair_moments(triangle: &[Vec3; 3], area_vector: &Vec3, tet: &TetFrame) ->
 pub fn element_moments(lambda: &[[f64; 3]; 4], slopes: &[f64; 4], area_m2: f64) -> PairMoments {
     let mut moments = PairMoments::default();
     element_regions(lambda, slopes, |_, region| {
-        moments.add(&region.polygon(), &Form::through(&region.phi), region.slope, area_m2);
+        moments.add(&region.polygon(&Outline::TRIANGLE), &Form::through(&region.phi), region.slope, area_m2);
     });
     moments.share_with_target(lambda);
     moments
@@ -273,7 +293,7 @@ pub fn pair_energy(triangle: &[Vec3; 3], area_vector: &Vec3, tet: &TetFrame) -> 
     }
     let mut mean = 0.0;
     element_regions(&lambda, &[0.0; 4], |_, region| {
-        let (phi, part) = (Form::through(&region.phi), region.polygon());
+        let (phi, part) = (Form::through(&region.phi), region.polygon(&Outline::TRIANGLE));
         mean += part.fan().map(|(x, twice)| twice * mean_of_a(&x.map(|c| phi.at(&c)))).sum::<f64>();
     });
     // |n| dA and the height of the centroid in one product.

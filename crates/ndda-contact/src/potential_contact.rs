@@ -8,13 +8,14 @@ use rayon::prelude::*;
 use crate::block_faces::BlockFaces;
 use crate::bonds;
 use crate::candidates::Candidates;
+use crate::clip::Outline;
 use crate::element_potential::ElementPotential;
 use crate::energy::{self, OverlapParts};
 use crate::faces::{FaceScene, Faces};
-use crate::facets::{FacetForce, FacetScene, relative_motion};
+use crate::facets::{FacetForce, FacetScene, OnHost, relative_motion};
 use crate::friction::FrictionLaw;
 use crate::hulls::Hulls;
-use crate::integrals::{Integrals, Scene};
+use crate::integrals::{Hit, Integrals, Scene};
 use crate::joints::{Joints, Memory};
 use crate::model::{
     ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
@@ -117,7 +118,9 @@ impl PotentialContact {
             let surfaces = BlockFaces::of_all(input.blocks);
             // Memory per element needs the elements.
             let phi_per_m = self.potential.phi_per_m().filter(|_| !self.candidates.split_by_element);
-            self.hulls.fit(input.blocks, &surfaces, phi_per_m, input.affine);
+            // What a facet remembers is its own.
+            let by_triangle = self.joints.as_ref().is_some_and(|joints| !joints.act_on_faces_only());
+            self.hulls.fit(input.blocks, &surfaces, phi_per_m, input.affine, by_triangle);
             self.candidates.numbers_overlaps = matches!(field, Ok(Field::Element));
             if self.needs_bodies() {
                 self.faces.fit(input.blocks, &surfaces);
@@ -171,10 +174,14 @@ impl PotentialContact {
         let scene = FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
         let (touching, integrals) = (self.integrals.touching(), &self.integrals);
         self.forces.resize(touching.len(), FacetForce::default());
-        let penalties = &self.penalty_of_facet;
+        let (penalties, hulls) = (&self.penalty_of_facet, &self.hulls);
         let place = |(t, force): (usize, &mut FacetForce)| {
             let (hits, sums) = (integrals.hits_of(&touching[t]), integrals.sums_of(&touching[t]));
             *force = scene.force(touching[t].facet, hits, sums, penalties[t]);
+            if let ([Hit { moments, .. }], Some(_)) = (hits, hulls.whole(touching[t].target)) {
+                force.on_host =
+                    Some(OnHost { pressure: moments.target_pressure, slope: moments.target_slope });
+            }
         };
         for_each_facet(&mut self.forces, place);
     }
@@ -207,10 +214,12 @@ impl PotentialContact {
         let held = force.ok().map(|place| &self.forces[place]);
         let held = held.filter(|force| force.shear_slope > 0.0 && force.sticks);
         let corners = input.blocks.triangle_corners(facet.triangle, input.position);
+        let contactor = self.hulls.contactor(facet.triangle, facet.target);
+        let outline = contactor.map_or(&Outline::TRIANGLE, |face| &face.outline);
         for hit in self.integrals.hits_of(touch) {
             let tet = self.candidates.tet_of(hit.pair);
             let target = match (&self.field, self.hulls.whole(facet.target)) {
-                (_, Some(_)) => Target::Whole(self.hulls.faces_of(facet.target)),
+                (_, Some(_)) => Target::Whole(self.hulls.faces_of(facet.target), outline),
                 (Some((_, Field::Pieces(table))), None) => Target::Pieces(table.of(tet)),
                 _ => Target::Element,
             };

@@ -1,4 +1,4 @@
-//! The part of a triangle where φ is one linear function, as the cuts that make it.
+//! The part of a contactor where φ is one linear function, as the cuts that make it.
 //!
 //! A region is where some linear fields are positive: λ_i and λ_j − λ_i for the element potential, the four λ and the
 //! rivals' lead over a piece for any other. Most pairs of a shallow contact see one region and one or two cuts of it,
@@ -6,7 +6,7 @@
 //! is no region. The sign of a field is taken the same way from both of its sides, so no point is in two regions or
 //! in none.
 
-use crate::clip::{Form, Polygon};
+use crate::clip::{Extent, Form, Outline, Polygon};
 use crate::hulls::Face;
 use crate::kernel::MOST_CUTS;
 use crate::pair::TetFrame;
@@ -28,11 +28,10 @@ impl Cut {
         Self { field, bound: if tie_is_inside { 0.0 } else { f64::from_bits(1) } }
     }
 
-    /// How many corners are outside.
+    /// How much of a contactor is outside.
     #[inline(always)]
-    fn outside(&self) -> u8 {
-        let [a, b, c] = self.field.map(|d| u8::from(d < self.bound));
-        a + b + c
+    fn outside(&self, outline: &Outline) -> Extent {
+        outline.extent(&self.field, |d| d < self.bound)
     }
 }
 
@@ -60,15 +59,15 @@ impl Region {
         (self.phi, self.slope, self.len) = (phi, slope, 0);
     }
 
-    /// Adds a cut if it cuts anything; false if it leaves nothing.
+    /// Adds a cut if it cuts anything of the contactor; false if it leaves nothing.
     #[inline(always)]
-    fn add(&mut self, cut: Cut) -> bool {
-        let outside = cut.outside();
-        if (1..3).contains(&outside) {
+    fn add(&mut self, cut: Cut, outline: &Outline) -> bool {
+        let outside = cut.outside(outline);
+        if outside == Extent::Partly {
             self.cuts[self.len] = cut;
             self.len += 1;
         }
-        outside < 3
+        outside != Extent::Everywhere
     }
 
     /// Where λ_i ≥ 0 is the smallest of four and φ = 4 λ_i; `lambda[b][a]` is λ_b at corner a. `outside` is from
@@ -91,18 +90,19 @@ impl Region {
         let (own, slope) = (pieces.at[k], pieces.slope[k]);
         let ahead = |j: usize| Cut::new([0, 1, 2].map(|a| pieces.at[j][a] - own[a]), k < j);
         self.begin(own, slope.abs());
+        let outline = &pieces.outline;
         for face in &pieces.faces[..pieces.faces_len] {
-            self.add(*face);
+            self.add(*face, outline);
         }
-        if pieces.are_of_whole && !self.add(Cut::new(own, slope < 0.0)) {
+        if pieces.are_of_whole && !self.add(Cut::new(own, slope < 0.0), outline) {
             return false;
         }
-        (0..pieces.len).all(|j| j == k || self.add(ahead(j)))
+        (0..pieces.len).all(|j| j == k || self.add(ahead(j), outline))
     }
 
-    /// The region corner by corner.
-    pub fn polygon(&self) -> Polygon {
-        let mut part = Polygon::triangle();
+    /// The region on this contactor corner by corner.
+    pub fn polygon(&self, outline: &Outline) -> Polygon {
+        let mut part = Polygon::all_of(outline);
         for cut in self.cuts() {
             part.cut(&Form::through(&cut.field), cut.bound);
         }
@@ -110,7 +110,7 @@ impl Region {
     }
 }
 
-/// The functions of a tetrahedron, or of a block that is taken whole, of which the smallest is φ, as a triangle sees them;
+/// The functions of a tetrahedron, or of a block that is taken whole, of which the smallest is φ, as a contactor sees them;
 /// used again and again.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pieces {
@@ -125,6 +125,8 @@ pub struct Pieces {
     faces: [Cut; 4],
     faces_len: usize,
     are_of_whole: bool,
+    /// The contactor.
+    outline: Outline,
 }
 
 impl Pieces {
@@ -139,14 +141,15 @@ impl Pieces {
         normal: &Vec3,
     ) -> bool {
         (self.len, self.faces_len, self.are_of_whole) = (0, 0, false);
+        self.outline = Outline::TRIANGLE;
         let rise = [0, 1, 2, 3].map(|b| frame.gradient(b).dot(normal));
         for b in 0..4 {
             // The faces inside a block belong to the tetrahedron on the triangle's inner side.
             let cut = Cut::new(lambda[b], rise[b] < 0.0);
-            match cut.outside() {
-                0 => {}
-                3 => return false,
-                _ => {
+            match cut.outside(&self.outline) {
+                Extent::Nowhere => {}
+                Extent::Everywhere => return false,
+                Extent::Partly => {
                     self.faces[self.faces_len] = cut;
                     self.faces_len += 1;
                 }
@@ -159,15 +162,22 @@ impl Pieces {
         true
     }
 
-    /// The functions of a block that is taken whole, but for those that another is everywhere below; false if the triangle is
-    /// beyond a face.
+    /// The functions of a block that is taken whole, but for those that another is everywhere below; false if the contactor, with
+    /// this outline on a triangle with these corners [m], is beyond a face.
     #[inline]
-    pub fn set_whole(&mut self, faces: &[Face], corners: &[Vec3; 3], normal: &Vec3) -> bool {
+    pub fn set_whole(
+        &mut self,
+        faces: &[Face],
+        corners: &[Vec3; 3],
+        normal: &Vec3,
+        outline: &Outline,
+    ) -> bool {
         (self.len, self.faces_len, self.are_of_whole) = (0, 0, true);
+        self.outline = *outline;
         let mut enough = f64::INFINITY;
         for (k, face) in faces.iter().enumerate() {
             let at = corners.each_ref().map(|x| face.phi(x));
-            let largest = at[0].max(at[1]).max(at[2]);
+            let largest = outline.largest(&at);
             if largest <= 0.0 {
                 return false;
             }
@@ -176,9 +186,9 @@ impl Pieces {
         }
         let mut kept = 0;
         for k in 0..self.len {
-            let [x, y, z] = self.at[k];
+            let is_above = outline.extent(&self.at[k], |v| v > enough) == Extent::Everywhere;
             (self.at[kept], self.slope[kept], self.which[kept]) = (self.at[k], self.slope[k], self.which[k]);
-            kept += usize::from(!(x > enough && y > enough && z > enough));
+            kept += usize::from(!is_above);
         }
         self.len = kept;
         true
@@ -188,6 +198,11 @@ impl Pieces {
     fn push(&mut self, which: usize, at: [f64; 3], slope: f64) {
         (self.at[self.len], self.slope[self.len], self.which[self.len]) = (at, slope, which as u8);
         self.len += 1;
+    }
+
+    /// The contactor that sees them.
+    pub fn outline(&self) -> &Outline {
+        &self.outline
     }
 
     /// How many there are.
@@ -278,7 +293,7 @@ mod tests {
     fn total(lambda: &[[f64; 3]; 4]) -> f64 {
         let mut total = 0.0;
         element_regions(lambda, &[0.0; 4], |_, r| {
-            total += r.polygon().fan().map(|(_, part)| part).sum::<f64>()
+            total += r.polygon(&Outline::TRIANGLE).fan().map(|(_, part)| part).sum::<f64>()
         });
         total
     }

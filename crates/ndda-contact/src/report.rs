@@ -118,24 +118,23 @@ impl Reporter {
         if passed.is_empty() {
             return None;
         }
-        let placed = |hit: &Hit| {
-            let pair = &candidates.pairs[hit.pair as usize];
-            let corners = input.blocks.triangle_corners(pair.triangle, input.position);
-            (corners, triangle_area_vector(&corners), &frames[pair.tet as usize])
-        };
         let overlap_of = |pair: u32| candidates.pairs[pair as usize].overlap as usize;
         let place_at = |hit: &Hit| place_of[overlap_of(hit.pair)].checked_sub(1).map(|place| place as usize);
-        let all = || integrals.chunks().iter().flat_map(|chunk| &chunk.hits);
-        let hits = || all().filter_map(|hit| Some((hit, place_at(hit)?)));
-        for (hit, place) in hits() {
-            let (corners, normal, frame) = placed(hit);
-            passed[place].falls_short |= frame.centroid_distance(&corners[0], &normal) <= 0.0;
-        }
-        for (hit, place) in hits() {
-            if !passed[place].falls_short {
-                let (corners, normal, frame) = placed(hit);
-                passed[place].flux += pair_energy(&corners, &normal, frame);
+        for chunk in integrals.chunks() {
+            let mut past = chunk.past.iter().peekable();
+            for hit in &chunk.hits {
+                let has_passed = past.next_if_eq(&&hit.pair).is_some();
+                if let Some(place) = place_at(hit) {
+                    passed[place].falls_short |= !has_passed;
+                }
             }
+        }
+        for hit in integrals.chunks().iter().flat_map(|chunk| &chunk.hits) {
+            let Some(place) = place_at(hit).filter(|&place| !passed[place].falls_short) else { continue };
+            let pair = &candidates.pairs[hit.pair as usize];
+            let corners = input.blocks.triangle_corners(pair.triangle, input.position);
+            let frame = &frames[pair.tet as usize];
+            passed[place].flux += pair_energy(&corners, &triangle_area_vector(&corners), frame);
         }
         passed.iter().for_each(|found| place_of[overlap_of(found.pair)] = 0);
         // Faces that only just touch have pieces made of rounding, on any side: the integral tells.
@@ -159,7 +158,7 @@ impl Reporter {
     }
 }
 
-/// The hits whose triangle has passed the centroid of the tetrahedron.
+/// The hits whose triangle has passed the centroid of the tetrahedron, in their order.
 pub fn list_past_centroid(hits: &[Hit], scene: &Scene, past: &mut Vec<u32>) {
     past.clear();
     past.reserve(hits.len());

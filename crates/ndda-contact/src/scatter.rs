@@ -6,7 +6,7 @@ use nalgebra::{Matrix4, Vector4};
 use ndda_mesh::{BlockId, BlockSet};
 
 use crate::candidates::Candidates;
-use crate::facets::FacetForce;
+use crate::facets::{FacetForce, OnHost};
 use crate::hulls::{Hulls, Whole};
 use crate::integrals::{FacetSums, Hit, Integrals};
 use crate::model::ContactOutput;
@@ -48,6 +48,17 @@ impl ScatterScene<'_> {
         let curvature = self.curvature_pa_m.get(touch).copied().unwrap_or(0.0);
         let normal = self.stiffness_pa[touch] * slope + curvature * pressure.abs();
         normal + self.forces[touch].shear_slope * pressure.abs()
+    }
+
+    /// k λ λᵀ of a facet on a block that is taken whole, λ those of the host where the slope has its mean.
+    fn spring(&self, touch: usize, OnHost { pressure, slope }: &OnHost) -> Matrix4<f64> {
+        let (total, rise) = (pressure.iter().sum::<f64>(), slope.iter().sum::<f64>());
+        let (weights, sum) = if rise > 0.0 { (slope, rise) } else { (pressure, total) };
+        if sum <= 0.0 {
+            return Matrix4::zeros();
+        }
+        let lambda = Vector4::from(*weights) / sum;
+        self.stiffness(touch, rise, total) * lambda * lambda.transpose()
     }
 }
 
@@ -123,9 +134,12 @@ impl Scatter {
         }
         let range = self.target_start[block] as usize..self.target_start[block + 1] as usize;
         let on_block = &self.on_target[range];
-        on_block.iter().for_each(|&t| nodes.add_target(scene, t as usize));
-        if let Some(whole) = scene.hulls.whole(BlockId(block as u32)).filter(|_| !on_block.is_empty()) {
-            nodes.add_rate(scene, whole, on_block);
+        match scene.hulls.whole(BlockId(block as u32)) {
+            None => on_block.iter().for_each(|&t| nodes.add_target(scene, t as usize)),
+            Some(whole) => {
+                let own = self.own_start[block]..self.own_start[block + 1];
+                nodes.add_whole(scene, whole, own, on_block);
+            }
         }
     }
 }
@@ -154,8 +168,11 @@ impl BlockNodes<'_> {
         let facet = &scene.candidates.facets[touch.facet as usize];
         let FacetSums { weights: pressure, slope, .. } = scene.integrals.sums_of(touch);
         let nodes = scene.blocks.triangles[facet.triangle.index()];
+        // What presses far from the nodes of a triangle that stands for a face `add_rate` knows better.
+        let is_face = scene.hulls.contactor(facet.triangle, facet.target).is_some();
         for a in 0..3 {
-            self.add(nodes[a].index(), pressure[a], force, scene.stiffness(t, slope[a], pressure[a]));
+            let stiffness = if is_face { 0.0 } else { scene.stiffness(t, slope[a], pressure[a]) };
+            self.add(nodes[a].index(), pressure[a], force, stiffness);
         }
     }
 
@@ -166,38 +183,36 @@ impl BlockNodes<'_> {
         if !force.touches {
             return;
         }
-        for hit in scene.integrals.hits_of(&scene.integrals.touching()[t]) {
-            self.add_hit(scene, hit, force, t);
+        for Hit { pair, moments } in scene.integrals.hits_of(&scene.integrals.touching()[t]) {
+            let tet = scene.candidates.tet_of(*pair);
+            let weights = moments.target_pressure.iter().zip(moments.target_slope);
+            for (node, (pressure, slope)) in scene.blocks.tets[tet.index()].iter().zip(weights) {
+                self.add(node.index(), -pressure, force, scene.stiffness(t, slope.max(0.0), *pressure));
+            }
         }
     }
 
-    fn add_hit(&mut self, scene: &ScatterScene, hit: &Hit, force: &FacetForce, t: usize) {
-        let tet = scene.candidates.tet_of(hit.pair);
-        let is_whole = scene.hulls.whole(scene.blocks.tet_block[tet.index()]).is_some();
-        let weights = hit.moments.target_pressure.iter().zip(hit.moments.target_slope);
-        for (node, (pressure, slope)) in scene.blocks.tets[tet.index()].iter().zip(weights) {
-            // The corners of a host may be far from where it is pressed: `add_rate` knows better.
-            let stiffness = if is_whole { 0.0 } else { scene.stiffness(t, slope.max(0.0), *pressure) };
-            self.add(node.index(), -pressure, force, stiffness);
-        }
-    }
-
-    /// What presses on a block that is taken whole makes all its nodes as stiff as its fastest affine motion; each hit counts
-    /// as a spring at the mean of its slopes.
-    fn add_rate(&mut self, scene: &ScatterScene, whole: &Whole, on_block: &[u32]) {
+    /// What presses on a block that is taken whole goes to its host. That and its faces on others make all its nodes as stiff as its fastest
+    /// affine motion; each hit counts as a spring at the mean of its slopes.
+    fn add_whole(&mut self, scene: &ScatterScene, whole: &Whole, own: Range<u32>, on_block: &[u32]) {
         let mut springs = Matrix4::zeros();
-        for &t in on_block.iter().filter(|&&t| scene.forces[t as usize].touches) {
-            for Hit { moments, .. } in scene.integrals.hits_of(&scene.integrals.touching()[t as usize]) {
-                let slope = moments.slope.iter().sum::<f64>();
-                let (weights, total) = match slope > 0.0 {
-                    true => (moments.target_slope, slope),
-                    false => (moments.target_pressure, moments.total()),
-                };
-                if total > 0.0 {
-                    let lambda = Vector4::from(weights) / total;
-                    springs +=
-                        scene.stiffness(t as usize, slope, moments.total()) * lambda * lambda.transpose();
+        for t in own.map(|t| t as usize).filter(|&t| scene.forces[t].touches) {
+            let touch = &scene.integrals.touching()[t];
+            let triangle = scene.candidates.facets[touch.facet as usize].triangle;
+            if let Some(face) = scene.hulls.contactor(triangle, touch.target) {
+                let FacetSums { weights, slope, .. } = scene.integrals.sums_of(touch);
+                let at_host = |w: &[f64; 3]| face.on_host.map(|l| l[0] * w[0] + l[1] * w[1] + l[2] * w[2]);
+                springs += scene.spring(t, &OnHost { pressure: at_host(weights), slope: at_host(slope) });
+            }
+        }
+        let host = scene.blocks.tets[whole.host.index()];
+        for (t, force) in on_block.iter().map(|&t| (t as usize, &scene.forces[t as usize])) {
+            if let Some(on_host) = force.on_host.filter(|_| force.touches) {
+                for (node, pressure) in host.iter().zip(on_host.pressure) {
+                    // The corners of a host may be far from where it is pressed: its springs know better.
+                    self.add(node.index(), -pressure, force, 0.0);
                 }
+                springs += scene.spring(t, &on_host);
             }
         }
         let rate = whole.rate(&springs);

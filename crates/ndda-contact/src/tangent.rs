@@ -15,7 +15,7 @@
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{Mat3, Vec3};
 
-use crate::clip::Polygon;
+use crate::clip::{Outline, Polygon};
 use crate::hulls::Face;
 use crate::pair::TetFrame;
 use crate::pair_stiffness::PairStiffness;
@@ -62,11 +62,12 @@ pub enum Target<'a> {
     Element,
     /// The smallest of linear functions with these nodal values.
     Pieces(&'a [[f64; 4]]),
-    /// The smallest of the functions of these faces of a block that is taken whole; λ are those of its host.
-    Whole(&'a [Face]),
+    /// The smallest of the functions of these faces of a block that is taken whole, on a contactor with this outline; λ are those of
+    /// its host.
+    Whole(&'a [Face], &'a Outline),
 }
 
-/// Adds the stiffness of a triangle in a tetrahedron or a block that is taken whole.
+/// Adds the stiffness of a contactor in a tetrahedron or a block that is taken whole; `corners` [m] are those of its triangle.
 pub fn add_pair(
     stiffness: &mut PairStiffness,
     corners: &[Vec3; 3],
@@ -93,7 +94,7 @@ pub fn add_pair(
     let pieces = match target {
         Target::Element => 4,
         Target::Pieces(values) if seen.set(&lambda, values, frame, &normal) => seen.len(),
-        Target::Whole(faces) if seen.set_whole(faces, corners, &normal) => seen.len(),
+        Target::Whole(faces, outline) if seen.set_whole(faces, corners, &normal, outline) => seen.len(),
         _ => 0,
     };
     for k in 0..pieces {
@@ -104,10 +105,10 @@ pub fn add_pair(
         let gradient: Vec3 = match target {
             Target::Element => 4.0 * frame.gradient(k),
             Target::Pieces(values) => (0..4).map(|b| values[seen.which(k)][b] * frame.gradient(b)).sum(),
-            Target::Whole(faces) => faces[seen.which(k)].gradient(),
+            Target::Whole(faces, _) => faces[seen.which(k)].gradient(),
         };
         if somewhere {
-            add_part(stiffness, &region.polygon(), &shapes, &tensor(&gradient), area);
+            add_part(stiffness, &region.polygon(seen.outline()), &shapes, &tensor(&gradient), area);
         }
     }
 }

@@ -79,9 +79,8 @@ pub fn evaluate(model: &mut dyn ContactModel, input: &ContactInput, history: &mu
         stiffness: &mut answer.stiffness,
     };
     answer.report = model.add_forces(input, history, &mut output).expect("forces of a sound scene");
-    let forces = answer.force.iter().chain(&answer.friction_force);
-    let is_still =
-        forces.into_iter().all(|f| *f == Vec3::zeros()) && answer.stiffness.iter().all(|k| *k == 0.0);
+    let mut forces = answer.force.iter().chain(&answer.friction_force);
+    let is_still = forces.all(|f| *f == Vec3::zeros()) && answer.stiffness.iter().all(|k| *k == 0.0);
     assert!(is_still || model.has_acted(), "a model that adds forces says that it has not acted");
     answer
 }

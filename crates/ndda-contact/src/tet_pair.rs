@@ -8,6 +8,7 @@ use ndda_mesh::{Mat3, Vec3};
 use pulp::Arch;
 
 use crate::batch::Batches;
+use crate::clip::Outline;
 pub use crate::overlap::PairError;
 use crate::overlap::ScaledPair;
 use crate::pair::{self, TetFrame, by_face, is_outside, some_face_separates};
@@ -213,7 +214,9 @@ fn add_faces(
         }
         let mut slope = Vec3::zeros();
         element_regions(&lambda, &[0.0; 4], |b, region| {
-            slope += region.polygon().fan().map(|(_, twice)| twice).sum::<f64>() * 4.0 * of_other.gradient(b);
+            slope += region.polygon(&Outline::TRIANGLE).fan().map(|(_, twice)| twice).sum::<f64>()
+                * 4.0
+                * of_other.gradient(b);
         });
         stiffness -= area_vector * slope.transpose();
     }

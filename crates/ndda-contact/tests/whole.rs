@@ -6,6 +6,7 @@ use ndda_contact::testing::{Answer, Random, evaluate, test_box, test_set};
 use ndda_contact::{
     ContactHistory, ContactInput, ContactModel, Coulomb, MohrCoulomb, PotentialContact, SmoothPotential,
 };
+use ndda_mesh::generate::{cylinder, prism};
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
 
 const PENALTY_PA: f64 = 1e9;
@@ -87,8 +88,12 @@ fn a_whole_block_feels_what_its_tetrahedra_feel() {
         let place = |x: &Vec3| x + strain * x;
         let position: Vec<Vec3> = blocks.rest_position.iter().map(place).collect();
         let velocity: Vec<Vec3> = position.iter().map(|x| strain * x).collect();
+        // Without friction whole faces are contactors; with a memory of their own triangles are.
         let answer = |affine: &[bool]| {
-            let mut model = model().with_friction(Box::new(Coulomb::new(30.0, 1e9)));
+            let mut model = match case % 3 {
+                0 => model().with_friction(Box::new(Coulomb::new(30.0, 1e9))),
+                _ => model(),
+            };
             let input = input(&blocks, &position, &velocity, affine);
             let mut history = ContactHistory::default();
             let answer = evaluate(&mut model, &input, &mut history);
@@ -106,6 +111,41 @@ fn a_whole_block_feels_what_its_tetrahedra_feel() {
         }
     }
     assert!(touching > 900 && fewer > 800, "{touching} touch, {fewer} with fewer pairs");
+}
+
+#[test]
+fn a_face_of_any_outline_presses_as_its_triangles_do() {
+    let triangle = [[-0.6, -0.4], [0.6, -0.4], [0.1, 0.7]];
+    let shapes = [
+        prism(triangle, 0.8, [1, 1]),
+        prism(triangle, 0.8, [2, 1]),
+        cylinder(0.6, 0.8, [1, 1]),
+        cylinder(0.6, 0.8, [1, 2]),
+        // Its ends have more corners than a face may have as one contactor.
+        cylinder(0.6, 0.8, [2, 1]),
+    ];
+    let shapes = shapes.map(|shape| shape.expect("a shape"));
+    let (mut random, mut touching, mut fewer) = (Random(5), 0, 0);
+    for case in 0..300 {
+        let turned = |random: &mut Random, shape: &BlockMesh, at: Vec3| {
+            shape.clone().placed(&nalgebra::Rotation3::new(3.0 * vector(random)).into_inner(), &at)
+        };
+        let first = turned(&mut random, &shapes[case % 5], Vec3::zeros());
+        let apart = 0.6 * vector(&mut random);
+        let second = turned(&mut random, &shapes[case / 5 % 5], apart);
+        let blocks = test_set(vec![first, second]);
+        let still = vec![Vec3::zeros(); blocks.rest_position.len()];
+        let answer = |affine: &[bool]| {
+            let input = input(&blocks, &blocks.rest_position, &still, affine);
+            evaluate(&mut model(), &input, &mut ContactHistory::default())
+        };
+        let (whole, by_tets) = (answer(&[true, true]), answer(&[]));
+        compare(&blocks, &blocks.rest_position, &whole, &by_tets);
+        assert!(whole.report.action_reaction_error <= 1e-12);
+        touching += usize::from(whole.report.contact_pairs > 0);
+        fewer += usize::from(2 * whole.report.contact_pairs < by_tets.report.contact_pairs);
+    }
+    assert!(touching > 250 && fewer > 200, "{touching} touch, {fewer} with fewer pairs");
 }
 
 #[test]

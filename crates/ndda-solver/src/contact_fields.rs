@@ -26,12 +26,7 @@ impl Simulation {
             let own = self.blocks.triangle_block[contact.facet.index()];
             let force_n = contact.push_n + contact.friction_n;
             if gathered[own.index()] {
-                self.spread(
-                    &self.blocks.triangles[contact.facet.index()],
-                    &contact.center,
-                    &force_n,
-                    &mut forces,
-                );
+                self.spread(&self.pressing_triangle(contact), &contact.center, &force_n, &mut forces);
             }
             if gathered[contact.target.index()] {
                 let pressed = self.nearest_triangle(contact.target, contact);
@@ -39,6 +34,17 @@ impl Simulation {
             }
         }
         forces
+    }
+
+    /// The triangle of the contactor that presses: where a contact acts on a block as a whole, its facet may stand for more than itself.
+    pub fn pressing_triangle(&self, contact: &FacetContact) -> [NodeId; 3] {
+        let own = self.blocks.triangle_block[contact.facet.index()];
+        let gathers = self.contact.as_ref().is_some_and(|model| model.gathers(own));
+        if gathers {
+            self.nearest_triangle(own, contact)
+        } else {
+            self.blocks.triangles[contact.facet.index()]
+        }
     }
 
     fn nearest_triangle(&self, block: BlockId, contact: &FacetContact) -> [NodeId; 3] {

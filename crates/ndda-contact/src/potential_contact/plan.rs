@@ -42,8 +42,9 @@ fn whole_blocks(model: &PotentialContact) -> Part {
         None => format!("the potential {} lives in tetrahedra", model.potential.name()),
         Some(_) => "no convex block moves by an affine map, or friction remembers elements".into(),
     };
-    let what =
-        format!("{count} convex blocks that move by affine maps are one target each, without tetrahedra");
+    let what = format!(
+        "{count} convex blocks that move by affine maps are one target each, without tetrahedra, and faces contactors in them"
+    );
     Part::of("whole blocks", count > 0, what, why_not)
 }
 

@@ -36,7 +36,7 @@ impl Frictionless {
         let blocks = input.blocks;
         self.candidates.numbers_overlaps = true;
         if self.candidates.update(input, &self.hulls) {
-            self.hulls.fit(blocks, &BlockFaces::of_all(blocks), None, &[]);
+            self.hulls.fit(blocks, &BlockFaces::of_all(blocks), None, &[], true);
         }
         self.hulls.place(blocks, input.position);
         self.hulls.separate(blocks, input.position, &self.candidates.neighbours);
