@@ -28,7 +28,7 @@ pub struct Contactor {
     nodes: Vec<NodeId>,
     /// The same in coordinates of the triangle.
     pub outline: Outline,
-    /// Least and largest ψ.
+    /// Least and largest ψ₁ and ψ₂.
     pub range: PsiRange,
     /// λ_b of the host of its block at the corners of the triangle, as `[b][a]`.
     pub on_host: [[f64; 3]; 4],
@@ -154,12 +154,11 @@ fn psi_of(x: &Vec3, [a, b, c]: &[Vec3; 3]) -> [f64; 2] {
     [arm.cross(&across), along.cross(&arm)].map(|part| normal.dot(&part) / normal.norm_squared())
 }
 
-/// Least and largest ψ_a at the corners.
+/// Least and largest ψ at the corners.
 fn range_of(outline: &Outline) -> PsiRange {
-    [0, 1, 2].map(|a| {
-        let psi = |c: &[f64; 2]| [1.0 - c[0] - c[1], c[0], c[1]][a];
+    [0, 1].map(|k| {
         let wider = |[least, most]: [f64; 2], v: f64| [least.min(v), most.max(v)];
-        outline.corners().iter().map(psi).fold([f64::INFINITY, f64::NEG_INFINITY], wider)
+        outline.corners().iter().map(|c| c[k]).fold([f64::INFINITY, f64::NEG_INFINITY], wider)
     })
 }
 

@@ -148,8 +148,8 @@ pub(crate) fn some_face_separates([x, y, z]: &[Faces; 3]) -> bool {
     separates
 }
 
-/// Least and largest ψ_a on a contactor.
-pub type PsiRange = [[f64; 2]; 3];
+/// Least and largest ψ₁ and ψ₂ on a contactor.
+pub type PsiRange = [[f64; 2]; 2];
 
 /// Integrals over the part of a contactor inside a tetrahedron or block. ψ are the shape functions of its triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -218,17 +218,19 @@ impl PairMoments {
         self.area = non_negative(self.area);
     }
 
-    /// The same where ψ is not positive all over: what the total and the range of ψ on the contactor leave room for.
+    /// The same where ψ is not positive all over: what is left is what the total and the range of ψ on the contactor leave room for, and
+    /// adds up to the total.
     pub fn drop_rounding_within(&mut self, range: &PsiRange) {
         let within = |sums: &mut [f64; 3]| {
             let total = sums.iter().sum::<f64>();
             let total = if total < 0.0 { 0.0 } else { total };
-            for (sum, [least, most]) in sums.iter_mut().zip(range) {
+            for (sum, [least, most]) in sums[1..].iter_mut().zip(range) {
                 let [least, most] = [total * least, total * most];
                 // What is not a number stays so.
                 *sum = if *sum < least { least } else { *sum };
                 *sum = if *sum > most { most } else { *sum };
             }
+            sums[0] = total - sums[1] - sums[2];
         };
         within(&mut self.pressure);
         within(&mut self.slope);
