@@ -118,8 +118,9 @@ pub struct Touch {
     pub owner: BlockId,
     /// The block that it touches.
     pub target: BlockId,
-    /// Where the rest is.
+    /// Where its hits are, and the rest.
     chunk: u32,
+    hits: [u32; 2],
     place: u32,
 }
 
@@ -421,7 +422,8 @@ impl Integrals {
             self.touching.extend((0..).zip(&of_chunk.touching).map(|(place, touch)| {
                 let Facet { triangle, target, .. } = scene.candidates.facets[touch.facet as usize];
                 let owner = scene.blocks.triangle_block[triangle.index()];
-                Touch { facet: touch.facet, owner, target, chunk, place }
+                let hits = [touch.hits.start, touch.hits.end];
+                Touch { facet: touch.facet, owner, target, chunk, hits, place }
             }));
         }
     }
@@ -454,16 +456,12 @@ impl Integrals {
 
     /// The hits of a facet that touches, in the order of pairs.
     pub fn hits_of(&self, touch: &Touch) -> &[Hit] {
-        let Range { start, end } = self.in_chunk(touch).hits;
-        &self.chunks[touch.chunk as usize].hits[start as usize..end as usize]
+        let [start, end] = touch.hits.map(|k| k as usize);
+        &self.chunks[touch.chunk as usize].hits[start..end]
     }
 
     /// What the hits of a facet that touches come to.
     pub fn sums_of(&self, touch: &Touch) -> &FacetSums {
-        &self.in_chunk(touch).sums
-    }
-
-    fn in_chunk(&self, touch: &Touch) -> &FacetHits {
-        &self.chunks[touch.chunk as usize].touching[touch.place as usize]
+        &self.chunks[touch.chunk as usize].touching[touch.place as usize].sums
     }
 }
