@@ -3,7 +3,8 @@
 //! A convex block that moves by an affine map keeps its faces plane, and what presses on a face moves all of the block, so that it
 //! does not matter which of the face's nodes take the force. Integrals over a face then are those over one of its
 //! triangles, the largest, continued to the outline of the face: its ψ are coordinates of the whole plane. They cost
-//! no more than those over a triangle, however many the face is made of.
+//! no more than those over a triangle, however many the face is made of. What they come to is shared by three corners of the face
+//! around its centre.
 
 use ndda_mesh::geometry::{Aabb, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, NodeId, TriangleId, Vec3};
@@ -134,6 +135,24 @@ impl Contactor {
         Some(Self { triangle, nodes, outline, range, on_host: host.lambda(&corners) })
     }
 
+    /// Three corners around the centre of weights ∫ f ψ_a dA, and what each gets of them: the same sum and centre, and none of another
+    /// sign than the sum.
+    pub fn shares(&self, [w, x, y]: &[f64; 3]) -> [(NodeId, f64); 3] {
+        let total = w + x + y;
+        let at = [x / total, y / total];
+        let corners = self.outline.corners();
+        let last = corners.len() - 1;
+        // The triangle of the fan about the first corner that the centre is in: before the first edge that has it on its right.
+        let k = (2..last).find(|&k| cross(&corners[0], &corners[k], &at) < 0.0).unwrap_or(last);
+        let (a, b, c) = (&corners[0], &corners[k - 1], &corners[k]);
+        let twice = cross(a, b, c);
+        // A centre that is outside by rounding stays so by rounding.
+        let (second, third) = (cross(a, &at, c) / twice, cross(a, b, &at) / twice);
+        let nodes = [self.nodes[0], self.nodes[k - 1], self.nodes[k]];
+        let parts = [1.0 - second - third, second, third];
+        [0, 1, 2].map(|i| (nodes[i], total * parts[i]))
+    }
+
     /// Its corners [m], in the room of an array.
     pub fn place<'a>(&self, position: &[Vec3], room: &'a mut [Vec3; MOST_CORNERS]) -> &'a [Vec3] {
         let room = &mut room[..self.nodes.len()];
@@ -213,6 +232,31 @@ mod tests {
             for face in faces {
                 assert_eq!(face.outline.corners().len(), 4);
                 assert_eq!(found.of_triangle(face.triangle).map(|f| f.triangle), Some(face.triangle));
+            }
+        }
+    }
+
+    #[test]
+    fn what_presses_on_a_face_is_shared_by_corners_around_it() {
+        let blocks = test_set(vec![test_box([0.0; 3], [1.0, 2.0, 3.0], [1, 1, 1])]);
+        let found = contactors([1, 1, 1]);
+        for face in found.of_block(BlockId(0)) {
+            let corners = blocks.triangle_corners(face.triangle, &blocks.rest_position);
+            let [a, b, c] = blocks.triangles[face.triangle.index()].map(|n| blocks.rest_position[n.index()]);
+            assert_eq!([a, b, c], corners);
+            // All over the parallelogram, which ends at a corner of ψ₀ = −1, 0 or 1.
+            let inside = |x: &Vec3| (0..3).all(|i| x[i] >= -1e-12 && x[i] <= [1.0, 2.0, 3.0][i] + 1e-12);
+            for (i, j) in (0..9).flat_map(|i| (0..9).map(move |j| (i, j))) {
+                let (x, y) = (f64::from(i) / 4.0 - 1.0, f64::from(j) / 4.0 - 1.0);
+                let weights = [1.0 - x - y, x, y].map(|w| 7.0 * w);
+                let at = a * (1.0 - x - y) + b * x + c * y;
+                if inside(&at) {
+                    let shares = face.shares(&weights);
+                    assert!(shares.iter().all(|(_, share)| *share >= -1e-12));
+                    let center: Vec3 =
+                        shares.iter().map(|(n, share)| blocks.rest_position[n.index()] * (share / 7.0)).sum();
+                    assert!((center - at).norm() < 1e-12);
+                }
             }
         }
     }

@@ -167,12 +167,14 @@ impl BlockNodes<'_> {
         }
         let facet = &scene.candidates.facets[touch.facet as usize];
         let FacetSums { weights: pressure, slope, .. } = scene.integrals.sums_of(touch);
+        if let Some(face) = scene.hulls.contactor(facet.triangle, facet.target) {
+            // How stiff that is `add_whole` knows.
+            let shares = face.shares(pressure);
+            return shares.iter().for_each(|(node, share)| self.add(node.index(), *share, force, 0.0));
+        }
         let nodes = scene.blocks.triangles[facet.triangle.index()];
-        // What presses far from the nodes of a triangle that stands for a face `add_rate` knows better.
-        let is_face = scene.hulls.contactor(facet.triangle, facet.target).is_some();
         for a in 0..3 {
-            let stiffness = if is_face { 0.0 } else { scene.stiffness(t, slope[a], pressure[a]) };
-            self.add(nodes[a].index(), pressure[a], force, stiffness);
+            self.add(nodes[a].index(), pressure[a], force, scene.stiffness(t, slope[a], pressure[a]));
         }
     }
 
