@@ -12,9 +12,9 @@
 //!
 //! v₁ is the slip velocity that the rigid motion of both blocks would have at the end of the step under the loads and
 //! normal forces of this step and the friction of the last; r is the mean distance of the pressure from its centre.
-//! The friction of a face that slid is first brought to what the normal force of this step carries, F ← F μN/|F|: it goes on sliding
-//! as long as all of the friction that it may have does not turn it back. With that of the last step a face that slides slowly
-//! while N falls would be taken for one that sticks.
+//! The friction of a face that slid counts as no more than the normal force of this step carries: with all of it a face that slides
+//! slowly while N falls would be taken for one that sticks. (It is not raised with N: in blocks that bounce, faces that hardly slip would be
+//! driven by their own friction.)
 //! So friction is mobilised at once on a block that slides, and one that sticks is held by the force that it takes.
 //! Measured on a block that sticks on a slope: with the first line in every step it is fed energy through its
 //! elasticity, with v of each facet ringing is clipped at μ N, and either way it creeps.
@@ -262,7 +262,7 @@ impl Patch {
         patch.measure(run, scene, forces);
         let old = remembered(history, face, target).filter(|old| old.normal.dot(&patch.normal) > 0.0);
         let most_n = law.capacity_n(&patch.slip(), &ShearMemory::default());
-        patch.old = old.map(|old| old.turned_to(&patch.normal).carried_by(most_n));
+        patch.old = old.map(|old| old.turned_to(&patch.normal).capped_at(most_n));
         if patch.is_held() {
             patch.measure_slip(run, scene, forces);
         }
@@ -434,10 +434,10 @@ impl FaceMemory {
         Self { force_n: in_plane(self.force_n), ..self }
     }
 
-    /// The memory of a face that slid, with as much friction [N] as the present normal force carries.
-    fn carried_by(self, most_n: f64) -> Self {
+    /// The memory of a face that slid, with no more friction [N] than the present normal force carries.
+    fn capped_at(self, most_n: f64) -> Self {
         let carried_n = self.force_n.norm();
-        if !self.slides || carried_n == 0.0 {
+        if !self.slides || carried_n <= most_n {
             return self;
         }
         let scale = most_n / carried_n;
