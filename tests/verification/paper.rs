@@ -146,7 +146,8 @@ fn steps_about_the_quick_one_on_the_ramp_of_30_reach_the_papers_error() {
         let (slid, _) = ramp(30, &[MIDPOINT, ON_VELOCITIES, &step]);
         worst = worst.max(largest(&slid, 0.1, f64::INFINITY, |row| row.along));
     }
-    let what = "30°, friction on velocities, Δt = 6.6e-4 to 4.25e-4 s: largest error from 0.1 s on (paper: 1e-2)";
+    let what =
+        "30°, friction on velocities, Δt = 6.6e-4 to 4.25e-4 s: largest error from 0.1 s on (paper: 1e-2)";
     row("V2", what, worst, Answer::AtMost(1e-2));
 }
 

@@ -457,3 +457,23 @@ fn tangents(normal: &Vec3) -> [Vec3; 2] {
     let first = normal.cross(&axis).normalize();
     [first, normal.cross(&first)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_friction_of_a_face_that_slid_is_no_more_than_it_may_be_now() {
+        let memory = |force_n: f64, torque_n_m, slides| FaceMemory {
+            force_n: force_n * Vec3::x(),
+            torque_n_m,
+            slides,
+            ..FaceMemory::default()
+        };
+        let slid = memory(3.0, 2.0, true);
+        assert_eq!(slid.capped_at(1.5), memory(1.5, 1.0, true));
+        assert_eq!(slid.capped_at(0.0), memory(0.0, 0.0, true));
+        assert_eq!(slid.capped_at(4.0), slid);
+        assert_eq!(memory(3.0, 2.0, false).capped_at(1.5), memory(3.0, 2.0, false));
+    }
+}

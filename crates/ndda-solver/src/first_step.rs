@@ -17,10 +17,11 @@ impl Simulation {
         first && self.contact.is_some() && self.newton.is_none() && self.weights.contact_in_the_middle()
     }
 
-    /// x ← x + ⅛ Δt² a for free blocks as a whole, a being that of loads and contact where they are put.
+    /// x ← x + ⅛ Δt² a for free blocks as a whole, a being that of loads and contact where they are put; where no blocks touch in this
+    /// step, nothing.
     pub(crate) fn begin_ahead(&mut self) -> Result<(), StepError> {
         let force = self.force_at_start()?;
-        self.force.copy_from_slice(self.loads.total());
+        let put = self.state.position.clone();
         let mut start = self.start_position().to_vec();
         for block in self.blocks.ids() {
             let shape = &self.shapes[self.bodies[block.index()].shape];
@@ -32,9 +33,15 @@ impl Simulation {
                 start[nodes].iter_mut().for_each(|x| *x += ahead);
             }
         }
-        if start != self.start_position() {
-            self.state.start = start;
+        if self.state.position != put {
+            self.force_at_start()?;
+            if self.contact_has_acted {
+                self.state.start = start;
+            } else {
+                self.state.position = put;
+            }
         }
+        self.force.copy_from_slice(self.loads.total());
         Ok(())
     }
 
