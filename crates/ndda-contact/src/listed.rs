@@ -16,9 +16,6 @@ const LASTING_STEPS: f64 = 12.0;
 const ALONE_STEPS: f64 = 512.0;
 /// Widest margin over the mean size of boundary triangles.
 const WIDEST: f64 = 0.5;
-/// Margin over the same that hardly lengthens the list of pairs, for blocks that use it up within so many steps.
-const NARROW: f64 = 0.02;
-const NARROW_STEPS: f64 = 48.0;
 /// Blocks below which a second thread costs more than it brings.
 const GRAIN_BLOCKS: usize = 2048;
 
@@ -140,9 +137,8 @@ impl Listed {
         let fastest = velocity.iter().map(|v| v.norm_squared()).fold(0.0, f64::max).sqrt();
         let alone = (2.0 * self.lasting[b]).min(ALONE_STEPS);
         self.lasting[b] = if self.has_pairs[b] { LASTING_STEPS } else { alone };
-        let (travel, size) = (fastest * input.dt_s, self.size_m[b]);
-        let narrow = (NARROW_STEPS * travel).min(NARROW * size);
-        self.reach_m[b] = (self.lasting[b] * travel).min(WIDEST * size).max(narrow).max(0.5 * SKIN * size);
+        let travel = (self.lasting[b] * fastest * input.dt_s).min(WIDEST * self.size_m[b]);
+        self.reach_m[b] = travel.max(0.5 * SKIN * self.size_m[b]);
         let furthest = now.iter().map(|x| x.amax()).fold(0.0, f64::max);
         self.margin_m[b] = self.reach_m[b] + 8.0 * f64::EPSILON * furthest;
     }

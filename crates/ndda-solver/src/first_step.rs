@@ -14,14 +14,13 @@ impl Simulation {
     /// Whether this is the first step, and one by a scheme of that kind.
     pub(crate) fn begins(&self) -> bool {
         let first = self.state.step == 0 && self.state.control.part == 0;
-        first && self.contact.is_some() && self.newton.is_none() && self.weights.contact_in_the_middle()
+        first && self.newton.is_none() && self.weights.contact_in_the_middle()
     }
 
-    /// x ← x + ⅛ Δt² a for free blocks as a whole, a being that of loads and contact where they are put; where no blocks touch in this
-    /// step, nothing.
+    /// x ← x + ⅛ Δt² a for free blocks as a whole, a being that of loads and contact where they are put. It is done without contact, too,
+    /// so that a block does not go another way for being watched.
     pub(crate) fn begin_ahead(&mut self) -> Result<(), StepError> {
         let force = self.force_at_start()?;
-        let put = self.state.position.clone();
         let mut start = self.start_position().to_vec();
         for block in self.blocks.ids() {
             let shape = &self.shapes[self.bodies[block.index()].shape];
@@ -33,13 +32,8 @@ impl Simulation {
                 start[nodes].iter_mut().for_each(|x| *x += ahead);
             }
         }
-        if self.state.position != put {
-            self.force_at_start()?;
-            if self.contact_has_acted {
-                self.state.start = start;
-            } else {
-                self.state.position = put;
-            }
+        if start != self.start_position() {
+            self.state.start = start;
         }
         self.force.copy_from_slice(self.loads.total());
         Ok(())
