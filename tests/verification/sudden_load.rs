@@ -1,0 +1,50 @@
+//! V18: a block that gravity presses onto a held one all at once. It swings about the depth where contact carries it, v = −(g/ω) sin ωt, until
+//! it is back where it began. A step of `Midpoint` leaves of that its frequency, sin ½ΩΔt = ½ωΔt, and (ω Δt)⁴/128 of the size;
+//! without the ⅛ Δt² a that it begins ahead the size would be off by (ω Δt)²/8.
+
+use crate::evidence::Answer::Near;
+use crate::evidence::row;
+use crate::simulation;
+
+const GRAVITY_M_S2: f64 = 9.8;
+const PENALTY_PA: f64 = 4e8;
+const DENSITY_KG_M3: f64 = 2500.0;
+
+/// ω of a block 1 m high on its lower face: both fields have the slope 1 over the reference length, 2 k_n A in all.
+fn rate() -> f64 {
+    (2.0 * PENALTY_PA / DENSITY_KG_M3).sqrt()
+}
+
+/// Largest error of the velocity in the first swing, of g/ω.
+fn error(body: &str, turn: f64) -> f64 {
+    let (rate, step_s) = (rate(), turn / rate());
+    let mut simulation = simulation(&format!(
+        "(title: \"sudden\", time: (step_s: {step_s}, end_s: 1), gravity_m_s2: (0, 0, -{GRAVITY_M_S2}),
+          materials: [(name: \"rock\", young_pa: 1e12, poisson: 0, density_kg_m3: {DENSITY_KG_M3})],
+          blocks: [
+            (name: \"base\", material: \"rock\", shape: Box(size_m: (1, 1, 0.25), cells: (2, 2, 1)), body: Fixed),
+            (name: \"top\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (2, 2, 2)), at_m: (0, 0, 0.25), body: {body}),
+          ],
+          contact: Potential(penalty_pa: {PENALTY_PA:e}, potential: Smooth(reference_m: 1)))"
+    ));
+    let of_scheme = 2.0 * (0.5 * turn).asin() / step_s;
+    let steps = (std::f64::consts::TAU / (of_scheme * step_s)) as u64;
+    let mut worst = 0.0f64;
+    for _ in 0..steps {
+        simulation.step().unwrap();
+        let velocity = simulation.sample().unwrap().momentum.z / DENSITY_KG_M3;
+        let exact = -GRAVITY_M_S2 / rate * (of_scheme * simulation.time_s()).sin();
+        worst = worst.max((velocity - exact).abs() * rate / GRAVITY_M_S2);
+    }
+    worst
+}
+
+#[test]
+fn a_block_under_a_sudden_load_swings_by_the_load() {
+    for body in ["Elastic", "Rigid"] {
+        for turn in [0.2, 0.4, 0.8] {
+            let what = format!("velocity under sudden gravity, {body}, ω Δt = {turn}: largest error, of g/ω");
+            row("V18", &what, error(body, turn), Near(0.0, turn.powi(4) / 128.0 + 2e-3));
+        }
+    }
+}
