@@ -7,10 +7,12 @@ An undamaged scene must pass with exit 0. A damaged copy must be refused with ex
 a misspelt key or a number that is none must be reported on the very line where it stands.
 """
 
+import os
 import re
 import subprocess
 import sys
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 BAD_INPUT = 3
@@ -100,8 +102,10 @@ def main():
     if len(sys.argv) < 3:
         sys.exit(__doc__.strip())
     failed = False
-    for name in sys.argv[2:]:
-        tried, wrong = try_scene(sys.argv[1], Path(name))
+    names = sys.argv[2:]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        results = list(pool.map(lambda name: try_scene(sys.argv[1], Path(name)), names))
+    for name, (tried, wrong) in zip(names, results):
         print(f"{name}: passes; {tried - len(wrong)} of {tried} damaged copies refused by their place")
         for text in wrong[:10]:
             print(text)

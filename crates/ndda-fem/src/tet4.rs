@@ -16,6 +16,7 @@ pub struct Tet4 {
 
 impl Tet4 {
     /// The element with these corners [m]; its volume must be positive.
+    #[inline]
     pub fn new(corners: &[Vec3; 4]) -> Self {
         let edges = Mat3::from_columns(&[1, 2, 3].map(|i| corners[i] - corners[0]));
         let volume_m3 = edges.determinant() / 6.0;
@@ -28,6 +29,7 @@ impl Tet4 {
     }
 
     /// Small strain of nodal displacements, ε = Σ Bₐ uₐ, with engineering shears.
+    #[inline]
     pub fn strain(&self, displacement: &[Vec3; 4]) -> Voigt {
         let mut gradient = Mat3::zeros();
         for (u, g) in displacement.iter().zip(&self.gradients) {
@@ -44,17 +46,20 @@ impl Tet4 {
     }
 
     /// Stiffness between nodes a and b, V Bₐᵀ D B_b [N/m].
+    #[inline]
     pub fn stiffness(&self, moduli: &Matrix6<f64>, a: usize, b: usize) -> Mat3 {
         let (ba, bb) = (strain_operator(&self.gradients[a]), strain_operator(&self.gradients[b]));
         self.volume_m3 * ba.transpose() * moduli * bb
     }
 
     /// Consistent mass between nodes a and b, ρ V (1 + δ_ab) / 20 [kg].
+    #[inline]
     pub fn mass(&self, density_kg_m3: f64, a: usize, b: usize) -> f64 {
         density_kg_m3 * self.volume_m3 * if a == b { 0.1 } else { 0.05 }
     }
 
     /// Nodal force that balances a stress, V Bₐᵀ σ [N].
+    #[inline]
     pub fn stress_force(&self, stress: &Voigt, a: usize) -> Vec3 {
         self.volume_m3 * strain_operator(&self.gradients[a]).transpose() * stress
     }

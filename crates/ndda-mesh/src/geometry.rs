@@ -3,12 +3,14 @@
 use crate::Vec3;
 
 /// Signed volume of a tetrahedron [m³]: (b − a) · ((c − a) × (d − a)) / 6.
+#[inline]
 pub fn tet_volume(corners: &[Vec3; 4]) -> f64 {
     let [a, b, c, d] = corners;
     (b - a).dot(&(c - a).cross(&(d - a))) / 6.0
 }
 
 /// Area vector of a triangle [m²]: (b − a) × (c − a) / 2, along the right-hand normal.
+#[inline]
 pub fn triangle_area_vector(corners: &[Vec3; 3]) -> Vec3 {
     let [a, b, c] = corners;
     (b - a).cross(&(c - a)) * 0.5
