@@ -12,9 +12,6 @@
 //!
 //! v₁ is the slip velocity that the rigid motion of both blocks would have at the end of the step under the loads and
 //! normal forces of this step and the friction of the last; r is the mean distance of the pressure from its centre.
-//! The friction of a face that slid counts as no more than the normal force of this step carries: with all of it a face that slides
-//! slowly while N falls would be taken for one that sticks. (It is not raised with N: in blocks that bounce, faces that hardly slip would be
-//! driven by their own friction.)
 //! So friction is mobilised at once on a block that slides, and one that sticks is held by the force that it takes.
 //! Measured on a block that sticks on a slope: with the first line in every step it is fed energy through its
 //! elasticity, with v of each facet ringing is clipped at μ N, and either way it creeps.
@@ -257,7 +254,9 @@ impl Faces {
 impl Patch {
     fn find(run: &[Place], scene: &FaceScene, forces: &[FacetForce], history: &ContactHistory) -> Self {
         let (face, target, first) = run[0];
-        let Some(law) = scene.law(run) else { return Self::default() };
+        if scene.law(run).is_none() {
+            return Self::default();
+        }
         let mut patch = Self { owner: scene.owner(first), target, ..Self::default() };
         patch.sum(run, scene, forces);
         if !patch.presses() {
@@ -265,8 +264,7 @@ impl Patch {
         }
         patch.measure(run, scene, forces);
         let old = remembered(history, face, target).filter(|old| old.normal.dot(&patch.normal) > 0.0);
-        let most_n = law.capacity_n(&patch.slip(), &ShearMemory::default());
-        patch.old = old.map(|old| old.turned_to(&patch.normal).capped_at(most_n));
+        patch.old = old.map(|old| old.turned_to(&patch.normal));
         if patch.is_held() {
             patch.measure_slip(run, scene, forces);
         }
@@ -280,10 +278,6 @@ impl Patch {
 
     fn presses(&self) -> bool {
         self.pressure > 0.0 && self.area_m2 > 0.0
-    }
-
-    fn slip(&self) -> FacetSlip {
-        FacetSlip { normal_n: self.normal_n, area_m2: self.area_m2, ..FacetSlip::default() }
     }
 
     fn sum(&mut self, run: &[Place], scene: &FaceScene, forces: &[FacetForce]) {
@@ -396,16 +390,20 @@ impl FaceStep<'_> {
         let basis = tangents(&self.patch.normal);
         let stopping_n = [force.dot(&basis[0]), force.dot(&basis[1])];
         let mut memory = ShearMemory::default();
-        law.advance(&FacetSlip { stopping_n, ..self.patch.slip() }, &mut memory);
-        let slides = stopping_n[0].hypot(stopping_n[1]) > law.capacity_n(&self.patch.slip(), &memory);
+        law.advance(&FacetSlip { stopping_n, ..self.slip() }, &mut memory);
+        let slides = stopping_n[0].hypot(stopping_n[1]) > law.capacity_n(&self.slip(), &memory);
         (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1], slides)
     }
 
     /// μ N r √(1 − (F/μN)²).
     fn most_torque(&self, law: &dyn FrictionLaw, force: &Vec3) -> f64 {
-        let most_n = law.capacity_n(&self.patch.slip(), &ShearMemory::default());
+        let most_n = law.capacity_n(&self.slip(), &ShearMemory::default());
         let used = if most_n > 0.0 { force.norm() / most_n } else { 1.0 };
         most_n * self.patch.radius * (1.0 - used * used).max(0.0).sqrt()
+    }
+
+    fn slip(&self) -> FacetSlip {
+        FacetSlip { normal_n: self.patch.normal_n, area_m2: self.patch.area_m2, ..FacetSlip::default() }
     }
 
     /// Slip velocity at the end of the step, and spin about the normal, if this face gave no friction.
@@ -437,16 +435,6 @@ impl FaceMemory {
         };
         Self { force_n: in_plane(self.force_n), ..self }
     }
-
-    /// The memory of a face that slid, with no more friction [N] than the present normal force carries.
-    fn capped_at(self, most_n: f64) -> Self {
-        let carried_n = self.force_n.norm();
-        if !self.slides || carried_n <= most_n {
-            return self;
-        }
-        let scale = most_n / carried_n;
-        Self { force_n: scale * self.force_n, torque_n_m: scale * self.torque_n_m, ..self }
-    }
 }
 
 fn remembered(history: &ContactHistory, face: u32, target: BlockId) -> Option<FaceMemory> {
@@ -460,24 +448,4 @@ fn tangents(normal: &Vec3) -> [Vec3; 2] {
     let axis = [Vec3::x(), Vec3::y(), Vec3::z()][normal.iamin()];
     let first = normal.cross(&axis).normalize();
     [first, normal.cross(&first)]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_last_friction_of_a_face_that_slid_is_no_more_than_it_may_be_now() {
-        let memory = |force_n: f64, torque_n_m, slides| FaceMemory {
-            force_n: force_n * Vec3::x(),
-            torque_n_m,
-            slides,
-            ..FaceMemory::default()
-        };
-        let slid = memory(3.0, 2.0, true);
-        assert_eq!(slid.capped_at(1.5), memory(1.5, 1.0, true));
-        assert_eq!(slid.capped_at(0.0), memory(0.0, 0.0, true));
-        assert_eq!(slid.capped_at(4.0), slid);
-        assert_eq!(memory(3.0, 2.0, false).capped_at(1.5), memory(3.0, 2.0, false));
-    }
 }

@@ -246,13 +246,16 @@ impl Simulation {
 
     /// M a = f − ∫Bᵀσ₀ at the start, contact being part of f.
     fn place_accelerations(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
-        let force = self.force_at_start().map_err(Box::new)?;
+        let untouched = self.state.contact.clone();
+        self.force.copy_from_slice(self.loads.total());
+        self.add_contact_forces(None).map_err(Box::new)?;
+        self.state.contact = untouched;
         let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
         for block in self.blocks.ids() {
             let body = &mut self.bodies[block.index()];
             let shape = &self.shapes[body.shape];
             let range = self.blocks.nodes_of(block);
-            let mut load = force[range.clone()].to_vec();
+            let mut load = self.force[range.clone()].to_vec();
             if shape.kind == BodyKind::Rigid {
                 let force: Vec3 = load.iter().sum();
                 self.state.acceleration[range.clone()].fill(force / shape.operator.mass_kg);

@@ -124,9 +124,6 @@ impl Simulation {
     pub(crate) fn part_step(&mut self) -> Result<StepReport, StepError> {
         let started = Instant::now();
         self.gather_loads();
-        if self.begins() {
-            self.begin_ahead()?;
-        }
         let (contact, iterations) = self.gather_contact()?;
         let depth = contact.max_penetration_ratio;
         self.loose = if depth > self.least_friction { depth } else { 0.0 };
