@@ -19,7 +19,7 @@ use crate::own_trees::{OwnTrees, node_touches, to_parry};
 const GRAIN_BLOCKS: usize = 16;
 /// The same for boxes.
 const GRAIN_BOXES: usize = 2048;
-/// Part of the blocks, 1 / this, beyond which placing them all at once is quicker than one by one.
+/// Part of the nodes, 1 / this, beyond which placing all blocks at once is quicker than one by one.
 const MANY: usize = 4;
 
 /// The default broad phase.
@@ -119,7 +119,8 @@ impl BroadPhase for TreeBroadPhase {
         }
         self.is_renewed.fill(false);
         renewed.iter().for_each(|block| self.is_renewed[block.index()] = true);
-        let many = MANY * renewed.len() > scene.blocks.len();
+        let nodes: usize = renewed.iter().map(|block| scene.blocks.nodes_of(*block).len()).sum();
+        let many = MANY * nodes > scene.position.len();
         self.is_near.fill(many);
         if many {
             self.place_all(scene);
