@@ -7,7 +7,7 @@
 use crate::kernel::MOST_CUTS;
 
 /// Most corners of a contactor.
-pub const MOST_CORNERS: usize = 10;
+pub const MOST_CORNERS: usize = 8;
 
 /// Each cut adds at most one corner.
 const MOST: usize = MOST_CORNERS + MOST_CUTS;
@@ -62,16 +62,13 @@ impl Outline {
     /// Whether a property of a field, given by its values at the triangle's corners, holds at none or at all corners of the outline.
     #[inline(always)]
     pub fn extent(&self, at: &[f64; 3], holds: impl Fn(f64) -> bool) -> Extent {
-        let (count, all) = match self.is_triangle {
-            true => (at.iter().filter(|&&v| holds(v)).count(), 3),
-            false => {
-                let form = Form::through(at);
-                (self.corners().iter().filter(|psi| holds(form.at(psi))).count(), self.len)
-            }
-        };
-        match count {
+        if self.is_triangle {
+            return Extent::of_triangle(at, holds);
+        }
+        let form = Form::through(at);
+        match self.corners().iter().filter(|psi| holds(form.at(psi))).count() {
             0 => Extent::Nowhere,
-            _ if count == all => Extent::Everywhere,
+            all if all == self.len => Extent::Everywhere,
             _ => Extent::Partly,
         }
     }
@@ -95,6 +92,18 @@ pub enum Extent {
     Partly,
     /// At all.
     Everywhere,
+}
+
+impl Extent {
+    /// Where something holds of a field with these values at the corners of a triangle.
+    #[inline(always)]
+    pub fn of_triangle(at: &[f64; 3], holds: impl Fn(f64) -> bool) -> Self {
+        match u8::from(holds(at[0])) + u8::from(holds(at[1])) + u8::from(holds(at[2])) {
+            0 => Self::Nowhere,
+            3 => Self::Everywhere,
+            _ => Self::Partly,
+        }
+    }
 }
 
 /// A linear form c₀ + c₁ ψ₁ + c₂ ψ₂.

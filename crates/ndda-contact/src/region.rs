@@ -28,9 +28,15 @@ impl Cut {
         Self { field, bound: if tie_is_inside { 0.0 } else { f64::from_bits(1) } }
     }
 
-    /// How much of a contactor is outside.
+    /// How much of a triangle is outside.
     #[inline(always)]
-    fn outside(&self, outline: &Outline) -> Extent {
+    fn outside(&self) -> Extent {
+        Extent::of_triangle(&self.field, |d| d < self.bound)
+    }
+
+    /// How much of a face is outside.
+    #[inline(always)]
+    fn outside_on(&self, outline: &Outline) -> Extent {
         outline.extent(&self.field, |d| d < self.bound)
     }
 }
@@ -59,10 +65,9 @@ impl Region {
         (self.phi, self.slope, self.len) = (phi, slope, 0);
     }
 
-    /// Adds a cut if it cuts anything of the contactor; false if it leaves nothing.
+    /// Adds a cut with so much outside if it cuts anything; false if it leaves nothing.
     #[inline(always)]
-    fn add(&mut self, cut: Cut, outline: &Outline) -> bool {
-        let outside = cut.outside(outline);
+    fn add(&mut self, cut: Cut, outside: Extent) -> bool {
         if outside == Extent::Partly {
             self.cuts[self.len] = cut;
             self.len += 1;
@@ -87,17 +92,26 @@ impl Region {
     /// Where the k-th of the functions is the smallest, and positive in a block that is taken whole. False if that is nowhere.
     #[inline]
     pub fn set_piece(&mut self, pieces: &Pieces, k: usize) -> bool {
+        // Asked once, and not for each cut.
+        match pieces.outline.is_triangle() {
+            true => self.cut_piece(pieces, k, Cut::outside),
+            false => self.cut_piece(pieces, k, |cut| cut.outside_on(&pieces.outline)),
+        }
+    }
+
+    #[inline(always)]
+    fn cut_piece(&mut self, pieces: &Pieces, k: usize, outside: impl Fn(&Cut) -> Extent) -> bool {
         let (own, slope) = (pieces.at[k], pieces.slope[k]);
         let ahead = |j: usize| Cut::new([0, 1, 2].map(|a| pieces.at[j][a] - own[a]), k < j);
         self.begin(own, slope.abs());
-        let outline = &pieces.outline;
+        let mut add = |cut: Cut| self.add(cut, outside(&cut));
         for face in &pieces.faces[..pieces.faces_len] {
-            self.add(*face, outline);
+            add(*face);
         }
-        if pieces.are_of_whole && !self.add(Cut::new(own, slope < 0.0), outline) {
+        if pieces.are_of_whole && !add(Cut::new(own, slope < 0.0)) {
             return false;
         }
-        (0..pieces.len).all(|j| j == k || self.add(ahead(j), outline))
+        (0..pieces.len).all(|j| j == k || add(ahead(j)))
     }
 
     /// The region on this contactor corner by corner.
@@ -141,12 +155,12 @@ impl Pieces {
         normal: &Vec3,
     ) -> bool {
         (self.len, self.faces_len, self.are_of_whole) = (0, 0, false);
-        self.outline = Outline::TRIANGLE;
+        self.look_from(&Outline::TRIANGLE);
         let rise = [0, 1, 2, 3].map(|b| frame.gradient(b).dot(normal));
         for b in 0..4 {
             // The faces inside a block belong to the tetrahedron on the triangle's inner side.
             let cut = Cut::new(lambda[b], rise[b] < 0.0);
-            match cut.outside(&self.outline) {
+            match cut.outside() {
                 Extent::Nowhere => {}
                 Extent::Everywhere => return false,
                 Extent::Partly => {
@@ -173,7 +187,7 @@ impl Pieces {
         outline: &Outline,
     ) -> bool {
         (self.len, self.faces_len, self.are_of_whole) = (0, 0, true);
-        self.outline = *outline;
+        self.look_from(outline);
         let mut enough = f64::INFINITY;
         for (k, face) in faces.iter().enumerate() {
             let at = corners.each_ref().map(|x| face.phi(x));
@@ -192,6 +206,14 @@ impl Pieces {
         }
         self.len = kept;
         true
+    }
+
+    /// Takes another contactor; most are triangles, as the last one was.
+    #[inline(always)]
+    fn look_from(&mut self, outline: &Outline) {
+        if !(outline.is_triangle() && self.outline.is_triangle()) {
+            self.outline = *outline;
+        }
     }
 
     #[inline(always)]
