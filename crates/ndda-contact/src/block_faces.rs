@@ -64,6 +64,27 @@ impl BlockFaces {
         let one_piece = pieces(&neighbours, |_, _| true).0.len() == 1;
         Self { planes, of_triangle, convex: one_piece && neighbours.iter().enumerate().all(bends_outward) }
     }
+
+    /// The boundary triangles of a face, among those of all blocks.
+    pub fn triangles_of(
+        &self,
+        blocks: &BlockSet,
+        block: BlockId,
+        face: usize,
+    ) -> impl Iterator<Item = usize> {
+        let all = blocks.triangles_of(block).zip(&self.of_triangle);
+        all.filter(move |(_, of)| **of == face).map(|(triangle, _)| triangle)
+    }
+
+    /// The largest of them at rest.
+    pub fn largest_triangle(&self, blocks: &BlockSet, block: BlockId, face: usize) -> usize {
+        let area = |t: &usize| {
+            let corners = blocks.triangles[*t].map(|n| blocks.rest_position[n.index()]);
+            triangle_area_vector(&corners).norm()
+        };
+        let own = self.triangles_of(blocks, block, face);
+        own.max_by(|a, b| area(a).total_cmp(&area(b))).expect("a face has triangles")
+    }
 }
 
 /// The triangles across the three edges of each; a triangle without a neighbour is its own.

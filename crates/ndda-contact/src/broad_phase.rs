@@ -195,8 +195,7 @@ impl BroadPhase for AllPairs {
                         None => continue,
                     },
                 };
-                let one_block = blocks.triangle_block[i] == blocks.tet_block[j];
-                if triangle.touches(tet) && !(one_block && scene.are_neighbours(i, j)) {
+                if triangle.touches(tet) && !(own == target && scene.are_neighbours(i, j)) {
                     pairs.push((TriangleId(i as u32), TetId(j as u32)));
                 }
             }

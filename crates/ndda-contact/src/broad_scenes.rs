@@ -4,7 +4,7 @@ use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 
 use crate::block_faces::BlockFaces;
 use crate::broad_phase::{AllPairs, BroadPhase, BroadScene};
-use crate::clip::{Form, Outline, Polygon};
+use crate::clip::{Form, Polygon};
 use crate::hulls::Hulls;
 use crate::pair::TetFrame;
 use crate::testing::{Random, test_box, test_horseshoe, test_set};
@@ -89,8 +89,7 @@ fn compare(input: &BroadScene, moved: &[Vec3], found: &[(TriangleId, TetId)], co
 fn overlap(input: &BroadScene, position: &[Vec3], (triangle, tet): &(TriangleId, TetId)) -> bool {
     let (blocks, block) = (input.blocks, input.blocks.tet_block[tet.index()]);
     let corners = blocks.triangle_corners(*triangle, position);
-    let contactor = input.hulls.contactor(*triangle, block);
-    let outline = contactor.map_or(&Outline::TRIANGLE, |face| &face.outline);
+    let outline = input.hulls.outline(*triangle, block);
     let overlaps = |tet: usize| {
         let frame = TetFrame::new(&blocks.tet_corners(TetId(tet as u32), position));
         let lambda = frame.lambda(&corners);

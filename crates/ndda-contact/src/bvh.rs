@@ -10,7 +10,7 @@ use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
-use crate::broad_phase::{BroadPhase, BroadScene, FEW_NODES, Side, shape_of};
+use crate::broad_phase::{BroadPhase, BroadScene, FEW_NODES, Side, TriangleAt, shape_of};
 use crate::clip::MOST_CORNERS;
 use crate::contactors::Contactor;
 use crate::own_trees::{OwnTrees, node_touches, to_parry};
@@ -261,8 +261,9 @@ impl Near<'_> {
             let mut room = [Vec3::zeros(); MOST_CORNERS];
             let reaches = |face: &&Contactor| self.scene.face_box(face).touches(there);
             for face in faces.iter().filter(reaches) {
-                let corners = face.place(self.scene.position, &mut room);
-                self.find_whole(face.triangle, corners, (block, other), found);
+                let (id, corners) = (face.triangle, face.place(self.scene.position, &mut room));
+                let plane = self.scene.triangle_at(id.index(), other);
+                self.find_whole(id, &plane, corners, (block, other), found);
             }
             return;
         }
@@ -290,10 +291,11 @@ impl Near<'_> {
         sides.iter().any(|side| side.is_before(points, reach_m))
     }
 
-    /// Adds a contactor, a triangle or the face that it stands for, that may reach into a block taken whole.
+    /// Adds a contactor, a triangle or the face with these corners that it stands for, that may reach into another block, taken whole.
     fn find_whole(
         &self,
-        triangle: TriangleId,
+        id: TriangleId,
+        triangle: &TriangleAt,
         corners: &[Vec3],
         (block, other): (BlockId, BlockId),
         found: &mut Vec<(TriangleId, TetId)>,
@@ -301,10 +303,8 @@ impl Near<'_> {
         let scene = self.scene;
         let Some(whole) = scene.hulls.whole(other) else { return };
         let others = &scene.position[scene.blocks.nodes_of(other)];
-        let is_apart = (block != other && self.has_before(other, block, corners))
-            || scene.triangle_at(triangle.index(), other).are_on_one_side(others);
-        if !is_apart {
-            found.push((triangle, whole.host));
+        if !self.has_before(other, block, corners) && !triangle.are_on_one_side(others) {
+            found.push((id, whole.host));
         }
     }
 
@@ -312,7 +312,8 @@ impl Near<'_> {
         let (scene, bounds) = (self.scene, &self.boxes.triangles[i]);
         let triangle = scene.triangle_at(i, other);
         if scene.hulls.whole(other).is_some() {
-            return self.find_whole(TriangleId(i as u32), &triangle.corners, (block, other), found);
+            let id = TriangleId(i as u32);
+            return self.find_whole(id, &triangle, &triangle.corners, (block, other), found);
         }
         if block != other && self.has_before(other, block, &triangle.corners) {
             return;

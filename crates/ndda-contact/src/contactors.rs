@@ -61,9 +61,8 @@ impl Contactors {
         let faces = (0..surface.planes.len()).map(|face| Contactor::new(blocks, block, surface, face, host));
         if let Some(faces) = faces.collect::<Option<Vec<_>>>() {
             for face in faces {
+                self.place_of[face.triangle.index()] = self.all.len() as u32 + 1;
                 self.all.push(face);
-                let last = &self.all[self.all.len() - 1];
-                self.place_of[last.triangle.index()] = self.all.len() as u32;
             }
         }
         self.skip();
@@ -98,14 +97,9 @@ impl Contactor {
         host: &TetFrame,
     ) -> Option<Self> {
         let rest = |n: &NodeId| blocks.rest_position[n.index()];
-        let own: Vec<usize> = blocks
-            .triangles_of(block)
-            .zip(&surface.of_triangle)
-            .filter(|(_, of)| **of == face)
-            .map(|(t, _)| t)
-            .collect();
+        let own: Vec<usize> = surface.triangles_of(blocks, block, face).collect();
+        let largest = surface.largest_triangle(blocks, block, face);
         let area = |t: &usize| triangle_area_vector(&blocks.triangles[*t].each_ref().map(rest)).norm();
-        let largest = *own.iter().max_by(|a, b| area(a).total_cmp(&area(b)))?;
         let times = own.iter().map(area).sum::<f64>() / area(&largest);
         let is_one_surface =
             own.iter().all(|&t| blocks.triangle_surface[t] == blocks.triangle_surface[largest]);

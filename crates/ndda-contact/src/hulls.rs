@@ -18,6 +18,7 @@ use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
+use crate::clip::Outline;
 use crate::contactors::{Contactor, Contactors};
 use crate::kernel::MOST_CUTS;
 use crate::overlap::{Carried, Linear};
@@ -176,6 +177,12 @@ impl Hulls {
         self.whole(target).and_then(|_| self.contactors.of_triangle(triangle))
     }
 
+    /// The outline of a contactor in another block: that of the face that the triangle stands for, or the triangle.
+    #[inline]
+    pub fn outline(&self, triangle: TriangleId, target: BlockId) -> &Outline {
+        self.contactor(triangle, target).map_or(&Outline::TRIANGLE, |face| &face.outline)
+    }
+
     /// φ at a point of a block that is taken whole; negative outside.
     pub fn depth_phi(&self, block: BlockId, x: &Vec3) -> f64 {
         self.faces_of(block).iter().map(|face| face.phi(x)).fold(f64::INFINITY, f64::min)
@@ -201,7 +208,7 @@ impl Face {
         face: usize,
         phi_per_m: Option<f64>,
     ) -> Self {
-        let corners = largest_of(blocks, block, surface, face);
+        let corners = blocks.triangles[surface.largest_triangle(blocks, block, face)];
         let furthest = phi_per_m.map(|phi_per_m| {
             let depth = |n: usize| surface.planes[face].depth_m(&blocks.rest_position[n]);
             let deeper = |a: &usize, b: &usize| depth(*a).total_cmp(&depth(*b));
@@ -285,12 +292,4 @@ impl Whole {
         let product = self.inverse_spread * springs;
         product.component_mul(&product.transpose()).sum().max(0.0).sqrt()
     }
-}
-
-/// The largest triangle of a face.
-fn largest_of(blocks: &BlockSet, block: BlockId, surface: &BlockFaces, face: usize) -> [NodeId; 3] {
-    let triangles = &blocks.triangles[blocks.triangles_of(block)];
-    let area = |t: &[NodeId; 3]| triangle_area_vector(&t.map(|n| blocks.rest_position[n.index()])).norm();
-    let own = triangles.iter().zip(&surface.of_triangle).filter(|(_, of)| **of == face).map(|(t, _)| t);
-    *own.max_by(|a, b| area(a).total_cmp(&area(b))).expect("a face has triangles")
 }

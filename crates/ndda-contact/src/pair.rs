@@ -209,8 +209,6 @@ impl PairMoments {
     /// Takes integrals of what is nowhere negative for zero where rounding made them so: where nothing is left but
     /// rounding, quotients of them would put the centre of pressure anywhere.
     pub fn drop_rounding(&mut self) {
-        // Without a branch, since this is done for every hit; what is not a number stays so.
-        let non_negative = |sum: f64| if sum < 0.0 { 0.0 } else { sum };
         for a in 0..3 {
             self.pressure[a] = non_negative(self.pressure[a]);
             self.slope[a] = non_negative(self.slope[a]);
@@ -222,8 +220,7 @@ impl PairMoments {
     /// adds up to the total.
     pub fn drop_rounding_within(&mut self, range: &PsiRange) {
         let within = |sums: &mut [f64; 3]| {
-            let total = sums.iter().sum::<f64>();
-            let total = if total < 0.0 { 0.0 } else { total };
+            let total = non_negative(sums.iter().sum());
             for (sum, [least, most]) in sums[1..].iter_mut().zip(range) {
                 let [least, most] = [total * least, total * most];
                 // What is not a number stays so.
@@ -234,7 +231,7 @@ impl PairMoments {
         };
         within(&mut self.pressure);
         within(&mut self.slope);
-        self.area = if self.area < 0.0 { 0.0 } else { self.area };
+        self.area = non_negative(self.area);
     }
 
     /// Fills in what the target's nodes feel; `lambda[b][a]` is λ_b at corner a.
@@ -245,6 +242,12 @@ impl PairMoments {
             self.target_slope[b] = at_target(&self.slope);
         }
     }
+}
+
+/// Zero for less, without a branch, since this is done for every hit; what is not a number stays so.
+#[inline(always)]
+fn non_negative(sum: f64) -> f64 {
+    if sum < 0.0 { 0.0 } else { sum }
 }
 
 /// The corners' indices in the lexicographic order of their coordinates, by five comparisons.

@@ -8,7 +8,6 @@ use rayon::prelude::*;
 use crate::block_faces::BlockFaces;
 use crate::bonds;
 use crate::candidates::Candidates;
-use crate::clip::Outline;
 use crate::element_potential::ElementPotential;
 use crate::energy::{self, OverlapParts};
 use crate::faces::{FaceScene, Faces};
@@ -178,7 +177,8 @@ impl PotentialContact {
         let place = |(t, force): (usize, &mut FacetForce)| {
             let (hits, sums) = (integrals.hits_of(&touching[t]), integrals.sums_of(&touching[t]));
             *force = scene.force(touching[t].facet, hits, sums, penalties[t]);
-            if let ([Hit { moments, .. }], Some(_)) = (hits, hulls.whole(touching[t].target)) {
+            let is_on_whole = force.touches && hulls.whole(touching[t].target).is_some();
+            if let ([Hit { moments, .. }], true) = (hits, is_on_whole) {
                 force.on_host =
                     Some(OnHost { pressure: moments.target_pressure, slope: moments.target_slope });
             }
@@ -214,8 +214,7 @@ impl PotentialContact {
         let held = force.ok().map(|place| &self.forces[place]);
         let held = held.filter(|force| force.shear_slope > 0.0 && force.sticks);
         let corners = input.blocks.triangle_corners(facet.triangle, input.position);
-        let contactor = self.hulls.contactor(facet.triangle, facet.target);
-        let outline = contactor.map_or(&Outline::TRIANGLE, |face| &face.outline);
+        let outline = self.hulls.outline(facet.triangle, facet.target);
         for hit in self.integrals.hits_of(touch) {
             let tet = self.candidates.tet_of(hit.pair);
             let target = match (&self.field, self.hulls.whole(facet.target)) {

@@ -129,17 +129,15 @@ impl Scatter {
     fn add_block(&self, scene: &ScatterScene, block: usize, output: ContactOutput) {
         let first = scene.blocks.node_starts()[block] as usize;
         let mut nodes = BlockNodes { first, output };
-        for t in self.own_start[block]..self.own_start[block + 1] {
-            nodes.add_contactor(scene, t as usize);
-        }
+        let own = self.own_start[block]..self.own_start[block + 1];
         let range = self.target_start[block] as usize..self.target_start[block + 1] as usize;
         let on_block = &self.on_target[range];
         match scene.hulls.whole(BlockId(block as u32)) {
-            None => on_block.iter().for_each(|&t| nodes.add_target(scene, t as usize)),
-            Some(whole) => {
-                let own = self.own_start[block]..self.own_start[block + 1];
-                nodes.add_whole(scene, whole, own, on_block);
+            None => {
+                own.for_each(|t| nodes.add_contactor(scene, t as usize));
+                on_block.iter().for_each(|&t| nodes.add_target(scene, t as usize));
             }
+            Some(whole) => nodes.add_whole(scene, whole, own, on_block),
         }
     }
 }
@@ -167,11 +165,6 @@ impl BlockNodes<'_> {
         }
         let facet = &scene.candidates.facets[touch.facet as usize];
         let FacetSums { weights: pressure, slope, .. } = scene.integrals.sums_of(touch);
-        if let Some(face) = scene.hulls.contactor(facet.triangle, facet.target) {
-            // How stiff that is `add_whole` knows.
-            let shares = face.shares(pressure);
-            return shares.iter().for_each(|(node, share)| self.add(node.index(), *share, force, 0.0));
-        }
         let nodes = scene.blocks.triangles[facet.triangle.index()];
         for a in 0..3 {
             self.add(nodes[a].index(), pressure[a], force, scene.stiffness(t, slope[a], pressure[a]));
@@ -198,18 +191,23 @@ impl BlockNodes<'_> {
     /// affine motion; each hit counts as a spring at the mean of its slopes.
     fn add_whole(&mut self, scene: &ScatterScene, whole: &Whole, own: Range<u32>, on_block: &[u32]) {
         let mut springs = Matrix4::zeros();
-        for t in own.map(|t| t as usize).filter(|&t| scene.forces[t].touches) {
+        for (t, force) in
+            own.map(|t| (t as usize, &scene.forces[t as usize])).filter(|(_, force)| force.touches)
+        {
             let touch = &scene.integrals.touching()[t];
             let triangle = scene.candidates.facets[touch.facet as usize].triangle;
-            if let Some(face) = scene.hulls.contactor(triangle, touch.target) {
-                let FacetSums { weights, slope, .. } = scene.integrals.sums_of(touch);
-                let at_host = |w: &[f64; 3]| face.on_host.map(|l| l[0] * w[0] + l[1] * w[1] + l[2] * w[2]);
-                springs += scene.spring(t, &OnHost { pressure: at_host(weights), slope: at_host(slope) });
-            }
+            let Some(face) = scene.hulls.contactor(triangle, touch.target) else {
+                self.add_contactor(scene, t);
+                continue;
+            };
+            let FacetSums { weights, slope, .. } = scene.integrals.sums_of(touch);
+            face.shares(weights).iter().for_each(|(node, share)| self.add(node.index(), *share, force, 0.0));
+            let at_host = |w: &[f64; 3]| face.on_host.map(|l| l[0] * w[0] + l[1] * w[1] + l[2] * w[2]);
+            springs += scene.spring(t, &OnHost { pressure: at_host(weights), slope: at_host(slope) });
         }
         let host = scene.blocks.tets[whole.host.index()];
         for (t, force) in on_block.iter().map(|&t| (t as usize, &scene.forces[t as usize])) {
-            if let Some(on_host) = force.on_host.filter(|_| force.touches) {
+            if let Some(on_host) = force.on_host {
                 for (node, pressure) in host.iter().zip(on_host.pressure) {
                     // The corners of a host may be far from where it is pressed: its springs know better.
                     self.add(node.index(), -pressure, force, 0.0);

@@ -26,7 +26,8 @@ impl Simulation {
             let own = self.blocks.triangle_block[contact.facet.index()];
             let force_n = contact.push_n + contact.friction_n;
             if gathered[own.index()] {
-                self.spread(&self.pressing_triangle(contact), &contact.center, &force_n, &mut forces);
+                let pressing = self.nearest_triangle(own, contact);
+                self.spread(&pressing, &contact.center, &force_n, &mut forces);
             }
             if gathered[contact.target.index()] {
                 let pressed = self.nearest_triangle(contact.target, contact);
