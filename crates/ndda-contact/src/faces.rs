@@ -22,9 +22,8 @@ use ndda_mesh::{BlockId, BlockSet, Vec3};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
-use crate::candidates::{Candidates, Facet};
 use crate::facets::{FacetForce, mass_per_area, reduced, relative_velocity};
-use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
+use crate::friction::{FacetSlip, FrictionLaw, ShearMemory, length};
 use crate::integrals::{FacetSums, Integrals, Touch};
 use crate::joints::Joints;
 use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
@@ -42,8 +41,6 @@ const GRAIN_PATCHES: usize = 64;
 pub struct FaceScene<'a> {
     /// Blocks and their motion.
     pub input: &'a ContactInput<'a>,
-    /// Pairs and facets.
-    pub candidates: &'a Candidates,
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,
     /// Laws.
@@ -53,10 +50,6 @@ pub struct FaceScene<'a> {
 impl FaceScene<'_> {
     fn touch(&self, t: u32) -> &Touch {
         &self.integrals.touching()[t as usize]
-    }
-
-    fn facet(&self, t: u32) -> &Facet {
-        &self.candidates.facets[self.touch(t).facet as usize]
     }
 
     fn sums(&self, t: u32) -> &FacetSums {
@@ -79,7 +72,7 @@ impl FaceScene<'_> {
     /// The law of the facets of a run, if it acts on faces.
     fn law(&self, run: &[Place]) -> Option<&dyn FrictionLaw> {
         let (_, target, first) = run[0];
-        let law = self.joints.law(self.input.blocks, self.facet(first).triangle, target);
+        let law = self.joints.law(self.input.blocks, self.touch(first).triangle, target);
         law.filter(|law| law.acts_on_faces())
     }
 }
@@ -151,7 +144,7 @@ impl Faces {
     /// Sorts touching facets by face and target; those of a block are together already, and its faces follow each other.
     fn arrange(&mut self, scene: &FaceScene) {
         self.order.clear();
-        let place = |t: u32| (self.face_of[scene.facet(t).triangle.index()], scene.target(t), t);
+        let place = |t: u32| (self.face_of[scene.touch(t).triangle.index()], scene.target(t), t);
         self.order.extend(scene.touching().map(place));
         self.order
             .chunk_by_mut(|a, b| scene.owner(a.2) == scene.owner(b.2))
@@ -318,9 +311,9 @@ impl Patch {
     fn measure_slip(&mut self, run: &[Place], scene: &FaceScene, forces: &[FacetForce]) {
         let mut twist = 0.0;
         for &(_, _, t) in run.iter().filter(|(_, _, t)| scene.sums(*t).pressure > 0.0) {
-            let hits = scene.integrals.hits_of(scene.touch(t));
+            let found = (scene.integrals.hits_of(scene.touch(t)), scene.sums(t));
             let arm = forces[t as usize].center - self.center;
-            let slip = relative_velocity(scene.facet(t), hits, scene.candidates, scene.input) / self.pressure;
+            let slip = relative_velocity(scene.touch(t), found, scene.input) / self.pressure;
             self.velocity_m_s += slip;
             twist += arm.cross(&slip).dot(&self.normal);
         }
@@ -391,7 +384,7 @@ impl FaceStep<'_> {
         let stopping_n = [force.dot(&basis[0]), force.dot(&basis[1])];
         let mut memory = ShearMemory::default();
         law.advance(&FacetSlip { stopping_n, ..self.slip() }, &mut memory);
-        let slides = stopping_n[0].hypot(stopping_n[1]) > law.capacity_n(&self.slip(), &memory);
+        let slides = length(stopping_n) > law.capacity_n(&self.slip(), &memory);
         (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1], slides)
     }
 

@@ -4,8 +4,8 @@ use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockSet, TetId, Vec3};
 
 use crate::candidates::{Candidates, Facet};
-use crate::friction::{FacetSlip, ShearMemory};
-use crate::integrals::{FacetSums, Hit};
+use crate::friction::{FacetSlip, ShearMemory, length};
+use crate::integrals::{FacetSums, Hit, Touch};
 use crate::joints::{Joints, Memory};
 use crate::model::{Body, ContactHistory, ContactInput, FacetMemory};
 
@@ -60,18 +60,17 @@ pub struct FacetScene<'a> {
 impl FacetScene<'_> {
     /// Normal force −k n ∫ φ dA and friction of one facet.
     #[inline]
-    pub fn force(&self, facet_id: u32, hits: &[Hit], sums: &FacetSums, penalty_pa: f64) -> FacetForce {
-        let facet = &self.candidates.facets[facet_id as usize];
-        let mut force = FacetForce { facet: facet_id, ..FacetForce::default() };
+    pub fn force(&self, touch: &Touch, hits: &[Hit], sums: &FacetSums, penalty_pa: f64) -> FacetForce {
+        let mut force = FacetForce { facet: touch.facet, ..FacetForce::default() };
         if sums.pressure <= 0.0 {
             return force;
         }
-        let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
+        let corners = self.input.blocks.triangle_corners(touch.triangle, self.input.position);
         let normal = triangle_area_vector(&corners).normalize();
         (force.push, force.touches) = (-penalty_pa * normal, true);
         force.center = sums.center(&corners);
         if let Some(joints) = self.joints {
-            self.add_friction(joints, facet, (hits, sums), penalty_pa, &mut force);
+            self.add_friction(joints, touch, (hits, sums), penalty_pa, &mut force);
         }
         force
     }
@@ -81,20 +80,21 @@ impl FacetScene<'_> {
     fn add_friction(
         &self,
         joints: &Joints,
-        facet: &Facet,
+        touch: &Touch,
         (hits, sums): (&[Hit], &FacetSums),
         penalty_pa: f64,
         force: &mut FacetForce,
     ) {
-        let law = joints.law(self.input.blocks, facet.triangle, facet.target);
+        let law = joints.law(self.input.blocks, touch.triangle, touch.target);
         let Some(law) = law.filter(|law| !law.acts_on_faces()) else { return };
+        let facet = &self.candidates.facets[touch.facet as usize];
         let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
         let basis = facet_basis(&corners, &(-force.push / penalty_pa));
         let mut memory = self.remembered(facet);
-        let slip = self.slip(facet, (hits, sums), &basis, penalty_pa);
+        let slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
         law.advance(&slip, &mut memory);
         let [x, y] = memory.shear_n;
-        force.sticks = x.hypot(y) < STICKS * law.capacity_n(&slip, &memory);
+        force.sticks = length([x, y]) < STICKS * law.capacity_n(&slip, &memory);
         force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / sums.pressure;
         force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / sums.pressure;
         force.memory = Some(memory);
@@ -102,13 +102,13 @@ impl FacetScene<'_> {
 
     fn slip(
         &self,
-        facet: &Facet,
+        touch: &Touch,
         (hits, sums): (&[Hit], &FacetSums),
         basis: &[Vec3; 2],
         penalty_pa: f64,
     ) -> FacetSlip {
         let in_basis = |v: &Vec3| [v.dot(&basis[0]), v.dot(&basis[1])];
-        let velocity = relative_velocity(facet, hits, self.candidates, self.input) / sums.pressure;
+        let velocity = relative_velocity(touch, (hits, sums), self.input) / sums.pressure;
         FacetSlip {
             normal_n: penalty_pa * sums.pressure,
             area_m2: sums.area,
@@ -138,24 +138,20 @@ impl FacetScene<'_> {
 }
 
 /// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.
-pub fn relative_velocity(facet: &Facet, hits: &[Hit], candidates: &Candidates, input: &ContactInput) -> Vec3 {
-    relative_motion(facet, hits, candidates, (input.blocks, input.velocity))
+pub fn relative_velocity(touch: &Touch, found: (&[Hit], &FacetSums), input: &ContactInput) -> Vec3 {
+    relative_motion(touch, found, (input.blocks, input.velocity))
 }
 
 /// The same of any vectors per node.
 pub fn relative_motion(
-    facet: &Facet,
-    hits: &[Hit],
-    candidates: &Candidates,
+    touch: &Touch,
+    (hits, sums): (&[Hit], &FacetSums),
     (blocks, velocity): (&BlockSet, &[Vec3]),
 ) -> Vec3 {
-    let triangle = blocks.triangles[facet.triangle.index()];
-    let mut sum = Vec3::zeros();
+    let triangle = &blocks.triangles[touch.triangle.index()];
+    let mut sum: Vec3 = triangle.iter().zip(sums.weights).map(|(node, w)| w * velocity[node.index()]).sum();
     for hit in hits {
-        let tet = blocks.tets[candidates.tet_of(hit.pair).index()];
-        for (node, w) in triangle.iter().zip(hit.moments.pressure) {
-            sum += w * velocity[node.index()];
-        }
+        let tet = &blocks.tets[hit.tet.index()];
         for (node, w) in tet.iter().zip(hit.moments.target_pressure) {
             sum -= w * velocity[node.index()];
         }

@@ -65,9 +65,14 @@ pub trait FrictionLaw: Send + Sync {
     }
 }
 
+/// √(x² + y²).
+pub(crate) fn length([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
 /// The vector no longer than `most`, along its own direction; whether it was.
 pub(crate) fn capped(trial: [f64; 2], most: f64) -> ([f64; 2], bool) {
-    let size = trial[0].hypot(trial[1]);
+    let size = length(trial);
     if size > most {
         let scale = most / size;
         ([trial[0] * scale, trial[1] * scale], true)

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{BlockId, BlockSet, TriangleId, Vec3};
+use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -22,10 +22,12 @@ use crate::report::{HitReport, list_past_centroid};
 const CHUNK_PAIRS: usize = 512;
 
 /// A candidate pair that does overlap.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Index in [`Candidates::pairs`].
     pub pair: u32,
+    /// The pair's tetrahedron, to be had without looking for the pair.
+    pub tet: TetId,
     /// Its integrals.
     pub moments: PairMoments,
 }
@@ -92,8 +94,7 @@ impl Scene<'_> {
     }
 
     #[inline]
-    fn tet_is_on_one_side(&self, pair: &Pair, point: &Vec3, normal: &Vec3) -> bool {
-        let tet = self.candidates.tets[pair.tet as usize];
+    fn tet_is_on_one_side(&self, tet: TetId, point: &Vec3, normal: &Vec3) -> bool {
         let corners = self.blocks.tets[tet.index()].iter().map(|n| &self.position[n.index()]);
         are_on_one_side(corners, point, normal)
     }
@@ -114,6 +115,8 @@ fn are_on_one_side<'a>(points: impl Iterator<Item = &'a Vec3>, point: &Vec3, nor
 pub struct Touch {
     /// In [`Candidates::facets`].
     pub facet: u32,
+    /// Its triangle.
+    pub triangle: TriangleId,
     /// The block that it is of.
     pub owner: BlockId,
     /// The block that it touches.
@@ -274,17 +277,18 @@ impl Chunk {
             let in_plane = || Some(frame.lambda(&corners)).filter(|l| lies_in_a_plane_of(frame, l, &normal));
             let inside = frame.lambda_inside(&corners);
             let Some(lambda) = inside.or_else(|| if pieces { in_plane() } else { None }) else { continue };
-            if scene.tet_is_on_one_side(pair, &corners[0], &normal) {
+            let tet = scene.candidates.tets[pair.tet as usize];
+            if scene.tet_is_on_one_side(tet, &corners[0], &normal) {
                 continue;
             }
             let hit = self.hits.len() as u32;
-            self.hits.push(Hit { pair: index as u32, ..Hit::default() });
+            self.hits.push(Hit { pair: index as u32, tet, moments: PairMoments::default() });
             scratch.seen.push(Seen { lambda, range: None });
             scratch.add_regions(
                 arch,
                 scene,
                 hit,
-                &Placed { index, frame, lambda: &lambda, normal: &normal, area },
+                &Placed { tet, frame, lambda: &lambda, normal: &normal, area },
             );
         }
     }
@@ -308,8 +312,10 @@ impl Chunk {
             return;
         }
         let (hit, index) = (self.hits.len() as u32, facet.pairs.start);
-        self.hits.push(Hit { pair: index as u32, ..Hit::default() });
-        let frame = &scene.frames[scene.candidates.pairs[index].tet as usize];
+        let slot = scene.candidates.pairs[index].tet as usize;
+        let (pair, tet) = (index as u32, scene.candidates.tets[slot]);
+        self.hits.push(Hit { pair, tet, moments: PairMoments::default() });
+        let frame = &scene.frames[slot];
         let range = contactor.map(|face| face.range);
         scratch.seen.push(Seen { lambda: frame.lambda(corners), range });
         scratch.push_pieces(arch, hit, *area);
@@ -325,14 +331,13 @@ impl Scratch {
     }
 
     fn add_regions(&mut self, arch: Arch, scene: &Scene, hit: u32, placed: &Placed) {
-        let Placed { index, frame, lambda, normal, area } = *placed;
+        let Placed { tet, frame, lambda, normal, area } = *placed;
         match scene.field {
             Field::Element => {
                 self.batches.push_element(arch, hit, area, lambda, &frame.slopes(normal));
             }
             Field::Pieces(table) => {
-                let values = table.of(scene.candidates.tets[scene.candidates.pairs[index].tet as usize]);
-                if self.pieces.set(lambda, values, frame, normal) {
+                if self.pieces.set(lambda, table.of(tet), frame, normal) {
                     self.push_pieces(arch, hit, area);
                 }
             }
@@ -352,8 +357,7 @@ impl Scratch {
 /// A triangle in a tetrahedron.
 #[derive(Clone, Copy)]
 struct Placed<'a> {
-    /// In [`Candidates::pairs`].
-    index: usize,
+    tet: TetId,
     frame: &'a TetFrame,
     lambda: &'a [[f64; 3]; 4],
     normal: &'a Vec3,
@@ -423,7 +427,7 @@ impl Integrals {
                 let Facet { triangle, target, .. } = scene.candidates.facets[touch.facet as usize];
                 let owner = scene.blocks.triangle_block[triangle.index()];
                 let hits = [touch.hits.start, touch.hits.end];
-                Touch { facet: touch.facet, owner, target, chunk, hits, place }
+                Touch { facet: touch.facet, triangle, owner, target, chunk, hits, place }
             }));
         }
     }

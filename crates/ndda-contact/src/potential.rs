@@ -102,19 +102,27 @@ pub enum Field {
 pub struct PieceTable {
     starts: Vec<u32>,
     values: Vec<[f64; 4]>,
+    most: Vec<f64>,
 }
 
 impl PieceTable {
     /// A table without tetrahedra.
     pub fn new() -> Self {
-        Self { starts: vec![0], values: Vec::new() }
+        Self { starts: vec![0], ..Self::default() }
     }
 
     /// Adds the next tetrahedron, with at least one and at most [`MOST_PIECES`] functions.
     pub fn push(&mut self, pieces: &[[f64; 4]]) {
         assert!((1..=MOST_PIECES).contains(&pieces.len()), "{} pieces in a tetrahedron", pieces.len());
         self.values.extend_from_slice(pieces);
+        self.most.push(pieces.iter().flatten().copied().fold(0.0, f64::max));
         self.starts.push(self.values.len() as u32);
+    }
+
+    /// The largest value of a function at a corner of the tetrahedron.
+    #[inline]
+    pub fn most_in(&self, tet: TetId) -> f64 {
+        self.most[tet.index()]
     }
 
     /// The functions of a tetrahedron.

@@ -176,7 +176,7 @@ impl PotentialContact {
         let (penalties, hulls) = (&self.penalty_of_facet, &self.hulls);
         let place = |(t, force): (usize, &mut FacetForce)| {
             let (hits, sums) = (integrals.hits_of(&touching[t]), integrals.sums_of(&touching[t]));
-            *force = scene.force(touching[t].facet, hits, sums, penalties[t]);
+            *force = scene.force(&touching[t], hits, sums, penalties[t]);
             let is_on_whole = force.touches && hulls.whole(touching[t].target).is_some();
             if let ([Hit { moments, .. }], true) = (hits, is_on_whole) {
                 force.on_host =
@@ -216,7 +216,7 @@ impl PotentialContact {
         let corners = input.blocks.triangle_corners(facet.triangle, input.position);
         let outline = self.hulls.outline(facet.triangle, facet.target);
         for hit in self.integrals.hits_of(touch) {
-            let tet = self.candidates.tet_of(hit.pair);
+            let tet = hit.tet;
             let target = match (&self.field, self.hulls.whole(facet.target)) {
                 (_, Some(_)) => Target::Whole(self.hulls.faces_of(facet.target), outline),
                 (Some((_, Field::Pieces(table))), None) => Target::Pieces(table.of(tet)),
@@ -265,13 +265,11 @@ impl ContactModel for PotentialContact {
         self.place_forces(input, history);
         if self.needs_bodies() && !input.bodies.is_empty() {
             let joints = self.joints.as_ref().expect("faces rub by a law");
-            let (candidates, integrals) = (&self.candidates, &self.integrals);
-            let scene = FaceScene { input, candidates, integrals, joints };
+            let scene = FaceScene { input, integrals: &self.integrals, joints };
             self.faces.add(&scene, &mut self.forces, history);
         }
         let scene = crate::scatter::ScatterScene {
             blocks: input.blocks,
-            candidates: &self.candidates,
             integrals: &self.integrals,
             hulls: &self.hulls,
             forces: &self.forces,
@@ -332,12 +330,12 @@ impl ContactModel for PotentialContact {
     }
 
     fn each_work(&mut self, blocks: &BlockSet, moved: &[Vec3], add: &mut dyn FnMut(BlockId, BlockId, f64)) {
-        let (candidates, integrals, forces) = (&self.candidates, &self.integrals, &self.forces);
+        let (integrals, forces) = (&self.integrals, &self.forces);
         let touching = integrals.touching();
         let work_of = |(t, work_j): (usize, &mut f64)| {
-            let facet = &candidates.facets[touching[t].facet as usize];
-            let hits = integrals.hits_of(&touching[t]);
-            *work_j = forces[t].push.dot(&relative_motion(facet, hits, candidates, (blocks, moved)));
+            let touch = &touching[t];
+            let found = (integrals.hits_of(touch), integrals.sums_of(touch));
+            *work_j = forces[t].push.dot(&relative_motion(touch, found, (blocks, moved)));
         };
         self.work_of_facet.resize(touching.len(), 0.0);
         for_each_facet(&mut self.work_of_facet, work_of);
@@ -364,11 +362,10 @@ impl ContactModel for PotentialContact {
             if !force.touches {
                 continue;
             }
-            let facet = &self.candidates.facets[touch.facet as usize];
             let sums = self.integrals.sums_of(touch);
             facets.push(FacetContact {
-                facet: facet.triangle,
-                target: facet.target,
+                facet: touch.triangle,
+                target: touch.target,
                 area_m2: sums.area,
                 normal: -force.push.normalize(),
                 center: force.center,

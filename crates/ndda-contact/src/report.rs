@@ -174,10 +174,9 @@ pub fn list_past_centroid(hits: &[Hit], scene: &Scene, past: &mut Vec<u32>) {
 /// Depth over the height of the tetrahedron, or of the block that is taken whole. For the element potential φ = 4 λ, and λ is
 /// that ratio.
 fn penetration_ratio(scene: &Scene, hit: &Hit) -> f64 {
-    let tet = scene.candidates.tet_of(hit.pair);
-    let most = match (scene.hulls.whole(scene.blocks.tet_block[tet.index()]), scene.field) {
+    let most = match (scene.hulls.whole(scene.blocks.tet_block[hit.tet.index()]), scene.field) {
         (Some(whole), _) => whole.most_phi,
-        (None, Field::Pieces(table)) => table.of(tet).iter().flatten().copied().fold(0.0, f64::max),
+        (None, Field::Pieces(table)) => table.most_in(hit.tet),
         (None, Field::Element) => 4.0,
     };
     if most > 0.0 { hit.moments.depth / most } else { 0.0 }

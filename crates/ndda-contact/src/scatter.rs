@@ -5,7 +5,6 @@ use std::ops::Range;
 use nalgebra::{Matrix4, Vector4};
 use ndda_mesh::{BlockId, BlockSet};
 
-use crate::candidates::Candidates;
 use crate::facets::{FacetForce, OnHost};
 use crate::hulls::{Hulls, Whole};
 use crate::integrals::{FacetSums, Hit, Integrals};
@@ -29,8 +28,6 @@ pub struct Scatter {
 pub struct ScatterScene<'a> {
     /// Topology.
     pub blocks: &'a BlockSet,
-    /// Pairs and facets.
-    pub candidates: &'a Candidates,
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,
     /// Blocks that are taken whole.
@@ -163,9 +160,8 @@ impl BlockNodes<'_> {
         if !force.touches {
             return;
         }
-        let facet = &scene.candidates.facets[touch.facet as usize];
         let FacetSums { weights: pressure, slope, .. } = scene.integrals.sums_of(touch);
-        let nodes = scene.blocks.triangles[facet.triangle.index()];
+        let nodes = scene.blocks.triangles[touch.triangle.index()];
         for a in 0..3 {
             self.add(nodes[a].index(), pressure[a], force, scene.stiffness(t, slope[a], pressure[a]));
         }
@@ -178,8 +174,7 @@ impl BlockNodes<'_> {
         if !force.touches {
             return;
         }
-        for Hit { pair, moments } in scene.integrals.hits_of(&scene.integrals.touching()[t]) {
-            let tet = scene.candidates.tet_of(*pair);
+        for Hit { tet, moments, .. } in scene.integrals.hits_of(&scene.integrals.touching()[t]) {
             let weights = moments.target_pressure.iter().zip(moments.target_slope);
             for (node, (pressure, slope)) in scene.blocks.tets[tet.index()].iter().zip(weights) {
                 self.add(node.index(), -pressure, force, scene.stiffness(t, slope.max(0.0), *pressure));
@@ -195,8 +190,7 @@ impl BlockNodes<'_> {
             own.map(|t| (t as usize, &scene.forces[t as usize])).filter(|(_, force)| force.touches)
         {
             let touch = &scene.integrals.touching()[t];
-            let triangle = scene.candidates.facets[touch.facet as usize].triangle;
-            let Some(face) = scene.hulls.contactor(triangle, touch.target) else {
+            let Some(face) = scene.hulls.contactor(touch.triangle, touch.target) else {
                 self.add_contactor(scene, t);
                 continue;
             };

@@ -73,7 +73,6 @@ impl Frictionless {
         self.stiffness_pa.resize(touching.len(), penalty_pa);
         let scene = ScatterScene {
             blocks,
-            candidates,
             integrals,
             hulls: &self.hulls,
             forces: &self.forces,
