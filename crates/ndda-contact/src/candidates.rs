@@ -3,12 +3,16 @@
 use std::ops::Range;
 
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId};
+use rayon::prelude::*;
 
 use crate::broad_phase::BroadPhase;
 use crate::bvh::{TreeBroadPhase, make_room};
 use crate::hulls::Hulls;
 use crate::listed::Listed;
 use crate::model::ContactInput;
+
+/// Pairs below which a second thread costs more than it brings.
+const GRAIN_PAIRS: usize = 4096;
 
 /// A boundary triangle and the tetrahedra of one other block that it may be in.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,14 +119,18 @@ impl Candidates {
         if self.numbers_overlaps {
             self.number_overlaps(triangle_block);
         }
-        self.pairs.clear();
-        make_room(&mut self.pairs, self.found.len());
+        let mut pairs = std::mem::take(&mut self.pairs);
+        pairs.clear();
+        make_room(&mut pairs, self.found.len());
+        let pair_of = |found: &(TriangleId, TetId)| Pair {
+            triangle: found.0,
+            tet: self.slot_of[found.1.index()],
+            overlap: if self.numbers_overlaps { self.overlap_of(found, triangle_block) } else { 0 },
+        };
+        self.found.par_iter().with_min_len(GRAIN_PAIRS).map(pair_of).collect_into_vec(&mut pairs);
+        self.pairs = pairs;
         self.facets.clear();
-        for (i, found) in self.found.iter().enumerate() {
-            let (triangle, tet_id) = *found;
-            let tet = self.slot_of[tet_id.index()];
-            let overlap = if self.numbers_overlaps { self.overlap_of(found, triangle_block) } else { 0 };
-            self.pairs.push(Pair { triangle, tet, overlap });
+        for (i, &(triangle, tet_id)) in self.found.iter().enumerate() {
             let target = tet_block[tet_id.index()];
             match self.facets.last_mut() {
                 Some(last)

@@ -22,6 +22,7 @@ use ndda_mesh::{BlockId, BlockSet, Vec3};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
+use crate::by_block::ByBlock;
 use crate::facets::{FacetForce, mass_per_area, reduced, relative_velocity};
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory, length};
 use crate::integrals::{FacetSums, Integrals, Touch};
@@ -36,6 +37,9 @@ const DAMPER: f64 = 0.2;
 /// Faces below which a second thread costs more than it brings.
 const GRAIN_PATCHES: usize = 64;
 
+/// The same for blocks.
+const GRAIN_BODIES: usize = 16;
+
 /// What all faces read.
 #[derive(Clone, Copy)]
 pub struct FaceScene<'a> {
@@ -43,6 +47,8 @@ pub struct FaceScene<'a> {
     pub input: &'a ContactInput<'a>,
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,
+    /// The facets that touch, block by block.
+    pub by_block: &'a ByBlock,
     /// Laws.
     pub joints: &'a Joints,
 }
@@ -64,9 +70,11 @@ impl FaceScene<'_> {
         self.touch(t).target
     }
 
-    /// The facets that touch, by number.
-    fn touching(&self) -> Range<u32> {
-        0..self.integrals.touching().len() as u32
+    /// The facets of a block that touch, by number, and those on it with a minus.
+    fn facets_at(&self, block: usize) -> impl Iterator<Item = (u32, f64)> {
+        let block = BlockId(block as u32);
+        let (own, on_block) = (self.by_block.of(block), self.by_block.on(block));
+        own.map(|t| (t, 1.0)).chain(on_block.iter().map(|&t| (t, -1.0)))
     }
 
     /// The law of the facets of a run, if it acts on faces.
@@ -87,8 +95,9 @@ pub struct Faces {
     face_of: Vec<u32>,
     /// Touching facets by face and target.
     order: Vec<Place>,
-    /// Those of each face and target, in `order`.
+    /// Those of each face and target, in `order`, and which of them each facet is in.
     runs: Vec<Range<usize>>,
+    run_of: Vec<u32>,
     block_area: Vec<f64>,
     bodies: Vec<Body>,
     /// Whose motion to come a face asks for.
@@ -144,14 +153,16 @@ impl Faces {
     /// Sorts touching facets by face and target; those of a block are together already, and its faces follow each other.
     fn arrange(&mut self, scene: &FaceScene) {
         self.order.clear();
-        let place = |t: u32| (self.face_of[scene.touch(t).triangle.index()], scene.target(t), t);
-        self.order.extend(scene.touching().map(place));
-        self.order
-            .chunk_by_mut(|a, b| scene.owner(a.2) == scene.owner(b.2))
-            .for_each(<[Place]>::sort_unstable);
+        let place = |(t, touch): (u32, &Touch)| (self.face_of[touch.triangle.index()], touch.target, t);
+        let touching = scene.integrals.touching();
+        self.order.extend((0..).zip(touching).map(place));
+        let of_one_block = |a: &Place, b: &Place| scene.owner(a.2) == scene.owner(b.2);
+        self.order.par_chunk_by_mut(of_one_block).for_each(<[Place]>::sort_unstable);
         self.runs.clear();
+        self.run_of.resize(touching.len(), 0);
         let mut start = 0;
         for run in self.order.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            run.iter().for_each(|&(_, _, t)| self.run_of[t as usize] = self.runs.len() as u32);
             self.runs.push(start..start + run.len());
             start += run.len();
         }
@@ -164,17 +175,11 @@ impl Faces {
         self.find_patches(scene, forces, history);
         self.push_bodies(scene, forces);
         self.rub(scene);
+        let spread = |(force, run): (&mut FacetForce, &u32)| self.patches[*run as usize].spread_to(force);
+        forces.par_iter_mut().zip(&self.run_of).with_min_len(GRAIN_PATCHES).for_each(spread);
         self.new_faces.clear();
         for (patch, run) in self.patches.iter().zip(&self.runs).filter(|(patch, _)| patch.presses()) {
-            let run = &self.order[run.clone()];
-            let twist = patch.torque_n_m / patch.pressure / patch.radius2;
-            for &(_, _, t) in run {
-                let force = &mut forces[t as usize];
-                let arm = force.center - patch.center;
-                force.shear = patch.force_n / patch.pressure + twist * patch.normal.cross(&arm);
-                force.sticks = !patch.memory.slides;
-            }
-            let (face, target, _) = run[0];
+            let (face, target, _) = self.order[run.start];
             self.new_faces.push(FaceMemory { face, target, ..patch.memory });
         }
         std::mem::swap(&mut history.faces, &mut self.new_faces);
@@ -214,33 +219,32 @@ impl Faces {
             self.is_asked[patch.owner.index()] = true;
             self.is_asked[patch.target.index()] = true;
         }
-        for (t, force) in scene.touching().zip(forces).filter(|(_, force)| force.touches) {
-            let [own, other] = [scene.owner(t), scene.target(t)].map(BlockId::index);
-            if self.is_asked[own] || self.is_asked[other] {
-                let push = scene.sums(t).pressure * (force.push + force.shear);
-                self.bodies[own].push(&force.center, &push);
-                self.bodies[other].push(&force.center, &-push);
+        let (is_asked, order, runs) = (&self.is_asked, &self.order, &self.runs);
+        let (run_of, patches) = (&self.run_of, &self.patches);
+        let push = |(block, body): (usize, &mut Body)| {
+            for (t, sign) in scene.facets_at(block) {
+                let (force, run) = (&forces[t as usize], run_of[t as usize] as usize);
+                let [own, other] = [scene.owner(t), scene.target(t)].map(BlockId::index);
+                if force.touches && (is_asked[own] || is_asked[other]) {
+                    let push = scene.sums(t).pressure * (force.push + force.shear);
+                    body.push(&force.center, &(sign * push));
+                }
+                // Once for each face.
+                if order[runs[run].start].2 == t {
+                    patches[run].push_as_before(body, sign);
+                }
             }
-        }
-        for patch in &self.patches {
-            let Some(old) = &patch.old else { continue };
-            let torque = old.torque_n_m * patch.normal;
-            for (block, sign) in [(patch.owner, 1.0), (patch.target, -1.0)] {
-                let body = &mut self.bodies[block.index()];
-                body.push(&patch.center, &(sign * old.force_n));
-                body.torque_n_m += sign * torque;
-            }
-        }
+        };
+        self.bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(push);
     }
 
     fn sum_areas(&mut self, scene: &FaceScene) {
         self.block_area.clear();
         self.block_area.resize(scene.input.blocks.len(), 0.0);
-        for t in scene.touching() {
-            let area = scene.sums(t).area;
-            self.block_area[scene.owner(t).index()] += area;
-            self.block_area[scene.target(t).index()] += area;
-        }
+        let sum = |(block, area): (usize, &mut f64)| {
+            scene.facets_at(block).for_each(|(t, _)| *area += scene.sums(t).area);
+        };
+        self.block_area.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(sum);
     }
 }
 
@@ -267,6 +271,24 @@ impl Patch {
     /// Whether it stuck in the last step: then its own slip counts, otherwise that of the rigid motions to come.
     fn is_held(&self) -> bool {
         self.old.is_some_and(|old| !old.slides)
+    }
+
+    /// What it does to one of its facets.
+    fn spread_to(&self, force: &mut FacetForce) {
+        if self.presses() {
+            let twist = self.torque_n_m / self.pressure / self.radius2;
+            let arm = force.center - self.center;
+            force.shear = self.force_n / self.pressure + twist * self.normal.cross(&arm);
+            force.sticks = !self.memory.slides;
+        }
+    }
+
+    /// What it did in the last step, to its owner or, with the opposite sign, to its target.
+    fn push_as_before(&self, body: &mut Body, sign: f64) {
+        if let Some(old) = &self.old {
+            body.push(&self.center, &(sign * old.force_n));
+            body.torque_n_m += sign * old.torque_n_m * self.normal;
+        }
     }
 
     fn presses(&self) -> bool {

@@ -127,15 +127,6 @@ pub struct Touch {
     place: u32,
 }
 
-/// The hits of a facet that touches, and what they come to.
-#[derive(Clone, Debug, PartialEq)]
-struct FacetHits {
-    /// In [`Candidates::facets`].
-    facet: u32,
-    hits: Range<u32>,
-    sums: FacetSums,
-}
-
 /// A run of facets and the hits among their pairs.
 #[derive(Default)]
 pub struct Chunk {
@@ -143,8 +134,11 @@ pub struct Chunk {
     facets: Range<usize>,
     /// Hits in the order of pairs.
     pub hits: Vec<Hit>,
-    /// Facets that have some, ascending.
-    touching: Vec<FacetHits>,
+    /// Its number.
+    number: u32,
+    /// Facets that have some, ascending, and what theirs come to.
+    touching: Vec<Touch>,
+    sums: Vec<FacetSums>,
     /// What the hits tell of themselves.
     pub report: HitReport,
     /// Pairs of hits whose triangle has passed the tetrahedron's centroid, in their order, where φ is largest there.
@@ -196,6 +190,7 @@ impl Chunk {
         self.hits.reserve(pairs / 4);
         self.touching.clear();
         self.touching.reserve(facets.len());
+        self.sums.reserve(facets.len());
         scratch.make_room(pairs);
         let mut last = None;
         for (k, facet) in facets.iter().enumerate() {
@@ -210,10 +205,13 @@ impl Chunk {
             last = Some((facet.triangle, triangle));
             let first = self.hits.len() as u32;
             self.add_facet(arch, scene, facet, &triangle, scratch);
-            let hits = first..self.hits.len() as u32;
-            if !hits.is_empty() {
+            let hits = [first, self.hits.len() as u32];
+            if hits[0] < hits[1] {
+                let (chunk, place) = (self.number, self.touching.len() as u32);
+                let Facet { triangle, target, .. } = *facet;
+                let owner = scene.blocks.triangle_block[triangle.index()];
                 let facet = (self.facets.start + k) as u32;
-                self.touching.push(FacetHits { facet, hits, sums: FacetSums::default() });
+                self.touching.push(Touch { facet, triangle, owner, target, chunk, hits, place });
             }
         }
         let hits = &mut self.hits;
@@ -234,18 +232,21 @@ impl Chunk {
 
     /// Keeps the hits that have an area, and the facets that have such hits; what is not a number stays to be reported.
     fn drop_empty(&mut self) {
-        let (hits, mut kept) = (&mut self.hits, 0);
+        let (hits, sums, mut kept) = (&mut self.hits, &mut self.sums, 0);
+        sums.clear();
         self.touching.retain_mut(|touch| {
             let first = kept;
-            for k in touch.hits.start..touch.hits.end {
+            for k in touch.hits[0]..touch.hits[1] {
                 let hit = hits[k as usize];
                 if hit.moments.area != 0.0 {
                     hits[kept as usize] = hit;
                     kept += 1;
                 }
             }
-            touch.hits = first..kept;
-            touch.sums = FacetSums::of(&hits[first as usize..kept as usize]);
+            (touch.hits, touch.place) = ([first, kept], sums.len() as u32);
+            if first < kept {
+                sums.push(FacetSums::of(&hits[first as usize..kept as usize]));
+            }
             first < kept
         });
         hits.truncate(kept as usize);
@@ -417,19 +418,9 @@ impl Integrals {
             [only] => integrate(only),
             many => many.par_iter_mut().for_each(integrate),
         }
-        self.list_touching(scene);
-    }
-
-    fn list_touching(&mut self, scene: &Scene) {
         self.touching.clear();
-        for (chunk, of_chunk) in (0..).zip(&self.chunks[..self.used]) {
-            self.touching.extend((0..).zip(&of_chunk.touching).map(|(place, touch)| {
-                let Facet { triangle, target, .. } = scene.candidates.facets[touch.facet as usize];
-                let owner = scene.blocks.triangle_block[triangle.index()];
-                let hits = [touch.hits.start, touch.hits.end];
-                Touch { facet: touch.facet, triangle, owner, target, chunk, hits, place }
-            }));
-        }
+        let used = &self.chunks[..used];
+        self.touching.extend(used.iter().flat_map(|chunk| &chunk.touching));
     }
 
     fn divide(&mut self, facets: &[Facet]) {
@@ -441,7 +432,7 @@ impl Integrals {
             if used == self.chunks.len() {
                 self.chunks.push(Chunk::default());
             }
-            self.chunks[used].facets = start..end;
+            (self.chunks[used].facets, self.chunks[used].number) = (start..end, used as u32);
             used += 1;
             start = end;
         }
@@ -466,6 +457,6 @@ impl Integrals {
 
     /// What the hits of a facet that touches come to.
     pub fn sums_of(&self, touch: &Touch) -> &FacetSums {
-        &self.chunks[touch.chunk as usize].touching[touch.place as usize].sums
+        &self.chunks[touch.chunk as usize].sums[touch.place as usize]
     }
 }

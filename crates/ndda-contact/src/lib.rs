@@ -23,6 +23,8 @@ mod broad_scenes;
 #[cfg(feature = "potential")]
 pub mod bvh;
 #[cfg(feature = "potential")]
+pub mod by_block;
+#[cfg(feature = "potential")]
 pub mod candidates;
 #[cfg(feature = "potential")]
 pub mod clip;

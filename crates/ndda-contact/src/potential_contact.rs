@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
 use crate::bonds;
+use crate::by_block::ByBlock;
 use crate::candidates::Candidates;
 use crate::element_potential::ElementPotential;
 use crate::energy::{self, OverlapParts};
@@ -25,6 +26,7 @@ use crate::pair_stiffness::PairStiffness;
 use crate::plan::Part;
 use crate::potential::{ContactPotential, Field, OverlapLaw};
 use crate::report::Reporter;
+use crate::scatter::{self, ScatterScene};
 use crate::tangent::{self, Target};
 
 /// Facets below which a second thread costs more than it brings.
@@ -44,7 +46,7 @@ pub struct PotentialContact {
     candidates: Candidates,
     hulls: Hulls,
     integrals: Integrals,
-    scatter: crate::scatter::Scatter,
+    by_block: ByBlock,
     frames: Vec<TetFrame>,
     forces: Vec<FacetForce>,
     penalty_of_facet: Vec<f64>,
@@ -68,7 +70,7 @@ impl PotentialContact {
             candidates: Candidates::default(),
             hulls: Hulls::default(),
             integrals: Integrals::default(),
-            scatter: Default::default(),
+            by_block: ByBlock::default(),
             frames: Vec::new(),
             forces: Vec::new(),
             penalty_of_facet: Vec::new(),
@@ -261,22 +263,25 @@ impl ContactModel for PotentialContact {
         let Some((_, field)) = &self.field else { return Ok(ContactReport::default()) };
         let (candidates, integrals) = (&self.candidates, &self.integrals);
         let report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
+        self.by_block.arrange(input.blocks.len(), self.integrals.touching());
         self.place_penalties(input);
         self.place_forces(input, history);
         if self.needs_bodies() && !input.bodies.is_empty() {
             let joints = self.joints.as_ref().expect("faces rub by a law");
-            let scene = FaceScene { input, integrals: &self.integrals, joints };
+            let (integrals, by_block) = (&self.integrals, &self.by_block);
+            let scene = FaceScene { input, integrals, by_block, joints };
             self.faces.add(&scene, &mut self.forces, history);
         }
-        let scene = crate::scatter::ScatterScene {
+        let scene = ScatterScene {
             blocks: input.blocks,
             integrals: &self.integrals,
+            by_block: &self.by_block,
             hulls: &self.hulls,
             forces: &self.forces,
             stiffness_pa: &self.penalty_of_facet,
             curvature_pa_m: &self.curvature_of_facet,
         };
-        self.scatter.add(&scene, output);
+        scatter::add(&scene, output);
         if let Some(joints) = self.joints.as_ref().filter(|joints| joints.carry_tension()) {
             bonds::add_forces(joints, (&self.candidates, &self.hulls), input, history, output);
         }

@@ -5,6 +5,7 @@ use std::ops::Range;
 use nalgebra::{Matrix4, Vector4};
 use ndda_mesh::{BlockId, BlockSet};
 
+use crate::by_block::ByBlock;
 use crate::facets::{FacetForce, OnHost};
 use crate::hulls::{Hulls, Whole};
 use crate::integrals::{FacetSums, Hit, Integrals};
@@ -13,16 +14,6 @@ use crate::model::ContactOutput;
 /// Facets per half below which a second thread costs more than it brings.
 const GRAIN_FACETS: usize = 200;
 
-/// Where the touching facets of each block are, as contactor and as target.
-#[derive(Default)]
-pub struct Scatter {
-    /// First of each block's own; facets are sorted by contactor.
-    own_start: Vec<u32>,
-    /// Those on each block, by (target, facet), and where each block's begin.
-    on_target: Vec<u32>,
-    target_start: Vec<u32>,
-}
-
 /// What the sums read.
 #[derive(Clone, Copy)]
 pub struct ScatterScene<'a> {
@@ -30,6 +21,8 @@ pub struct ScatterScene<'a> {
     pub blocks: &'a BlockSet,
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,
+    /// The facets that touch, block by block.
+    pub by_block: &'a ByBlock,
     /// Blocks that are taken whole.
     pub hulls: &'a Hulls,
     /// One entry per touching facet.
@@ -59,83 +52,47 @@ impl ScatterScene<'_> {
     }
 }
 
-impl Scatter {
-    /// Adds all forces to the nodes.
-    pub fn add(&mut self, scene: &ScatterScene, output: &mut ContactOutput) {
-        self.arrange(scene);
-        let all = ContactOutput {
-            force: output.force,
-            friction_force: output.friction_force,
-            stiffness: output.stiffness,
-        };
-        self.add_blocks(scene, 0..scene.blocks.len(), all);
-    }
+/// Adds all forces to the nodes.
+pub fn add(scene: &ScatterScene, output: &mut ContactOutput) {
+    let all = ContactOutput {
+        force: output.force,
+        friction_force: output.friction_force,
+        stiffness: output.stiffness,
+    };
+    add_blocks(scene, 0..scene.blocks.len(), all);
+}
 
-    /// Sorts facets by block.
-    fn arrange(&mut self, scene: &ScatterScene) {
-        let touching = scene.integrals.touching();
-        for starts in [&mut self.own_start, &mut self.target_start] {
-            starts.clear();
-            starts.resize(scene.blocks.len() + 2, 0);
-        }
-        for touch in touching {
-            self.own_start[touch.owner.index() + 1] += 1;
-            self.target_start[touch.target.index() + 2] += 1;
-        }
-        for b in 0..scene.blocks.len() {
-            self.own_start[b + 1] += self.own_start[b];
-            self.target_start[b + 2] += self.target_start[b + 1];
-        }
-        // Each entry moves on from where its block begins to where the next one does.
-        self.on_target.clear();
-        self.on_target.resize(touching.len(), 0);
-        for (t, touch) in (0..).zip(touching) {
-            let place = &mut self.target_start[touch.target.index() + 1];
-            self.on_target[*place as usize] = t;
-            *place += 1;
-        }
-    }
-
-    fn facets_between(&self, blocks: &Range<usize>) -> usize {
-        (self.own_start[blocks.end] - self.own_start[blocks.start] + self.target_start[blocks.end]
-            - self.target_start[blocks.start]) as usize
-    }
-
-    fn add_blocks(&self, scene: &ScatterScene, blocks: Range<usize>, output: ContactOutput) {
-        match self.facets_between(&blocks) {
-            0 => {}
-            _ if blocks.len() == 1 => self.add_block(scene, blocks.start, output),
-            _ => {
-                let middle = blocks.start + blocks.len() / 2;
-                let (head, tail) = (blocks.start..middle, middle..blocks.end);
-                let starts = scene.blocks.node_starts();
-                let (first, second) = split(output, (starts[middle] - starts[blocks.start]) as usize);
-                let parallel = self.facets_between(&head).min(self.facets_between(&tail)) > GRAIN_FACETS;
-                let run_head = || self.add_blocks(scene, head.clone(), first);
-                let run_tail = || self.add_blocks(scene, tail.clone(), second);
-                if parallel {
-                    rayon::join(run_head, run_tail);
-                } else {
-                    run_head();
-                    run_tail();
-                }
+fn add_blocks(scene: &ScatterScene, blocks: Range<usize>, output: ContactOutput) {
+    match scene.by_block.count(&blocks) {
+        0 => {}
+        _ if blocks.len() == 1 => add_block(scene, BlockId(blocks.start as u32), output),
+        _ => {
+            let middle = blocks.start + blocks.len() / 2;
+            let (head, tail) = (blocks.start..middle, middle..blocks.end);
+            let starts = scene.blocks.node_starts();
+            let (first, second) = split(output, (starts[middle] - starts[blocks.start]) as usize);
+            let parallel = scene.by_block.count(&head).min(scene.by_block.count(&tail)) > GRAIN_FACETS;
+            let run_head = || add_blocks(scene, head.clone(), first);
+            let run_tail = || add_blocks(scene, tail.clone(), second);
+            if parallel {
+                rayon::join(run_head, run_tail);
+            } else {
+                run_head();
+                run_tail();
             }
         }
     }
+}
 
-    fn add_block(&self, scene: &ScatterScene, block: usize, output: ContactOutput) {
-        let first = scene.blocks.node_starts()[block] as usize;
-        let mut nodes = BlockNodes { first, output };
-        let own = self.own_start[block]..self.own_start[block + 1];
-        let range = self.target_start[block] as usize..self.target_start[block + 1] as usize;
-        let on_block = &self.on_target[range];
-        match scene.hulls.whole(BlockId(block as u32)) {
-            None => {
-                own.for_each(|t| nodes.add_contactor(scene, t as usize));
-                on_block.iter().for_each(|&t| nodes.add_target(scene, t as usize));
-            }
-            Some(whole) => nodes.add_whole(scene, whole, own, on_block),
+fn add_block(scene: &ScatterScene, block: BlockId, output: ContactOutput) {
+    let mut nodes = BlockNodes { first: scene.blocks.nodes_of(block).start, output };
+    let (own, on_block) = (scene.by_block.of(block), scene.by_block.on(block));
+    match scene.hulls.whole(block) {
+        None => {
+            own.for_each(|t| nodes.add_contactor(scene, t as usize));
+            on_block.iter().for_each(|&t| nodes.add_target(scene, t as usize));
         }
+        Some(whole) => nodes.add_whole(scene, whole, own, on_block),
     }
 }
 

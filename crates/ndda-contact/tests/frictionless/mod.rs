@@ -1,13 +1,14 @@
 //! The contact model built without a line of friction: what switching friction off must be equal to.
 
 use ndda_contact::block_faces::BlockFaces;
+use ndda_contact::by_block::ByBlock;
 use ndda_contact::candidates::Candidates;
 use ndda_contact::facets::FacetForce;
 use ndda_contact::hulls::Hulls;
 use ndda_contact::integrals::{Integrals, Scene};
 use ndda_contact::pair::TetFrame;
 use ndda_contact::report::Reporter;
-use ndda_contact::scatter::{Scatter, ScatterScene};
+use ndda_contact::scatter::{self, ScatterScene};
 use ndda_contact::{ContactInput, ContactOutput, ContactReport, Field};
 use ndda_mesh::geometry::triangle_area_vector;
 use rayon::prelude::*;
@@ -19,7 +20,7 @@ pub struct Frictionless {
     frames: Vec<TetFrame>,
     hulls: Hulls,
     integrals: Integrals,
-    scatter: Scatter,
+    by_block: ByBlock,
     reporter: Reporter,
     forces: Vec<FacetForce>,
     stiffness_pa: Vec<f64>,
@@ -71,15 +72,17 @@ impl Frictionless {
         }
         self.stiffness_pa.clear();
         self.stiffness_pa.resize(touching.len(), penalty_pa);
+        self.by_block.arrange(blocks.len(), touching);
         let scene = ScatterScene {
             blocks,
             integrals,
+            by_block: &self.by_block,
             hulls: &self.hulls,
             forces: &self.forces,
             stiffness_pa: &self.stiffness_pa,
             curvature_pa_m: &[],
         };
-        self.scatter.add(&scene, output);
+        scatter::add(&scene, output);
         report
     }
 }
