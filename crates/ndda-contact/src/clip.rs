@@ -147,27 +147,28 @@ impl Polygon {
     /// Leaves the part where the field is not below `bound`: 0, or the least positive number to leave the zeros out.
     pub fn cut(&mut self, field: &Form, bound: f64) {
         let inside = |d: f64| d >= bound;
-        let whole = *self;
-        self.len = 0;
-        let Some(first) = whole.corners().first() else { return };
-        let mut from = field.at(first);
-        for (i, here) in whole.corners().iter().enumerate() {
-            let next = whole.corners().get(i + 1).unwrap_or(first);
-            let to = field.at(next);
+        let count = std::mem::take(&mut self.len);
+        let first = self.corners[0];
+        let (mut here, mut from) = (first, field.at(&first));
+        // What is left takes the place of what was looked at.
+        for seen in 2..count + 2 {
+            let next = if seen > count { first } else { self.corners[seen - 1] };
+            let to = field.at(&next);
             if inside(from) {
-                self.push(*here);
+                self.push(here, seen);
             }
             if inside(from) != inside(to) {
                 let t = from / (from - to);
-                self.push([0, 1].map(|k| here[k] + t * (next[k] - here[k])));
+                self.push([0, 1].map(|k| here[k] + t * (next[k] - here[k])), seen);
             }
-            from = to;
+            (here, from) = (next, to);
         }
     }
 
-    fn push(&mut self, corner: [f64; 2]) {
+    /// Adds a corner, unless there are as many already as may be.
+    fn push(&mut self, corner: [f64; 2], most: usize) {
         // Only a rim that rounding made wavy could have more corners; the excess has no area.
-        if self.len < MOST {
+        if self.len < most.min(MOST) {
             self.corners[self.len] = corner;
             self.len += 1;
         }
