@@ -47,8 +47,6 @@ pub struct FaceScene<'a> {
     pub input: &'a ContactInput<'a>,
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,
-    /// The facets that touch, block by block.
-    pub by_block: &'a ByBlock,
     /// Laws.
     pub joints: &'a Joints,
 }
@@ -64,17 +62,6 @@ impl FaceScene<'_> {
 
     fn owner(&self, t: u32) -> BlockId {
         self.touch(t).owner
-    }
-
-    fn target(&self, t: u32) -> BlockId {
-        self.touch(t).target
-    }
-
-    /// The facets of a block that touch, by number, and those on it with a minus.
-    fn facets_at(&self, block: usize) -> impl Iterator<Item = (u32, f64)> {
-        let block = BlockId(block as u32);
-        let (own, on_block) = (self.by_block.of(block), self.by_block.on(block));
-        own.map(|t| (t, 1.0)).chain(on_block.iter().map(|&t| (t, -1.0)))
     }
 
     /// The law of the facets of a run, if it acts on faces.
@@ -98,6 +85,8 @@ pub struct Faces {
     /// Those of each face and target, in `order`, and which of them each facet is in.
     runs: Vec<Range<usize>>,
     run_of: Vec<u32>,
+    /// Patches by block.
+    by_block: ByBlock,
     block_area: Vec<f64>,
     bodies: Vec<Body>,
     /// Whose motion to come a face asks for.
@@ -112,12 +101,16 @@ pub struct Faces {
 struct Patch {
     owner: BlockId,
     target: BlockId,
+    has_law: bool,
     /// ∫ φ dA and its centre; nothing else counts where there is no pressure.
     pressure: f64,
     center: Vec3,
     normal: Vec3,
     normal_n: f64,
     area_m2: f64,
+    /// Force [N] on it, and torque [N m] about the centre, but for its own friction.
+    load_n: Vec3,
+    load_torque_n_m: Vec3,
     /// Means of r² and r from the centre, weighted by pressure.
     radius2: f64,
     radius: f64,
@@ -171,14 +164,16 @@ impl Faces {
     /// Adds the friction of faces whose law asks for it to the facets' forces, and takes over what they remember.
     pub fn add(&mut self, scene: &FaceScene, forces: &mut [FacetForce], history: &mut ContactHistory) {
         self.arrange(scene);
-        self.sum_areas(scene);
         self.find_patches(scene, forces, history);
-        self.push_bodies(scene, forces);
+        let blocks_of = |patch: &Patch| (patch.owner, patch.target);
+        self.by_block.arrange(scene.input.blocks.len(), self.patches.iter().map(blocks_of));
+        self.sum_areas(scene);
+        self.push_bodies(scene);
         self.rub(scene);
         let spread = |(force, run): (&mut FacetForce, &u32)| self.patches[*run as usize].spread_to(force);
         forces.par_iter_mut().zip(&self.run_of).with_min_len(GRAIN_PATCHES).for_each(spread);
         self.new_faces.clear();
-        for (patch, run) in self.patches.iter().zip(&self.runs).filter(|(patch, _)| patch.presses()) {
+        for (patch, run) in self.patches.iter().zip(&self.runs).filter(|(patch, _)| patch.rubs()) {
             let (face, target, _) = self.order[run.start];
             self.new_faces.push(FaceMemory { face, target, ..patch.memory });
         }
@@ -199,7 +194,7 @@ impl Faces {
     fn rub(&mut self, scene: &FaceScene) {
         let (order, bodies, areas) = (&self.order, &self.bodies, &self.block_area);
         let rub = |(patch, run): (&mut Patch, &Range<usize>)| {
-            if patch.presses() {
+            if patch.rubs() {
                 let law = scene.law(&order[run.clone()]).expect("patches have a law");
                 let step = FaceStep { dt_s: scene.input.dt_s, patch, bodies, areas };
                 (patch.force_n, patch.torque_n_m, patch.memory) = step.advance(law);
@@ -210,56 +205,49 @@ impl Faces {
 
     /// All blocks under their loads; those whose motion to come is asked for under the normal forces of this step and the friction
     /// of the last one, too.
-    fn push_bodies(&mut self, scene: &FaceScene, forces: &[FacetForce]) {
+    fn push_bodies(&mut self, scene: &FaceScene) {
         self.bodies.clear();
         self.bodies.extend_from_slice(scene.input.bodies);
         self.is_asked.clear();
         self.is_asked.resize(self.bodies.len(), false);
-        for patch in self.patches.iter().filter(|patch| patch.presses() && !patch.is_held()) {
+        for patch in self.patches.iter().filter(|patch| patch.rubs() && !patch.is_held()) {
             self.is_asked[patch.owner.index()] = true;
             self.is_asked[patch.target.index()] = true;
         }
-        let (is_asked, order, runs) = (&self.is_asked, &self.order, &self.runs);
-        let (run_of, patches) = (&self.run_of, &self.patches);
+        let (is_asked, by_block, patches) = (&self.is_asked, &self.by_block, &self.patches);
         let push = |(block, body): (usize, &mut Body)| {
-            for (t, sign) in scene.facets_at(block) {
-                let (force, run) = (&forces[t as usize], run_of[t as usize] as usize);
-                let [own, other] = [scene.owner(t), scene.target(t)].map(BlockId::index);
-                if force.touches && (is_asked[own] || is_asked[other]) {
-                    let push = scene.sums(t).pressure * (force.push + force.shear);
-                    body.push(&force.center, &(sign * push));
+            for (k, sign) in by_block.at(BlockId(block as u32)) {
+                let patch = &patches[k as usize];
+                if is_asked[patch.owner.index()] || is_asked[patch.target.index()] {
+                    patch.push_now(body, sign);
                 }
-                // Once for each face.
-                if order[runs[run].start].2 == t {
-                    patches[run].push_as_before(body, sign);
-                }
+                patch.push_as_before(body, sign);
             }
         };
         self.bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(push);
     }
 
+    /// What of each block touches.
     fn sum_areas(&mut self, scene: &FaceScene) {
         self.block_area.clear();
         self.block_area.resize(scene.input.blocks.len(), 0.0);
-        let sum = |(block, area): (usize, &mut f64)| {
-            scene.facets_at(block).for_each(|(t, _)| *area += scene.sums(t).area);
-        };
-        self.block_area.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(sum);
+        for patch in &self.patches {
+            self.block_area[patch.owner.index()] += patch.area_m2;
+            self.block_area[patch.target.index()] += patch.area_m2;
+        }
     }
 }
 
 impl Patch {
     fn find(run: &[Place], scene: &FaceScene, forces: &[FacetForce], history: &ContactHistory) -> Self {
         let (face, target, first) = run[0];
-        if scene.law(run).is_none() {
-            return Self::default();
-        }
-        let mut patch = Self { owner: scene.owner(first), target, ..Self::default() };
+        let (owner, has_law) = (scene.owner(first), scene.law(run).is_some());
+        let mut patch = Self { owner, target, has_law, ..Self::default() };
         patch.sum(run, scene, forces);
-        if !patch.presses() {
-            return Self::default();
-        }
         patch.measure(run, scene, forces);
+        if !patch.rubs() {
+            return patch;
+        }
         let old = remembered(history, face, target).filter(|old| old.normal.dot(&patch.normal) > 0.0);
         patch.old = old.map(|old| old.turned_to(&patch.normal));
         if patch.is_held() {
@@ -275,12 +263,18 @@ impl Patch {
 
     /// What it does to one of its facets.
     fn spread_to(&self, force: &mut FacetForce) {
-        if self.presses() {
+        if self.rubs() {
             let twist = self.torque_n_m / self.pressure / self.radius2;
             let arm = force.center - self.center;
             force.shear = self.force_n / self.pressure + twist * self.normal.cross(&arm);
             force.sticks = !self.memory.slides;
         }
+    }
+
+    /// What the normal force does, and friction of facets, to its owner or, with the opposite sign, to its target.
+    fn push_now(&self, body: &mut Body, sign: f64) {
+        body.push(&self.center, &(sign * self.load_n));
+        body.torque_n_m += sign * self.load_torque_n_m;
     }
 
     /// What it did in the last step, to its owner or, with the opposite sign, to its target.
@@ -291,8 +285,9 @@ impl Patch {
         }
     }
 
-    fn presses(&self) -> bool {
-        self.pressure > 0.0 && self.area_m2 > 0.0
+    /// Whether there is friction on it.
+    fn rubs(&self) -> bool {
+        self.has_law && self.pressure > 0.0 && self.area_m2 > 0.0
     }
 
     fn sum(&mut self, run: &[Place], scene: &FaceScene, forces: &[FacetForce]) {
@@ -315,12 +310,15 @@ impl Patch {
         }
     }
 
-    /// Radii about the centre; a facet counts with its own size, so that one facet has a radius, too.
+    /// Loads, and radii about the centre; a facet counts with its own size, so that one facet has a radius, too.
     fn measure(&mut self, run: &[Place], scene: &FaceScene, forces: &[FacetForce]) {
         for &(_, _, t) in run {
             let FacetSums { pressure, area, .. } = *scene.sums(t);
             if pressure > 0.0 {
-                let arm = forces[t as usize].center - self.center;
+                let FacetForce { push, shear, center, .. } = &forces[t as usize];
+                let (arm, load) = (center - self.center, pressure * (push + shear));
+                self.load_n += load;
+                self.load_torque_n_m += arm.cross(&load);
                 // A disc of the same area: mean r² = A/2π.
                 let radius2 = arm.norm_squared() + area / std::f64::consts::TAU;
                 self.radius2 += pressure / self.pressure * radius2;

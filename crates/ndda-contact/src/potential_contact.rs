@@ -15,7 +15,7 @@ use crate::faces::{FaceScene, Faces};
 use crate::facets::{FacetForce, FacetScene, OnHost, relative_motion};
 use crate::friction::FrictionLaw;
 use crate::hulls::Hulls;
-use crate::integrals::{Hit, Integrals, Scene};
+use crate::integrals::{Hit, Integrals, Scene, Touch};
 use crate::joints::{Joints, Memory};
 use crate::model::{
     ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
@@ -263,13 +263,13 @@ impl ContactModel for PotentialContact {
         let Some((_, field)) = &self.field else { return Ok(ContactReport::default()) };
         let (candidates, integrals) = (&self.candidates, &self.integrals);
         let report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
-        self.by_block.arrange(input.blocks.len(), self.integrals.touching());
+        let blocks_of = |touch: &Touch| (touch.owner, touch.target);
+        self.by_block.arrange(input.blocks.len(), self.integrals.touching().iter().map(blocks_of));
         self.place_penalties(input);
         self.place_forces(input, history);
         if self.needs_bodies() && !input.bodies.is_empty() {
             let joints = self.joints.as_ref().expect("faces rub by a law");
-            let (integrals, by_block) = (&self.integrals, &self.by_block);
-            let scene = FaceScene { input, integrals, by_block, joints };
+            let scene = FaceScene { input, integrals: &self.integrals, joints };
             self.faces.add(&scene, &mut self.forces, history);
         }
         let scene = ScatterScene {

@@ -72,7 +72,7 @@ impl Frictionless {
         }
         self.stiffness_pa.clear();
         self.stiffness_pa.resize(touching.len(), penalty_pa);
-        self.by_block.arrange(blocks.len(), touching);
+        self.by_block.arrange(blocks.len(), touching.iter().map(|touch| (touch.owner, touch.target)));
         let scene = ScatterScene {
             blocks,
             integrals,
