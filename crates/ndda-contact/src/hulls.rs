@@ -30,6 +30,9 @@ const GRAIN_FACES: usize = 1024;
 /// The same for pairs of blocks.
 const GRAIN_PAIRS: usize = 128;
 
+/// Units in the last place of coordinates that are no overlap: blocks that move side by side drift by some.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// A block of more faces is asked by its tetrahedra.
 const MOST_FACES: usize = 32;
 
@@ -45,7 +48,7 @@ pub struct Face {
     /// n of φ = n·(p − x) in a block that is taken whole [1/m], in others of any length.
     normal: Vec3,
     point: Vec3,
-    /// Largest n·(x − p) of the block's nodes.
+    /// n·(x − p) from which on a point is beyond: the largest of the block's nodes, less rounding.
     reach: f64,
 }
 
@@ -221,13 +224,15 @@ impl Face {
     fn place(&mut self, nodes: &[Vec3], position: &[Vec3]) {
         let corners = self.corners.map(|n| position[n.index()]);
         (self.normal, self.point) = (triangle_area_vector(&corners), corners[0]);
+        let mut reach = 0.0;
         if let Some((node, phi)) = self.furthest {
             self.normal *= phi / self.normal.dot(&(self.point - position[node.index()]));
-            self.reach = 0.0;
-            return;
+        } else {
+            let above = |x: &Vec3| self.normal.dot(&(x - self.point));
+            reach = nodes.iter().map(above).fold(0.0, f64::max);
         }
-        let above = |x: &Vec3| self.normal.dot(&(x - self.point));
-        self.reach = nodes.iter().map(above).fold(0.0, f64::max);
+        let largest = corners.iter().map(Vec3::amax).fold(0.0, f64::max);
+        self.reach = reach - ROUNDING * largest * self.normal.lp_norm(1);
     }
 
     #[inline]
