@@ -33,6 +33,7 @@ mod sliding_over_element_borders;
 mod springs_and_elimination;
 mod step_control;
 mod sticking_plate;
+mod sudden_load;
 mod tall_stack;
 mod toppling_slope;
 
