@@ -5,6 +5,7 @@ mod bedded_bar;
 mod block_on_a_slope;
 mod body_kinds;
 mod bouncing_block;
+mod bound_of_contact;
 mod cantilever;
 mod contact_fields;
 mod contact_patch;
