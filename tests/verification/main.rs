@@ -5,6 +5,7 @@ mod bedded_bar;
 mod block_on_a_slope;
 mod body_kinds;
 mod bouncing_block;
+mod bound_of_contact;
 mod cantilever;
 mod contact_fields;
 mod contact_patch;
@@ -33,6 +34,7 @@ mod sliding_over_element_borders;
 mod springs_and_elimination;
 mod step_control;
 mod sticking_plate;
+mod sudden_load;
 mod tall_stack;
 mod toppling_slope;
 

@@ -80,6 +80,8 @@ pub struct StepContext<'a> {
     pub end_s: f64,
     /// Where contact was evaluated, x* per node of the block [m].
     pub contact_position: &'a [Vec3],
+    /// How far ahead of that contact saw it [m].
+    pub ahead: Vec3,
     /// Force per node of the block, contact and constant loads [N].
     pub force: &'a [Vec3],
     /// The loads in it [N].
@@ -244,8 +246,9 @@ impl BlockReport {
     /// Torque of loads, work of friction and of changing loads, the contact rate of a step u [m], and what squeezes the block.
     pub(crate) fn book(&mut self, shape: &Shape, context: &StepContext, increment: &[Vec3]) {
         for (x, f) in context.contact_position.iter().zip(context.external) {
-            self.outside_torque += x.cross(f);
+            self.outside_torque += (x + context.ahead).cross(f);
         }
+        self.outside_torque += context.ahead.cross(&self.reaction);
         for (load, u) in context.changing.iter().zip(increment) {
             self.load_work_j += load.dot(u);
         }

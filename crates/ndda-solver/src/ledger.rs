@@ -226,6 +226,11 @@ impl Ledger {
         }
     }
 
+    /// Books angular momentum that changes because the places of blocks are taken otherwise [kg m²/s].
+    pub fn add_shift(&mut self, angular: Vec3) {
+        self.angular_impulse += angular;
+    }
+
     /// Books force and torque from outside over a step, as the integrator weights them.
     pub fn add_impulse(&mut self, dt_s: f64, weights: &StepWeights, force: Vec3, torque: Vec3) {
         let (old_force, old_torque) = self.last_force;

@@ -13,6 +13,7 @@ pub mod dense_inverse;
 pub mod direct;
 pub mod elastic_body;
 pub mod end_contact;
+mod first_step;
 pub mod fixed_body;
 pub mod for_each_block;
 pub mod generalized_alpha;

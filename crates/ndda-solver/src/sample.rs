@@ -7,9 +7,11 @@ use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
 use ndda_mesh::{BlockId, Mat3, TetId, Vec3};
 
 use crate::body::BodyKind;
+use crate::first_step::seen;
 use crate::ledger::{Sample, Vibration};
 use crate::shape::Shape;
 use crate::simulation::Simulation;
+use crate::state::State;
 use crate::step_error::StepError;
 use crate::time_integrator::StepWeights;
 
@@ -34,7 +36,8 @@ impl Simulation {
         let loads = self.loads.constant().iter().zip(&self.state.position).zip(self.start_position());
         sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
         if let Some(model) = &mut self.contact {
-            let (position, velocity) = (&self.state.position, &self.state.velocity);
+            let State { position, velocity, ahead, .. } = &self.state;
+            let position = seen(&self.blocks, ahead, position, &mut self.seen_position);
             let input = ContactInput {
                 affine: &self.affine,
                 ..ContactInput::new(&self.blocks, position, velocity, self.part_s)
@@ -53,13 +56,16 @@ impl Simulation {
     }
 
     fn add_block_to(&mut self, sample: &mut Sample, block: BlockId) -> Result<(), StepError> {
-        let (range, time_s) = (self.blocks.nodes_of(block), sample.time_s);
+        let (range, time_s, ahead) = (self.blocks.nodes_of(block), sample.time_s, self.ahead(block));
         let body = &mut self.bodies[block.index()];
         let shape = &self.shapes[body.shape];
         let (position, velocity) = (&self.state.position[range.clone()], &self.state.velocity[range]);
         sample.kinetic_j += shape.operator.kinetic_energy_j(velocity);
-        sample.momentum += shape.operator.momentum(velocity);
+        let momentum = shape.operator.momentum(velocity);
+        sample.momentum += momentum;
         sample.angular_momentum += shape.operator.angular_momentum(&Vec3::zeros(), position, velocity);
+        // Where contact sees the block: there its forces have no torque on all blocks together.
+        sample.angular_momentum += ahead.cross(&momentum);
         for ((x, v), &m) in position.iter().zip(velocity).zip(&shape.operator.node_mass) {
             sample.momentum_scale += m * v.norm();
             sample.angular_scale += m * x.norm() * v.norm();
@@ -146,22 +152,24 @@ impl Simulation {
         self.contact_position.copy_from_slice(&self.state.position);
         let found = self.add_contact_forces(None);
         let mut facets = Vec::new();
-        if let Some(model) = &self.contact {
-            let input =
-                ContactInput::new(&self.blocks, &self.contact_position, &self.state.velocity, self.part_s);
-            model.add_facets(&input, &self.state.contact, &mut facets);
-        }
+        self.add_facets(&mut facets);
         (self.state.contact, self.force) = (remembered, force);
         found.map(|report| (report, facets))
     }
 
     /// Asks contact what it just did, before anything else asks it for something.
     pub(crate) fn note_contacts(&mut self) {
-        let (Some(contacts), Some(model)) = (&mut self.contacts, &self.contact) else { return };
+        let Some(mut contacts) = self.contacts.take() else { return };
         contacts.clear();
-        let input =
-            ContactInput::new(&self.blocks, &self.contact_position, &self.state.velocity, self.part_s);
-        model.add_facets(&input, &self.state.contact, contacts);
+        self.add_facets(&mut contacts);
+        self.contacts = Some(contacts);
+    }
+
+    fn add_facets(&mut self, facets: &mut Vec<FacetContact>) {
+        let Some(model) = &self.contact else { return };
+        let State { velocity, ahead, contact, .. } = &self.state;
+        let position = seen(&self.blocks, ahead, &self.contact_position, &mut self.seen_position);
+        model.add_facets(&ContactInput::new(&self.blocks, position, velocity, self.part_s), contact, facets);
     }
 
     /// Cauchy stress per tetrahedron, global axes, (xx, yy, zz, xy, yz, zx) [Pa].

@@ -92,6 +92,7 @@ impl Simulation {
                 internal_force: vec![Vec3::zeros(); if weights.stiffness < 1.0 { nodes } else { 0 }],
                 inertia: vec![Inertia::default(); if weights.needs_acceleration { blocks.len() } else { 0 }],
                 contact_force: vec![Vec3::zeros(); newton_nodes],
+                ahead: Vec::new(),
                 contact: Default::default(),
             },
             newton: end_contact.map(|settings| Box::new(Newton::new(settings, nodes, blocks.len()))),
@@ -103,6 +104,7 @@ impl Simulation {
             contact_stiffness: vec![0.0; contact_nodes],
             contact_has_acted: false,
             contact_position: blocks.rest_position.clone(),
+            seen_position: Vec::new(),
             loose: 0.0,
             least_friction: contact.as_ref().map_or(0.0, |model| model.least_friction()),
             moved: vec![Vec3::zeros(); contact_nodes],
@@ -246,16 +248,13 @@ impl Simulation {
 
     /// M a = f − ∫Bᵀσ₀ at the start, contact being part of f.
     fn place_accelerations(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
-        let untouched = self.state.contact.clone();
-        self.force.copy_from_slice(self.loads.total());
-        self.add_contact_forces(None).map_err(Box::new)?;
-        self.state.contact = untouched;
+        let force = self.force_at_start().map_err(Box::new)?;
         let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
         for block in self.blocks.ids() {
             let body = &mut self.bodies[block.index()];
             let shape = &self.shapes[body.shape];
             let range = self.blocks.nodes_of(block);
-            let mut load = self.force[range.clone()].to_vec();
+            let mut load = force[range.clone()].to_vec();
             if shape.kind == BodyKind::Rigid {
                 let force: Vec3 = load.iter().sum();
                 self.state.acceleration[range.clone()].fill(force / shape.operator.mass_kg);

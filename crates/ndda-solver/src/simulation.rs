@@ -12,6 +12,7 @@ use serde::{Deserialize, Serialize};
 use crate::batch::solve_together;
 use crate::body::{Body, BodyKind, StepContext};
 use crate::end_contact::{Iterations, Newton};
+use crate::first_step::seen;
 use crate::for_each_block::{NodeSlices, Runs, each_of_run, for_each_run};
 use crate::ledger::{Invariants, Ledger};
 use crate::loads::Loads;
@@ -96,6 +97,8 @@ pub struct Simulation {
     /// Whether forces of friction and stiffness of contact may be other than zero.
     pub(crate) contact_has_acted: bool,
     pub(crate) contact_position: Vec<Vec3>,
+    /// Room for places that contact sees further ahead.
+    pub(crate) seen_position: Vec<Vec3>,
     /// Part of contact forces whose direction is not known in this step, and that no friction bears.
     pub(crate) loose: f64,
     pub(crate) least_friction: f64,
@@ -124,6 +127,9 @@ impl Simulation {
     pub(crate) fn part_step(&mut self) -> Result<StepReport, StepError> {
         let started = Instant::now();
         self.gather_loads();
+        if self.begins() {
+            self.begin_ahead()?;
+        }
         let (contact, iterations) = self.gather_contact()?;
         let depth = contact.max_penetration_ratio;
         self.loose = if depth > self.least_friction { depth } else { 0.0 };
@@ -188,7 +194,8 @@ impl Simulation {
             let (position, velocity) =
                 (&self.contact_position[range.clone()], &self.state.velocity[range.clone()]);
             let motion = shape.operator.rigid_motion(position, velocity);
-            body.center = motion.center;
+            let ahead = self.state.ahead.get(index).copied().unwrap_or_default();
+            body.center = motion.center + ahead;
             body.velocity_m_s = motion.velocity_m_s;
             body.spin_rad_s = motion.spin_rad_s;
             if held {
@@ -203,7 +210,7 @@ impl Simulation {
             body.inverse_inertia = motion.inverse_inertia;
             (body.load_n, body.torque_n_m) = (Vec3::zeros(), Vec3::zeros());
             for (x, load) in position.iter().zip(&self.loads.total()[range]) {
-                body.push(x, load);
+                body.push(&(x + ahead), load);
             }
         }
     }
@@ -222,7 +229,7 @@ impl Simulation {
         }
         let input = ContactInput {
             blocks: &self.blocks,
-            position: &self.contact_position,
+            position: seen(&self.blocks, &self.state.ahead, &self.contact_position, &mut self.seen_position),
             velocity: facet_velocity.filter(|_| !model.needs_bodies()).unwrap_or(&self.state.velocity),
             dt_s: self.part_s,
             affine: &self.affine,
@@ -262,6 +269,7 @@ impl Simulation {
             time_s: self.clock_s(0.0),
             end_s: self.clock_s(1.0),
             contact_position: &self.contact_position[range.clone()],
+            ahead: self.ahead(BlockId(index as u32)),
             force: &self.force[range.clone()],
             external: &self.loads.total()[range.clone()],
             changing: self.loads.changing().get(range.clone()).unwrap_or(&[]),

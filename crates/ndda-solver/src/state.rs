@@ -28,6 +28,8 @@ pub struct State {
     pub inertia: Vec<Inertia>,
     /// Contact force per node at the end of the last step [N]; empty where contact is taken at predicted positions.
     pub contact_force: Vec<Vec3>,
+    /// How far ahead of each block contact looks [m]; empty for integrators that have no need of it (`first_step.rs`).
+    pub ahead: Vec<Vec3>,
     /// What contact remembers.
     pub contact: ContactHistory,
 }
