@@ -2,10 +2,13 @@
 
 use pulp::Arch;
 
-use crate::clip::{Form, Outline, Polygon};
+use crate::clip::{Form, MOST_CORNERS, Outline, Polygon};
 use crate::kernel::{GROUP, GroupMoments, RegionGroup, region_moments};
 use crate::pair::PairMoments;
 use crate::region::{Cut, Region, element_cuts, element_outside, is_somewhere};
+
+/// Contactors with so many corners or fewer wait together.
+const FEW_CORNERS: usize = 4;
 
 /// Regions with this many cuts or more wait together.
 const MANY_CUTS: usize = 5;
@@ -48,7 +51,7 @@ impl Batches {
         let cuts = region.cuts();
         let which = match outline.corners().len() {
             _ if outline.is_triangle() => cuts.len().min(MANY_CUTS),
-            3 | 4 => MANY_CUTS + 1 + cuts.len().min(MANY_CUTS),
+            ..=FEW_CORNERS => MANY_CUTS + 1 + cuts.len().min(MANY_CUTS),
             _ => BATCHES - 1,
         };
         let batch = &mut self.waiting[which];
@@ -127,12 +130,13 @@ impl Batch {
 
     #[inline(always)]
     fn set_outline(&mut self, outline: &Outline) {
+        let room = if outline.corners().len() <= FEW_CORNERS { FEW_CORNERS } else { MOST_CORNERS };
         let (lane, group) = (self.group.len, &mut self.group);
         if outline.is_triangle() {
             return;
         }
-        group.corners = group.corners.max(outline.corners().len()).max(4);
-        for ([x, y], psi) in group.outline.iter_mut().zip(outline.padded()) {
+        group.corners = group.corners.max(outline.corners().len()).max(FEW_CORNERS);
+        for ([x, y], psi) in group.outline[..room].iter_mut().zip(outline.padded()) {
             (x[lane], y[lane]) = (psi[0], psi[1]);
         }
     }

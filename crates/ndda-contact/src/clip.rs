@@ -59,28 +59,6 @@ impl Outline {
         self.is_triangle
     }
 
-    /// Whether a property of a field, given by its values at the triangle's corners, holds at none or at all corners of the outline.
-    #[inline(always)]
-    pub fn extent(&self, at: &[f64; 3], holds: impl Fn(f64) -> bool) -> Extent {
-        if self.is_triangle {
-            return Extent::of_triangle(at, holds);
-        }
-        let form = Form::through(at);
-        match self.corners().iter().filter(|psi| holds(form.at(psi))).count() {
-            0 => Extent::Nowhere,
-            all if all == self.len => Extent::Everywhere,
-            _ => Extent::Partly,
-        }
-    }
-
-    /// The largest value of a field, at a corner.
-    pub fn largest(&self, at: &[f64; 3]) -> f64 {
-        if self.is_triangle {
-            return at[0].max(at[1]).max(at[2]);
-        }
-        let form = Form::through(at);
-        self.corners().iter().map(|psi| form.at(psi)).fold(f64::NEG_INFINITY, f64::max)
-    }
 }
 
 /// At which corners something holds.

@@ -87,7 +87,9 @@ pub struct Faces {
     run_of: Vec<u32>,
     /// Patches by block.
     by_block: ByBlock,
-    block_area: Vec<f64>,
+    /// Mass that a square metre of each block's contacts moves within the step [kg/m²].
+    mass_per_area: Vec<f64>,
+    /// Blocks with the velocities that faces would stop.
     bodies: Vec<Body>,
     /// Whose motion to come a face asks for.
     is_asked: Vec<bool>,
@@ -167,7 +169,7 @@ impl Faces {
         self.find_patches(scene, forces, history);
         let blocks_of = |patch: &Patch| (patch.owner, patch.target);
         self.by_block.arrange(scene.input.blocks.len(), self.patches.iter().map(blocks_of));
-        self.sum_areas(scene);
+        self.share_masses(scene);
         self.push_bodies(scene);
         self.rub(scene);
         let spread = |(force, run): (&mut FacetForce, &u32)| self.patches[*run as usize].spread_to(force);
@@ -184,19 +186,23 @@ impl Faces {
     fn find_patches(&mut self, scene: &FaceScene, forces: &[FacetForce], history: &ContactHistory) {
         let (order, runs) = (&self.order, &self.runs);
         self.patches.resize(runs.len(), Patch::default());
-        let find = |(patch, run): (&mut Patch, &Range<usize>)| {
-            *patch = Patch::find(&order[run.clone()], scene, forces, history);
+        let find = |(patches, runs): (&mut [Patch], &[Range<usize>])| {
+            let mut remembered = Remembered::since(history, &order[runs[0].start]);
+            for (patch, run) in patches.iter_mut().zip(runs) {
+                *patch = Patch::find(&order[run.clone()], scene, forces, &mut remembered);
+            }
         };
-        self.patches.par_iter_mut().zip(runs).with_min_len(GRAIN_PATCHES).for_each(find);
+        self.patches.par_chunks_mut(GRAIN_PATCHES).zip(runs.par_chunks(GRAIN_PATCHES)).for_each(find);
     }
 
     /// Friction of each face.
     fn rub(&mut self, scene: &FaceScene) {
-        let (order, bodies, areas) = (&self.order, &self.bodies, &self.block_area);
+        let (order, bodies, mass_per_area) = (&self.order, &self.bodies, &self.mass_per_area);
         let rub = |(patch, run): (&mut Patch, &Range<usize>)| {
             if patch.rubs() {
                 let law = scene.law(&order[run.clone()]).expect("patches have a law");
-                let step = FaceStep { dt_s: scene.input.dt_s, patch, bodies, areas };
+                let basis = tangents(&patch.normal);
+                let step = FaceStep { dt_s: scene.input.dt_s, patch, basis, bodies, mass_per_area };
                 (patch.force_n, patch.torque_n_m, patch.memory) = step.advance(law);
             }
         };
@@ -223,24 +229,34 @@ impl Faces {
                 }
                 patch.push_as_before(body, sign);
             }
+            body.speed_up(scene.input.dt_s);
         };
         self.bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(push);
     }
 
-    /// What of each block touches.
-    fn sum_areas(&mut self, scene: &FaceScene) {
-        self.block_area.clear();
-        self.block_area.resize(scene.input.blocks.len(), 0.0);
+    /// Spreads each block's mass over what of it touches.
+    fn share_masses(&mut self, scene: &FaceScene) {
+        let shares = &mut self.mass_per_area;
+        shares.clear();
+        shares.resize(scene.input.blocks.len(), 0.0);
         for patch in &self.patches {
-            self.block_area[patch.owner.index()] += patch.area_m2;
-            self.block_area[patch.target.index()] += patch.area_m2;
+            shares[patch.owner.index()] += patch.area_m2;
+            shares[patch.target.index()] += patch.area_m2;
+        }
+        for (share, body) in shares.iter_mut().zip(scene.input.bodies) {
+            *share = mass_per_area(body, *share, scene.input.dt_s);
         }
     }
 }
 
 impl Patch {
-    fn find(run: &[Place], scene: &FaceScene, forces: &[FacetForce], history: &ContactHistory) -> Self {
-        let (face, target, first) = run[0];
+    fn find(
+        run: &[Place],
+        scene: &FaceScene,
+        forces: &[FacetForce],
+        remembered: &mut Remembered,
+    ) -> Self {
+        let (_, target, first) = run[0];
         let (owner, has_law) = (scene.owner(first), scene.law(run).is_some());
         let mut patch = Self { owner, target, has_law, ..Self::default() };
         patch.sum(run, scene, forces);
@@ -248,7 +264,7 @@ impl Patch {
         if !patch.rubs() {
             return patch;
         }
-        let old = remembered(history, face, target).filter(|old| old.normal.dot(&patch.normal) > 0.0);
+        let old = remembered.of(&run[0]).filter(|old| old.normal.dot(&patch.normal) > 0.0);
         patch.old = old.map(|old| old.turned_to(&patch.normal));
         if patch.is_held() {
             patch.measure_slip(run, scene, forces);
@@ -346,8 +362,10 @@ impl Patch {
 struct FaceStep<'a> {
     dt_s: f64,
     patch: &'a Patch,
+    /// Two unit vectors in the face.
+    basis: [Vec3; 2],
     bodies: &'a [Body],
-    areas: &'a [f64],
+    mass_per_area: &'a [f64],
 }
 
 impl FaceStep<'_> {
@@ -400,7 +418,7 @@ impl FaceStep<'_> {
 
     /// What the law leaves of a force in the plane of the face, and whether that is less than asked for.
     fn limited(&self, law: &dyn FrictionLaw, force: Vec3) -> (Vec3, bool) {
-        let basis = tangents(&self.patch.normal);
+        let basis = &self.basis;
         let stopping_n = [force.dot(&basis[0]), force.dot(&basis[1])];
         let mut memory = ShearMemory::default();
         law.advance(&FacetSlip { stopping_n, ..self.slip() }, &mut memory);
@@ -423,13 +441,13 @@ impl FaceStep<'_> {
     fn slip_to_come(&self) -> (Vec3, f64) {
         let (own, other) = (self.body(self.patch.owner), self.body(self.patch.target));
         let (normal, at) = (&self.patch.normal, &self.patch.center);
-        let velocity = own.velocity_after(self.dt_s, at) - other.velocity_after(self.dt_s, at);
-        let spin = own.spin_after(self.dt_s) - other.spin_after(self.dt_s);
+        let velocity = own.velocity_at(at) - other.velocity_at(at);
+        let spin = own.spin_rad_s - other.spin_rad_s;
         (velocity - normal * normal.dot(&velocity), spin.dot(normal))
     }
 
     fn mass_per_area(&self) -> f64 {
-        let of = |block: BlockId| mass_per_area(self.body(block), self.areas[block.index()], self.dt_s);
+        let of = |block: BlockId| self.mass_per_area[block.index()];
         reduced(of(self.patch.owner), of(self.patch.target))
     }
 
@@ -450,10 +468,27 @@ impl FaceMemory {
     }
 }
 
-fn remembered(history: &ContactHistory, face: u32, target: BlockId) -> Option<FaceMemory> {
-    let key = |memory: &FaceMemory| (memory.face, memory.target);
-    let place = history.faces.binary_search_by_key(&(face, target), key);
-    place.ok().map(|place| history.faces[place])
+/// What faces remember, in their order: asked for one after the other, it is at hand.
+struct Remembered<'a> {
+    rest: &'a [FaceMemory],
+}
+
+impl<'a> Remembered<'a> {
+    fn since(history: &'a ContactHistory, first: &Place) -> Self {
+        let start = history.faces.partition_point(|memory| Self::is_before(memory, first));
+        Self { rest: &history.faces[start..] }
+    }
+
+    fn is_before(memory: &FaceMemory, &(face, target, _): &Place) -> bool {
+        (memory.face, memory.target) < (face, target)
+    }
+
+    /// That of a face on a block, none before the last one asked for.
+    fn of(&mut self, place: &Place) -> Option<FaceMemory> {
+        let passed = self.rest.iter().take_while(|memory| Self::is_before(memory, place)).count();
+        self.rest = &self.rest[passed..];
+        self.rest.first().filter(|memory| (memory.face, memory.target) == (place.0, place.1)).copied()
+    }
 }
 
 /// Two unit vectors across a normal.

@@ -20,9 +20,10 @@ use rayon::prelude::*;
 use crate::block_faces::BlockFaces;
 use crate::clip::Outline;
 use crate::contactors::{Contactor, Contactors};
-use crate::kernel::MOST_CUTS;
+use crate::kernel::{GROUP, MOST_CUTS};
 use crate::overlap::{Carried, Linear};
 use crate::pair::TetFrame;
+use crate::sides::Planes;
 
 /// Faces below which a second thread costs more than it brings.
 const GRAIN_FACES: usize = 1024;
@@ -74,6 +75,11 @@ pub struct Hulls {
     /// First face of each block; one that is concave or round has none.
     start: Vec<u32>,
     whole: Vec<Option<Whole>>,
+    /// The faces of blocks that are taken whole, once more, and where those of each row are.
+    planes: Vec<Planes>,
+    in_row: Vec<Range<usize>>,
+    /// First row of each block.
+    row_start: Vec<u32>,
     contactors: Contactors,
     /// Whether a face keeps the two blocks of a pair apart.
     are_apart: Vec<bool>,
@@ -95,6 +101,9 @@ impl Hulls {
         self.whole.clear();
         self.start.clear();
         self.start.push(0);
+        self.in_row.clear();
+        self.row_start.clear();
+        self.row_start.push(0);
         self.contactors.clear(blocks);
         for (block, surface) in blocks.ids().zip(surfaces) {
             let count = surface.planes.len();
@@ -114,6 +123,12 @@ impl Hulls {
                 }
                 _ => self.contactors.skip(),
             }
+            if whole.is_some() {
+                let places = self.places_of(block);
+                let row = |first| first..places.end.min(first + GROUP);
+                self.in_row.extend(places.clone().step_by(GROUP).map(row));
+            }
+            self.row_start.push(self.in_row.len() as u32);
             self.whole.push(whole);
         }
     }
@@ -122,6 +137,8 @@ impl Hulls {
     pub fn place(&mut self, blocks: &BlockSet, position: &[Vec3]) {
         let place = |face: &mut Face| face.place(&position[blocks.nodes_of(face.block)], position);
         self.faces.par_iter_mut().with_min_len(GRAIN_FACES).for_each(place);
+        let rows = self.in_row.par_iter().with_min_len(GRAIN_FACES / GROUP);
+        rows.map(|row| Planes::of(&self.faces[row.clone()])).collect_into_vec(&mut self.planes);
     }
 
     /// Looks for a face between the two blocks of each pair.
@@ -155,6 +172,13 @@ impl Hulls {
     #[inline]
     pub fn faces_of(&self, block: BlockId) -> &[Face] {
         &self.faces[self.places_of(block)]
+    }
+
+    /// The faces of a block that is taken whole, by rows.
+    #[inline]
+    pub fn planes_of(&self, block: BlockId) -> &[Planes] {
+        let [start, end] = [0, 1].map(|next| self.row_start[block.index() + next] as usize);
+        &self.planes[start..end]
     }
 
     /// The faces of all blocks, block by block.
@@ -250,6 +274,11 @@ impl Face {
     #[inline(always)]
     pub fn gradient(&self) -> Vec3 {
         -self.normal
+    }
+
+    /// A point of the plane [m].
+    pub fn point(&self) -> &Vec3 {
+        &self.point
     }
 
     /// φ as a function of place, seen from `origin`.

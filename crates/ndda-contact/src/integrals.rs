@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::batch::Batches;
@@ -17,6 +17,7 @@ use crate::pair::{PairMoments, PsiRange, TetFrame};
 use crate::potential::Field;
 use crate::region::{Pieces, Region};
 use crate::report::{HitReport, list_past_centroid};
+use crate::sides::{Planes, Sides};
 
 /// Pairs of a chunk: one task for a thread.
 const CHUNK_PAIRS: usize = 512;
@@ -178,6 +179,7 @@ struct Scratch {
     seen: Vec<Seen>,
     region: Region,
     pieces: Pieces,
+    sides: Sides,
     batches: Batches,
 }
 
@@ -306,7 +308,8 @@ impl Chunk {
         let nodes = scene.blocks.nodes_of(facet.target);
         let contactor = scene.hulls.contactor(facet.triangle, facet.target);
         let outline = contactor.map_or(&Outline::TRIANGLE, |face| &face.outline);
-        if !scratch.pieces.set_whole(scene.hulls.faces_of(facet.target), corners, normal, outline)
+        let planes = scene.hulls.planes_of(facet.target);
+        if !arch.dispatch(Look { sides: &mut scratch.sides, planes, corners, normal, outline })
             || (nodes.len() <= FEW_NODES
                 && are_on_one_side(scene.position[nodes].iter(), &corners[0], normal))
         {
@@ -319,7 +322,8 @@ impl Chunk {
         let frame = &scene.frames[slot];
         let range = contactor.map(|face| face.range);
         scratch.seen.push(Seen { lambda: frame.lambda(corners), range });
-        scratch.push_pieces(arch, hit, *area);
+        let Scratch { sides, region, batches, .. } = scratch;
+        arch.dispatch(PushSides { sides, region, batches, outline, arch, hit, area_m2: *area });
     }
 }
 
@@ -338,18 +342,57 @@ impl Scratch {
                 self.batches.push_element(arch, hit, area, lambda, &frame.slopes(normal));
             }
             Field::Pieces(table) => {
-                if self.pieces.set(lambda, table.of(tet), frame, normal) {
-                    self.push_pieces(arch, hit, area);
+                if !self.pieces.set(lambda, table.of(tet), frame, normal) {
+                    return;
+                }
+                for k in 0..self.pieces.len() {
+                    if self.region.set_piece(&self.pieces, k) {
+                        self.batches.push(arch, hit, area, &self.region, &Outline::TRIANGLE);
+                    }
                 }
             }
         }
     }
+}
 
-    /// The regions of the pieces as they are.
-    fn push_pieces(&mut self, arch: Arch, hit: u32, area: f64) {
-        for k in 0..self.pieces.len() {
-            if self.region.set_piece(&self.pieces, k) {
-                self.batches.push(arch, hit, area, &self.region, self.pieces.outline());
+/// A look at a block that is taken whole.
+struct Look<'a> {
+    sides: &'a mut Sides,
+    planes: &'a [Planes],
+    corners: &'a [Vec3; 3],
+    normal: &'a Vec3,
+    outline: &'a Outline,
+}
+
+impl WithSimd for Look<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        self.sides.look(simd, self.planes, self.corners, self.normal, self.outline)
+    }
+}
+
+/// The regions that are seen then.
+struct PushSides<'a> {
+    sides: &'a mut Sides,
+    region: &'a mut Region,
+    batches: &'a mut Batches,
+    outline: &'a Outline,
+    arch: Arch,
+    hit: u32,
+    area_m2: f64,
+}
+
+impl WithSimd for PushSides<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { sides, region, batches, outline, arch, hit, area_m2 } = self;
+        for k in 0..sides.len() {
+            if sides.set_region(simd, k, outline, region) {
+                batches.push(arch, hit, area_m2, region, outline);
             }
         }
     }

@@ -71,6 +71,8 @@ pub mod report;
 #[cfg(feature = "potential")]
 pub mod scatter;
 #[cfg(feature = "potential")]
+pub mod sides;
+#[cfg(feature = "potential")]
 pub mod smooth_potential;
 #[cfg(feature = "potential")]
 pub mod tangent;

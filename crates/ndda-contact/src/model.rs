@@ -58,15 +58,15 @@ impl Body {
         self.torque_n_m += (x - self.center).cross(force_n);
     }
 
-    /// Velocity at a point at the end of a step under its loads [m/s].
-    pub fn velocity_after(&self, dt_s: f64, x: &Vec3) -> Vec3 {
-        let velocity = self.velocity_m_s + dt_s / self.mass_kg * self.load_n;
-        velocity + self.spin_after(dt_s).cross(&(x - self.center))
+    /// Takes the velocities to the end of a step under the loads.
+    pub fn speed_up(&mut self, dt_s: f64) {
+        self.velocity_m_s += dt_s / self.mass_kg * self.load_n;
+        self.spin_rad_s += dt_s * (self.inverse_inertia * self.torque_n_m);
     }
 
-    /// Rate of rotation then [rad/s].
-    pub fn spin_after(&self, dt_s: f64) -> Vec3 {
-        self.spin_rad_s + dt_s * (self.inverse_inertia * self.torque_n_m)
+    /// Velocity at a point [m/s].
+    pub fn velocity_at(&self, x: &Vec3) -> Vec3 {
+        self.velocity_m_s + self.spin_rad_s.cross(&(x - self.center))
     }
 }
 

@@ -220,7 +220,7 @@ impl PotentialContact {
         for hit in self.integrals.hits_of(touch) {
             let tet = hit.tet;
             let target = match (&self.field, self.hulls.whole(facet.target)) {
-                (_, Some(_)) => Target::Whole(self.hulls.faces_of(facet.target), outline),
+                (_, Some(_)) => Target::Whole(self.hulls.planes_of(facet.target), outline),
                 (Some((_, Field::Pieces(table))), None) => Target::Pieces(table.of(tet)),
                 _ => Target::Element,
             };

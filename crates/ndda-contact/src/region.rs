@@ -7,7 +7,6 @@
 //! in none.
 
 use crate::clip::{Extent, Form, Outline, Polygon};
-use crate::hulls::Face;
 use crate::kernel::MOST_CUTS;
 use crate::pair::TetFrame;
 use ndda_mesh::Vec3;
@@ -34,11 +33,6 @@ impl Cut {
         Extent::of_triangle(&self.field, |d| d < self.bound)
     }
 
-    /// How much of a face is outside.
-    #[inline(always)]
-    fn outside_on(&self, outline: &Outline) -> Extent {
-        outline.extent(&self.field, |d| d < self.bound)
-    }
 }
 
 /// A region; one is used again and again.
@@ -61,7 +55,7 @@ impl Region {
 
     /// Begins anew.
     #[inline(always)]
-    fn begin(&mut self, phi: [f64; 3], slope: f64) {
+    pub fn begin(&mut self, phi: [f64; 3], slope: f64) {
         (self.phi, self.slope, self.len) = (phi, slope, 0);
     }
 
@@ -73,6 +67,13 @@ impl Region {
             self.len += 1;
         }
         outside != Extent::Everywhere
+    }
+
+    /// Adds a cut if it cuts anything: to write is quicker than to ask.
+    #[inline(always)]
+    pub fn put(&mut self, cut: Cut, cuts: bool) {
+        self.cuts[self.len] = cut;
+        self.len += usize::from(cuts);
     }
 
     /// Where λ_i ≥ 0 is the smallest of four and φ = 4 λ_i; `lambda[b][a]` is λ_b at corner a. `outside` is from
@@ -89,27 +90,15 @@ impl Region {
         is_somewhere(&outside[i])
     }
 
-    /// Where the k-th of the functions is the smallest, and positive in a block that is taken whole. False if that is nowhere.
+    /// Where the k-th of the functions is the smallest. False if that is nowhere.
     #[inline]
     pub fn set_piece(&mut self, pieces: &Pieces, k: usize) -> bool {
-        // Asked once, and not for each cut.
-        match pieces.outline.is_triangle() {
-            true => self.cut_piece(pieces, k, Cut::outside),
-            false => self.cut_piece(pieces, k, |cut| cut.outside_on(&pieces.outline)),
-        }
-    }
-
-    #[inline(always)]
-    fn cut_piece(&mut self, pieces: &Pieces, k: usize, outside: impl Fn(&Cut) -> Extent) -> bool {
-        let (own, slope) = (pieces.at[k], pieces.slope[k]);
+        let own = pieces.at[k];
         let ahead = |j: usize| Cut::new([0, 1, 2].map(|a| pieces.at[j][a] - own[a]), k < j);
-        self.begin(own, slope.abs());
-        let mut add = |cut: Cut| self.add(cut, outside(&cut));
+        self.begin(own, pieces.slope[k].abs());
+        let mut add = |cut: Cut| self.add(cut, cut.outside());
         for face in &pieces.faces[..pieces.faces_len] {
             add(*face);
-        }
-        if pieces.are_of_whole && !add(Cut::new(own, slope < 0.0)) {
-            return false;
         }
         (0..pieces.len).all(|j| j == k || add(ahead(j)))
     }
@@ -124,23 +113,17 @@ impl Region {
     }
 }
 
-/// The functions of a tetrahedron, or of a block that is taken whole, of which the smallest is φ, as a contactor sees them;
-/// used again and again.
+/// The functions of a tetrahedron, of which the smallest is φ, as a contactor sees them; used again and again.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pieces {
     /// Their values at the triangle's corners.
     at: [[f64; 3]; MOST_CUTS],
     /// ∂φ/∂n [1/m].
     slope: [f64; MOST_CUTS],
-    /// Which of the functions of the tetrahedron or block each is.
-    which: [u8; MOST_CUTS],
     len: usize,
     /// The cuts by the tetrahedron's faces that cut something.
     faces: [Cut; 4],
     faces_len: usize,
-    are_of_whole: bool,
-    /// The contactor.
-    outline: Outline,
 }
 
 impl Pieces {
@@ -154,8 +137,7 @@ impl Pieces {
         frame: &TetFrame,
         normal: &Vec3,
     ) -> bool {
-        (self.len, self.faces_len, self.are_of_whole) = (0, 0, false);
-        self.look_from(&Outline::TRIANGLE);
+        (self.len, self.faces_len) = (0, 0);
         let rise = [0, 1, 2, 3].map(|b| frame.gradient(b).dot(normal));
         for b in 0..4 {
             // The faces inside a block belong to the tetrahedron on the triangle's inner side.
@@ -169,62 +151,13 @@ impl Pieces {
                 }
             }
         }
-        for (k, values) in values.iter().enumerate() {
+        for values in values {
             let at = [0, 1, 2].map(|a| (0..4).map(|b| values[b] * lambda[b][a]).sum::<f64>());
-            self.push(k, at, (0..4).map(|b| values[b] * rise[b]).sum());
+            self.at[self.len] = at;
+            self.slope[self.len] = (0..4).map(|b| values[b] * rise[b]).sum();
+            self.len += 1;
         }
         true
-    }
-
-    /// The functions of a block that is taken whole, but for those that another is everywhere below; false if the contactor, with
-    /// this outline on a triangle with these corners [m], is beyond a face.
-    #[inline]
-    pub fn set_whole(
-        &mut self,
-        faces: &[Face],
-        corners: &[Vec3; 3],
-        normal: &Vec3,
-        outline: &Outline,
-    ) -> bool {
-        (self.len, self.faces_len, self.are_of_whole) = (0, 0, true);
-        self.look_from(outline);
-        let mut enough = f64::INFINITY;
-        for (k, face) in faces.iter().enumerate() {
-            let at = corners.each_ref().map(|x| face.phi(x));
-            let largest = outline.largest(&at);
-            if largest <= 0.0 {
-                return false;
-            }
-            enough = enough.min(largest);
-            self.push(k, at, face.gradient().dot(normal));
-        }
-        let mut kept = 0;
-        for k in 0..self.len {
-            let is_above = outline.extent(&self.at[k], |v| v > enough) == Extent::Everywhere;
-            (self.at[kept], self.slope[kept], self.which[kept]) = (self.at[k], self.slope[k], self.which[k]);
-            kept += usize::from(!is_above);
-        }
-        self.len = kept;
-        true
-    }
-
-    /// Takes another contactor; most are triangles, as the last one was.
-    #[inline(always)]
-    fn look_from(&mut self, outline: &Outline) {
-        if !(outline.is_triangle() && self.outline.is_triangle()) {
-            self.outline = *outline;
-        }
-    }
-
-    #[inline(always)]
-    fn push(&mut self, which: usize, at: [f64; 3], slope: f64) {
-        (self.at[self.len], self.slope[self.len], self.which[self.len]) = (at, slope, which as u8);
-        self.len += 1;
-    }
-
-    /// The contactor that sees them.
-    pub fn outline(&self) -> &Outline {
-        &self.outline
     }
 
     /// How many there are.
@@ -235,11 +168,6 @@ impl Pieces {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len == 0
-    }
-
-    /// Which function of the tetrahedron or block the k-th is.
-    pub fn which(&self, k: usize) -> usize {
-        usize::from(self.which[k])
     }
 }
 

@@ -14,12 +14,14 @@
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{Mat3, Vec3};
+use pulp::Scalar;
 
 use crate::clip::{Outline, Polygon};
-use crate::hulls::Face;
+use crate::kernel::GROUP;
 use crate::pair::TetFrame;
 use crate::pair_stiffness::PairStiffness;
 use crate::region::{Pieces, Region, element_outside};
+use crate::sides::{Planes, Sides};
 
 /// Adds the part of the pair where φ is one linear function with this gradient.
 fn add_part(
@@ -62,9 +64,9 @@ pub enum Target<'a> {
     Element,
     /// The smallest of linear functions with these nodal values.
     Pieces(&'a [[f64; 4]]),
-    /// The smallest of the functions of these faces of a block that is taken whole, on a contactor with this outline; λ are those of
+    /// The smallest of the functions of these sides of a block that is taken whole, on a contactor with this outline; λ are those of
     /// its host.
-    Whole(&'a [Face], &'a Outline),
+    Whole(&'a [Planes], &'a Outline),
 }
 
 /// Adds the stiffness of a contactor in a tetrahedron or a block that is taken whole; `corners` [m] are those of its triangle.
@@ -89,26 +91,29 @@ pub fn add_pair(
         let product = normal * gradient.transpose();
         -0.5 * penalty_pa * (product + product.transpose())
     };
-    let (mut region, mut seen) = (Region::default(), Pieces::default());
+    let (mut region, mut seen, mut sides) = (Region::default(), Pieces::default(), Sides::default());
+    let one_lane = Scalar::new();
     let outside = element_outside(&lambda);
     let pieces = match target {
         Target::Element => 4,
         Target::Pieces(values) if seen.set(&lambda, values, frame, &normal) => seen.len(),
-        Target::Whole(faces, outline) if seen.set_whole(faces, corners, &normal, outline) => seen.len(),
+        Target::Whole(planes, outline) if sides.look(one_lane, planes, corners, &normal, outline) => sides.len(),
         _ => 0,
     };
+    let outline = if let Target::Whole(_, outline) = target { outline } else { &Outline::TRIANGLE };
     for k in 0..pieces {
         let somewhere = match target {
             Target::Element => region.set_element(&lambda, &outside, k, 0.0),
-            _ => region.set_piece(&seen, k),
+            Target::Pieces(_) => region.set_piece(&seen, k),
+            Target::Whole(..) => sides.set_region(one_lane, k, outline, &mut region),
         };
         let gradient: Vec3 = match target {
             Target::Element => 4.0 * frame.gradient(k),
-            Target::Pieces(values) => (0..4).map(|b| values[seen.which(k)][b] * frame.gradient(b)).sum(),
-            Target::Whole(faces, _) => faces[seen.which(k)].gradient(),
+            Target::Pieces(values) => (0..4).map(|b| values[k][b] * frame.gradient(b)).sum(),
+            Target::Whole(planes, _) => planes[sides.which(k) / GROUP].gradient(sides.which(k) % GROUP),
         };
         if somewhere {
-            add_part(stiffness, &region.polygon(seen.outline()), &shapes, &tensor(&gradient), area);
+            add_part(stiffness, &region.polygon(outline), &shapes, &tensor(&gradient), area);
         }
     }
 }

@@ -1,0 +1,256 @@
+//! The functions of a block that is taken whole as a contactor sees them, as many at a time as the processor has lanes.
+//!
+//! Most contactors see five or six sides, three of which make regions, and each region asks all others whether they lead. One by one that
+//! took as long as the integrals.
+
+use ndda_mesh::Vec3;
+use pulp::Simd;
+
+use crate::clip::Outline;
+use crate::hulls::Face;
+use crate::kernel::{GROUP, MOST_CUTS, Row};
+use crate::region::{Cut, Region};
+
+/// Rows for the sides of a block.
+const ROWS: usize = MOST_CUTS / GROUP;
+
+/// The place of each side, to compare with.
+const PLACES: [Row; ROWS] = {
+    let mut places = [[0.0; GROUP]; ROWS];
+    let mut k = 0;
+    while k < MOST_CUTS {
+        places[k / GROUP][k % GROUP] = k as f64;
+        k += 1;
+    }
+    places
+};
+
+/// Sides of one block next to each other; where they are fewer than a row, the last one fills it.
+#[derive(Clone, Copy, Debug)]
+pub struct Planes {
+    /// n of φ = n·(p − x) [1/m], by component.
+    normal: [Row; 3],
+    /// p [m], by component.
+    point: [Row; 3],
+    len: usize,
+}
+
+/// The sides of a block, of which φ is the smallest, seen from a contactor; used again and again.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sides {
+    /// How many the block has.
+    all: usize,
+    /// φ of each at the corners of the contactor's triangle.
+    at: [[Row; 3]; ROWS],
+    /// ∂φ/∂n [1/m].
+    rise: [Row; ROWS],
+    /// Bounds of the lead of each over one that comes before it, and over one that comes after; none where another is below everywhere.
+    over_former: [Row; ROWS],
+    over_later: [Row; ROWS],
+    /// Those that may be the smallest somewhere.
+    which: [u8; MOST_CUTS],
+    len: usize,
+    /// By how much each leads over the one that a region is of, and in its place that one itself, which has to be positive.
+    lead: [[Row; 3]; ROWS],
+    bound: [Row; ROWS],
+    /// At how many corners of the contactor each is below its bound.
+    outside: [Row; ROWS],
+}
+
+#[inline(always)]
+fn load<S: Simd>(row: &Row, i: usize) -> S::f64s {
+    S::as_simd_f64s(row).0[i]
+}
+
+#[inline(always)]
+fn store<S: Simd>(row: &mut Row, i: usize, value: S::f64s) {
+    S::as_mut_simd_f64s(row).0[i] = value;
+}
+
+/// The values of fields at each corner of an outline, given by those at the corners of its triangle.
+#[inline(always)]
+fn each_corner<S: Simd>(simd: S, outline: &Outline, at: &[S::f64s; 3], mut visit: impl FnMut(S::f64s)) {
+    if outline.is_triangle() {
+        return at.iter().for_each(|value| visit(*value));
+    }
+    let [c0, c1, c2] = [at[0], simd.sub_f64s(at[1], at[0]), simd.sub_f64s(at[2], at[0])];
+    for [x, y] in outline.corners() {
+        let along = simd.mul_f64s(c1, simd.splat_f64s(*x));
+        visit(simd.add_f64s(c0, simd.add_f64s(along, simd.mul_f64s(c2, simd.splat_f64s(*y)))));
+    }
+}
+
+impl Planes {
+    /// The planes of one face at least and no more than a row has.
+    pub fn of(faces: &[Face]) -> Self {
+        let face = |k: usize| &faces[k.min(faces.len() - 1)];
+        Self {
+            normal: [0, 1, 2].map(|a| std::array::from_fn(|k| -face(k).gradient()[a])),
+            point: [0, 1, 2].map(|a| std::array::from_fn(|k| face(k).point()[a])),
+            len: faces.len(),
+        }
+    }
+
+    /// ∇φ of one of them [1/m].
+    pub fn gradient(&self, lane: usize) -> Vec3 {
+        Vec3::from(self.normal.map(|row| -row[lane]))
+    }
+
+    /// φ of each at a point.
+    #[inline(always)]
+    fn phi<S: Simd>(&self, simd: S, i: usize, x: &Vec3) -> S::f64s {
+        let mut terms = [simd.splat_f64s(0.0); 3];
+        for a in 0..3 {
+            let arm = simd.sub_f64s(load::<S>(&self.point[a], i), simd.splat_f64s(x[a]));
+            terms[a] = simd.mul_f64s(load::<S>(&self.normal[a], i), arm);
+        }
+        simd.add_f64s(simd.add_f64s(terms[0], terms[1]), terms[2])
+    }
+
+    /// ∂φ/∂n of each along a unit vector [1/m].
+    #[inline(always)]
+    fn rise<S: Simd>(&self, simd: S, i: usize, along: &Vec3) -> S::f64s {
+        let mut terms = [simd.splat_f64s(0.0); 3];
+        for a in 0..3 {
+            let down = simd.neg_f64s(load::<S>(&self.normal[a], i));
+            terms[a] = simd.mul_f64s(down, simd.splat_f64s(along[a]));
+        }
+        simd.add_f64s(simd.add_f64s(terms[0], terms[1]), terms[2])
+    }
+}
+
+impl Sides {
+    /// Looks at a block from a contactor with this outline on a triangle with these corners [m]; false if that is beyond a side.
+    #[inline(always)]
+    pub fn look<S: Simd>(
+        &mut self,
+        simd: S,
+        planes: &[Planes],
+        corners: &[Vec3; 3],
+        normal: &Vec3,
+        outline: &Outline,
+    ) -> bool {
+        (self.all, self.len) = (planes.iter().map(|planes| planes.len).sum(), 0);
+        let (most, least) = (simd.splat_f64s(f64::INFINITY), simd.splat_f64s(f64::NEG_INFINITY));
+        let mut lowest = [[0.0; GROUP]; ROWS];
+        let mut enough = most;
+        for (row, planes) in planes.iter().enumerate() {
+            for i in 0..planes.len.div_ceil(S::F64_LANES) {
+                let mut at = [most; 3];
+                for a in 0..3 {
+                    at[a] = planes.phi(simd, i, &corners[a]);
+                }
+                let (mut low, mut high) = (most, least);
+                each_corner(simd, outline, &at, |value| {
+                    low = simd.select_f64s(simd.less_than_f64s(value, low), value, low);
+                    high = simd.select_f64s(simd.greater_than_f64s(value, high), value, high);
+                });
+                enough = simd.min_f64s(enough, high);
+                for a in 0..3 {
+                    store::<S>(&mut self.at[row][a], i, at[a]);
+                }
+                store::<S>(&mut lowest[row], i, low);
+            }
+        }
+        // Of all sides, one reaches no higher than this anywhere.
+        let enough = simd.reduce_min_f64s(enough);
+        if enough <= 0.0 {
+            return false;
+        }
+        for (row, planes) in planes.iter().enumerate() {
+            self.keep(simd, row, planes, &lowest[row], enough, normal);
+        }
+        true
+    }
+
+    /// Lists the sides of a row that are not above everywhere.
+    #[inline(always)]
+    fn keep<S: Simd>(&mut self, simd: S, row: usize, planes: &Planes, lowest: &Row, enough: f64, normal: &Vec3) {
+        let never = simd.splat_f64s(f64::NEG_INFINITY);
+        let keeps = simd.splat_f64s(Cut::new([0.0; 3], true).bound);
+        let leaves = simd.splat_f64s(Cut::new([0.0; 3], false).bound);
+        for i in 0..planes.len.div_ceil(S::F64_LANES) {
+            let above = simd.greater_than_f64s(load::<S>(lowest, i), simd.splat_f64s(enough));
+            store::<S>(&mut self.over_former[row], i, simd.select_f64s(above, never, keeps));
+            store::<S>(&mut self.over_later[row], i, simd.select_f64s(above, never, leaves));
+            store::<S>(&mut self.rise[row], i, planes.rise(simd, i, normal));
+        }
+        for lane in 0..planes.len {
+            self.which[self.len] = (row * GROUP + lane) as u8;
+            self.len += usize::from(lowest[lane] <= enough);
+        }
+    }
+
+    /// How many may be the smallest somewhere.
+    pub fn len(&self) -> usize {
+        self.len
+    }
+
+    /// Whether none may.
+    pub fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
+    /// Which side of the block the k-th of them is.
+    pub fn which(&self, k: usize) -> usize {
+        usize::from(self.which[k])
+    }
+
+    /// The region where the k-th of them is the smallest and positive; false if that is nowhere.
+    #[inline(always)]
+    pub fn set_region<S: Simd>(&mut self, simd: S, k: usize, outline: &Outline, region: &mut Region) -> bool {
+        let k = self.which(k);
+        let (own, rise) = ([0, 1, 2].map(|a| self.at[k / GROUP][a][k % GROUP]), self.rise[k / GROUP][k % GROUP]);
+        self.compare(simd, k, &own, rise, outline);
+        region.begin(own, rise.abs());
+        let all = outline.corners().len() as f64;
+        let mut is_somewhere = self.put(k, all, region);
+        for n in 0..self.len {
+            let j = self.which(n);
+            is_somewhere &= j == k || self.put(j, all, region);
+        }
+        is_somewhere
+    }
+
+    /// The leads over side k.
+    #[inline(always)]
+    fn compare<S: Simd>(&mut self, simd: S, k: usize, own: &[f64; 3], rise: f64, outline: &Outline) {
+        let (place, zero, one) = (simd.splat_f64s(k as f64), simd.splat_f64s(0.0), simd.splat_f64s(1.0));
+        let own_bound = simd.splat_f64s(Cut::new([0.0; 3], rise < 0.0).bound);
+        for row in 0..self.all.div_ceil(GROUP) {
+            for i in 0..(self.all - row * GROUP).min(GROUP).div_ceil(S::F64_LANES) {
+                let places = load::<S>(&PLACES[row], i);
+                let is_own = simd.equal_f64s(places, place);
+                let mut lead = [zero; 3];
+                for a in 0..3 {
+                    let base = simd.select_f64s(is_own, zero, simd.splat_f64s(own[a]));
+                    lead[a] = simd.sub_f64s(load::<S>(&self.at[row][a], i), base);
+                    store::<S>(&mut self.lead[row][a], i, lead[a]);
+                }
+                let over = simd.select_f64s(
+                    simd.less_than_f64s(place, places),
+                    load::<S>(&self.over_former[row], i),
+                    load::<S>(&self.over_later[row], i),
+                );
+                let bound = simd.select_f64s(is_own, own_bound, over);
+                let mut outside = zero;
+                each_corner(simd, outline, &lead, |value| {
+                    let below = simd.select_f64s(simd.less_than_f64s(value, bound), one, zero);
+                    outside = simd.add_f64s(outside, below);
+                });
+                store::<S>(&mut self.bound[row], i, bound);
+                store::<S>(&mut self.outside[row], i, outside);
+            }
+        }
+    }
+
+    /// Adds the cut by side j if it cuts anything; false if it leaves nothing.
+    #[inline(always)]
+    fn put(&self, j: usize, all: f64, region: &mut Region) -> bool {
+        let (row, lane) = (j / GROUP, j % GROUP);
+        let outside = self.outside[row][lane];
+        let field = [0, 1, 2].map(|a| self.lead[row][a][lane]);
+        region.put(Cut { field, bound: self.bound[row][lane] }, outside > 0.0);
+        outside < all
+    }
+}
