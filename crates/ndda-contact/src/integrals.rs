@@ -147,7 +147,7 @@ pub struct Chunk {
 }
 
 /// A contactor's triangle.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Triangle {
     corners: [Vec3; 3],
     /// Outward unit normal.
@@ -194,17 +194,15 @@ impl Chunk {
         self.touching.reserve(facets.len());
         self.sums.reserve(facets.len());
         scratch.make_room(pairs);
-        let mut last = None;
+        let (mut last, mut triangle) = (None, Triangle::default());
         for (k, facet) in facets.iter().enumerate() {
             if scene.hulls.are_apart(facet.neighbours) {
                 continue;
             }
             // Facets of one triangle follow each other.
-            let triangle = match last {
-                Some((id, triangle)) if id == facet.triangle => triangle,
-                _ => Triangle::new(scene, facet.triangle),
-            };
-            last = Some((facet.triangle, triangle));
+            if last != Some(facet.triangle) {
+                (last, triangle) = (Some(facet.triangle), Triangle::new(scene, facet.triangle));
+            }
             let first = self.hits.len() as u32;
             self.add_facet(arch, scene, facet, &triangle, scratch);
             let hits = [first, self.hits.len() as u32];
