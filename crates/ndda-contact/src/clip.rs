@@ -58,7 +58,6 @@ impl Outline {
     pub fn is_triangle(&self) -> bool {
         self.is_triangle
     }
-
 }
 
 /// At which corners something holds.

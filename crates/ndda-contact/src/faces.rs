@@ -189,7 +189,7 @@ impl Faces {
         let find = |(patches, runs): (&mut [Patch], &[Range<usize>])| {
             let mut remembered = Remembered::since(history, &order[runs[0].start]);
             for (patch, run) in patches.iter_mut().zip(runs) {
-                *patch = Patch::find(&order[run.clone()], scene, forces, &mut remembered);
+                patch.find(&order[run.clone()], scene, forces, &mut remembered);
             }
         };
         self.patches.par_chunks_mut(GRAIN_PATCHES).zip(runs.par_chunks(GRAIN_PATCHES)).for_each(find);
@@ -250,26 +250,20 @@ impl Faces {
 }
 
 impl Patch {
-    fn find(
-        run: &[Place],
-        scene: &FaceScene,
-        forces: &[FacetForce],
-        remembered: &mut Remembered,
-    ) -> Self {
+    fn find(&mut self, run: &[Place], scene: &FaceScene, forces: &[FacetForce], remembered: &mut Remembered) {
         let (_, target, first) = run[0];
         let (owner, has_law) = (scene.owner(first), scene.law(run).is_some());
-        let mut patch = Self { owner, target, has_law, ..Self::default() };
-        patch.sum(run, scene, forces);
-        patch.measure(run, scene, forces);
-        if !patch.rubs() {
-            return patch;
+        *self = Self { owner, target, has_law, ..Self::default() };
+        self.sum(run, scene, forces);
+        self.measure(run, scene, forces);
+        if !self.rubs() {
+            return;
         }
-        let old = remembered.of(&run[0]).filter(|old| old.normal.dot(&patch.normal) > 0.0);
-        patch.old = old.map(|old| old.turned_to(&patch.normal));
-        if patch.is_held() {
-            patch.measure_slip(run, scene, forces);
+        let old = remembered.of(&run[0]).filter(|old| old.normal.dot(&self.normal) > 0.0);
+        self.old = old.map(|old| old.turned_to(&self.normal));
+        if self.is_held() {
+            self.measure_slip(run, scene, forces);
         }
-        patch
     }
 
     /// Whether it stuck in the last step: then its own slip counts, otherwise that of the rigid motions to come.

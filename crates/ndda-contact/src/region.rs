@@ -32,7 +32,6 @@ impl Cut {
     fn outside(&self) -> Extent {
         Extent::of_triangle(&self.field, |d| d < self.bound)
     }
-
 }
 
 /// A region; one is used again and again.

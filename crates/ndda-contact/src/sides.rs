@@ -136,18 +136,16 @@ impl Sides {
         let mut enough = most;
         for (row, planes) in planes.iter().enumerate() {
             for i in 0..planes.len.div_ceil(S::F64_LANES) {
-                let mut at = [most; 3];
-                for a in 0..3 {
-                    at[a] = planes.phi(simd, i, &corners[a]);
-                }
+                let [x, y, z] = corners;
+                let at = [planes.phi(simd, i, x), planes.phi(simd, i, y), planes.phi(simd, i, z)];
                 let (mut low, mut high) = (most, least);
                 each_corner(simd, outline, &at, |value| {
                     low = simd.select_f64s(simd.less_than_f64s(value, low), value, low);
                     high = simd.select_f64s(simd.greater_than_f64s(value, high), value, high);
                 });
                 enough = simd.min_f64s(enough, high);
-                for a in 0..3 {
-                    store::<S>(&mut self.at[row][a], i, at[a]);
+                for (row, value) in self.at[row].iter_mut().zip(at) {
+                    store::<S>(row, i, value);
                 }
                 store::<S>(&mut lowest[row], i, low);
             }
@@ -165,7 +163,15 @@ impl Sides {
 
     /// Lists the sides of a row that are not above everywhere.
     #[inline(always)]
-    fn keep<S: Simd>(&mut self, simd: S, row: usize, planes: &Planes, lowest: &Row, enough: f64, normal: &Vec3) {
+    fn keep<S: Simd>(
+        &mut self,
+        simd: S,
+        row: usize,
+        planes: &Planes,
+        lowest: &Row,
+        enough: f64,
+        normal: &Vec3,
+    ) {
         let never = simd.splat_f64s(f64::NEG_INFINITY);
         let keeps = simd.splat_f64s(Cut::new([0.0; 3], true).bound);
         let leaves = simd.splat_f64s(Cut::new([0.0; 3], false).bound);
@@ -175,9 +181,9 @@ impl Sides {
             store::<S>(&mut self.over_later[row], i, simd.select_f64s(above, never, leaves));
             store::<S>(&mut self.rise[row], i, planes.rise(simd, i, normal));
         }
-        for lane in 0..planes.len {
+        for (lane, lowest) in lowest.iter().enumerate().take(planes.len) {
             self.which[self.len] = (row * GROUP + lane) as u8;
-            self.len += usize::from(lowest[lane] <= enough);
+            self.len += usize::from(*lowest <= enough);
         }
     }
 
@@ -200,7 +206,8 @@ impl Sides {
     #[inline(always)]
     pub fn set_region<S: Simd>(&mut self, simd: S, k: usize, outline: &Outline, region: &mut Region) -> bool {
         let k = self.which(k);
-        let (own, rise) = ([0, 1, 2].map(|a| self.at[k / GROUP][a][k % GROUP]), self.rise[k / GROUP][k % GROUP]);
+        let (own, rise) =
+            ([0, 1, 2].map(|a| self.at[k / GROUP][a][k % GROUP]), self.rise[k / GROUP][k % GROUP]);
         self.compare(simd, k, &own, rise, outline);
         region.begin(own, rise.abs());
         let all = outline.corners().len() as f64;
@@ -217,9 +224,9 @@ impl Sides {
     fn compare<S: Simd>(&mut self, simd: S, k: usize, own: &[f64; 3], rise: f64, outline: &Outline) {
         let (place, zero, one) = (simd.splat_f64s(k as f64), simd.splat_f64s(0.0), simd.splat_f64s(1.0));
         let own_bound = simd.splat_f64s(Cut::new([0.0; 3], rise < 0.0).bound);
-        for row in 0..self.all.div_ceil(GROUP) {
+        for (row, places) in PLACES.iter().enumerate().take(self.all.div_ceil(GROUP)) {
             for i in 0..(self.all - row * GROUP).min(GROUP).div_ceil(S::F64_LANES) {
-                let places = load::<S>(&PLACES[row], i);
+                let places = load::<S>(places, i);
                 let is_own = simd.equal_f64s(places, place);
                 let mut lead = [zero; 3];
                 for a in 0..3 {
@@ -252,5 +259,82 @@ impl Sides {
         let field = [0, 1, 2].map(|a| self.lead[row][a][lane]);
         region.put(Cut { field, bound: self.bound[row][lane] }, outside > 0.0);
         outside < all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::block_faces::BlockFaces;
+    use crate::hulls::Hulls;
+    use crate::testing::{test_box, test_set};
+    use ndda_mesh::BlockId;
+    use pulp::{Arch, Scalar, WithSimd};
+
+    /// The regions of a triangle in a box of 1 × 2 × 3 m, by corners of φ and cuts.
+    struct Regions<'a>(&'a [Planes], &'a [Vec3; 3]);
+
+    impl WithSimd for Regions<'_> {
+        type Output = Vec<Region>;
+
+        fn with_simd<S: Simd>(self, simd: S) -> Vec<Region> {
+            let (mut sides, mut region, mut found) = (Sides::default(), Region::default(), Vec::new());
+            if sides.look(simd, self.0, self.1, &Vec3::z(), &Outline::TRIANGLE) {
+                for k in 0..sides.len() {
+                    if sides.set_region(simd, k, &Outline::TRIANGLE, &mut region) {
+                        found.push(region);
+                    }
+                }
+            }
+            found
+        }
+    }
+
+    fn with_box(test: impl Fn(&[Planes])) {
+        let blocks = test_set(vec![test_box([0.0; 3], [1.0, 2.0, 3.0], [1, 1, 1])]);
+        let mut hulls = Hulls::default();
+        hulls.fit(&blocks, &BlockFaces::of_all(&blocks), Some(1.0), &[true], false);
+        hulls.place(&blocks, &blocks.rest_position);
+        test(hulls.planes_of(BlockId(0)));
+    }
+
+    fn area(regions: &[Region]) -> f64 {
+        let fan =
+            |region: &Region| region.polygon(&Outline::TRIANGLE).fan().map(|(_, part)| part).sum::<f64>();
+        regions.iter().map(fan).sum()
+    }
+
+    #[test]
+    fn regions_fill_a_triangle_inside_whatever_the_number_of_lanes() {
+        let corners = [[0.1, 0.1, 0.4], [0.9, 0.3, 0.4], [0.4, 1.9, 0.4]].map(Vec3::from);
+        with_box(|planes| {
+            let one_by_one = Scalar::new().vectorize(Regions(planes, &corners));
+            let at_once = Arch::new().dispatch(Regions(planes, &corners));
+            assert!((area(&one_by_one) - 1.0).abs() < 1e-14, "{}", area(&one_by_one));
+            let all = |regions: &[Region]| {
+                regions.iter().map(|r| (r.phi, r.slope, r.cuts().to_vec())).collect::<Vec<_>>()
+            };
+            assert_eq!(all(&one_by_one), all(&at_once));
+            // All four walls and the floor are the nearest side somewhere.
+            assert_eq!(at_once.len(), 5);
+        });
+    }
+
+    #[test]
+    fn a_triangle_beyond_a_side_or_in_its_plane_sees_nothing() {
+        for z in [-0.1, 0.0, 3.0] {
+            let corners = [[0.1, 0.1, z], [0.9, 0.3, z], [0.4, 1.9, z]].map(Vec3::from);
+            with_box(|planes| assert!(Arch::new().dispatch(Regions(planes, &corners)).is_empty()));
+        }
+    }
+
+    #[test]
+    fn half_a_triangle_inside_is_half_the_area() {
+        // In the plane z = 1.5, cut by x = 1 along a median.
+        let corners = [[1.0, 0.5, 1.5], [1.5, 1.5, 1.5], [0.5, 1.5, 1.5]].map(Vec3::from);
+        with_box(|planes| {
+            let inside = area(&Arch::new().dispatch(Regions(planes, &corners)));
+            assert!((inside - 0.5).abs() < 1e-14, "{inside}");
+        });
     }
 }

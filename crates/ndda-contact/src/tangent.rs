@@ -97,7 +97,9 @@ pub fn add_pair(
     let pieces = match target {
         Target::Element => 4,
         Target::Pieces(values) if seen.set(&lambda, values, frame, &normal) => seen.len(),
-        Target::Whole(planes, outline) if sides.look(one_lane, planes, corners, &normal, outline) => sides.len(),
+        Target::Whole(planes, outline) if sides.look(one_lane, planes, corners, &normal, outline) => {
+            sides.len()
+        }
         _ => 0,
     };
     let outline = if let Target::Whole(_, outline) = target { outline } else { &Outline::TRIANGLE };
