@@ -92,8 +92,8 @@ impl Candidates {
         let scene = self.listed.scene(input.blocks, hulls);
         let changed = self.broad_phase.find_pairs(&scene, self.listed.renewed(), &mut self.found);
         if changed || begins {
-            self.listed.note_pairs(input.blocks, &self.found);
             self.arrange(input);
+            self.listed.note_neighbours(&self.neighbours);
         }
         changed || begins
     }
