@@ -95,7 +95,18 @@ pub struct Faces {
     is_asked: Vec<bool>,
     /// One per run.
     patches: Vec<Patch>,
+    briefs: Vec<Brief>,
     new_faces: Vec<FaceMemory>,
+}
+
+/// What of a patch is asked for in passing.
+#[derive(Clone, Copy, Debug, Default)]
+struct Brief {
+    owner: BlockId,
+    target: BlockId,
+    area_m2: f64,
+    /// Whether it asks for the motion to come.
+    asks: bool,
 }
 
 /// What one face does to one block.
@@ -167,8 +178,8 @@ impl Faces {
     pub fn add(&mut self, scene: &FaceScene, forces: &mut [FacetForce], history: &mut ContactHistory) {
         self.arrange(scene);
         self.find_patches(scene, forces, history);
-        let blocks_of = |patch: &Patch| (patch.owner, patch.target);
-        self.by_block.arrange(scene.input.blocks.len(), self.patches.iter().map(blocks_of));
+        let blocks_of = |brief: &Brief| (brief.owner, brief.target);
+        self.by_block.arrange(scene.input.blocks.len(), self.briefs.iter().map(blocks_of));
         self.share_masses(scene);
         self.push_bodies(scene);
         self.rub(scene);
@@ -186,13 +197,17 @@ impl Faces {
     fn find_patches(&mut self, scene: &FaceScene, forces: &[FacetForce], history: &ContactHistory) {
         let (order, runs) = (&self.order, &self.runs);
         self.patches.resize(runs.len(), Patch::default());
-        let find = |(patches, runs): (&mut [Patch], &[Range<usize>])| {
+        self.briefs.resize(runs.len(), Brief::default());
+        let find = |((patches, briefs), runs): ((&mut [Patch], &mut [Brief]), &[Range<usize>])| {
             let mut remembered = Remembered::since(history, &order[runs[0].start]);
-            for (patch, run) in patches.iter_mut().zip(runs) {
+            for ((patch, brief), run) in patches.iter_mut().zip(briefs).zip(runs) {
                 patch.find(&order[run.clone()], scene, forces, &mut remembered);
+                *brief = patch.brief();
             }
         };
-        self.patches.par_chunks_mut(GRAIN_PATCHES).zip(runs.par_chunks(GRAIN_PATCHES)).for_each(find);
+        let patches = self.patches.par_chunks_mut(GRAIN_PATCHES);
+        let found = patches.zip(self.briefs.par_chunks_mut(GRAIN_PATCHES));
+        found.zip(runs.par_chunks(GRAIN_PATCHES)).for_each(find);
     }
 
     /// Friction of each face.
@@ -216,9 +231,9 @@ impl Faces {
         self.bodies.extend_from_slice(scene.input.bodies);
         self.is_asked.clear();
         self.is_asked.resize(self.bodies.len(), false);
-        for patch in self.patches.iter().filter(|patch| patch.rubs() && !patch.is_held()) {
-            self.is_asked[patch.owner.index()] = true;
-            self.is_asked[patch.target.index()] = true;
+        for brief in self.briefs.iter().filter(|brief| brief.asks) {
+            self.is_asked[brief.owner.index()] = true;
+            self.is_asked[brief.target.index()] = true;
         }
         let (is_asked, by_block, patches) = (&self.is_asked, &self.by_block, &self.patches);
         let push = |(block, body): (usize, &mut Body)| {
@@ -239,9 +254,9 @@ impl Faces {
         let shares = &mut self.mass_per_area;
         shares.clear();
         shares.resize(scene.input.blocks.len(), 0.0);
-        for patch in &self.patches {
-            shares[patch.owner.index()] += patch.area_m2;
-            shares[patch.target.index()] += patch.area_m2;
+        for brief in &self.briefs {
+            shares[brief.owner.index()] += brief.area_m2;
+            shares[brief.target.index()] += brief.area_m2;
         }
         for (share, body) in shares.iter_mut().zip(scene.input.bodies) {
             *share = mass_per_area(body, *share, scene.input.dt_s);
@@ -264,6 +279,11 @@ impl Patch {
         if self.is_held() {
             self.measure_slip(run, scene, forces);
         }
+    }
+
+    fn brief(&self) -> Brief {
+        let Self { owner, target, area_m2, .. } = *self;
+        Brief { owner, target, area_m2, asks: self.rubs() && !self.is_held() }
     }
 
     /// Whether it stuck in the last step: then its own slip counts, otherwise that of the rigid motions to come.

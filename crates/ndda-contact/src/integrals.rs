@@ -22,6 +22,9 @@ use crate::sides::{Planes, Sides};
 /// Pairs of a chunk: one task for a thread.
 const CHUNK_PAIRS: usize = 512;
 
+/// Most chunks that a thread takes at a time: with more, one waits for the other at the end.
+const MOST_CHUNKS: usize = 8;
+
 /// A candidate pair that does overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
@@ -457,11 +460,11 @@ impl Integrals {
         };
         match chunks {
             [only] => integrate(only),
-            many => many.par_iter_mut().for_each(integrate),
+            many => many.par_iter_mut().with_max_len(MOST_CHUNKS).for_each(integrate),
         }
         self.touching.clear();
         let used = &self.chunks[..used];
-        self.touching.extend(used.iter().flat_map(|chunk| &chunk.touching));
+        used.iter().for_each(|chunk| self.touching.extend_from_slice(&chunk.touching));
     }
 
     fn divide(&mut self, facets: &[Facet]) {

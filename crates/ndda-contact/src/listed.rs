@@ -17,7 +17,7 @@ const ALONE_STEPS: f64 = 512.0;
 /// Widest margin over the mean size of boundary triangles: twice as wide, falling blocks list four times the pairs.
 const WIDEST: f64 = 0.2;
 /// The part of its reach from which on a block is listed along with others: to arrange all pairs costs what listing those of many blocks does.
-const SOON: f64 = 0.7;
+const SOON: f64 = 0.5;
 /// Blocks below which a second thread costs more than it brings.
 const GRAIN_BLOCKS: usize = 2048;
 
