@@ -198,16 +198,15 @@ impl Faces {
         let (order, runs) = (&self.order, &self.runs);
         self.patches.resize(runs.len(), Patch::default());
         self.briefs.resize(runs.len(), Brief::default());
-        let find = |((patches, briefs), runs): ((&mut [Patch], &mut [Brief]), &[Range<usize>])| {
+        let patches = self.patches.par_chunks_mut(GRAIN_PATCHES);
+        let found = patches.zip(self.briefs.par_chunks_mut(GRAIN_PATCHES));
+        found.zip(runs.par_chunks(GRAIN_PATCHES)).for_each(|((patches, briefs), runs)| {
             let mut remembered = Remembered::since(history, &order[runs[0].start]);
             for ((patch, brief), run) in patches.iter_mut().zip(briefs).zip(runs) {
                 patch.find(&order[run.clone()], scene, forces, &mut remembered);
                 *brief = patch.brief();
             }
-        };
-        let patches = self.patches.par_chunks_mut(GRAIN_PATCHES);
-        let found = patches.zip(self.briefs.par_chunks_mut(GRAIN_PATCHES));
-        found.zip(runs.par_chunks(GRAIN_PATCHES)).for_each(find);
+        });
     }
 
     /// Friction of each face.
