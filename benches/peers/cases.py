@@ -26,12 +26,14 @@ def pile(body, penalty_pa):
 
 # Elastic cubes for 125 only.
 LARGE_PILE_OF_NDDA = [
+    ("rigid, k_n = 12 MPa", pile("Rigid", 1.2e7), (5e-3,)),
     ("rigid, k_n = 20 MPa", pile("Rigid", 2e7), (4e-3,)),
     ("rigid, k_n = 50 MPa", pile("Rigid", 5e7), (2e-3,)),
     ("rigid, k_n = 300 MPa", pile("Rigid", 3e8), (5e-4,)),
     ("affine, k_n = 50 MPa", pile("Affine", 5e7), (2e-3,)),
 ]
 PILE_OF_NDDA = [
+    ("rigid, k_n = 12 MPa", pile("Rigid", 1.2e7), (5e-3,)),
     ("rigid, k_n = 20 MPa", pile("Rigid", 2e7), (4e-3,)),
     ("rigid, k_n = 50 MPa", pile("Rigid", 5e7), (2e-3, 1e-3)),
     ("rigid, k_n = 300 MPa", pile("Rigid", 3e8), (5e-4,)),
