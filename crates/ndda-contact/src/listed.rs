@@ -120,18 +120,18 @@ impl Listed {
             !are_within(arch, reach_m / 3f64.sqrt(), was, now)
                 && !was.iter().zip(now).all(|(x, y)| (x - y).norm_squared() <= reach_m * reach_m)
         };
-        let look = |(block, moved): (usize, &mut bool)| {
-            *moved = is_beyond(block, SOON * reach_m[block]);
-            *moved && is_beyond(block, reach_m[block])
+        let mut look = |part: f64| {
+            let look = |(block, moved): (usize, &mut bool)| *moved = is_beyond(block, part * reach_m[block]);
+            if self.moved.len() > GRAIN_BLOCKS {
+                self.moved.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(look);
+            } else {
+                self.moved.iter_mut().enumerate().for_each(look);
+            }
+            self.moved.contains(&true)
         };
-        let are_out = if self.moved.len() > GRAIN_BLOCKS {
-            let blocks = self.moved.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS);
-            blocks.map(look).reduce(|| false, |a, b| a | b)
-        } else {
-            self.moved.iter_mut().enumerate().map(look).fold(false, |a, b| a | b)
-        };
-        if !are_out {
-            self.moved.fill(false);
+        // Few steps get to the second question.
+        if look(1.0) {
+            look(SOON);
         }
     }
 
