@@ -49,7 +49,7 @@ impl Simulation {
     }
 
     fn nearest_triangle(&self, block: BlockId, contact: &FacetContact) -> [NodeId; 3] {
-        let ahead = self.ahead(block);
+        let ahead = self.state.ahead_of(block);
         let corners = |triangle: &[NodeId; 3]| triangle.map(|n| self.contact_position[n.index()] + ahead);
         let distance = |triangle: &[NodeId; 3]| distance_to_triangle(&contact.center, &corners(triangle));
         let nearer = |a: &&[NodeId; 3], b: &&[NodeId; 3]| distance(a).total_cmp(&distance(b));
@@ -61,7 +61,7 @@ impl Simulation {
 
     /// Gives a force to the corners of a triangle, by the areas that the point makes with the other two.
     fn spread(&self, triangle: &[NodeId; 3], at: &Vec3, force_n: &Vec3, forces: &mut [Vec3]) {
-        let ahead = self.ahead(self.blocks.block_of(triangle[0]));
+        let ahead = self.state.ahead_of(self.blocks.block_of(triangle[0]));
         let corners = triangle.map(|n| self.contact_position[n.index()] + ahead);
         let normal = triangle_area_vector(&corners);
         let opposite = |a: usize| {

@@ -6,17 +6,12 @@
 //! block as a whole at the start, that is (ω Δt)⁴/128. o never changes: x + o is what moves by the scheme and keeps its
 //! energy and angular momentum, while x falls by ½ g t² from where it was put.
 
-use ndda_mesh::{BlockId, BlockSet, Vec3};
+use ndda_mesh::{BlockSet, Vec3};
 
 use crate::simulation::Simulation;
 use crate::step_error::StepError;
 
 impl Simulation {
-    /// o of a block [m].
-    pub(crate) fn ahead(&self, block: BlockId) -> Vec3 {
-        self.state.ahead.get(block.index()).copied().unwrap_or_default()
-    }
-
     /// Whether this is the first step, and one by a scheme of that kind. A scene that settled is on its course, with no load to bear all at
     /// once.
     pub(crate) fn begins(&self) -> bool {
@@ -37,6 +32,9 @@ impl Simulation {
             let momentum = shape.operator.momentum(&self.state.velocity[nodes]);
             self.ledger.add_shift(ahead.cross(&momentum));
             self.state.ahead.push(ahead);
+        }
+        if self.state.ahead.iter().all(|ahead| *ahead == Vec3::zeros()) {
+            self.state.ahead.clear();
         }
         self.force.copy_from_slice(self.loads.total());
         Ok(())

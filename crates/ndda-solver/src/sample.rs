@@ -56,7 +56,7 @@ impl Simulation {
     }
 
     fn add_block_to(&mut self, sample: &mut Sample, block: BlockId) -> Result<(), StepError> {
-        let (range, time_s, ahead) = (self.blocks.nodes_of(block), sample.time_s, self.ahead(block));
+        let (range, time_s, ahead) = (self.blocks.nodes_of(block), sample.time_s, self.state.ahead_of(block));
         let body = &mut self.bodies[block.index()];
         let shape = &self.shapes[body.shape];
         let (position, velocity) = (&self.state.position[range.clone()], &self.state.velocity[range]);

@@ -194,7 +194,7 @@ impl Simulation {
             let (position, velocity) =
                 (&self.contact_position[range.clone()], &self.state.velocity[range.clone()]);
             let motion = shape.operator.rigid_motion(position, velocity);
-            let ahead = self.state.ahead.get(index).copied().unwrap_or_default();
+            let ahead = self.state.ahead_of(BlockId(index as u32));
             body.center = motion.center + ahead;
             body.velocity_m_s = motion.velocity_m_s;
             body.spin_rad_s = motion.spin_rad_s;
@@ -269,7 +269,7 @@ impl Simulation {
             time_s: self.clock_s(0.0),
             end_s: self.clock_s(1.0),
             contact_position: &self.contact_position[range.clone()],
-            ahead: self.ahead(BlockId(index as u32)),
+            ahead: self.state.ahead_of(BlockId(index as u32)),
             force: &self.force[range.clone()],
             external: &self.loads.total()[range.clone()],
             changing: self.loads.changing().get(range.clone()).unwrap_or(&[]),

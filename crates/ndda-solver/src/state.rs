@@ -1,7 +1,7 @@
 //! What changes from step to step, and nothing else.
 
 use ndda_contact::ContactHistory;
-use ndda_mesh::Vec3;
+use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::step_control::StepState;
@@ -28,8 +28,15 @@ pub struct State {
     pub inertia: Vec<Inertia>,
     /// Contact force per node at the end of the last step [N]; empty where contact is taken at predicted positions.
     pub contact_force: Vec<Vec3>,
-    /// How far ahead of each block contact looks [m]; empty for integrators that have no need of it (`first_step.rs`).
+    /// How far ahead of each block contact looks [m]; empty where it does not look ahead of any (`first_step.rs`).
     pub ahead: Vec<Vec3>,
     /// What contact remembers.
     pub contact: ContactHistory,
+}
+
+impl State {
+    /// How far ahead of a block contact looks [m].
+    pub(crate) fn ahead_of(&self, block: BlockId) -> Vec3 {
+        self.ahead.get(block.index()).copied().unwrap_or_default()
+    }
 }
