@@ -116,10 +116,9 @@ impl BlockOverlaps {
         self.origin.clear();
         self.origin.resize(self.pairs.len(), None);
         for touch in integrals.touching() {
-            let facet = &candidates.facets[touch.facet as usize];
             let k = self.place(touch.owner, touch.target).expect("listed above");
             let sums = integrals.sums_of(touch);
-            let corners = input.blocks.triangle_corners(facet.triangle, input.position);
+            let corners = input.blocks.triangle_corners(touch.triangle, input.position);
             let origin = *self.origin[k].get_or_insert(corners[0]);
             let normal = triangle_area_vector(&corners).normalize();
             self.pressure_m2[k] += sums.pressure;

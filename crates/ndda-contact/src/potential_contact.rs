@@ -211,21 +211,20 @@ impl PotentialContact {
     /// Stiffness of one facet's hits: normal contact, and the shear spring of a facet that sticks.
     fn add_facet_stiffness(&self, t: usize, input: &ContactInput, stiffness: &mut Vec<PairStiffness>) {
         let touch = &self.integrals.touching()[t];
-        let facet = &self.candidates.facets[touch.facet as usize];
         let force = self.forces.binary_search_by_key(&touch.facet, |force| force.facet);
         let held = force.ok().map(|place| &self.forces[place]);
         let held = held.filter(|force| force.shear_slope > 0.0 && force.sticks);
-        let corners = input.blocks.triangle_corners(facet.triangle, input.position);
-        let outline = self.hulls.outline(facet.triangle, facet.target);
+        let corners = input.blocks.triangle_corners(touch.triangle, input.position);
+        let outline = self.hulls.outline(touch.triangle, touch.target);
         for hit in self.integrals.hits_of(touch) {
             let tet = hit.tet;
-            let target = match (&self.field, self.hulls.whole(facet.target)) {
-                (_, Some(_)) => Target::Whole(self.hulls.planes_of(facet.target), outline),
+            let target = match (&self.field, self.hulls.whole(touch.target)) {
+                (_, Some(_)) => Target::Whole(self.hulls.planes_of(touch.target), outline),
                 (Some((_, Field::Pieces(table))), None) => Target::Pieces(table.of(tet)),
                 _ => Target::Element,
             };
             let frame = &self.frames[self.candidates.pairs[hit.pair as usize].tet as usize];
-            let triangle = &input.blocks.triangles[facet.triangle.index()];
+            let triangle = &input.blocks.triangles[touch.triangle.index()];
             let mut pair = PairStiffness::new(triangle, &input.blocks.tets[tet.index()]);
             tangent::add_pair(&mut pair, &corners, frame, target, self.penalty_of_facet[t]);
             if let Some(force) = held {

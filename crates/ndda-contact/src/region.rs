@@ -58,13 +58,11 @@ impl Region {
         (self.phi, self.slope, self.len) = (phi, slope, 0);
     }
 
-    /// Adds a cut with so much outside if it cuts anything; false if it leaves nothing.
+    /// Adds a cut of a triangle if it cuts anything; false if it leaves nothing.
     #[inline(always)]
-    fn add(&mut self, cut: Cut, outside: Extent) -> bool {
-        if outside == Extent::Partly {
-            self.cuts[self.len] = cut;
-            self.len += 1;
-        }
+    fn add(&mut self, cut: Cut) -> bool {
+        let outside = cut.outside();
+        self.put(cut, outside == Extent::Partly);
         outside != Extent::Everywhere
     }
 
@@ -95,11 +93,10 @@ impl Region {
         let own = pieces.at[k];
         let ahead = |j: usize| Cut::new([0, 1, 2].map(|a| pieces.at[j][a] - own[a]), k < j);
         self.begin(own, pieces.slope[k].abs());
-        let mut add = |cut: Cut| self.add(cut, cut.outside());
         for face in &pieces.faces[..pieces.faces_len] {
-            add(*face);
+            self.put(*face, true);
         }
-        (0..pieces.len).all(|j| j == k || add(ahead(j)))
+        (0..pieces.len).all(|j| j == k || self.add(ahead(j)))
     }
 
     /// The region on this contactor corner by corner.
