@@ -24,7 +24,6 @@ def pile(body, penalty_pa):
     return bodies(body, penalty_pa, "Smooth()", 0, **{"rock[0].body": body, "rock[0].fill": "Fewest", "output": output})
 
 
-# Elastic cubes for 125 only.
 LARGE_PILE_OF_NDDA = [
     ("rigid, k_n = 12 MPa", pile("Rigid", 1.2e7), (5e-3,)),
     ("rigid, k_n = 20 MPa", pile("Rigid", 2e7), (4e-3,)),
@@ -32,12 +31,10 @@ LARGE_PILE_OF_NDDA = [
     ("rigid, k_n = 300 MPa", pile("Rigid", 3e8), (5e-4,)),
     ("affine, k_n = 50 MPa", pile("Affine", 5e7), (2e-3,)),
 ]
+# Elastic cubes, and a step between, for 125 only.
 PILE_OF_NDDA = [
-    ("rigid, k_n = 12 MPa", pile("Rigid", 1.2e7), (5e-3,)),
-    ("rigid, k_n = 20 MPa", pile("Rigid", 2e7), (4e-3,)),
-    ("rigid, k_n = 50 MPa", pile("Rigid", 5e7), (2e-3, 1e-3)),
-    ("rigid, k_n = 300 MPa", pile("Rigid", 3e8), (5e-4,)),
-    ("affine, k_n = 50 MPa", pile("Affine", 5e7), (2e-3,)),
+    *LARGE_PILE_OF_NDDA,
+    ("rigid, k_n = 50 MPa", pile("Rigid", 5e7), (1e-3,)),
     ("elastic, k_n = 50 MPa", pile("Elastic", 5e7), (2e-3,)),
 ]
 PILE = {
