@@ -37,7 +37,7 @@ def panel(axes, name, start, times, curves):
         if scheme == name and begins == start:
             colour = colours(0.88 * varied.index(kind) / max(len(varied) - 1, 1))
             axes.semilogy(times, [abs(v) for v in values], linewidth=0.8, color=colour, label=kind)
-    axes.set_title(", ".join(filter(None, (NAMES.get(name, name), start if start == "at rest" else ""))), fontsize=9)
+    axes.set_title(", ".join(filter(None, (NAMES.get(name, name), "" if start == "touching" else start))), fontsize=9)
 
 
 def errors(figure, folder, times, curves):

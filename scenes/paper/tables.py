@@ -73,10 +73,9 @@ def laws(figure):
 
     def make(cases):
         found = picked(cases, figure)
-        starts = ("touching", "at rest")
-        head = ["friction", *(f"{name}, {start}" for start in starts for name in SCHEMES.values())]
-        row = lambda law: [law, *(cell(found.get((law, scheme, start)), "along_max", "along_end") for start in starts for scheme in SCHEMES)]
-        return table(head, map(row, varied(found)))
+        row = lambda law, start: [law, start, *(cell(found.get((law, scheme, start)), "along_max", "along_end") for scheme in SCHEMES)]
+        starts = list(dict.fromkeys(key[2] for key in found))
+        return table(["friction", "start", *SCHEMES.values()], (row(law, start) for start in starts for law in varied(found)))
 
     return make
 
