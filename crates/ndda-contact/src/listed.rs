@@ -114,24 +114,22 @@ impl Listed {
     /// Finds the blocks that have moved; a node that is nowhere has. Where one has moved out of reach, those that soon will have are taken, too.
     fn look(&mut self, input: &ContactInput) {
         let (position, reach_m, arch) = (&self.position, &self.reach_m, Arch::new());
-        let is_beyond = |block: usize, reach_m: f64| {
+        let look = |(block, moved): (usize, &mut bool)| {
             let nodes = input.blocks.nodes_of(BlockId(block as u32));
-            let (was, now) = (&position[nodes.clone()], &input.position[nodes]);
-            !are_within(arch, reach_m / 3f64.sqrt(), was, now)
-                && !was.iter().zip(now).all(|(x, y)| (x - y).norm_squared() <= reach_m * reach_m)
+            let most_m = [reach_m[block], SOON * reach_m[block]];
+            let [is_near, is_nearer] =
+                are_within(arch, most_m, &position[nodes.clone()], &input.position[nodes]);
+            *moved = !is_nearer;
+            !is_near
         };
-        let mut look = |part: f64| {
-            let look = |(block, moved): (usize, &mut bool)| *moved = is_beyond(block, part * reach_m[block]);
-            if self.moved.len() > GRAIN_BLOCKS {
-                self.moved.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(look);
-            } else {
-                self.moved.iter_mut().enumerate().for_each(look);
-            }
-            self.moved.contains(&true)
+        let are_out = if self.moved.len() > GRAIN_BLOCKS {
+            let blocks = self.moved.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS);
+            blocks.map(look).reduce(|| false, |a, b| a | b)
+        } else {
+            self.moved.iter_mut().enumerate().map(look).fold(false, |a, b| a | b)
         };
-        // Few steps get to the second question.
-        if look(1.0) {
-            look(SOON);
+        if !are_out {
+            self.moved.fill(false);
         }
     }
 
@@ -162,16 +160,18 @@ impl Listed {
     }
 }
 
-/// Whether no coordinate has changed by more than that: quicker than distances, since no number needs its neighbours.
-fn are_within(arch: Arch, most_m: f64, was: &[Vec3], now: &[Vec3]) -> bool {
+/// Whether no node has moved by more than each of these.
+fn are_within(arch: Arch, most_m: [f64; 2], was: &[Vec3], now: &[Vec3]) -> [bool; 2] {
+    let most_m2 = most_m.map(|m| m * m);
     // Compiled for each kind of processor.
     arch.dispatch(
         #[inline(always)]
         || {
-            let mut within = true;
+            let mut within = [true; 2];
             for (x, y) in was.iter().zip(now) {
-                for i in 0..3 {
-                    within &= (x[i] - y[i]).abs() <= most_m;
+                let moved_m2 = (0..3).map(|i| (x[i] - y[i]) * (x[i] - y[i])).sum::<f64>();
+                for (within, most_m2) in within.iter_mut().zip(most_m2) {
+                    *within &= moved_m2 <= most_m2;
                 }
             }
             within
@@ -212,9 +212,10 @@ mod tests {
     #[test]
     fn a_node_that_is_nowhere_has_moved() {
         let here = [Vec3::zeros()];
-        let are_within = |most_m, now: Vec3| are_within(Arch::new(), most_m, &here, &[now]);
-        assert!(are_within(0.0, here[0]));
-        assert!(!are_within(1.0, Vec3::new(0.0, f64::NAN, 0.0)));
-        assert!(!are_within(1.0, Vec3::new(0.0, 0.0, -1.1)));
+        let are_within = |now: Vec3| are_within(Arch::new(), [1.0, 0.5], &here, &[now]);
+        assert_eq!(are_within(here[0]), [true, true]);
+        assert_eq!(are_within(Vec3::new(0.0, f64::NAN, 0.0)), [false, false]);
+        assert_eq!(are_within(Vec3::new(0.6, 0.6, 0.0)), [true, false]);
+        assert_eq!(are_within(Vec3::new(0.0, 0.0, -1.1)), [false, false]);
     }
 }
