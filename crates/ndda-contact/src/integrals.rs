@@ -263,26 +263,25 @@ impl Chunk {
         triangle: &Triangle,
         scratch: &mut Scratch,
     ) {
-        let Triangle { corners, normal, area } = *triangle;
-        if area == 0.0 {
+        let Triangle { corners, normal, area } = triangle;
+        if *area == 0.0 {
             return;
         }
         if scene.hulls.whole(facet.target).is_some() {
             return self.add_whole(arch, scene, facet, triangle, scratch);
         }
-        if scene.hulls.keep_apart(facet.target, &corners) || scene.is_on_one_side(facet, &corners[0], &normal)
-        {
+        if scene.hulls.keep_apart(facet.target, corners) || scene.is_on_one_side(facet, &corners[0], normal) {
             return;
         }
         let pieces = matches!(scene.field, Field::Pieces(_));
         for index in facet.pairs.clone() {
             let pair: &Pair = &scene.candidates.pairs[index];
             let frame = &scene.frames[pair.tet as usize];
-            let in_plane = || Some(frame.lambda(&corners)).filter(|l| lies_in_a_plane_of(frame, l, &normal));
-            let inside = frame.lambda_inside(&corners);
+            let in_plane = || Some(frame.lambda(corners)).filter(|l| lies_in_a_plane_of(frame, l, normal));
+            let inside = frame.lambda_inside(corners);
             let Some(lambda) = inside.or_else(|| if pieces { in_plane() } else { None }) else { continue };
             let tet = scene.candidates.tets[pair.tet as usize];
-            if scene.tet_is_on_one_side(tet, &corners[0], &normal) {
+            if scene.tet_is_on_one_side(tet, &corners[0], normal) {
                 continue;
             }
             let hit = self.hits.len() as u32;
@@ -292,7 +291,7 @@ impl Chunk {
                 arch,
                 scene,
                 hit,
-                &Placed { tet, frame, lambda: &lambda, normal: &normal, area },
+                &Placed { tet, frame, lambda: &lambda, normal, area: *area },
             );
         }
     }
