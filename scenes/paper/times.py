@@ -10,7 +10,7 @@ import subprocess
 import results
 
 COLUMNS = ("problem", "setting", "step_s", "steps", "runs", "error", "limit", "wall_s", "cpu_s", "wall_ratio", "cpu_ratio", "contact_s", "blocks_s", "rest_s")
-REPEATS = 5
+REPEATS = 10
 
 MIDPOINT = {"time.integrator": "Midpoint()"}
 VELOCITIES = {"contact.friction.shear_penalty_pa_m": "None"}
