@@ -34,7 +34,7 @@ SCENE = """(
     output: (frames: 0, history_rows: 1, checkpoint_wall_s: 1e6),
 )
 """
-# Name of the part, scene (resting or apart), settings without it, settings with it idle.
+# Name of the part, scene (resting, apart or falling), settings without it, settings with it idle.
 CASES = [
     ("friction of 0°, on velocities", "resting", [], ["contact.friction=(friction_deg: 0)"]),
     ("friction of 0°, by springs", "resting", [], ["contact.friction=(friction_deg: 0, shear_penalty_pa_m: 1e9)"]),
@@ -53,6 +53,7 @@ CASES = [
 # Parts that have to watch, whether or not anything comes of it: their cost is said, not judged.
 WATCHES = [
     ("contact, watching blocks that never meet", "apart", ["contact=Off"], []),
+    ("the same, while they fall", "falling", ["contact=Off"], []),
     ("control of steps, watching the energy of steps that are never divided", "resting", [], ["time.step=Auto(safety: 1, energy: 1e9)"]),
 ]
 STEPS = (100, 500)
@@ -75,7 +76,7 @@ def instructions(ndda, scene, settings, steps):
 def measure(ndda, folder):
     """Rows of part, instructions per step without it and with it."""
     scenes = {}
-    for name, gravity, height in (("resting", "-9.8", "-0.5001"), ("apart", "0", "-30")):
+    for name, gravity, height in (("resting", "-9.8", "-0.5001"), ("apart", "0", "-30"), ("falling", "-9.8", "-30")):
         scenes[name] = Path(folder) / f"{name}.ron"
         scenes[name].write_text(SCENE.replace("GRAVITY", gravity).replace("HEIGHT", height), encoding="utf-8")
     known = {}
