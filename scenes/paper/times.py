@@ -1,4 +1,4 @@
-"""Time to the paper's error: our settings against the paper's scheme at the paper's, run by turns, the fastest of five.
+"""Time to the paper's error: our settings against the paper's scheme at the paper's, run by turns, the fastest of ten.
 
 Elapsed time is what a run says of itself (`wall_s`: reading, factoring and writing included); processor time is that of the process.
 """
