@@ -129,9 +129,9 @@ fn without_friction_our_error_is_a_hundredth_of_the_papers() {
 fn with_friction_our_error_at_the_end_is_a_tenth_of_the_papers() {
     for (slope_deg, printed) in [(45, 1e-3), (30, 1e-2)] {
         let (slid, _) = ramp(slope_deg, &[MIDPOINT, ON_VELOCITIES]);
-        let end = slid.last().unwrap().along.abs();
+        let end = largest(&slid, 0.48, 0.5, |row| row.along);
         let what = format!(
-            "{slope_deg}°, friction on velocities, the paper's Δt and k_n: error at 0.5 s (paper: {printed:e})"
+            "{slope_deg}°, friction on velocities, the paper's Δt and k_n: largest error from 0.48 to 0.5 s (paper: {printed:e})"
         );
         row("V2", &what, end, Answer::AtMost(0.1 * printed));
     }
