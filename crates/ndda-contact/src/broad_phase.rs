@@ -114,7 +114,7 @@ impl TriangleAt {
 }
 
 /// A face of a convex block, where the block was when it was last looked at.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Side {
     normal: Vec3,
     point: Vec3,

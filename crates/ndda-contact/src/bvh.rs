@@ -1,7 +1,7 @@
 //! Two levels of trees: blocks in space, and the elements of each block in its own frame.
 //!
 //! A block that has not moved on keeps its pairs with all others that have not; one that has takes its leaf of the
-//! tree along. The tree is rebuilt, in its own memory, when as many leaves have moved as there are. Cells of a uniform
+//! tree along. What is inside a block is placed when another comes near. The tree is rebuilt, in its own memory, when as many leaves have moved as there are. Cells of a uniform
 //! grid find all pairs of boxes a few times quicker, but have to be filled anew when one box has moved.
 
 use ndda_mesh::geometry::Aabb;
@@ -35,6 +35,10 @@ pub struct TreeBroadPhase {
     is_renewed: Vec<bool>,
     /// Blocks that touched a renewed one before, or do now.
     is_near: Vec<bool>,
+    /// Blocks whose elements are placed where they were renewed last; one that is far from all others waits.
+    is_placed: Vec<bool>,
+    /// Blocks whose elements are to be placed now.
+    is_due: Vec<bool>,
     found: Vec<Found>,
     /// Of the set that all this is about.
     shape: [usize; 4],
@@ -81,23 +85,43 @@ struct Boxes {
     sides: Vec<Side>,
 }
 
+/// Sets the entries that are due, on all threads.
+fn place_due<T: Send>(
+    entries: &mut [T],
+    is_due: impl Fn(usize) -> bool + Sync,
+    of: impl Fn(usize) -> T + Sync,
+) {
+    let place = |(i, entry): (usize, &mut T)| {
+        if is_due(i) {
+            *entry = of(i);
+        }
+    };
+    entries.par_iter_mut().enumerate().with_min_len(GRAIN_BOXES).for_each(place);
+}
+
 impl Boxes {
-    fn place_all(&mut self, scene: &BroadScene) {
-        let blocks = scene.blocks;
-        let all = |count: usize, boxes: &mut Vec<Aabb>, of: &(dyn Fn(usize) -> Aabb + Sync)| {
-            boxes.resize(count, Aabb::empty());
-            let place = |(i, bounds): (usize, &mut Aabb)| *bounds = of(i);
-            boxes.par_iter_mut().enumerate().with_min_len(GRAIN_BOXES).for_each(place);
-        };
-        all(blocks.len(), &mut self.blocks, &|i| scene.block_box(BlockId(i as u32)));
-        all(blocks.triangles.len(), &mut self.triangles, &|i| scene.triangle_box(i));
-        all(blocks.tets.len(), &mut self.tets, &|i| scene.tet_box(i));
-        let faces = scene.hulls.faces().par_iter().with_min_len(GRAIN_BOXES);
-        faces.map(|face| Side::new(scene, face)).collect_into_vec(&mut self.sides);
+    fn new(blocks: &BlockSet) -> Self {
+        let boxes = |count: usize| vec![Aabb::empty(); count];
+        Self {
+            blocks: boxes(blocks.len()),
+            triangles: boxes(blocks.triangles.len()),
+            tets: boxes(blocks.tets.len()),
+            sides: Vec::new(),
+        }
     }
 
+    /// Elements and sides of all blocks that are due.
+    fn place_all(&mut self, scene: &BroadScene, is_due: &[bool]) {
+        let (blocks, faces) = (scene.blocks, scene.hulls.faces());
+        let is_due = |block: BlockId| is_due[block.index()];
+        self.sides.resize(faces.len(), Side::default());
+        place_due(&mut self.triangles, |i| is_due(blocks.triangle_block[i]), |i| scene.triangle_box(i));
+        place_due(&mut self.tets, |i| is_due(blocks.tet_block[i]), |i| scene.tet_box(i));
+        place_due(&mut self.sides, |i| is_due(faces[i].block), |i| Side::new(scene, &faces[i]));
+    }
+
+    /// Elements and sides of one block.
     fn place(&mut self, scene: &BroadScene, block: BlockId) {
-        self.blocks[block.index()] = scene.block_box(block);
         scene.blocks.triangles_of(block).for_each(|i| self.triangles[i] = scene.triangle_box(i));
         scene.blocks.tets_of(block).for_each(|i| self.tets[i] = scene.tet_box(i));
         let sides = self.sides[scene.hulls.places_of(block)].iter_mut();
@@ -118,19 +142,23 @@ impl BroadPhase for TreeBroadPhase {
             self.begin(scene.blocks);
         }
         self.is_renewed.fill(false);
-        renewed.iter().for_each(|block| self.is_renewed[block.index()] = true);
+        for block in renewed {
+            self.is_renewed[block.index()] = true;
+            self.is_placed[block.index()] = false;
+        }
         let nodes: usize = renewed.iter().map(|block| scene.blocks.nodes_of(*block).len()).sum();
         let many = MANY * nodes > scene.position.len();
         self.is_near.fill(many);
         if many {
+            self.place_blocks(scene, renewed);
+            self.mark_due();
             self.place_all(scene);
         } else {
             self.mark_near(renewed);
-            self.place(scene, renewed);
-        }
-        self.place_leaves(renewed);
-        if !many {
+            self.place_blocks(scene, renewed);
             self.mark_near(renewed);
+            self.mark_due();
+            self.place(scene);
         }
         let changed = self.search(scene);
         if changed || begins {
@@ -149,29 +177,52 @@ impl TreeBroadPhase {
         self.is_convex = blocks.ids().map(|id| BlockFaces::new(blocks, id).convex).collect();
         self.is_renewed = vec![true; blocks.len()];
         self.is_near = vec![true; blocks.len()];
+        self.is_placed = vec![false; blocks.len()];
+        self.is_due = vec![false; blocks.len()];
         self.found.clear();
         self.found.resize_with(blocks.len(), Found::default);
-        self.boxes = Boxes::default();
+        self.boxes = Boxes::new(blocks);
         let everywhere = to_parry(&Aabb::around(&blocks.rest_position));
         let leaves = blocks.ids().map(|id| (id.index(), everywhere));
         self.tree = Bvh::from_iter(BvhBuildStrategy::Binned, leaves);
         self.displaced = 0;
     }
 
-    fn place_all(&mut self, scene: &BroadScene) {
-        // Blocks that are not renewed are where they were: their boxes stay the same.
-        self.boxes.place_all(scene);
+    /// Boxes around renewed blocks, and their leaves.
+    fn place_blocks(&mut self, scene: &BroadScene, renewed: &[BlockId]) {
         let is_renewed = &self.is_renewed;
+        place_due(&mut self.boxes.blocks, |i| is_renewed[i], |i| scene.block_box(BlockId(i as u32)));
+        self.place_leaves(renewed);
+    }
+
+    /// Marks what another block has come near to, or a far part of its own may, and is not placed.
+    fn mark_due(&mut self) {
+        let (is_near, is_convex, tree, boxes) =
+            (&self.is_near, &self.is_convex, &self.tree, &self.boxes.blocks);
+        let has_company = |index: usize| {
+            tree.leaves(|node| node_touches(node, &boxes[index])).any(|other| other as usize != index)
+        };
+        let mark = |(index, (due, placed)): (usize, (&mut bool, &mut bool))| {
+            *due = is_near[index] && !*placed && (!is_convex[index] || has_company(index));
+            *placed |= *due;
+        };
+        let marks = self.is_due.par_iter_mut().zip(&mut self.is_placed);
+        marks.enumerate().with_min_len(GRAIN_BLOCKS).for_each(mark);
+    }
+
+    fn place_all(&mut self, scene: &BroadScene) {
+        self.boxes.place_all(scene, &self.is_due);
+        let is_due = &self.is_due;
         let place = |(index, own): (usize, &mut Option<Box<OwnTrees>>)| {
-            if let Some(own) = own.as_mut().filter(|_| is_renewed[index]) {
+            if let Some(own) = own.as_mut().filter(|_| is_due[index]) {
                 own.place(scene, BlockId(index as u32));
             }
         };
         self.own.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(place);
     }
 
-    fn place(&mut self, scene: &BroadScene, renewed: &[BlockId]) {
-        for &block in renewed {
+    fn place(&mut self, scene: &BroadScene) {
+        for block in scene.blocks.ids().filter(|block| self.is_due[block.index()]) {
             self.boxes.place(scene, block);
             if let Some(own) = &mut self.own[block.index()] {
                 own.place(scene, block);
@@ -236,7 +287,7 @@ impl TreeBroadPhase {
         let boxes = boxes.blocks.capacity() + boxes.triangles.capacity() + boxes.tets.capacity();
         let of_found = |found: &Found| found.pairs.capacity() + found.fresh.capacity();
         let found = self.found.iter().map(of_found).sum::<usize>() * size_of::<(TriangleId, TetId)>();
-        let per_block = size_of::<Option<Box<OwnTrees>>>() + size_of::<Found>() + 3 * size_of::<bool>();
+        let per_block = size_of::<Option<Box<OwnTrees>>>() + size_of::<Found>() + 5 * size_of::<bool>();
         let tree = self.tree.heap_memory_size();
         own + boxes * size_of::<Aabb>() + sides + found + per_block * self.found.capacity() + tree
     }

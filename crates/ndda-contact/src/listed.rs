@@ -129,7 +129,6 @@ impl Listed {
             }
             self.moved.contains(&true)
         };
-        // Few steps get to the second question.
         if look(1.0) {
             look(SOON);
         }

@@ -132,7 +132,11 @@ impl TetFrame {
 /// λ as `[b][a]` of λ as `[a][b]`.
 #[inline(always)]
 pub(crate) fn by_face([x, y, z]: &[Faces; 3]) -> [[f64; 3]; 4] {
-    [0, 1, 2, 3].map(|b| [x[b], y[b], z[b]])
+    let mut lambda = [[0.0; 3]; 4];
+    for b in 0..4 {
+        lambda[b] = [x[b], y[b], z[b]];
+    }
+    lambda
 }
 
 /// Whether no corner of a triangle is inside some face, from λ as `[a][b]`; without a branch, since either answer is

@@ -206,8 +206,7 @@ impl Sides {
     #[inline(always)]
     pub fn set_region<S: Simd>(&mut self, simd: S, k: usize, outline: &Outline, region: &mut Region) -> bool {
         let k = self.which(k);
-        let (own, rise) =
-            ([0, 1, 2].map(|a| self.at[k / GROUP][a][k % GROUP]), self.rise[k / GROUP][k % GROUP]);
+        let (own, rise) = (lane_of(&self.at[k / GROUP], k % GROUP), self.rise[k / GROUP][k % GROUP]);
         self.compare(simd, k, &own, rise, outline);
         region.begin(own, rise.abs());
         let all = outline.corners().len() as f64;
@@ -256,10 +255,16 @@ impl Sides {
     fn put(&self, j: usize, all: f64, region: &mut Region) -> bool {
         let (row, lane) = (j / GROUP, j % GROUP);
         let outside = self.outside[row][lane];
-        let field = [0, 1, 2].map(|a| self.lead[row][a][lane]);
+        let field = lane_of(&self.lead[row], lane);
         region.put(Cut { field, bound: self.bound[row][lane] }, outside > 0.0);
         outside < all
     }
+}
+
+/// One lane of three rows; written out, since what takes a closure is not always compiled in place.
+#[inline(always)]
+fn lane_of([x, y, z]: &[Row; 3], lane: usize) -> [f64; 3] {
+    [x[lane], y[lane], z[lane]]
 }
 
 #[cfg(test)]

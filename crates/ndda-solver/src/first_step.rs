@@ -64,7 +64,11 @@ pub(crate) fn seen<'a>(
     room.resize(places.len(), Vec3::zeros());
     for (block, ahead) in blocks.ids().zip(ahead) {
         let nodes = blocks.nodes_of(block);
-        room[nodes.clone()].iter_mut().zip(&places[nodes]).for_each(|(seen, x)| *seen = x + ahead);
+        // Two at a time fill vectors.
+        let ((seen, last_seen), (at, last_at)) =
+            (room[nodes.clone()].as_chunks_mut(), places[nodes].as_chunks());
+        seen.iter_mut().zip(at).for_each(|(seen, [x, y])| *seen = [x + ahead, y + ahead]);
+        last_seen.iter_mut().zip(last_at).for_each(|(seen, x)| *seen = x + ahead);
     }
     room
 }
