@@ -57,10 +57,11 @@ impl Batches {
         let batch = &mut self.waiting[which];
         batch.make_room(cuts.len());
         batch.set_outline(outline);
+        let lane = batch.lane();
         for (k, cut) in cuts.iter().enumerate() {
-            batch.set_cut(k, cut);
+            batch.set_cut(lane, k, cut);
         }
-        batch.set(self.parts.len(), area_m2, &region.phi, region.slope);
+        batch.set(lane, self.parts.len(), area_m2, &region.phi, region.slope);
         self.added(arch, pair, which);
     }
 
@@ -75,15 +76,33 @@ impl Batches {
         slopes: &[f64; 4],
     ) {
         let outside = element_outside(lambda);
-        for i in (0..4).filter(|&i| is_somewhere(&outside[i])) {
-            let cuts = outside[i].iter().map(|n| usize::from(*n > 0)).sum::<usize>();
-            let batch = &mut self.waiting[cuts];
-            batch.group.cuts = cuts;
-            element_cuts(lambda, &outside, i, |k, cut| batch.set_cut(k, &cut));
-            let [x, y, z] = lambda[i];
-            batch.set(self.parts.len(), area_m2, &[4.0 * x, 4.0 * y, 4.0 * z], slopes[i]);
-            self.added(arch, pair, cuts);
+        // One by one: a loop would ask for each of its cuts which region this is.
+        self.push_one(arch, pair, area_m2, (lambda, &outside, 0, slopes[0]));
+        self.push_one(arch, pair, area_m2, (lambda, &outside, 1, slopes[1]));
+        self.push_one(arch, pair, area_m2, (lambda, &outside, 2, slopes[2]));
+        self.push_one(arch, pair, area_m2, (lambda, &outside, 3, slopes[3]));
+    }
+
+    /// Adds region i of them if it is somewhere.
+    #[inline(always)]
+    fn push_one(
+        &mut self,
+        arch: Arch,
+        pair: u32,
+        area_m2: f64,
+        (lambda, outside, i, slope): (&[[f64; 3]; 4], &[[u8; 4]; 4], usize, f64),
+    ) {
+        if !is_somewhere(&outside[i]) {
+            return;
         }
+        let cuts = outside[i].iter().map(|n| usize::from(*n > 0)).sum::<usize>();
+        let batch = &mut self.waiting[cuts];
+        batch.group.cuts = cuts;
+        let lane = batch.lane();
+        element_cuts(lambda, outside, i, |k, cut| batch.set_cut(lane, k, &cut));
+        let [x, y, z] = lambda[i];
+        batch.set(lane, self.parts.len(), area_m2, &[4.0 * x, 4.0 * y, 4.0 * z], slope);
+        self.added(arch, pair, cuts);
     }
 
     #[inline(always)]
@@ -128,6 +147,13 @@ impl Batch {
         group.cuts = group.cuts.max(cuts);
     }
 
+    /// The next lane.
+    #[inline(always)]
+    fn lane(&self) -> usize {
+        assert!(self.group.len < GROUP, "a full group is done at once");
+        self.group.len
+    }
+
     #[inline(always)]
     fn set_outline(&mut self, outline: &Outline) {
         let room = if outline.corners().len() <= FEW_CORNERS { FEW_CORNERS } else { MOST_CORNERS };
@@ -142,8 +168,7 @@ impl Batch {
     }
 
     #[inline(always)]
-    fn set_cut(&mut self, k: usize, cut: &Cut) {
-        let lane = self.group.len;
+    fn set_cut(&mut self, lane: usize, k: usize, cut: &Cut) {
         let [x, y, z] = &mut self.group.fields[k];
         (x[lane], y[lane], z[lane]) = (cut.field[0], cut.field[1], cut.field[2]);
         self.group.bounds[k][lane] = cut.bound;
@@ -151,13 +176,13 @@ impl Batch {
 
     /// Completes the next lane.
     #[inline(always)]
-    fn set(&mut self, part: usize, area_m2: f64, phi: &[f64; 3], slope: f64) {
-        let (lane, group) = (self.group.len, &mut self.group);
+    fn set(&mut self, lane: usize, part: usize, area_m2: f64, phi: &[f64; 3], slope: f64) {
+        let group = &mut self.group;
         let [x, y, z] = &mut group.phi;
         (x[lane], y[lane], z[lane]) = (phi[0], phi[1], phi[2]);
         group.slope[lane] = slope;
         (self.part[lane], self.area[lane]) = (part, area_m2);
-        group.len += 1;
+        group.len = lane + 1;
     }
 
     /// Writes all integrals to their places.
