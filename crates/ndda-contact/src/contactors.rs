@@ -143,8 +143,8 @@ impl Contactor {
         // A centre that is outside by rounding stays so by rounding.
         let (second, third) = (cross(a, &at, c) / twice, cross(a, b, &at) / twice);
         let nodes = [self.nodes[0], self.nodes[k - 1], self.nodes[k]];
-        let parts = [1.0 - second - third, second, third];
-        [0, 1, 2].map(|i| (nodes[i], total * parts[i]))
+        let first = 1.0 - second - third;
+        [(nodes[0], total * first), (nodes[1], total * second), (nodes[2], total * third)]
     }
 
     /// Its corners [m], in the room of an array.

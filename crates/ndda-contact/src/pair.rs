@@ -222,6 +222,7 @@ impl PairMoments {
 
     /// The same where ψ is not positive all over: what is left is what the total and the range of ψ on the contactor leave room for, and
     /// adds up to the total.
+    #[inline]
     pub fn drop_rounding_within(&mut self, range: &PsiRange) {
         let within = |sums: &mut [f64; 3]| {
             let total = non_negative(sums.iter().sum());

@@ -153,8 +153,12 @@ impl BlockNodes<'_> {
             };
             let FacetSums { weights, slope, .. } = scene.integrals.sums_of(touch);
             face.shares(weights).iter().for_each(|(node, share)| self.add(node.index(), *share, force, 0.0));
-            let at_host = |w: &[f64; 3]| face.on_host.map(|l| l[0] * w[0] + l[1] * w[1] + l[2] * w[2]);
-            springs += scene.spring(t, &OnHost { pressure: at_host(weights), slope: at_host(slope) });
+            let mut on_host = OnHost { pressure: [0.0; 4], slope: [0.0; 4] };
+            for (b, [x, y, z]) in face.on_host.iter().enumerate() {
+                on_host.pressure[b] = x * weights[0] + y * weights[1] + z * weights[2];
+                on_host.slope[b] = x * slope[0] + y * slope[1] + z * slope[2];
+            }
+            springs += scene.spring(t, &on_host);
         }
         let host = scene.blocks.tets[whole.host.index()];
         for (t, force) in on_block.iter().map(|&t| (t as usize, &scene.forces[t as usize])) {

@@ -83,12 +83,16 @@ fn each_corner<S: Simd>(simd: S, outline: &Outline, at: &[S::f64s; 3], mut visit
 impl Planes {
     /// The planes of one face at least and no more than a row has.
     pub fn of(faces: &[Face]) -> Self {
-        let face = |k: usize| &faces[k.min(faces.len() - 1)];
-        Self {
-            normal: [0, 1, 2].map(|a| std::array::from_fn(|k| -face(k).gradient()[a])),
-            point: [0, 1, 2].map(|a| std::array::from_fn(|k| face(k).point()[a])),
-            len: faces.len(),
+        let zero = [[0.0; GROUP]; 3];
+        let mut planes = Self { normal: zero, point: zero, len: faces.len() };
+        for k in 0..GROUP {
+            let face = &faces[k.min(faces.len() - 1)];
+            let (gradient, point) = (face.gradient(), face.point());
+            for a in 0..3 {
+                (planes.normal[a][k], planes.point[a][k]) = (-gradient[a], point[a]);
+            }
         }
+        planes
     }
 
     /// ∇φ of one of them [1/m].
