@@ -197,13 +197,14 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
     /// All of an outline, counter-clockwise.
     #[inline(always)]
     fn outline(simd: S, corners: &[[Row; 2]], load: impl Fn(&Row) -> S::f64s) -> Self {
-        let o = simd.splat_f64s(0.0);
-        let (mut x, mut y) = ([[o; 2]; MOST], [[o; 2]; MOST]);
+        let nowhere = [[simd.splat_f64s(0.0); 2]; MOST];
+        let mut edges = Self { x: nowhere, y: nowhere, len: corners.len() };
         for (k, from) in corners.iter().enumerate() {
             let to = corners.get(k + 1).unwrap_or(&corners[0]);
-            (x[k], y[k]) = ([load(&from[0]), load(&to[0])], [load(&from[1]), load(&to[1])]);
+            edges.x[k] = [load(&from[0]), load(&to[0])];
+            edges.y[k] = [load(&from[1]), load(&to[1])];
         }
-        Self { x, y, len: corners.len() }
+        edges
     }
 
     /// Keeps what is inside: the field is not below the bound.
