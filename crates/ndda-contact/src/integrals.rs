@@ -108,7 +108,8 @@ impl Scene<'_> {
 fn are_on_one_side<'a>(points: impl Iterator<Item = &'a Vec3>, point: &Vec3, normal: &Vec3) -> bool {
     let range = |(least, most): (f64, f64), x: &Vec3| {
         let above = normal.dot(&(x - point));
-        (least.min(above), most.max(above))
+        // As `f64::min` and `f64::max` leave out what is not a number, but in one instruction.
+        (if above < least { above } else { least }, if above > most { above } else { most })
     };
     let (least, most) = points.fold((f64::INFINITY, f64::NEG_INFINITY), range);
     least > 0.0 || most < 0.0

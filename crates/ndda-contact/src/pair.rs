@@ -108,9 +108,12 @@ impl TetFrame {
     /// |∂φ/∂n| in the four regions [1/m].
     pub fn slopes(&self, normal: &Vec3) -> [f64; 4] {
         let [nx, ny, nz] = &self.normal;
-        [0, 1, 2, 3].map(|b| {
-            4.0 * (self.per_height[b] * (nx[b] * normal.x + ny[b] * normal.y + nz[b] * normal.z)).abs()
-        })
+        let mut slopes = [0.0; 4];
+        for b in 0..4 {
+            let along = nx[b] * normal.x + ny[b] * normal.y + nz[b] * normal.z;
+            slopes[b] = 4.0 * (self.per_height[b] * along).abs();
+        }
+        slopes
     }
 
     /// Corner 0 [m].

@@ -66,8 +66,11 @@ impl Aabb {
 
     /// Makes the box hold `point` too.
     pub fn grow(&mut self, point: &Vec3) {
-        self.min = self.min.inf(point);
-        self.max = self.max.sup(point);
+        // What is not a number is left out.
+        for i in 0..3 {
+            self.min[i] = if point[i] < self.min[i] { point[i] } else { self.min[i] };
+            self.max[i] = if point[i] > self.max[i] { point[i] } else { self.max[i] };
+        }
     }
 
     /// The box with `margin_m` added on every side.
