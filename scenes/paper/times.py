@@ -44,6 +44,7 @@ PROBLEMS = {
         PAPER + ", Δt of Fig. 6": step("1e-5"),
         PAPER + ", Δt of Fig. 5": step("1e-4"),
         OURS: MIDPOINT | LONGEST,
+        "rigid": MIDPOINT | RIGID_RAMP | LONGEST,
         OURS + ", k_n = 1e-6 E": MIDPOINT | SOFT_45,
         "rigid, k_n = 1e-6 E": MIDPOINT | RIGID_RAMP | SOFT_45,
     }),

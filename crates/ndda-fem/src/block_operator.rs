@@ -2,6 +2,7 @@
 
 use nalgebra::Matrix6;
 use ndda_mesh::{Mat3, Vec3};
+use pulp::{Arch, Simd, WithSimd};
 
 use crate::material::Material;
 use crate::tet4::Tet4;
@@ -108,13 +109,7 @@ impl BlockOperator {
 
     /// out ← K w [N].
     pub fn stiffness_times(&self, w: &[Vec3], out: &mut [Vec3]) {
-        for (i, out_i) in out.iter_mut().enumerate() {
-            let mut sum = Vec3::zeros();
-            for (j, k, _) in self.row(i) {
-                sum += k * w[j];
-            }
-            *out_i = sum;
-        }
+        Arch::new().dispatch(StiffnessTimes { operator: self, w, out });
     }
 
     /// (M w)ᵢ of one node, w being an acceleration [N] or a velocity [kg m/s].
@@ -204,6 +199,33 @@ fn neighbours(nodes: usize, tets: &[[u32; 4]]) -> (Vec<u32>, Vec<u32>) {
         row_start[i + 1] += row_start[i];
     }
     (row_start, pairs.into_iter().map(|(_, column)| column).collect())
+}
+
+/// out ← K w, compiled for each kind of processor.
+struct StiffnessTimes<'a> {
+    operator: &'a BlockOperator,
+    w: &'a [Vec3],
+    out: &'a mut [Vec3],
+}
+
+impl WithSimd for StiffnessTimes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { operator: BlockOperator { row_start, column, stiffness, .. }, w, out } = self;
+        for (i, out) in out.iter_mut().enumerate() {
+            let range = row_start[i] as usize..row_start[i + 1] as usize;
+            let mut sum = [0.0; 3];
+            for (k, &j) in stiffness[range.clone()].iter().zip(&column[range]) {
+                let (&[[x, y, z]], [a, b, c]) = (&w[j as usize].data.0, &k.data.0);
+                for i in 0..3 {
+                    sum[i] += a[i] * x + b[i] * y + c[i] * z;
+                }
+            }
+            out.data.0 = [sum];
+        }
+    }
 }
 
 #[cfg(test)]

@@ -49,14 +49,16 @@ impl Sideways {
 
 impl Pressed {
     fn by(context: &StepContext) -> Self {
-        let mut pressed = Self::default();
-        for i in 0..context.force.len() {
-            let force = normal_force(context, i);
+        let (mut pressed, mut largest_n) = (Self::default(), 0.0);
+        // Most nodes are not in contact.
+        for force in
+            (0..context.force.len()).map(|i| normal_force(context, i)).filter(|f| *f != Vec3::zeros())
+        {
             let size = force.norm();
             pressed.resultant += force;
             pressed.sum_n += size;
-            if size > pressed.strongest.norm() {
-                pressed.strongest = force;
+            if size > largest_n {
+                (pressed.strongest, largest_n) = (force, size);
             }
         }
         pressed.friction_n = context.friction_force.iter().map(|f| f.norm()).sum();
