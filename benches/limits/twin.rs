@@ -77,13 +77,44 @@ pub type Moments = [f64; 7];
 /// The integrals of a region, and the operations that they took.
 pub fn moments(region: &Region) -> (Moments, u64) {
     OPERATIONS.with(|count| count.set(0));
-    let mut edges =
-        vec![[[ZERO, ZERO], [ONE, ZERO]], [[ONE, ZERO], [ZERO, ONE]], [[ZERO, ONE], [ZERO, ZERO]]];
-    for cut in region.cuts() {
-        shorten(&mut edges, &Form::through(&cut.field), N(cut.bound));
-    }
+    let mut cuts = region.cuts().iter().map(|cut| (Form::through(&cut.field), N(cut.bound)));
+    let mut edges = match cuts.next() {
+        Some((field, bound)) => cut_triangle(&field, bound),
+        None => TRIANGLE.to_vec(),
+    };
+    cuts.for_each(|(field, bound)| shorten(&mut edges, &field, bound));
     let found = fan(&edges, &Form::through(&region.phi), N(region.slope));
     (found.map(|x| x.0), OPERATIONS.with(Cell::get))
+}
+
+const TRIANGLE: [[Point; 2]; 3] =
+    [[[ZERO, ZERO], [ONE, ZERO]], [[ONE, ZERO], [ZERO, ONE]], [[ZERO, ONE], [ZERO, ZERO]]];
+
+/// What one cut leaves of the triangle, whose corners ask for no products.
+fn cut_triangle(&Form([c0, c1, c2]): &Form, bound: N) -> Vec<[Point; 2]> {
+    let d = [c0, c0 + c1, c0 + c2];
+    let is_out = d.map(|d| d < bound);
+    let on = |from, to| (0..3).find(|&k| is_out[k] == from && is_out[(k + 1) % 3] == to);
+    let crossing = |on: Option<usize>| {
+        let k = on.unwrap_or(0);
+        let t = d[k] / (d[k] - d[(k + 1) % 3]);
+        let rest = ONE - t;
+        on.map_or([ZERO; 2], |k| [[t, ZERO], [rest, t], [ZERO, rest]][k])
+    };
+    let (leaves, returns) = (on(false, true), on(true, false));
+    let (leave, back) = (crossing(leaves), crossing(returns));
+    let mut edges = TRIANGLE.to_vec();
+    for (k, edge) in edges.iter_mut().enumerate() {
+        let first = edge[0];
+        match (is_out[k], is_out[(k + 1) % 3]) {
+            (false, true) => edge[1] = leave,
+            (true, false) => edge[0] = back,
+            (true, true) => edge[1] = first,
+            (false, false) => {}
+        }
+    }
+    edges.push([leave, back]);
+    edges
 }
 
 /// Keeps what is not below the bound, and closes the rim.

@@ -5,7 +5,7 @@ use pulp::Arch;
 use crate::clip::{Form, MOST_CORNERS, Outline, Polygon};
 use crate::kernel::{GROUP, GroupMoments, RegionGroup, region_moments};
 use crate::pair::PairMoments;
-use crate::region::{Cut, Region, element_cuts, element_outside, is_somewhere};
+use crate::region::{Cut, Pieces, Region, element_cuts, element_outside, is_somewhere};
 
 /// Contactors with so many corners or fewer wait together.
 const FEW_CORNERS: usize = 4;
@@ -105,6 +105,21 @@ impl Batches {
         self.added(arch, pair, cuts);
     }
 
+    /// Adds the regions of the pieces of a tetrahedron on a triangle of this area [m²].
+    pub fn push_pieces(&mut self, arch: Arch, pair: u32, area_m2: f64, pieces: &Pieces) {
+        for k in (0..pieces.len()).filter(|k| pieces.is_somewhere(*k)) {
+            let cuts = pieces.count_cuts(k);
+            let which = cuts.min(MANY_CUTS);
+            let batch = &mut self.waiting[which];
+            batch.make_room(cuts);
+            let lane = batch.lane();
+            pieces.cuts(k, |n, cut| batch.set_cut(lane, n, &cut));
+            batch.set_cut(lane, cuts, &Cut::NOTHING);
+            batch.set(lane, self.parts.len(), area_m2, pieces.phi(k), pieces.slope(k));
+            self.added(arch, pair, which);
+        }
+    }
+
     #[inline(always)]
     fn added(&mut self, arch: Arch, pair: u32, batch: usize) {
         self.parts.push(RegionMoments { pair, ..RegionMoments::default() });
@@ -137,8 +152,8 @@ impl Batch {
     fn make_room(&mut self, cuts: usize) {
         let group = &mut self.group;
         for cut in group.cuts..cuts {
-            group.fields[cut] = [[1.0; GROUP]; 3];
-            group.bounds[cut] = [0.0; GROUP];
+            group.fields[cut].iter_mut().for_each(|row| row[..group.len].fill(1.0));
+            group.bounds[cut][..group.len].fill(0.0);
         }
         for cut in cuts..group.cuts {
             group.fields[cut].iter_mut().for_each(|row| row[group.len] = 1.0);

@@ -1,8 +1,9 @@
 //! Two levels of trees: blocks in space, and the elements of each block in its own frame.
 //!
 //! A block that has not moved on keeps its pairs with all others that have not; one that has takes its leaf of the
-//! tree along. What is inside a block is placed when another comes near. The tree is rebuilt, in its own memory, when as many leaves have moved as there are. Cells of a uniform
-//! grid find all pairs of boxes a few times quicker, but have to be filled anew when one box has moved.
+//! tree along. What is inside a block is placed when another comes near. The tree is rebuilt, in its own memory, when
+//! as many leaves have moved as there are. Cells of a uniform grid find all pairs of boxes a few times quicker, but
+//! have to be filled anew when one box has moved.
 
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};

@@ -6,6 +6,7 @@
 
 use ndda_mesh::geometry::{Aabb, triangle_area_vector};
 use ndda_mesh::{BlockId, TetId, Vec3};
+use pulp::Arch;
 use rayon::prelude::*;
 
 use crate::candidates::{Candidates, Pair};
@@ -204,11 +205,12 @@ impl Cells<'_> {
             let host = blocks.tet_corners(whole.host, position).map(|x| x - origin);
             return vec![Cell { bounds: *own, shape: Shape::Whole(&whole.shape, host), phi }];
         }
+        let arch = Arch::new();
         let near = |tet: usize| {
             let corners = blocks.tet_corners(TetId(tet as u32), position);
             let bounds = Aabb::around(&corners);
             let values = || self.table.of(TetId(tet as u32));
-            let reaches = bounds.touches(around) && !self.hulls.keep_apart(other, &corners);
+            let reaches = bounds.touches(around) && !self.hulls.keep_apart(arch, other, &corners);
             reaches.then(|| Cell::of_tet(&corners, values(), bounds, origin))
         };
         let mut near: Vec<_> = blocks.tets_of(block).filter_map(near).collect();

@@ -22,6 +22,7 @@ use ndda_mesh::{BlockId, BlockSet, Vec3};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
+use crate::both::both;
 use crate::by_block::ByBlock;
 use crate::facets::{FacetForce, mass_per_area, reduced, relative_velocity};
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory, length};
@@ -157,12 +158,13 @@ impl Faces {
     }
 
     /// Sorts touching facets by face and target; those of a block are together already, and its faces follow each other.
-    fn arrange(&mut self, scene: &FaceScene) {
+    pub fn arrange(&mut self, integrals: &Integrals) {
         self.order.clear();
         let place = |(t, touch): (u32, &Touch)| (self.face_of[touch.triangle.index()], touch.target, t);
-        let touching = scene.integrals.touching();
+        let touching = integrals.touching();
         self.order.extend((0..).zip(touching).map(place));
-        let of_one_block = |a: &Place, b: &Place| scene.owner(a.2) == scene.owner(b.2);
+        let of_one_block =
+            |a: &Place, b: &Place| touching[a.2 as usize].owner == touching[b.2 as usize].owner;
         self.order.par_chunk_by_mut(of_one_block).for_each(<[Place]>::sort_unstable);
         self.runs.clear();
         self.run_of.resize(touching.len(), 0);
@@ -174,22 +176,29 @@ impl Faces {
         }
     }
 
-    /// Adds the friction of faces whose law asks for it to the facets' forces, and takes over what they remember.
+    /// Adds the friction of faces whose law asks for it to the facets' forces, and takes over what they remember; the facets are
+    /// [arranged](Self::arrange).
     pub fn add(&mut self, scene: &FaceScene, forces: &mut [FacetForce], history: &mut ContactHistory) {
-        self.arrange(scene);
         self.find_patches(scene, forces, history);
         let blocks_of = |brief: &Brief| (brief.owner, brief.target);
         self.by_block.arrange(scene.input.blocks.len(), self.briefs.iter().map(blocks_of));
         self.share_masses(scene);
         self.push_bodies(scene);
         self.rub(scene);
-        let spread = |(force, run): (&mut FacetForce, &u32)| self.patches[*run as usize].spread_to(force);
-        forces.par_iter_mut().zip(&self.run_of).with_min_len(GRAIN_PATCHES).for_each(spread);
-        self.new_faces.clear();
-        for (patch, run) in self.patches.iter().zip(&self.runs).filter(|(patch, _)| patch.rubs()) {
-            let (face, target, _) = self.order[run.start];
-            self.new_faces.push(FaceMemory { face, target, ..patch.memory });
-        }
+        let Self { patches, runs, run_of, order, new_faces, .. } = self;
+        let spread = |(force, run): (&mut FacetForce, &u32)| patches[*run as usize].spread_to(force);
+        let memory_of = |(patch, run): (&Patch, &Range<usize>)| {
+            let (face, target, _) = order[run.start];
+            patch.rubs().then_some(FaceMemory { face, target, ..patch.memory })
+        };
+        both(
+            patches.len() > GRAIN_PATCHES,
+            || forces.par_iter_mut().zip(&run_of[..]).with_min_len(GRAIN_PATCHES).for_each(spread),
+            || {
+                new_faces.clear();
+                new_faces.extend(patches.iter().zip(runs.iter()).filter_map(memory_of));
+            },
+        );
         std::mem::swap(&mut history.faces, &mut self.new_faces);
     }
 

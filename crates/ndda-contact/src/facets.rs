@@ -31,17 +31,6 @@ pub struct FacetForce {
     pub center: Vec3,
     /// In [`Candidates::facets`].
     pub facet: u32,
-    /// What a target that is taken whole feels on its host: it need not look for the hit, which is far away in memory.
-    pub on_host: Option<OnHost>,
-}
-
-/// Integrals over a contactor, seen from the host of the block that it is in.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OnHost {
-    /// ∫ φ λ_b dA [m²].
-    pub pressure: [f64; 4],
-    /// ∫ |∂φ/∂n| λ_b dA [m].
-    pub slope: [f64; 4],
 }
 
 /// What the evaluation of a facet reads.
@@ -152,7 +141,7 @@ pub fn relative_motion(
     let mut sum: Vec3 = triangle.iter().zip(sums.weights).map(|(node, w)| w * velocity[node.index()]).sum();
     for hit in hits {
         let tet = &blocks.tets[hit.tet.index()];
-        for (node, w) in tet.iter().zip(hit.moments.target_pressure) {
+        for (node, w) in tet.iter().zip(hit.on_target.pressure) {
             sum -= w * velocity[node.index()];
         }
     }

@@ -15,15 +15,16 @@ use std::ops::Range;
 use nalgebra::{Matrix4, Vector4};
 use ndda_mesh::geometry::{Aabb, tet_volume, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
 use crate::clip::Outline;
 use crate::contactors::{Contactor, Contactors};
-use crate::kernel::{GROUP, MOST_CUTS};
+use crate::kernel::MOST_CUTS;
 use crate::overlap::{Carried, Linear};
 use crate::pair::TetFrame;
-use crate::sides::Planes;
+use crate::sides::{Planes, SIDES};
 
 /// Faces below which a second thread costs more than it brings.
 const GRAIN_FACES: usize = 1024;
@@ -75,7 +76,7 @@ pub struct Hulls {
     /// First face of each block; one that is concave or round has none.
     start: Vec<u32>,
     whole: Vec<Option<Whole>>,
-    /// The faces of blocks that are taken whole, once more, and where those of each row are.
+    /// The faces of each block once more, by rows, and where those of each row are.
     planes: Vec<Planes>,
     in_row: Vec<Range<usize>>,
     /// First row of each block.
@@ -123,11 +124,9 @@ impl Hulls {
                 }
                 _ => self.contactors.skip(),
             }
-            if whole.is_some() {
-                let places = self.places_of(block);
-                let row = |first| first..places.end.min(first + GROUP);
-                self.in_row.extend(places.clone().step_by(GROUP).map(row));
-            }
+            let places = self.places_of(block);
+            let row = |first| first..places.end.min(first + SIDES);
+            self.in_row.extend(places.clone().step_by(SIDES).map(row));
             self.row_start.push(self.in_row.len() as u32);
             self.whole.push(whole);
         }
@@ -137,7 +136,7 @@ impl Hulls {
     pub fn place(&mut self, blocks: &BlockSet, position: &[Vec3]) {
         let place = |face: &mut Face| face.place(&position[blocks.nodes_of(face.block)], position);
         self.faces.par_iter_mut().with_min_len(GRAIN_FACES).for_each(place);
-        let rows = self.in_row.par_iter().with_min_len(GRAIN_FACES / GROUP);
+        let rows = self.in_row.par_iter().with_min_len(GRAIN_FACES / SIDES);
         rows.map(|row| Planes::of(&self.faces[row.clone()])).collect_into_vec(&mut self.planes);
     }
 
@@ -145,12 +144,8 @@ impl Hulls {
     pub fn separate(&mut self, blocks: &BlockSet, position: &[Vec3], pairs: &[(BlockId, BlockId)]) {
         let mut are_apart = std::mem::take(&mut self.are_apart);
         are_apart.resize(pairs.len(), false);
-        let nodes = |block| &position[blocks.nodes_of(block)];
-        let keeps = |block, other| {
-            self.faces[self.places_of(block)]
-                .iter()
-                .any(|face| nodes(other).iter().all(|x| face.is_beyond(x)))
-        };
+        let arch = Arch::new();
+        let keeps = |block, other| self.keep_apart(arch, block, &position[blocks.nodes_of(other)]);
         let look = |(apart, &(a, b)): (&mut bool, &(BlockId, BlockId))| *apart = keeps(a, b) || keeps(b, a);
         are_apart.par_iter_mut().zip(pairs).with_min_len(GRAIN_PAIRS).for_each(look);
         self.are_apart = are_apart;
@@ -162,10 +157,10 @@ impl Hulls {
         self.are_apart[k as usize]
     }
 
-    /// Whether a face of the block keeps it from a triangle or tetrahedron with these corners; touching is not overlap.
+    /// Whether a face of the block keeps it from what these points span; touching is not overlap.
     #[inline]
-    pub fn keep_apart<const N: usize>(&self, block: BlockId, corners: &[Vec3; N]) -> bool {
-        self.faces[self.places_of(block)].iter().any(|face| corners.iter().all(|x| face.is_beyond(x)))
+    pub fn keep_apart(&self, arch: Arch, block: BlockId, points: &[Vec3]) -> bool {
+        arch.dispatch(KeepApart { planes: self.planes_of(block), points })
     }
 
     /// The faces of a block; none of one that is concave or round.
@@ -174,7 +169,7 @@ impl Hulls {
         &self.faces[self.places_of(block)]
     }
 
-    /// The faces of a block that is taken whole, by rows.
+    /// The faces of a block, by rows.
     #[inline]
     pub fn planes_of(&self, block: BlockId) -> &[Planes] {
         let [start, end] = [0, 1].map(|next| self.row_start[block.index() + next] as usize);
@@ -227,6 +222,21 @@ impl Hulls {
     }
 }
 
+/// A question to the faces of a block.
+struct KeepApart<'a> {
+    planes: &'a [Planes],
+    points: &'a [Vec3],
+}
+
+impl WithSimd for KeepApart<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        self.planes.iter().any(|row| row.keep_out(simd, self.points))
+    }
+}
+
 impl Face {
     fn new(
         blocks: &BlockSet,
@@ -259,11 +269,6 @@ impl Face {
         self.reach = reach - ROUNDING * largest * self.normal.lp_norm(1);
     }
 
-    #[inline]
-    fn is_beyond(&self, x: &Vec3) -> bool {
-        self.normal.dot(&(x - self.point)) >= self.reach
-    }
-
     /// φ of this face, in a block that is taken whole.
     #[inline(always)]
     pub fn phi(&self, x: &Vec3) -> f64 {
@@ -274,6 +279,11 @@ impl Face {
     #[inline(always)]
     pub fn gradient(&self) -> Vec3 {
         -self.normal
+    }
+
+    /// n·(x − p) from which on a point is beyond.
+    pub fn reach(&self) -> f64 {
+        self.reach
     }
 
     /// A point of the plane [m].

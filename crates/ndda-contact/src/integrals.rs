@@ -13,7 +13,7 @@ use crate::broad_phase::FEW_NODES;
 use crate::candidates::{Candidates, Facet, Pair};
 use crate::clip::Outline;
 use crate::hulls::Hulls;
-use crate::pair::{PairMoments, PsiRange, TetFrame};
+use crate::pair::{OnTarget, PairMoments, PsiRange, TetFrame};
 use crate::potential::Field;
 use crate::region::{Pieces, Region};
 use crate::report::{HitReport, list_past_centroid};
@@ -32,8 +32,10 @@ pub struct Hit {
     pub pair: u32,
     /// The pair's tetrahedron, to be had without looking for the pair.
     pub tet: TetId,
-    /// Its integrals.
-    pub moments: PairMoments,
+    /// ∫ φ ψ_a dA [m²].
+    pub pressure: [f64; 3],
+    /// What the target's nodes feel.
+    pub on_target: OnTarget,
 }
 
 /// What the hits of a facet come to.
@@ -50,17 +52,14 @@ pub struct FacetSums {
 }
 
 impl FacetSums {
-    fn of(hits: &[Hit]) -> Self {
-        let mut sums = Self::default();
-        for Hit { moments, .. } in hits {
-            sums.pressure += moments.total();
-            sums.area += moments.area;
-            for a in 0..3 {
-                sums.weights[a] += moments.pressure[a];
-                sums.slope[a] += moments.slope[a];
-            }
+    #[inline(always)]
+    fn add(&mut self, moments: &PairMoments) {
+        self.pressure += moments.total();
+        self.area += moments.area;
+        for a in 0..3 {
+            self.weights[a] += moments.pressure[a];
+            self.slope[a] += moments.slope[a];
         }
-        sums
     }
 
     /// Centre of pressure ∫ φ x dA / ∫ φ dA [m] on a facet with these corners; the first where there is no pressure.
@@ -168,18 +167,21 @@ impl Triangle {
     }
 }
 
-/// What a contactor sees of its target.
+/// A pair that may overlap.
 struct Seen {
+    /// In [`Candidates::pairs`], and its tetrahedron.
+    pair: u32,
+    tet: TetId,
     /// λ_b of the target at the corners of the contactor's triangle, as `[b][a]`.
     lambda: [[f64; 3]; 4],
     /// Where the contactor is a face.
     range: Option<PsiRange>,
+    moments: PairMoments,
 }
 
 /// What a thread needs while it is at a chunk.
 #[derive(Default)]
 struct Scratch {
-    /// Of each hit.
     seen: Vec<Seen>,
     region: Region,
     pieces: Pieces,
@@ -190,7 +192,7 @@ struct Scratch {
 impl Chunk {
     fn integrate(&mut self, arch: Arch, scene: &Scene, scratch: &mut Scratch) {
         let facets = &scene.candidates.facets[self.facets.clone()];
-        let pairs = facets.iter().map(|facet| facet.pairs.len()).sum::<usize>();
+        let pairs = facets[facets.len() - 1].pairs.end - facets[0].pairs.start;
         self.hits.clear();
         // A contact that closes further rarely asks for more than a quarter.
         self.hits.reserve(pairs / 4);
@@ -207,9 +209,9 @@ impl Chunk {
             if last != Some(facet.triangle) {
                 (last, triangle) = (Some(facet.triangle), Triangle::new(scene, facet.triangle));
             }
-            let first = self.hits.len() as u32;
-            self.add_facet(arch, scene, facet, &triangle, scratch);
-            let hits = [first, self.hits.len() as u32];
+            let first = scratch.seen.len() as u32;
+            scratch.add_facet(arch, scene, facet, &triangle);
+            let hits = [first, scratch.seen.len() as u32];
             if hits[0] < hits[1] {
                 let (chunk, place) = (self.number, self.touching.len() as u32);
                 let Facet { triangle, target, .. } = *facet;
@@ -218,60 +220,63 @@ impl Chunk {
                 self.touching.push(Touch { facet, triangle, owner, target, chunk, hits, place });
             }
         }
-        let hits = &mut self.hits;
-        scratch.batches.finish(arch, |part| hits[part.pair as usize].moments.add_region(part));
-        for (hit, seen) in hits.iter_mut().zip(&scratch.seen) {
-            match &seen.range {
-                None => hit.moments.drop_rounding(),
-                Some(range) => hit.moments.drop_rounding_within(range),
-            }
-            hit.moments.share_with_target(&seen.lambda);
-        }
-        self.drop_empty();
-        self.report = HitReport::of(&self.hits, scene);
+        let Scratch { batches, seen, .. } = scratch;
+        batches.finish(arch, |part| seen[part.pair as usize].moments.add_region(part));
+        self.take(scene, seen);
         if *scene.field == Field::Element {
             list_past_centroid(&self.hits, scene, &mut self.past);
         }
     }
 
-    /// Keeps the hits that have an area, and the facets that have such hits; what is not a number stays to be reported.
-    fn drop_empty(&mut self) {
-        let (hits, sums, mut kept) = (&mut self.hits, &mut self.sums, 0);
+    /// Keeps what has an area, and the facets that have such hits; what is not a number stays to be reported.
+    fn take(&mut self, scene: &Scene, seen: &mut [Seen]) {
+        let Self { hits, sums, report, .. } = self;
         sums.clear();
+        *report = HitReport::default();
         self.touching.retain_mut(|touch| {
-            let first = kept;
-            for k in touch.hits[0]..touch.hits[1] {
-                let hit = hits[k as usize];
-                if hit.moments.area != 0.0 {
-                    hits[kept as usize] = hit;
-                    kept += 1;
+            let (first, mut sum) = (hits.len() as u32, FacetSums::default());
+            for seen in &mut seen[touch.hits[0] as usize..touch.hits[1] as usize] {
+                seen.drop_rounding();
+                let Seen { pair, tet, lambda, moments, .. } = seen;
+                if moments.area != 0.0 {
+                    let on_target = moments.on_target(lambda);
+                    let hit = Hit { pair: *pair, tet: *tet, pressure: moments.pressure, on_target };
+                    report.add(&hit, moments.depth, scene);
+                    sum.add(moments);
+                    hits.push(hit);
                 }
             }
-            (touch.hits, touch.place) = ([first, kept], sums.len() as u32);
-            if first < kept {
-                sums.push(FacetSums::of(&hits[first as usize..kept as usize]));
+            (touch.hits, touch.place) = ([first, hits.len() as u32], sums.len() as u32);
+            let touches = touch.hits[0] < touch.hits[1];
+            if touches {
+                sums.push(sum);
             }
-            first < kept
+            touches
         });
-        hits.truncate(kept as usize);
     }
+}
 
-    fn add_facet(
-        &mut self,
-        arch: Arch,
-        scene: &Scene,
-        facet: &Facet,
-        triangle: &Triangle,
-        scratch: &mut Scratch,
-    ) {
+impl Seen {
+    fn drop_rounding(&mut self) {
+        match &self.range {
+            None => self.moments.drop_rounding(),
+            Some(range) => self.moments.drop_rounding_within(range),
+        }
+    }
+}
+
+impl Scratch {
+    fn add_facet(&mut self, arch: Arch, scene: &Scene, facet: &Facet, triangle: &Triangle) {
         let Triangle { corners, normal, area } = triangle;
         if *area == 0.0 {
             return;
         }
         if scene.hulls.whole(facet.target).is_some() {
-            return self.add_whole(arch, scene, facet, triangle, scratch);
+            return self.add_whole(arch, scene, facet, triangle);
         }
-        if scene.hulls.keep_apart(facet.target, corners) || scene.is_on_one_side(facet, &corners[0], normal) {
+        if scene.hulls.keep_apart(arch, facet.target, corners)
+            || scene.is_on_one_side(facet, &corners[0], normal)
+        {
             return;
         }
         let pieces = matches!(scene.field, Field::Pieces(_));
@@ -285,15 +290,10 @@ impl Chunk {
             if scene.tet_is_on_one_side(tet, &corners[0], normal) {
                 continue;
             }
-            let hit = self.hits.len() as u32;
-            self.hits.push(Hit { pair: index as u32, tet, moments: PairMoments::default() });
-            scratch.seen.push(Seen { lambda, range: None });
-            scratch.add_regions(
-                arch,
-                scene,
-                hit,
-                &Placed { tet, frame, lambda: &lambda, normal, area: *area },
-            );
+            let hit = self.seen.len() as u32;
+            let moments = PairMoments::default();
+            self.seen.push(Seen { pair: index as u32, tet, lambda, range: None, moments });
+            self.add_regions(arch, scene, hit, &Placed { tet, frame, lambda: &lambda, normal, area: *area });
         }
     }
 
@@ -304,31 +304,26 @@ impl Chunk {
         scene: &Scene,
         facet: &Facet,
         Triangle { corners, normal, area }: &Triangle,
-        scratch: &mut Scratch,
     ) {
         let nodes = scene.blocks.nodes_of(facet.target);
         let contactor = scene.hulls.contactor(facet.triangle, facet.target);
         let outline = contactor.map_or(&Outline::TRIANGLE, |face| &face.outline);
         let planes = scene.hulls.planes_of(facet.target);
-        if !arch.dispatch(Look { sides: &mut scratch.sides, planes, corners, normal, outline })
+        if !arch.dispatch(Look { sides: &mut self.sides, planes, corners, normal, outline })
             || (nodes.len() <= FEW_NODES
                 && are_on_one_side(scene.position[nodes].iter(), &corners[0], normal))
         {
             return;
         }
-        let (hit, index) = (self.hits.len() as u32, facet.pairs.start);
+        let (hit, index) = (self.seen.len() as u32, facet.pairs.start);
         let slot = scene.candidates.pairs[index].tet as usize;
         let (pair, tet) = (index as u32, scene.candidates.tets[slot]);
-        self.hits.push(Hit { pair, tet, moments: PairMoments::default() });
-        let frame = &scene.frames[slot];
-        let range = contactor.map(|face| face.range);
-        scratch.seen.push(Seen { lambda: frame.lambda(corners), range });
-        let Scratch { sides, region, batches, .. } = scratch;
+        let (lambda, range) = (scene.frames[slot].lambda(corners), contactor.map(|face| face.range));
+        self.seen.push(Seen { pair, tet, lambda, range, moments: PairMoments::default() });
+        let Self { sides, region, batches, .. } = self;
         arch.dispatch(PushSides { sides, region, batches, outline, arch, hit, area_m2: *area });
     }
-}
 
-impl Scratch {
     fn make_room(&mut self, pairs: usize) {
         let pairs = pairs.max(CHUNK_PAIRS);
         self.seen.clear();
@@ -343,13 +338,8 @@ impl Scratch {
                 self.batches.push_element(arch, hit, area, lambda, &frame.slopes(normal));
             }
             Field::Pieces(table) => {
-                if !self.pieces.set(lambda, table.of(tet), frame, normal) {
-                    return;
-                }
-                for k in 0..self.pieces.len() {
-                    if self.region.set_piece(&self.pieces, k) {
-                        self.batches.push(arch, hit, area, &self.region, &Outline::TRIANGLE);
-                    }
+                if self.pieces.set(lambda, table.of(tet), frame, normal) {
+                    self.batches.push_pieces(arch, hit, area, &self.pieces);
                 }
             }
         }

@@ -13,7 +13,7 @@ use pulp::{Arch, Simd, WithSimd};
 use crate::clip::MOST_CORNERS;
 
 /// Regions in a group; a multiple of every lane count.
-pub const GROUP: usize = 8;
+pub const GROUP: usize = 16;
 /// Most cuts of a region: four faces of a tetrahedron and its rivals, or as many as a block that is taken whole has faces.
 pub const MOST_CUTS: usize = 24;
 
@@ -116,11 +116,16 @@ impl<const CORNERS: usize, const CUTS: usize, const EDGES: usize> WithSimd
             let load = |row: &Row| S::as_simd_f64s(row).0[k];
             let field = |at: &[Row; 3]| Form::through(simd, [load(&at[0]), load(&at[1]), load(&at[2])]);
             let mut sums = Sums::zero(simd);
-            let mut edges = match CORNERS {
-                3 => Edges::<S, EDGES>::triangle(simd),
+            let mut cuts = group.fields.iter().zip(&group.bounds).take(cuts);
+            let mut edges = match (CORNERS, CUTS) {
+                (3, 0) => Edges::<S, EDGES>::triangle(simd),
+                (3, _) => {
+                    let (cut, bound) = cuts.next().expect("a group with cuts");
+                    Edges::of_triangle(simd, &field(cut), load(bound))
+                }
                 _ => Edges::outline(simd, &group.outline[..corners], load),
             };
-            for (cut, bound) in group.fields.iter().zip(&group.bounds).take(cuts) {
+            for (cut, bound) in cuts {
                 edges.cut(simd, &field(cut), load(bound), &mut sums.doubtful);
             }
             add_fan(simd, &edges, &field(&group.phi), load(&group.slope), &mut sums);
@@ -194,6 +199,37 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
         Self { x, y, len: 3 }
     }
 
+    /// What one cut leaves of the whole triangle: its corners ask for no products, and its rim leaves once at most.
+    #[inline(always)]
+    fn of_triangle(simd: S, field: &Form<S>, bound: S::f64s) -> Self {
+        let Form([c0, c1, c2]) = *field;
+        let (d0, d1, d2) = (c0, simd.add_f64s(c0, c1), simd.add_f64s(c0, c2));
+        let out0 = simd.less_than_f64s(d0, bound);
+        let out1 = simd.less_than_f64s(d1, bound);
+        let out2 = simd.less_than_f64s(d2, bound);
+        let [in0, in1, in2] = [simd.not_m64s(out0), simd.not_m64s(out1), simd.not_m64s(out2)];
+        // Along the edges 01, 12 and 20.
+        let leaves = [simd.and_m64s(in0, out1), simd.and_m64s(in1, out2), simd.and_m64s(in2, out0)];
+        let returns = [simd.and_m64s(out0, in1), simd.and_m64s(out1, in2), simd.and_m64s(out2, in0)];
+        let gone = [simd.and_m64s(out0, out1), simd.and_m64s(out1, out2), simd.and_m64s(out2, out0)];
+        let leave = crossing(simd, &leaves, [d0, d1, d2]);
+        let back = crossing(simd, &returns, [d0, d1, d2]);
+        let Self { mut x, mut y, .. } = Self::triangle(simd);
+        // The first edge keeps its ψ₂, the last one its ψ₁.
+        for k in 0..2 {
+            let end = simd.select_f64s(gone[k], x[k][0], x[k][1]);
+            x[k] =
+                [simd.select_f64s(returns[k], back[0], x[k][0]), simd.select_f64s(leaves[k], leave[0], end)];
+        }
+        for k in 1..3 {
+            let end = simd.select_f64s(gone[k], y[k][0], y[k][1]);
+            y[k] =
+                [simd.select_f64s(returns[k], back[1], y[k][0]), simd.select_f64s(leaves[k], leave[1], end)];
+        }
+        (x[3], y[3]) = ([leave[0], back[0]], [leave[1], back[1]]);
+        Self { x, y, len: 4 }
+    }
+
     /// All of an outline, counter-clockwise.
     #[inline(always)]
     fn outline(simd: S, corners: &[[Row; 2]], load: impl Fn(&Row) -> S::f64s) -> Self {
@@ -256,6 +292,19 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
         let differ = |[from, to]: [S::f64s; 2]| simd.not_m64s(simd.equal_f64s(from, to));
         simd.or_m64s(differ(self.x[k]), differ(self.y[k]))
     }
+}
+
+/// The point where a field with these values at a triangle's corners is zero on one of the edges 01, 12 and 20; the first corner if
+/// it is on none.
+#[inline(always)]
+fn crossing<S: Simd>(simd: S, on: &[S::m64s; 3], [d0, d1, d2]: [S::f64s; 3]) -> [S::f64s; 2] {
+    let (o, l) = (simd.splat_f64s(0.0), simd.splat_f64s(1.0));
+    let from = simd.select_f64s(on[2], d2, simd.select_f64s(on[1], d1, d0));
+    let to = simd.select_f64s(on[2], d0, simd.select_f64s(on[1], d2, d1));
+    let t = simd.div_f64s(from, simd.sub_f64s(from, to));
+    let rest = simd.sub_f64s(l, t);
+    let x = simd.select_f64s(on[0], t, simd.select_f64s(on[1], rest, o));
+    [x, simd.select_f64s(on[1], t, simd.select_f64s(on[2], rest, o))]
 }
 
 /// Adds the integrals over a polygon on which φ is linear:

@@ -17,6 +17,8 @@ pub mod block_faces;
 #[cfg(feature = "potential")]
 pub mod bonds;
 #[cfg(feature = "potential")]
+mod both;
+#[cfg(feature = "potential")]
 pub mod broad_phase;
 #[cfg(feature = "potential")]
 mod broad_scenes;

@@ -89,14 +89,15 @@ impl TetFrame {
 
     /// λ_b at the corners of a triangle, as `[b][a]`.
     pub fn lambda(&self, [x, y, z]: &[Vec3; 3]) -> [[f64; 3]; 4] {
-        by_face(&[self.lambda_at(x), self.lambda_at(y), self.lambda_at(z)])
+        by_face([&self.lambda_at(x), &self.lambda_at(y), &self.lambda_at(z)])
     }
 
     /// The same, or nothing if a face separates the triangle from the tetrahedron.
     #[inline(always)]
     pub fn lambda_inside(&self, [x, y, z]: &[Vec3; 3]) -> Option<[[f64; 3]; 4]> {
-        let at = [self.lambda_at(x), self.lambda_at(y), self.lambda_at(z)];
-        if some_face_separates(&at) { None } else { Some(by_face(&at)) }
+        let (x, y, z) = (self.lambda_at(x), self.lambda_at(y), self.lambda_at(z));
+        let at = [&x, &y, &z];
+        if some_face_separates(at) { None } else { Some(by_face(at)) }
     }
 
     /// Whether a triangle that lies in the plane of face b is to be counted in this tetrahedron: if the tetrahedron is
@@ -134,7 +135,7 @@ impl TetFrame {
 
 /// λ as `[b][a]` of λ as `[a][b]`.
 #[inline(always)]
-pub(crate) fn by_face([x, y, z]: &[Faces; 3]) -> [[f64; 3]; 4] {
+pub(crate) fn by_face([x, y, z]: [&Faces; 3]) -> [[f64; 3]; 4] {
     let mut lambda = [[0.0; 3]; 4];
     for b in 0..4 {
         lambda[b] = [x[b], y[b], z[b]];
@@ -145,7 +146,7 @@ pub(crate) fn by_face([x, y, z]: &[Faces; 3]) -> [[f64; 3]; 4] {
 /// Whether no corner of a triangle is inside some face, from λ as `[a][b]`; without a branch, since either answer is
 /// as likely.
 #[inline(always)]
-pub(crate) fn some_face_separates([x, y, z]: &[Faces; 3]) -> bool {
+pub(crate) fn some_face_separates([x, y, z]: [&Faces; 3]) -> bool {
     let mut separates = false;
     for b in 0..4 {
         let larger = if x[b] > y[b] { x[b] } else { y[b] };
@@ -163,16 +164,34 @@ pub type PsiRange = [[f64; 2]; 2];
 pub struct PairMoments {
     /// ∫ φ ψ_a dA [m²]: everything about the normal force.
     pub pressure: [f64; 3],
-    /// The same for the target's nodes, Σ_a λ_b(X_a) ∫ φ ψ_a dA [m²].
-    pub target_pressure: [f64; 4],
     /// ∫ |∂φ/∂n| ψ_a dA [m]: stiffness over k_n.
     pub slope: [f64; 3],
-    /// The same for the target's nodes [m].
-    pub target_slope: [f64; 4],
     /// Area of the part [m²].
     pub area: f64,
     /// Largest φ on the part.
     pub depth: f64,
+}
+
+/// Integrals over a contactor as the nodes of its target see them; λ are the target's at its corners.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OnTarget {
+    /// ∫ φ λ_b dA = Σ_a λ_b(X_a) ∫ φ ψ_a dA [m²].
+    pub pressure: [f64; 4],
+    /// ∫ |∂φ/∂n| λ_b dA [m].
+    pub slope: [f64; 4],
+}
+
+impl OnTarget {
+    /// From ∫ φ ψ_a dA and ∫ |∂φ/∂n| ψ_a dA; `lambda[b][a]` is λ_b at corner a.
+    #[inline(always)]
+    pub fn of(lambda: &[[f64; 3]; 4], pressure: &[f64; 3], slope: &[f64; 3]) -> Self {
+        let mut on_target = Self::default();
+        for (b, [x, y, z]) in lambda.iter().enumerate() {
+            on_target.pressure[b] = x * pressure[0] + y * pressure[1] + z * pressure[2];
+            on_target.slope[b] = x * slope[0] + y * slope[1] + z * slope[2];
+        }
+        on_target
+    }
 }
 
 impl PairMoments {
@@ -242,13 +261,10 @@ impl PairMoments {
         self.area = non_negative(self.area);
     }
 
-    /// Fills in what the target's nodes feel; `lambda[b][a]` is λ_b at corner a.
-    pub fn share_with_target(&mut self, lambda: &[[f64; 3]; 4]) {
-        for (b, lambda) in lambda.iter().enumerate() {
-            let at_target = |w: &[f64; 3]| lambda[0] * w[0] + lambda[1] * w[1] + lambda[2] * w[2];
-            self.target_pressure[b] = at_target(&self.pressure);
-            self.target_slope[b] = at_target(&self.slope);
-        }
+    /// What the target's nodes feel; `lambda[b][a]` is λ_b at corner a.
+    #[inline(always)]
+    pub fn on_target(&self, lambda: &[[f64; 3]; 4]) -> OnTarget {
+        OnTarget::of(lambda, &self.pressure, &self.slope)
     }
 }
 
@@ -293,7 +309,6 @@ pub fn element_moments(lambda: &[[f64; 3]; 4], slopes: &[f64; 4], area_m2: f64) 
     element_regions(lambda, slopes, |_, region| {
         moments.add(&region.polygon(&Outline::TRIANGLE), &Form::through(&region.phi), region.slope, area_m2);
     });
-    moments.share_with_target(lambda);
     moments
 }
 

@@ -7,21 +7,22 @@ use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
 use crate::bonds;
+use crate::both::both;
 use crate::by_block::ByBlock;
 use crate::candidates::Candidates;
 use crate::element_potential::ElementPotential;
 use crate::energy::{self, OverlapParts};
 use crate::faces::{FaceScene, Faces};
-use crate::facets::{FacetForce, FacetScene, OnHost, relative_motion};
+use crate::facets::{FacetForce, FacetScene, relative_motion};
 use crate::friction::FrictionLaw;
 use crate::hulls::Hulls;
-use crate::integrals::{Hit, Integrals, Scene, Touch};
+use crate::integrals::{Integrals, Scene, Touch};
 use crate::joints::{Joints, Memory};
 use crate::model::{
     ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
     FacetMemory,
 };
-use crate::pair::TetFrame;
+use crate::pair::{OnTarget, TetFrame};
 use crate::pair_stiffness::PairStiffness;
 use crate::plan::Part;
 use crate::potential::{ContactPotential, Field, OverlapLaw};
@@ -49,6 +50,8 @@ pub struct PotentialContact {
     by_block: ByBlock,
     frames: Vec<TetFrame>,
     forces: Vec<FacetForce>,
+    /// What hosts feel of them: a block need not look for the hits, which are far away in memory.
+    on_host: Vec<OnTarget>,
     penalty_of_facet: Vec<f64>,
     /// k_n w″(U) ∫ φ dA of each facet's pair of blocks [Pa/m]; empty where the law is linear.
     curvature_of_facet: Vec<f64>,
@@ -73,6 +76,7 @@ impl PotentialContact {
             by_block: ByBlock::default(),
             frames: Vec::new(),
             forces: Vec::new(),
+            on_host: Vec::new(),
             penalty_of_facet: Vec::new(),
             curvature_of_facet: Vec::new(),
             faces: Faces::default(),
@@ -129,26 +133,15 @@ impl PotentialContact {
             self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
         }
         self.candidates.update(input, &self.hulls);
-        if !self.candidates.pairs.is_empty() {
-            self.hulls.place(input.blocks, input.position);
-            self.hulls.separate(input.blocks, input.position, &self.candidates.neighbours);
-        }
-        self.place_frames(input)
-    }
-
-    fn place_frames(&mut self, input: &ContactInput) -> Result<(), ContactError> {
-        let blocks = input.blocks;
-        let Candidates { tets, order, .. } = &self.candidates;
-        self.frames.resize(tets.len(), TetFrame::default());
-        let place = |(slot, frame): (usize, &mut TetFrame)| {
-            *frame = TetFrame::in_order(&blocks.tet_corners(tets[slot], input.position), &order[slot]);
-            let is_sound = frame.volume_m3 > 0.0 && frame.has_heights();
-            (!is_sound).then_some(slot)
+        let Self { candidates, hulls, frames, .. } = self;
+        let place_hulls = || {
+            if !candidates.pairs.is_empty() {
+                hulls.place(input.blocks, input.position);
+                hulls.separate(input.blocks, input.position, &candidates.neighbours);
+            }
         };
-        let frames = self.frames.par_iter_mut().enumerate().with_min_len(GRAIN_FRAMES);
-        let Some(slot) = frames.filter_map(place).min() else { return Ok(()) };
-        let (tet, volume_m3) = (tets[slot], self.frames[slot].volume_m3);
-        Err(ContactError::CollapsedTet { tet, block: blocks.tet_block[tet.index()], volume_m3 })
+        let many = candidates.tets.len() > GRAIN_FRAMES;
+        both(many, place_hulls, || place_frames(frames, candidates, input)).1
     }
 
     /// k_n dw/dU of each touching facet's pair of blocks [Pa].
@@ -169,23 +162,6 @@ impl PotentialContact {
             let curvature = self.penalty_pa * law.curvature(overlap) * self.overlaps.pressure_of(a, b);
             self.curvature_of_facet.push(curvature);
         }
-    }
-
-    fn place_forces(&mut self, input: &ContactInput, history: &ContactHistory) {
-        let scene = FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
-        let (touching, integrals) = (self.integrals.touching(), &self.integrals);
-        self.forces.resize(touching.len(), FacetForce::default());
-        let (penalties, hulls) = (&self.penalty_of_facet, &self.hulls);
-        let place = |(t, force): (usize, &mut FacetForce)| {
-            let (hits, sums) = (integrals.hits_of(&touching[t]), integrals.sums_of(&touching[t]));
-            *force = scene.force(&touching[t], hits, sums, penalties[t]);
-            let is_on_whole = force.touches && hulls.whole(touching[t].target).is_some();
-            if let ([Hit { moments, .. }], true) = (hits, is_on_whole) {
-                force.on_host =
-                    Some(OnHost { pressure: moments.target_pressure, slope: moments.target_slope });
-            }
-        };
-        for_each_facet(&mut self.forces, place);
     }
 
     /// Takes over what facets remember; what did not touch is forgotten.
@@ -231,14 +207,59 @@ impl PotentialContact {
                 let normal = force.push.normalize();
                 let across = Mat3::identity() - normal * normal.transpose();
                 // The spring of a facet, shared among its hits by their pressure.
-                let total = hit.moments.total();
-                let [a, b, c] = hit.moments.pressure;
-                let [d, e, g, h] = hit.moments.target_pressure;
+                let [a, b, c] = hit.pressure;
+                let [d, e, g, h] = hit.on_target.pressure;
+                let total = a + b + c;
                 let weights = [a, b, c, -d, -e, -g, -h].map(|w| w / total);
                 pair.add_spring(&weights, &(force.shear_slope * total * across));
             }
             stiffness.push(pair);
         }
+    }
+}
+
+fn place_frames(
+    frames: &mut Vec<TetFrame>,
+    candidates: &Candidates,
+    input: &ContactInput,
+) -> Result<(), ContactError> {
+    let (blocks, Candidates { tets, order, .. }) = (input.blocks, candidates);
+    frames.resize(tets.len(), TetFrame::default());
+    let place = |(slot, frame): (usize, &mut TetFrame)| {
+        *frame = TetFrame::in_order(&blocks.tet_corners(tets[slot], input.position), &order[slot]);
+        let is_sound = frame.volume_m3 > 0.0 && frame.has_heights();
+        (!is_sound).then_some(slot)
+    };
+    let unsound = frames.par_iter_mut().enumerate().with_min_len(GRAIN_FRAMES).filter_map(place);
+    let Some(slot) = unsound.min() else { return Ok(()) };
+    let (tet, volume_m3) = (tets[slot], frames[slot].volume_m3);
+    Err(ContactError::CollapsedTet { tet, block: blocks.tet_block[tet.index()], volume_m3 })
+}
+
+/// The forces of all facets, and what hosts feel of them.
+fn place_forces(
+    forces: &mut Vec<FacetForce>,
+    on_host: &mut Vec<OnTarget>,
+    scene: &FacetScene,
+    integrals: &Integrals,
+    penalty_of_facet: &[f64],
+    hulls: &Hulls,
+) {
+    let touching = integrals.touching();
+    forces.resize(touching.len(), FacetForce::default());
+    on_host.resize(touching.len(), OnTarget::default());
+    let place = |((force, on_host), t): ((&mut FacetForce, &mut OnTarget), usize)| {
+        let (hits, sums) = (integrals.hits_of(&touching[t]), integrals.sums_of(&touching[t]));
+        *force = scene.force(&touching[t], hits, sums, penalty_of_facet[t]);
+        if hulls.whole(touching[t].target).is_some() {
+            *on_host = hits[0].on_target;
+        }
+    };
+    if touching.len() > GRAIN_FACETS {
+        let entries = forces.par_iter_mut().zip(on_host).zip(0..touching.len());
+        entries.with_min_len(GRAIN_FACETS / 2).for_each(place);
+    } else {
+        forces.iter_mut().zip(on_host).zip(0..).for_each(place);
     }
 }
 
@@ -263,11 +284,21 @@ impl ContactModel for PotentialContact {
         let (candidates, integrals) = (&self.candidates, &self.integrals);
         let report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
         let blocks_of = |touch: &Touch| (touch.owner, touch.target);
-        self.by_block.arrange(input.blocks.len(), self.integrals.touching().iter().map(blocks_of));
         self.place_penalties(input);
-        self.place_forces(input, history);
-        if self.needs_bodies() && !input.bodies.is_empty() {
-            let joints = self.joints.as_ref().expect("faces rub by a law");
+        let rubs = self.needs_bodies() && !input.bodies.is_empty();
+        let Self { by_block, faces, integrals, .. } = self;
+        let sort = || {
+            by_block.arrange(input.blocks.len(), integrals.touching().iter().map(blocks_of));
+            if rubs {
+                faces.arrange(integrals);
+            }
+        };
+        let (forces, on_host) = (&mut self.forces, &mut self.on_host);
+        let facets =
+            FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
+        let place = || place_forces(forces, on_host, &facets, integrals, &self.penalty_of_facet, &self.hulls);
+        both(integrals.touching().len() > GRAIN_FACETS, place, sort);
+        if let Some(joints) = self.joints.as_ref().filter(|_| rubs) {
             let scene = FaceScene { input, integrals: &self.integrals, joints };
             self.faces.add(&scene, &mut self.forces, history);
         }
@@ -277,6 +308,7 @@ impl ContactModel for PotentialContact {
             by_block: &self.by_block,
             hulls: &self.hulls,
             forces: &self.forces,
+            on_host: &self.on_host,
             stiffness_pa: &self.penalty_of_facet,
             curvature_pa_m: &self.curvature_of_facet,
         };

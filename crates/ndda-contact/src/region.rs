@@ -6,9 +6,10 @@
 //! is no region. The sign of a field is taken the same way from both of its sides, so no point is in two regions or
 //! in none.
 
-use crate::clip::{Extent, Form, Outline, Polygon};
+use crate::clip::{Form, Outline, Polygon};
 use crate::kernel::MOST_CUTS;
 use crate::pair::TetFrame;
+use crate::potential::MOST_PIECES;
 use ndda_mesh::Vec3;
 
 /// A field by its values at the triangle's corners, that is positive in the region.
@@ -21,16 +22,20 @@ pub struct Cut {
 }
 
 impl Cut {
+    /// Leaves everything.
+    pub const NOTHING: Self = Self { field: [1.0; 3], bound: 0.0 };
+
     /// A cut that keeps the zeros of its field, or leaves them to another region.
     #[inline(always)]
     pub fn new(field: [f64; 3], tie_is_inside: bool) -> Self {
         Self { field, bound: if tie_is_inside { 0.0 } else { f64::from_bits(1) } }
     }
 
-    /// How much of a triangle is outside.
+    /// How many corners of a triangle are outside.
     #[inline(always)]
-    fn outside(&self) -> Extent {
-        Extent::of_triangle(&self.field, |d| d < self.bound)
+    fn outside(&self) -> u8 {
+        let [x, y, z] = self.field;
+        u8::from(x < self.bound) + u8::from(y < self.bound) + u8::from(z < self.bound)
     }
 }
 
@@ -58,14 +63,6 @@ impl Region {
         (self.phi, self.slope, self.len) = (phi, slope, 0);
     }
 
-    /// Adds a cut of a triangle if it cuts anything; false if it leaves nothing.
-    #[inline(always)]
-    fn add(&mut self, cut: Cut) -> bool {
-        let outside = cut.outside();
-        self.put(cut, outside == Extent::Partly);
-        outside != Extent::Everywhere
-    }
-
     /// Adds a cut if it cuts anything: to write is quicker than to ask.
     #[inline(always)]
     pub fn put(&mut self, cut: Cut, cuts: bool) {
@@ -75,6 +72,7 @@ impl Region {
 
     /// Where λ_i ≥ 0 is the smallest of four and φ = 4 λ_i; `lambda[b][a]` is λ_b at corner a. `outside` is from
     /// [`element_outside`]. False if that is nowhere.
+    #[inline(always)]
     pub fn set_element(
         &mut self,
         lambda: &[[f64; 3]; 4],
@@ -88,15 +86,10 @@ impl Region {
     }
 
     /// Where the k-th of the functions is the smallest. False if that is nowhere.
-    #[inline]
     pub fn set_piece(&mut self, pieces: &Pieces, k: usize) -> bool {
-        let own = pieces.at[k];
-        let ahead = |j: usize| Cut::new([0, 1, 2].map(|a| pieces.at[j][a] - own[a]), k < j);
-        self.begin(own, pieces.slope[k].abs());
-        for face in &pieces.faces[..pieces.faces_len] {
-            self.put(*face, true);
-        }
-        (0..pieces.len).all(|j| j == k || self.add(ahead(j)))
+        self.begin(pieces.at[k], pieces.slope[k].abs());
+        self.len = pieces.cuts(k, |n, cut| self.cuts[n] = cut);
+        pieces.is_somewhere(k)
     }
 
     /// The region on this contactor corner by corner.
@@ -113,12 +106,14 @@ impl Region {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Pieces {
     /// Their values at the triangle's corners.
-    at: [[f64; 3]; MOST_CUTS],
+    at: [[f64; 3]; MOST_PIECES],
     /// ∂φ/∂n [1/m].
-    slope: [f64; MOST_CUTS],
+    slope: [f64; MOST_PIECES],
+    /// At how many corners each is above another, as `[own][other]`: there it is not the smallest.
+    outside: [[u8; MOST_PIECES]; MOST_PIECES],
     len: usize,
-    /// The cuts by the tetrahedron's faces that cut something.
-    faces: [Cut; 4],
+    /// The cuts by the tetrahedron's faces that cut something, and one more.
+    faces: [Cut; 5],
     faces_len: usize,
 }
 
@@ -133,27 +128,46 @@ impl Pieces {
         frame: &TetFrame,
         normal: &Vec3,
     ) -> bool {
-        (self.len, self.faces_len) = (0, 0);
         let rise = [0, 1, 2, 3].map(|b| frame.gradient(b).dot(normal));
+        self.len = values.len();
+        for (k, [v0, v1, v2, v3]) in values.iter().enumerate() {
+            for (a, at) in self.at[k].iter_mut().enumerate() {
+                *at = v0 * lambda[0][a] + v1 * lambda[1][a] + v2 * lambda[2][a] + v3 * lambda[3][a];
+            }
+            self.slope[k] = v0 * rise[0] + v1 * rise[1] + v2 * rise[2] + v3 * rise[3];
+        }
+        self.compare();
+        self.cut_by_faces(lambda, &rise)
+    }
+
+    /// Which is above which.
+    #[inline(always)]
+    fn compare(&mut self) {
+        for k in 0..self.len {
+            let [x, y, z] = self.at[k];
+            for j in k + 1..self.len {
+                let [u, v, w] = self.at[j];
+                let below = u8::from(u < x) + u8::from(v < y) + u8::from(w < z);
+                // Where two are the same, the former has the point.
+                (self.outside[k][j], self.outside[j][k]) = (below, 3 - below);
+            }
+        }
+    }
+
+    /// Lists the faces that cut something; false if one leaves nothing.
+    #[inline(always)]
+    fn cut_by_faces(&mut self, lambda: &[[f64; 3]; 4], rise: &[f64; 4]) -> bool {
+        self.faces_len = 0;
+        let mut is_somewhere = true;
         for b in 0..4 {
             // The faces inside a block belong to the tetrahedron on the triangle's inner side.
             let cut = Cut::new(lambda[b], rise[b] < 0.0);
-            match cut.outside() {
-                Extent::Nowhere => {}
-                Extent::Everywhere => return false,
-                Extent::Partly => {
-                    self.faces[self.faces_len] = cut;
-                    self.faces_len += 1;
-                }
-            }
+            let outside = cut.outside();
+            self.faces[self.faces_len] = cut;
+            self.faces_len += usize::from(outside > 0);
+            is_somewhere &= outside < 3;
         }
-        for values in values {
-            let at = [0, 1, 2].map(|a| (0..4).map(|b| values[b] * lambda[b][a]).sum::<f64>());
-            self.at[self.len] = at;
-            self.slope[self.len] = (0..4).map(|b| values[b] * rise[b]).sum();
-            self.len += 1;
-        }
-        true
+        is_somewhere
     }
 
     /// How many there are.
@@ -164,6 +178,54 @@ impl Pieces {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.len == 0
+    }
+
+    /// φ at the triangle's corners where the k-th is the smallest.
+    #[inline(always)]
+    pub fn phi(&self, k: usize) -> &[f64; 3] {
+        &self.at[k]
+    }
+
+    /// |∂φ/∂n| there [1/m].
+    #[inline(always)]
+    pub fn slope(&self, k: usize) -> f64 {
+        self.slope[k].abs()
+    }
+
+    /// Whether no other is below the k-th at all corners.
+    #[inline(always)]
+    pub fn is_somewhere(&self, k: usize) -> bool {
+        let mut is_somewhere = true;
+        for j in 0..self.len {
+            is_somewhere &= (self.outside[k][j] < 3) | (j == k);
+        }
+        is_somewhere
+    }
+
+    /// How many cuts the region of the k-th has.
+    #[inline(always)]
+    pub fn count_cuts(&self, k: usize) -> usize {
+        let mut count = self.faces_len;
+        for j in 0..self.len {
+            count += usize::from((self.outside[k][j] > 0) & (j != k));
+        }
+        count
+    }
+
+    /// Gives each cut of the region of the k-th its place and returns how many there are; a place may be given again, and the one after
+    /// the last too: to write is quicker than to ask.
+    #[inline(always)]
+    pub fn cuts(&self, k: usize, mut put: impl FnMut(usize, Cut)) -> usize {
+        for (n, cut) in self.faces[..self.faces_len].iter().enumerate() {
+            put(n, *cut);
+        }
+        let (mut len, own) = (self.faces_len, &self.at[k]);
+        for j in 0..self.len {
+            let other = &self.at[j];
+            put(len, Cut::new([other[0] - own[0], other[1] - own[1], other[2] - own[2]], k < j));
+            len += usize::from((self.outside[k][j] > 0) & (j != k));
+        }
+        len
     }
 }
 
@@ -214,10 +276,25 @@ pub fn element_cuts(
 /// The regions of the element potential that are somewhere.
 pub fn element_regions(lambda: &[[f64; 3]; 4], slopes: &[f64; 4], mut visit: impl FnMut(usize, &Region)) {
     let (mut region, outside) = (Region::default(), element_outside(lambda));
-    for (i, slope) in slopes.iter().enumerate() {
-        if region.set_element(lambda, &outside, i, *slope) {
-            visit(i, &region);
-        }
+    // One by one: a loop would ask for each of its cuts which region this is.
+    visit_element(&mut region, lambda, &outside, slopes, 0, &mut visit);
+    visit_element(&mut region, lambda, &outside, slopes, 1, &mut visit);
+    visit_element(&mut region, lambda, &outside, slopes, 2, &mut visit);
+    visit_element(&mut region, lambda, &outside, slopes, 3, &mut visit);
+}
+
+/// Region i if it is somewhere.
+#[inline(always)]
+fn visit_element(
+    region: &mut Region,
+    lambda: &[[f64; 3]; 4],
+    outside: &[[u8; 4]; 4],
+    slopes: &[f64; 4],
+    i: usize,
+    visit: &mut impl FnMut(usize, &Region),
+) {
+    if region.set_element(lambda, outside, i, slopes[i]) {
+        visit(i, region);
     }
 }
 

@@ -32,25 +32,22 @@ pub struct HitReport {
 }
 
 impl HitReport {
-    /// The report on some hits.
-    pub fn of(hits: &[Hit], scene: &Scene) -> Self {
-        let mut report = Self::default();
-        for hit in hits {
-            let on_contactor = hit.moments.total();
-            let on_target: f64 = hit.moments.target_pressure.iter().sum();
-            if !on_contactor.is_finite() || !on_target.is_finite() {
-                report.lost = Some(hit.pair);
-                break;
-            }
-            // Nodal forces of a grazing pair may cancel: their sizes are what rounding is relative to.
-            let scale: f64 = hit.moments.pressure.iter().map(|w| w.abs()).sum();
-            if scale > 0.0 {
-                let error = (on_contactor - on_target).abs() / scale;
-                report.action_reaction_error = report.action_reaction_error.max(error);
-            }
-            report.look_at(hit.pair, penetration_ratio(scene, hit));
+    /// Takes in a hit of this largest φ.
+    #[inline]
+    pub fn add(&mut self, hit: &Hit, depth: f64, scene: &Scene) {
+        let on_contactor: f64 = hit.pressure.iter().sum();
+        let on_target: f64 = hit.on_target.pressure.iter().sum();
+        if !on_contactor.is_finite() || !on_target.is_finite() {
+            self.lost = self.lost.or(Some(hit.pair));
+            return;
         }
-        report
+        // Nodal forces of a grazing pair may cancel: their sizes are what rounding is relative to.
+        let scale: f64 = hit.pressure.iter().map(|w| w.abs()).sum();
+        if scale > 0.0 {
+            let error = (on_contactor - on_target).abs() / scale;
+            self.action_reaction_error = self.action_reaction_error.max(error);
+        }
+        self.look_at(hit.pair, penetration_ratio(scene, hit.tet, depth));
     }
 
     fn look_at(&mut self, pair: u32, ratio: f64) {
@@ -173,11 +170,11 @@ pub fn list_past_centroid(hits: &[Hit], scene: &Scene, past: &mut Vec<u32>) {
 
 /// Depth over the height of the tetrahedron, or of the block that is taken whole. For the element potential φ = 4 λ, and λ is
 /// that ratio.
-fn penetration_ratio(scene: &Scene, hit: &Hit) -> f64 {
-    let most = match (scene.hulls.whole(scene.blocks.tet_block[hit.tet.index()]), scene.field) {
+fn penetration_ratio(scene: &Scene, tet: TetId, depth: f64) -> f64 {
+    let most = match (scene.hulls.whole(scene.blocks.tet_block[tet.index()]), scene.field) {
         (Some(whole), _) => whole.most_phi,
-        (None, Field::Pieces(table)) => table.most_in(hit.tet),
+        (None, Field::Pieces(table)) => table.most_in(tet),
         (None, Field::Element) => 4.0,
     };
-    if most > 0.0 { hit.moments.depth / most } else { 0.0 }
+    if most > 0.0 { depth / most } else { 0.0 }
 }

@@ -5,11 +5,13 @@ use std::ops::Range;
 use nalgebra::{Matrix4, Vector4};
 use ndda_mesh::{BlockId, BlockSet};
 
+use crate::both::both;
 use crate::by_block::ByBlock;
-use crate::facets::{FacetForce, OnHost};
+use crate::facets::FacetForce;
 use crate::hulls::{Hulls, Whole};
 use crate::integrals::{FacetSums, Hit, Integrals};
 use crate::model::ContactOutput;
+use crate::pair::OnTarget;
 
 /// Facets per half below which a second thread costs more than it brings.
 const GRAIN_FACETS: usize = 200;
@@ -27,6 +29,8 @@ pub struct ScatterScene<'a> {
     pub hulls: &'a Hulls,
     /// One entry per touching facet.
     pub forces: &'a [FacetForce],
+    /// What the host of its target feels of each, where that is taken whole.
+    pub on_host: &'a [OnTarget],
     /// Stiffness per slope, one entry per touching facet [Pa].
     pub stiffness_pa: &'a [f64],
     /// Stiffness per pressure, one entry per touching facet, or none [Pa/m].
@@ -41,7 +45,7 @@ impl ScatterScene<'_> {
     }
 
     /// k λ λᵀ of a facet on a block that is taken whole, λ those of the host where the slope has its mean.
-    fn spring(&self, touch: usize, OnHost { pressure, slope }: &OnHost) -> Matrix4<f64> {
+    fn spring(&self, touch: usize, OnTarget { pressure, slope }: &OnTarget) -> Matrix4<f64> {
         let (total, rise) = (pressure.iter().sum::<f64>(), slope.iter().sum::<f64>());
         let (weights, sum) = if rise > 0.0 { (slope, rise) } else { (pressure, total) };
         if sum <= 0.0 {
@@ -72,14 +76,7 @@ fn add_blocks(scene: &ScatterScene, blocks: Range<usize>, output: ContactOutput)
             let starts = scene.blocks.node_starts();
             let (first, second) = split(output, (starts[middle] - starts[blocks.start]) as usize);
             let parallel = scene.by_block.count(&head).min(scene.by_block.count(&tail)) > GRAIN_FACETS;
-            let run_head = || add_blocks(scene, head.clone(), first);
-            let run_tail = || add_blocks(scene, tail.clone(), second);
-            if parallel {
-                rayon::join(run_head, run_tail);
-            } else {
-                run_head();
-                run_tail();
-            }
+            both(parallel, || add_blocks(scene, head, first), || add_blocks(scene, tail, second));
         }
     }
 }
@@ -90,10 +87,23 @@ fn add_block(scene: &ScatterScene, block: BlockId, output: ContactOutput) {
     match scene.hulls.whole(block) {
         None => {
             own.for_each(|t| nodes.add_contactor(scene, t as usize));
+            ask_for(scene, on_block);
             on_block.iter().for_each(|&t| nodes.add_target(scene, t as usize));
         }
         Some(whole) => nodes.add_whole(scene, whole, own, on_block),
     }
+}
+
+/// What other blocks found is far away in memory: asked for all at once it comes sooner than one after the other.
+fn ask_for(scene: &ScatterScene, on_block: &[u32]) {
+    let mut last = 0;
+    for &t in on_block {
+        for hit in scene.integrals.hits_of(&scene.integrals.touching()[t as usize]) {
+            last |= hit.tet.0 | u32::from(hit.on_target.slope[3] != 0.0);
+        }
+        last |= u32::from(scene.forces[t as usize].touches);
+    }
+    std::hint::black_box(last);
 }
 
 fn split(output: ContactOutput, node: usize) -> (ContactOutput, ContactOutput) {
@@ -131,8 +141,8 @@ impl BlockNodes<'_> {
         if !force.touches {
             return;
         }
-        for Hit { tet, moments, .. } in scene.integrals.hits_of(&scene.integrals.touching()[t]) {
-            let weights = moments.target_pressure.iter().zip(moments.target_slope);
+        for Hit { tet, on_target, .. } in scene.integrals.hits_of(&scene.integrals.touching()[t]) {
+            let weights = on_target.pressure.iter().zip(on_target.slope);
             for (node, (pressure, slope)) in scene.blocks.tets[tet.index()].iter().zip(weights) {
                 self.add(node.index(), -pressure, force, scene.stiffness(t, slope.max(0.0), *pressure));
             }
@@ -153,21 +163,17 @@ impl BlockNodes<'_> {
             };
             let FacetSums { weights, slope, .. } = scene.integrals.sums_of(touch);
             face.shares(weights).iter().for_each(|(node, share)| self.add(node.index(), *share, force, 0.0));
-            let mut on_host = OnHost { pressure: [0.0; 4], slope: [0.0; 4] };
-            for (b, [x, y, z]) in face.on_host.iter().enumerate() {
-                on_host.pressure[b] = x * weights[0] + y * weights[1] + z * weights[2];
-                on_host.slope[b] = x * slope[0] + y * slope[1] + z * slope[2];
-            }
-            springs += scene.spring(t, &on_host);
+            springs += scene.spring(t, &OnTarget::of(&face.on_host, weights, slope));
         }
         let host = scene.blocks.tets[whole.host.index()];
         for (t, force) in on_block.iter().map(|&t| (t as usize, &scene.forces[t as usize])) {
-            if let Some(on_host) = force.on_host {
+            if force.touches {
+                let on_host = &scene.on_host[t];
                 for (node, pressure) in host.iter().zip(on_host.pressure) {
                     // The corners of a host may be far from where it is pressed: its springs know better.
                     self.add(node.index(), -pressure, force, 0.0);
                 }
-                springs += scene.spring(t, &on_host);
+                springs += scene.spring(t, on_host);
             }
         }
         let rate = whole.rate(&springs);

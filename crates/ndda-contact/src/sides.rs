@@ -8,18 +8,23 @@ use pulp::Simd;
 
 use crate::clip::Outline;
 use crate::hulls::Face;
-use crate::kernel::{GROUP, MOST_CUTS, Row};
+use crate::kernel::MOST_CUTS;
 use crate::region::{Cut, Region};
 
+/// Sides in a row; a multiple of every lane count.
+pub const SIDES: usize = 8;
 /// Rows for the sides of a block.
-const ROWS: usize = MOST_CUTS / GROUP;
+const ROWS: usize = MOST_CUTS / SIDES;
+
+/// One number for each side of a row.
+type Row = [f64; SIDES];
 
 /// The place of each side, to compare with.
 const PLACES: [Row; ROWS] = {
-    let mut places = [[0.0; GROUP]; ROWS];
+    let mut places = [[0.0; SIDES]; ROWS];
     let mut k = 0;
     while k < MOST_CUTS {
-        places[k / GROUP][k % GROUP] = k as f64;
+        places[k / SIDES][k % SIDES] = k as f64;
         k += 1;
     }
     places
@@ -32,6 +37,8 @@ pub struct Planes {
     normal: [Row; 3],
     /// p [m], by component.
     point: [Row; 3],
+    /// −φ from which on a point is beyond.
+    reach: Row,
     len: usize,
 }
 
@@ -83,14 +90,15 @@ fn each_corner<S: Simd>(simd: S, outline: &Outline, at: &[S::f64s; 3], mut visit
 impl Planes {
     /// The planes of one face at least and no more than a row has.
     pub fn of(faces: &[Face]) -> Self {
-        let zero = [[0.0; GROUP]; 3];
-        let mut planes = Self { normal: zero, point: zero, len: faces.len() };
-        for k in 0..GROUP {
+        let zero = [[0.0; SIDES]; 3];
+        let mut planes = Self { normal: zero, point: zero, reach: zero[0], len: faces.len() };
+        for k in 0..SIDES {
             let face = &faces[k.min(faces.len() - 1)];
             let (gradient, point) = (face.gradient(), face.point());
             for a in 0..3 {
                 (planes.normal[a][k], planes.point[a][k]) = (-gradient[a], point[a]);
             }
+            planes.reach[k] = face.reach();
         }
         planes
     }
@@ -98,6 +106,31 @@ impl Planes {
     /// ∇φ of one of them [1/m].
     pub fn gradient(&self, lane: usize) -> Vec3 {
         Vec3::from(self.normal.map(|row| -row[lane]))
+    }
+
+    /// Whether one of them has all these points beyond it.
+    #[inline(always)]
+    pub fn keep_out<S: Simd>(&self, simd: S, points: &[Vec3]) -> bool {
+        (0..self.len.div_ceil(S::F64_LANES)).any(|i| {
+            let reach = load::<S>(&self.reach, i);
+            let mut are_beyond = simd.equal_f64s(reach, reach);
+            for x in points {
+                let is_beyond = simd.less_than_or_equal_f64s(reach, self.height(simd, i, x));
+                are_beyond = simd.and_m64s(are_beyond, is_beyond);
+            }
+            simd.first_true_m64s(are_beyond) < S::F64_LANES
+        })
+    }
+
+    /// −φ of each at a point.
+    #[inline(always)]
+    fn height<S: Simd>(&self, simd: S, i: usize, x: &Vec3) -> S::f64s {
+        let mut terms = [simd.splat_f64s(0.0); 3];
+        for a in 0..3 {
+            let arm = simd.sub_f64s(simd.splat_f64s(x[a]), load::<S>(&self.point[a], i));
+            terms[a] = simd.mul_f64s(load::<S>(&self.normal[a], i), arm);
+        }
+        simd.add_f64s(simd.add_f64s(terms[0], terms[1]), terms[2])
     }
 
     /// φ of each at a point.
@@ -136,7 +169,7 @@ impl Sides {
     ) -> bool {
         (self.all, self.len) = (planes.iter().map(|planes| planes.len).sum(), 0);
         let (most, least) = (simd.splat_f64s(f64::INFINITY), simd.splat_f64s(f64::NEG_INFINITY));
-        let mut lowest = [[0.0; GROUP]; ROWS];
+        let mut lowest = [[0.0; SIDES]; ROWS];
         let mut enough = most;
         for (row, planes) in planes.iter().enumerate() {
             for i in 0..planes.len.div_ceil(S::F64_LANES) {
@@ -186,7 +219,7 @@ impl Sides {
             store::<S>(&mut self.rise[row], i, planes.rise(simd, i, normal));
         }
         for (lane, lowest) in lowest.iter().enumerate().take(planes.len) {
-            self.which[self.len] = (row * GROUP + lane) as u8;
+            self.which[self.len] = (row * SIDES + lane) as u8;
             self.len += usize::from(*lowest <= enough);
         }
     }
@@ -210,7 +243,7 @@ impl Sides {
     #[inline(always)]
     pub fn set_region<S: Simd>(&mut self, simd: S, k: usize, outline: &Outline, region: &mut Region) -> bool {
         let k = self.which(k);
-        let (own, rise) = (lane_of(&self.at[k / GROUP], k % GROUP), self.rise[k / GROUP][k % GROUP]);
+        let (own, rise) = (lane_of(&self.at[k / SIDES], k % SIDES), self.rise[k / SIDES][k % SIDES]);
         self.compare(simd, k, &own, rise, outline);
         region.begin(own, rise.abs());
         let all = outline.corners().len() as f64;
@@ -227,8 +260,8 @@ impl Sides {
     fn compare<S: Simd>(&mut self, simd: S, k: usize, own: &[f64; 3], rise: f64, outline: &Outline) {
         let (place, zero, one) = (simd.splat_f64s(k as f64), simd.splat_f64s(0.0), simd.splat_f64s(1.0));
         let own_bound = simd.splat_f64s(Cut::new([0.0; 3], rise < 0.0).bound);
-        for (row, places) in PLACES.iter().enumerate().take(self.all.div_ceil(GROUP)) {
-            for i in 0..(self.all - row * GROUP).min(GROUP).div_ceil(S::F64_LANES) {
+        for (row, places) in PLACES.iter().enumerate().take(self.all.div_ceil(SIDES)) {
+            for i in 0..(self.all - row * SIDES).min(SIDES).div_ceil(S::F64_LANES) {
                 let places = load::<S>(places, i);
                 let is_own = simd.equal_f64s(places, place);
                 let mut lead = [zero; 3];
@@ -257,7 +290,7 @@ impl Sides {
     /// Adds the cut by side j if it cuts anything; false if it leaves nothing.
     #[inline(always)]
     fn put(&self, j: usize, all: f64, region: &mut Region) -> bool {
-        let (row, lane) = (j / GROUP, j % GROUP);
+        let (row, lane) = (j / SIDES, j % SIDES);
         let outside = self.outside[row][lane];
         let field = lane_of(&self.lead[row], lane);
         region.put(Cut { field, bound: self.bound[row][lane] }, outside > 0.0);

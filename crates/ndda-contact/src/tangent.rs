@@ -17,11 +17,10 @@ use ndda_mesh::{Mat3, Vec3};
 use pulp::Scalar;
 
 use crate::clip::{Outline, Polygon};
-use crate::kernel::GROUP;
 use crate::pair::TetFrame;
 use crate::pair_stiffness::PairStiffness;
 use crate::region::{Pieces, Region, element_outside};
-use crate::sides::{Planes, Sides};
+use crate::sides::{Planes, SIDES, Sides};
 
 /// Adds the part of the pair where φ is one linear function with this gradient.
 fn add_part(
@@ -112,7 +111,7 @@ pub fn add_pair(
         let gradient: Vec3 = match target {
             Target::Element => 4.0 * frame.gradient(k),
             Target::Pieces(values) => (0..4).map(|b| values[k][b] * frame.gradient(b)).sum(),
-            Target::Whole(planes, _) => planes[sides.which(k) / GROUP].gradient(sides.which(k) % GROUP),
+            Target::Whole(planes, _) => planes[sides.which(k) / SIDES].gradient(sides.which(k) % SIDES),
         };
         if somewhere {
             add_part(stiffness, &region.polygon(outline), &shapes, &tensor(&gradient), area);

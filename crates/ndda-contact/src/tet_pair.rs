@@ -150,14 +150,14 @@ impl NodalForces {
             }
             for (face, [i, j, k]) in TET_FACES.iter().enumerate() {
                 let at = &lambda[owner];
-                self.add_face((8 * index + 4 * owner + face) as u32, &[at[*i], at[*j], at[*k]]);
+                self.add_face((8 * index + 4 * owner + face) as u32, [&at[*i], &at[*j], &at[*k]]);
             }
         }
         self.lambda.push(lambda);
     }
 
     /// The regions of a face from λ as `[a][b]`, over a face of unit area: the area comes with the normal.
-    fn add_face(&mut self, face: u32, at: &[[f64; 4]; 3]) {
+    fn add_face(&mut self, face: u32, at: [&[f64; 4]; 3]) {
         if some_face_separates(at) {
             return;
         }
@@ -209,7 +209,7 @@ fn add_faces(
         for (i, w) in face.iter().zip(moments.pressure) {
             on_owner[*i] -= w * area_vector;
         }
-        for (sum, w) in on_other.iter_mut().zip(moments.target_pressure) {
+        for (sum, w) in on_other.iter_mut().zip(moments.on_target(&lambda).pressure) {
             *sum += w * area_vector;
         }
         let mut slope = Vec3::zeros();

@@ -104,9 +104,11 @@ fn the_kernel_takes_any_bits_and_answers_finitely_for_sound_tetrahedra() {
         let in_range = c.iter().chain(&t).all(|x| x.amax() < 1e50) && tet_volume(&t).abs() > 1e-100;
         let is_sound = in_range && pair_forces(&c, &t, 1.0).is_ok();
         sound += usize::from(is_sound);
-        let moments = pair_moments(&triangle, &triangle_area_vector(&triangle), &TetFrame::new(&t));
+        let frame = TetFrame::new(&t);
+        let moments = pair_moments(&triangle, &triangle_area_vector(&triangle), &frame);
         let Some(moments) = moments.filter(|_| is_sound) else { continue };
-        let numbers = moments.pressure.iter().chain(&moments.target_pressure).chain([&moments.area]);
+        let on_target = moments.on_target(&frame.lambda(&triangle)).pressure;
+        let numbers = moments.pressure.iter().chain(&on_target).chain([&moments.area]);
         assert!(numbers.copied().all(f64::is_finite), "{moments:?} for {triangle:?} in {t:?}");
     }
     assert!(sound > cases() / 50, "only {sound} of {} pairs were sound", cases());

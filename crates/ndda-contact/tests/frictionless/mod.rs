@@ -58,7 +58,7 @@ impl Frictionless {
         self.forces.resize(touching.len(), FacetForce::default());
         let push = |(t, force): (usize, &mut FacetForce)| {
             *force = FacetForce::default();
-            if integrals.hits_of(&touching[t]).iter().map(|hit| hit.moments.total()).sum::<f64>() > 0.0 {
+            if integrals.hits_of(&touching[t]).iter().flat_map(|hit| hit.pressure).sum::<f64>() > 0.0 {
                 let corners =
                     blocks.triangle_corners(facets[touching[t].facet as usize].triangle, input.position);
                 force.push = -penalty_pa * triangle_area_vector(&corners).normalize();
@@ -79,6 +79,7 @@ impl Frictionless {
             by_block: &self.by_block,
             hulls: &self.hulls,
             forces: &self.forces,
+            on_host: &[],
             stiffness_pa: &self.stiffness_pa,
             curvature_pa_m: &[],
         };
