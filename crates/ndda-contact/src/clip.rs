@@ -60,29 +60,6 @@ impl Outline {
     }
 }
 
-/// At which corners something holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
-    /// At none.
-    Nowhere,
-    /// At some.
-    Partly,
-    /// At all.
-    Everywhere,
-}
-
-impl Extent {
-    /// Where something holds of a field with these values at the corners of a triangle.
-    #[inline(always)]
-    pub fn of_triangle(at: &[f64; 3], holds: impl Fn(f64) -> bool) -> Self {
-        match u8::from(holds(at[0])) + u8::from(holds(at[1])) + u8::from(holds(at[2])) {
-            0 => Self::Nowhere,
-            3 => Self::Everywhere,
-            _ => Self::Partly,
-        }
-    }
-}
-
 /// A linear form c₀ + c₁ ψ₁ + c₂ ψ₂.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Form(pub [f64; 3]);

@@ -109,11 +109,11 @@ pub struct Pieces {
     at: [[f64; 3]; MOST_PIECES],
     /// ∂φ/∂n [1/m].
     slope: [f64; MOST_PIECES],
-    /// At how many corners each is above another, as `[own][other]`: there it is not the smallest.
+    /// At how many corners each is above another, as `[own][other]`: there it is not the smallest. Above itself it is nowhere.
     outside: [[u8; MOST_PIECES]; MOST_PIECES],
     len: usize,
-    /// The cuts by the tetrahedron's faces that cut something, and one more.
-    faces: [Cut; 5],
+    /// The cuts by the tetrahedron's faces that cut something.
+    faces: [Cut; 4],
     faces_len: usize,
 }
 
@@ -197,7 +197,7 @@ impl Pieces {
     pub fn is_somewhere(&self, k: usize) -> bool {
         let mut is_somewhere = true;
         for j in 0..self.len {
-            is_somewhere &= (self.outside[k][j] < 3) | (j == k);
+            is_somewhere &= self.outside[k][j] < 3;
         }
         is_somewhere
     }
@@ -207,7 +207,7 @@ impl Pieces {
     pub fn count_cuts(&self, k: usize) -> usize {
         let mut count = self.faces_len;
         for j in 0..self.len {
-            count += usize::from((self.outside[k][j] > 0) & (j != k));
+            count += usize::from(self.outside[k][j] > 0);
         }
         count
     }
@@ -223,7 +223,7 @@ impl Pieces {
         for j in 0..self.len {
             let other = &self.at[j];
             put(len, Cut::new([other[0] - own[0], other[1] - own[1], other[2] - own[2]], k < j));
-            len += usize::from((self.outside[k][j] > 0) & (j != k));
+            len += usize::from(self.outside[k][j] > 0);
         }
         len
     }
