@@ -1,11 +1,13 @@
 //! When a checkpoint is written, and what is in it.
 
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use ndda_io::outside_files::{self, OutsideFile};
+use ndda_io::scene::Scene;
 use ndda_io::{OutputFolder, WriteError, checkpoint};
 use ndda_solver::{Sink, SinkError, Snapshot, View};
 use serde::{Deserialize, Serialize};
@@ -24,13 +26,30 @@ pub struct Identity {
     pub text: String,
     /// The scene's file, from the root of the file system: its meshes are beside it.
     pub file: PathBuf,
+    /// The files that the scene names, as they were when the run began.
+    pub outside: Vec<OutsideFile>,
 }
 
 impl Identity {
+    /// Of a scene that is read from `file`, by its text and the files that it names.
+    pub fn new(name: String, text: String, file: PathBuf, scene: &Scene) -> Self {
+        let outside = outside_files::of_scene(scene, folder_of(&file));
+        Self { name, text, file, outside }
+    }
+
+    /// Folder of the scene.
+    pub fn folder(&self) -> &Path {
+        folder_of(&self.file)
+    }
+
     /// CRC-32 of the scene's text.
     pub fn crc32(&self) -> u32 {
         checkpoint::fingerprint(&self.text)
     }
+}
+
+fn folder_of(file: &Path) -> &Path {
+    file.parent().unwrap_or(Path::new("."))
 }
 
 /// Everything that `ndda resume` needs.

@@ -7,6 +7,7 @@ mod report;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use ndda_io::folder::MESH_REPORT;
 use ndda_io::read::load;
 use ndda_io::scene::{FieldFormat, Scene};
 use ndda_io::vtu::{self, Frame, Topology};
@@ -157,7 +158,7 @@ fn write(
     let topology = Topology::new(blocks, FieldFormat::default()).with_blocks(blocks);
     let frame = Frame::new(blocks, &blocks.rest_position);
     ndda_io::atomic::write(&path, &vtu::encode(&path, &topology, &frame)?)?;
-    ndda_io::atomic::write(&folder.join("mesh.json"), measured.json().as_bytes())?;
+    ndda_io::atomic::write(&folder.join(MESH_REPORT), measured.json().as_bytes())?;
     #[cfg(feature = "plots")]
     crate::picture::write(&folder.join("mesh.svg"), plot::SIZE, |root| plot::draw(measured, root))?;
     let mut exported = String::new();

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda_io::{OutputFolder, checkpoint, read};
+use ndda_io::{OutputFolder, checkpoint, outside_files, read};
 use serde::Serialize;
 
 use crate::args::ResumeArgs;
@@ -45,7 +45,10 @@ fn resume_here(folder: &Path, options: &Options) -> u8 {
             return options.events.fail(exit::INPUT_OUTPUT, &error.to_string());
         }
     }
-    let meshes = saved.identity.file.parent().unwrap_or(Path::new("."));
+    let meshes = saved.identity.folder();
+    if let Err(error) = outside_files::verify(&saved.identity.outside, meshes) {
+        return options.events.fail(exit::BAD_INPUT, &error.to_string());
+    }
     let name = saved.identity.file.display().to_string();
     let loaded = read::load_text(&name, &saved.identity.text, &[], Some(meshes));
     let mut ready = match loaded.and_then(|loaded| build(loaded, meshes)) {

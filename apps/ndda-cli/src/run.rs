@@ -100,7 +100,7 @@ fn run_here(args: &RunArgs, options: &Options) -> u8 {
         Err(error) => return options.events.fail(exit::INPUT_OUTPUT, &error.to_string()),
     };
     let file = std::path::absolute(&file).unwrap_or(file);
-    let identity = Identity { name, text: ready.loaded.text.clone(), file };
+    let identity = Identity::new(name, ready.loaded.text.clone(), file, &ready.loaded.scene);
     let comparison = ready.comparison();
     execute(Job { ready, comparison, identity, folder, earlier: None }, options)
 }
@@ -113,6 +113,8 @@ fn scene_name(scene: &Path) -> String {
 pub fn execute(job: Job, options: &Options) -> u8 {
     match run_job(job, options) {
         Ok(code) => code,
+        // A number that is not finite is the fault of the run, not of the disk.
+        Err(error @ WriteError::NotFinite { .. }) => options.events.fail(exit::STOPPED, &error.to_string()),
         Err(error) => options.events.fail(exit::INPUT_OUTPUT, &error.to_string()),
     }
 }
@@ -348,6 +350,7 @@ fn numerical_stop(error: RunError) -> Result<String, WriteError> {
         RunError::Sink(sink) => match sink.downcast::<StepError>() {
             Ok(step) => Ok(stop(&step)),
             Err(other) => match other.downcast::<WriteError>() {
+                Ok(write) if matches!(*write, WriteError::NotFinite { .. }) => Ok(write.to_string()),
                 Ok(write) => Err(*write),
                 Err(unknown) => Ok(unknown.to_string()),
             },

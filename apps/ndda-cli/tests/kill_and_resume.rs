@@ -1,6 +1,6 @@
 //! A run that is killed at any time and resumed, on any threads, ends in the bytes of one that never was.
 //!
-//! `NDDA_KILLS` sets the number of runs that are killed (default 12).
+//! `NDDA_KILLS` sets the number of runs that are killed (default 15), by turns at once and by an interrupt.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,14 +20,36 @@ fn scene(name: &str) -> String {
     root.join("scenes").join(format!("{name}.ron")).display().to_string()
 }
 
-fn run(scene: &str, end_s: &str, out: &Path, threads: &str) -> Child {
-    let (out, end) = (out.display().to_string(), format!("time.end_s={end_s}"));
-    let often = ["--set", "output.checkpoint_wall_s=0.003"];
-    ndda(
-        &[&["run", scene, "--out", &out, "--force", "--threads", threads, "--set", &end], &often[..]]
-            .concat(),
-    )
+fn run(scene: &str, overrides: &[&str], out: &Path, threads: &str) -> Child {
+    let out = out.display().to_string();
+    let mut arguments = vec!["run", scene, "--out", &out, "--force", "--threads", threads];
+    for text in ["output.checkpoint_wall_s=0.003"].iter().chain(overrides) {
+        arguments.extend(["--set", text]);
+    }
+    ndda(&arguments)
 }
+
+/// Interrupts a process as a terminal does.
+#[cfg(unix)]
+fn interrupt(child: &Child) {
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &id]).status().expect("kill").success());
+}
+
+/// Scenes with what is set in them: laws and bodies of each kind, contact at predicted positions and at the end.
+const SCENES: [(&str, &[&str]); 5] = [
+    ("sliding_30_phi25_velocity", &["time.end_s=0.2"]),
+    ("sliding_45_phi35_spring", &["time.end_s=0.12"]),
+    ("collision_equal_free", &["time.end_s=0.2"]),
+    (
+        "collision_equal_free",
+        &["time.end_s=0.2", "time.contact_at=End()", "blocks[0].body=Rigid", "blocks[1].body=Rigid"],
+    ),
+    (
+        "sliding_45_phi35_spring",
+        &["time.end_s=0.02", "reference.after_s=0", "time.contact_at=End()", "blocks[1].body=Rigid", "time.step=Auto()"],
+    ),
+];
 
 /// Everything that must come out the same: history, index and frames, and the fingerprint of the final state.
 fn results(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
@@ -48,27 +70,29 @@ fn results(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 
 #[test]
 fn a_killed_run_goes_on_to_the_same_bytes() {
-    let kills: usize = std::env::var("NDDA_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
+    let kills: usize = std::env::var("NDDA_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(15);
     let place = tempfile::tempdir().expect("a folder");
     let mut random = Random(7);
     let mut resumed = 0;
-    for (name, end_s) in [
-        ("sliding_30_phi25_velocity", "0.2"),
-        ("sliding_45_phi35_spring", "0.12"),
-        ("collision_equal_free", "0.2"),
-    ] {
+    for (name, overrides) in SCENES {
         let (scene, whole) = (scene(name), place.path().join("whole"));
         let started = Instant::now();
-        assert!(run(&scene, end_s, &whole, "1").wait().expect("an end").success(), "{name}");
+        assert!(run(&scene, overrides, &whole, "1").wait().expect("an end").success(), "{name}");
         let (lasts, expected) = (started.elapsed().as_secs_f64(), results(&whole));
-        for kill in 0..kills.div_ceil(3) {
+        for kill in 0..kills.div_ceil(SCENES.len()) {
             let broken = place.path().join("broken");
-            let mut child = run(&scene, end_s, &broken, ["1", "2"][kill % 2]);
+            let mut child = run(&scene, overrides, &broken, ["1", "2"][kill % 2]);
             let out = broken.display().to_string();
             // Killed once, and often once more while it is being resumed.
             for _ in 0..1 + kill % 3 {
                 std::thread::sleep(Duration::from_secs_f64(lasts * random.unit()));
-                child.kill().expect("a child");
+                #[cfg(unix)]
+                if kill % 2 == 1 {
+                    interrupt(&child);
+                }
+                if kill % 2 == 0 || cfg!(not(unix)) {
+                    child.kill().expect("a child");
+                }
                 child.wait().expect("an end");
                 child = ndda(&["resume", &out, "--threads", ["2", "1"][kill % 2]]);
             }
@@ -80,7 +104,7 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
                     !broken.join("checkpoint.ndda").exists()
                         && !broken.join("checkpoint.previous.ndda").exists()
                 );
-                assert!(run(&scene, end_s, &broken, "1").wait().expect("an end").success());
+                assert!(run(&scene, overrides, &broken, "1").wait().expect("an end").success());
             }
             let found = results(&broken);
             assert_eq!(found.len(), expected.len(), "{name}: files after kill {kill}");
@@ -93,7 +117,7 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
             }
         }
     }
-    println!("{resumed} of {} runs were resumed", 3 * kills.div_ceil(3));
+    println!("{resumed} of {} runs were resumed", SCENES.len() * kills.div_ceil(SCENES.len()));
     assert!(resumed > kills / 2, "hardly a run had a checkpoint");
 }
 
@@ -102,14 +126,13 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
 fn an_interrupted_run_leaves_a_summary_and_goes_on() {
     let place = tempfile::tempdir().expect("a folder");
     let (scene, out) = (scene("sliding_45_phi35_spring"), place.path().join("out"));
-    let (whole, end_s) = (place.path().join("whole"), "0.2");
-    assert!(run(&scene, end_s, &whole, "1").wait().expect("an end").success());
-    let mut child = run(&scene, end_s, &out, "1");
+    let (whole, overrides) = (place.path().join("whole"), ["time.end_s=0.2"]);
+    assert!(run(&scene, &overrides, &whole, "1").wait().expect("an end").success());
+    let mut child = run(&scene, &overrides, &out, "1");
     while !out.join("checkpoint.ndda").exists() {
         std::thread::sleep(Duration::from_millis(1));
     }
-    let id = child.id().to_string();
-    assert!(Command::new("kill").args(["-INT", &id]).status().expect("kill").success());
+    interrupt(&child);
     assert_eq!(child.wait().expect("an end").code(), Some(130));
     let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
     assert!(summary.contains("\"interrupted\""), "{summary}");

@@ -44,6 +44,8 @@ const TOP_FILES: [&str; 11] = [
     LOG,
     SUMMARY,
 ];
+/// Report of `ndda mesh`, which keeps its other files beside it.
+pub const MESH_REPORT: &str = "mesh.json";
 const PROBE: &str = "ndda-probe.tmp";
 // Enough to show a full disk; a mebibyte takes as long as the steps of a small scene.
 const PROBE_BYTES: usize = 1 << 17;
@@ -62,7 +64,8 @@ pub struct OutputFolder {
 impl OutputFolder {
     /// Makes the folder at `path` ready for a run; parents are created.
     ///
-    /// With `force` the files of an earlier run are deleted: those that ndda writes, by name, and nothing else.
+    /// With `force` the files of an earlier run are deleted: those that ndda writes, by name, and nothing else; a folder
+    /// that holds files, but none of an earlier run, is refused all the same, and so are the root and the home folder.
     /// 128 kibibytes are written and removed again, so that a read-only folder or a full disk shows up now.
     ///
     /// # Errors
@@ -74,8 +77,10 @@ impl OutputFolder {
             return Err(WriteError::IsFile { path: path.to_path_buf() });
         }
         fs::create_dir_all(path).map_err(WriteError::io("create the folder", path))?;
+        refuse_root_and_home(path)?;
         refuse_while_in_use(path)?;
         if force {
+            refuse_unless_results(path)?;
             delete_earlier_run(path)?;
         } else {
             refuse_unless_empty(path)?;
@@ -150,12 +155,40 @@ fn refuse_while_in_use(path: &Path) -> Result<(), WriteError> {
     }
 }
 
+/// No run belongs there, whatever else is there.
+fn refuse_root_and_home(path: &Path) -> Result<(), WriteError> {
+    let real = fs::canonicalize(path).map_err(WriteError::io("look at", path))?;
+    let home = std::env::home_dir().and_then(|home| fs::canonicalize(home).ok());
+    if real.parent().is_none() || home.as_ref() == Some(&real) {
+        return Err(WriteError::NoResultFolder { path: path.to_path_buf() });
+    }
+    Ok(())
+}
+
+/// Names in a folder; a probe that a killed run left behind is no result.
+fn names_but_probe(path: &Path) -> Result<Vec<String>, WriteError> {
+    Ok(entries(path)?.into_iter().map(|(name, _)| name).filter(|name| name != PROBE).collect())
+}
+
+fn is_ours(name: &str) -> bool {
+    is_top_file(name) || name == FIELDS_FOLDER
+}
+
+/// A folder with files, none of which is of an earlier run, was not meant.
+fn refuse_unless_results(path: &Path) -> Result<(), WriteError> {
+    let names = names_but_probe(path)?;
+    let is_result = |name: &String| is_ours(name) || name == MESH_REPORT;
+    match names.first() {
+        Some(found) if !names.iter().any(is_result) => {
+            Err(WriteError::NotOurs { path: path.to_path_buf(), found: found.clone() })
+        }
+        _ => Ok(()),
+    }
+}
+
 fn refuse_unless_empty(path: &Path) -> Result<(), WriteError> {
-    // A probe that a killed run left behind is no result.
-    let names: Vec<String> =
-        entries(path)?.into_iter().map(|(name, _)| name).filter(|n| n != PROBE).collect();
-    let ours = |name: &&String| is_top_file(name) || *name == FIELDS_FOLDER;
-    if let Some(found) = names.iter().find(ours) {
+    let names = names_but_probe(path)?;
+    if let Some(found) = names.iter().find(|name| is_ours(name)) {
         return Err(WriteError::EarlierRun { path: path.to_path_buf(), found: found.clone() });
     }
     match names.first() {
@@ -318,7 +351,21 @@ mod tests {
         fs::write(folder.path().join("thesis.tex"), "theirs").unwrap();
         let error = OutputFolder::create(folder.path(), false).unwrap_err();
         assert!(matches!(&error, WriteError::NotOurs { found, .. } if found == "thesis.tex"));
-        OutputFolder::create(folder.path(), true).unwrap();
+        // With `force`, too: nothing in it says that results were ever meant to go there.
+        let error = OutputFolder::create(folder.path(), true).unwrap_err();
+        assert!(matches!(&error, WriteError::NotOurs { found, .. } if found == "thesis.tex"));
+        assert_eq!(names_in(folder.path()), ["thesis.tex"]);
+    }
+
+    #[test]
+    fn the_root_and_the_home_folder_are_refused_whatever_they_hold() {
+        let home = std::env::home_dir().filter(|home| home.is_dir());
+        for path in [Some(PathBuf::from("/")), Some(PathBuf::from("/usr/..")), home].into_iter().flatten() {
+            for force in [false, true] {
+                let error = OutputFolder::create(&path, force).unwrap_err();
+                assert!(matches!(error, WriteError::NoResultFolder { .. }), "{}: {error}", path.display());
+            }
+        }
     }
 
     #[test]

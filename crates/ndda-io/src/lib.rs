@@ -12,6 +12,7 @@ pub mod history;
 pub mod locate;
 pub mod mesh_file;
 pub mod msh;
+pub mod outside_files;
 pub mod overrides;
 #[cfg(feature = "parquet")]
 pub mod parquet_file;

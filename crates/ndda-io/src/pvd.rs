@@ -36,9 +36,18 @@ impl FieldSeries {
     /// come, and not listed before.
     ///
     /// # Errors
-    /// [`WriteError::Io`] when the index cannot be written.
+    /// [`WriteError::LostFrames`] when one of these frames is not there; [`WriteError::Io`] when the index cannot be
+    /// written.
     pub fn resume(folder: &OutputFolder, topology: Topology, times_s: Vec<f64>) -> Result<Self, WriteError> {
         let series = Self { times_s, ..Self::create(folder, topology)? };
+        let is_lost = |name: &String| {
+            let file = fs::metadata(series.frames.join(name));
+            !file.is_ok_and(|file| file.is_file() && file.len() > 0)
+        };
+        let lost: Vec<String> = (0..series.times_s.len()).map(frame_name).filter(is_lost).collect();
+        if !lost.is_empty() {
+            return Err(WriteError::LostFrames { folder: series.frames, frames: lost });
+        }
         atomic::write(&series.index, series.text().as_bytes())?;
         Ok(series)
     }

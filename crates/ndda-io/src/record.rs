@@ -27,6 +27,9 @@ pub enum RecordError {
     },
 }
 
+/// Speed of light [m/s]: no ground moves faster, and far above it squares of speeds are no numbers any more.
+const LIGHT_M_S: f64 = 299_792_458.0;
+
 #[derive(Deserialize)]
 struct Row {
     time_s: f64,
@@ -67,6 +70,24 @@ pub fn read(file: &Path) -> Result<Vec<(f64, f64)>, RecordError> {
     Ok(rows)
 }
 
+/// Holds the speed that a record times `factor` brings, acceleration being linear between rows, against that of light.
+///
+/// # Errors
+/// [`RecordError::Row`] of the first row that is beyond it.
+pub fn check_speed(file: &Path, rows: &[(f64, f64)], factor: f64) -> Result<(), RecordError> {
+    let mut speed_m_s = 0.0;
+    for (row, pair) in (2..).zip(rows.windows(2)) {
+        let [(from_s, a), (to_s, b)] = [pair[0], pair[1]];
+        speed_m_s += factor * (0.5 * a + 0.5 * b) * (to_s - from_s);
+        // What is not a number is beyond it, too.
+        if !(speed_m_s.abs() <= LIGHT_M_S) {
+            let reason = "brings the ground beyond the speed of light: give accelerations in m/s², or a smaller factor";
+            return Err(RecordError::Row { file: file.to_path_buf(), row, reason });
+        }
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -98,5 +119,22 @@ mod tests {
             assert!(message.contains(word), "{text:?}: {message}");
         }
         assert!(read(Path::new("no/such.csv")).is_err());
+    }
+
+    #[test]
+    fn a_record_that_no_ground_can_follow_is_refused_with_its_row() {
+        let check = |rows: &[(f64, f64)], factor| {
+            check_speed(Path::new("quake.csv"), rows, factor).map_err(|error| error.to_string())
+        };
+        assert_eq!(check(&[(0.0, 9.8), (1.0, -9.8), (2.0, 3.0)], 1.0), Ok(()));
+        for (rows, factor) in [
+            ([(0.0, 0.0), (0.01, 1.0), (0.02, 1e308)], 1.0),
+            ([(0.0, 0.0), (0.01, 1.0), (0.02, -1e200)], 1.0),
+            ([(0.0, 0.0), (0.01, 0.0), (0.02, 1.0)], 1e300),
+            ([(0.0, 0.0), (0.01, 0.0), (0.02, 1e308)], 1e308),
+        ] {
+            let message = check(&rows, factor).unwrap_err();
+            assert!(message.contains("quake.csv, row 3: brings the ground"), "{message}");
+        }
     }
 }

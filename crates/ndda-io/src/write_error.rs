@@ -55,6 +55,20 @@ pub enum WriteError {
         /// What it has.
         what: String,
     },
+    /// Frames that a checkpoint knows of are gone.
+    #[error("{} has lost {}: put them back, or run the scene again", folder.display(), listed(frames))]
+    LostFrames {
+        /// Folder of the frames.
+        folder: PathBuf,
+        /// Names of those that are missing or empty.
+        frames: Vec<String>,
+    },
+    /// A folder that holds more than results: the root of the file system, or somebody's home.
+    #[error("{} is no folder for results: choose another one with --out", path.display())]
+    NoResultFolder {
+        /// The folder.
+        path: PathBuf,
+    },
     /// Another run is writing there.
     #[error("another run is writing to {}: wait for its end, or choose another folder", path.display())]
     InUse {
@@ -78,10 +92,9 @@ pub enum WriteError {
         /// One of its files.
         found: String,
     },
-    /// The output folder holds something that ndda did not write.
+    /// The output folder holds something that ndda did not write, and no results of an earlier run.
     #[error(
-        "{} is not empty and holds something that ndda did not write ({found}): choose another folder with \
-         --out, or write beside it with --force",
+        "{} is not empty and holds something that ndda did not write ({found}): choose another folder with --out",
         path.display()
     )]
     NotOurs {
@@ -114,6 +127,13 @@ impl WriteError {
     pub(crate) fn not_finite(path: &Path, array: impl Into<String>, index: Option<usize>) -> Self {
         Self::NotFinite { path: path.to_path_buf(), array: array.into(), index }
     }
+}
+
+/// Names, the first five of them.
+fn listed(names: &[String]) -> String {
+    const SHOWN: usize = 5;
+    let first = names[..names.len().min(SHOWN)].join(", ");
+    if names.len() > SHOWN { format!("{first} and {} more", names.len() - SHOWN) } else { first }
 }
 
 fn bracketed(index: Option<usize>) -> String {

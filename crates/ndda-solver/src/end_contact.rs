@@ -136,6 +136,9 @@ impl Simulation {
         newton.iterations = Iterations::default();
         let (mut stride, mut search) = (0.0, None::<Search>);
         newton.base.copy_from_slice(&self.state.contact_force);
+        // A rigid block takes torques about x*: the first evaluation takes them where the blocks are, not where an
+        // earlier step, or a part of one that was taken back, left x*.
+        self.contact_position.copy_from_slice(&self.state.position);
         newton.lifted.fill(Vec3::zeros());
         loop {
             let report = self.evaluate_at_end(newton, stride)?;

@@ -58,6 +58,10 @@ pub struct Snapshot {
     pub ledger: Ledger,
     /// Seconds spent so far.
     pub stages: StageTimes,
+    /// Row sums of the contact stiffness in the last step [N/m], which the next sample reads; empty where nothing acts.
+    pub contact_stiffness: Vec<f64>,
+    /// Balance of energy after a step \[J\], and after which, where the step is controlled.
+    pub step_balance: Option<(u64, f64)>,
 }
 
 /// A snapshot of another problem.
@@ -424,7 +428,15 @@ impl Simulation {
 
     /// A copy of all that changes.
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot { state: self.state.clone(), ledger: self.ledger.clone(), stages: self.stages }
+        let contact_stiffness =
+            if self.contact_has_acted { self.contact_stiffness.clone() } else { Vec::new() };
+        Snapshot {
+            state: self.state.clone(),
+            ledger: self.ledger.clone(),
+            stages: self.stages,
+            contact_stiffness,
+            step_balance: self.control.as_ref().and_then(|control| control.balance()),
+        }
     }
 
     /// Goes on from a snapshot of the same problem, bit for bit.
@@ -433,7 +445,7 @@ impl Simulation {
     /// [`RestoreError`] when it has another number of nodes.
     pub fn restore(&mut self, snapshot: Snapshot) -> Result<(), RestoreError> {
         let expected = self.blocks.rest_position.len();
-        let Snapshot { state, ledger, stages } = snapshot;
+        let Snapshot { state, ledger, stages, contact_stiffness, step_balance } = snapshot;
         let internal = self.state.internal_force.len();
         for (found, expected) in [
             (state.position.len(), expected),
@@ -443,13 +455,24 @@ impl Simulation {
             (state.inertia.len(), self.state.inertia.len()),
             (state.contact_force.len(), self.state.contact_force.len()),
             (ledger.block_count(), self.blocks.len()),
+            (
+                contact_stiffness.len(),
+                if contact_stiffness.is_empty() { 0 } else { self.contact_stiffness.len() },
+            ),
         ] {
             if found != expected {
                 return Err(RestoreError { found, expected });
             }
         }
         (self.state, self.ledger, self.stages) = (state, ledger, stages);
-        self.control.iter_mut().for_each(|control| control.forget());
+        self.contact_has_acted = !contact_stiffness.is_empty();
+        if self.contact_has_acted {
+            self.contact_stiffness = contact_stiffness;
+        } else {
+            self.contact_stiffness.fill(0.0);
+        }
+        self.friction_force.fill(Vec3::zeros());
+        self.control.iter_mut().for_each(|control| control.restore_balance(step_balance));
         Ok(())
     }
 

@@ -101,9 +101,14 @@ impl Control {
         }
     }
 
-    /// Forgets what it knows of the last step, when another state takes its place.
-    pub(crate) fn forget(&mut self) {
-        self.balance = None;
+    /// The balance of energy after a step \[J\], and after which.
+    pub(crate) fn balance(&self) -> Option<(u64, f64)> {
+        self.balance
+    }
+
+    /// Takes over the balance that belongs to a restored state.
+    pub(crate) fn restore_balance(&mut self, balance: Option<(u64, f64)>) {
+        self.balance = balance;
     }
 }
 

@@ -211,7 +211,9 @@ fn node_supports(
             FemHold::Motion(Motion::Rows(rows))
         }
         (Hold::Acceleration { file, direction, factor }, _) => {
-            let rows = record::read(&folder.join(file)).map_err(|e| e.to_string())?;
+            let file = folder.join(file);
+            let rows = record::read(&file).map_err(|e| e.to_string())?;
+            record::check_speed(&file, &rows, *factor).map_err(|e| e.to_string())?;
             let direction = *factor * vec3(*direction).normalize();
             FemHold::Motion(Motion::Record(Record::new(direction, &rows)))
         }
