@@ -13,6 +13,9 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
                   failed · 2 usage · 3 bad input · 4 numerical stop · 5 input/output · 6 resources · 130 interrupted"
 )]
 pub struct Cli {
+    /// Most memory to use, such as 8GB: what would take more is refused before it is built [default: what the machine has left].
+    #[arg(long, global = true, value_name = "SIZE", value_parser = crate::memory::parse)]
+    pub memory: Option<u64>,
     /// What to do.
     #[command(subcommand)]
     pub verb: Verb,

@@ -12,6 +12,7 @@ use crate::args::CheckArgs;
 use crate::console::say;
 use crate::events::{self, Events};
 use crate::exit;
+use crate::forecast;
 use crate::guess::{self, Guess};
 use crate::input;
 use crate::monitor::Monitor;
@@ -69,6 +70,7 @@ pub fn build(mut loaded: LoadedScene, folder: &Path) -> Result<Ready, SceneError
             faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();
         loaded.errors(diagnostics)
     };
+    forecast::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
     let blocks = wiring::blocks(&loaded.scene, folder).map_err(located)?;
     let far = rounding::warning(&loaded, &blocks);
     let simulation = wiring::simulation(&loaded.scene, blocks, folder).map_err(located)?;

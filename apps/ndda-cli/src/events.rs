@@ -1,5 +1,6 @@
 //! What other programs read: one JSON object per line on standard output, as docs/json.md says.
 
+use ndda_io::code::Code;
 use ndda_io::diagnostic::{Diagnostic, SceneErrors, Severity, line_column};
 use serde::Serialize;
 
@@ -92,8 +93,10 @@ impl Events {
         complain(&errors.render(colour()));
         let diagnostics = errors.diagnostics.iter().map(|d| place(errors, d)).collect();
         let message = "the scene cannot be used";
-        self.emit("failed", &Failed { exit_code: exit::BAD_INPUT, message, diagnostics });
-        exit::BAD_INPUT
+        let is_too_large = errors.diagnostics.iter().any(|found| found.code == Code::TooLarge);
+        let exit_code = if is_too_large { exit::RESOURCE } else { exit::BAD_INPUT };
+        self.emit("failed", &Failed { exit_code, message, diagnostics });
+        exit_code
     }
 
     /// Says what in a scene may not mean what was meant.

@@ -106,7 +106,7 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
 }
 
 /// Bytes as a person reads them.
-fn readable(bytes: u64) -> String {
+pub(crate) fn readable(bytes: u64) -> String {
     let powers = [(1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
     let found = powers.iter().find(|(size, _)| bytes as f64 >= *size);
     found.map_or_else(|| format!("{bytes} B"), |(size, unit)| format!("{:.1} {unit}", bytes as f64 / size))

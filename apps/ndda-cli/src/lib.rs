@@ -12,12 +12,14 @@ pub mod examples;
 pub mod exit;
 pub mod explain;
 pub mod fields;
+pub mod forecast;
 pub mod guess;
 #[cfg(feature = "report")]
 pub mod html_report;
 pub mod input;
 pub mod interrupt;
 pub mod machine;
+pub mod memory;
 pub mod mesh;
 pub mod monitor;
 pub mod new;

@@ -13,10 +13,13 @@ use ndda_cli::plot;
 use ndda_cli::schema;
 #[cfg(feature = "shell")]
 use ndda_cli::shell;
-use ndda_cli::{check, exit, explain, mesh, new, resume, run, study};
+use ndda_cli::{check, exit, explain, memory as limits, mesh, new, resume, run, study};
 
 fn main() -> ExitCode {
-    let verb = Cli::parse().verb;
+    let Cli { memory, verb } = Cli::parse();
+    if let Some(bytes) = memory {
+        limits::limit(bytes);
+    }
     // Results of runs are in files; what others print is their result.
     let results_in_files = matches!(verb, Verb::Run(_) | Verb::Resume(_));
     let outcome = match verb {

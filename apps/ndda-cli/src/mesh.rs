@@ -18,6 +18,7 @@ use crate::args::{Export, Fix, MeshArgs};
 use crate::console::{colour, say};
 use crate::events::{self, Events};
 use crate::exit;
+use crate::forecast;
 use crate::step_advice;
 use crate::wiring::{self, CutRock, Meshes};
 use report::MeshReport;
@@ -93,6 +94,7 @@ fn from_scene(args: &MeshArgs) -> Result<Input, String> {
     }
     let loaded = load(&args.input, &args.overrides).map_err(|errors| errors.render(colour()))?;
     let folder = args.input.parent().unwrap_or(Path::new("."));
+    forecast::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]).render(colour()))?;
     let (meshes, rock) = wiring::meshes(&loaded.scene, folder).map_err(|faults| {
         let diagnostics = faults.into_iter().map(|f| loaded.diagnose(&f.path, f.message)).collect();
         loaded.errors(diagnostics).render(colour())

@@ -47,7 +47,13 @@ const SCENES: [(&str, &[&str]); 5] = [
     ),
     (
         "sliding_45_phi35_spring",
-        &["time.end_s=0.02", "reference.after_s=0", "time.contact_at=End()", "blocks[1].body=Rigid", "time.step=Auto()"],
+        &[
+            "time.end_s=0.02",
+            "reference.after_s=0",
+            "time.contact_at=End()",
+            "blocks[1].body=Rigid",
+            "time.step=Auto()",
+        ],
     ),
 ];
 

@@ -41,6 +41,8 @@ pub enum Code {
     DoesNotFit,
     /// Something cannot be built as it is written.
     CannotBuild,
+    /// More than the memory there is can hold.
+    TooLarge,
     /// Blocks that are in each other at the start.
     Overlap,
     /// A value that looks like one in another unit.
@@ -53,7 +55,7 @@ pub enum Code {
 
 impl Code {
     /// All codes.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         Self::Unreadable,
         Self::Syntax,
         Self::Truncated,
@@ -72,6 +74,7 @@ impl Code {
         Self::MissingFile,
         Self::DoesNotFit,
         Self::CannotBuild,
+        Self::TooLarge,
         Self::Overlap,
         Self::UnitSlip,
         Self::Inexact,

@@ -15,6 +15,7 @@ use super::error::StudyError;
 use super::record::{Identity, RESULTS, Record, RunOutcome, folder};
 use crate::console::complain;
 use crate::exit;
+use crate::memory;
 
 /// Where and how cases run.
 pub struct Launch<'a> {
@@ -143,6 +144,9 @@ impl Launch<'_> {
         let mut command = Command::new(program);
         command.arg("run").arg(&self.loaded.scene).arg("--out").arg(results);
         command.args(["--force", "--quiet", "--threads", &self.threads.to_string()]);
+        if let Some(bytes) = memory::asked() {
+            command.args(["--memory", &bytes.to_string()]);
+        }
         for one in &case.overrides {
             command.args(["--set", one]);
         }

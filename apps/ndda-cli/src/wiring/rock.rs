@@ -14,6 +14,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Fault, solid, vec3};
+use crate::forecast;
 
 /// What a rock was cut into, and what was left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -207,8 +208,9 @@ fn cut(rock: &Rock, domain: &Domain) -> Result<Blocks, String> {
     }
     let joints =
         rock.joints.iter().map(discontinuity).collect::<Result<Vec<_>, _>>().map_err(|e| e.to_string())?;
-    let options =
-        CutOptions { seed: rock.seed, sliver_width_m: rock.sliver_width_m, ..CutOptions::default() };
+    // What scatter makes of the spacings is known only while it is cut.
+    let most_blocks = forecast::most_blocks(CutOptions::default().most_blocks);
+    let options = CutOptions { seed: rock.seed, sliver_width_m: rock.sliver_width_m, most_blocks };
     cut_blocks(domain, &joints, &options).map_err(|e| e.to_string())
 }
 

@@ -50,7 +50,7 @@ pub enum CutError {
         most: usize,
     },
     /// More blocks than the limit.
-    #[error("the cut makes more than {most} blocks: widen the spacings, or raise most_blocks")]
+    #[error("the cut makes more than {most} blocks: widen the spacings, or give more memory")]
     TooManyBlocks {
         /// The limit.
         most: usize,

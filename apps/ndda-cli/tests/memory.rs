@@ -1,0 +1,115 @@
+//! What does not fit into memory is refused with its figures before it is built; what fits is built in about what was foreseen.
+
+#![cfg(target_os = "linux")]
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+const RESOURCE: i32 = 6;
+
+fn scene(parts: &str) -> String {
+    format!(
+        "(title: \"m\", time: (step_s: 1e-5, end_s: 1e-4), contact: Potential(penalty_pa: 1e7), output: (frames: 0),
+          materials: [(name: \"r\", young_pa: 1e9, poisson: 0.2, density_kg_m3: 2500)], {parts})"
+    )
+}
+
+fn cube(cells: u32, more: &str) -> String {
+    scene(&format!(
+        "blocks: [(name: \"a\", material: \"r\", shape: Box(size_m: (1, 1, 1), cells: ({cells}, {cells}, {cells})), {more})]"
+    ))
+}
+
+/// A box of rock with edges of `size_m`.
+fn rock(size_m: f64, cut: &str) -> String {
+    scene(&format!(
+        "rock: [(name: \"c\", material: \"r\", domain: Box(min_m: (0, 0, 0), max_m: ({size_m}, {size_m}, {size_m})), {cut})]"
+    ))
+}
+
+/// Three sets at right angles.
+fn sets(spacing_m: f64, more: &str) -> String {
+    let set = |name: &str, dip_deg: u32, direction_deg: u32| {
+        format!(
+            "Set(name: \"{name}\", dip_deg: {dip_deg}, dip_direction_deg: {direction_deg}, spacing_m: {spacing_m}, {more}),"
+        )
+    };
+    format!("joints: [{}{}{}]", set("a", 90, 90), set("b", 90, 0), set("d", 0, 0))
+}
+
+/// `ndda` with 8 GB of addresses, as `ulimit -v` gives them.
+fn ndda(folder: &Path, text: &str, arguments: &[&str]) -> Output {
+    let file = folder.join("scene.ron");
+    std::fs::write(&file, text).expect("a scene");
+    let mut command = Command::new("sh");
+    command.args(["-c", "ulimit -v 8000000; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_ndda")]);
+    command.args(arguments).arg(&file).output().expect("the program starts")
+}
+
+#[test]
+fn what_does_not_fit_is_refused_with_its_figures_and_nothing_is_built() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let refused = |text: &str, arguments: &[&str], words: &[&str]| {
+        let output = ndda(folder.path(), text, arguments);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(RESOURCE), "{text}: {said}");
+        assert!(words.iter().all(|word| said.contains(word)), "{words:?} in: {said}");
+    };
+    let check = ["check"];
+    refused(&cube(300, ""), &check, &["too-large", "blocks[0].shape", "1.6e8 tetrahedra", "use fewer cells"]);
+    refused(&cube(300, "body: Rigid"), &check, &["1.6e8 tetrahedra"]);
+    refused(&rock(100.0, &sets(1.0, "")), &check, &["rock[0].joints", "1.0e6 block(s)", "wider spacings"]);
+    refused(&rock(1000.0, &sets(1.0, "")), &check, &["rock[0].joints", "1.0e9 block(s)"]);
+    refused(
+        &rock(1.0, "voronoi: (count: 1000000)"),
+        &check,
+        &["rock[0].voronoi", "1.0e6 block(s)", "smaller count"],
+    );
+    refused(&rock(1.0, "fill: Size(size_m: 1e-3)"), &check, &["1.2e10 tetrahedra"]);
+    let round = "blocks: [(name: \"a\", material: \"r\", shape: Sphere(radius_m: 1, levels: 9))]";
+    refused(&scene(round), &check, &["1.1e9 tetrahedra", "fewer levels"]);
+    refused(&cube(40, "body: Rigid"), &["check", "--memory", "50MB"], &["of memory", "there is 50.0 MB"]);
+    refused(&cube(40, "body: Rigid"), &["run", "--memory", "50MB"], &["there is 50.0 MB"]);
+}
+
+#[test]
+fn scatter_that_makes_more_blocks_than_fit_is_noticed_while_it_is_cut() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // A hundred discs are no set: nothing is foreseen of them.
+    let disc = |i: u32| {
+        format!(
+            "Disc(name: \"p\", dip_deg: 90, dip_direction_deg: {}, center_m: (0.5, 0.5, 0.5), radius_m: 9),",
+            1.7 * f64::from(i)
+        )
+    };
+    let discs: String = (0..100).map(disc).collect();
+    let output =
+        ndda(folder.path(), &rock(1.0, &format!("joints: [{discs}]")), &["check", "--memory", "1MB"]);
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && (said.contains("more than") || said.contains("of memory")), "{said}");
+}
+
+#[test]
+fn what_fits_takes_what_was_foreseen_within_a_factor_of_two() {
+    use ndda_cli::forecast;
+    let folder = tempfile::tempdir().expect("a folder");
+    for text in [
+        cube(24, "body: Rigid"),
+        cube(24, ""),
+        cube(40, "body: Fixed"),
+        rock(12.0, &sets(1.0, "")),
+        rock(1.0, "voronoi: (count: 500)"),
+        rock(10.0, "body: Rigid, fill: Size(size_m: 0.5)"),
+    ] {
+        let loaded = ndda_io::read::load_text("scene.ron", &text, &[], None).expect("a scene");
+        let foreseen = forecast::bytes(&forecast::parts(&loaded.scene, folder.path()));
+        let output = ndda(folder.path(), &text, &["check", "--json"]);
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert!(output.status.success(), "{text}: {}", String::from_utf8_lossy(&output.stderr));
+        let last: serde_json::Value =
+            serde_json::from_str(said.lines().last().expect("a line")).expect("JSON");
+        let taken = last["guess"]["memory_bytes"].as_f64().expect("memory");
+        println!("{:.1} MB foreseen, {:.1} MB taken: {text}", foreseen / 1e6, taken / 1e6);
+        assert!((0.5..=2.0).contains(&(foreseen / taken)), "{foreseen} and {taken}: {text}");
+    }
+}
