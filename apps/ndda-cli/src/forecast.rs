@@ -36,7 +36,7 @@ const SPARSE_B: f64 = 230.0;
 const BLOCK_B: f64 = 8000.0;
 /// Of a triangle that touches other blocks, of one of a block that is taken whole, and of one of a block of its own, of whose
 /// surface a part touches [B].
-const TOUCHING_B: f64 = 4000.0;
+const TOUCHING_B: f64 = 5000.0;
 const WHOLE_B: f64 = 2000.0;
 const SOME_TOUCH_B: f64 = 1000.0;
 /// Tetrahedra per cube of the edge, and triangles per square of it, where edges have a length.
@@ -138,6 +138,24 @@ pub fn admit(loaded: &LoadedScene, folder: &Path) -> Result<(), Diagnostic> {
 /// Most blocks that a cut may make in the memory that there is.
 pub fn most_blocks(otherwise: usize) -> usize {
     memory::budget().map_or(otherwise, |bytes| otherwise.min((bytes as f64 / BLOCK_B) as usize).max(1))
+}
+
+/// Holds what filling takes at least, once blocks are cut or a surface is read, against the memory that there is.
+///
+/// # Errors
+/// A message with the figures.
+pub fn admit_fill(blocks: usize, fill: &Fill, volume_m3: f64) -> Result<(), String> {
+    let count = filled(times(Count::default(), blocks as f64), fill, volume_m3, 0.0);
+    let bytes = count.blocks * BLOCK_B + count.tets * TET_B;
+    match memory::budget() {
+        Some(budget) if bytes > budget as f64 => Err(format!(
+            "{blocks} block(s) of {} tetrahedra in all would take {} of memory; there is {}: use a coarser fill",
+            rounded(count.tets),
+            readable(bytes as u64),
+            readable(budget)
+        )),
+        _ => Ok(()),
+    }
 }
 
 fn part(scene: &Scene, path: String, count: Count, body: Body, touching_b: f64, cure: &'static str) -> Part {

@@ -66,27 +66,49 @@ fn what_does_not_fit_is_refused_with_its_figures_and_nothing_is_built() {
         &["rock[0].voronoi", "1.0e6 block(s)", "smaller count"],
     );
     refused(&rock(1.0, "fill: Size(size_m: 1e-3)"), &check, &["1.2e10 tetrahedra"]);
-    let round = "blocks: [(name: \"a\", material: \"r\", shape: Sphere(radius_m: 1, levels: 9))]";
-    refused(&scene(round), &check, &["1.1e9 tetrahedra", "fewer levels"]);
+    let round = "blocks: [(name: \"a\", material: \"r\", shape: Sphere(radius_m: 1, levels: 6))]";
+    refused(&scene(round), &check, &["2.1e6 tetrahedra", "fewer levels"]);
     refused(&cube(40, "body: Rigid"), &["check", "--memory", "50MB"], &["of memory", "there is 50.0 MB"]);
     refused(&cube(40, "body: Rigid"), &["run", "--memory", "50MB"], &["there is 50.0 MB"]);
 }
 
 #[test]
-fn scatter_that_makes_more_blocks_than_fit_is_noticed_while_it_is_cut() {
+fn a_cut_that_makes_more_blocks_than_fit_ends_there() {
     let folder = tempfile::tempdir().expect("a folder");
-    // A hundred discs are no set: nothing is foreseen of them.
-    let disc = |i: u32| {
+    // Discs are no set: nothing is foreseen of them, and 16³ blocks of 8 kB are more than 20 MB.
+    let disc = |dip_deg: u32, direction_deg: u32, center_m: String| {
         format!(
-            "Disc(name: \"p\", dip_deg: 90, dip_direction_deg: {}, center_m: (0.5, 0.5, 0.5), radius_m: 9),",
-            1.7 * f64::from(i)
+            "Disc(name: \"p\", dip_deg: {dip_deg}, dip_direction_deg: {direction_deg}, center_m: {center_m}, radius_m: 9),"
         )
     };
-    let discs: String = (0..100).map(disc).collect();
-    let output =
-        ndda(folder.path(), &rock(1.0, &format!("joints: [{discs}]")), &["check", "--memory", "1MB"]);
+    let three = |i: u32| {
+        let at = f64::from(i) / 16.0;
+        disc(90, 90, format!("({at}, 0.5, 0.5)"))
+            + &disc(90, 0, format!("(0.5, {at}, 0.5)"))
+            + &disc(0, 0, format!("(0.5, 0.5, {at})"))
+    };
+    let discs: String = (1..16).map(three).collect();
+    let text = rock(1.0, &format!("joints: [{discs}]"));
+    let output = ndda(folder.path(), &text, &["check", "--memory", "20MB"]);
     let said = String::from_utf8_lossy(&output.stderr);
-    assert!(!output.status.success() && (said.contains("more than") || said.contains("of memory")), "{said}");
+    assert!(!output.status.success() && said.contains("more than 2500 blocks"), "{said}");
+}
+
+#[test]
+fn a_surface_whose_volume_only_its_file_tells_is_refused_before_it_is_filled() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    std::fs::write(folder.path().join("tet.obj"), format!("{corners}f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"))
+        .expect("a surface");
+    let fill = "fill: Size(size_m: 0.01)";
+    let block = format!("shape: Surface(file: \"tet.obj\", {fill})");
+    let block = scene(&format!("blocks: [(name: \"a\", material: \"r\", {block})]"));
+    let rock = scene(&format!("rock: [(material: \"r\", domain: File(file: \"tet.obj\"), {fill})]"));
+    for text in [block, rock] {
+        let output = ndda(folder.path(), &text, &["check", "--memory", "100MB"]);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success() && said.contains("2.0e6 tetrahedra in all would take"), "{said}");
+    }
 }
 
 #[test]

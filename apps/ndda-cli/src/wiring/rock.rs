@@ -84,6 +84,8 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     };
     let mut faults = Vec::new();
     let groups = blocks.groups();
+    forecast::admit_fill(groups.len(), &rock.fill, report.domain_m3 - sliver_m3 - removed_m3)
+        .map_err(|m| vec![Fault::new(at(".fill"), m)])?;
     let filled: Vec<_> =
         groups.par_iter().map(|group| solid::filled_group(&blocks, group, &rock.fill)).collect();
     for (number, filled) in (1..).zip(filled) {

@@ -9,6 +9,7 @@ use ndda_mesh::cut::{Blocks, Domain, DomainFace, cut_blocks};
 use ndda_mesh::tetrahedralise::{self, Fill, Towards};
 
 use super::vec3;
+use crate::forecast;
 
 /// Part of its size by which a flat face of a surface may be bent: nothing but rounding.
 pub(super) const EXACT: f64 = 0.0;
@@ -43,6 +44,7 @@ pub(super) fn filled(surface: &Surface, flat_ratio: f64, fill: &scene::Fill) -> 
         return by_tetgen(surface, *size_m);
     }
     let domain = domain(surface, flat_ratio)?;
+    forecast::admit_fill(1, fill, domain.volume_m3())?;
     let blocks = cut_blocks(&domain, &[], &Default::default()).map_err(|e| e.to_string())?;
     match blocks.groups().as_slice() {
         [whole] => filled_group(&blocks, whole, fill),
