@@ -6,7 +6,8 @@
 use ndda_fem::FrameError;
 use ndda_mesh::{Mat3, Vec3};
 
-use crate::body::{BlockError, BlockReport, StepContext, checked_speed, whole_torque};
+use crate::body::{BlockError, BlockReport, StepContext, checked_speed};
+use crate::contact_moments::{Path, spin_torque};
 use crate::for_each_block::{NodeSlices, Nodes};
 use crate::shape::Shape;
 use crate::time_integrator::StepWeights;
@@ -128,7 +129,8 @@ impl RigidBody {
     ) -> Result<Start, BlockError> {
         let start = start(shape, nodes)?;
         let (gone, drive, velocity) = shift(shape, context, nodes, &start);
-        let torque = self.torque(shape, context, nodes, (&gone, &drive), report);
+        let path = Path { center: start.center, velocity_m_s: start.velocity_m_s, gone };
+        let torque = self.torque(shape, context, &path, &drive, report);
         let local = start.rotation.tr_mul(&torque);
         let inertia = shape.rigid.as_ref().expect("a rigid shape");
         let drag = turn_drag(shape, context);
@@ -153,8 +155,8 @@ impl RigidBody {
         &self,
         shape: &Shape,
         context: &StepContext,
-        nodes: &Nodes,
-        (gone, drive): (&Vec3, &Vec3),
+        path: &Path,
+        drive: &Vec3,
         report: &mut BlockReport,
     ) -> Vec3 {
         let center = shape.operator.center(context.contact_position);
@@ -163,10 +165,7 @@ impl RigidBody {
         if context.weights.contact_in_the_middle() {
             return torque;
         }
-        let (torque, inertia) =
-            whole_torque(shape, context, (nodes.position, nodes.velocity), gone, (drive, &torque));
-        report.inertia = inertia;
-        torque
+        spin_torque(shape, context, path, (drive, &torque), report)
     }
 
     /// Work, force and torque of damping on mass.
@@ -182,7 +181,8 @@ impl RigidBody {
         report.reaction -= drag * operator.momentum(&self.increment);
         let about = start.center;
         let torque = operator.angular_momentum(&about, context.contact_position, &self.increment);
-        report.outside_torque -= drag * (torque + about.cross(&operator.momentum(&self.increment)));
+        let arm = about - context.moment_point(shape);
+        report.outside_torque -= drag * (torque + arm.cross(&operator.momentum(&self.increment)));
     }
 
     /// Velocities, accelerations and positions at the end of the step.
