@@ -17,6 +17,7 @@ pub mod guess;
 pub mod html_report;
 pub mod input;
 pub mod interrupt;
+mod lumped;
 pub mod machine;
 pub mod mesh;
 pub mod monitor;

@@ -45,12 +45,24 @@ pub enum BlockError {
     /// Its equations were not solved.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// A rigid block spins faster than a step can follow.
-    #[error("it spins at {spin_rad_s:e} rad/s, more than a step can follow: reduce step_s")]
-    TooQuick {
-        /// Its spin [rad/s].
+    /// The rotation of a rigid block in a step cannot be solved for; half a turn at most has a solution.
+    #[error(
+        "its rotation in this step, about {angle_rad:.3} rad, is too large to be solved for: a torque of {torque_n_m:.3e} N m turns it by \
+         {torque_angle_rad:.3} rad, from {spin_rad_s:.3e} rad/s at the start: reduce step_s, or penalty_pa if contact exerts the torque"
+    )]
+    TurnsTooFar {
+        /// |Δt ω₀ + ½ Δt² J⁻¹ T| [rad].
+        angle_rad: f64,
+        /// |ω₀|, its spin at the start of the step [rad/s].
         spin_rad_s: f64,
+        /// |T|, the torque of loads and contact about its mass centre [N m].
+        torque_n_m: f64,
+        /// |½ Δt² J⁻¹ T| [rad].
+        torque_angle_rad: f64,
     },
+    /// The loads and contact forces on a rigid block are infinite or not a number.
+    #[error("the forces on it are not finite: reduce step_s or penalty_pa, or check the units of its loads")]
+    ForceNotFinite,
     /// A velocity is beyond what the material can carry, or not a number (invariant I1).
     #[error(
         "node {node} moves at {speed_m_s:e} m/s, more than ten times its wave speed {wave_speed_m_s:e} m/s: \
@@ -128,7 +140,7 @@ pub struct BlockReport {
     pub outside_torque: Vec3,
     /// Change of momentum of a block that moves as prescribed; its rate is part of `reaction` [N s].
     pub motion_impulse: Vec3,
-    /// Moment about the origin of the impulse of loads, which act along the path of the mass centre [N m s].
+    /// Moment about the origin of the impulse of loads, which act along the path of the mass centre, and of `motion_impulse` [N m s].
     pub orbital_impulse: Vec3,
     /// Work of prescribed motions [J].
     pub motion_work_j: f64,

@@ -115,6 +115,10 @@ pub struct Invariants {
     pub turn_place: Worst,
     /// I8: error of a velocity over the largest speed, for turns that are behind.
     pub turn_speed: f64,
+    /// Error of a velocity over the largest speed, for blocks that turn with the inertia of lumped masses.
+    pub lumped_speed: Worst,
+    /// Error of a place over the smallest tet height of its block, for the same.
+    pub lumped_place: Worst,
     /// I8: speed of elastic vibrations that turns over in a step, over the largest speed and what the block bears; none below 0.001,
     /// and that of the last sample where the integrator lets them die out.
     pub vibration: f64,
@@ -187,6 +191,8 @@ impl Ledger {
             max_travel_ratio: 0.0,
             turn_place: Worst::default(),
             turn_speed: 0.0,
+            lumped_speed: Worst::default(),
+            lumped_place: Worst::default(),
             vibration: 0.0,
             unseen_speed: 0.0,
             candidate_pairs_max: 0,
@@ -375,6 +381,7 @@ impl Ledger {
         let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
         let (block_gain, block_loss) = self.blocks.lasting(self.largest_speed_m_s, self.rounding_j);
         let (squeezed_speed, squeezed_place) = self.blocks.squeezed(self.largest_speed_m_s, self.rounding_j);
+        let (lumped_speed, lumped_place) = self.blocks.lumped(self.largest_speed_m_s, self.rounding_j);
         let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
         Invariants {
             linear_momentum: over(self.momentum_error, self.peak_momentum),
@@ -387,6 +394,8 @@ impl Ledger {
             block_loss,
             squeezed_speed,
             squeezed_place,
+            lumped_speed,
+            lumped_place,
             turn_place: self.blocks.turned_over_height(),
             turn_speed: speed(self.blocks.turned_m_s()),
             vibration: self.vibration.over(self.largest_speed_m_s),

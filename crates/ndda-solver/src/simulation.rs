@@ -532,6 +532,21 @@ impl Simulation {
         self.shapes.iter().all(Shape::is_free)
     }
 
+    /// The block of each distinct shape whose rotation is inexact because masses are lumped, with the largest part by which its inertia is
+    /// too large.
+    pub fn lumped_inertia_errors(&self) -> Vec<(BlockId, f64)> {
+        let mut seen = vec![false; self.shapes.len()];
+        let firsts = self.blocks.ids().zip(&self.bodies);
+        let firsts = firsts.filter(|(_, body)| !std::mem::replace(&mut seen[body.shape], true));
+        let errors = firsts.map(|(block, body)| (block, self.shapes[body.shape].rotation_error()));
+        errors.filter(|(_, error)| *error > 0.0).collect()
+    }
+
+    /// Whether any block turns with the inexact inertia of lumped masses.
+    pub fn has_lumped_rotation(&self) -> bool {
+        self.shapes.iter().any(|shape| shape.rotation_error() > 0.0)
+    }
+
     /// Whether blocks feel each other.
     pub fn has_contact(&self) -> bool {
         self.contact.is_some()
