@@ -9,6 +9,7 @@ mod bound_of_contact;
 mod cantilever;
 mod contact_fields;
 mod contact_patch;
+mod conveyor;
 mod damping;
 mod elastic_waves;
 mod end_contact;

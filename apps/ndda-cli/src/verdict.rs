@@ -80,7 +80,7 @@ fn momentum(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (linear, angular) = (worst.linear_momentum, worst.angular_momentum);
     // Held blocks exchange angular momentum with their supports through strains that the books do not see.
-    let turning = if simulation.is_closed() { judged(angular, 1e-8, 1e-4) } else { shown(angular) };
+    let turning = if simulation.is_closed() { judged(angular, 1e-8, 1e-6) } else { shown(angular) };
     let reason = |what: &str, value: f64| format!("{what} came from nowhere: {value:.1e} of the largest");
     [
         Entry::new(
