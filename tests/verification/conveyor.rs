@@ -37,7 +37,7 @@ fn a_block_on_a_conveyor_has_the_momentum_that_friction_gives_it_with_every_inte
             simulation.sample().unwrap();
             largest = largest.max(simulation.invariants().linear_momentum);
         }
-        // The limit of the verdict; rounding of the accelerations of stiff blocks.
+        // The limit of the verdict.
         row("conveyor", &format!("momentum from nowhere, {integrator}"), largest, AtMost(1e-10));
     }
 }
