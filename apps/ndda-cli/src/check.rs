@@ -15,6 +15,7 @@ use crate::exit;
 use crate::forecast;
 use crate::guess::{self, Guess};
 use crate::input;
+use crate::lumped;
 use crate::monitor::Monitor;
 use crate::overlaps;
 use crate::reference::Comparison;
@@ -76,6 +77,7 @@ pub fn build(mut loaded: LoadedScene, folder: &Path) -> Result<Ready, SceneError
     let simulation = wiring::simulation(&loaded.scene, blocks, folder).map_err(located)?;
     let monitors = wiring::monitors(&loaded.scene, &simulation).map_err(located)?;
     loaded.warnings.extend(far);
+    loaded.warnings.extend(lumped::warning(&loaded, &simulation));
     Ok(Ready { loaded, simulation, monitors })
 }
 

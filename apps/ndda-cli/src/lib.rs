@@ -18,6 +18,7 @@ pub mod guess;
 pub mod html_report;
 pub mod input;
 pub mod interrupt;
+mod lumped;
 pub mod machine;
 pub mod memory;
 pub mod mesh;

@@ -70,6 +70,9 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(resolution(simulation));
     entries.extend(turns(simulation));
     entries.extend(within_a_step(simulation));
+    if simulation.has_lumped_rotation() {
+        entries.extend(lumped_rotation(simulation));
+    }
     entries
 }
 
@@ -77,7 +80,7 @@ fn momentum(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (linear, angular) = (worst.linear_momentum, worst.angular_momentum);
     // Held blocks exchange angular momentum with their supports through strains that the books do not see.
-    let turning = if simulation.is_closed() { judged(angular, 1e-8, 1e-4) } else { shown(angular) };
+    let turning = if simulation.is_closed() { judged(angular, 1e-8, 1e-6) } else { shown(angular) };
     let reason = |what: &str, value: f64| format!("{what} came from nowhere: {value:.1e} of the largest");
     [
         Entry::new(
@@ -208,6 +211,28 @@ fn turns(simulation: &Simulation) -> [Entry; 2] {
     [
         warned("I8 turn / height", place.value, PLACE, where_it_is),
         warned("I8 turn / speed", speed, SPEED, how_fast),
+    ]
+}
+
+/// Whether blocks turn wrongly because lumped masses have too large an inertia of rotation.
+fn lumped_rotation(simulation: &Simulation) -> [Entry; 2] {
+    let worst = simulation.invariants();
+    let (place, speed) = (worst.lumped_place, worst.lumped_speed);
+    let cure = "because lumped masses have too large an inertia of rotation: set mass: Consistent, or use more cells";
+    let where_it_is = format!(
+        "block `{}` may have turned wrongly by {:.2} of its smallest height, limit {PLACE}, {cure}",
+        name(simulation, place),
+        place.value
+    );
+    let how_fast = format!(
+        "the rotation of block `{}` may be wrong by {:.1} % of the largest speed, limit {:.0} %, {cure}",
+        name(simulation, speed),
+        100.0 * speed.value,
+        100.0 * SPEED
+    );
+    [
+        warned("lumped rotation / height", place.value, PLACE, where_it_is),
+        warned("lumped rotation / speed", speed.value, SPEED, how_fast),
     ]
 }
 

@@ -172,7 +172,8 @@ pub enum Mass {
     /// By the shape functions: the most accurate.
     #[default]
     Consistent,
-    /// A quarter of an element to each of its nodes: waves a little slower, no overshoot beside a loaded node.
+    /// A quarter of an element to each of its nodes, in elastic blocks: waves a little slower, no overshoot beside a loaded node. Their inertia
+    /// of rotation is too large: 3.5 times the true one in a cube of six tetrahedra, 1.16 times in one of 4³ cells; `ndda check` tells by how much.
     Lumped,
 }
 

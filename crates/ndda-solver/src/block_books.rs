@@ -53,6 +53,12 @@ struct Book {
     lag_rad: f64,
     /// How fast that grew at the last sample [rad/s].
     lag_rate_rad_s: f64,
+    /// Rate of rotation at the last sample [rad/s], and its integral [rad], where lumped masses make it inexact.
+    lumped_spin_rad_s: Vec3,
+    lumped_turn_rad: Vec3,
+    /// Largest error of a velocity [m/s] and of a place [m] for that.
+    lumped_m_s: f64,
+    lumped_m: f64,
     /// Velocity of unknown direction that squeezing gave it, of its mass centre and of its turn [m/s], the largest, and where they took it [m].
     shift_m_s: Vec3,
     turn_m_s: Vec3,
@@ -182,6 +188,30 @@ impl BlockBooks {
         book.lag_rad += 0.5 * since_s * (book.lag_rate_rad_s + rate_rad_s);
         book.lag_rate_rad_s = rate_rad_s;
         self.turned_m_s = self.turned_m_s.max(book.lag_rad * spin_rad_s * scale.radius_m);
+    }
+
+    /// Books the rotation of a block whose inertia is wrong by a part of it, `since_s` after the last sample, at a rate of rotation [rad/s] now:
+    /// under given torques its rate of rotation and the angle that it turns by are wrong by as much.
+    pub fn add_lumped_turn(&mut self, block: BlockId, since_s: f64, spin_rad_s: Vec3, error: f64) {
+        let (book, scale) = (&mut self.books[block.index()], &self.scales[block.index()]);
+        book.lumped_turn_rad += 0.5 * since_s * (book.lumped_spin_rad_s + spin_rad_s);
+        book.lumped_spin_rad_s = spin_rad_s;
+        let radius_m = error * scale.radius_m;
+        book.lumped_m_s = book.lumped_m_s.max(radius_m * spin_rad_s.norm());
+        book.lumped_m = book.lumped_m.max(radius_m * book.lumped_turn_rad.norm());
+    }
+
+    /// Largest error of a velocity for lumped masses over a speed, and of a place over the smallest height of the block's tetrahedra; what rounding
+    /// may have done does not count.
+    pub fn lumped(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
+        let (mut speed, mut place) = (Worst::default(), Worst::default());
+        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
+            if 0.5 * scale.mass_kg * book.lumped_m_s * book.lumped_m_s > rounding_j {
+                speed.take(book.lumped_m_s / speed_m_s, block);
+                place.take(book.lumped_m / scale.height_m, block);
+            }
+        }
+        (speed, place)
     }
 
     /// Books what squeezing gave a block in a step.

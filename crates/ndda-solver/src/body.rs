@@ -45,12 +45,24 @@ pub enum BlockError {
     /// Its equations were not solved.
     #[error(transparent)]
     Solve(#[from] SolveError),
-    /// A rigid block spins faster than a step can follow.
-    #[error("it spins at {spin_rad_s:e} rad/s, more than a step can follow: reduce step_s")]
-    TooQuick {
-        /// Its spin [rad/s].
+    /// The rotation of a rigid block in a step cannot be solved for; half a turn at most has a solution.
+    #[error(
+        "its rotation in this step, about {angle_rad:.3} rad, is too large to be solved for: a torque of {torque_n_m:.3e} N m turns it by \
+         {torque_angle_rad:.3} rad, from {spin_rad_s:.3e} rad/s at the start: reduce step_s, or penalty_pa if contact exerts the torque"
+    )]
+    TurnsTooFar {
+        /// |Δt ω₀ + ½ Δt² J⁻¹ T| [rad].
+        angle_rad: f64,
+        /// |ω₀|, its spin at the start of the step [rad/s].
         spin_rad_s: f64,
+        /// |T|, the torque of loads and contact about its mass centre [N m].
+        torque_n_m: f64,
+        /// |½ Δt² J⁻¹ T| [rad].
+        torque_angle_rad: f64,
     },
+    /// The loads and contact forces on a rigid block are infinite or not a number.
+    #[error("the forces on it are not finite: reduce step_s or penalty_pa, or check the units of its loads")]
+    ForceNotFinite,
     /// A velocity is beyond what the material can carry, or not a number (invariant I1).
     #[error(
         "node {node} moves at {speed_m_s:e} m/s, more than ten times its wave speed {wave_speed_m_s:e} m/s: \
@@ -96,12 +108,25 @@ pub struct StepContext<'a> {
     pub loose: f64,
     /// M a of the block as a whole at the start; zero where it does not matter.
     pub inertia: Inertia,
+    /// Σ w × F of the contact forces on the block, w being the velocity of the pair of blocks in contact [N m/s]; zero where contact is
+    /// taken in the middle of the step.
+    pub carried: Vec3,
 }
 
 impl StepContext<'_> {
     /// Time at which supports pull: (1 − θ) start + θ end [s].
     pub(crate) fn theta_time_s(&self) -> f64 {
         self.time_s + self.weights.stiffness * (self.end_s - self.time_s)
+    }
+
+    /// The point about which a block reports torques [m]: its mass centre at x* if its orbital moment is reported apart
+    /// (`contact_moments.rs`), else the origin.
+    pub(crate) fn moment_point(&self, shape: &Shape) -> Vec3 {
+        if self.weights.contact_in_the_middle() || !shape.is_free() {
+            Vec3::zeros()
+        } else {
+            shape.operator.center(self.contact_position)
+        }
     }
 }
 
@@ -110,8 +135,13 @@ impl StepContext<'_> {
 pub struct BlockReport {
     /// Force that supports exerted on the block [N].
     pub reaction: Vec3,
-    /// Torque about the origin of that force, at mid-step, and of the constant loads, at x* [N m].
+    /// Torque of that force, at mid-step, and of the loads, at x* [N m]: about the origin, or about the mass centre where the moment of the
+    /// resultant is `orbital_impulse`.
     pub outside_torque: Vec3,
+    /// Change of momentum of a block that moves as prescribed; its rate is part of `reaction` [N s].
+    pub motion_impulse: Vec3,
+    /// Moment about the origin of the impulse of loads, which act along the path of the mass centre, and of `motion_impulse` [N m s].
+    pub orbital_impulse: Vec3,
     /// Work of prescribed motions [J].
     pub motion_work_j: f64,
     /// Work of loads that change over time [J].
@@ -245,8 +275,9 @@ impl Body {
 impl BlockReport {
     /// Torque of loads, work of friction and of changing loads, the contact rate of a step u [m], and what squeezes the block.
     pub(crate) fn book(&mut self, shape: &Shape, context: &StepContext, increment: &[Vec3]) {
+        let point = context.moment_point(shape) - context.ahead;
         for (x, f) in context.contact_position.iter().zip(context.external) {
-            self.outside_torque += (x + context.ahead).cross(f);
+            self.outside_torque += (x - point).cross(f);
         }
         self.outside_torque += context.ahead.cross(&self.reaction);
         for (load, u) in context.changing.iter().zip(increment) {
@@ -283,34 +314,6 @@ pub(crate) fn checked_speed(shape: &Shape, velocity: &[Vec3]) -> Result<f64, Blo
         return Err(BlockError::TooFast { node, speed_m_s, wave_speed_m_s });
     }
     Ok(speed_m_s)
-}
-
-/// The torque about the mass centre that changes the spin as the integrator weights M a, and M a at the end of the step.
-///
-/// F and T are force and torque about the mass centre r of x*, `gone` is how far the mass centre goes:
-///
-/// ```text
-/// (1 − γ) T₀ + γ T₁ − [(c₁ − r) × p₁ − (c₀ − r) × p₀]/Δt        F₁ = (F − α_m F₀)/(1 − α_m), T₁ alike
-/// ```
-pub(crate) fn whole_torque(
-    shape: &Shape,
-    context: &StepContext,
-    (position, velocity): (&[Vec3], &[Vec3]),
-    gone: &Vec3,
-    (force, torque): (&Vec3, &Vec3),
-) -> (Vec3, Inertia) {
-    let (operator, weights, old) = (&shape.operator, &context.weights, &context.inertia);
-    let mark = operator.center(context.contact_position);
-    let new = weights.inertia(force, &old.force);
-    let old_torque = old.torque - mark.cross(&old.force);
-    let new_torque = weights.inertia(torque, &old_torque);
-    let inertia = Inertia { force: new, torque: new_torque + mark.cross(&new) };
-
-    let before = operator.momentum(velocity);
-    let after = before + context.dt_s * weights.mean_inertia(&old.force, &new);
-    let center = operator.center(position) - mark;
-    let moment = (center + gone).cross(&after) - center.cross(&before);
-    (weights.mean_inertia(&old_torque, &new_torque) - moment / context.dt_s, inertia)
 }
 
 /// Displacement of a prescribed motion, zero where there is none [m].

@@ -5,9 +5,8 @@ use ndda_fem::supports::HeldNode;
 use ndda_fem::{FrameError, Voigt};
 use ndda_mesh::{Mat3, Vec3};
 
-use crate::body::{
-    BlockError, BlockReport, BodyKind, StepContext, checked_speed, displacement_at, whole_torque,
-};
+use crate::body::{BlockError, BlockReport, BodyKind, StepContext, checked_speed, displacement_at};
+use crate::contact_moments::{Path, spin_torque};
 use crate::for_each_block::{NodeSlices, Nodes};
 use crate::linear_solver::{Scratch, SolveError};
 use crate::shape::Shape;
@@ -193,8 +192,8 @@ impl ElasticBody {
         }
         let (operator, position) = (&shape.operator, context.contact_position);
         self.report.reaction -= a * operator.momentum(&self.correction);
-        self.report.outside_torque -=
-            a * operator.angular_momentum(&Vec3::zeros(), position, &self.correction);
+        let point = context.moment_point(shape);
+        self.report.outside_torque -= a * operator.angular_momentum(&point, position, &self.correction);
     }
 
     /// û and x + û.
@@ -418,7 +417,7 @@ impl ElasticBody {
     /// Σ y × M (v₁ − v₀) + Σ u × M (½ (v₀ + v₁) − u/Δt) = Δt Σ y* × f,
     /// y at mid-step, z at its end and y* at x*, all from their mass centre. The left side is the change of angular momentum;
     /// arms at x* keep the total of all blocks exact, since contact forces have no torque there. What the right side is
-    /// where contact is not taken in the middle of the step, see [`whole_torque`].
+    /// where contact is not taken in the middle of the step, see [`spin_torque`].
     fn balance_momentum(&mut self, shape: &Shape, context: &StepContext, nodes: &Nodes) {
         let (operator, c) = (&shape.operator, context.weights.mass_per_s2);
         let total: Vec3 = context.force.iter().sum();
@@ -440,8 +439,9 @@ impl ElasticBody {
         if !context.weights.contact_in_the_middle() {
             let drive = total - drag * operator.momentum(&self.correction);
             let gone = operator.momentum(&self.correction) / operator.mass_kg;
-            (torque, self.report.inertia) =
-                whole_torque(shape, context, (nodes.position, nodes.velocity), &gone, (&drive, &torque));
+            let (center, velocity_m_s) = (operator.center(nodes.position), operator.center(nodes.velocity));
+            let path = Path { center, velocity_m_s, gone };
+            torque = spin_torque(shape, context, &path, (&drive, &torque), &mut self.report);
         }
         self.rigid.fill(Vec3::zeros());
         let mut inverse_inertia = None;

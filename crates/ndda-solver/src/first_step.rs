@@ -30,7 +30,7 @@ impl Simulation {
             let acceleration = if shape.is_free() { total / shape.operator.mass_kg } else { Vec3::zeros() };
             let ahead = 0.125 * self.part_s * self.part_s * acceleration;
             let momentum = shape.operator.momentum(&self.state.velocity[nodes]);
-            self.ledger.add_shift(ahead.cross(&momentum));
+            self.ledger.add_whole_impulse(Vec3::zeros(), ahead.cross(&momentum));
             self.state.ahead.push(ahead);
         }
         if self.state.ahead.iter().all(|ahead| *ahead == Vec3::zeros()) {

@@ -50,6 +50,9 @@ impl FixedBody {
         let inertia = shape.operator.mass_kg * (velocity - old);
         report.motion_work_j = report.reaction.dot(&increment) + 0.5 * inertia.dot(&(velocity + old));
         report.reaction += inertia / context.dt_s;
+        // The motion is prescribed, so the integrator's weights do not apply to what moves the block's own mass.
+        report.motion_impulse = inertia;
+        report.orbital_impulse = shape.operator.center(nodes.position).cross(&inertia);
         report.speed_m_s = velocity.norm();
         for (x, anchor) in nodes.position.iter_mut().zip(&self.anchor) {
             *x = anchor + to;

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use crate::block_books::{BlockBooks, Worst};
 use crate::simulation::StepReport;
 use crate::step_control::StepCounts;
-use crate::time_integrator::{Inertia, StepWeights};
+use crate::time_integrator::StepWeights;
 
 /// Part of the largest speed of which it does not matter how much turns over in a step.
 const LITTLE: f64 = 1e-3;
@@ -115,6 +115,10 @@ pub struct Invariants {
     pub turn_place: Worst,
     /// I8: error of a velocity over the largest speed, for turns that are behind.
     pub turn_speed: f64,
+    /// Error of a velocity over the largest speed, for blocks that turn with the inertia of lumped masses.
+    pub lumped_speed: Worst,
+    /// Error of a place over the smallest tet height of its block, for the same.
+    pub lumped_place: Worst,
     /// I8: speed of elastic vibrations that turns over in a step, over the largest speed and what the block bears; none below 0.001,
     /// and that of the last sample where the integrator lets them die out.
     pub vibration: f64,
@@ -166,9 +170,9 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Empty books of some blocks; `inertia` is that of each at the start, supports and contact included, if the
-    /// integrator asks for it.
-    pub fn new(inertia: &[Inertia], blocks: BlockBooks) -> Self {
+    /// Empty books of some blocks; `start` is the force and torque from outside before the first step, zero unless the integrator remembers
+    /// accelerations [N, N m].
+    pub fn new(start: (Vec3, Vec3), blocks: BlockBooks) -> Self {
         let worst = Invariants {
             linear_momentum: 0.0,
             angular_momentum: 0.0,
@@ -187,6 +191,8 @@ impl Ledger {
             max_travel_ratio: 0.0,
             turn_place: Worst::default(),
             turn_speed: 0.0,
+            lumped_speed: Worst::default(),
+            lumped_place: Worst::default(),
             vibration: 0.0,
             unseen_speed: 0.0,
             candidate_pairs_max: 0,
@@ -200,7 +206,7 @@ impl Ledger {
             start: None,
             impulse: Vec3::zeros(),
             angular_impulse: Vec3::zeros(),
-            last_force: (inertia.iter().map(|i| i.force).sum(), inertia.iter().map(|i| i.torque).sum()),
+            last_force: start,
             load_n: 0.0,
             load_impulse: 0.0,
             friction_work_j: 0.0,
@@ -226,8 +232,9 @@ impl Ledger {
         }
     }
 
-    /// Books angular momentum that changes because the places of blocks are taken otherwise [kg m²/s].
-    pub fn add_shift(&mut self, angular: Vec3) {
+    /// Books an impulse and a moment of impulses about the origin as they are [kg m/s, kg m²/s].
+    pub fn add_whole_impulse(&mut self, linear: Vec3, angular: Vec3) {
+        self.impulse += linear;
         self.angular_impulse += angular;
     }
 
@@ -374,6 +381,7 @@ impl Ledger {
         let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
         let (block_gain, block_loss) = self.blocks.lasting(self.largest_speed_m_s, self.rounding_j);
         let (squeezed_speed, squeezed_place) = self.blocks.squeezed(self.largest_speed_m_s, self.rounding_j);
+        let (lumped_speed, lumped_place) = self.blocks.lumped(self.largest_speed_m_s, self.rounding_j);
         let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
         Invariants {
             linear_momentum: over(self.momentum_error, self.peak_momentum),
@@ -386,6 +394,8 @@ impl Ledger {
             block_loss,
             squeezed_speed,
             squeezed_place,
+            lumped_speed,
+            lumped_place,
             turn_place: self.blocks.turned_over_height(),
             turn_speed: speed(self.blocks.turned_m_s()),
             vibration: self.vibration.over(self.largest_speed_m_s),
@@ -403,7 +413,7 @@ mod tests {
 
     #[test]
     fn energy_that_friction_took_is_not_a_loss() {
-        let mut ledger = Ledger::new(&[], BlockBooks::default());
+        let mut ledger = Ledger::new(Default::default(), BlockBooks::default());
         ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
         ledger.add_work(-4.0, 0.0, 0.0, 0.0);
         let sample = ledger.balance(Sample { kinetic_j: 5.0, ..Sample::default() }, true);
@@ -414,7 +424,7 @@ mod tests {
 
     #[test]
     fn what_explicit_contact_holds_back_is_not_lost_but_what_is_gone_after_it_is() {
-        let mut ledger = Ledger::new(&[], BlockBooks::default());
+        let mut ledger = Ledger::new(Default::default(), BlockBooks::default());
         ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
         ledger.watch(&StepReport { h: 1.0, ..StepReport::default() });
         ledger.balance(Sample { contact_j: 8.0, ..Sample::default() }, true);
@@ -427,7 +437,7 @@ mod tests {
 
     #[test]
     fn an_impulse_from_outside_explains_momentum() {
-        let mut ledger = Ledger::new(&[], BlockBooks::default());
+        let mut ledger = Ledger::new(Default::default(), BlockBooks::default());
         ledger.balance(Sample::default(), true);
         let weights = Midpoint { theta: 0.5 }.weights(0.5);
         ledger.add_impulse(0.5, &weights, Vec3::x(), Vec3::zeros());

@@ -6,7 +6,8 @@
 use ndda_fem::FrameError;
 use ndda_mesh::{Mat3, Vec3};
 
-use crate::body::{BlockError, BlockReport, StepContext, checked_speed, whole_torque};
+use crate::body::{BlockError, BlockReport, StepContext, checked_speed};
+use crate::contact_moments::{Path, spin_torque};
 use crate::for_each_block::{NodeSlices, Nodes};
 use crate::shape::Shape;
 use crate::time_integrator::StepWeights;
@@ -127,13 +128,14 @@ impl RigidBody {
         report: &mut BlockReport,
     ) -> Result<Start, BlockError> {
         let start = start(shape, nodes)?;
-        let (gone, drive, velocity) = shift(shape, context, nodes, &start);
-        let torque = self.torque(shape, context, nodes, (&gone, &drive), report);
+        let (gone, drive, velocity) = shift(shape, context, &start);
+        let path = Path { center: start.center, velocity_m_s: start.velocity_m_s, gone };
+        let torque = self.torque(shape, context, &path, &drive, report);
         let local = start.rotation.tr_mul(&torque);
         let inertia = shape.rigid.as_ref().expect("a rigid shape");
         let drag = turn_drag(shape, context);
         let angle = turn(inertia, &start.spin, &local, context.dt_s, drag)
-            .ok_or(BlockError::TooQuick { spin_rad_s: start.spin.norm() })?;
+            .ok_or_else(|| turned_too_far(inertia, context.dt_s, &start.spin, &local))?;
         let momentum = inertia.inertia * start.spin + context.dt_s * local
             - drag * context.dt_s * (inertia.inertia * angle);
         let turned = rotation_by(&angle);
@@ -153,8 +155,8 @@ impl RigidBody {
         &self,
         shape: &Shape,
         context: &StepContext,
-        nodes: &Nodes,
-        (gone, drive): (&Vec3, &Vec3),
+        path: &Path,
+        drive: &Vec3,
         report: &mut BlockReport,
     ) -> Vec3 {
         let center = shape.operator.center(context.contact_position);
@@ -163,10 +165,7 @@ impl RigidBody {
         if context.weights.contact_in_the_middle() {
             return torque;
         }
-        let (torque, inertia) =
-            whole_torque(shape, context, (nodes.position, nodes.velocity), gone, (drive, &torque));
-        report.inertia = inertia;
-        torque
+        spin_torque(shape, context, path, (drive, &torque), report)
     }
 
     /// Work, force and torque of damping on mass.
@@ -182,7 +181,8 @@ impl RigidBody {
         report.reaction -= drag * operator.momentum(&self.increment);
         let about = start.center;
         let torque = operator.angular_momentum(&about, context.contact_position, &self.increment);
-        report.outside_torque -= drag * (torque + about.cross(&operator.momentum(&self.increment)));
+        let arm = about - context.moment_point(shape);
+        report.outside_torque -= drag * (torque + arm.cross(&operator.momentum(&self.increment)));
     }
 
     /// Velocities, accelerations and positions at the end of the step.
@@ -213,16 +213,32 @@ fn start(shape: &Shape, nodes: &Nodes) -> Result<Start, FrameError> {
 
 /// How far the mass centre goes, the force that drives it and its velocity at the end of the step:
 /// c m (u − û) + a m u/Δt = F − α_m F₀.
-fn shift(shape: &Shape, context: &StepContext, nodes: &Nodes, start: &Start) -> (Vec3, Vec3, Vec3) {
+fn shift(shape: &Shape, context: &StepContext, start: &Start) -> (Vec3, Vec3, Vec3) {
     let (weights, mass) = (&context.weights, shape.operator.mass_kg);
     let force: Vec3 = context.force.iter().sum();
-    let (mut velocity, mut acceleration) = (start.velocity_m_s, shape.operator.center(nodes.acceleration));
+    // Accelerations of nodes carry the rounding of their places over Δt²; M a does not.
+    let (mut velocity, mut acceleration) = (start.velocity_m_s, context.inertia.force / mass);
     let predicted = context.integrator.predict(context.dt_s, &velocity, &acceleration);
     let (c, drag) = (weights.mass_per_s2, shape.damping.mass_per_s2);
     let push = force - weights.old_inertia * context.inertia.force;
     let gone = (push / mass + c * predicted) / (c + drag);
     context.integrator.correct(context.dt_s, &gone, &predicted, &mut velocity, &mut acceleration);
     (gone, force - drag * mass * gone, velocity)
+}
+
+/// Why no turn was found: forces are not finite, or the turn of the step, Δt ω₀ + ½ Δt² J⁻¹ T, is beyond what it can be solved for.
+fn turned_too_far(inertia: &RigidInertia, dt_s: f64, spin: &Vec3, torque: &Vec3) -> BlockError {
+    let by_torque = 0.5 * dt_s * dt_s * (inertia.inverse * torque);
+    let angle_rad = (dt_s * spin + by_torque).norm();
+    if !angle_rad.is_finite() {
+        return BlockError::ForceNotFinite;
+    }
+    BlockError::TurnsTooFar {
+        angle_rad,
+        spin_rad_s: spin.norm(),
+        torque_n_m: torque.norm(),
+        torque_angle_rad: by_torque.norm(),
+    }
 }
 
 /// What a turn is dragged by, as part of its own inertia [1/s].
@@ -336,6 +352,23 @@ mod tests {
             assert!(gain.abs() < 1e-14 * energy(&spin), "{gain}");
             assert!((0.5 * dt_s * (spin + end) - angle).norm() < 1e-15);
         }
+    }
+
+    #[test]
+    fn a_turn_that_cannot_be_found_names_its_cause() {
+        // From rest, a torque turns the block by ½ Δt² J⁻¹ T = 4 rad in a step: the cause is the torque, not a spin.
+        let (block, dt_s) = (slab(), 0.1);
+        let torque = block.inertia * Vec3::new(0.0, 0.0, 8.0 / (dt_s * dt_s));
+        assert_eq!(turn(&block, &Vec3::zeros(), &torque, dt_s, 0.0), None);
+        let error = turned_too_far(&block, dt_s, &Vec3::zeros(), &torque);
+        let BlockError::TurnsTooFar { angle_rad, spin_rad_s, torque_n_m, torque_angle_rad } = error else {
+            panic!("{error}")
+        };
+        assert!((angle_rad - 4.0).abs() < 1e-12 && (torque_angle_rad - 4.0).abs() < 1e-12);
+        assert_eq!((spin_rad_s, torque_n_m), (0.0, torque.norm()));
+        let nothing = Vec3::repeat(f64::NAN);
+        assert_eq!(turn(&block, &Vec3::zeros(), &nothing, dt_s, 0.0), None);
+        assert_eq!(turned_too_far(&block, dt_s, &Vec3::zeros(), &nothing), BlockError::ForceNotFinite);
     }
 
     #[test]

@@ -73,6 +73,11 @@ impl Simulation {
         let since_s = self.ledger.since_sample_s(time_s);
         let (spin_rad_s, rate_rad_s) = lag_rate(shape, &self.weights, self.part_s, position, velocity);
         self.ledger.blocks().add_lag(block, since_s, spin_rad_s, rate_rad_s);
+        let error = shape.rotation_error();
+        if error > 0.0 {
+            let spin = shape.operator.rigid_motion(position, velocity).spin_rad_s;
+            self.ledger.blocks().add_lumped_turn(block, since_s, spin, error);
+        }
         let Some(elastic) = body.elastic() else { return Ok(()) };
         let name = || self.blocks.names[block.index()].clone();
         let (volume_ratio, tet) = smallest_volume_ratio(&shape.operator, position);

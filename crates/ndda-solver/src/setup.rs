@@ -10,6 +10,7 @@ use ndda_mesh::{BlockId, BlockSet, Vec3};
 use crate::batch::{Batch, ENOUGH_TOGETHER};
 use crate::block_books::BlockBooks;
 use crate::body::{BlockReport, Body, BodyKind, Motion};
+use crate::contact_moments::ContactMoments;
 use crate::elastic_body::ElasticBody;
 use crate::end_contact::{EndContact, Newton};
 use crate::fixed_body::FixedBody;
@@ -110,8 +111,9 @@ impl Simulation {
             moved: vec![Vec3::zeros(); contact_nodes],
             affine: Vec::new(),
             contact_bodies: Vec::new(),
+            contact_moments: None,
             contacts: None,
-            ledger: Ledger::new(&[], BlockBooks::default()),
+            ledger: Ledger::new(Default::default(), BlockBooks::default()),
             stages: StageTimes::default(),
             blocks,
             shapes,
@@ -136,6 +138,10 @@ impl Simulation {
         if simulation.contact.as_ref().is_some_and(|c| c.needs_bodies()) {
             let bodies = simulation.blocks.ids().map(|block| simulation.shape(block).contact_body());
             simulation.contact_bodies = bodies.collect();
+        }
+        if simulation.contact.is_some() && !simulation.weights.contact_in_the_middle() {
+            let shapes = simulation.blocks.ids().map(|block| simulation.shape(block));
+            simulation.contact_moments = Some(Box::new(ContactMoments::new(shapes)));
         }
         simulation.open_books(solver.as_ref())?;
         if let Some(settings) = auto_step {
@@ -236,55 +242,108 @@ impl Simulation {
         if self.weights.needs_acceleration {
             self.place_accelerations(solver)?;
         }
-        self.ledger = self.new_ledger();
+        self.ledger = self.new_ledger(self.outside_at_start());
         Ok(())
     }
 
-    /// Empty books.
-    pub(crate) fn new_ledger(&self) -> Ledger {
+    /// Empty books; `start` is the force and torque from outside before the first step.
+    pub(crate) fn new_ledger(&self, start: (Vec3, Vec3)) -> Ledger {
         let scales = self.blocks.ids().map(|block| self.shape(block).scale()).collect();
-        Ledger::new(&self.state.inertia, BlockBooks::new(scales, self.newton.is_some()))
+        Ledger::new(start, BlockBooks::new(scales, self.newton.is_some()))
+    }
+
+    /// Force and torque from outside at the start, as blocks report them: torques of loads about the mass centre of free blocks, all
+    /// torques about the origin of others.
+    fn outside_at_start(&self) -> (Vec3, Vec3) {
+        let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
+        for (block, inertia) in self.blocks.ids().zip(&self.state.inertia) {
+            let (shape, nodes) = (self.shape(block), self.blocks.nodes_of(block));
+            force += inertia.force - inertia.contact;
+            if shape.is_free() {
+                let position = &self.state.position[nodes.clone()];
+                let center = shape.operator.center(position);
+                let loads = position.iter().zip(&self.loads.total()[nodes]);
+                torque += loads.map(|(x, load)| (x - center).cross(load)).sum::<Vec3>();
+            } else {
+                torque += inertia.torque;
+            }
+        }
+        (force, torque)
     }
 
     /// M a = f − ∫Bᵀσ₀ at the start, contact being part of f.
     fn place_accelerations(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
         let force = self.force_at_start().map_err(Box::new)?;
-        let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
+        self.carry_contact_forces();
         for block in self.blocks.ids() {
-            let body = &mut self.bodies[block.index()];
-            let shape = &self.shapes[body.shape];
             let range = self.blocks.nodes_of(block);
-            let mut load = force[range.clone()].to_vec();
+            let force = &force[range.clone()];
+            let shape = self.shape(block);
             if shape.kind == BodyKind::Rigid {
-                let force: Vec3 = load.iter().sum();
-                self.state.acceleration[range.clone()].fill(force / shape.operator.mass_kg);
-                let torque = load.iter().zip(&self.state.position[range]).map(|(f, x)| x.cross(f)).sum();
-                self.state.inertia[block.index()] = Inertia { force, torque };
-                continue;
+                let total: Vec3 = force.iter().sum();
+                let acceleration = total / shape.operator.mass_kg;
+                let torque = force.iter().zip(&self.state.position[range.clone()]);
+                let torque = torque.map(|(f, x)| x.cross(f)).sum();
+                self.state.acceleration[range].fill(acceleration);
+                self.place_inertia(block, force, total, torque);
+            } else if !shape.unknowns.is_empty() {
+                self.solve_acceleration(block, force, solver)?;
+                let (position, acceleration) =
+                    (&self.state.position[range.clone()], &self.state.acceleration[range]);
+                let operator = &self.shape(block).operator;
+                let total = operator.momentum(acceleration);
+                let torque = operator.angular_momentum(&Vec3::zeros(), position, acceleration);
+                self.place_inertia(block, force, total, torque);
+            } else {
+                // It stays at rest: what holds it bears loads and contact.
+                self.place_inertia(block, force, Vec3::zeros(), Vec3::zeros());
             }
-            let Some(elastic) = body.elastic().filter(|_| !shape.unknowns.is_empty()) else { continue };
-            if let Some(initial) = &elastic.initial_force {
-                load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
-            }
-            let matrix =
-                shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, &StepDamping::default());
-            let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor {
-                block: self.blocks.names[block.index()].clone(),
-                source,
-            })?;
-            let mut rhs = vec![0.0; factor.unknowns()];
-            shape.unknowns.gather(&load, &mut rhs);
-            factor.solve_in_place(&mut rhs, &mut factor.new_scratch()).map_err(|source| {
-                SetupError::Solve { block: self.blocks.names[block.index()].clone(), source }
-            })?;
-            shape.unknowns.scatter(&rhs, &mut self.state.acceleration[range.clone()]);
-            let (position, acceleration) =
-                (&self.state.position[range.clone()], &self.state.acceleration[range]);
-            self.state.inertia[block.index()] = Inertia {
-                force: shape.operator.momentum(acceleration),
-                torque: shape.operator.angular_momentum(&Vec3::zeros(), position, acceleration),
-            };
         }
+        Ok(())
+    }
+
+    /// M a of a block at the start from nodal forces, their sum and torque about the origin, supports included.
+    fn place_inertia(&mut self, block: BlockId, force: &[Vec3], total: Vec3, torque: Vec3) {
+        let nodes = self.blocks.nodes_of(block);
+        let position = &self.state.position[nodes.clone()];
+        let loads = &self.loads.total()[nodes];
+        let pressing = || force.iter().zip(loads).map(|(f, load)| f - load);
+        let contact: Vec3 = pressing().sum();
+        let shape = self.shape(block);
+        let torque = if shape.is_free() {
+            torque - shape.operator.center(position).cross(&total)
+        } else {
+            torque - position.iter().zip(pressing()).map(|(x, f)| x.cross(&f)).sum::<Vec3>()
+        };
+        let moments = self.contact_moments.as_ref();
+        let carried = moments.map_or(Vec3::zeros(), |moments| moments.carried[block.index()]);
+        self.state.inertia[block.index()] =
+            Inertia { force: total, torque, contact, carried, lag: Vec3::zeros() };
+    }
+
+    /// a of the nodes of a block that deforms, at the start [m/s²].
+    fn solve_acceleration(
+        &mut self,
+        block: BlockId,
+        force: &[Vec3],
+        solver: &dyn LinearSolver,
+    ) -> Result<(), SetupError> {
+        let name = || self.blocks.names[block.index()].clone();
+        let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
+        let body = &mut self.bodies[block.index()];
+        let shape = &self.shapes[body.shape];
+        let mut load = force.to_vec();
+        if let Some(initial) = body.elastic().and_then(|elastic| elastic.initial_force.as_ref()) {
+            load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
+        }
+        let matrix =
+            shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, &StepDamping::default());
+        let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor { block: name(), source })?;
+        let mut rhs = vec![0.0; factor.unknowns()];
+        shape.unknowns.gather(&load, &mut rhs);
+        let solved = factor.solve_in_place(&mut rhs, &mut factor.new_scratch());
+        solved.map_err(|source| SetupError::Solve { block: name(), source })?;
+        shape.unknowns.scatter(&rhs, &mut self.state.acceleration[self.blocks.nodes_of(block)]);
         Ok(())
     }
 }

@@ -68,7 +68,7 @@ pub enum Mass {
     /// By its shape functions.
     #[default]
     Consistent,
-    /// A quarter to each.
+    /// A quarter to each; rigid, affine and fixed blocks keep the consistent mass, which is exact for them.
     Lumped,
 }
 
@@ -134,6 +134,8 @@ pub struct Shape {
     pub smallest_height_m: f64,
     /// Trace of K [N/m].
     pub stiffness_n_m: f64,
+    /// Largest part by which its inertia of rotation is too large about any axis, for lumped masses; zero for consistent ones.
+    pub inertia_error: f64,
 }
 
 impl Shape {
@@ -163,9 +165,9 @@ impl Shape {
                 BlockOperator::rigid(position, tets, setup.material.density_kg_m3())
             }
         };
-        let operator = match mass {
-            Mass::Consistent => operator,
-            Mass::Lumped => operator.with_lumped_mass(),
+        let (operator, inertia_error) = match (mass, kind) {
+            (Mass::Lumped, BodyKind::Elastic) => lumped(operator),
+            _ => (operator, 0.0),
         };
         let supports = BlockSupports::new(&operator, &setup.supports)
             .map_err(|source| SetupError::Support { block: name(), source })?;
@@ -197,6 +199,7 @@ impl Shape {
             rigid,
             smallest_height_m,
             stiffness_n_m,
+            inertia_error,
         };
         let factor = shape.factored(weights, solver);
         shape.factor = factor.map_err(|source| SetupError::Factor { block: name(), source })?;
@@ -236,6 +239,11 @@ impl Shape {
             radius_m: self.operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max),
             height_m: self.smallest_height_m,
         }
+    }
+
+    /// Part by which rates of rotation may be wrong because masses are lumped; zero for a block that supports keep from turning.
+    pub fn rotation_error(&self) -> f64 {
+        if self.supports.frame == Frame::Held { 0.0 } else { self.inertia_error }
     }
 
     /// What contact may know of the block's inertia. Supports that leave no rigid motion make it immovable.
@@ -280,6 +288,18 @@ impl Shape {
         let misfit = |(x, rest): (&Vec3, &Vec3)| (x - center - rotation * rest).norm();
         position.iter().zip(&self.operator.rest).map(misfit).fold(0.0, f64::max) <= CONGRUENT * size
     }
+}
+
+/// The operator with lumped masses, and max |ω·(J − J₀) ω| / ω·J₀ ω over all axes ω for the inertias J with them and J₀ without: with
+/// J₀ = L Lᵀ the largest eigenvalue of L⁻¹ (J − J₀) L⁻ᵀ.
+fn lumped(operator: BlockOperator) -> (BlockOperator, f64) {
+    let exact = operator.inertia(&operator.rest, &operator.rest);
+    let operator = operator.with_lumped_mass();
+    let change = operator.inertia(&operator.rest, &operator.rest) - exact;
+    let factor = exact.cholesky().expect("a validated block is not flat").l();
+    let inverse = factor.try_inverse().expect("its factor is regular");
+    let relative = inverse * change * inverse.transpose();
+    (operator, relative.symmetric_eigenvalues().amax())
 }
 
 /// Whether a body of its kind can have the supports that are asked for.

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::batch::solve_together;
 use crate::body::{Body, BodyKind, StepContext};
+use crate::contact_moments::ContactMoments;
 use crate::end_contact::{Iterations, Newton};
 use crate::first_step::seen;
 use crate::for_each_block::{NodeSlices, Runs, each_of_run, for_each_run};
@@ -111,6 +112,8 @@ pub struct Simulation {
     /// Which blocks move by an affine map; empty without contact.
     pub(crate) affine: Vec<bool>,
     pub(crate) contact_bodies: Vec<ContactBody>,
+    /// Moments of contact forces, for schemes that take them elsewhere than in the middle of a step.
+    pub(crate) contact_moments: Option<Box<ContactMoments>>,
     /// What facets did in the last step, if somebody wants to know.
     pub(crate) contacts: Option<Vec<FacetContact>>,
 }
@@ -135,6 +138,7 @@ impl Simulation {
             self.begin_ahead()?;
         }
         let (contact, iterations) = self.gather_contact()?;
+        self.carry_contact_forces();
         let depth = contact.max_penetration_ratio;
         self.loose = if depth > self.least_friction { depth } else { 0.0 };
         self.note_contacts();
@@ -281,6 +285,7 @@ impl Simulation {
             contact_stiffness: self.contact_stiffness.get(acted).unwrap_or(&[]),
             loose: self.loose,
             inertia: self.state.inertia.get(index).copied().unwrap_or_default(),
+            carried: self.contact_moments.as_ref().map_or(Vec3::zeros(), |moments| moments.carried[index]),
         }
     }
 
@@ -348,12 +353,15 @@ impl Simulation {
     fn keep_books(&mut self, contact: ContactReport, iterations: Iterations) -> StepReport {
         let (mut force, mut torque) = (self.loads.force(), Vec3::zeros());
         self.ledger.watch_load(force.norm());
+        let (mut impulse, mut orbital) = (Vec3::zeros(), Vec3::zeros());
         let (mut rate2, mut speed_m_s) = (0.0f64, 0.0f64);
         let (mut friction_j, mut motion_j, mut load_j, mut damping_j) = (0.0, 0.0, 0.0, 0.0);
         for body in &self.bodies {
             let report = &body.report;
-            force += report.reaction;
+            force += report.reaction - report.motion_impulse / self.part_s;
             torque += report.outside_torque;
+            impulse += report.motion_impulse;
+            orbital += report.orbital_impulse;
             friction_j += report.friction_work_j;
             motion_j += report.motion_work_j;
             load_j += report.load_work_j;
@@ -364,6 +372,7 @@ impl Simulation {
         let travel_ratio = speed_m_s * self.part_s / self.smallest_height_m;
         let h = self.part_s * rate2.sqrt();
         self.ledger.add_impulse(self.part_s, &self.weights, force, torque);
+        self.ledger.add_whole_impulse(impulse, orbital);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
         self.book_work_of_contact(&contact);
         if self.loose > 0.0 {
@@ -423,7 +432,7 @@ impl Simulation {
         self.state.step = 0;
         self.settling = false;
         self.loads.place(0.0, 0.0);
-        self.ledger = self.new_ledger();
+        self.ledger = self.new_ledger((Vec3::zeros(), Vec3::zeros()));
     }
 
     /// A copy of all that changes.
@@ -544,6 +553,21 @@ impl Simulation {
     /// Whether no block is supported, so that momentum can only come from loads.
     pub fn is_closed(&self) -> bool {
         self.shapes.iter().all(Shape::is_free)
+    }
+
+    /// The block of each distinct shape whose rotation is inexact because masses are lumped, with the largest part by which its inertia is
+    /// too large.
+    pub fn lumped_inertia_errors(&self) -> Vec<(BlockId, f64)> {
+        let mut seen = vec![false; self.shapes.len()];
+        let firsts = self.blocks.ids().zip(&self.bodies);
+        let firsts = firsts.filter(|(_, body)| !std::mem::replace(&mut seen[body.shape], true));
+        let errors = firsts.map(|(block, body)| (block, self.shapes[body.shape].rotation_error()));
+        errors.filter(|(_, error)| *error > 0.0).collect()
+    }
+
+    /// Whether any block turns with the inexact inertia of lumped masses.
+    pub fn has_lumped_rotation(&self) -> bool {
+        self.shapes.iter().any(|shape| shape.rotation_error() > 0.0)
     }
 
     /// Whether blocks feel each other.

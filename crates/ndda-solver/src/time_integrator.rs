@@ -45,19 +45,30 @@ impl StepWeights {
         (force - self.old_inertia * old) / (1.0 - self.old_inertia)
     }
 
+    /// β of u = Δt v₀ + Δt² [(½ − β) a₀ + β a₁].
+    pub fn beta(&self, dt_s: f64) -> f64 {
+        (1.0 - self.old_inertia) / (self.mass_per_s2 * dt_s * dt_s)
+    }
+
     /// The mean of M a by which momentum changes in a step.
     pub fn mean_inertia(&self, old: &Vec3, new: &Vec3) -> Vec3 {
         (1.0 - self.new_force) * old + self.new_force * new
     }
 }
 
-/// What moves a block as a whole at the end of a step: M a summed over its nodes.
+/// What accelerates a block as a whole at the end of a step, of which integrators with `old_inertia` or `new_force` < 1 remember a part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inertia {
     /// Σ M a [N].
     pub force: Vec3,
-    /// Its torque about the origin [N m].
+    /// Rate at which loads and contact change the angular momentum about the mass centre [N m].
     pub torque: Vec3,
+    /// The part of `force` that contact exerts; only where the moments of past contact forces matter, as the next two [N].
+    pub contact: Vec3,
+    /// Σ w × F of contact forces F, w being the velocity of the pair of blocks in contact (`contact_moments.rs`) [N m/s].
+    pub carried: Vec3,
+    /// Moment about the mass centre that past contact forces have where they acted, as seen by an observer who moves at w [N m].
+    pub lag: Vec3,
 }
 
 /// Rayleigh damping in a step: the force −C u/Δt, C/Δt = stiffness · K + mass_per_s2 · M.
