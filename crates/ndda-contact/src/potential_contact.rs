@@ -385,6 +385,12 @@ impl ContactModel for PotentialContact {
         energies.for_each(|(a, b, energy_m3)| add(a, b, self.penalty_pa * energy_m3));
     }
 
+    /// A convex block is as wide as it reaches below the nearest of its faces, where φ does not depend on tetrahedra.
+    fn width_m(&self, blocks: &BlockSet, block: BlockId) -> Option<f64> {
+        let Some((_, Field::Pieces(_))) = &self.field else { return None };
+        BlockFaces::new(blocks, block).width_m(blocks, block)
+    }
+
     fn gathers(&self, block: BlockId) -> bool {
         self.hulls.whole(block).is_some()
     }

@@ -37,6 +37,7 @@ pub mod step_error;
 pub mod supernodal;
 pub mod testing;
 pub mod time_integrator;
+mod travel;
 pub mod unknowns;
 
 pub use block_books::Worst;
