@@ -9,6 +9,7 @@ pub mod block_books;
 pub mod body;
 pub mod conjugate_gradients;
 mod contact_fields;
+mod contact_rates;
 pub mod dense_inverse;
 pub mod direct;
 pub mod elastic_body;
