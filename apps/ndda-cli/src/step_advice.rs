@@ -9,7 +9,7 @@ use std::fmt;
 
 use ndda_contact::block_faces::BlockFaces;
 use ndda_contact::{ContactHistory, ContactInput, ContactOutput};
-use ndda_io::scene::{Contact, ContactAt, Scene};
+use ndda_io::scene::{Body, Contact, ContactAt, Scene};
 use ndda_mesh::geometry::{tet_volume, triangle_area_vector};
 use ndda_mesh::stats::stats;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
@@ -139,6 +139,8 @@ struct Trial<'a> {
     mesh: BlockMesh,
     node_mass: Vec<f64>,
     smallest_height_m: f64,
+    /// Whether it moves by an affine map, so that contact may take it whole.
+    is_affine: bool,
 }
 
 /// The step for a scene's contact; none without contact, or where contact is stable at any step or at none.
@@ -167,6 +169,7 @@ pub fn advise(scene: &Scene, simulation: &mut Simulation) -> Option<Advice> {
             mesh: BlockMesh { nodes, tets, surfaces: blocks.surfaces_of(block), ..BlockMesh::default() },
             node_mass: shape.operator.node_mass.clone(),
             smallest_height_m: shape.smallest_height_m,
+            is_affine: shape.kind.is_affine(),
         }
     });
     let face_on_face = fastest(scene, trials)?;
@@ -200,8 +203,15 @@ pub fn advise_materials(scene: &Scene, blocks: &BlockSet) -> Vec<AdvisedStep> {
     let moving = wiring::moving(scene, blocks);
     let mut advised = Vec::new();
     for (index, material) in scene.materials.iter().enumerate() {
-        let of_material: Vec<BlockId> =
-            blocks.ids().filter(|block| moving[block.index()] == Some(index)).collect();
+        let of_material: Vec<(BlockId, bool)> = blocks
+            .ids()
+            .zip(&moving)
+            .filter_map(|(block, moving)| {
+                moving
+                    .filter(|(material, _)| *material == index)
+                    .map(|(_, body)| (block, body != Body::Elastic))
+            })
+            .collect();
         for penalty_pa in [0.1, 1.0, 10.0].map(|factor| factor * penalty_pa) {
             let mut changed = scene.clone();
             if let Some(Contact::Potential { penalty_pa: penalty, .. }) = &mut changed.contact {
@@ -218,8 +228,8 @@ pub fn advise_materials(scene: &Scene, blocks: &BlockSet) -> Vec<AdvisedStep> {
 }
 
 /// Blocks of the smallest elements, one of each kind, with lumped masses.
-fn smallest<'a>(blocks: &'a BlockSet, among: &[BlockId], density_kg_m3: f64) -> Vec<Trial<'a>> {
-    let trial = |&block: &BlockId| {
+fn smallest<'a>(blocks: &'a BlockSet, among: &[(BlockId, bool)], density_kg_m3: f64) -> Vec<Trial<'a>> {
+    let trial = |&(block, is_affine): &(BlockId, bool)| {
         let mesh = BlockMesh {
             nodes: blocks.rest_position[blocks.nodes_of(block)].to_vec(),
             tets: blocks.local_tets(block).collect(),
@@ -232,13 +242,14 @@ fn smallest<'a>(blocks: &'a BlockSet, among: &[BlockId], density_kg_m3: f64) -> 
             tet.iter().for_each(|&node| node_mass[node as usize] += mass);
         }
         let smallest_height_m = stats(&mesh).smallest_height_m;
-        Trial { block, name: &blocks.names[block.index()], mesh, node_mass, smallest_height_m }
+        Trial { block, name: &blocks.names[block.index()], mesh, node_mass, smallest_height_m, is_affine }
     };
     let mut trials: Vec<Trial> = among.iter().map(trial).collect();
     trials.sort_by(|a, b| a.smallest_height_m.total_cmp(&b.smallest_height_m));
     let same = |a: &Trial, b: &Trial| {
         let difference = (a.smallest_height_m - b.smallest_height_m).abs();
-        a.mesh.tets.len() == b.mesh.tets.len() && difference <= SAME_HEIGHT * b.smallest_height_m
+        let alike = a.is_affine == b.is_affine && a.mesh.tets.len() == b.mesh.tets.len();
+        alike && difference <= SAME_HEIGHT * b.smallest_height_m
     };
     trials.dedup_by(|a, b| same(a, b));
     trials.truncate(MOST_SHAPES);
@@ -269,7 +280,10 @@ fn contact_rate2(scene: &Scene, trial: &Trial) -> Option<f64> {
         let zeros = vec![Vec3::zeros(); blocks.rest_position.len()];
         let (mut force, mut friction) = (zeros.clone(), zeros.clone());
         let mut stiffness = vec![0.0; zeros.len()];
-        let input = ContactInput::new(&blocks, &blocks.rest_position, &zeros, scene.time.step_s);
+        let input = ContactInput {
+            affine: &[trial.is_affine; 2],
+            ..ContactInput::new(&blocks, &blocks.rest_position, &zeros, scene.time.step_s)
+        };
         let mut output =
             ContactOutput { force: &mut force, friction_force: &mut friction, stiffness: &mut stiffness };
         model.add_forces(&input, &mut ContactHistory::default(), &mut output).ok()?;
