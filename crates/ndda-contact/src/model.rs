@@ -266,6 +266,18 @@ pub trait ContactModel: Send + Sync {
         None
     }
 
+    /// Upper bound of the speed at which two blocks that do not touch close the gap between them [m/s]; `None` where the model does
+    /// not know, and any relative velocity counts.
+    fn closing_m_s(
+        &self,
+        _blocks: &BlockSet,
+        _position: &[Vec3],
+        _velocity: &[Vec3],
+        _pair: (BlockId, BlockId),
+    ) -> Option<f64> {
+        None
+    }
+
     /// What the model consists of, for a person who asks.
     fn plan(&self) -> Vec<Part> {
         Vec::new()

@@ -10,6 +10,7 @@ use crate::bonds;
 use crate::both::both;
 use crate::by_block::ByBlock;
 use crate::candidates::Candidates;
+use crate::closing::closing_m_s;
 use crate::element_potential::ElementPotential;
 use crate::energy::{self, OverlapParts};
 use crate::faces::{FaceScene, Faces};
@@ -389,6 +390,16 @@ impl ContactModel for PotentialContact {
     fn width_m(&self, blocks: &BlockSet, block: BlockId) -> Option<f64> {
         let Some((_, Field::Pieces(_))) = &self.field else { return None };
         BlockFaces::new(blocks, block).width_m(blocks, block)
+    }
+
+    fn closing_m_s(
+        &self,
+        blocks: &BlockSet,
+        position: &[Vec3],
+        velocity: &[Vec3],
+        pair: (BlockId, BlockId),
+    ) -> Option<f64> {
+        closing_m_s(&self.hulls, blocks, (position, velocity), pair)
     }
 
     fn gathers(&self, block: BlockId) -> bool {

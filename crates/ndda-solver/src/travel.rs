@@ -189,14 +189,24 @@ impl Simulation {
             touching.sort_unstable();
             let mut found = false;
             travel.each_meeting(|i, first, j, second| {
-                let speed_m_s = first.relative_m_s(second);
-                let stored_j = 0.125 * h * h * first.mass_kg.min(second.mass_kg) * speed_m_s * speed_m_s;
-                let (a, b) = (BlockId(i.min(j) as u32), BlockId(i.max(j) as u32));
-                found |= stored_j > limit_j && touching.binary_search(&(a, b)).is_err();
+                let mass_kg = first.mass_kg.min(second.mass_kg);
+                let stored_j = |speed_m_s: f64| 0.125 * h * h * mass_kg * speed_m_s * speed_m_s;
+                let pair = (BlockId(i.min(j) as u32), BlockId(i.max(j) as u32));
+                found = found
+                    || stored_j(first.relative_m_s(second)) > limit_j
+                        && touching.binary_search(&pair).is_err()
+                        && simulation.closing_m_s(pair).is_none_or(|speed_m_s| stored_j(speed_m_s) > limit_j);
             });
             travel.touching = touching;
             found
         })
+    }
+
+    /// Upper bound of the speed at which two blocks that did not touch where contact was evaluated now close the gap between them
+    /// [m/s]; `None` if any relative velocity counts.
+    fn closing_m_s(&self, pair: (BlockId, BlockId)) -> Option<f64> {
+        let model = self.contact.as_ref()?;
+        model.closing_m_s(&self.blocks, &self.contact_position, &self.state.velocity, pair)
     }
 
     /// Works on the motions of the blocks while the rest is read.
