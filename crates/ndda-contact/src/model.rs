@@ -266,15 +266,9 @@ pub trait ContactModel: Send + Sync {
         None
     }
 
-    /// Upper bound of the speed at which two blocks that do not touch close the gap between them [m/s]; `None` where the model does
-    /// not know, and any relative velocity counts.
-    fn closing_m_s(
-        &self,
-        _blocks: &BlockSet,
-        _position: &[Vec3],
-        _velocity: &[Vec3],
-        _pair: (BlockId, BlockId),
-    ) -> Option<f64> {
+    /// Upper bound of the speed at which two blocks that do not touch at `input.position` close the gap between them within a step
+    /// [m/s]; zero if it stays open. `None` where the model does not know, and any relative velocity counts.
+    fn closing_m_s(&self, _input: &ContactInput, _pair: (BlockId, BlockId)) -> Option<f64> {
         None
     }
 

@@ -392,14 +392,8 @@ impl ContactModel for PotentialContact {
         BlockFaces::new(blocks, block).width_m(blocks, block)
     }
 
-    fn closing_m_s(
-        &self,
-        blocks: &BlockSet,
-        position: &[Vec3],
-        velocity: &[Vec3],
-        pair: (BlockId, BlockId),
-    ) -> Option<f64> {
-        closing_m_s(&self.hulls, blocks, (position, velocity), pair)
+    fn closing_m_s(&self, input: &ContactInput, pair: (BlockId, BlockId)) -> Option<f64> {
+        closing_m_s(&self.hulls, input, pair)
     }
 
     fn gathers(&self, block: BlockId) -> bool {

@@ -11,7 +11,7 @@
 //! with the width w of a block as its contact resolves it ([`ContactModel::width_m`]). Two blocks may meet if the boxes that they
 //! sweep in the step touch; whether they were candidates of contact before does not matter.
 
-use ndda_contact::ContactModel;
+use ndda_contact::{ContactInput, ContactModel};
 use ndda_mesh::geometry::{Aabb, tet_heights};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
@@ -202,11 +202,12 @@ impl Simulation {
         })
     }
 
-    /// Upper bound of the speed at which two blocks that did not touch where contact was evaluated now close the gap between them
-    /// [m/s]; `None` if any relative velocity counts.
+    /// Upper bound of the speed at which two blocks that did not touch in the step just done close the gap between them [m/s];
+    /// `None` if any relative velocity counts.
     fn closing_m_s(&self, pair: (BlockId, BlockId)) -> Option<f64> {
         let model = self.contact.as_ref()?;
-        model.closing_m_s(&self.blocks, &self.contact_position, &self.state.velocity, pair)
+        let (position, velocity) = (&self.contact_position, &self.state.velocity);
+        model.closing_m_s(&ContactInput::new(&self.blocks, position, velocity, self.part_s), pair)
     }
 
     /// Works on the motions of the blocks while the rest is read.
