@@ -39,6 +39,7 @@ mod sticking_plate;
 mod sudden_load;
 mod tall_stack;
 mod toppling_slope;
+mod travel;
 
 use ndda_cli::wiring;
 use ndda_mesh::Vec3;

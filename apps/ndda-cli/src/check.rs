@@ -20,7 +20,7 @@ use crate::monitor::Monitor;
 use crate::overlaps;
 use crate::reference::Comparison;
 use crate::rounding;
-use crate::step_advice;
+use crate::step_advice::{self, Advice};
 use crate::wiring::{self, Fault};
 
 /// A scene that is ready to run.
@@ -94,6 +94,7 @@ struct Checked<'a> {
     factors: usize,
     steps: u64,
     advised_step_s: Option<f64>,
+    contact_stability: Option<&'a Advice>,
     guess: Option<Guess>,
 }
 
@@ -108,7 +109,7 @@ pub fn check(args: &CheckArgs) -> u8 {
     if !loaded.warnings.is_empty() {
         events.doubt(&loaded.errors(loaded.warnings.clone()));
     }
-    let advice = step_advice::advise(&loaded.scene, &ready.simulation);
+    let advice = step_advice::advise(&loaded.scene, &mut ready.simulation);
     let guess = guess::guess(&loaded.scene, &mut ready.simulation);
     let file = input::file(&args.input);
     let stops = guess.as_ref().err().map(|error| format!("the first steps stop: {error}"));
@@ -127,11 +128,15 @@ pub fn check(args: &CheckArgs) -> u8 {
         factors: simulation.factors(),
         steps: wiring::steps(&loaded.scene.time),
         advised_step_s: advice.as_ref().map(|advice| advice.step_s),
+        contact_stability: advice.as_ref(),
         guess: guess.ok(),
     };
     events.emit("finished", &checked);
     if !args.json {
-        say(&format!("{checked}{}", advice.map_or_else(String::new, |advice| format!("\n{advice}"))));
+        say(&format!(
+            "{checked}{}",
+            advice.as_ref().map_or_else(String::new, |advice| format!("\n{advice}"))
+        ));
     }
     checked.exit_code
 }

@@ -50,11 +50,11 @@ pub struct Explanation {
 
 /// Explains a scene; returns the exit code.
 pub fn explain(args: &ExplainArgs) -> u8 {
-    let ready = match input::ready(&args.input, Events::default()) {
+    let mut ready = match input::ready(&args.input, Events::default()) {
         Ok(ready) => ready,
         Err(code) => return code,
     };
-    let explanation = of(&ready);
+    let explanation = of(&mut ready);
     if !args.json {
         say(explanation.to_string().trim_end());
         return exit::DONE;
@@ -72,7 +72,7 @@ pub fn explain(args: &ExplainArgs) -> u8 {
 }
 
 /// The plan of a scene that is ready to run.
-pub fn of(ready: &Ready) -> Explanation {
+pub fn of(ready: &mut Ready) -> Explanation {
     let Ready { loaded, simulation, monitors } = ready;
     let scene = &loaded.scene;
     let Plan { kinds, factors, mut parts } = simulation.plan();
@@ -105,7 +105,7 @@ pub fn of(ready: &Ready) -> Explanation {
     }
 }
 
-fn advice(scene: &Scene, simulation: &Simulation) -> Option<String> {
+fn advice(scene: &Scene, simulation: &mut Simulation) -> Option<String> {
     step_advice::advise(scene, simulation).map(|advice| advice.to_string())
 }
 

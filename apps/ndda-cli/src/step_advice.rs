@@ -1,13 +1,15 @@
-//! The step that contact asks for, before anything has run.
+//! Forecast of contact stability, before anything has run: h = ω_c Δt with ω_c² = max Σ|k|/m over the nodes, as a run reports it.
 //!
-//! Each block is laid against its own like, face on face, a little deep, and the scene's contact model says how stiff that
-//! is: ω_c² = max Σ|k|/m over the nodes, as a run reports it.
+//! Two configurations are evaluated with the scene's contact model. *At the start*: blocks that touch where they are put, each
+//! swollen by a thousandth of its smallest tetrahedron. *Face on face*: each distinct block against a copy of itself, turned over
+//! about one of its faces. The first is what a run begins with; the second bounds contacts that may form later, and is all there is
+//! where no blocks touch.
 
 use std::fmt;
 
 use ndda_contact::block_faces::BlockFaces;
 use ndda_contact::{ContactHistory, ContactInput, ContactOutput};
-use ndda_io::scene::{Contact, ContactAt, Scene};
+use ndda_io::scene::{Body, Contact, ContactAt, Scene};
 use ndda_mesh::geometry::{tet_volume, triangle_area_vector};
 use ndda_mesh::stats::stats;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
@@ -28,33 +30,82 @@ const DEPTH: f64 = 1e-3;
 /// Part of the bound on h that is advised.
 pub const SAFETY: f64 = 0.5;
 
-/// The shortest step that contact asks for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Advice {
-    /// Step at which h = ω_c Δt is half of its bound [s].
-    pub step_s: f64,
-    /// The block that asks for it.
-    pub block: String,
-    /// h at the scene's own step.
+/// Forecasts that differ by less than this factor are shown as one.
+const SAME_H: f64 = 3.0;
+
+/// Contact stability number h = ω_c Δt of one configuration at the scene's step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Forecast {
+    /// h.
     pub h: f64,
-    /// The bound.
+    /// The block where it is largest.
+    pub block: String,
+}
+
+/// The forecast of h, and the step that follows from it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Advice {
+    /// Step at which h is half of its bound, for all contacts that were evaluated [s].
+    pub step_s: f64,
+    /// The same for the contacts at the start alone [s]; none where no blocks touch.
+    pub step_at_start_s: Option<f64>,
+    /// Contacts at the start; none where no blocks touch.
+    pub at_start: Option<Forecast>,
+    /// Each block against a copy of itself, face on face.
+    pub face_on_face: Forecast,
+    /// Largest stable h.
     pub bound: f64,
+}
+
+impl Advice {
+    /// The larger of the two forecasts.
+    pub fn worst(&self) -> &Forecast {
+        self.at_start.as_ref().filter(|start| start.h > self.face_on_face.h).unwrap_or(&self.face_on_face)
+    }
+
+    /// The smallest and the largest h that is expected of a run.
+    pub fn range(&self) -> (f64, f64) {
+        let face_on_face = self.face_on_face.h;
+        let start = self.at_start.as_ref().map_or(face_on_face, |start| start.h);
+        (start.min(face_on_face), start.max(face_on_face))
+    }
 }
 
 impl fmt::Display for Advice {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { step_s, block, h, bound } = self;
-        let verdict = match h {
-            h if h > bound => "it is unstable: shorten it, or let time.step be Auto()",
-            h if *h > SAFETY * bound => "it is near the bound",
-            h if *h < 0.1 * SAFETY * bound => "it could be longer, if blocks move little in it",
-            _ => "it will do",
+        let Self { step_s, bound, .. } = self;
+        let (from, to) = self.range();
+        let verdict = match (from, to) {
+            (_, to) if to <= *bound => "Stable",
+            (from, _) if from > *bound => "Unstable",
+            _ => "Possibly unstable",
         };
-        write!(
-            f,
-            "contact of `{block}` with its like: h = ω_c Δt = {h:.2} of at most {bound} at this step, so {verdict}; \
-             advised step_s: {step_s:.1e}"
-        )
+        let Forecast { block, .. } = self.worst();
+        match &self.at_start {
+            Some(start) if to > SAME_H * from => {
+                let (first, last) = (start, &self.face_on_face);
+                let at_start_s = self.step_at_start_s.unwrap_or(*step_s);
+                write!(
+                    f,
+                    "{verdict}: contact stability number between {from:.2} and {to:.2} (limit {bound}): {:.2} for the contacts at \
+                     the start (block {}), {:.2} for contacts face on face that may form later (block {}); largest safe time step \
+                     {at_start_s:.1e} s for the contacts at the start, {step_s:.1e} s for all.",
+                    first.h, first.block, last.h, last.block
+                )?;
+            }
+            _ => write!(
+                f,
+                "{verdict}: contact stability number {to:.2} (limit {bound}) at block {block}; largest safe time step {step_s:.1e} s."
+            )?,
+        }
+        match to {
+            to if to > *bound => write!(f, " Reduce time.step_s, or set time.step to Auto()."),
+            to if to > SAFETY * bound => write!(f, " The limit is near."),
+            to if to < 0.1 * SAFETY * bound => {
+                write!(f, " The step can be longer if blocks move little in it.")
+            }
+            _ => Ok(()),
+        }
     }
 }
 
@@ -88,11 +139,15 @@ struct Trial<'a> {
     mesh: BlockMesh,
     node_mass: Vec<f64>,
     smallest_height_m: f64,
+    /// Whether it moves by an affine map, so that contact may take it whole.
+    is_affine: bool,
 }
 
 /// The step for a scene's contact; none without contact, or where contact is stable at any step or at none.
-pub fn advise(scene: &Scene, simulation: &Simulation) -> Option<Advice> {
+pub fn advise(scene: &Scene, simulation: &mut Simulation) -> Option<Advice> {
     let bound = simulation.contact_bound().filter(|_| simulation.has_contact())?;
+    let at_start = contacts_at_start(simulation);
+    let simulation = &*simulation;
     let blocks = simulation.blocks();
     let mut distinct: Vec<BlockId> = Vec::new();
     for block in blocks.ids() {
@@ -114,10 +169,27 @@ pub fn advise(scene: &Scene, simulation: &Simulation) -> Option<Advice> {
             mesh: BlockMesh { nodes, tets, surfaces: blocks.surfaces_of(block), ..BlockMesh::default() },
             node_mass: shape.operator.node_mass.clone(),
             smallest_height_m: shape.smallest_height_m,
+            is_affine: shape.kind.is_affine(),
         }
     });
-    let (rate, block) = fastest(scene, trials)?;
-    Some(Advice { step_s: SAFETY * bound / rate, block, h: rate * simulation.step_s(), bound })
+    let face_on_face = fastest(scene, trials)?;
+    let fastest = at_start.iter().map(|(rate, _)| *rate).fold(face_on_face.0, f64::max);
+    let forecast = |(rate, block): (f64, String)| Forecast { h: rate * simulation.step_s(), block };
+    Some(Advice {
+        step_s: SAFETY * bound / fastest,
+        step_at_start_s: at_start.as_ref().map(|(rate, _)| SAFETY * bound / rate),
+        at_start: at_start.map(forecast),
+        face_on_face: forecast(face_on_face),
+        bound,
+    })
+}
+
+/// The largest ω_c of the contacts at the start [1/s], and at which block; none where no blocks touch, or where contact cannot be
+/// computed, which the first step says.
+fn contacts_at_start(simulation: &mut Simulation) -> Option<(f64, String)> {
+    let rates2 = simulation.contact_rates2(DEPTH).ok()?;
+    let fastest = rates2.into_iter().zip(&simulation.blocks().names).max_by(|a, b| a.0.total_cmp(&b.0));
+    fastest.filter(|(rate2, _)| *rate2 > 0.0).map(|(rate2, name)| (rate2.sqrt(), name.clone()))
 }
 
 /// Steps for the contact of each material that moves, at the scene's penalty, a tenth of it and ten times as much; none
@@ -131,8 +203,15 @@ pub fn advise_materials(scene: &Scene, blocks: &BlockSet) -> Vec<AdvisedStep> {
     let moving = wiring::moving(scene, blocks);
     let mut advised = Vec::new();
     for (index, material) in scene.materials.iter().enumerate() {
-        let of_material: Vec<BlockId> =
-            blocks.ids().filter(|block| moving[block.index()] == Some(index)).collect();
+        let of_material: Vec<(BlockId, bool)> = blocks
+            .ids()
+            .zip(&moving)
+            .filter_map(|(block, moving)| {
+                moving
+                    .filter(|(material, _)| *material == index)
+                    .map(|(_, body)| (block, body != Body::Elastic))
+            })
+            .collect();
         for penalty_pa in [0.1, 1.0, 10.0].map(|factor| factor * penalty_pa) {
             let mut changed = scene.clone();
             if let Some(Contact::Potential { penalty_pa: penalty, .. }) = &mut changed.contact {
@@ -149,8 +228,8 @@ pub fn advise_materials(scene: &Scene, blocks: &BlockSet) -> Vec<AdvisedStep> {
 }
 
 /// Blocks of the smallest elements, one of each kind, with lumped masses.
-fn smallest<'a>(blocks: &'a BlockSet, among: &[BlockId], density_kg_m3: f64) -> Vec<Trial<'a>> {
-    let trial = |&block: &BlockId| {
+fn smallest<'a>(blocks: &'a BlockSet, among: &[(BlockId, bool)], density_kg_m3: f64) -> Vec<Trial<'a>> {
+    let trial = |&(block, is_affine): &(BlockId, bool)| {
         let mesh = BlockMesh {
             nodes: blocks.rest_position[blocks.nodes_of(block)].to_vec(),
             tets: blocks.local_tets(block).collect(),
@@ -163,13 +242,14 @@ fn smallest<'a>(blocks: &'a BlockSet, among: &[BlockId], density_kg_m3: f64) -> 
             tet.iter().for_each(|&node| node_mass[node as usize] += mass);
         }
         let smallest_height_m = stats(&mesh).smallest_height_m;
-        Trial { block, name: &blocks.names[block.index()], mesh, node_mass, smallest_height_m }
+        Trial { block, name: &blocks.names[block.index()], mesh, node_mass, smallest_height_m, is_affine }
     };
     let mut trials: Vec<Trial> = among.iter().map(trial).collect();
     trials.sort_by(|a, b| a.smallest_height_m.total_cmp(&b.smallest_height_m));
     let same = |a: &Trial, b: &Trial| {
         let difference = (a.smallest_height_m - b.smallest_height_m).abs();
-        a.mesh.tets.len() == b.mesh.tets.len() && difference <= SAME_HEIGHT * b.smallest_height_m
+        let alike = a.is_affine == b.is_affine && a.mesh.tets.len() == b.mesh.tets.len();
+        alike && difference <= SAME_HEIGHT * b.smallest_height_m
     };
     trials.dedup_by(|a, b| same(a, b));
     trials.truncate(MOST_SHAPES);
@@ -200,7 +280,10 @@ fn contact_rate2(scene: &Scene, trial: &Trial) -> Option<f64> {
         let zeros = vec![Vec3::zeros(); blocks.rest_position.len()];
         let (mut force, mut friction) = (zeros.clone(), zeros.clone());
         let mut stiffness = vec![0.0; zeros.len()];
-        let input = ContactInput::new(&blocks, &blocks.rest_position, &zeros, scene.time.step_s);
+        let input = ContactInput {
+            affine: &[trial.is_affine; 2],
+            ..ContactInput::new(&blocks, &blocks.rest_position, &zeros, scene.time.step_s)
+        };
         let mut output =
             ContactOutput { force: &mut force, friction_force: &mut friction, stiffness: &mut stiffness };
         model.add_forces(&input, &mut ContactHistory::default(), &mut output).ok()?;

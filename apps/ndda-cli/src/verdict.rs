@@ -14,7 +14,7 @@ const PLACE: f64 = 0.1;
 /// Speed of vibrations that a step turns over, over the largest speed: θ² of one that turns by θ in a step. It is late by θ²/12 of
 /// each radian, as contact within its bound is.
 const MOST_VIBRATION: f64 = 12.0 * SPEED;
-/// Travel of a step over the smallest height of all tetrahedra: two blocks that meet jump over one height together.
+/// Relative travel of two blocks that may meet in a step, over the width of the thinner one.
 const MOST_TRAVEL: f64 = 0.5;
 
 /// An invariant, and what it means for the motion.
@@ -178,10 +178,12 @@ fn resolution(simulation: &Simulation) -> [Entry; 2] {
     let coarse =
         format!("steps are too long for contact: h = {h:.2}, bound {:.2}", bound.unwrap_or_default());
     let h = bound.map_or(shown(h), |bound| judged(h, bound, f64::INFINITY));
-    let travel = worst.max_travel_ratio;
+    let travel = worst.max_travel.value;
     let jumped = format!(
-        "a node moved {travel:.2} times the smallest height of a tetrahedron in a step, limit {MOST_TRAVEL}: blocks may \
-         have passed through each other"
+        "block `{}` and another that it may meet approached by {travel:.2} of its width in a step (limit {MOST_TRAVEL}) and may have \
+         passed through each other: divide step_s by {:.0}",
+        name(simulation, worst.max_travel),
+        (travel / MOST_TRAVEL).ceil()
     );
     // How far a block moves in a step matters only where it may jump through another.
     let travel = match simulation.has_contact() {
@@ -190,7 +192,7 @@ fn resolution(simulation: &Simulation) -> [Entry; 2] {
     };
     [
         Entry::new("I8 h = ω_c Δt", h, Judgement::Warn, coarse),
-        Entry::new("I8 travel / height", travel, Judgement::Warn, jumped),
+        Entry::new("I8 travel / width", travel, Judgement::Warn, jumped),
     ]
 }
 

@@ -104,8 +104,8 @@ fn sources<'a>(scene: &'a Scene, blocks: &BlockSet) -> Vec<Option<Source<'a>>> {
     written.chain(blocks.names.iter().skip(scene.blocks.len()).map(rock)).collect()
 }
 
-/// Index of the material of each block that can move.
-pub fn moving(scene: &Scene, blocks: &BlockSet) -> Vec<Option<usize>> {
+/// Index of the material of each block that can move, and its kind of body.
+pub fn moving(scene: &Scene, blocks: &BlockSet) -> Vec<Option<(usize, scene::Body)>> {
     let material = |(block, source): (BlockId, Option<Source>)| {
         let source = source?;
         let body = match source {
@@ -113,7 +113,7 @@ pub fn moving(scene: &Scene, blocks: &BlockSet) -> Vec<Option<usize>> {
             Source::Rock(rock) => rock::body(rock, blocks, block),
         };
         let index = scene.materials.iter().position(|m| m.name == source.material());
-        index.filter(|_| body != scene::Body::Fixed)
+        index.filter(|_| body != scene::Body::Fixed).map(|index| (index, body))
     };
     blocks.ids().zip(sources(scene, blocks)).map(material).collect()
 }

@@ -65,6 +65,13 @@ impl BlockFaces {
         Self { planes, of_triangle, convex: one_piece && neighbours.iter().enumerate().all(bends_outward) }
     }
 
+    /// Width of a convex block at rest: how far it reaches below a face, where that is least [m].
+    pub fn width_m(&self, blocks: &BlockSet, block: BlockId) -> Option<f64> {
+        let nodes = &blocks.rest_position[blocks.nodes_of(block)];
+        let reach = |plane: &Plane| nodes.iter().map(|x| plane.depth_m(x)).fold(0.0, f64::max);
+        self.convex.then(|| self.planes.iter().map(reach).fold(f64::INFINITY, f64::min))
+    }
+
     /// The boundary triangles of a face, among those of all blocks.
     pub fn triangles_of(
         &self,

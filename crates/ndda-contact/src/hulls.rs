@@ -59,7 +59,7 @@ pub struct Face {
 pub struct Whole {
     /// Its largest tetrahedron, whose corners take its forces.
     pub host: TetId,
-    /// Largest φ of a node below a face.
+    /// φ as deep as the block is wide: at the node furthest below a face, where that is least.
     pub most_phi: f64,
     /// Its shape, carried by the host.
     pub shape: Carried,
@@ -319,7 +319,8 @@ impl Whole {
         };
         let spread: Matrix4<f64> = blocks.rest_position[nodes].iter().zip(&share).map(outer).sum();
         let inverse_spread = spread.try_inverse().expect("a block fills space");
-        let most_phi = faces.iter().filter_map(|face| face.furthest).map(|(_, phi)| phi).fold(0.0, f64::max);
+        let furthest = faces.iter().filter_map(|face| face.furthest).map(|(_, phi)| phi);
+        let most_phi = furthest.fold(f64::INFINITY, f64::min);
         let sides = faces.iter().map(|face| {
             let mut face = face.clone();
             face.place(&[], &blocks.rest_position);

@@ -31,6 +31,8 @@ pub mod candidates;
 #[cfg(feature = "potential")]
 pub mod clip;
 #[cfg(feature = "potential")]
+mod closing;
+#[cfg(feature = "potential")]
 pub mod contactors;
 #[cfg(feature = "potential")]
 pub mod coulomb;

@@ -263,6 +263,19 @@ pub trait ContactModel: Send + Sync {
         Err(ContactError::NoTangent)
     }
 
+    /// Width of a block as its contact resolves it [m]: what may pass through the block unnoticed has to approach it by more than
+    /// that from one evaluation to the next. Asked for after the first evaluation; where a model does not say, the smallest height
+    /// of the tetrahedra at the surface counts.
+    fn width_m(&self, _blocks: &BlockSet, _block: BlockId) -> Option<f64> {
+        None
+    }
+
+    /// Upper bound of the speed at which two blocks that do not touch at `input.position` close the gap between them within a step
+    /// [m/s]; zero if it stays open. `None` where the model does not know, and any relative velocity counts.
+    fn closing_m_s(&self, _input: &ContactInput, _pair: (BlockId, BlockId)) -> Option<f64> {
+        None
+    }
+
     /// What the model consists of, for a person who asks.
     fn plan(&self) -> Vec<Part> {
         Vec::new()

@@ -115,11 +115,13 @@ impl PieceTable {
     pub fn push(&mut self, pieces: &[[f64; 4]]) {
         assert!((1..=MOST_PIECES).contains(&pieces.len()), "{} pieces in a tetrahedron", pieces.len());
         self.values.extend_from_slice(pieces);
-        self.most.push(pieces.iter().flatten().copied().fold(0.0, f64::max));
+        // φ is the smallest of them, so it is nowhere more than the largest value of any.
+        let largest = |piece: &[f64; 4]| piece.iter().copied().fold(0.0, f64::max);
+        self.most.push(pieces.iter().map(largest).fold(f64::INFINITY, f64::min));
         self.starts.push(self.values.len() as u32);
     }
 
-    /// The largest value of a function at a corner of the tetrahedron.
+    /// What φ does not exceed in the tetrahedron: the largest value of a function at a corner, least over the functions.
     #[inline]
     pub fn most_in(&self, tet: TetId) -> f64 {
         self.most[tet.index()]

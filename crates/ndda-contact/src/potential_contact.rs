@@ -10,6 +10,7 @@ use crate::bonds;
 use crate::both::both;
 use crate::by_block::ByBlock;
 use crate::candidates::Candidates;
+use crate::closing::closing_m_s;
 use crate::element_potential::ElementPotential;
 use crate::energy::{self, OverlapParts};
 use crate::faces::{FaceScene, Faces};
@@ -389,6 +390,16 @@ impl ContactModel for PotentialContact {
     fn each_energy(&self, add: &mut dyn FnMut(BlockId, BlockId, f64)) {
         let energies = self.overlaps.each_energy_m3(self.potential.law());
         energies.for_each(|(a, b, energy_m3)| add(a, b, self.penalty_pa * energy_m3));
+    }
+
+    /// A convex block is as wide as it reaches below the nearest of its faces, where φ does not depend on tetrahedra.
+    fn width_m(&self, blocks: &BlockSet, block: BlockId) -> Option<f64> {
+        let Some((_, Field::Pieces(_))) = &self.field else { return None };
+        BlockFaces::new(blocks, block).width_m(blocks, block)
+    }
+
+    fn closing_m_s(&self, input: &ContactInput, pair: (BlockId, BlockId)) -> Option<f64> {
+        closing_m_s(&self.hulls, input, pair)
     }
 
     fn gathers(&self, block: BlockId) -> bool {

@@ -109,8 +109,8 @@ pub struct Invariants {
     pub smallest_volume_ratio: f64,
     /// I8: h = ω_c Δt, ω_c² bounded by the row sums of the contact stiffness over nodal masses.
     pub max_h: f64,
-    /// I8: travel of a step over the smallest tet height of all blocks.
-    pub max_travel_ratio: f64,
+    /// I8: relative travel of two blocks that may meet in a step over the width of the thinner one.
+    pub max_travel: Worst,
     /// I8: error of a place over the smallest tet height of its block, for turns that are behind.
     pub turn_place: Worst,
     /// I8: error of a velocity over the largest speed, for turns that are behind.
@@ -188,7 +188,7 @@ impl Ledger {
             action_reaction: 0.0,
             smallest_volume_ratio: 1.0,
             max_h: 0.0,
-            max_travel_ratio: 0.0,
+            max_travel: Worst::default(),
             turn_place: Worst::default(),
             turn_speed: 0.0,
             lumped_speed: Worst::default(),
@@ -257,6 +257,11 @@ impl Ledger {
     pub fn note_halvings(&mut self, halvings: u32) {
         let control = &mut self.worst.control;
         control.most_halvings = control.most_halvings.max(halvings);
+    }
+
+    /// Whether a first sample has opened the books.
+    pub fn is_open(&self) -> bool {
+        self.start.is_some()
     }
 
     /// The largest energy so far [J].
@@ -336,7 +341,7 @@ impl Ledger {
         worst.candidate_pairs_total += contact.candidate_pairs as u64;
         worst.contact_pairs_total += contact.contact_pairs as u64;
         worst.max_h = worst.max_h.max(report.h);
-        worst.max_travel_ratio = worst.max_travel_ratio.max(report.travel_ratio);
+        worst.max_travel.take(report.travel.value, report.travel.block as usize);
         worst.iterations_max = worst.iterations_max.max(report.iterations.newton);
     }
 

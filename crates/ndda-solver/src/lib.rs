@@ -10,6 +10,7 @@ pub mod body;
 pub mod conjugate_gradients;
 mod contact_fields;
 pub mod contact_moments;
+mod contact_rates;
 pub mod dense_inverse;
 pub mod direct;
 pub mod elastic_body;
@@ -38,6 +39,7 @@ pub mod step_error;
 pub mod supernodal;
 pub mod testing;
 pub mod time_integrator;
+mod travel;
 pub mod unknowns;
 
 pub use block_books::Worst;

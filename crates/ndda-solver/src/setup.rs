@@ -24,6 +24,7 @@ use crate::simulation::{Simulation, StageTimes, step_weights};
 use crate::state::State;
 use crate::step_control::{AutoStep, Control, StepState};
 use crate::time_integrator::{Inertia, StepDamping, StepWeights, TimeIntegrator};
+use crate::travel::Travel;
 
 /// Everything a simulation is made of.
 pub struct Setup {
@@ -117,7 +118,7 @@ impl Simulation {
             stages: StageTimes::default(),
             blocks,
             shapes,
-            smallest_height_m,
+            travel: Travel::new(smallest_height_m),
             base_step_s: step_s,
             part_s: step_s,
             control: None,
@@ -147,6 +148,7 @@ impl Simulation {
         if let Some(settings) = auto_step {
             let control = Control::new(settings, solver, &simulation.state, &simulation.ledger);
             simulation.control = Some(Box::new(control));
+            simulation.travel.notes_touching = true;
         }
         Ok(simulation)
     }

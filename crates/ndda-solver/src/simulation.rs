@@ -10,6 +10,7 @@ use ndda_mesh::{BlockId, BlockSet, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::batch::solve_together;
+use crate::block_books::Worst;
 use crate::body::{Body, BodyKind, StepContext};
 use crate::contact_moments::ContactMoments;
 use crate::end_contact::{Iterations, Newton};
@@ -22,6 +23,7 @@ use crate::state::State;
 use crate::step_control::{Control, StepState};
 use crate::step_error::StepError;
 use crate::time_integrator::{Inertia, StepWeights, TimeIntegrator};
+use crate::travel::Travel;
 
 /// Nodes per half below which a second thread costs more than it brings.
 pub(crate) const GRAIN_NODES: usize = 400;
@@ -33,8 +35,11 @@ pub struct StepReport {
     pub contact: ContactReport,
     /// h = ω_c Δt, ω_c² taken as the largest row sum of contact's stiffness over the node's lumped mass.
     pub h: f64,
-    /// Travel of the step over the smallest tet height of all blocks, largest over the blocks.
-    pub travel_ratio: f64,
+    /// Largest relative travel of two blocks that may meet in the step over the width of the thinner one, and which that is; only
+    /// bounded from above where it is below a quarter of what is allowed.
+    pub travel: Worst,
+    /// Work of normal contact, the sum over facets without sign; only where steps are controlled [J].
+    pub contact_work_j: f64,
     /// What solving for contact took; none where it is taken at predicted positions.
     pub iterations: Iterations,
 }
@@ -79,8 +84,7 @@ pub struct RestoreError {
 pub struct Simulation {
     pub(crate) blocks: BlockSet,
     pub(crate) shapes: Vec<Shape>,
-    /// Of all tetrahedra: whatever moves may meet the thinnest block of all.
-    pub(crate) smallest_height_m: f64,
+    pub(crate) travel: Travel,
     pub(crate) bodies: Vec<Body>,
     pub(crate) runs: Runs,
     pub(crate) state: State,
@@ -369,17 +373,17 @@ impl Simulation {
             rate2 = rate2.max(report.contact_rate2);
             speed_m_s = speed_m_s.max(report.speed_m_s);
         }
-        let travel_ratio = speed_m_s * self.part_s / self.smallest_height_m;
+        let travel = self.travel_of_step(speed_m_s);
         let h = self.part_s * rate2.sqrt();
         self.ledger.add_impulse(self.part_s, &self.weights, force, torque);
         self.ledger.add_whole_impulse(impulse, orbital);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
-        self.book_work_of_contact(&contact);
+        let contact_work_j = self.book_work_of_contact(&contact);
         if self.loose > 0.0 {
             self.book_squeezing();
         }
         self.ledger.watch_speeds(speed_m_s, self.unseen_m_s());
-        let report = StepReport { contact, h, travel_ratio, iterations };
+        let report = StepReport { contact, h, travel, contact_work_j, iterations };
         self.ledger.watch(&report);
         self.advance_clock();
         report
@@ -390,16 +394,26 @@ impl Simulation {
         contact.contact_pairs > 0 && self.weights.forces_do_their_work()
     }
 
-    /// Books what normal contact did in the step on both blocks of each pair.
-    fn book_work_of_contact(&mut self, contact: &ContactReport) {
+    /// Books what normal contact did in the step on both blocks of each pair; returns the sum of what single facets did, without
+    /// sign, where steps are controlled [J].
+    fn book_work_of_contact(&mut self, contact: &ContactReport) -> f64 {
         let works = self.contact_does_work(contact);
-        let Some(model) = self.contact.as_mut().filter(|_| works) else { return };
+        let mut contact_work_j = 0.0;
+        self.travel.touching.clear();
+        let Some(model) = self.contact.as_mut().filter(|_| works) else { return contact_work_j };
         for (moved, x) in self.moved.iter_mut().zip(&self.state.position) {
             *moved = x - *moved;
         }
-        let books = self.ledger.blocks();
-        model.each_work(&self.blocks, &self.moved, &mut |a, b, work_j| books.add_work(a, b, work_j));
+        let (books, travel) = (self.ledger.blocks(), &mut self.travel);
+        model.each_work(&self.blocks, &self.moved, &mut |a, b, work_j| {
+            books.add_work(a, b, work_j);
+            if travel.notes_touching {
+                travel.note_touching(a, b);
+                contact_work_j += work_j.abs();
+            }
+        });
         books.close_step();
+        contact_work_j
     }
 
     /// Books what the step gave blocks that are squeezed.
