@@ -12,9 +12,9 @@ use crate::by_block::ByBlock;
 use crate::candidates::Candidates;
 use crate::element_potential::ElementPotential;
 use crate::energy::{self, OverlapParts};
-use crate::faces::{FaceScene, Faces};
 use crate::facets::{FacetForce, FacetScene, relative_motion};
 use crate::friction::FrictionLaw;
+use crate::friction_patches::{FrictionPatches, PatchScene};
 use crate::hulls::Hulls;
 use crate::integrals::{Integrals, Scene, Touch};
 use crate::joints::{Joints, Memory};
@@ -55,7 +55,7 @@ pub struct PotentialContact {
     penalty_of_facet: Vec<f64>,
     /// k_n w″(U) ∫ φ dA of each facet's pair of blocks [Pa/m]; empty where the law is linear.
     curvature_of_facet: Vec<f64>,
-    faces: Faces,
+    faces: FrictionPatches,
     overlaps: energy::BlockOverlaps,
     reporter: Reporter,
     new_facets: Vec<FacetMemory>,
@@ -79,7 +79,7 @@ impl PotentialContact {
             on_host: Vec::new(),
             penalty_of_facet: Vec::new(),
             curvature_of_facet: Vec::new(),
-            faces: Faces::default(),
+            faces: FrictionPatches::default(),
             overlaps: Default::default(),
             reporter: Reporter::default(),
             new_facets: Vec::new(),
@@ -299,7 +299,7 @@ impl ContactModel for PotentialContact {
         let place = || place_forces(forces, on_host, &facets, integrals, &self.penalty_of_facet, &self.hulls);
         both(integrals.touching().len() > GRAIN_FACETS, place, sort);
         if let Some(joints) = self.joints.as_ref().filter(|_| rubs) {
-            let scene = FaceScene { input, integrals: &self.integrals, joints };
+            let scene = PatchScene { input, integrals: &self.integrals, joints };
             self.faces.add(&scene, &mut self.forces, history);
         }
         let scene = ScatterScene {
