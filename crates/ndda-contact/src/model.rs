@@ -254,6 +254,17 @@ pub trait ContactModel: Send + Sync {
     ) {
     }
 
+    /// How far friction of the last [`add_forces`](Self::add_forces) was from Coulomb's law over displacements of the nodes [m]: two blocks, and the
+    /// energy [J] that Coulomb friction takes from such a slip less what this friction took, which is never negative. A model whose friction is not
+    /// judged by it makes no call.
+    fn each_coulomb_gap(
+        &mut self,
+        _blocks: &BlockSet,
+        _moved: &[Vec3],
+        _add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+    }
+
     /// Energies of normal contact as [`energy_j`](Self::energy_j) found them in the call before: two blocks and their
     /// energy [J], at most one call for each pair.
     fn each_energy(&self, _add: &mut dyn FnMut(BlockId, BlockId, f64)) {}

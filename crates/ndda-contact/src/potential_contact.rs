@@ -299,11 +299,12 @@ impl ContactModel for PotentialContact {
         let place = || place_forces(forces, on_host, &facets, integrals, &self.penalty_of_facet, &self.hulls);
         both(integrals.touching().len() > GRAIN_FACETS, place, sort);
         if let Some(joints) = self.joints.as_ref().filter(|_| rubs) {
-            let scene = PatchScene { input, integrals: &self.integrals, joints };
+            let scene = PatchScene { input, integrals: &self.integrals, joints, hulls: &self.hulls };
             self.faces.add(&scene, &mut self.forces, history);
         }
         let scene = ScatterScene {
             blocks: input.blocks,
+            position: rubs.then_some(input.position),
             integrals: &self.integrals,
             by_block: &self.by_block,
             hulls: &self.hulls,
@@ -377,6 +378,17 @@ impl ContactModel for PotentialContact {
         for_each_facet(&mut self.work_of_facet, work_of);
         for (touch, &work_j) in touching.iter().zip(&self.work_of_facet) {
             add(touch.owner, touch.target, work_j);
+        }
+    }
+
+    fn each_coulomb_gap(
+        &mut self,
+        blocks: &BlockSet,
+        moved: &[Vec3],
+        add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+        if self.needs_bodies() {
+            self.faces.each_coulomb_gap((blocks, &self.integrals, &self.forces), moved, add);
         }
     }
 

@@ -386,6 +386,9 @@ impl Simulation {
         }
         let books = self.ledger.blocks();
         model.each_work(&self.blocks, &self.moved, &mut |a, b, work_j| books.add_work(a, b, work_j));
+        model.each_coulomb_gap(&self.blocks, &self.moved, &mut |a, b, gap_j| {
+            books.add_coulomb_gap(a, b, gap_j);
+        });
         books.close_step();
     }
 

@@ -24,7 +24,7 @@ const SMOOTHING: [f64; 2] = [1e-3, 1e-8];
 const MOST_STEPS: usize = 30;
 const MOST_HALVINGS: usize = 30;
 /// What is left of D where Newton's method ends.
-const TOLERANCE: f64 = 1e-14;
+const TOLERANCE: f64 = 1e-11;
 
 /// What friction of a patch can carry. Slips are (V₁, V₂, Ω r) along the axes of the rectangle, forces (F₁, F₂, T/r), r the radius of gyration.
 #[derive(Clone, Copy, Debug, Default)]
@@ -66,6 +66,11 @@ impl LimitSurface {
             (self.cells, self.cell_radius2) = ([1, 1], a * share + b * (1.0 - share));
         }
         self
+    }
+
+    /// D of a displacement (u₁, u₂, θ r) [J].
+    pub fn work_j(&self, slip: &Vec3) -> f64 {
+        self.for_slip(slip).dissipation(slip, 0.0).0
     }
 
     /// D, its gradient and its second derivatives, |v| being √(|v|² + ε²).

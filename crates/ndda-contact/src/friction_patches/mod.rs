@@ -7,12 +7,13 @@
 
 mod hold;
 mod limit_surface;
+mod moments;
 mod patch;
 mod solve;
 
 use std::ops::Range;
 
-use ndda_mesh::{BlockId, BlockSet};
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
@@ -20,8 +21,9 @@ use crate::both::both;
 use crate::by_block::ByBlock;
 use crate::facets::{FacetForce, mass_per_area, reduced};
 use crate::friction::FrictionLaw;
-use crate::friction_patches::patch::{ContactPatch, PatchSummary, Remembered};
+use crate::friction_patches::patch::{ContactPatch, Moved, PatchSummary, Remembered};
 use crate::friction_patches::solve::CoupledPatch;
+use crate::hulls::Hulls;
 use crate::integrals::{FacetSums, Integrals, Touch};
 use crate::joints::Joints;
 use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
@@ -41,6 +43,8 @@ pub struct PatchScene<'a> {
     pub integrals: &'a Integrals,
     /// Laws.
     pub joints: &'a Joints,
+    /// Blocks that are taken whole.
+    pub hulls: &'a Hulls,
 }
 
 impl PatchScene<'_> {
@@ -90,6 +94,9 @@ pub struct FrictionPatches {
     summaries: Vec<PatchSummary>,
     coupled: Vec<CoupledPatch>,
     new_faces: Vec<FaceMemory>,
+    gaps_j: Vec<f64>,
+    /// Second moments of each facet about its own centre of pressure [m²].
+    own_m2: Vec<Mat3>,
 }
 
 impl FrictionPatches {
@@ -139,15 +146,27 @@ impl FrictionPatches {
         self.hold(scene.input.dt_s);
         self.advance_bodies(scene);
         self.solve(scene);
-        let Self { patches, runs, run_of, order, new_faces, .. } = self;
-        let spread = |(force, run): (&mut FacetForce, &u32)| patches[*run as usize].spread_to(force);
+        let Self { patches, runs, run_of, order, new_faces, own_m2, .. } = self;
+        let spread = |((t, force), run): ((usize, &mut FacetForce), &u32)| {
+            let FacetSums { pressure, .. } = *scene.sums(t as u32);
+            if pressure > 0.0 {
+                patches[*run as usize].spread_to(force, pressure, &own_m2[t]);
+            }
+        };
         let memory_of = |(patch, run): (&ContactPatch, &Range<usize>)| {
             let (face, target, _) = order[run.start];
             patch.has_friction().then_some(FaceMemory { face, target, ..patch.memory })
         };
         both(
             patches.len() > GRAIN_PATCHES,
-            || forces.par_iter_mut().zip(&run_of[..]).with_min_len(GRAIN_PATCHES).for_each(spread),
+            || {
+                forces
+                    .par_iter_mut()
+                    .enumerate()
+                    .zip(&run_of[..])
+                    .with_min_len(GRAIN_PATCHES)
+                    .for_each(spread)
+            },
             || {
                 new_faces.clear();
                 new_faces.extend(patches.iter().zip(runs.iter()).filter_map(memory_of));
@@ -158,7 +177,16 @@ impl FrictionPatches {
 
     /// Where each face presses, how hard, and how it slips.
     fn find_patches(&mut self, scene: &PatchScene, forces: &[FacetForce], history: &ContactHistory) {
-        let (order, runs) = (&self.order, &self.runs);
+        self.own_m2.resize(forces.len(), Mat3::zeros());
+        let own = |(t, (own, force)): (u32, (&mut Mat3, &FacetForce))| {
+            let FacetSums { pressure, area, .. } = *scene.sums(t);
+            if pressure > 0.0 {
+                *own = moments::second_moment_m2(scene, scene.touch(t), area, &force.center);
+            }
+        };
+        let each = self.own_m2.par_iter_mut().zip(forces).enumerate();
+        each.with_min_len(GRAIN_PATCHES).for_each(|(t, each)| own((t as u32, each)));
+        let (order, runs, own) = (&self.order, &self.runs, &self.own_m2);
         self.patches.resize(runs.len(), ContactPatch::default());
         self.summaries.resize(runs.len(), PatchSummary::default());
         let patches = self.patches.par_chunks_mut(GRAIN_PATCHES);
@@ -166,7 +194,7 @@ impl FrictionPatches {
         found.zip(runs.par_chunks(GRAIN_PATCHES)).for_each(|((patches, summaries), runs)| {
             let mut remembered = Remembered::since(history, &order[runs[0].start]);
             for ((patch, summary), run) in patches.iter_mut().zip(summaries).zip(runs) {
-                patch.find(&order[run.clone()], scene, forces, &mut remembered);
+                patch.find(&order[run.clone()], scene, (forces, own), &mut remembered);
                 *summary = patch.summary();
             }
         });
@@ -236,8 +264,29 @@ impl FrictionPatches {
             let patch = &mut patches[found.patch as usize];
             let (force_n, torque_n_m, slides) = found.friction();
             (patch.force_n, patch.torque_n_m) = (force_n, torque_n_m);
+            patch.turn_rad = Some(found.turn_rad(start, bodies, dt_s));
             patch.memory =
                 FaceMemory { force_n, torque_n_m, slides, normal: patch.normal, ..FaceMemory::default() };
+        }
+    }
+
+    /// How far friction of the last [`add`](Self::add) was from Coulomb's law over displacements of the nodes [m]: blocks and energy [J], one call for
+    /// each patch.
+    pub fn each_coulomb_gap(
+        &mut self,
+        (blocks, integrals, forces): (&BlockSet, &Integrals, &[FacetForce]),
+        moved: &[Vec3],
+        add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+        let scene = Moved { blocks, integrals, moved };
+        let Self { patches, runs, order, gaps_j, .. } = self;
+        gaps_j.resize(patches.len(), 0.0);
+        let gap = |((gap_j, patch), run): ((&mut f64, &ContactPatch), &Range<usize>)| {
+            *gap_j = patch.coulomb_gap_j(&order[run.clone()], &scene, forces);
+        };
+        gaps_j.par_iter_mut().zip(&*patches).zip(&*runs).with_min_len(GRAIN_PATCHES).for_each(gap);
+        for (patch, &gap_j) in patches.iter().zip(&*gaps_j) {
+            add(patch.owner, patch.target, gap_j);
         }
     }
 }

@@ -1,11 +1,12 @@
 //! One face of a block on another block: where it presses, how hard, and how it slips.
 
-use ndda_mesh::{BlockId, Mat3, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
-use crate::facets::{FacetForce, relative_velocity};
+use crate::facets::{FacetForce, relative_motion, relative_velocity};
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
+use crate::friction_patches::limit_surface::LimitSurface;
 use crate::friction_patches::{PatchScene, Place};
-use crate::integrals::FacetSums;
+use crate::integrals::{FacetSums, Integrals};
 use crate::model::{Body, ContactHistory, FaceMemory};
 
 /// What a patch is, in short.
@@ -16,6 +17,14 @@ pub struct PatchSummary {
     pub area_m2: f64,
     /// Whether its friction is found together with that of others.
     pub is_coupled: bool,
+}
+
+/// How far a step moved the nodes, and what touched meanwhile.
+#[derive(Clone, Copy)]
+pub struct Moved<'a> {
+    pub blocks: &'a BlockSet,
+    pub integrals: &'a Integrals,
+    pub moved: &'a [Vec3],
 }
 
 /// The contact of one face with one block.
@@ -32,6 +41,9 @@ pub struct ContactPatch {
     pub area_m2: f64,
     /// Most friction [N].
     pub most_n: f64,
+    /// The axes of the pressure, and the normal; what friction can carry along them.
+    pub axes: [Vec3; 3],
+    pub surface: LimitSurface,
     /// Force [N] on it, and torque [N m] about the centre, but for its own friction.
     load_n: Vec3,
     load_torque_n_m: Vec3,
@@ -44,6 +56,8 @@ pub struct ContactPatch {
     deforms: bool,
     /// Friction of the last step, turned with the face; none at first touch.
     pub previous: Option<FaceMemory>,
+    /// Turn about the normal in this step, where it is found from the motion of the blocks.
+    pub turn_rad: Option<f64>,
     /// Friction of this step [N, N m], and what is kept of it.
     pub force_n: Vec3,
     pub torque_n_m: f64,
@@ -56,7 +70,7 @@ impl ContactPatch {
         &mut self,
         run: &[Place],
         scene: &PatchScene,
-        forces: &[FacetForce],
+        (forces, own): (&[FacetForce], &[Mat3]),
         remembered: &mut Remembered,
     ) {
         let (_, target, first) = run[0];
@@ -65,11 +79,13 @@ impl ContactPatch {
         let (has_law, deforms) = (law.is_some(), deforms(owner) || deforms(target));
         *self = Self { owner, target, has_law, deforms, ..Self::default() };
         self.sum(run, scene, forces);
-        self.measure(run, scene, forces);
+        self.measure(run, scene, forces, own);
         if !self.has_friction() {
             return;
         }
         self.most_n = law.map_or(0.0, |law| self.capacity_n(law));
+        let (axes, second_moment_m2) = self.principal_axes();
+        (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
         let old = remembered.of(&run[0]).filter(|old| old.normal.dot(&self.normal) > 0.0);
         self.previous = old.map(|old| old.turned_to(&self.normal));
         if self.is_held() {
@@ -98,11 +114,12 @@ impl ContactPatch {
     }
 
     /// What it does to one of its facets.
-    pub fn spread_to(&self, force: &mut FacetForce) {
+    pub fn spread_to(&self, force: &mut FacetForce, pressure: f64, own: &Mat3) {
         if self.has_friction() {
             let twist = self.torque_n_m / self.pressure / self.radius2();
             let arm = force.center - self.center;
             force.shear = self.force_n / self.pressure + twist * self.normal.cross(&arm);
+            force.couple_n_m = pressure * twist * own.trace() * self.normal;
             force.sticks = !self.memory.slides;
         }
     }
@@ -125,7 +142,7 @@ impl ContactPatch {
     }
 
     /// Two unit vectors in the face along which the pressure has its principal second moments, the normal, and these moments [m²].
-    pub fn principal_axes(&self) -> ([Vec3; 3], [f64; 2]) {
+    fn principal_axes(&self) -> ([Vec3; 3], [f64; 2]) {
         let [s, t] = tangents(&self.normal);
         let moment = |a: &Vec3, b: &Vec3| a.dot(&(self.second_moment_m2 * b));
         let (xx, xy, yy) = (moment(&s, &s), moment(&s, &t), moment(&t, &t));
@@ -137,6 +154,32 @@ impl ContactPatch {
         // The lesser one is positive but for rounding.
         let least = (mean - spread).max(1e-6 * mean);
         ([along, self.normal.cross(&along), self.normal], [mean + spread, least])
+    }
+
+    /// Energy [J] by which friction did less than Coulomb's law takes from a displacement of the surfaces, D(u, θ) + F·u + T θ ≥ 0: none where the
+    /// patch sticks without slip or slides against its friction. `moved` are the displacements of the nodes [m].
+    pub fn coulomb_gap_j(&self, run: &[Place], scene: &Moved, forces: &[FacetForce]) -> f64 {
+        if !self.has_friction() {
+            return 0.0;
+        }
+        let (mut shift, mut twist) = (Vec3::zeros(), 0.0);
+        for &(_, _, t) in run {
+            let touch = &scene.integrals.touching()[t as usize];
+            let sums = scene.integrals.sums_of(touch);
+            if sums.pressure > 0.0 {
+                let found = (scene.integrals.hits_of(touch), sums);
+                let slip = relative_motion(touch, found, (scene.blocks, scene.moved)) / self.pressure;
+                shift += slip;
+                let arm = forces[t as usize].center - self.center;
+                twist += arm.cross(&slip).dot(&self.normal);
+            }
+        }
+        let radius_m = self.surface.radius_m;
+        // Facets do not see their own spin, the motion of the blocks does.
+        let spin = self.turn_rad.map_or(twist / radius_m, |turn_rad| turn_rad * radius_m);
+        let slip = Vec3::new(self.axes[0].dot(&shift), self.axes[1].dot(&shift), spin);
+        let work_j = self.force_n.dot(&shift) + self.torque_n_m / radius_m * spin;
+        (self.surface.work_j(&slip) + work_j).max(0.0)
     }
 
     /// Most friction that a law allows [N].
@@ -166,18 +209,15 @@ impl ContactPatch {
     }
 
     /// Loads, and second moments about the centre; a facet counts with its own size, so that one facet has some, too.
-    fn measure(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce]) {
+    fn measure(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce], own: &[Mat3]) {
         for &(_, _, t) in run {
-            let FacetSums { pressure, area, .. } = *scene.sums(t);
+            let FacetSums { pressure, .. } = *scene.sums(t);
             if pressure > 0.0 {
                 let FacetForce { push, shear, center, .. } = &forces[t as usize];
                 let (arm, load) = (center - self.center, pressure * (push + shear));
                 self.load_n += load;
                 self.load_torque_n_m += arm.cross(&load);
-                // A disc of the same area: mean x² = mean y² = A/4π.
-                let own = 0.5 * area / std::f64::consts::TAU;
-                let across = Mat3::identity() - self.normal * self.normal.transpose();
-                self.second_moment_m2 += pressure / self.pressure * (arm * arm.transpose() + own * across);
+                self.second_moment_m2 += pressure / self.pressure * (arm * arm.transpose() + own[t as usize]);
             }
         }
     }

@@ -20,9 +20,9 @@ use crate::model::Body;
 /// γ of Alexander's method.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 /// Friction is found when no patch changes its own by more than this part of μN.
-const TOLERANCE: f64 = 1e-4;
+const TOLERANCE: f64 = 1e-3;
 /// Sweeps over all patches.
-const MOST_SWEEPS: usize = 100;
+const MOST_SWEEPS: usize = 30;
 
 /// One patch among others.
 #[derive(Clone, Copy, Debug, Default)]
@@ -49,8 +49,7 @@ pub struct CoupledPatch {
 impl CoupledPatch {
     /// A patch with its friction of the last step; none where nothing it touches can move.
     pub fn new(number: u32, patch: &ContactPatch, bodies: &[Body], dt_s: f64) -> Option<Self> {
-        let (axes, second_moment_m2) = patch.principal_axes();
-        let surface = LimitSurface::new(patch.most_n, second_moment_m2);
+        let (axes, surface) = (patch.axes, patch.surface);
         let [own, other] = [patch.owner, patch.target].map(|block| &bodies[block.index()]);
         let arms = [patch.center - own.center, patch.center - other.center];
         let mut found = Self {
@@ -109,6 +108,12 @@ impl CoupledPatch {
                 body.spin_rad_s += body.inverse_inertia * (sign * time_s * (arm.cross(&along) + torque));
             }
         }
+    }
+
+    /// Turn of the owner against the target about the normal in the step, at the mean of the spins at both ends.
+    pub fn turn_rad(&self, start: &[Body], end: &[Body], dt_s: f64) -> f64 {
+        let spin = |block: BlockId| start[block.index()].spin_rad_s + end[block.index()].spin_rad_s;
+        0.5 * dt_s * self.axes[2].dot(&(spin(self.owner) - spin(self.target)))
     }
 
     /// Friction of both stages: force [N] and torque about the normal [N m], and whether it is all that there may be.
