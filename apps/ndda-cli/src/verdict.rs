@@ -5,6 +5,8 @@ use ndda_solver::{Simulation, Worst};
 
 /// Energy gained or lost for good over the largest energy. Speeds are as its root: twice the 1 % that they may be off.
 const MOST_ENERGY: f64 = 0.02;
+/// Energy by which friction was off Coulomb's law over ½ m V²: an energy of m v δv is a speed that is off by δv.
+const MOST_FRICTION: f64 = 0.02;
 /// Penetration over the height of the tetrahedron. A collision that goes d deep delays blocks by up to π d / 2, which is
 /// within the tenth of a height that places may be off.
 const MOST_DEPTH: f64 = 0.05;
@@ -62,6 +64,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(momentum(simulation));
     entries.extend(energy(simulation));
     entries.push(energy_of_the_lighter(simulation));
+    entries.push(friction(simulation));
     entries.extend(contact(simulation));
     entries.extend(squeezed(simulation));
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
@@ -123,6 +126,18 @@ fn energy_of_the_lighter(simulation: &Simulation) -> Entry {
         100.0 * MOST_ENERGY
     );
     warned("I4 lighter of a pair", most.value, MOST_ENERGY, reason)
+}
+
+/// Whether steps are short enough for friction.
+fn friction(simulation: &Simulation) -> Entry {
+    let worst = simulation.invariants().unresolved_friction;
+    let reason = format!(
+        "steps are too long for the friction of block `{}`: {:.1} % of its largest kinetic energy was off Coulomb's law, limit {:.0} %; reduce step_s",
+        name(simulation, worst),
+        100.0 * worst.value,
+        100.0 * MOST_FRICTION
+    );
+    warned("I4 friction resolved", worst.value, MOST_FRICTION, reason)
 }
 
 fn name(simulation: &Simulation, worst: Worst) -> &str {

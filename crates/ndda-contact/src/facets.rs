@@ -20,6 +20,8 @@ pub struct FacetForce {
     pub push: Vec3,
     /// The same for friction [Pa].
     pub shear: Vec3,
+    /// Torque of friction about the centre of pressure, which `shear` does not have [N m].
+    pub couple_n_m: Vec3,
     /// ½ k_s S / ∫ φ dA: what a shift of the facet adds to `shear` [Pa/m].
     pub shear_slope: f64,
     /// Whether its friction is below what it may be.

@@ -41,11 +41,11 @@ pub mod element_potential;
 #[cfg(feature = "potential")]
 pub mod energy;
 #[cfg(feature = "potential")]
-pub mod faces;
-#[cfg(feature = "potential")]
 pub mod facets;
 #[cfg(feature = "potential")]
 pub mod friction;
+#[cfg(feature = "potential")]
+pub mod friction_patches;
 #[cfg(feature = "potential")]
 pub mod hulls;
 #[cfg(feature = "potential")]

@@ -47,7 +47,8 @@ pub struct Body {
     pub velocity_m_s: Vec3,
     /// Rate of rotation [rad/s].
     pub spin_rad_s: Vec3,
-    /// Impedance for shear, ρ c_s [Pa s/m]: what a step shorter than the block's wave time has to move.
+    /// Impedance for shear, ρ c_s [Pa s/m]: what a step shorter than the block's wave time has to move; infinite for a block that does
+    /// not deform.
     pub impedance_pa_s_m: f64,
 }
 
@@ -58,8 +59,20 @@ impl Body {
         self.torque_n_m += (x - self.center).cross(force_n);
     }
 
+    /// Whether it deforms: a block that does not has no impedance.
+    pub fn deforms(&self) -> bool {
+        self.impedance_pa_s_m.is_finite()
+    }
+
+    /// Adds −ω × J ω, which turns the axis of a block that spins.
+    pub fn add_gyroscopic_torque(&mut self) {
+        if let Some(inertia) = self.inverse_inertia.try_inverse() {
+            self.torque_n_m -= self.spin_rad_s.cross(&(inertia * self.spin_rad_s));
+        }
+    }
+
     /// Takes the velocities to the end of a step under the loads.
-    pub fn speed_up(&mut self, dt_s: f64) {
+    pub fn advance_velocity(&mut self, dt_s: f64) {
         self.velocity_m_s += dt_s / self.mass_kg * self.load_n;
         self.spin_rad_s += dt_s * (self.inverse_inertia * self.torque_n_m);
     }
@@ -238,6 +251,17 @@ pub trait ContactModel: Send + Sync {
     /// Work of the normal forces of the last [`add_forces`](Self::add_forces) over displacements of the nodes [m]: blocks and
     /// work [J], one call for each facet, always in the same order. A model that does not say is not judged pair by pair.
     fn each_work(
+        &mut self,
+        _blocks: &BlockSet,
+        _moved: &[Vec3],
+        _add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+    }
+
+    /// How far friction of the last [`add_forces`](Self::add_forces) was from Coulomb's law over displacements of the nodes [m]: two blocks, and the
+    /// energy [J] that Coulomb friction takes from such a slip less what this friction took, which is never negative. A model whose friction is not
+    /// judged by it makes no call.
+    fn each_coulomb_gap(
         &mut self,
         _blocks: &BlockSet,
         _moved: &[Vec3],

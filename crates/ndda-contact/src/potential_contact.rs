@@ -13,9 +13,9 @@ use crate::candidates::Candidates;
 use crate::closing::closing_m_s;
 use crate::element_potential::ElementPotential;
 use crate::energy::{self, OverlapParts};
-use crate::faces::{FaceScene, Faces};
 use crate::facets::{FacetForce, FacetScene, relative_motion};
 use crate::friction::FrictionLaw;
+use crate::friction_patches::{FrictionPatches, PatchScene};
 use crate::hulls::Hulls;
 use crate::integrals::{Integrals, Scene, Touch};
 use crate::joints::{Joints, Memory};
@@ -56,7 +56,7 @@ pub struct PotentialContact {
     penalty_of_facet: Vec<f64>,
     /// k_n w″(U) ∫ φ dA of each facet's pair of blocks [Pa/m]; empty where the law is linear.
     curvature_of_facet: Vec<f64>,
-    faces: Faces,
+    faces: FrictionPatches,
     overlaps: energy::BlockOverlaps,
     reporter: Reporter,
     new_facets: Vec<FacetMemory>,
@@ -80,7 +80,7 @@ impl PotentialContact {
             on_host: Vec::new(),
             penalty_of_facet: Vec::new(),
             curvature_of_facet: Vec::new(),
-            faces: Faces::default(),
+            faces: FrictionPatches::default(),
             overlaps: Default::default(),
             reporter: Reporter::default(),
             new_facets: Vec::new(),
@@ -307,11 +307,12 @@ impl ContactModel for PotentialContact {
         let place = || place_forces(forces, on_host, &facets, integrals, &self.penalty_of_facet, &self.hulls);
         both(integrals.touching().len() > GRAIN_FACETS, place, sort);
         if let Some(joints) = self.joints.as_ref().filter(|_| rubs) {
-            let scene = FaceScene { input, integrals: &self.integrals, joints };
+            let scene = PatchScene { input, integrals: &self.integrals, joints, hulls: &self.hulls };
             self.faces.add(&scene, &mut self.forces, history);
         }
         let scene = ScatterScene {
             blocks: input.blocks,
+            position: rubs.then_some(input.position),
             integrals: &self.integrals,
             by_block: &self.by_block,
             hulls: &self.hulls,
@@ -384,6 +385,17 @@ impl ContactModel for PotentialContact {
         for_each_facet(&mut self.work_of_facet, work_of);
         for (touch, &work_j) in touching.iter().zip(&self.work_of_facet) {
             add(touch.owner, touch.target, work_j);
+        }
+    }
+
+    fn each_coulomb_gap(
+        &mut self,
+        blocks: &BlockSet,
+        moved: &[Vec3],
+        add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+        if self.needs_bodies() {
+            self.faces.each_coulomb_gap((blocks, &self.integrals, &self.forces), moved, add);
         }
     }
 

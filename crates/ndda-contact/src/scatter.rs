@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use nalgebra::{Matrix4, Vector4};
-use ndda_mesh::{BlockId, BlockSet};
+use ndda_mesh::{BlockId, BlockSet, Mat3, NodeId, Vec3};
 
 use crate::both::both;
 use crate::by_block::ByBlock;
@@ -21,6 +21,8 @@ const GRAIN_FACETS: usize = 200;
 pub struct ScatterScene<'a> {
     /// Topology.
     pub blocks: &'a BlockSet,
+    /// Where the nodes are [m], if facets have couples.
+    pub position: Option<&'a [Vec3]>,
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,
     /// The facets that touch, block by block.
@@ -91,6 +93,9 @@ fn add_block(scene: &ScatterScene, block: BlockId, output: ContactOutput) {
             on_block.iter().for_each(|&t| nodes.add_target(scene, t as usize));
         }
         Some(whole) => nodes.add_whole(scene, whole, own, on_block),
+    }
+    if let Some(position) = scene.position {
+        nodes.add_couples(scene, block, position);
     }
 }
 
@@ -179,6 +184,42 @@ impl BlockNodes<'_> {
         let rate = whole.rate(&springs);
         for (sum, share) in self.output.stiffness.iter_mut().zip(&whole.share) {
             *sum += 2.0 * share * rate;
+        }
+    }
+
+    /// The couples of facets of this block, and the opposite of those on it.
+    #[inline(never)]
+    fn add_couples(&mut self, scene: &ScatterScene, block: BlockId, position: &[Vec3]) {
+        for t in scene.by_block.of(block) {
+            let nodes = scene.blocks.triangles[scene.integrals.touching()[t as usize].triangle.index()];
+            self.add_couple(&nodes, position, &scene.forces[t as usize].couple_n_m);
+        }
+        for &t in scene.by_block.on(block) {
+            let couple_n_m = -scene.forces[t as usize].couple_n_m;
+            if let [hit, ..] = scene.integrals.hits_of(&scene.integrals.touching()[t as usize]) {
+                let host = scene.hulls.whole(block).map_or(hit.tet, |whole| whole.host);
+                self.add_couple(&scene.blocks.tets[host.index()], position, &couple_n_m);
+            }
+        }
+    }
+
+    /// A torque T as forces w × d on nodes at d from their mean, Σ d × (w × d) = T.
+    fn add_couple(&mut self, nodes: &[NodeId], position: &[Vec3], couple_n_m: &Vec3) {
+        if *couple_n_m == Vec3::zeros() {
+            return;
+        }
+        let at = |n: &NodeId| position[n.index()];
+        let mean = nodes.iter().map(at).sum::<Vec3>() / nodes.len() as f64;
+        let spread: Mat3 = nodes.iter().map(|n| (at(n) - mean) * (at(n) - mean).transpose()).sum();
+        let inertia = Mat3::identity() * spread.trace() - spread;
+        let Some(turn) = inertia.try_inverse().map(|inverse| inverse * couple_n_m) else { return };
+        for n in nodes {
+            let force = turn.cross(&(at(n) - mean));
+            let i = n.index() - self.first;
+            self.output.force[i] += force;
+            if let Some(sum) = self.output.friction_force.get_mut(i) {
+                *sum += force;
+            }
         }
     }
 

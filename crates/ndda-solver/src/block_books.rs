@@ -49,6 +49,8 @@ struct Book {
     met_j: f64,
     lasting_gain_j: f64,
     lasting_loss_j: f64,
+    /// Energy that Coulomb friction with heavier blocks would have taken from their slips beyond what friction took [J].
+    coulomb_gap_j: f64,
     /// Angle by which it is not where its spin would have taken it [rad].
     lag_rad: f64,
     /// How fast that grew at the last sample [rad/s].
@@ -129,6 +131,25 @@ impl BlockBooks {
         let book = &mut self.books[lighter];
         book.work_j += work_j;
         book.swing_j += work_j * (1.0 + self.scales[lighter].mass_kg / self.scales[heavier].weight());
+    }
+
+    /// Books how far friction between two blocks was from Coulomb's law in a step [J].
+    pub fn add_coulomb_gap(&mut self, a: BlockId, b: BlockId, gap_j: f64) {
+        let lighter = self.lighter(a, b);
+        self.books[lighter].coulomb_gap_j += gap_j;
+    }
+
+    /// Largest energy by which friction of a lighter block was off Coulomb's law, over ½ m V²; what rounding may have done does not count.
+    pub fn unresolved_friction(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
+        let mut worst = Worst::default();
+        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
+            let moving_j = 0.5 * scale.mass_kg * speed_m_s * speed_m_s;
+            let gap_j = book.coulomb_gap_j - rounding_j;
+            if gap_j > 0.0 && moving_j > 0.0 {
+                worst.take(gap_j / moving_j, block);
+            }
+        }
+        worst
     }
 
     /// Keeps how fast contact has met each block, once all work of a step is booked.

@@ -97,6 +97,8 @@ pub struct Invariants {
     pub block_gain: Worst,
     /// I4: largest lasting loss of it, over the same.
     pub block_loss: Worst,
+    /// I4: largest energy by which friction of the lighter block of a pair was off Coulomb's law, summed over all steps, over ½ m V².
+    pub unresolved_friction: Worst,
     /// I5: penetration over tet height.
     pub max_penetration_ratio: f64,
     /// I5: largest velocity that a block owes to the unknown direction of the forces that squeeze it, over the largest speed.
@@ -182,6 +184,7 @@ impl Ledger {
             lasting_loss: 0.0,
             block_gain: Worst::default(),
             block_loss: Worst::default(),
+            unresolved_friction: Worst::default(),
             max_penetration_ratio: 0.0,
             squeezed_speed: Worst::default(),
             squeezed_place: Worst::default(),
@@ -397,6 +400,7 @@ impl Ledger {
             lasting_loss: energy(self.lasting_loss_j),
             block_gain,
             block_loss,
+            unresolved_friction: self.blocks.unresolved_friction(self.largest_speed_m_s, self.rounding_j),
             squeezed_speed,
             squeezed_place,
             lumped_speed,

@@ -260,7 +260,10 @@ impl Shape {
             center: Vec3::zeros(),
             velocity_m_s: Vec3::zeros(),
             spin_rad_s: Vec3::zeros(),
-            impedance_pa_s_m: (density * softest).sqrt(),
+            impedance_pa_s_m: match self.kind {
+                BodyKind::Rigid | BodyKind::Fixed => f64::INFINITY,
+                BodyKind::Elastic | BodyKind::Affine => (density * softest).sqrt(),
+            },
         }
     }
 

@@ -412,6 +412,9 @@ impl Simulation {
                 contact_work_j += work_j.abs();
             }
         });
+        model.each_coulomb_gap(&self.blocks, &self.moved, &mut |a, b, gap_j| {
+            books.add_coulomb_gap(a, b, gap_j);
+        });
         books.close_step();
         contact_work_j
     }

@@ -1,0 +1,292 @@
+//! Friction of whole faces, for laws that act on velocities.
+//!
+//! A face is a set of boundary triangles in one plane and of one surface. Its contact with another block is a patch: its friction
+//! is one force F and one torque T about the normal, spread in proportion to the pressure, and obeys Coulomb's law point by point
+//! ([`limit_surface`]). The friction of all patches of rigid blocks is found together ([`solve`]); patches of
+//! blocks that deform are part of that while they slide or begin to touch, and are held by springs while they stick ([`hold`]).
+
+mod hold;
+mod limit_surface;
+mod moments;
+mod patch;
+mod solve;
+
+use std::ops::Range;
+
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
+use rayon::prelude::*;
+
+use crate::block_faces::BlockFaces;
+use crate::both::both;
+use crate::by_block::ByBlock;
+use crate::facets::{FacetForce, mass_per_area, reduced};
+use crate::friction::FrictionLaw;
+use crate::friction_patches::patch::{ContactPatch, Moved, PatchSummary, Remembered};
+use crate::friction_patches::solve::CoupledPatch;
+use crate::hulls::Hulls;
+use crate::integrals::{FacetSums, Integrals, Touch};
+use crate::joints::Joints;
+use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
+
+/// Faces below which a second thread costs more than it brings.
+const GRAIN_PATCHES: usize = 64;
+
+/// The same for blocks.
+const GRAIN_BODIES: usize = 16;
+
+/// What all faces read.
+#[derive(Clone, Copy)]
+pub struct PatchScene<'a> {
+    /// Blocks and their motion.
+    pub input: &'a ContactInput<'a>,
+    /// Integrals of the pairs.
+    pub integrals: &'a Integrals,
+    /// Laws.
+    pub joints: &'a Joints,
+    /// Blocks that are taken whole.
+    pub hulls: &'a Hulls,
+}
+
+impl PatchScene<'_> {
+    fn touch(&self, t: u32) -> &Touch {
+        &self.integrals.touching()[t as usize]
+    }
+
+    fn sums(&self, t: u32) -> &FacetSums {
+        self.integrals.sums_of(self.touch(t))
+    }
+
+    fn owner(&self, t: u32) -> BlockId {
+        self.touch(t).owner
+    }
+
+    /// The law of the facets of a run, if it acts on faces.
+    fn law(&self, run: &[Place]) -> Option<&dyn FrictionLaw> {
+        let (_, target, first) = run[0];
+        let law = self.joints.law(self.input.blocks, self.touch(first).triangle, target);
+        law.filter(|law| law.acts_on_faces())
+    }
+}
+
+/// (face, target, number of the touching facet).
+type Place = (u32, BlockId, u32);
+
+/// Facets by face and target, and room for what a step finds.
+#[derive(Default)]
+pub struct FrictionPatches {
+    /// Face of each boundary triangle, numbered over all blocks.
+    face_of: Vec<u32>,
+    /// Touching facets by face and target.
+    order: Vec<Place>,
+    /// Those of each face and target, in `order`, and which of them each facet is in.
+    runs: Vec<Range<usize>>,
+    run_of: Vec<u32>,
+    /// Patches by block.
+    by_block: ByBlock,
+    /// Mass that a square metre of each block's contacts moves within the step [kg/m²].
+    mass_per_area: Vec<f64>,
+    /// Blocks with the velocities at the end of the step.
+    bodies: Vec<Body>,
+    /// Whether a block has patches whose friction is found together.
+    is_coupled: Vec<bool>,
+    /// One per run.
+    patches: Vec<ContactPatch>,
+    summaries: Vec<PatchSummary>,
+    coupled: Vec<CoupledPatch>,
+    new_faces: Vec<FaceMemory>,
+    gaps_j: Vec<f64>,
+    /// Second moments of each facet about its own centre of pressure [m²].
+    own_m2: Vec<Mat3>,
+}
+
+impl FrictionPatches {
+    /// Takes the faces of all blocks; once per set of blocks.
+    pub fn fit(&mut self, blocks: &BlockSet, surfaces: &[BlockFaces]) {
+        self.face_of.clear();
+        let mut next = 0;
+        for (block, BlockFaces { of_triangle, .. }) in blocks.ids().zip(surfaces) {
+            let named = &blocks.triangle_surface[blocks.triangles_of(block)];
+            let parts: Vec<_> = of_triangle.iter().zip(named).collect();
+            let mut distinct = parts.clone();
+            distinct.sort_unstable();
+            distinct.dedup();
+            self.face_of.extend(
+                parts.iter().map(|part| next + distinct.partition_point(|other| other < part) as u32),
+            );
+            next += distinct.len() as u32;
+        }
+    }
+
+    /// Sorts touching facets by face and target; those of a block are together already, and its faces follow each other.
+    pub fn arrange(&mut self, integrals: &Integrals) {
+        self.order.clear();
+        let place = |(t, touch): (u32, &Touch)| (self.face_of[touch.triangle.index()], touch.target, t);
+        let touching = integrals.touching();
+        self.order.extend((0..).zip(touching).map(place));
+        let of_one_block =
+            |a: &Place, b: &Place| touching[a.2 as usize].owner == touching[b.2 as usize].owner;
+        self.order.par_chunk_by_mut(of_one_block).for_each(<[Place]>::sort_unstable);
+        self.runs.clear();
+        self.run_of.resize(touching.len(), 0);
+        let mut start = 0;
+        for run in self.order.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            run.iter().for_each(|&(_, _, t)| self.run_of[t as usize] = self.runs.len() as u32);
+            self.runs.push(start..start + run.len());
+            start += run.len();
+        }
+    }
+
+    /// Adds the friction of faces whose law acts on faces to the facets' forces, and takes over what they remember; the facets are
+    /// [arranged](Self::arrange).
+    pub fn add(&mut self, scene: &PatchScene, forces: &mut [FacetForce], history: &mut ContactHistory) {
+        self.find_patches(scene, forces, history);
+        let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
+        self.by_block.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
+        self.share_masses(scene);
+        self.hold(scene.input.dt_s);
+        self.advance_bodies(scene);
+        self.solve(scene);
+        let Self { patches, runs, run_of, order, new_faces, own_m2, .. } = self;
+        let spread = |((t, force), run): ((usize, &mut FacetForce), &u32)| {
+            let FacetSums { pressure, .. } = *scene.sums(t as u32);
+            if pressure > 0.0 {
+                patches[*run as usize].spread_to(force, pressure, &own_m2[t]);
+            }
+        };
+        let memory_of = |(patch, run): (&ContactPatch, &Range<usize>)| {
+            let (face, target, _) = order[run.start];
+            patch.has_friction().then_some(FaceMemory { face, target, ..patch.memory })
+        };
+        both(
+            patches.len() > GRAIN_PATCHES,
+            || {
+                forces
+                    .par_iter_mut()
+                    .enumerate()
+                    .zip(&run_of[..])
+                    .with_min_len(GRAIN_PATCHES)
+                    .for_each(spread)
+            },
+            || {
+                new_faces.clear();
+                new_faces.extend(patches.iter().zip(runs.iter()).filter_map(memory_of));
+            },
+        );
+        std::mem::swap(&mut history.faces, &mut self.new_faces);
+    }
+
+    /// Where each face presses, how hard, and how it slips.
+    fn find_patches(&mut self, scene: &PatchScene, forces: &[FacetForce], history: &ContactHistory) {
+        self.own_m2.resize(forces.len(), Mat3::zeros());
+        let own = |(t, (own, force)): (u32, (&mut Mat3, &FacetForce))| {
+            let FacetSums { pressure, area, .. } = *scene.sums(t);
+            if pressure > 0.0 {
+                *own = moments::second_moment_m2(scene, scene.touch(t), area, &force.center);
+            }
+        };
+        let each = self.own_m2.par_iter_mut().zip(forces).enumerate();
+        each.with_min_len(GRAIN_PATCHES).for_each(|(t, each)| own((t as u32, each)));
+        let (order, runs, own) = (&self.order, &self.runs, &self.own_m2);
+        self.patches.resize(runs.len(), ContactPatch::default());
+        self.summaries.resize(runs.len(), PatchSummary::default());
+        let patches = self.patches.par_chunks_mut(GRAIN_PATCHES);
+        let found = patches.zip(self.summaries.par_chunks_mut(GRAIN_PATCHES));
+        found.zip(runs.par_chunks(GRAIN_PATCHES)).for_each(|((patches, summaries), runs)| {
+            let mut remembered = Remembered::since(history, &order[runs[0].start]);
+            for ((patch, summary), run) in patches.iter_mut().zip(summaries).zip(runs) {
+                patch.find(&order[run.clone()], scene, (forces, own), &mut remembered);
+                *summary = patch.summary();
+            }
+        });
+    }
+
+    /// Spreads each block's mass over what of it touches.
+    fn share_masses(&mut self, scene: &PatchScene) {
+        let shares = &mut self.mass_per_area;
+        shares.clear();
+        shares.resize(scene.input.blocks.len(), 0.0);
+        for summary in &self.summaries {
+            shares[summary.owner.index()] += summary.area_m2;
+            shares[summary.target.index()] += summary.area_m2;
+        }
+        for (share, body) in shares.iter_mut().zip(scene.input.bodies) {
+            *share = mass_per_area(body, *share, scene.input.dt_s);
+        }
+    }
+
+    /// Friction of the patches that springs hold.
+    fn hold(&mut self, dt_s: f64) {
+        let mass = &self.mass_per_area;
+        self.patches.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(|patch| {
+            if patch.has_friction() && patch.is_held() {
+                patch.hold(reduced(mass[patch.owner.index()], mass[patch.target.index()]), dt_s);
+            }
+        });
+    }
+
+    /// Takes the blocks that have coupled patches to the end of the step under all loads, normal forces, the friction that is known and the
+    /// coupled patches' friction of the last step.
+    fn advance_bodies(&mut self, scene: &PatchScene) {
+        self.bodies.clear();
+        self.bodies.extend_from_slice(scene.input.bodies);
+        self.is_coupled.clear();
+        self.is_coupled.resize(self.bodies.len(), false);
+        for summary in self.summaries.iter().filter(|summary| summary.is_coupled) {
+            self.is_coupled[summary.owner.index()] = true;
+            self.is_coupled[summary.target.index()] = true;
+        }
+        let (is_coupled, by_block, patches) = (&self.is_coupled, &self.by_block, &self.patches);
+        let advance = |(block, body): (usize, &mut Body)| {
+            if is_coupled[block] && body.mass_kg.is_finite() {
+                body.add_gyroscopic_torque();
+                for (k, sign) in by_block.at(BlockId(block as u32)) {
+                    patches[k as usize].apply_loads(body, sign);
+                    patches[k as usize].apply_previous_friction(body, sign);
+                }
+                body.advance_velocity(scene.input.dt_s);
+            }
+        };
+        self.bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(advance);
+    }
+
+    /// Friction of the coupled patches.
+    fn solve(&mut self, scene: &PatchScene) {
+        let Self { patches, bodies, coupled, .. } = self;
+        let (start, dt_s) = (scene.input.bodies, scene.input.dt_s);
+        coupled.clear();
+        for (number, patch) in (0..).zip(&*patches) {
+            if patch.has_friction() && !patch.is_held() {
+                coupled.extend(CoupledPatch::new(number, patch, start, dt_s));
+            }
+        }
+        solve::solve(coupled, start, bodies, dt_s);
+        for found in coupled.iter() {
+            let patch = &mut patches[found.patch as usize];
+            let (force_n, torque_n_m, slides) = found.friction();
+            (patch.force_n, patch.torque_n_m) = (force_n, torque_n_m);
+            patch.turn_rad = Some(found.turn_rad(start, bodies, dt_s));
+            patch.memory =
+                FaceMemory { force_n, torque_n_m, slides, normal: patch.normal, ..FaceMemory::default() };
+        }
+    }
+
+    /// How far friction of the last [`add`](Self::add) was from Coulomb's law over displacements of the nodes [m]: blocks and energy [J], one call for
+    /// each patch.
+    pub fn each_coulomb_gap(
+        &mut self,
+        (blocks, integrals, forces): (&BlockSet, &Integrals, &[FacetForce]),
+        moved: &[Vec3],
+        add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+        let scene = Moved { blocks, integrals, moved };
+        let Self { patches, runs, order, gaps_j, .. } = self;
+        gaps_j.resize(patches.len(), 0.0);
+        let gap = |((gap_j, patch), run): ((&mut f64, &ContactPatch), &Range<usize>)| {
+            *gap_j = patch.coulomb_gap_j(&order[run.clone()], &scene, forces);
+        };
+        gaps_j.par_iter_mut().zip(&*patches).zip(&*runs).with_min_len(GRAIN_PATCHES).for_each(gap);
+        for (patch, &gap_j) in patches.iter().zip(&*gaps_j) {
+            add(patch.owner, patch.target, gap_j);
+        }
+    }
+}

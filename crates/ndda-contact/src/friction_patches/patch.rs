@@ -1,0 +1,280 @@
+//! One face of a block on another block: where it presses, how hard, and how it slips.
+
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
+
+use crate::facets::{FacetForce, relative_motion, relative_velocity};
+use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
+use crate::friction_patches::limit_surface::LimitSurface;
+use crate::friction_patches::{PatchScene, Place};
+use crate::integrals::{FacetSums, Integrals};
+use crate::model::{Body, ContactHistory, FaceMemory};
+
+/// What a patch is, in short.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PatchSummary {
+    pub owner: BlockId,
+    pub target: BlockId,
+    pub area_m2: f64,
+    /// Whether its friction is found together with that of others.
+    pub is_coupled: bool,
+}
+
+/// How far a step moved the nodes, and what touched meanwhile.
+#[derive(Clone, Copy)]
+pub struct Moved<'a> {
+    pub blocks: &'a BlockSet,
+    pub integrals: &'a Integrals,
+    pub moved: &'a [Vec3],
+}
+
+/// The contact of one face with one block.
+#[derive(Clone, Debug, Default)]
+pub struct ContactPatch {
+    pub owner: BlockId,
+    pub target: BlockId,
+    has_law: bool,
+    /// ∫ φ dA and its centre; nothing else counts where there is no pressure.
+    pub pressure: f64,
+    pub center: Vec3,
+    pub normal: Vec3,
+    pub normal_n: f64,
+    pub area_m2: f64,
+    /// Most friction [N].
+    pub most_n: f64,
+    /// The axes of the pressure, and the normal; what friction can carry along them.
+    pub axes: [Vec3; 3],
+    pub surface: LimitSurface,
+    /// Force [N] on it, and torque [N m] about the centre, but for its own friction.
+    load_n: Vec3,
+    load_torque_n_m: Vec3,
+    /// Mean of r rᵀ about the centre, weighted by pressure [m²].
+    pub second_moment_m2: Mat3,
+    /// Slip velocity, and spin about the normal, weighted by pressure; only for a patch that is held by a spring.
+    pub velocity_m_s: Vec3,
+    pub spin_rad_s: f64,
+    /// Whether one of both blocks deforms.
+    deforms: bool,
+    /// Friction of the last step, turned with the face; none at first touch.
+    pub previous: Option<FaceMemory>,
+    /// Turn about the normal in this step, where it is found from the motion of the blocks.
+    pub turn_rad: Option<f64>,
+    /// Friction of this step [N, N m], and what is kept of it.
+    pub force_n: Vec3,
+    pub torque_n_m: f64,
+    pub memory: FaceMemory,
+}
+
+impl ContactPatch {
+    /// The patch of the facets of a run.
+    pub fn find(
+        &mut self,
+        run: &[Place],
+        scene: &PatchScene,
+        (forces, own): (&[FacetForce], &[Mat3]),
+        remembered: &mut Remembered,
+    ) {
+        let (_, target, first) = run[0];
+        let (owner, law) = (scene.owner(first), scene.law(run));
+        let deforms = |block: BlockId| scene.input.bodies[block.index()].deforms();
+        let (has_law, deforms) = (law.is_some(), deforms(owner) || deforms(target));
+        *self = Self { owner, target, has_law, deforms, ..Self::default() };
+        self.sum(run, scene, forces);
+        self.measure(run, scene, forces, own);
+        if !self.has_friction() {
+            return;
+        }
+        self.most_n = law.map_or(0.0, |law| self.capacity_n(law));
+        let (axes, second_moment_m2) = self.principal_axes();
+        (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
+        let old = remembered.of(&run[0]).filter(|old| old.normal.dot(&self.normal) > 0.0);
+        self.previous = old.map(|old| old.turned_to(&self.normal));
+        if self.is_held() {
+            self.measure_slip(run, scene, forces);
+        }
+    }
+
+    pub fn summary(&self) -> PatchSummary {
+        let Self { owner, target, area_m2, .. } = *self;
+        PatchSummary { owner, target, area_m2, is_coupled: self.has_friction() && !self.is_held() }
+    }
+
+    /// Whether there is friction on it.
+    pub fn has_friction(&self) -> bool {
+        self.has_law && self.pressure > 0.0 && self.area_m2 > 0.0
+    }
+
+    /// Whether it is held by a spring: it stuck in the last step, and one of both blocks deforms.
+    pub fn is_held(&self) -> bool {
+        self.deforms && self.previous.is_some_and(|old| !old.slides)
+    }
+
+    /// Mean square distance of the pressure from its centre [m²].
+    pub fn radius2(&self) -> f64 {
+        self.second_moment_m2.trace()
+    }
+
+    /// What it does to one of its facets.
+    pub fn spread_to(&self, force: &mut FacetForce, pressure: f64, own: &Mat3) {
+        if self.has_friction() {
+            let twist = self.torque_n_m / self.pressure / self.radius2();
+            let arm = force.center - self.center;
+            force.shear = self.force_n / self.pressure + twist * self.normal.cross(&arm);
+            force.couple_n_m = pressure * twist * own.trace() * self.normal;
+            force.sticks = !self.memory.slides;
+        }
+    }
+
+    /// Pushes its owner or, with the opposite sign, its target by the normal force, and by friction of facets.
+    pub fn apply_loads(&self, body: &mut Body, sign: f64) {
+        body.push(&self.center, &(sign * self.load_n));
+        body.torque_n_m += sign * self.load_torque_n_m;
+    }
+
+    /// The same by its friction of the last step, or of this one where that is known.
+    pub fn apply_previous_friction(&self, body: &mut Body, sign: f64) {
+        if self.is_held() {
+            body.push(&self.center, &(sign * self.force_n));
+            body.torque_n_m += sign * self.torque_n_m * self.normal;
+        } else if let Some(old) = &self.previous {
+            body.push(&self.center, &(sign * old.force_n));
+            body.torque_n_m += sign * old.torque_n_m * self.normal;
+        }
+    }
+
+    /// Two unit vectors in the face along which the pressure has its principal second moments, the normal, and these moments [m²].
+    fn principal_axes(&self) -> ([Vec3; 3], [f64; 2]) {
+        let [s, t] = tangents(&self.normal);
+        let moment = |a: &Vec3, b: &Vec3| a.dot(&(self.second_moment_m2 * b));
+        let (xx, xy, yy) = (moment(&s, &s), moment(&s, &t), moment(&t, &t));
+        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+        let spread = half.hypot(xy);
+        let angle = 0.5 * xy.atan2(half);
+        let (sin, cos) = angle.sin_cos();
+        let along = s * cos + t * sin;
+        // The lesser one is positive but for rounding.
+        let least = (mean - spread).max(1e-6 * mean);
+        ([along, self.normal.cross(&along), self.normal], [mean + spread, least])
+    }
+
+    /// Energy [J] by which friction did less than Coulomb's law takes from a displacement of the surfaces, D(u, θ) + F·u + T θ ≥ 0: none where the
+    /// patch sticks without slip or slides against its friction. `moved` are the displacements of the nodes [m].
+    pub fn coulomb_gap_j(&self, run: &[Place], scene: &Moved, forces: &[FacetForce]) -> f64 {
+        if !self.has_friction() {
+            return 0.0;
+        }
+        let (mut shift, mut twist) = (Vec3::zeros(), 0.0);
+        for &(_, _, t) in run {
+            let touch = &scene.integrals.touching()[t as usize];
+            let sums = scene.integrals.sums_of(touch);
+            if sums.pressure > 0.0 {
+                let found = (scene.integrals.hits_of(touch), sums);
+                let slip = relative_motion(touch, found, (scene.blocks, scene.moved)) / self.pressure;
+                shift += slip;
+                let arm = forces[t as usize].center - self.center;
+                twist += arm.cross(&slip).dot(&self.normal);
+            }
+        }
+        let radius_m = self.surface.radius_m;
+        // Facets do not see their own spin, the motion of the blocks does.
+        let spin = self.turn_rad.map_or(twist / radius_m, |turn_rad| turn_rad * radius_m);
+        let slip = Vec3::new(self.axes[0].dot(&shift), self.axes[1].dot(&shift), spin);
+        let work_j = self.force_n.dot(&shift) + self.torque_n_m / radius_m * spin;
+        (self.surface.work_j(&slip) + work_j).max(0.0)
+    }
+
+    /// Most friction that a law allows [N].
+    fn capacity_n(&self, law: &dyn FrictionLaw) -> f64 {
+        let slip = FacetSlip { normal_n: self.normal_n, area_m2: self.area_m2, ..FacetSlip::default() };
+        law.capacity_n(&slip, &ShearMemory::default())
+    }
+
+    fn sum(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce]) {
+        let mut push = Vec3::zeros();
+        for &(_, _, t) in run {
+            let FacetSums { pressure, area, .. } = *scene.sums(t);
+            if pressure > 0.0 {
+                self.pressure += pressure;
+                self.center += pressure * forces[t as usize].center;
+                self.area_m2 += area;
+                push += pressure * forces[t as usize].push;
+            }
+        }
+        if self.pressure > 0.0 {
+            self.center /= self.pressure;
+            // Per unit of pressure: that of blocks which only just touch is too small a number to be squared.
+            let push = push / self.pressure;
+            self.normal_n = push.norm() * self.pressure;
+            self.normal = -push.normalize();
+        }
+    }
+
+    /// Loads, and second moments about the centre; a facet counts with its own size, so that one facet has some, too.
+    fn measure(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce], own: &[Mat3]) {
+        for &(_, _, t) in run {
+            let FacetSums { pressure, .. } = *scene.sums(t);
+            if pressure > 0.0 {
+                let FacetForce { push, shear, center, .. } = &forces[t as usize];
+                let (arm, load) = (center - self.center, pressure * (push + shear));
+                self.load_n += load;
+                self.load_torque_n_m += arm.cross(&load);
+                self.second_moment_m2 += pressure / self.pressure * (arm * arm.transpose() + own[t as usize]);
+            }
+        }
+    }
+
+    /// Slip velocity, and spin about the centre.
+    fn measure_slip(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce]) {
+        let mut twist = 0.0;
+        for &(_, _, t) in run.iter().filter(|(_, _, t)| scene.sums(*t).pressure > 0.0) {
+            let found = (scene.integrals.hits_of(scene.touch(t)), scene.sums(t));
+            let arm = forces[t as usize].center - self.center;
+            let slip = relative_velocity(scene.touch(t), found, scene.input) / self.pressure;
+            self.velocity_m_s += slip;
+            twist += arm.cross(&slip).dot(&self.normal);
+        }
+        self.velocity_m_s -= self.normal * self.normal.dot(&self.velocity_m_s);
+        self.spin_rad_s = twist / self.radius2();
+    }
+}
+
+impl FaceMemory {
+    /// The memory turned with the normal, by the least rotation: c = a × b, v + c × v + c × (c × v)/(1 + a·b).
+    fn turned_to(self, normal: &Vec3) -> Self {
+        let (c, d) = (self.normal.cross(normal), 1.0 + self.normal.dot(normal));
+        let in_plane = |v: Vec3| {
+            let turned = v + c.cross(&v) + c.cross(&c.cross(&v)) / d;
+            turned - normal * normal.dot(&turned)
+        };
+        Self { force_n: in_plane(self.force_n), ..self }
+    }
+}
+
+/// What faces remember, in their order: asked for one after the other, it is at hand.
+pub struct Remembered<'a> {
+    rest: &'a [FaceMemory],
+}
+
+impl<'a> Remembered<'a> {
+    pub fn since(history: &'a ContactHistory, first: &Place) -> Self {
+        let start = history.faces.partition_point(|memory| Self::is_before(memory, first));
+        Self { rest: &history.faces[start..] }
+    }
+
+    fn is_before(memory: &FaceMemory, &(face, target, _): &Place) -> bool {
+        (memory.face, memory.target) < (face, target)
+    }
+
+    /// That of a face on a block, none before the last one asked for.
+    fn of(&mut self, place: &Place) -> Option<FaceMemory> {
+        let passed = self.rest.iter().take_while(|memory| Self::is_before(memory, place)).count();
+        self.rest = &self.rest[passed..];
+        self.rest.first().filter(|memory| (memory.face, memory.target) == (place.0, place.1)).copied()
+    }
+}
+
+/// Two unit vectors across a normal.
+fn tangents(normal: &Vec3) -> [Vec3; 2] {
+    let axis = [Vec3::x(), Vec3::y(), Vec3::z()][normal.iamin()];
+    let first = normal.cross(&axis).normalize();
+    [first, normal.cross(&first)]
+}
