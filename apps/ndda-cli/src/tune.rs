@@ -5,6 +5,7 @@ pub mod report;
 pub mod search;
 pub mod settings;
 
+use ndda_io::summary::LabelWord;
 use ndda_io::table::Table;
 
 use crate::args::TuneArgs;
@@ -17,10 +18,11 @@ use crate::study::case::{Case, plain};
 use crate::study::error::StudyError;
 use crate::study::front::{Point, front};
 use crate::study::launch::Launch;
+use crate::study::record::RunOutcome;
 use crate::{exit, interrupt};
 use metric::{Metric, compared, error_of_last};
 use report::{SCHEMA, TrialPoint, Tuned};
-use search::{Best, Outcome, Search, Setting, Trials, Tried};
+use search::{Best, Outcome, Search, Setting, Space, Trials, Tried};
 use settings::{Settings, first_steps};
 
 /// The run that others are compared with is this much more exact than the error that is asked for.
@@ -100,21 +102,30 @@ fn tune_trial(args: &TuneArgs, trial: &Trial, settings: Settings) -> Result<u8, 
         plan: &trial.plan,
         settings: &settings,
         metric: Metric::ClosedForm,
+        takes_inaccurate: false,
         wall_s: 0.0,
+        spent_s: 0.0,
     };
     if trial.plan.scene.reference.is_none() || !args.of.is_empty() {
         runner.metric = runner.reference(args)?;
     }
     let space = settings.space(args.error, args.budget_s);
-    let mut search = Search::new(&space, &mut runner);
-    let best = search.run(&settings.start())?;
-    let (tried, is_out_of_budget) = (std::mem::take(&mut search.tried), search.is_out_of_budget);
-    let (tried, best) = runner.measure_again(tried, best, args.error)?;
+    let mut found = search(&space, &mut runner, &settings)?;
+    if found.best.as_ref().is_none_or(|best| best.error > args.error) {
+        // A label may warn of what the error that is asked for does not mind.
+        runner.takes_inaccurate = true;
+        found = search(&space, &mut runner, &settings)?;
+    }
+    let (tried, best) = runner.measure_again(found.tried, found.best, args.error)?;
     let mut tuned = runner.tuned(trial, tried, best, args.error);
-    if is_out_of_budget {
+    if found.is_out_of_budget {
         tuned
             .remarks
             .push(format!("the search ended when its runs had taken {} s: raise --budget-s", args.budget_s));
+    }
+    if runner.takes_inaccurate {
+        let remark = "no setting that calls itself accurate reaches the error: settings are judged by their error alone";
+        tuned.remarks.push(remark.into());
     }
     let json = tuned.write(&trial.out).map_err(CertifyError::from)?;
     say(&match args.how.json {
@@ -124,14 +135,31 @@ fn tune_trial(args: &TuneArgs, trial: &Trial, settings: Settings) -> Result<u8, 
     Ok(if tuned.is_reached { exit::DONE } else { exit::FAILED })
 }
 
+/// What a search has found.
+struct Found {
+    tried: Vec<Tried>,
+    best: Option<Best>,
+    is_out_of_budget: bool,
+}
+
+fn search(space: &Space, runner: &mut Runner, settings: &Settings) -> Result<Found, TuneError> {
+    let mut search = Search::new(space, runner);
+    let best = search.run(&settings.start())?;
+    Ok(Found { tried: std::mem::take(&mut search.tried), best, is_out_of_budget: search.is_out_of_budget })
+}
+
 /// Runs settings of a scene.
 struct Runner<'a> {
     launch: &'a Launch<'a>,
     plan: &'a Plan,
     settings: &'a Settings,
     metric: Metric,
+    /// Whether runs that call themselves inaccurate count.
+    takes_inaccurate: bool,
     /// Wall time of all runs [s].
     wall_s: f64,
+    /// Processor time of all runs, or wall time where the system does not tell [s].
+    spent_s: f64,
 }
 
 impl Runner<'_> {
@@ -141,20 +169,22 @@ impl Runner<'_> {
         self.plan.case(name, setting.level as u32, self.settings.set(setting))
     }
 
-    /// Runs a case; none with the reason where it fails.
-    fn run_case(&mut self, case: &Case) -> Result<Result<Ended, String>, TuneError> {
+    /// Runs a case; how it failed where it does.
+    fn run_case(&mut self, case: &Case) -> Result<Result<Ended, Outcome>, TuneError> {
         let said = self.launch.run_case(case)?;
         if !self.launch.quiet {
             complain(&format!("{}: {said}", case.name));
         }
-        match read(self.launch, case) {
-            Ok(ended) => {
-                self.wall_s += ended.summary.wall_s;
-                Ok(Ok(ended))
-            }
-            Err(CertifyError::Failed { reason, .. }) => Ok(Err(reason)),
-            Err(error) => Err(error.into()),
+        if let Some(RunOutcome::Failed { code, reason }) =
+            self.launch.record(case)?.map(|record| record.outcome)
+        {
+            let is_final = code == Some(i32::from(exit::BAD_INPUT));
+            return Ok(Err(Outcome::Failed { reason, is_final }));
         }
+        let ended = read(self.launch, case)?;
+        self.wall_s += ended.summary.wall_s;
+        self.spent_s += cost_s(&ended) * f64::from(case.repeats);
+        Ok(Ok(ended))
     }
 
     /// Runs the scene's own setting with ever shorter steps, until it is exact enough to judge others.
@@ -251,6 +281,7 @@ impl Runner<'_> {
             tried: points,
             remarks: Vec::new(),
             wall_s: self.wall_s,
+            spent_s: self.spent_s,
         }
     }
 
@@ -260,7 +291,7 @@ impl Runner<'_> {
         set.extend(self.settings.set(&tried.setting));
         let (time_s, error, reason) = match &tried.outcome {
             Outcome::Done { time_s, error } => (Some(*time_s), Some(*error), None),
-            Outcome::Failed { reason } => (None, None, Some(reason.clone())),
+            Outcome::Failed { reason, .. } => (None, None, Some(reason.clone())),
         };
         TrialPoint {
             label: self.settings.label(&tried.setting),
@@ -279,10 +310,16 @@ impl Trials for Runner<'_> {
 
     fn run(&mut self, setting: &Setting) -> Result<Outcome, TuneError> {
         let case = self.case(setting);
-        Ok(match self.run_case(&case)? {
-            Ok(ended) => Outcome::Done { time_s: cost_s(&ended), error: self.metric.error(&ended)? },
-            Err(reason) => Outcome::Failed { reason },
-        })
+        let ended = match self.run_case(&case)? {
+            Ok(ended) => ended,
+            Err(failed) => return Ok(failed),
+        };
+        let label = &ended.summary.label;
+        if !self.takes_inaccurate && label.word == LabelWord::Inaccurate {
+            let reason = format!("calls itself inaccurate: {}", label.reasons.join("; "));
+            return Ok(Outcome::Failed { reason, is_final: false });
+        }
+        Ok(Outcome::Done { time_s: cost_s(&ended), error: self.metric.error(&ended)? })
     }
 
     fn prepare(&mut self, settings: &[Setting]) -> Result<(), TuneError> {

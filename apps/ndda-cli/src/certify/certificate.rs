@@ -194,8 +194,8 @@ fn of_steps(quantity: &Quantity, runs: &[Vec<f64>; 3], theory: f64, floor: f64) 
     let largest = |some: &[Estimate]| some.iter().map(|e| e.error).fold(0.0, f64::max);
     let last = estimates.last().copied().unwrap_or(at_rest(floor));
     let value = |k: usize| runs[k].last().copied().unwrap_or(0.0);
-    // The error of what swings vanishes at instants: that of the last fifth of the run counts for the end.
-    let error = largest(&estimates[last_fifth(rows)]);
+    // The error of what swings vanishes at instants: the mean over the last fifth of the run counts for the end, too.
+    let error = last.error.max(root_mean_square(&estimates[last_fifth(rows)]));
     let tends_to = last.limit.unwrap_or(value(2));
     Certified {
         name: quantity.name.clone(),
@@ -210,6 +210,17 @@ fn of_steps(quantity: &Quantity, runs: &[Vec<f64>; 3], theory: f64, floor: f64) 
         own_error: (value(0) - tends_to).abs() + error,
         parts: Parts { step: error, mesh: None, penalty: None },
     }
+}
+
+/// √(Σ e²/n) of the errors of some estimates.
+fn root_mean_square(some: &[Estimate]) -> f64 {
+    let largest = some.iter().map(|e| e.error).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return 0.0;
+    }
+    // Relative to the largest, so that no square overflows.
+    let sum: f64 = some.iter().map(|e| (e.error / largest) * (e.error / largest)).sum();
+    largest * (sum / some.len() as f64).sqrt()
 }
 
 /// Of a history without rows.

@@ -35,6 +35,8 @@ pub struct Tuned {
     pub remarks: Vec<String>,
     /// Wall time of all runs [s].
     pub wall_s: f64,
+    /// Processor time of all runs, or wall time where the system does not tell [s].
+    pub spent_s: f64,
 }
 
 /// A setting that was tried.
@@ -83,7 +85,7 @@ impl Tuned {
         self.remarks.iter().for_each(|remark| {
             let _ = writeln!(text, "note: {remark}");
         });
-        let _ = writeln!(text, "time spent: {:.2} s in {} runs", self.wall_s, self.tried.len());
+        let _ = writeln!(text, "time spent: {:.2} s, {:.2} s of processor time", self.wall_s, self.spent_s);
         text += &self.verdict();
         text
     }

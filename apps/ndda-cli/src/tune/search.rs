@@ -16,6 +16,9 @@ pub enum Axis {
 pub struct Space {
     /// The axes, those first that change the cost and not what is computed.
     pub axes: Vec<Axis>,
+    /// The order in which axes are gone along while the error is not reached: those that decide how exact a setting can be
+    /// come first, the cheap ones before the dear ones.
+    pub exact_first: Vec<usize>,
     /// The longest step.
     pub first_level: i32,
     /// The shortest.
@@ -49,6 +52,8 @@ pub enum Outcome {
     Failed {
         /// Why.
         reason: String,
+        /// Whether no step would change that.
+        is_final: bool,
     },
 }
 
@@ -81,10 +86,15 @@ pub trait Trials {
 
 /// Errors that fall less than to this part when the step is halved are not those of the step.
 const STAGNANT: f64 = 0.8;
-/// How often that may happen, and how many trials on end may fail, before a setting is given up.
+/// How often that may happen before a setting is given up.
 const PATIENCE: u32 = 2;
+/// Trials on end that may fail before a setting is given up: contact is unstable at long steps, where runs soon stop.
+const MOST_FAILED: u32 = 4;
 /// A setting that does not reach the error is better than another if its error is less than this part.
 const BETTER: f64 = 0.7;
+/// A setting that reaches the error is cheaper than another if it takes less than this part of its time: times repeat to
+/// some per cent, and what is nearest to the scene stays.
+const CHEAPER: f64 = 0.9;
 /// A run of half the step takes at least this times as long.
 const LONGER: f64 = 1.5;
 /// Rounds over all axes.
@@ -126,11 +136,10 @@ impl<'a, T: Trials> Search<'a, T> {
         let mut best = self.steps(start, self.space.first_level, None)?;
         for _ in 0..MOST_ROUNDS {
             let before = best.clone();
-            let mut order: Vec<usize> = (0..self.space.axes.len()).collect();
-            if !self.reaches(best.as_ref()) {
-                // What decides how exact a setting can be comes first.
-                order.reverse();
-            }
+            let order = match self.reaches(best.as_ref()) {
+                true => (0..self.space.axes.len()).collect(),
+                false => self.space.exact_first.clone(),
+            };
             for axis in order {
                 best = self.along(axis, start, best)?;
             }
@@ -206,7 +215,7 @@ impl<'a, T: Trials> Search<'a, T> {
     fn is_better(&self, new: &Best, old: &Best) -> bool {
         let target = self.space.target;
         match (new.error <= target, old.error <= target) {
-            (true, true) => new.time_s < old.time_s,
+            (true, true) => new.time_s < CHEAPER * old.time_s,
             (false, false) => new.error < BETTER * old.error,
             (new, _) => new,
         }
@@ -223,12 +232,15 @@ impl<'a, T: Trials> Search<'a, T> {
             if too_long || !self.may_spend(foreseen_s.unwrap_or(0.0)) {
                 break;
             }
-            let Some((time_s, error)) = self.trial(at, level)? else {
-                failed += 1;
-                if failed > PATIENCE {
-                    break;
+            let (time_s, error) = match self.trial(at, level)? {
+                Outcome::Done { time_s, error } => (time_s, error),
+                Outcome::Failed { is_final, .. } => {
+                    failed += 1;
+                    if is_final || failed >= MOST_FAILED {
+                        break;
+                    }
+                    continue;
                 }
-                continue;
             };
             failed = 0;
             if best.as_ref().is_none_or(|b| error < b.error) {
@@ -258,7 +270,7 @@ impl<'a, T: Trials> Search<'a, T> {
             }
             let at = found.setting.at.clone();
             match self.trial(&at, level)? {
-                Some((time_s, error)) if error <= self.space.target && time_s < found.time_s => {
+                Outcome::Done { time_s, error } if error <= self.space.target && time_s < found.time_s => {
                     best = Some(Best { setting: Setting { at, level }, time_s, error });
                 }
                 _ => break,
@@ -273,26 +285,18 @@ impl<'a, T: Trials> Search<'a, T> {
         may
     }
 
-    /// Time and error of a trial; none where it failed. What was tried is not tried again.
-    fn trial(&mut self, at: &[i32], level: i32) -> Result<Option<(f64, f64)>, T::Error> {
+    /// How a trial goes. What was tried is not tried again.
+    fn trial(&mut self, at: &[i32], level: i32) -> Result<Outcome, T::Error> {
         let setting = Setting { at: at.to_vec(), level };
-        let known =
-            self.tried.iter().find(|tried| tried.setting == setting).map(|tried| tried.outcome.clone());
-        let outcome = match known {
-            Some(outcome) => outcome,
-            None => {
-                let outcome = self.trials.run(&setting)?;
-                if let Outcome::Done { time_s, .. } = outcome {
-                    self.spent_s += time_s;
-                }
-                self.tried.push(Tried { setting, outcome: outcome.clone() });
-                outcome
-            }
-        };
-        Ok(match outcome {
-            Outcome::Done { time_s, error } => Some((time_s, error)),
-            Outcome::Failed { .. } => None,
-        })
+        if let Some(known) = self.tried.iter().find(|tried| tried.setting == setting) {
+            return Ok(known.outcome.clone());
+        }
+        let outcome = self.trials.run(&setting)?;
+        if let Outcome::Done { time_s, .. } = outcome {
+            self.spent_s += time_s;
+        }
+        self.tried.push(Tried { setting, outcome: outcome.clone() });
+        Ok(outcome)
     }
 }
 
@@ -315,7 +319,7 @@ mod tests {
                 [(1, 1.0, 1.0), (2, 1.0, 1.1), (2, 0.0, 40.0)][setting.at[0] as usize];
             let stiffness = 4.0f64.powi(setting.at[1]);
             if step * stiffness.sqrt() > 1.5 {
-                return Outcome::Failed { reason: "unstable".into() };
+                return Outcome::Failed { reason: "unstable".into(), is_final: false };
             }
             let error = constant * 0.3 * step.powi(order) + 0.05 / stiffness;
             Outcome::Done { time_s: 1e-2 + cost / step, error }
@@ -332,7 +336,7 @@ mod tests {
 
     fn space(target: f64) -> Space {
         let axes = vec![Axis::Choice(3), Axis::Range(-2, 4)];
-        Space { axes, first_level: 0, last_level: 12, target, budget_s: 1e9 }
+        Space { axes, exact_first: vec![1, 0], first_level: 0, last_level: 12, target, budget_s: 1e9 }
     }
 
     /// The cheapest of all settings.
@@ -388,7 +392,7 @@ mod tests {
     impl Trials for Broken {
         type Error = Infallible;
         fn run(&mut self, _: &Setting) -> Result<Outcome, Infallible> {
-            Ok(Outcome::Failed { reason: "no".into() })
+            Ok(Outcome::Failed { reason: "no".into(), is_final: false })
         }
     }
 

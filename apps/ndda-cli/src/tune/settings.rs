@@ -1,6 +1,6 @@
 //! The settings of a scene that are tried, as values for `--set`.
 
-use ndda_io::scene::{Body, Contact, ContactAt, Integrator, Potential, Scene, Shape};
+use ndda_io::scene::{Block, Body, Contact, ContactAt, Integrator, Potential, Scene, Shape};
 use ndda_solver::Simulation;
 use ndda_solver::body::BodyKind;
 
@@ -40,10 +40,11 @@ pub struct Settings {
 /// Number of the axis of the penalty, after those of the choices; that of the mesh comes next.
 const PENALTY: usize = 4;
 
-/// Steps of the longest step that is tried.
+/// Steps of the longest step that is tried, with a divisor that gives histories rows.
 pub fn first_steps(scene: &Scene) -> u64 {
     let steps = wiring::steps(&scene.time).div_ceil(LONGEST);
-    if steps > 10 * ROUND { steps.next_multiple_of(ROUND) } else { steps }
+    let has_divisor = (ROUND..=10 * ROUND).any(|rows| steps.is_multiple_of(rows));
+    if steps > 10 * ROUND && !has_divisor { steps.next_multiple_of(ROUND) } else { steps }
 }
 
 impl Settings {
@@ -66,7 +67,9 @@ impl Settings {
         let (softer, stiffer) = if self.has_penalty { PENALTIES } else { none };
         let (coarser, finest) = if self.has_mesh { MESHES } else { none };
         axes.extend([Axis::Range(softer, stiffer), Axis::Range(coarser, finest)]);
-        Space { axes, first_level: 0, last_level: HALVINGS, target, budget_s }
+        // Patterns of cells cost less than more cells.
+        let exact_first = vec![3, PENALTY, PENALTY + 1, 0, 1, 2];
+        Space { axes, exact_first, first_level: 0, last_level: HALVINGS, target, budget_s }
     }
 
     /// The scene's own choices.
@@ -172,12 +175,14 @@ fn potentials(scene: &Scene, simulation: &Simulation) -> Vec<Choice> {
     choices
 }
 
-/// Kinds of bodies for all blocks that move, where that changes any.
+/// Kinds of bodies for all blocks that move, where that changes any; what supports hold is never made rigid.
 fn bodies(scene: &Scene) -> Vec<Choice> {
     let mut choices = vec![own()];
     for (label, body) in [("Rigid", Body::Rigid), ("Affine", Body::Affine), ("Elastic", Body::Elastic)] {
         let changes = |own: &Body| *own != Body::Fixed && *own != body;
-        let blocks = scene.blocks.iter().filter(|block| changes(&block.body));
+        let is_held = |name: &str| scene.supports.iter().any(|support| support.block == name);
+        let may = |block: &&Block| changes(&block.body) && (body != Body::Rigid || !is_held(&block.name));
+        let blocks = scene.blocks.iter().filter(may);
         let mut set: Vec<String> =
             blocks.map(|block| format!("blocks.{}.body={label}", block.name)).collect();
         let rocks = scene.rock.iter().enumerate().filter(|(_, rock)| changes(&rock.body));
