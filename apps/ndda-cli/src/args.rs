@@ -1,8 +1,11 @@
 //! What a person can type.
 
+mod trial;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 
 /// Rock blocks that slide, topple, collide and fall: 3D discontinuous deformation analysis with contact potential.
 #[derive(Debug, Parser)]
@@ -65,6 +68,19 @@ pub enum Verb {
     /// Writes study.csv, study.json, time_to_error.csv and pictures; the same command goes on where it was interrupted.
     /// How to write a study and read its results: docs/study.md.
     Study(StudyArgs),
+    /// Give every answer of a scene its error bar, from runs with steps that halve.
+    ///
+    /// Runs the scene with Δt, Δt/2 and Δt/4 (and with finer meshes and stiffer contact, if asked), and gives each monitor,
+    /// the place and velocity of each block and the energies as value ± error: extrapolated where results converge, the
+    /// spread where they do not; says when a motion is chaotic. Writes certificate.json, which `ndda report` shows, too.
+    /// The same command goes on where it was interrupted. What the bars mean: docs/certify.md.
+    Certify(CertifyArgs),
+    /// Find the cheapest settings that reach an error: integrator, step, potential, kind of body and penalty.
+    ///
+    /// Tries settings by short runs that double their effort, judges them by the closed form of the scene or by certified
+    /// runs of it, and prints the front of error against time, the settings as --set lines, and what was tried. Writes
+    /// tune.json. The same command goes on where it was interrupted. How it searches: docs/certify.md.
+    Tune(TuneArgs),
     /// Draw columns of histories.
     #[cfg(feature = "plots")]
     Plot(PlotArgs),

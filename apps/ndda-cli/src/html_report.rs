@@ -3,6 +3,7 @@
 //! Curves are drawn by uPlot, blocks by three.js, both embedded. plotly could draw both, but its `mesh3d` has no edges of
 //! blocks and is built anew for every frame; three.js moves the corners in place.
 
+mod certificate;
 mod charts;
 mod colours;
 mod error;
@@ -22,7 +23,7 @@ use serde::Serialize;
 use crate::args::{ReportArgs, ViewArgs};
 use crate::console::say;
 use crate::events::{self, Events};
-use crate::exit;
+use crate::{certify, exit};
 use error::ReportError;
 use input::Input;
 use motion::Motion;
@@ -105,11 +106,12 @@ fn failed(events: Events, error: &ReportError) -> u8 {
     events.fail(code, &error.to_string())
 }
 
-/// Whether there is a report that is no older than the summary.
+/// Whether there is a report that is no older than the summary and the certificate.
 fn is_current(folder: &Path, report: &Path) -> bool {
     let changed = |path: &Path| fs::metadata(path).and_then(|m| m.modified()).ok();
-    let summary = changed(&folder.join(SUMMARY));
-    summary.is_some() && changed(report) >= summary
+    let summary = changed(&input::run_folder(folder).join(SUMMARY));
+    let certificate = changed(&folder.join(certify::certificate::FILE));
+    summary.is_some() && changed(report) >= summary.max(certificate)
 }
 
 fn write(folder: &Path, file: &Path, frames: Option<u32>) -> Result<Written, ReportError> {

@@ -2,6 +2,7 @@
 
 pub mod args;
 mod bar;
+pub mod certify;
 pub mod check;
 pub mod checkpoint;
 mod columns;
@@ -43,5 +44,6 @@ pub mod schema;
 pub mod shell;
 pub mod step_advice;
 pub mod study;
+pub mod tune;
 pub mod verdict;
 pub mod wiring;

@@ -13,7 +13,7 @@ use ndda_cli::plot;
 use ndda_cli::schema;
 #[cfg(feature = "shell")]
 use ndda_cli::shell;
-use ndda_cli::{check, exit, explain, memory as limits, mesh, new, resume, run, study};
+use ndda_cli::{certify, check, exit, explain, memory as limits, mesh, new, resume, run, study, tune};
 
 fn main() -> ExitCode {
     let Cli { memory, verb } = Cli::parse();
@@ -39,6 +39,8 @@ fn main() -> ExitCode {
         Verb::Report(args) => html_report::report(&args),
         #[cfg(feature = "report")]
         Verb::View(args) => html_report::view(&args),
+        Verb::Certify(args) => certify::certify(&args),
+        Verb::Tune(args) => tune::tune(&args),
         Verb::Study(args) => study::study(&args),
         #[cfg(feature = "plots")]
         Verb::Plot(args) => plot::plot(&args),

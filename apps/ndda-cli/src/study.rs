@@ -124,8 +124,11 @@ fn run_one(args: &StudyCaseArgs) -> Result<u8, StudyError> {
     Ok(exit::DONE)
 }
 
-/// The folder of a study, which may hold an earlier part of it but nothing else.
-fn make_folder(out: &Path) -> Result<(), StudyError> {
+/// Makes the folder of a study, which may hold an earlier part of it.
+///
+/// # Errors
+/// [`StudyError::Write`] when it cannot be made.
+pub fn make_folder(out: &Path) -> Result<(), StudyError> {
     if out.is_file() {
         return Err(WriteError::IsFile { path: out.to_path_buf() }.into());
     }

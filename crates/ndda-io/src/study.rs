@@ -162,6 +162,21 @@ pub struct LoadedStudy {
 }
 
 impl LoadedStudy {
+    /// A study in which nothing varies: a scene that is run over and over with values of the caller.
+    pub fn of_scene(scene: PathBuf, scene_text: String) -> Self {
+        let study = Study {
+            title: String::new(),
+            scene: scene.clone(),
+            set: Values::new(),
+            axes: Vec::new(),
+            curves: None,
+            repeats: 1,
+            clock: Clock::Wall,
+            reference: Reference::ClosedForm,
+        };
+        Self { study, curves: Vec::new(), scene, scene_text }
+    }
+
     /// The scene with `overrides` in it.
     ///
     /// # Errors

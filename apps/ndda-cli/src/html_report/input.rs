@@ -1,12 +1,14 @@
 //! The files of a run.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ndda_io::folder::{CHECKPOINT, FIELDS_INDEX, HISTORY, SUMMARY};
 use ndda_io::results::{self, ListedFrame, Table};
 use ndda_io::summary::Summary;
 
 use super::error::ReportError;
+use crate::certify::certificate::Certificate;
+use crate::study::record;
 
 /// What a run left, but for the frames themselves.
 pub struct Input {
@@ -16,6 +18,23 @@ pub struct Input {
     pub history: Table,
     /// Its frames; none where it wrote no fields.
     pub frames: Vec<ListedFrame>,
+    /// What its answers may be wrong by; none where it was not certified.
+    pub certificate: Option<Certificate>,
+}
+
+/// The folder of the run that a page shows: that of the shortest of the steps that a certificate is from, where `folder`
+/// holds one and no run of its own.
+pub fn run_folder(folder: &Path) -> PathBuf {
+    let of_certificate = || {
+        let certificate = Certificate::read(folder)?;
+        let finest = certificate.runs.get(2)?;
+        Some(record::folder(folder, &finest.name).join(record::RESULTS))
+    };
+    if folder.join(SUMMARY).is_file() {
+        folder.to_path_buf()
+    } else {
+        of_certificate().unwrap_or_else(|| folder.to_path_buf())
+    }
 }
 
 impl Input {
@@ -27,6 +46,8 @@ impl Input {
         if !folder.is_dir() {
             return Err(ReportError::NotAFolder(folder.to_path_buf()));
         }
+        let certificate = Certificate::read(folder);
+        let folder = &run_folder(folder);
         let has = |name: &str| folder.join(name).is_file();
         let history = results::history_file(folder);
         if !has(SUMMARY) && history.is_none() && !has(CHECKPOINT) {
@@ -42,6 +63,7 @@ impl Input {
             summary: results::summary(&folder.join(SUMMARY))?,
             history: results::history(&history)?,
             frames: if index.is_file() { results::frame_list(&index)? } else { Vec::new() },
+            certificate,
         })
     }
 }

@@ -3,6 +3,7 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde::Serialize;
 
+use super::certificate;
 use super::charts::Charts;
 use super::input::Input;
 use super::motion::Motion;
@@ -57,6 +58,7 @@ pub fn page(input: &Input, motion: Option<&Motion>) -> String {
                         div.wide { (stage(input, motion)) }
                         div.narrow { (sections::facts(summary)) (sections::verdicts(summary)) }
                     }
+                    (certificate::certificate(input.certificate.as_ref(), summary))
                     (curves(&charts))
                     div.columns.even { (sections::stages(summary)) (sections::monitors(summary)) }
                     (sections::blocks(summary))

@@ -103,7 +103,8 @@ fn name(labels: &[(String, String)]) -> String {
     labels.iter().map(part).collect::<Vec<_>>().join("__")
 }
 
-fn plain(text: &str) -> String {
+/// A text with nothing in it that a file system or a shell could mistake.
+pub fn plain(text: &str) -> String {
     let words = text.split(|c: char| !(c.is_ascii_alphanumeric() || "+-.".contains(c)));
     words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join("_")
 }

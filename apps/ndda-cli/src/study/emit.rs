@@ -47,7 +47,7 @@ pub fn script(plan: &Plan, cases: &[Case], emit: Emit) -> String {
 }
 
 /// One word of a shell.
-fn quoted(text: &str) -> String {
+pub fn quoted(text: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=".contains(c);
     if !text.is_empty() && text.chars().all(plain) {
         text.to_string()
