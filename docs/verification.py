@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 MANUAL = ROOT / "docs" / "verification.md"
 BEGIN, END = "<!-- figures: begin -->", "<!-- figures: end -->"
 # Test binaries whose rows are in the manual.
-TESTS = ["verification", "scenes"]
+TESTS = ["verification", "scenes", "certify"]
 # Part of its tolerance by which a figure may be off before the manual is out of date.
 STALE = 0.05
 # Differences below this part of the answer, or of one, are rounding: another compiler has others.
@@ -74,7 +74,7 @@ def main(arguments):
 def run_tests():
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "evidence.log"
-        command = ["cargo", "test", "--locked"] + [word for test in TESTS for word in ("--test", test)]
+        command = ["cargo", "test", "--locked", "--workspace"] + [word for test in TESTS for word in ("--test", test)]
         subprocess.run(command, cwd=ROOT, check=True, env=os.environ | {"NDDA_EVIDENCE": str(log)})
         return log.read_text(encoding="utf-8")
 

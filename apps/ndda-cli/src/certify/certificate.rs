@@ -22,7 +22,7 @@ pub const SCHEMA: &str = "ndda.certificate/1";
 const MESH_ORDER: f64 = 1.0;
 /// The largest order in the size of elements, that of linear tetrahedra.
 const MOST_MESH_ORDER: f64 = 2.0;
-/// The order in 1/k_n of the error of contact that is not stiff enough.
+/// The order in 1/k_n of the error of soft contact.
 const PENALTY_ORDER: f64 = 1.0;
 
 /// Everything that `certificate.json` says.
@@ -192,7 +192,7 @@ fn of_steps(quantity: &Quantity, runs: &[Vec<f64>; 3], theory: f64, floor: f64) 
     let at = |row: usize| estimate([0, 1, 2].map(|k| runs[k][row]), theory, floor);
     let estimates: Vec<Estimate> = (0..rows).map(at).collect();
     let largest = |some: &[Estimate]| some.iter().map(|e| e.error).fold(0.0, f64::max);
-    let last = estimates.last().copied().unwrap_or(at_rest(floor));
+    let last = estimates.last().copied().unwrap_or_else(|| estimate([0.0; 3], theory, floor));
     let value = |k: usize| runs[k].last().copied().unwrap_or(0.0);
     // The error of what swings vanishes at instants: the mean over the last fifth of the run counts for the end, too.
     let error = last.error.max(root_mean_square(&estimates[last_fifth(rows)]));
@@ -221,11 +221,6 @@ fn root_mean_square(some: &[Estimate]) -> f64 {
     // Relative to the largest, so that no square overflows.
     let sum: f64 = some.iter().map(|e| (e.error / largest) * (e.error / largest)).sum();
     largest * (sum / some.len() as f64).sqrt()
-}
-
-/// Of a history without rows.
-fn at_rest(floor: f64) -> Estimate {
-    Estimate { error: floor, behaviour: Behaviour::Rounding, order: None, limit: None }
 }
 
 impl Certified {

@@ -63,9 +63,9 @@ pub fn is_suspect(quantities: &[Quantity], tables: [&Table; 3]) -> bool {
 pub fn judge(quantities: &[Quantity], tables: [&Table; 3], twin: &Table) -> Option<Chaos> {
     let growth = apart(quantities, twin, tables[0]).largest() / DISTURBANCE;
     let last = apart(quantities, tables[1], tables[2]);
-    let lost = last.relative.iter().position(|r| *r > TOGETHER);
-    let until = lost.map_or(last.times_s.len(), |row| row.max(1)) - 1;
-    let predictable_until_s = last.times_s.get(until).copied().unwrap_or(0.0);
+    // Runs that stay together have one trajectory, whatever becomes of a disturbance.
+    let lost = last.relative.iter().position(|r| *r > TOGETHER)?;
+    let predictable_until_s = last.times_s.get(lost.saturating_sub(1)).copied().unwrap_or(0.0);
     (growth > GROWS).then_some(Chaos { growth, predictable_until_s })
 }
 

@@ -16,8 +16,7 @@ pub enum Axis {
 pub struct Space {
     /// The axes, those first that change the cost and not what is computed.
     pub axes: Vec<Axis>,
-    /// The order in which axes are gone along while the error is not reached: those that decide how exact a setting can be
-    /// come first, the cheap ones before the dear ones.
+    /// The order of the axes while the error is not reached: first those that decide how exact a setting can be.
     pub exact_first: Vec<usize>,
     /// The longest step.
     pub first_level: i32,
@@ -88,12 +87,11 @@ pub trait Trials {
 const STAGNANT: f64 = 0.8;
 /// How often that may happen before a setting is given up.
 const PATIENCE: u32 = 2;
-/// Trials on end that may fail before a setting is given up: contact is unstable at long steps, where runs soon stop.
+/// Trials on end that may fail before a setting is given up: long steps are unstable, and stop soon.
 const MOST_FAILED: u32 = 4;
-/// A setting that does not reach the error is better than another if its error is less than this part.
+/// A setting that misses the error is better than another if its own is less than this part.
 const BETTER: f64 = 0.7;
-/// A setting that reaches the error is cheaper than another if it takes less than this part of its time: times repeat to
-/// some per cent, and what is nearest to the scene stays.
+/// A setting is cheaper than another if it takes less than this part of its time; times repeat to some per cent.
 const CHEAPER: f64 = 0.9;
 /// A run of half the step takes at least this times as long.
 const LONGER: f64 = 1.5;

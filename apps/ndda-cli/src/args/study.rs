@@ -1,0 +1,96 @@
+//! Arguments of `ndda study`.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+
+/// Arguments of `ndda study`.
+#[derive(Debug, Args)]
+#[command(
+    args_conflicts_with_subcommands = true,
+    subcommand_negates_reqs = true,
+    after_help = "Examples:\n  ndda study scenes/studies/bounce.ron\n  ndda study s.ron --emit slurm > job.sh\n  ndda study \
+                  collect s.ron"
+)]
+pub struct StudyArgs {
+    /// Part of a study.
+    #[command(subcommand)]
+    pub part: Option<StudyPart>,
+    /// Study file (RON; see docs/study.md).
+    #[arg(required = true)]
+    pub study: Option<PathBuf>,
+    /// Where and how.
+    #[command(flatten)]
+    pub how: StudyHow,
+    /// Cases that run at a time; more than one disturbs their times.
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub jobs: u16,
+    /// Run nothing: print what hands the cases to a scheduler.
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub emit: Option<Emit>,
+    /// Print the results as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Parts of a study, for schedulers.
+#[derive(Debug, Subcommand)]
+pub enum StudyPart {
+    /// Run one case.
+    Case(StudyCaseArgs),
+    /// Gather the results of the cases that have run.
+    Collect(StudyCollectArgs),
+}
+
+/// Arguments of `ndda study case`.
+#[derive(Debug, Args)]
+pub struct StudyCaseArgs {
+    /// Study file.
+    pub study: PathBuf,
+    /// Name of the case.
+    pub case: String,
+    /// Where and how.
+    #[command(flatten)]
+    pub how: StudyHow,
+}
+
+/// Arguments of `ndda study collect`.
+#[derive(Debug, Args)]
+pub struct StudyCollectArgs {
+    /// Study file.
+    pub study: PathBuf,
+    /// Where and how.
+    #[command(flatten)]
+    pub how: StudyHow,
+    /// Print the results as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What all parts of a study take.
+#[derive(Debug, Args)]
+pub struct StudyHow {
+    /// Output folder [default: out/ and the name of the study with _study].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Threads of each run.
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: u16,
+    /// Print nothing but errors and results.
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Override a value of the base scene by its path; may be repeated. What the study itself sets comes after it.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub overrides: Vec<String>,
+}
+
+/// What runs the cases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Emit {
+    /// A job array of Slurm.
+    Slurm,
+    /// GNU parallel.
+    Parallel,
+    /// One command per line.
+    List,
+}
