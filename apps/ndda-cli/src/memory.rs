@@ -34,8 +34,8 @@ pub fn budget() -> Option<u64> {
 /// What was expected.
 pub fn parse(text: &str) -> Result<u64, String> {
     let text = text.trim();
-    let digits = text.find(|c: char| c.is_ascii_alphabetic()).unwrap_or(text.len());
-    let (number, unit) = (text[..digits].trim(), text[digits..].trim().to_ascii_lowercase());
+    let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
+    let (number, unit) = (number.trim(), text[number.len()..].to_ascii_lowercase());
     let factor = match unit.as_str() {
         "" | "b" => 1.0,
         "kb" => 1e3,

@@ -80,7 +80,7 @@ pub fn check_speed(file: &Path, rows: &[(f64, f64)], factor: f64) -> Result<(), 
         let [(from_s, a), (to_s, b)] = [pair[0], pair[1]];
         speed_m_s += factor * (0.5 * a + 0.5 * b) * (to_s - from_s);
         // What is not a number is beyond it, too.
-        if !(speed_m_s.abs() <= LIGHT_M_S) {
+        if speed_m_s.is_nan() || speed_m_s.abs() > LIGHT_M_S {
             let reason = "brings the ground beyond the speed of light: give accelerations in m/s², or a smaller factor";
             return Err(RecordError::Row { file: file.to_path_buf(), row, reason });
         }
