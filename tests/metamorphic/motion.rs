@@ -16,6 +16,7 @@ pub const ROWS: u64 = 1000;
 
 /// Samples a run as `ndda run` does.
 struct Rows {
+    until: u64,
     steps: u64,
     rows: u64,
 }
@@ -25,19 +26,20 @@ impl Sink for Rows {
         is_due(step, self.steps, self.rows)
     }
 
-    fn step_done(&mut self, _: &mut View) -> Result<ControlFlow<()>, SinkError> {
-        Ok(ControlFlow::Continue(()))
+    fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
+        let ends = view.simulation.state().step >= self.until;
+        Ok(if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }
 }
 
 /// Runs up to a step, as one of `steps` in all; gives the cause where the run stops.
 pub fn run_to(simulation: &mut Simulation, step: u64, steps: u64, rows: u64) -> Option<String> {
-    let mut sink = Rows { steps, rows };
+    let mut sink = Rows { until: step, steps, rows };
     let begun = simulation.state().step > 0;
     let sinks: &mut [&mut dyn Sink] = &mut [&mut sink];
     let ended = match begun {
-        true => ndda_solver::resume(simulation, step, sinks),
-        false => ndda_solver::run(simulation, step, sinks),
+        true => ndda_solver::resume(simulation, steps, sinks),
+        false => ndda_solver::run(simulation, steps, sinks),
     };
     ended.err().map(|error| error.to_string())
 }

@@ -9,8 +9,8 @@ use crate::search::{Found, text_of};
 
 /// Part of the scene's size and speed by which a twin is disturbed.
 const DISTURBED: f64 = 1e-9;
-/// What rounding is of that disturbance, in a scene and in each of a hundred steps: some 1e-13.
-const ROUNDING: f64 = 1e-3;
+/// What rounding is of that disturbance: 1e-13 of the size of coordinates, in each of a hundred steps.
+const ROUNDING: f64 = 1e-2;
 /// Growth of the disturbance beyond which nothing can be said.
 const CHAOS: f64 = 1e5;
 
@@ -44,7 +44,6 @@ pub fn compare(case: &Case, twin: &Scene, map: &Map, reorder: impl Fn(&Motion) -
     let mut start = build(&case.text).expect("it has been built");
     let (steps, length_m) = (ready.simulation.state().step, extent_m(&ready.simulation));
     let end = Motion::of(&ready.simulation);
-    let way_m_s = length_m / (steps as f64 * ready.simulation.step_s()).max(f64::MIN_POSITIVE);
     let first_m_s = Motion::of(&start.simulation).speed_m_s();
     let speed_m_s = end.speed_m_s().max(first_m_s).max(map.boost_m_s.norm());
     disturb(&mut start.simulation, DISTURBED * length_m, DISTURBED * speed_m_s);
@@ -59,11 +58,12 @@ pub fn compare(case: &Case, twin: &Scene, map: &Map, reorder: impl Fn(&Motion) -
     if disturbed_stop.is_some() {
         return Found::Skipped("stops when disturbed");
     }
-    let _ = way_m_s;
     let time_s = ready.simulation.time_s();
     let growth = end.apart(&Motion::of(&start.simulation), length_m, speed_m_s) / DISTURBED;
     let found = map.apply(&end, time_s).apart(&reorder(&Motion::of(&other.simulation)), length_m, speed_m_s);
-    let bound = ROUNDING * DISTURBED * (1.0 + growth);
+    let farthest_m = |motion: &Motion| motion.position.iter().map(|x| x.amax()).fold(length_m, f64::max);
+    let coordinates = farthest_m(&end).max(farthest_m(&reorder(&Motion::of(&other.simulation)))) / length_m;
+    let bound = ROUNDING * DISTURBED * (1.0 + growth) * coordinates;
     if found <= bound {
         Found::Holds
     } else if growth > CHAOS {
