@@ -212,7 +212,7 @@ fn turns(simulation: &Simulation) -> [Entry; 2] {
 }
 
 /// Whether anything comes and goes within a step.
-fn within_a_step(simulation: &Simulation) -> [Entry; 2] {
+fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
     let worst = simulation.invariants();
     let percent = |value: f64| 100.0 * value;
     let vibration = format!(
@@ -225,9 +225,15 @@ fn within_a_step(simulation: &Simulation) -> [Entry; 2] {
         percent(worst.unseen_speed),
         percent(SPEED)
     );
+    let damping = format!(
+        "the step does not resolve damping: velocities are wrong by up to {:.1} % of the largest, limit {:.0} %; reduce step_s",
+        percent(worst.damping_speed),
+        percent(SPEED)
+    );
     [
         warned("I8 vibration / speed", worst.vibration, MOST_VIBRATION, vibration),
         warned("I8 unseen / speed", worst.unseen_speed, SPEED, unseen),
+        warned("I8 damping / speed", worst.damping_speed, SPEED, damping),
     ]
 }
 

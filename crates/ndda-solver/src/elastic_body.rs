@@ -11,7 +11,8 @@ use crate::body::{
 use crate::for_each_block::{NodeSlices, Nodes};
 use crate::linear_solver::{Scratch, SolveError};
 use crate::shape::Shape;
-use crate::time_integrator::{StepDamping, StepWeights};
+use crate::stiffness_damping::{Filtered, StiffnessDamping};
+use crate::time_integrator::StepWeights;
 
 /// Memory of one block that deforms: sized once, written every step.
 pub struct ElasticBody {
@@ -37,6 +38,8 @@ pub struct ElasticBody {
     rotation: Mat3,
     pub(crate) unknowns: Vec<f64>,
     pub(crate) scratch: Scratch,
+    /// Memory for damping in proportion to stiffness.
+    pub(crate) damping: Option<Box<StiffnessDamping>>,
     report: BlockReport,
 }
 
@@ -61,6 +64,7 @@ impl ElasticBody {
             rotation: Mat3::identity(),
             unknowns: vec![0.0; shape.unknowns.len()],
             scratch: shape.factor.as_ref().map_or_else(Scratch::default, |f| f.new_scratch()),
+            damping: StiffnessDamping::new(shape),
             report: BlockReport::default(),
         }
     }
@@ -101,6 +105,9 @@ impl ElasticBody {
         self.report = BlockReport::default();
         self.place_correction(shape, context, &nodes.view());
         let rotation = self.rotation;
+        if let Some(damping) = &mut self.damping {
+            damping.note(&self.correction);
+        }
         self.update_internal_force(shape, &rotation, nodes.internal_force);
         if !shape.is_free() {
             self.collect_reactions(shape, context, &rotation, &nodes.view());
@@ -108,9 +115,6 @@ impl ElasticBody {
         self.turn_back(&rotation);
         if shape.is_free() {
             self.balance_momentum(shape, context, &nodes.view());
-        }
-        if !shape.damping.is_none() {
-            self.report_damping(shape, context, &rotation);
         }
         self.advance(shape, context, &mut nodes)?;
         Ok(self.report)
@@ -167,6 +171,9 @@ impl ElasticBody {
         self.rotation = rotation;
         self.gather_load(shape, context, &rotation, nodes);
         self.turn_into_frame(shape, &rotation, &center);
+        if let Some(damping) = &mut self.damping {
+            damping.load(shape, nodes.position, &self.displacement, &mut self.load)?;
+        }
         self.gather_residual(shape, context);
         self.prescribe(shape, context, &rotation, nodes.position);
         shape.unknowns.gather(&self.correction, &mut self.unknowns);
@@ -180,28 +187,11 @@ impl ElasticBody {
         self.finish_prescribed(shape, context, &self.rotation.clone(), nodes.position);
     }
 
-    /// Work −u·C u/Δt of damping, and the force and torque on the block as a whole, by which its mass is dragged.
-    fn report_damping(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3) {
-        let StepDamping { stiffness: b, mass_per_s2: a } = shape.damping;
-        let turned = |u: &Vec3| rotation.tr_mul(u);
-        for (i, u) in self.correction.iter().enumerate() {
-            let u = turned(u);
-            for (j, stiffness, mass) in shape.operator.row(i) {
-                let other = turned(&self.correction[j]);
-                self.report.damping_work_j -= u.dot(&(b * (stiffness * other) + a * mass * other));
-            }
-        }
-        let (operator, position) = (&shape.operator, context.contact_position);
-        self.report.reaction -= a * operator.momentum(&self.correction);
-        self.report.outside_torque -=
-            a * operator.angular_momentum(&Vec3::zeros(), position, &self.correction);
-    }
-
     /// û and x + û.
     fn predict(&mut self, context: &StepContext, nodes: &Nodes) {
         for (i, x) in nodes.position.iter().enumerate() {
             let (v, a) = (&nodes.velocity[i], &nodes.acceleration[i]);
-            self.predicted[i] = context.integrator.predict(context.dt_s, v, a);
+            self.predicted[i] = context.predict(v, a);
             self.displacement[i] = x + self.predicted[i];
         }
     }
@@ -226,9 +216,6 @@ impl ElasticBody {
         for load in &mut self.load {
             *load = rotation.tr_mul(load);
         }
-        if !shape.damping.is_none() {
-            self.drag(shape, rotation);
-        }
     }
 
     /// Force of the k-th spring at x + θ û [N]; what u adds to it is in K̃.
@@ -239,17 +226,6 @@ impl ElasticBody {
         let anchor = self.anchor[shape.supports.held.len() + k];
         let stretch = place - anchor - displacement_at(shape, spring.motion, context.theta_time_s());
         -spring.stiffness_n_m * along(spring.along.as_ref(), &stretch)
-    }
-
-    /// load ← load − C Rᵀ û/Δt; the rest of −C u/Δt is in K̃.
-    fn drag(&mut self, shape: &Shape, rotation: &Mat3) {
-        let StepDamping { stiffness: b, mass_per_s2: a } = shape.damping;
-        for (i, load) in self.load.iter_mut().enumerate() {
-            for (j, stiffness, mass) in shape.operator.row(i) {
-                let along = rotation.tr_mul(&self.predicted[j]);
-                *load -= b * (stiffness * along) + a * mass * along;
-            }
-        }
     }
 
     /// w = Rᵀ (x − c) − X for the positions in `displacement`.
@@ -279,7 +255,7 @@ impl ElasticBody {
     /// Moves the terms of prescribed motion to the right-hand side; nothing to do for supports at rest.
     fn prescribe(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, position: &[Vec3]) {
         let on_stiffness = context.weights.stiffness + shape.damping.stiffness;
-        let on_mass = context.weights.mass_per_s2 + shape.damping.mass_per_s2;
+        let on_mass = context.weights.mass_per_s2;
         for (k, held) in moved(shape) {
             let goal = self.prescribed_correction(shape, context, rotation, position, k);
             for (i, stiffness, mass) in shape.operator.row(held.node as usize) {
@@ -367,10 +343,10 @@ impl ElasticBody {
     /// Force on a node that its equation of motion lacks, in the block's frame [N].
     fn unbalanced(&self, shape: &Shape, context: &StepContext, node: usize) -> Vec3 {
         let StepWeights { stiffness: theta, mass_per_s2: c, .. } = context.weights;
-        let (a, b) = (c + shape.damping.mass_per_s2, shape.damping.stiffness);
+        let b = shape.damping.stiffness;
         let inertia = shape.operator.row(node).fold(Vec3::zeros(), |sum, (j, stiffness, mass)| {
             let drag = if b > 0.0 { b * (stiffness * self.correction[j]) } else { Vec3::zeros() };
-            sum + a * mass * self.correction[j] + drag
+            sum + c * mass * self.correction[j] + drag
         });
         inertia + theta * self.elastic[node] - self.load[node]
     }
@@ -423,25 +399,24 @@ impl ElasticBody {
         let (operator, c) = (&shape.operator, context.weights.mass_per_s2);
         let total: Vec3 = context.force.iter().sum();
         let had = operator.momentum(&self.correction) - operator.momentum(&self.predicted);
-        let drag = shape.damping.mass_per_s2;
-        let missing = total
-            - context.weights.old_inertia * context.inertia.force
-            - c * had
-            - drag * operator.momentum(&self.correction);
-        let shift = missing / ((c + drag) * operator.mass_kg);
+        let missing = total - context.weights.old_inertia * context.inertia.force - c * had;
+        let shift = missing / (c * operator.mass_kg);
         self.correction.iter_mut().for_each(|u| *u += shift);
 
         let center = operator.center(context.contact_position);
         let arms = context.contact_position.iter().zip(context.force);
         let mut torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
-        if drag > 0.0 {
-            torque -= drag * operator.angular_momentum(&center, context.contact_position, &self.correction);
-        }
-        if !context.weights.contact_in_the_middle() {
-            let drive = total - drag * operator.momentum(&self.correction);
+        let drag_moment = &mut self.report.drag_moment;
+        if context.weights.contact_in_the_middle() {
+            let place = || operator.center(nodes.position);
+            let old = || operator.angular_momentum(&place(), nodes.position, nodes.velocity);
+            *drag_moment = context.drag_moment(&torque, old);
+            torque += *drag_moment / context.dt_s;
+        } else {
             let gone = operator.momentum(&self.correction) / operator.mass_kg;
+            let motion = (nodes.position, nodes.velocity);
             (torque, self.report.inertia) =
-                whole_torque(shape, context, (nodes.position, nodes.velocity), &gone, (&drive, &torque));
+                whole_torque(shape, context, motion, &gone, (&total, &torque), drag_moment);
         }
         self.rigid.fill(Vec3::zeros());
         let mut inverse_inertia = None;
@@ -476,7 +451,7 @@ impl ElasticBody {
         for (i, u) in self.correction.iter().enumerate() {
             let (mut velocity, mut acceleration) = (nodes.velocity[i], nodes.acceleration[i]);
             let predicted = &self.predicted[i];
-            context.integrator.correct(context.dt_s, u, predicted, &mut velocity, &mut acceleration);
+            context.correct(u, predicted, &mut velocity, &mut acceleration);
             self.load[i] = velocity - nodes.velocity[i] + rate * self.rigid[i];
             self.displacement[i] = nodes.position[i] + 0.5 * (u + self.rigid[i]);
         }
@@ -506,7 +481,7 @@ impl ElasticBody {
         // v₁ and a₁ wait in `load` and `elastic`.
         for (i, u) in self.correction.iter_mut().enumerate() {
             let (mut v, mut a) = (nodes.velocity[i], nodes.acceleration[i]);
-            context.integrator.correct(context.dt_s, u, &self.predicted[i], &mut v, &mut a);
+            context.correct(u, &self.predicted[i], &mut v, &mut a);
             (self.load[i], self.elastic[i]) = (v + rate * self.rigid[i], a);
             *u += self.rigid[i];
         }
@@ -518,6 +493,7 @@ impl ElasticBody {
             self.load[i] += onto(&held.held, &(mean - v));
             self.elastic[i] -= onto(&held.held, &a);
         }
+        self.damp(shape, context, &nodes.view())?;
         self.report.speed_m_s = checked_speed(shape, &self.load)?;
         for (i, u) in self.correction.iter().enumerate() {
             nodes.position[i] += u;
@@ -525,6 +501,23 @@ impl ElasticBody {
         nodes.velocity.copy_from_slice(&self.load);
         nodes.acceleration.copy_from_slice(&self.elastic);
         self.report.book(shape, context, &self.correction);
+        Ok(())
+    }
+
+    /// Books damping, and filters what damping in proportion to stiffness leaves of the velocities in `load` and accelerations in `elastic`.
+    fn damp(&mut self, shape: &Shape, context: &StepContext, start: &Nodes) -> Result<(), BlockError> {
+        if let Some(damping) = &mut self.damping {
+            self.report.damping_work_j += damping.work_j(shape, &self.rotation, &self.correction);
+            for ((end, x), u) in self.displacement.iter_mut().zip(start.position).zip(&self.correction) {
+                *end = x + u;
+            }
+            let remembered = context.weights.needs_acceleration.then_some(&mut self.elastic[..]);
+            let Filtered { work_j, error_m_s } =
+                damping.filter(shape, start, &self.displacement, &mut self.load, remembered)?;
+            self.report.damping_work_j += work_j;
+            self.report.damping_error_m_s += error_m_s;
+        }
+        self.report.book_drag(shape, context, (&self.correction, start.velocity, &self.load));
         Ok(())
     }
 

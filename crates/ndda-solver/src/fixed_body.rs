@@ -50,6 +50,9 @@ impl FixedBody {
         let inertia = shape.operator.mass_kg * (velocity - old);
         report.motion_work_j = report.reaction.dot(&increment) + 0.5 * inertia.dot(&(velocity + old));
         report.reaction += inertia / context.dt_s;
+        // The support delivers what friction and changing loads take: their own work is booked as such.
+        report.friction_work_j = context.friction_force.iter().sum::<Vec3>().dot(&increment);
+        report.load_work_j = context.changing.iter().sum::<Vec3>().dot(&increment);
         report.speed_m_s = velocity.norm();
         for (x, anchor) in nodes.position.iter_mut().zip(&self.anchor) {
             *x = anchor + to;

@@ -120,6 +120,8 @@ pub struct Invariants {
     pub vibration: f64,
     /// I8: speed that loads and motions bring and take back within a step, over the largest speed.
     pub unseen_speed: f64,
+    /// I8: largest error of velocities that damping leaves in a step, over the largest speed.
+    pub damping_speed: f64,
     /// Most pairs looked at in a step.
     pub candidate_pairs_max: usize,
     /// Most pairs in contact in a step.
@@ -159,6 +161,7 @@ pub struct Ledger {
     largest_speed_m_s: f64,
     vibration: Vibration,
     unseen_m_s: f64,
+    damping_m_s: f64,
     rounding_j: f64,
     last_sample_s: f64,
     blocks: BlockBooks,
@@ -189,6 +192,7 @@ impl Ledger {
             turn_speed: 0.0,
             vibration: 0.0,
             unseen_speed: 0.0,
+            damping_speed: 0.0,
             candidate_pairs_max: 0,
             contact_pairs_max: 0,
             candidate_pairs_total: 0,
@@ -219,6 +223,7 @@ impl Ledger {
             largest_speed_m_s: 0.0,
             vibration: Vibration::default(),
             unseen_m_s: 0.0,
+            damping_m_s: 0.0,
             rounding_j: 0.0,
             last_sample_s: 0.0,
             blocks,
@@ -239,6 +244,14 @@ impl Ledger {
         self.angular_impulse += dt_s * weights.mean_inertia(&old_torque, &torque);
         self.last_force = (force, torque);
         self.load_impulse += dt_s * self.load_n;
+    }
+
+    /// Books impulse and angular impulse of damping in proportion to mass on a block, and the error of velocities that damping leaves
+    /// in the step [m/s].
+    pub fn add_drag(&mut self, impulse: Vec3, angular_impulse: Vec3, error_m_s: f64) {
+        self.impulse += impulse;
+        self.angular_impulse += angular_impulse;
+        self.damping_m_s = self.damping_m_s.max(error_m_s);
     }
 
     /// Counts a step that is taken back.
@@ -390,6 +403,7 @@ impl Ledger {
             turn_speed: speed(self.blocks.turned_m_s()),
             vibration: self.vibration.over(self.largest_speed_m_s),
             unseen_speed: speed(self.unseen_m_s),
+            damping_speed: speed(self.damping_m_s),
             ..self.worst
         }
     }

@@ -104,7 +104,8 @@ impl Simulation {
         let shape = &self.shapes[body.shape];
         let Some(elastic) = body.elastic() else { return Ok(found) };
         let motion = (&self.state.position[range.clone()], &self.state.velocity[range]);
-        let speed_m_s = match elastic.vibration_m_s(shape, (&self.weights, self.part_s), motion, known_m_s) {
+        let weights = shape.weights(&self.weights);
+        let speed_m_s = match elastic.vibration_m_s(shape, (&weights, self.part_s), motion, known_m_s) {
             Ok(speed_m_s) => speed_m_s,
             Err(source) => {
                 let block = self.blocks.names[block.index()].clone();

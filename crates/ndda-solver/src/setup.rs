@@ -22,7 +22,7 @@ use crate::shape::{BodySetup, Mass, SetupError, Shape};
 use crate::simulation::{Simulation, StageTimes, step_weights};
 use crate::state::State;
 use crate::step_control::{AutoStep, Control, StepState};
-use crate::time_integrator::{Inertia, StepDamping, StepWeights, TimeIntegrator};
+use crate::time_integrator::{Inertia, StepWeights, TimeIntegrator};
 
 /// Everything a simulation is made of.
 pub struct Setup {
@@ -105,6 +105,7 @@ impl Simulation {
             contact_has_acted: false,
             contact_position: blocks.rest_position.clone(),
             seen_position: Vec::new(),
+            has_damping: shapes.iter().any(|shape| shape.kind != BodyKind::Fixed && !shape.damping.is_none()),
             loose: 0.0,
             least_friction: contact.as_ref().map_or(0.0, |model| model.least_friction()),
             moved: vec![Vec3::zeros(); contact_nodes],
@@ -266,8 +267,7 @@ impl Simulation {
             if let Some(initial) = &elastic.initial_force {
                 load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
             }
-            let matrix =
-                shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, &StepDamping::default());
+            let matrix = shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, 0.0);
             let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor {
                 block: self.blocks.names[block.index()].clone(),
                 source,
