@@ -507,7 +507,7 @@ impl ElasticBody {
     /// Books damping, and filters what damping in proportion to stiffness leaves of the velocities in `load` and accelerations in `elastic`.
     fn damp(&mut self, shape: &Shape, context: &StepContext, start: &Nodes) -> Result<(), BlockError> {
         if let Some(damping) = &mut self.damping {
-            self.report.damping_work_j += damping.work_j(shape, &self.rotation, &self.correction);
+            self.report.damping_work_j += damping.work_j(shape);
             for ((end, x), u) in self.displacement.iter_mut().zip(start.position).zip(&self.correction) {
                 *end = x + u;
             }

@@ -91,10 +91,10 @@ impl StiffnessDamping {
         self.change.iter_mut().zip(correction).for_each(|(change, s)| *change += s);
     }
 
-    /// Work of the force over a step u, in the frame that the step was solved in [J].
-    pub fn work_j(&mut self, shape: &Shape, rotation: &Mat3, increment: &[Vec3]) -> f64 {
+    /// Work of the force in the step, −(w₁ − w₀)·b/Δt K (w₁ − w₀) [J]: never positive, and none where a block moves rigidly.
+    pub fn work_j(&mut self, shape: &Shape) -> f64 {
         shape.operator.stiffness_times(&self.change, &mut self.product);
-        let along = increment.iter().zip(&self.product).map(|(u, kw)| rotation.tr_mul(u).dot(kw));
+        let along = self.change.iter().zip(&self.product).map(|(change, kw)| change.dot(kw));
         -shape.damping.stiffness * along.sum::<f64>()
     }
 
