@@ -143,10 +143,10 @@ pub struct BlockReport {
     pub load_work_j: f64,
     /// Work of damping [J].
     pub damping_work_j: f64,
-    /// Impulse of damping in proportion to mass [kg m/s].
-    pub drag_impulse: Vec3,
-    /// Its moment about the origin [kg m²/s].
-    pub drag_moment: Vec3,
+    /// Impulses beside the forces, of damping and of prescribed velocities [kg m/s].
+    pub impulse: Vec3,
+    /// Their moment about the origin [kg m²/s].
+    pub impulse_moment: Vec3,
     /// Error of velocities that damping leaves in the step, mean square over the mass [m/s].
     pub damping_error_m_s: f64,
     /// Work of friction [J].
@@ -292,14 +292,14 @@ impl BlockReport {
             let momentum = |v: &[Vec3]| operator.mass_row_times(i, v);
             let force = drag.drag(&momentum(old), &momentum(new));
             self.damping_work_j += u.dot(&force);
-            self.drag_impulse += dt_s * force;
+            self.impulse += dt_s * force;
             if !shape.is_free() {
-                self.drag_moment += dt_s * context.contact_position[i].cross(&force);
+                self.impulse_moment += dt_s * context.contact_position[i].cross(&force);
             }
             square += operator.node_mass[i] * (new[i] - old[i]).norm_squared();
         }
         if shape.is_free() {
-            self.drag_moment += operator.center(context.contact_position).cross(&self.drag_impulse);
+            self.impulse_moment += operator.center(context.contact_position).cross(&self.impulse);
         }
         self.damping_error_m_s += drag.mean_velocity_error() * (square / operator.mass_kg).sqrt();
     }
@@ -310,7 +310,7 @@ impl BlockReport {
             self.outside_torque += (x + context.ahead).cross(f);
         }
         self.outside_torque += context.ahead.cross(&self.reaction);
-        self.drag_moment += context.ahead.cross(&self.drag_impulse);
+        self.impulse_moment += context.ahead.cross(&self.impulse);
         for (load, u) in context.changing.iter().zip(increment) {
             self.load_work_j += load.dot(u);
         }

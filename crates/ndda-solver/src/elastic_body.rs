@@ -11,7 +11,7 @@ use crate::body::{
 use crate::for_each_block::{NodeSlices, Nodes};
 use crate::linear_solver::{Scratch, SolveError};
 use crate::shape::Shape;
-use crate::stiffness_damping::{Filtered, StiffnessDamping};
+use crate::stiffness_damping::StiffnessDamping;
 use crate::time_integrator::StepWeights;
 
 /// Memory of one block that deforms: sized once, written every step.
@@ -406,7 +406,7 @@ impl ElasticBody {
         let center = operator.center(context.contact_position);
         let arms = context.contact_position.iter().zip(context.force);
         let mut torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
-        let drag_moment = &mut self.report.drag_moment;
+        let drag_moment = &mut self.report.impulse_moment;
         if context.weights.contact_in_the_middle() {
             let place = || operator.center(nodes.position);
             let old = || operator.angular_momentum(&place(), nodes.position, nodes.velocity);
@@ -485,15 +485,11 @@ impl ElasticBody {
             (self.load[i], self.elastic[i]) = (v + rate * self.rigid[i], a);
             *u += self.rigid[i];
         }
-        for (_, held) in moved(shape) {
-            // The mean velocity of the step does not ring where the table has a kink.
-            let i = held.node as usize;
-            let mean = self.correction[i] / context.dt_s;
-            let (v, a) = (self.load[i], self.elastic[i]);
-            self.load[i] += onto(&held.held, &(mean - v));
-            self.elastic[i] -= onto(&held.held, &a);
+        self.report.book_drag(shape, context, (&self.correction, nodes.velocity, &self.load));
+        if moved(shape).next().is_some() {
+            self.prescribe_velocities(shape, context, nodes.position);
         }
-        self.damp(shape, context, &nodes.view())?;
+        self.filter_velocities(shape, context, &nodes.view())?;
         self.report.speed_m_s = checked_speed(shape, &self.load)?;
         for (i, u) in self.correction.iter().enumerate() {
             nodes.position[i] += u;
@@ -504,21 +500,41 @@ impl ElasticBody {
         Ok(())
     }
 
-    /// Books damping, and filters what damping in proportion to stiffness leaves of the velocities in `load` and accelerations in `elastic`.
-    fn damp(&mut self, shape: &Shape, context: &StepContext, start: &Nodes) -> Result<(), BlockError> {
-        if let Some(damping) = &mut self.damping {
-            self.report.damping_work_j += damping.work_j(shape);
-            for ((end, x), u) in self.displacement.iter_mut().zip(start.position).zip(&self.correction) {
-                *end = x + u;
-            }
-            let remembered = context.weights.needs_acceleration.then_some(&mut self.elastic[..]);
-            let Filtered { work_j, error_m_s } =
-                damping.filter(shape, start, &self.displacement, &mut self.load, remembered)?;
-            self.report.damping_work_j += work_j;
-            self.report.damping_error_m_s += error_m_s;
+    /// Gives moved nodes the mean velocity of the step, which does not ring where the table has a kink. What that changes of momentum
+    /// and kinetic energy is an impulse and work of what moves them.
+    fn prescribe_velocities(&mut self, shape: &Shape, context: &StepContext, position: &[Vec3]) {
+        self.predicted.fill(Vec3::zeros());
+        for (_, held) in moved(shape) {
+            let i = held.node as usize;
+            let mean = self.correction[i] / context.dt_s;
+            self.predicted[i] = onto(&held.held, &(mean - self.load[i]));
+            let a = self.elastic[i];
+            self.elastic[i] -= onto(&held.held, &a);
         }
-        self.report.book_drag(shape, context, (&self.correction, start.velocity, &self.load));
-        Ok(())
+        for (i, change) in self.predicted.iter().enumerate() {
+            let impulse = shape.operator.mass_row_times(i, &self.predicted);
+            self.report.impulse += impulse;
+            self.report.impulse_moment += (position[i] + self.correction[i]).cross(&impulse);
+            self.report.motion_work_j += impulse.dot(&(self.load[i] + 0.5 * change));
+        }
+        self.load.iter_mut().zip(&self.predicted).for_each(|(v, change)| *v += change);
+    }
+
+    /// Filters what damping in proportion to stiffness leaves of the velocities in `load` and of the accelerations in `elastic`, and
+    /// books that damping.
+    fn filter_velocities(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        start: &Nodes,
+    ) -> Result<(), BlockError> {
+        let Some(damping) = &mut self.damping else { return Ok(()) };
+        self.report.damping_work_j += damping.work_j(shape);
+        for ((end, x), u) in self.displacement.iter_mut().zip(start.position).zip(&self.correction) {
+            *end = x + u;
+        }
+        let remembered = context.weights.needs_acceleration.then_some(&mut self.elastic[..]);
+        damping.filter(shape, start, &self.displacement, (&mut self.load, remembered), &mut self.report)
     }
 
     /// Elastic energy at `position`, ½ wᵀ K w + wᵀ ∫Bᵀσ₀ [J].

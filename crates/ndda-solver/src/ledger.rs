@@ -246,9 +246,9 @@ impl Ledger {
         self.load_impulse += dt_s * self.load_n;
     }
 
-    /// Books impulse and angular impulse of damping in proportion to mass on a block, and the error of velocities that damping leaves
-    /// in the step [m/s].
-    pub fn add_drag(&mut self, impulse: Vec3, angular_impulse: Vec3, error_m_s: f64) {
+    /// Books impulse and angular impulse on a block beside the forces, and the error of velocities that damping leaves in the step
+    /// [m/s].
+    pub fn add_impulses(&mut self, impulse: Vec3, angular_impulse: Vec3, error_m_s: f64) {
         self.impulse += impulse;
         self.angular_impulse += angular_impulse;
         self.damping_m_s = self.damping_m_s.max(error_m_s);

@@ -159,7 +159,7 @@ impl RigidBody {
         let center = shape.operator.center(context.contact_position);
         let arms = context.contact_position.iter().zip(context.force);
         let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
-        let drag_moment = &mut report.drag_moment;
+        let drag_moment = &mut report.impulse_moment;
         if context.weights.contact_in_the_middle() {
             let inertia = &shape.rigid.as_ref().expect("a rigid shape").inertia;
             *drag_moment = context.drag_moment(&torque, || start.rotation * (inertia * start.spin));

@@ -105,7 +105,7 @@ impl Simulation {
             contact_has_acted: false,
             contact_position: blocks.rest_position.clone(),
             seen_position: Vec::new(),
-            has_damping: shapes.iter().any(|shape| shape.kind != BodyKind::Fixed && !shape.damping.is_none()),
+            has_impulses: shapes.iter().any(Shape::has_impulses),
             loose: 0.0,
             least_friction: contact.as_ref().map_or(0.0, |model| model.least_friction()),
             moved: vec![Vec3::zeros(); contact_nodes],

@@ -256,6 +256,11 @@ impl Shape {
         self.kind != BodyKind::Fixed && self.supports.held.is_empty() && self.supports.springs.is_empty()
     }
 
+    /// Whether velocities of the block change by impulses beside the forces: those of damping, and of prescribed velocities.
+    pub fn has_impulses(&self) -> bool {
+        self.kind != BodyKind::Fixed && !(self.damping.is_none() && self.supports.motions.is_empty())
+    }
+
     /// What the books must know of the block.
     pub fn scale(&self) -> BlockScale {
         BlockScale {

@@ -99,8 +99,8 @@ pub struct Simulation {
     pub(crate) contact_position: Vec<Vec3>,
     /// Room for places that contact sees further ahead.
     pub(crate) seen_position: Vec<Vec3>,
-    /// Whether a material of a block that moves has damping.
-    pub(crate) has_damping: bool,
+    /// Whether blocks are damped, or nodes of them follow a prescribed motion.
+    pub(crate) has_impulses: bool,
     /// Part of contact forces whose direction is not known in this step, and that no friction bears.
     pub(crate) loose: f64,
     pub(crate) least_friction: f64,
@@ -366,8 +366,8 @@ impl Simulation {
         let h = self.part_s * rate2.sqrt();
         self.ledger.add_impulse(self.part_s, &self.weights, force, torque);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
-        if self.has_damping {
-            self.book_damping();
+        if self.has_impulses {
+            self.book_impulses();
         }
         self.book_work_of_contact(&contact);
         if self.loose > 0.0 {
@@ -397,10 +397,10 @@ impl Simulation {
         books.close_step();
     }
 
-    /// Books the impulses of damping in proportion to mass, and how well the step resolves damping.
-    fn book_damping(&mut self) {
+    /// Books the impulses of damping and of prescribed velocities, and how well the step resolves damping.
+    fn book_impulses(&mut self) {
         for report in self.bodies.iter().map(|body| &body.report) {
-            self.ledger.add_drag(report.drag_impulse, report.drag_moment, report.damping_error_m_s);
+            self.ledger.add_impulses(report.impulse, report.impulse_moment, report.damping_error_m_s);
         }
     }
 

@@ -15,7 +15,7 @@
 use ndda_fem::{BlockOperator, FrameError};
 use ndda_mesh::{Mat3, Vec3};
 
-use crate::body::BlockError;
+use crate::body::{BlockError, BlockReport};
 use crate::for_each_block::Nodes;
 use crate::linear_solver::{Factor, Scratch};
 use crate::shape::Shape;
@@ -32,14 +32,6 @@ pub struct StiffnessDamping {
     field: Vec<Vec3>,
     unknowns: Vec<f64>,
     scratch: Scratch,
-}
-
-/// What the filter did to the velocities of a block.
-pub struct Filtered {
-    /// Work on the block [J].
-    pub work_j: f64,
-    /// Error of velocities that damping leaves in a step, mean square over the mass [m/s].
-    pub error_m_s: f64,
 }
 
 impl StiffnessDamping {
@@ -98,7 +90,8 @@ impl StiffnessDamping {
         -shape.damping.stiffness * along.sum::<f64>()
     }
 
-    /// Filters velocities, and accelerations if they are remembered, at the end of a step that began as `start` and ends at `end`.
+    /// Filters velocities, and accelerations if they are remembered, at the end of a step that began as `start` and ends at `end`, and
+    /// books what that takes. The impulse is that of supports: a free block gets none.
     ///
     /// # Errors
     /// [`BlockError`] when the block has lost its shape, or the solver does not get there.
@@ -107,9 +100,9 @@ impl StiffnessDamping {
         shape: &Shape,
         start: &Nodes,
         end: &[Vec3],
-        velocity: &mut [Vec3],
-        acceleration: Option<&mut [Vec3]>,
-    ) -> Result<Filtered, BlockError> {
+        (velocity, acceleration): (&mut [Vec3], Option<&mut [Vec3]>),
+        report: &mut BlockReport,
+    ) -> Result<(), BlockError> {
         let operator = &shape.operator;
         let center = operator.center(end);
         let rotation = shape.supports.frame.rotation(operator, end, &center)?;
@@ -130,14 +123,16 @@ impl StiffnessDamping {
         if shape.is_free() {
             self.take_out_turn(operator, end, &rotation, &center);
         }
-        let mut work_j = 0.0;
         self.field.iter_mut().for_each(|d| *d = rotation * *d);
         for (i, d) in self.field.iter().enumerate() {
             let momentum = operator.mass_row_times(i, &self.field);
-            work_j += momentum.dot(&(0.5 * d - velocity[i]));
+            report.damping_work_j += momentum.dot(&(0.5 * d - velocity[i]));
+            report.impulse -= momentum;
+            report.impulse_moment -= end[i].cross(&momentum);
         }
         velocity.iter_mut().zip(&self.field).for_each(|(v, d)| *v -= d);
-        Ok(Filtered { work_j, error_m_s: (square / operator.mass_kg).sqrt() })
+        report.damping_error_m_s += (square / operator.mass_kg).sqrt();
+        Ok(())
     }
 
     /// a ← a − (2 D − D²) of its deforming part: what turns a block, and keeps its nodes on circles, deforms nothing.
