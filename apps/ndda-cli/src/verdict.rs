@@ -14,6 +14,8 @@ const PLACE: f64 = 0.1;
 /// Speed of vibrations that a step turns over, over the largest speed: θ² of one that turns by θ in a step. It is late by θ²/12 of
 /// each radian, as contact within its bound is.
 const MOST_VIBRATION: f64 = 12.0 * SPEED;
+/// Strain up to which a linear law is taken for true: terms of second order are half of it, 5 % of the stress.
+const MOST_STRAIN: f64 = 0.1;
 /// Travel of a step over the smallest height of all tetrahedra: two blocks that meet jump over one height together.
 const MOST_TRAVEL: f64 = 0.5;
 
@@ -67,6 +69,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
     let verdict = Verdict { value: Some(upright), limit: Some(0.0), verdict };
     entries.push(Entry::new("I7 smallest det F", verdict, fail, "an element is inside out".into()));
+    entries.push(strain(simulation));
     entries.extend(resolution(simulation));
     entries.extend(turns(simulation));
     entries.extend(within_a_step(simulation));
@@ -166,6 +169,18 @@ fn squeezed(simulation: &Simulation) -> [Entry; 2] {
         warned("I5 squeezed / height", place.value, PLACE, where_it_is),
         warned("I5 squeezed / speed", speed.value, SPEED, how_fast),
     ]
+}
+
+/// Whether strains are small enough for the linear law.
+fn strain(simulation: &Simulation) -> Entry {
+    let strain = simulation.invariants().largest_strain;
+    let reason = format!(
+        "strains reach {:.0} % in block `{}`, limit {:.0} %: the linear material law does not hold there; stiffen the block or reduce its load",
+        100.0 * strain.value,
+        name(simulation, strain),
+        100.0 * MOST_STRAIN
+    );
+    warned("I7 largest strain", strain.value, MOST_STRAIN, reason)
 }
 
 /// Whether steps are short enough for contact.

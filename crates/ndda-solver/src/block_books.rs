@@ -75,7 +75,7 @@ pub struct Worst {
 }
 
 impl Worst {
-    fn take(&mut self, value: f64, block: usize) {
+    pub(crate) fn take(&mut self, value: f64, block: usize) {
         if value > self.value {
             *self = Self { value, block: block as u32 };
         }

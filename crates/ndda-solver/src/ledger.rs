@@ -1,12 +1,15 @@
 //! The books of a run: energy, momentum, and the worst of everything that has a limit.
 
-use ndda_mesh::Vec3;
+use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::block_books::{BlockBooks, Worst};
 use crate::simulation::StepReport;
 use crate::step_control::StepCounts;
 use crate::time_integrator::{Inertia, StepWeights};
+
+/// Strain below which none is looked for: a tenth of what a linear law may bear.
+const LITTLE_STRAIN: f64 = 1e-2;
 
 /// Part of the largest speed of which it does not matter how much turns over in a step.
 const LITTLE: f64 = 1e-3;
@@ -107,6 +110,8 @@ pub struct Invariants {
     pub action_reaction: f64,
     /// I7: smallest det F.
     pub smallest_volume_ratio: f64,
+    /// I7: largest principal strain of an element at a sample, in the frame of its block; none below 0.01.
+    pub largest_strain: Worst,
     /// I8: h = ω_c Δt, ω_c² bounded by the row sums of the contact stiffness over nodal masses.
     pub max_h: f64,
     /// I8: travel of a step over the smallest tet height of all blocks.
@@ -186,6 +191,7 @@ impl Ledger {
             squeezed_place: Worst::default(),
             action_reaction: 0.0,
             smallest_volume_ratio: 1.0,
+            largest_strain: Worst::default(),
             max_h: 0.0,
             max_travel_ratio: 0.0,
             turn_place: Worst::default(),
@@ -313,6 +319,18 @@ impl Ledger {
         let speed_m_s = self.largest_speed_m_s;
         if die_out || found.over(speed_m_s) > self.vibration.over(speed_m_s) {
             self.vibration = found;
+        }
+    }
+
+    /// The largest strain so far, or one that does not matter.
+    pub fn largest_strain(&self) -> f64 {
+        self.worst.largest_strain.value.max(LITTLE_STRAIN)
+    }
+
+    /// Keeps the largest strain, if it matters.
+    pub fn watch_strain(&mut self, strain: f64, block: BlockId) {
+        if strain > LITTLE_STRAIN {
+            self.worst.largest_strain.take(strain, block.index());
         }
     }
 
