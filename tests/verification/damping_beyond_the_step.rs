@@ -66,14 +66,18 @@ fn damping_on_mass_is_exact_for_any_step_integrator_and_body() {
                 }
                 simulation.sample().unwrap();
                 let invariants = simulation.invariants();
-                assert!(invariants.linear_momentum < 1e-12, "{integrator}, {body}: {invariants:?}");
-                let accurate = verdict::label(&simulation, None).word == LabelWord::Accurate;
-                assert_eq!(accurate, !tells, "a Δt = {z}, {integrator}, {body}");
+                // The impulse of drag is a Δt times velocities that are known to rounding.
+                assert!(
+                    invariants.linear_momentum < 1e-12 + 1e-14 * z,
+                    "{integrator}, {body}: {invariants:?}"
+                );
+                let resolved = invariants.damping_speed <= 0.01;
+                assert_eq!(resolved, !tells, "a Δt = {z}, {integrator}, {body}");
             }
         }
         let what =
             format!("largest error of e^(−a t) at a Δt = {z:e}, five integrators, three kinds of bodies");
-        row("F7", &what, worst, AtMost(1e-11));
+        row("damping", &what, worst, AtMost(1e-11));
     }
 }
 
@@ -87,12 +91,12 @@ fn damping_on_stiffness_falls_monotonically_however_long_the_step() {
         for integrator in PLAIN.iter().chain(&REMEMBERING) {
             let damping = format!("stiffness_s: {:e}", z / (omega2 * step_s));
             let mut simulation = cube(step_s, integrator, "Affine", young_pa, &damping, "");
-            stretch(&mut simulation, 1e-6);
-            let (mut last, y) = (1e-6, 0.5 * z);
+            stretch(&mut simulation, 1e-3);
+            let (mut last, y) = (1e-3, 0.5 * z);
             for _ in 0..12 {
                 simulation.step().unwrap();
                 let rate = stretching(&simulation).0;
-                rise = rise.max((rate - last).max(-rate) / 1e-6);
+                rise = rise.max((rate - last).max(-rate) / 1e-3);
                 if PLAIN.contains(integrator) {
                     let left = (1.0 + 3.0 * y) / ((1.0 + y) * (1.0 + 2.0 * y).powi(2));
                     assert!((rate / last - left).abs() < 1e-6, "z = {z}: {} and {left}", rate / last);
@@ -100,14 +104,14 @@ fn damping_on_stiffness_falls_monotonically_however_long_the_step() {
                 }
                 last = rate;
                 // Later the creep of the strain shows, at a rate of 1/b.
-                if last < 1e-9 {
+                if last < 1e-6 {
                     break;
                 }
             }
         }
     }
     row(
-        "F7",
+        "damping",
         "most that a rate of strain grows or turns over, b ω² Δt from 1e-2 to 1e6, of the first",
         rise,
         AtMost(1e-9),
@@ -139,13 +143,13 @@ fn a_damped_vibration_converges_with_the_square_of_the_step() {
     };
     let errors = [100, 200, 400].map(error);
     row(
-        "F7",
+        "damping",
         "error of a damped vibration after 4 rad, 400 steps, over its amplitude",
         errors[2],
         AtMost(5e-5),
     );
     let order = (errors[1] / errors[2]).log2();
-    row("F7", "order of a damped vibration in the step", order, Near(2.0, 0.1));
+    row("damping", "order of a damped vibration in the step", order, Near(2.0, 0.1));
 }
 
 #[test]
@@ -174,15 +178,20 @@ fn damping_on_stiffness_does_no_work_on_a_spinning_boulder() {
             let what = |what: &str| format!("{what} of its kinetic energy, {body}, b = {b} s, {integrator}");
             let work = (last.damping_work_j - first_j).abs() / start.kinetic_j;
             row(
-                "F11",
+                "damping",
                 &what("work of stiffness damping on a boulder that spins for 0.67 s"),
                 work,
                 AtMost(1e-10),
             );
-            row("F11", &what("most that its energy grows in 10 ms"), growth / start.kinetic_j, AtMost(1e-10));
+            row(
+                "damping",
+                &what("most that its energy grows in 10 ms"),
+                growth / start.kinetic_j,
+                AtMost(1e-10),
+            );
             // All that damping may take is what the spin stores as strain: ρ ω² r²/E of the kinetic energy, 5e-6 here.
             let transient = first_j.abs() / start.kinetic_j;
-            row("F11", &what("work of damping until it turns steadily"), transient, AtMost(5e-6));
+            row("damping", &what("work of damping until it turns steadily"), transient, AtMost(5e-6));
             let worst = simulation.invariants();
             assert!(worst.angular_momentum < 1e-11 && worst.linear_momentum < 1e-11, "{worst:?}");
             assert_eq!(verdict::label(&simulation, None).word, LabelWord::Accurate, "{body}, b = {b}");
@@ -211,7 +220,7 @@ fn strong_stiffness_damping_raises_no_false_alarm_of_energy() {
         let worst = simulation.invariants();
         let off = worst.energy_gain.max(worst.energy_loss);
         row(
-            "F11",
+            "damping",
             &format!("energy from nowhere in a bar pulled at once, b = {b:e} s, of the largest"),
             off,
             AtMost(1e-9),

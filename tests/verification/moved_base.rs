@@ -77,7 +77,7 @@ fn energy_is_accounted_for_on_moved_bases() {
         let what = format!(
             "energy from nowhere over the work of the base, {name}, three laws, four pairs of bodies"
         );
-        row("F10", &what, worst, AtMost(1e-10));
+        row("moved base", &what, worst, AtMost(1e-10));
     }
 }
 
@@ -100,7 +100,7 @@ fn a_block_clamped_between_moved_plates_balances_to_rounding() {
         let (_, sample) = balance(&mut simulation, 5000);
         let off = sample.balance_j.abs() / sample.motion_work_j.abs();
         row(
-            "F10",
+            "moved base",
             &format!("energy from nowhere over the work of the plates of a clamp{law}"),
             off,
             AtMost(1e-10),
@@ -121,7 +121,7 @@ fn the_toppling_template_is_accurate() {
     let label = verdict::label(&simulation, None);
     assert_eq!(label.word, LabelWord::Accurate, "{:?}", label.reasons);
     row(
-        "F10",
+        "moved base",
         "lasting change of energy of the toppling template",
         simulation.invariants().lasting_loss,
         AtMost(1e-3),
