@@ -108,6 +108,7 @@ impl StepContext<'_> {
     }
 
     /// û, the displacement of the step as far as it is known beforehand [m].
+    #[inline]
     pub(crate) fn predict(&self, velocity: &Vec3, acceleration: &Vec3) -> Vec3 {
         match &self.drag {
             None => self.integrator.predict(self.dt_s, velocity, acceleration),
@@ -116,6 +117,7 @@ impl StepContext<'_> {
     }
 
     /// Velocity and acceleration at the end of the step from u and û.
+    #[inline]
     pub(crate) fn correct(&self, increment: &Vec3, predicted: &Vec3, v: &mut Vec3, a: &mut Vec3) {
         match &self.drag {
             None => self.integrator.correct(self.dt_s, increment, predicted, v, a),
