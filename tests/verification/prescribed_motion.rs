@@ -63,3 +63,27 @@ fn a_block_that_is_taken_along_has_the_energy_of_the_work_done_on_it() {
     );
     row("motion", "energy from nowhere over it", sample.balance_j.abs() / kinetic_j, AtMost(1e-12));
 }
+
+#[test]
+fn a_table_that_starts_late_holds_the_block_until_then_and_may_not_begin_with_a_jump() {
+    let late = |first: &str| {
+        SCENE.replace(
+            "(time_s: 0, displacement_m: (0, 0, 0))",
+            &format!("(time_s: 0.05, displacement_m: {first})"),
+        )
+    };
+    let mut simulation = simulation(&late("(0, 0, 0)"));
+    for (steps, exact) in [(50, 0.0), (25, 0.01), (25, 0.02)] {
+        for _ in 0..steps {
+            simulation.step().unwrap();
+        }
+        let off = crate::displacements(&simulation).iter().map(|u| (u.x - exact).abs()).fold(0.0, f64::max);
+        let what =
+            format!("distance from a table that starts at 0.05 s, at t = {:.3} s [m]", simulation.time_s());
+        row("motion", &what, off, AtMost(1e-15));
+    }
+    // From (0.001, 0, 0) on at 0.05 s: the block would leap there in the first step, at 1 m/s.
+    let refused = ndda_io::read::load_text("case.ron", &late("(0.001, 0, 0)"), &[], None);
+    let message = refused.err().expect("a jump is refused").to_string();
+    assert!(message.contains("the motion does not begin where the block is"), "{message}");
+}

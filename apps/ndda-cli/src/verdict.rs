@@ -16,6 +16,8 @@ const PLACE: f64 = 0.1;
 /// Speed of vibrations that a step turns over, over the largest speed: θ² of one that turns by θ in a step. It is late by θ²/12 of
 /// each radian, as contact within its bound is.
 const MOST_VIBRATION: f64 = 12.0 * SPEED;
+/// Strain up to which a linear law is taken for true: terms of second order are half of it, 5 % of the stress.
+const MOST_STRAIN: f64 = 0.1;
 /// Relative travel of two blocks that may meet in a step, over the width of the thinner one.
 const MOST_TRAVEL: f64 = 0.5;
 
@@ -70,6 +72,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
     let verdict = Verdict { value: Some(upright), limit: Some(0.0), verdict };
     entries.push(Entry::new("I7 smallest det F", verdict, fail, "an element is inside out".into()));
+    entries.push(strain(simulation));
     entries.extend(resolution(simulation));
     entries.extend(turns(simulation));
     entries.extend(within_a_step(simulation));
@@ -186,6 +189,18 @@ fn squeezed(simulation: &Simulation) -> [Entry; 2] {
     ]
 }
 
+/// Whether strains are small enough for the linear law.
+fn strain(simulation: &Simulation) -> Entry {
+    let strain = simulation.invariants().largest_strain;
+    let reason = format!(
+        "strains reach {:.0} % in block `{}`, limit {:.0} %: the linear material law does not hold there; stiffen the block or reduce its load",
+        100.0 * strain.value,
+        name(simulation, strain),
+        100.0 * MOST_STRAIN
+    );
+    warned("I7 largest strain", strain.value, MOST_STRAIN, reason)
+}
+
 /// Whether steps are short enough for contact.
 fn resolution(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
@@ -254,7 +269,7 @@ fn lumped_rotation(simulation: &Simulation) -> [Entry; 2] {
 }
 
 /// Whether anything comes and goes within a step.
-fn within_a_step(simulation: &Simulation) -> [Entry; 2] {
+fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
     let worst = simulation.invariants();
     let percent = |value: f64| 100.0 * value;
     let vibration = format!(
@@ -267,9 +282,15 @@ fn within_a_step(simulation: &Simulation) -> [Entry; 2] {
         percent(worst.unseen_speed),
         percent(SPEED)
     );
+    let damping = format!(
+        "the step does not resolve damping: velocities are wrong by up to {:.1} % of the largest, limit {:.0} %; reduce step_s",
+        percent(worst.damping_speed),
+        percent(SPEED)
+    );
     [
         warned("I8 vibration / speed", worst.vibration, MOST_VIBRATION, vibration),
         warned("I8 unseen / speed", worst.unseen_speed, SPEED, unseen),
+        warned("I8 damping / speed", worst.damping_speed, SPEED, damping),
     ]
 }
 

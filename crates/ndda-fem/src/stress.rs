@@ -46,6 +46,18 @@ pub fn smallest_volume_ratio(operator: &BlockOperator, position: &[Vec3]) -> (f6
     ratios.fold((f64::INFINITY, 0), smaller)
 }
 
+/// Largest principal strain, by absolute value, over the elements: an eigenvalue of ½ (∇w + ∇wᵀ) for w in the block's frame [m]. Parts that turn by θ
+/// against the frame show 1 − cos θ.
+pub fn largest_strain(operator: &BlockOperator, displacement: &[Vec3]) -> f64 {
+    let strain = |tet: &[u32; 4]| {
+        let element = Tet4::new(&tet.map(|n| operator.rest[n as usize]));
+        let [xx, yy, zz, xy, yz, zx] = *element.strain(&tet.map(|n| displacement[n as usize])).as_ref();
+        let (xy, yz, zx) = (0.5 * xy, 0.5 * yz, 0.5 * zx);
+        Mat3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz).symmetric_eigenvalues().amax()
+    };
+    operator.tets.iter().map(strain).fold(0.0, f64::max)
+}
+
 /// Volume of the block at these positions [m³].
 pub fn volume_m3(operator: &BlockOperator, position: &[Vec3]) -> f64 {
     let center = operator.center(position);
@@ -68,6 +80,11 @@ mod tests {
         let initial = Voigt::new(0.0, 0.0, 5.0, 0.0, 0.0, 0.0);
         cauchy_stress(&operator, &rock, &[initial], &quarter, &w, &mut stress);
         assert!((stress[0][1] - 1e6).abs() < 1e-6 && stress[0][0].abs() < 1e-6 && stress[0][2] == 5.0);
+
+        assert!((largest_strain(&operator, &w) - 1e-3).abs() < 1e-15);
+        // Pure shear: γ = 2e-3 has the principal strains ± 1e-3.
+        let w: Vec<Vec3> = operator.rest.iter().map(|x| Vec3::new(2e-3 * x.y, 0.0, 0.0)).collect();
+        assert!((largest_strain(&operator, &w) - 1e-3).abs() < 1e-15);
 
         let half: Vec<Vec3> = nodes.iter().map(|x| Vec3::new(x.x, 0.5 * x.y, x.z)).collect();
         assert_eq!(smallest_volume_ratio(&operator, &half), (0.5, 0));

@@ -416,11 +416,12 @@ impl Check<'_> {
             let message = "times must increase from row to row";
             self.error(format!("{path}[0][{i}].time_s"), message, "sort the rows by time_s");
         }
-        if rows.first().is_some_and(|row| row.time_s <= 0.0 && row.displacement_m != [0.0; 3]) {
+        // The first row holds before its time, too: anything but zero moves the block in the very first step.
+        if rows.first().is_some_and(|row| row.displacement_m != [0.0; 3]) {
             self.misfit(
                 path,
-                "the motion does not begin at rest",
-                "let it start with displacement_m: (0, 0, 0)",
+                "the motion does not begin where the block is",
+                "let the first row have displacement_m: (0, 0, 0), at the time at which the motion starts",
             );
         }
         rows.iter().for_each(|row| self.numbers(path, &row.displacement_m));

@@ -411,7 +411,7 @@ pub enum Hold {
     Normal,
     /// The component along a direction.
     Direction([f64; 3]),
-    /// All three components follow a displacement, linear between rows and constant after the last.
+    /// All three components follow a displacement: zero up to the first row, linear between rows, constant after the last.
     Motion(Vec<MotionRow>),
     /// All three components follow a record of accelerations, from rest: a shaken base. Acceleration is linear between rows
     /// and zero after the last.
@@ -433,7 +433,7 @@ pub enum Hold {
 pub struct MotionRow {
     /// Time [s].
     pub time_s: f64,
-    /// Displacement since the start [m].
+    /// Displacement since the start [m]; zero in the first row.
     pub displacement_m: [f64; 3],
 }
 

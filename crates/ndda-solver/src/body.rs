@@ -9,6 +9,7 @@ use crate::elastic_body::ElasticBody;
 use crate::fixed_body::FixedBody;
 use crate::for_each_block::{NodeSlices, Nodes};
 use crate::linear_solver::{Factor, SolveError};
+use crate::mass_damping::MassDamping;
 use crate::rigid_body::RigidBody;
 use crate::shape::Shape;
 use crate::squeeze::Sideways;
@@ -82,7 +83,9 @@ pub enum BlockError {
 pub struct StepContext<'a> {
     /// The integrator.
     pub integrator: &'a dyn TimeIntegrator,
-    /// Its weights for this step.
+    /// Damping in proportion to mass.
+    pub drag: Option<MassDamping>,
+    /// The integrator's weights for this step and block.
     pub weights: StepWeights,
     /// Δt [s].
     pub dt_s: f64,
@@ -128,6 +131,30 @@ impl StepContext<'_> {
             shape.operator.center(self.contact_position)
         }
     }
+
+    /// û, the displacement of the step as far as it is known beforehand [m].
+    #[inline]
+    pub(crate) fn predict(&self, velocity: &Vec3, acceleration: &Vec3) -> Vec3 {
+        match &self.drag {
+            None => self.integrator.predict(self.dt_s, velocity, acceleration),
+            Some(drag) => drag.predict(self.integrator, self.dt_s, velocity, acceleration),
+        }
+    }
+
+    /// Velocity and acceleration at the end of the step from u and û.
+    #[inline]
+    pub(crate) fn correct(&self, increment: &Vec3, predicted: &Vec3, v: &mut Vec3, a: &mut Vec3) {
+        match &self.drag {
+            None => self.integrator.correct(self.dt_s, increment, predicted, v, a),
+            Some(drag) => drag.correct(self.integrator, (self.dt_s, increment, predicted), v, a),
+        }
+    }
+
+    /// Moment by which drag changes an angular momentum `old` [kg m²/s] in a step under a torque.
+    pub(crate) fn drag_moment(&self, torque: &Vec3, old: impl FnOnce() -> Vec3) -> Vec3 {
+        let impulse = self.dt_s * torque;
+        self.drag.map_or_else(Vec3::zeros, |drag| drag.gain(&old(), &impulse) - impulse)
+    }
 }
 
 /// What a block reports of its step.
@@ -148,6 +175,12 @@ pub struct BlockReport {
     pub load_work_j: f64,
     /// Work of damping [J].
     pub damping_work_j: f64,
+    /// Impulses beside the forces, of damping and of prescribed velocities [kg m/s].
+    pub impulse: Vec3,
+    /// Their moment about the origin [kg m²/s].
+    pub impulse_moment: Vec3,
+    /// Error of velocities that damping leaves in the step, mean square over the mass [m/s].
+    pub damping_error_m_s: f64,
     /// Work of friction [J].
     pub friction_work_j: f64,
     /// Fastest node [m/s].
@@ -199,12 +232,15 @@ impl Body {
     }
 
     /// Memory of solves for another factor of the same matrix structure.
-    pub fn renew_scratch(&mut self, factor: &dyn Factor) {
+    pub fn renew_scratch(&mut self, factor: &dyn Factor, filter: Option<&dyn Factor>) {
         if let Some(batch) = &mut self.batch {
             **batch = Batch::new(factor);
         }
         if let Some(body) = self.elastic() {
             body.scratch = factor.new_scratch();
+            if let (Some(damping), Some(filter)) = (&mut body.damping, filter) {
+                damping.renew_scratch(filter);
+            }
         }
     }
 
@@ -273,6 +309,33 @@ impl Body {
 }
 
 impl BlockReport {
+    /// Work, impulse and error of damping in proportion to mass, which acts on the block as a whole, too. Its moment is that of its forces
+    /// at x*; a free block has noted that about its mass centre already, and all of it where contact is not taken in the middle of a step.
+    pub(crate) fn book_drag(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        (increment, old, new): (&[Vec3], &[Vec3], &[Vec3]),
+    ) {
+        let Some(drag) = &context.drag else { return };
+        let (operator, dt_s) = (&shape.operator, context.dt_s);
+        let mut square = 0.0;
+        for (i, u) in increment.iter().enumerate() {
+            let momentum = |v: &[Vec3]| operator.mass_row_times(i, v);
+            let force = drag.drag(&momentum(old), &momentum(new));
+            self.damping_work_j += u.dot(&force);
+            self.impulse += dt_s * force;
+            if !shape.is_free() {
+                self.impulse_moment += dt_s * context.contact_position[i].cross(&force);
+            }
+            square += operator.node_mass[i] * (new[i] - old[i]).norm_squared();
+        }
+        if shape.is_free() && context.weights.contact_in_the_middle() {
+            self.impulse_moment += operator.center(context.contact_position).cross(&self.impulse);
+        }
+        self.damping_error_m_s += drag.mean_velocity_error() * (square / operator.mass_kg).sqrt();
+    }
+
     /// Torque of loads, work of friction and of changing loads, the contact rate of a step u [m], and what squeezes the block.
     pub(crate) fn book(&mut self, shape: &Shape, context: &StepContext, increment: &[Vec3]) {
         let point = context.moment_point(shape) - context.ahead;
@@ -280,6 +343,7 @@ impl BlockReport {
             self.outside_torque += (x - point).cross(f);
         }
         self.outside_torque += context.ahead.cross(&self.reaction);
+        self.impulse_moment += context.ahead.cross(&self.impulse);
         for (load, u) in context.changing.iter().zip(increment) {
             self.load_work_j += load.dot(u);
         }

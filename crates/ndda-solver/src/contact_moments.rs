@@ -100,16 +100,20 @@ pub(crate) struct Path {
 }
 
 /// The mean torque about the mass centre that changes the spin in a step, `force` and `torque` being those of loads and contact; reports
-/// M a at the end of the step and the orbital moment of the loads.
+/// M a at the end of the step and the orbital moment of the loads. Damping in proportion to mass acts on the angular momentum about the
+/// mass centre that `spin` gives, and along the path; its moments are reported as impulses of their own.
 pub(crate) fn spin_torque(
     shape: &Shape,
     context: &StepContext,
     path: &Path,
     (force, torque): (&Vec3, &Vec3),
+    spin: impl FnOnce() -> Vec3,
     report: &mut BlockReport,
 ) -> Vec3 {
     let (weights, dt_s, old) = (&context.weights, context.dt_s, &context.inertia);
-    let (beta, gamma) = (weights.beta(dt_s), weights.new_force);
+    // The integrator's own β: damping in proportion to mass changes the weights of this block.
+    let beta = if context.drag.is_none() { weights.beta(dt_s) } else { context.integrator.weights(dt_s).beta(dt_s) };
+    let gamma = weights.new_force;
     // (½ − γ + β) A₀ + (γ − β) A₁, and (½ γ − β) Δt²/m.
     let after_start = |a0: &Vec3, a1: &Vec3| (0.5 - gamma + beta) * a0 + (gamma - beta) * a1;
     let cross = (0.5 * gamma - beta) * dt_s * dt_s / shape.operator.mass_kg;
@@ -135,7 +139,18 @@ pub(crate) fn spin_torque(
         - dt_s * after_start(&old.carried, &new.carried)
         + cross * (old.force.cross(&new.force) - load0.cross(&load1));
     let mean = weights.mean_inertia(&old.torque, &new.torque);
+    let drag_moment = context.drag_moment(&mean, spin);
+    report.impulse_moment += drag_moment;
+    if let Some(drag) = &context.drag {
+        let impulse = dt_s * weights.mean_inertia(&old.force, &new.force);
+        let undamped = path.center.cross(&impulse)
+            + dt_s * dt_s * path.velocity_m_s.cross(&after_start(&old.force, &new.force))
+            + dt_s * cross * old.force.cross(&new.force);
+        let before = shape.operator.mass_kg * path.velocity_m_s;
+        let gain = drag.gain(&before, &impulse);
+        report.impulse_moment += path.center.cross(&gain) + path.gone.cross(&(before + gain)) - undamped;
+    }
     new.lag += path.gone.cross(&new.contact) - dt_s * new.carried;
     report.inertia = new;
-    mean - misfit
+    mean - misfit + drag_moment / dt_s
 }

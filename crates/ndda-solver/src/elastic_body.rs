@@ -10,7 +10,8 @@ use crate::contact_moments::{Path, spin_torque};
 use crate::for_each_block::{NodeSlices, Nodes};
 use crate::linear_solver::{Scratch, SolveError};
 use crate::shape::Shape;
-use crate::time_integrator::{StepDamping, StepWeights};
+use crate::stiffness_damping::StiffnessDamping;
+use crate::time_integrator::StepWeights;
 
 /// Memory of one block that deforms: sized once, written every step.
 pub struct ElasticBody {
@@ -36,6 +37,8 @@ pub struct ElasticBody {
     rotation: Mat3,
     pub(crate) unknowns: Vec<f64>,
     pub(crate) scratch: Scratch,
+    /// Memory for damping in proportion to stiffness.
+    pub(crate) damping: Option<Box<StiffnessDamping>>,
     report: BlockReport,
 }
 
@@ -60,6 +63,7 @@ impl ElasticBody {
             rotation: Mat3::identity(),
             unknowns: vec![0.0; shape.unknowns.len()],
             scratch: shape.factor.as_ref().map_or_else(Scratch::default, |f| f.new_scratch()),
+            damping: StiffnessDamping::new(shape),
             report: BlockReport::default(),
         }
     }
@@ -100,6 +104,9 @@ impl ElasticBody {
         self.report = BlockReport::default();
         self.place_correction(shape, context, &nodes.view());
         let rotation = self.rotation;
+        if let Some(damping) = &mut self.damping {
+            damping.note(&self.correction);
+        }
         self.update_internal_force(shape, &rotation, nodes.internal_force);
         if !shape.is_free() {
             self.collect_reactions(shape, context, &rotation, &nodes.view());
@@ -107,9 +114,6 @@ impl ElasticBody {
         self.turn_back(&rotation);
         if shape.is_free() {
             self.balance_momentum(shape, context, &nodes.view());
-        }
-        if !shape.damping.is_none() {
-            self.report_damping(shape, context, &rotation);
         }
         self.advance(shape, context, &mut nodes)?;
         Ok(self.report)
@@ -166,6 +170,9 @@ impl ElasticBody {
         self.rotation = rotation;
         self.gather_load(shape, context, &rotation, nodes);
         self.turn_into_frame(shape, &rotation, &center);
+        if let Some(damping) = &mut self.damping {
+            damping.load(shape, nodes.position, &self.displacement, &mut self.load)?;
+        }
         self.gather_residual(shape, context);
         self.prescribe(shape, context, &rotation, nodes.position);
         shape.unknowns.gather(&self.correction, &mut self.unknowns);
@@ -179,28 +186,11 @@ impl ElasticBody {
         self.finish_prescribed(shape, context, &self.rotation.clone(), nodes.position);
     }
 
-    /// Work −u·C u/Δt of damping, and the force and torque on the block as a whole, by which its mass is dragged.
-    fn report_damping(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3) {
-        let StepDamping { stiffness: b, mass_per_s2: a } = shape.damping;
-        let turned = |u: &Vec3| rotation.tr_mul(u);
-        for (i, u) in self.correction.iter().enumerate() {
-            let u = turned(u);
-            for (j, stiffness, mass) in shape.operator.row(i) {
-                let other = turned(&self.correction[j]);
-                self.report.damping_work_j -= u.dot(&(b * (stiffness * other) + a * mass * other));
-            }
-        }
-        let (operator, position) = (&shape.operator, context.contact_position);
-        self.report.reaction -= a * operator.momentum(&self.correction);
-        let point = context.moment_point(shape);
-        self.report.outside_torque -= a * operator.angular_momentum(&point, position, &self.correction);
-    }
-
     /// û and x + û.
     fn predict(&mut self, context: &StepContext, nodes: &Nodes) {
         for (i, x) in nodes.position.iter().enumerate() {
             let (v, a) = (&nodes.velocity[i], &nodes.acceleration[i]);
-            self.predicted[i] = context.integrator.predict(context.dt_s, v, a);
+            self.predicted[i] = context.predict(v, a);
             self.displacement[i] = x + self.predicted[i];
         }
     }
@@ -225,9 +215,6 @@ impl ElasticBody {
         for load in &mut self.load {
             *load = rotation.tr_mul(load);
         }
-        if !shape.damping.is_none() {
-            self.drag(shape, rotation);
-        }
     }
 
     /// Force of the k-th spring at x + θ û [N]; what u adds to it is in K̃.
@@ -238,17 +225,6 @@ impl ElasticBody {
         let anchor = self.anchor[shape.supports.held.len() + k];
         let stretch = place - anchor - displacement_at(shape, spring.motion, context.theta_time_s());
         -spring.stiffness_n_m * along(spring.along.as_ref(), &stretch)
-    }
-
-    /// load ← load − C Rᵀ û/Δt; the rest of −C u/Δt is in K̃.
-    fn drag(&mut self, shape: &Shape, rotation: &Mat3) {
-        let StepDamping { stiffness: b, mass_per_s2: a } = shape.damping;
-        for (i, load) in self.load.iter_mut().enumerate() {
-            for (j, stiffness, mass) in shape.operator.row(i) {
-                let along = rotation.tr_mul(&self.predicted[j]);
-                *load -= b * (stiffness * along) + a * mass * along;
-            }
-        }
     }
 
     /// w = Rᵀ (x − c) − X for the positions in `displacement`.
@@ -278,7 +254,7 @@ impl ElasticBody {
     /// Moves the terms of prescribed motion to the right-hand side; nothing to do for supports at rest.
     fn prescribe(&mut self, shape: &Shape, context: &StepContext, rotation: &Mat3, position: &[Vec3]) {
         let on_stiffness = context.weights.stiffness + shape.damping.stiffness;
-        let on_mass = context.weights.mass_per_s2 + shape.damping.mass_per_s2;
+        let on_mass = context.weights.mass_per_s2;
         for (k, held) in moved(shape) {
             let goal = self.prescribed_correction(shape, context, rotation, position, k);
             for (i, stiffness, mass) in shape.operator.row(held.node as usize) {
@@ -366,10 +342,10 @@ impl ElasticBody {
     /// Force on a node that its equation of motion lacks, in the block's frame [N].
     fn unbalanced(&self, shape: &Shape, context: &StepContext, node: usize) -> Vec3 {
         let StepWeights { stiffness: theta, mass_per_s2: c, .. } = context.weights;
-        let (a, b) = (c + shape.damping.mass_per_s2, shape.damping.stiffness);
+        let b = shape.damping.stiffness;
         let inertia = shape.operator.row(node).fold(Vec3::zeros(), |sum, (j, stiffness, mass)| {
             let drag = if b > 0.0 { b * (stiffness * self.correction[j]) } else { Vec3::zeros() };
-            sum + a * mass * self.correction[j] + drag
+            sum + c * mass * self.correction[j] + drag
         });
         inertia + theta * self.elastic[node] - self.load[node]
     }
@@ -422,26 +398,25 @@ impl ElasticBody {
         let (operator, c) = (&shape.operator, context.weights.mass_per_s2);
         let total: Vec3 = context.force.iter().sum();
         let had = operator.momentum(&self.correction) - operator.momentum(&self.predicted);
-        let drag = shape.damping.mass_per_s2;
-        let missing = total
-            - context.weights.old_inertia * context.inertia.force
-            - c * had
-            - drag * operator.momentum(&self.correction);
-        let shift = missing / ((c + drag) * operator.mass_kg);
+        let missing = total - context.weights.old_inertia * context.inertia.force - c * had;
+        let shift = missing / (c * operator.mass_kg);
         self.correction.iter_mut().for_each(|u| *u += shift);
 
         let center = operator.center(context.contact_position);
         let arms = context.contact_position.iter().zip(context.force);
         let mut torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
-        if drag > 0.0 {
-            torque -= drag * operator.angular_momentum(&center, context.contact_position, &self.correction);
-        }
-        if !context.weights.contact_in_the_middle() {
-            let drive = total - drag * operator.momentum(&self.correction);
+        let drag_moment = &mut self.report.impulse_moment;
+        if context.weights.contact_in_the_middle() {
+            let place = || operator.center(nodes.position);
+            let old = || operator.angular_momentum(&place(), nodes.position, nodes.velocity);
+            *drag_moment = context.drag_moment(&torque, old);
+            torque += *drag_moment / context.dt_s;
+        } else {
             let gone = operator.momentum(&self.correction) / operator.mass_kg;
             let (center, velocity_m_s) = (operator.center(nodes.position), operator.center(nodes.velocity));
             let path = Path { center, velocity_m_s, gone };
-            torque = spin_torque(shape, context, &path, (&drive, &torque), &mut self.report);
+            let spin = || operator.angular_momentum(&center, nodes.position, nodes.velocity);
+            torque = spin_torque(shape, context, &path, (&total, &torque), spin, &mut self.report);
         }
         self.rigid.fill(Vec3::zeros());
         let mut inverse_inertia = None;
@@ -476,7 +451,7 @@ impl ElasticBody {
         for (i, u) in self.correction.iter().enumerate() {
             let (mut velocity, mut acceleration) = (nodes.velocity[i], nodes.acceleration[i]);
             let predicted = &self.predicted[i];
-            context.integrator.correct(context.dt_s, u, predicted, &mut velocity, &mut acceleration);
+            context.correct(u, predicted, &mut velocity, &mut acceleration);
             self.load[i] = velocity - nodes.velocity[i] + rate * self.rigid[i];
             self.displacement[i] = nodes.position[i] + 0.5 * (u + self.rigid[i]);
         }
@@ -506,18 +481,15 @@ impl ElasticBody {
         // v₁ and a₁ wait in `load` and `elastic`.
         for (i, u) in self.correction.iter_mut().enumerate() {
             let (mut v, mut a) = (nodes.velocity[i], nodes.acceleration[i]);
-            context.integrator.correct(context.dt_s, u, &self.predicted[i], &mut v, &mut a);
+            context.correct(u, &self.predicted[i], &mut v, &mut a);
             (self.load[i], self.elastic[i]) = (v + rate * self.rigid[i], a);
             *u += self.rigid[i];
         }
-        for (_, held) in moved(shape) {
-            // The mean velocity of the step does not ring where the table has a kink.
-            let i = held.node as usize;
-            let mean = self.correction[i] / context.dt_s;
-            let (v, a) = (self.load[i], self.elastic[i]);
-            self.load[i] += onto(&held.held, &(mean - v));
-            self.elastic[i] -= onto(&held.held, &a);
+        self.report.book_drag(shape, context, (&self.correction, nodes.velocity, &self.load));
+        if moved(shape).next().is_some() {
+            self.prescribe_velocities(shape, context, nodes.position);
         }
+        self.filter_velocities(shape, context, &nodes.view())?;
         self.report.speed_m_s = checked_speed(shape, &self.load)?;
         for (i, u) in self.correction.iter().enumerate() {
             nodes.position[i] += u;
@@ -526,6 +498,43 @@ impl ElasticBody {
         nodes.acceleration.copy_from_slice(&self.elastic);
         self.report.book(shape, context, &self.correction);
         Ok(())
+    }
+
+    /// Gives moved nodes the mean velocity of the step, which does not ring where the table has a kink. What that changes of momentum
+    /// and kinetic energy is an impulse and work of what moves them.
+    fn prescribe_velocities(&mut self, shape: &Shape, context: &StepContext, position: &[Vec3]) {
+        self.predicted.fill(Vec3::zeros());
+        for (_, held) in moved(shape) {
+            let i = held.node as usize;
+            let mean = self.correction[i] / context.dt_s;
+            self.predicted[i] = onto(&held.held, &(mean - self.load[i]));
+            let a = self.elastic[i];
+            self.elastic[i] -= onto(&held.held, &a);
+        }
+        for (i, change) in self.predicted.iter().enumerate() {
+            let impulse = shape.operator.mass_row_times(i, &self.predicted);
+            self.report.impulse += impulse;
+            self.report.impulse_moment += (position[i] + self.correction[i]).cross(&impulse);
+            self.report.motion_work_j += impulse.dot(&(self.load[i] + 0.5 * change));
+        }
+        self.load.iter_mut().zip(&self.predicted).for_each(|(v, change)| *v += change);
+    }
+
+    /// Filters what damping in proportion to stiffness leaves of the velocities in `load` and of the accelerations in `elastic`, and
+    /// books that damping.
+    fn filter_velocities(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        start: &Nodes,
+    ) -> Result<(), BlockError> {
+        let Some(damping) = &mut self.damping else { return Ok(()) };
+        self.report.damping_work_j += damping.work_j(shape);
+        for ((end, x), u) in self.displacement.iter_mut().zip(start.position).zip(&self.correction) {
+            *end = x + u;
+        }
+        let remembered = context.weights.needs_acceleration.then_some(&mut self.elastic[..]);
+        damping.filter(shape, start, &self.displacement, (&mut self.load, remembered), &mut self.report)
     }
 
     /// Elastic energy at `position`, ½ wᵀ K w + wᵀ ∫Bᵀσ₀ [J].

@@ -232,7 +232,8 @@ impl Simulation {
             let starts = simulation.blocks().node_starts();
             for_each_run(&simulation.runs, bodies, starts, slices, GRAIN_NODES, &|first, run, slices| {
                 each_of_run(first, run, starts, slices, |index, body: &mut Body, nodes| {
-                    body.try_step(&simulation.shapes[body.shape], &simulation.context(index), &nodes.view());
+                    let shape = &simulation.shapes[body.shape];
+                    body.try_step(shape, &simulation.context(index, shape), &nodes.view());
                 });
             });
         });

@@ -53,6 +53,9 @@ impl FixedBody {
         // The motion is prescribed, so the integrator's weights do not apply to what moves the block's own mass.
         report.motion_impulse = inertia;
         report.orbital_impulse = shape.operator.center(nodes.position).cross(&inertia);
+        // The support delivers what friction and changing loads take: their own work is booked as such.
+        report.friction_work_j = context.friction_force.iter().sum::<Vec3>().dot(&increment);
+        report.load_work_j = context.changing.iter().sum::<Vec3>().dot(&increment);
         report.speed_m_s = velocity.norm();
         for (x, anchor) in nodes.position.iter_mut().zip(&self.anchor) {
             *x = anchor + to;

@@ -1,12 +1,15 @@
 //! The books of a run: energy, momentum, and the worst of everything that has a limit.
 
-use ndda_mesh::Vec3;
+use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::block_books::{BlockBooks, Worst};
 use crate::simulation::StepReport;
 use crate::step_control::StepCounts;
 use crate::time_integrator::StepWeights;
+
+/// Strain below which none is looked for: a tenth of what a linear law may bear.
+const LITTLE_STRAIN: f64 = 1e-2;
 
 /// Part of the largest speed of which it does not matter how much turns over in a step.
 const LITTLE: f64 = 1e-3;
@@ -109,6 +112,8 @@ pub struct Invariants {
     pub action_reaction: f64,
     /// I7: smallest det F.
     pub smallest_volume_ratio: f64,
+    /// I7: largest principal strain of an element at a sample, in the frame of its block; none below 0.01.
+    pub largest_strain: Worst,
     /// I8: h = ω_c Δt, ω_c² bounded by the row sums of the contact stiffness over nodal masses.
     pub max_h: f64,
     /// I8: relative travel of two blocks that may meet in a step over the width of the thinner one.
@@ -126,6 +131,8 @@ pub struct Invariants {
     pub vibration: f64,
     /// I8: speed that loads and motions bring and take back within a step, over the largest speed.
     pub unseen_speed: f64,
+    /// I8: largest error of velocities that damping leaves in a step, over the largest speed.
+    pub damping_speed: f64,
     /// Most pairs looked at in a step.
     pub candidate_pairs_max: usize,
     /// Most pairs in contact in a step.
@@ -165,6 +172,7 @@ pub struct Ledger {
     largest_speed_m_s: f64,
     vibration: Vibration,
     unseen_m_s: f64,
+    damping_m_s: f64,
     rounding_j: f64,
     last_sample_s: f64,
     blocks: BlockBooks,
@@ -190,6 +198,7 @@ impl Ledger {
             squeezed_place: Worst::default(),
             action_reaction: 0.0,
             smallest_volume_ratio: 1.0,
+            largest_strain: Worst::default(),
             max_h: 0.0,
             max_travel: Worst::default(),
             turn_place: Worst::default(),
@@ -198,6 +207,7 @@ impl Ledger {
             lumped_place: Worst::default(),
             vibration: 0.0,
             unseen_speed: 0.0,
+            damping_speed: 0.0,
             candidate_pairs_max: 0,
             contact_pairs_max: 0,
             candidate_pairs_total: 0,
@@ -228,6 +238,7 @@ impl Ledger {
             largest_speed_m_s: 0.0,
             vibration: Vibration::default(),
             unseen_m_s: 0.0,
+            damping_m_s: 0.0,
             rounding_j: 0.0,
             last_sample_s: 0.0,
             blocks,
@@ -249,6 +260,14 @@ impl Ledger {
         self.angular_impulse += dt_s * weights.mean_inertia(&old_torque, &torque);
         self.last_force = (force, torque);
         self.load_impulse += dt_s * self.load_n;
+    }
+
+    /// Books impulse and angular impulse on a block beside the forces, and the error of velocities that damping leaves in the step
+    /// [m/s].
+    pub fn add_impulses(&mut self, impulse: Vec3, angular_impulse: Vec3, error_m_s: f64) {
+        self.impulse += impulse;
+        self.angular_impulse += angular_impulse;
+        self.damping_m_s = self.damping_m_s.max(error_m_s);
     }
 
     /// Counts a step that is taken back.
@@ -315,6 +334,18 @@ impl Ledger {
         let speed_m_s = self.largest_speed_m_s;
         if die_out || found.over(speed_m_s) > self.vibration.over(speed_m_s) {
             self.vibration = found;
+        }
+    }
+
+    /// The largest strain so far, or one that does not matter.
+    pub fn largest_strain(&self) -> f64 {
+        self.worst.largest_strain.value.max(LITTLE_STRAIN)
+    }
+
+    /// Keeps the largest strain, if it matters.
+    pub fn watch_strain(&mut self, strain: f64, block: BlockId) {
+        if strain > LITTLE_STRAIN {
+            self.worst.largest_strain.take(strain, block.index());
         }
     }
 
@@ -409,6 +440,7 @@ impl Ledger {
             turn_speed: speed(self.blocks.turned_m_s()),
             vibration: self.vibration.over(self.largest_speed_m_s),
             unseen_speed: speed(self.unseen_m_s),
+            damping_speed: speed(self.damping_m_s),
             ..self.worst
         }
     }

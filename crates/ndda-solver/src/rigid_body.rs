@@ -80,9 +80,9 @@ impl RigidBody {
         mut nodes: NodeSlices,
     ) -> Result<BlockReport, BlockError> {
         let mut report = BlockReport::default();
-        let start = self.place_increment(shape, context, &nodes.view(), &mut report)?;
+        self.place_increment(shape, context, &nodes.view(), &mut report)?;
         report.speed_m_s = checked_speed(shape, &self.velocity)?;
-        self.book_drag(shape, context, &start, &mut report);
+        report.book_drag(shape, context, (&self.increment, nodes.velocity, &self.velocity));
         self.advance(context, &mut nodes);
         report.book(shape, context, &self.increment);
         Ok(report)
@@ -111,7 +111,7 @@ impl RigidBody {
     /// out ← how u as last tried changes with the force: a shift F/c m, a turn J⁻¹ T/c.
     pub fn respond(&self, shape: &Shape, weights: &StepWeights, force: &[Vec3], out: &mut [Vec3]) {
         let (operator, inertia) = (&shape.operator, shape.rigid.as_ref().expect("a rigid shape"));
-        let rate = weights.mass_per_s2 + shape.damping.mass_per_s2;
+        let rate = shape.weights(weights).mass_per_s2;
         let arms = || operator.rest.iter().map(|rest| self.rotation * rest);
         let shift = force.iter().sum::<Vec3>() / (rate * operator.mass_kg);
         let torque: Vec3 = arms().zip(force).map(|(arm, f)| arm.cross(f)).sum();
@@ -130,14 +130,12 @@ impl RigidBody {
         let start = start(shape, nodes)?;
         let (gone, drive, velocity) = shift(shape, context, &start);
         let path = Path { center: start.center, velocity_m_s: start.velocity_m_s, gone };
-        let torque = self.torque(shape, context, &path, &drive, report);
+        let torque = self.torque(shape, context, &path, &start, &drive, report);
         let local = start.rotation.tr_mul(&torque);
         let inertia = shape.rigid.as_ref().expect("a rigid shape");
-        let drag = turn_drag(shape, context);
-        let angle = turn(inertia, &start.spin, &local, context.dt_s, drag)
+        let angle = turn(inertia, &start.spin, &local, context.dt_s)
             .ok_or_else(|| turned_too_far(inertia, context.dt_s, &start.spin, &local))?;
-        let momentum = inertia.inertia * start.spin + context.dt_s * local
-            - drag * context.dt_s * (inertia.inertia * angle);
+        let momentum = inertia.inertia * start.spin + context.dt_s * local;
         let turned = rotation_by(&angle);
         let rotation = start.rotation * turned;
         let spin = rotation * (inertia.inverse * turned.tr_mul(&momentum));
@@ -150,47 +148,36 @@ impl RigidBody {
         Ok(start)
     }
 
-    /// Torque about the mass centre in this step, without drag.
+    /// Torque about the mass centre in this step, drag included.
     fn torque(
         &self,
         shape: &Shape,
         context: &StepContext,
         path: &Path,
+        start: &Start,
         drive: &Vec3,
         report: &mut BlockReport,
     ) -> Vec3 {
         let center = shape.operator.center(context.contact_position);
         let arms = context.contact_position.iter().zip(context.force);
         let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
+        let drag_moment = &mut report.impulse_moment;
         if context.weights.contact_in_the_middle() {
-            return torque;
+            let inertia = &shape.rigid.as_ref().expect("a rigid shape").inertia;
+            *drag_moment = context.drag_moment(&torque, || start.rotation * (inertia * start.spin));
+            return torque + *drag_moment / context.dt_s;
         }
-        spin_torque(shape, context, path, (drive, &torque), report)
-    }
-
-    /// Work, force and torque of damping on mass.
-    fn book_drag(&self, shape: &Shape, context: &StepContext, start: &Start, report: &mut BlockReport) {
-        let drag = shape.damping.mass_per_s2;
-        if drag == 0.0 {
-            return;
-        }
-        let operator = &shape.operator;
-        for (i, u) in self.increment.iter().enumerate() {
-            report.damping_work_j -= drag * u.dot(&operator.mass_row_times(i, &self.increment));
-        }
-        report.reaction -= drag * operator.momentum(&self.increment);
-        let about = start.center;
-        let torque = operator.angular_momentum(&about, context.contact_position, &self.increment);
-        let arm = about - context.moment_point(shape);
-        report.outside_torque -= drag * (torque + arm.cross(&operator.momentum(&self.increment)));
+        let inertia = &shape.rigid.as_ref().expect("a rigid shape").inertia;
+        let spin = || start.rotation * (inertia * start.spin);
+        spin_torque(shape, context, path, (drive, &torque), spin, report)
     }
 
     /// Velocities, accelerations and positions at the end of the step.
     fn advance(&self, context: &StepContext, nodes: &mut NodeSlices) {
         for (i, u) in self.increment.iter().enumerate() {
             let (mut v, mut a) = (nodes.velocity[i], nodes.acceleration[i]);
-            let predicted = context.integrator.predict(context.dt_s, &v, &a);
-            context.integrator.correct(context.dt_s, u, &predicted, &mut v, &mut a);
+            let predicted = context.predict(&v, &a);
+            context.correct(u, &predicted, &mut v, &mut a);
             nodes.acceleration[i] = a;
             nodes.velocity[i] = self.velocity[i];
             nodes.position[i] += u;
@@ -212,18 +199,18 @@ fn start(shape: &Shape, nodes: &Nodes) -> Result<Start, FrameError> {
 }
 
 /// How far the mass centre goes, the force that drives it and its velocity at the end of the step:
-/// c m (u − û) + a m u/Δt = F − α_m F₀.
+/// c m (u − û) = F − α_m F₀.
 fn shift(shape: &Shape, context: &StepContext, start: &Start) -> (Vec3, Vec3, Vec3) {
     let (weights, mass) = (&context.weights, shape.operator.mass_kg);
     let force: Vec3 = context.force.iter().sum();
     // Accelerations of nodes carry the rounding of their places over Δt²; M a does not.
     let (mut velocity, mut acceleration) = (start.velocity_m_s, context.inertia.force / mass);
-    let predicted = context.integrator.predict(context.dt_s, &velocity, &acceleration);
-    let (c, drag) = (weights.mass_per_s2, shape.damping.mass_per_s2);
+    let predicted = context.predict(&velocity, &acceleration);
     let push = force - weights.old_inertia * context.inertia.force;
-    let gone = (push / mass + c * predicted) / (c + drag);
-    context.integrator.correct(context.dt_s, &gone, &predicted, &mut velocity, &mut acceleration);
-    (gone, force - drag * mass * gone, velocity)
+    let c = weights.mass_per_s2;
+    let gone = (push / mass + c * predicted) / c;
+    context.correct(&gone, &predicted, &mut velocity, &mut acceleration);
+    (gone, force, velocity)
 }
 
 /// Why no turn was found: forces are not finite, or the turn of the step, Δt ω₀ + ½ Δt² J⁻¹ T, is beyond what it can be solved for.
@@ -241,36 +228,30 @@ fn turned_too_far(inertia: &RigidInertia, dt_s: f64, spin: &Vec3, torque: &Vec3)
     }
 }
 
-/// What a turn is dragged by, as part of its own inertia [1/s].
-fn turn_drag(shape: &Shape, context: &StepContext) -> f64 {
-    shape.damping.mass_per_s2 * context.weights.new_force / (1.0 - context.weights.old_inertia)
-}
-
 /// The turn θ of a step, axis times angle in the block's frame, under a torque T there (Simo & Wong 1991):
 ///
 /// ```text
-/// exp(θ̂) J (2 θ/Δt − ω₀) = p        p = J ω₀ + Δt (T − d J θ)
+/// exp(θ̂) J (2 θ/Δt − ω₀) = p        p = J ω₀ + Δt T
 /// (I + ½ τ θ̂) J (2 θ/Δt − ω₀) = (I − ½ τ θ̂) p        τ = tan(½ |θ|)/(½ |θ|)
 /// ```
 ///
 /// both being the same. The spin at the end is J ω₁ = exp(θ̂)ᵀ p, so angular momentum changes by Δt T exactly; ω₀ + ω₁ = 2 θ/Δt and
 /// exp(θ̂) θ = θ, so energy changes by the work of T exactly; a block that spins about a principal axis turns by ω Δt exactly. Nothing
 /// where no turn fits, which is half a turn at most.
-fn turn(inertia: &RigidInertia, spin: &Vec3, torque: &Vec3, dt_s: f64, drag: f64) -> Option<Vec3> {
+fn turn(inertia: &RigidInertia, spin: &Vec3, torque: &Vec3, dt_s: f64) -> Option<Vec3> {
     let j = &inertia.inertia;
     let old = j * spin;
     let driven = old + dt_s * torque;
     let mut angle = dt_s * (spin + 0.5 * dt_s * (inertia.inverse * torque));
     let mut last = f64::INFINITY;
     for _ in 0..MOST_ITERATIONS {
-        let (mean, p) = (2.0 / dt_s * (j * angle) - old, driven - drag * dt_s * (j * angle));
+        let (mean, p) = (2.0 / dt_s * (j * angle) - old, driven);
         let (stretch, growth) = half_angle_stretch(angle.norm_squared())?;
         let moment = angle.cross(&(mean + p));
         let misfit = mean - p + 0.5 * stretch * moment;
         let cross = stretch * angle.cross_matrix();
         let slope = (Mat3::identity() + 0.5 * cross) * (2.0 / dt_s * j)
             - 0.5 * stretch * (mean + p).cross_matrix()
-            + (Mat3::identity() - 0.5 * cross) * (drag * dt_s * j)
             + growth * moment * angle.transpose();
         let change = slope.try_inverse()? * misfit;
         angle -= change;
@@ -346,7 +327,7 @@ mod tests {
         let energy = |spin: &Vec3| 0.5 * spin.dot(&(block.inertia * spin));
         for torque in [Vec3::zeros(), Vec3::new(1.0, -2.0, 0.5)] {
             let spin = Vec3::new(1.0, 3.0, -2.0);
-            let angle = turn(&block, &spin, &torque, dt_s, 0.0).expect("a turn");
+            let angle = turn(&block, &spin, &torque, dt_s).expect("a turn");
             let end = block.inverse * rotation_by(&angle).tr_mul(&(block.inertia * spin + dt_s * torque));
             let gain = energy(&end) - energy(&spin) - torque.dot(&angle);
             assert!(gain.abs() < 1e-14 * energy(&spin), "{gain}");
@@ -374,7 +355,7 @@ mod tests {
     #[test]
     fn a_spin_beyond_all_measure_is_refused_or_bounded() {
         for spin in [1e3, 1e9, 1e200, f64::NAN] {
-            let angle = turn(&slab(), &Vec3::new(spin, 1.0, -spin), &Vec3::zeros(), 1.0, 0.0);
+            let angle = turn(&slab(), &Vec3::new(spin, 1.0, -spin), &Vec3::zeros(), 1.0);
             assert!(angle.is_none_or(|a| a.iter().all(|x| x.is_finite())), "{angle:?}");
         }
     }

@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use ndda_contact::{ContactInput, ContactReport, FacetContact};
-use ndda_fem::stress::{cauchy_stress, smallest_volume_ratio};
+use ndda_fem::stress::{cauchy_stress, largest_strain, smallest_volume_ratio};
 use ndda_mesh::{BlockId, Mat3, TetId, Vec3};
 
 use crate::body::BodyKind;
@@ -94,6 +94,10 @@ impl Simulation {
         let strain_j = strain.map_err(|source| failed(source.into()))?;
         sample.strain_j += strain_j;
         self.ledger.blocks().note_strain(block, strain_j);
+        let displacement = elastic.displacement_in_frame();
+        if strain_bound(shape, displacement) > self.ledger.largest_strain() {
+            self.ledger.watch_strain(largest_strain(&shape.operator, displacement), block);
+        }
         sample.spring_j += elastic.spring_energy_j(shape, position, time_s);
         Ok(())
     }
@@ -109,7 +113,8 @@ impl Simulation {
         let shape = &self.shapes[body.shape];
         let Some(elastic) = body.elastic() else { return Ok(found) };
         let motion = (&self.state.position[range.clone()], &self.state.velocity[range]);
-        let speed_m_s = match elastic.vibration_m_s(shape, (&self.weights, self.part_s), motion, known_m_s) {
+        let weights = shape.weights(&self.weights);
+        let speed_m_s = match elastic.vibration_m_s(shape, (&weights, self.part_s), motion, known_m_s) {
             Ok(speed_m_s) => speed_m_s,
             Err(source) => {
                 let block = self.blocks.names[block.index()].clone();
@@ -203,6 +208,12 @@ impl Simulation {
         }
         Ok(())
     }
+}
+
+/// A bound of all strains: |∇w| ≤ Σₐ |wₐ − w|/hₐ over the four nodes of an element with heights hₐ.
+fn strain_bound(shape: &Shape, displacement: &[Vec3]) -> f64 {
+    let farthest = displacement.iter().map(|w| w.norm_squared()).fold(0.0, f64::max).sqrt();
+    8.0 * farthest / shape.smallest_height_m
 }
 
 /// Rate of rotation of a block [rad/s], and how fast its turn falls behind it [rad/s].

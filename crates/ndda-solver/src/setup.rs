@@ -23,7 +23,7 @@ use crate::shape::{BodySetup, Mass, SetupError, Shape};
 use crate::simulation::{Simulation, StageTimes, step_weights};
 use crate::state::State;
 use crate::step_control::{AutoStep, Control, StepState};
-use crate::time_integrator::{Inertia, StepDamping, StepWeights, TimeIntegrator};
+use crate::time_integrator::{Inertia, StepWeights, TimeIntegrator};
 use crate::travel::Travel;
 
 /// Everything a simulation is made of.
@@ -107,6 +107,7 @@ impl Simulation {
             contact_has_acted: false,
             contact_position: blocks.rest_position.clone(),
             seen_position: Vec::new(),
+            has_impulses: shapes.iter().any(Shape::has_impulses),
             loose: 0.0,
             least_friction: contact.as_ref().map_or(0.0, |model| model.least_friction()),
             moved: vec![Vec3::zeros(); contact_nodes],
@@ -339,7 +340,7 @@ impl Simulation {
             load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
         }
         let matrix =
-            shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, &StepDamping::default());
+            shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, 0.0);
         let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor { block: name(), source })?;
         let mut rhs = vec![0.0; factor.unknowns()];
         shape.unknowns.gather(&load, &mut rhs);

@@ -10,10 +10,11 @@ use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::block_books::BlockScale;
 use crate::body::BodyKind;
+use crate::damping::StepDamping;
 use crate::linear_solver::{Factor, FactorError, LinearSolver, SolveError};
 use crate::rigid_body::RigidInertia;
 use crate::step_error::StepError;
-use crate::time_integrator::{StepDamping, StepWeights};
+use crate::time_integrator::StepWeights;
 use crate::unknowns::Unknowns;
 
 /// Shapes that agree to this fraction of their size share one factor; a false strain of this size is the price.
@@ -128,6 +129,8 @@ pub struct Shape {
     pub material: Arc<dyn Material>,
     /// Its damping.
     pub damping: StepDamping,
+    /// M + k K factored, which filters velocities; `None` without damping in proportion to stiffness.
+    pub filter: Option<Box<dyn Factor>>,
     /// Inertia in the rest frame, for rigid blocks.
     pub rigid: Option<RigidInertia>,
     /// Smallest height of its elements at rest [m].
@@ -151,7 +154,7 @@ impl Shape {
         (dt_s, weights): (f64, &StepWeights),
         solver: &dyn LinearSolver,
     ) -> Result<Self, SetupError> {
-        let damping = StepDamping::new(&setup.material.damping(), dt_s);
+        let damping = StepDamping::new(&setup.material.damping(), dt_s, weights);
         let name = || blocks.names[block.index()].clone();
         let position = &blocks.rest_position[blocks.nodes_of(block)];
         let tets: Vec<[u32; 4]> = blocks.local_tets(block).collect();
@@ -196,13 +199,15 @@ impl Shape {
             factor: None,
             material,
             damping,
+            filter: None,
             rigid,
             smallest_height_m,
             stiffness_n_m,
             inertia_error,
         };
-        let factor = shape.factored(weights, solver);
-        shape.factor = factor.map_err(|source| SetupError::Factor { block: name(), source })?;
+        let failed = |source| SetupError::Factor { block: name(), source };
+        shape.factor = shape.factored(weights, solver).map_err(failed)?;
+        shape.filter = shape.factored_filter(weights, solver).map_err(failed)?;
         Ok(shape)
     }
 
@@ -218,7 +223,30 @@ impl Shape {
         if self.unknowns.is_empty() {
             return Ok(None);
         }
-        solver.factor(&self.unknowns.matrix(&self.operator, &self.supports, weights, &self.damping)).map(Some)
+        let (weights, damping) = (self.weights(weights), self.damping.stiffness);
+        solver.factor(&self.unknowns.matrix(&self.operator, &self.supports, &weights, damping)).map(Some)
+    }
+
+    /// M + k K factored; nothing without damping in proportion to stiffness, or when nothing is to be solved for.
+    ///
+    /// # Errors
+    /// [`FactorError`] when it is not positive definite or too large.
+    pub fn factored_filter(
+        &self,
+        weights: &StepWeights,
+        solver: &dyn LinearSolver,
+    ) -> Result<Option<Box<dyn Factor>>, FactorError> {
+        if self.unknowns.is_empty() || self.damping.stiffness == 0.0 {
+            return Ok(None);
+        }
+        let mass = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..*weights };
+        let filter = self.damping.filter_s2;
+        solver.factor(&self.unknowns.matrix(&self.operator, &self.supports, &mass, filter)).map(Some)
+    }
+
+    /// Weights of the integrator for this block: damping in proportion to mass changes them.
+    pub fn weights(&self, weights: &StepWeights) -> StepWeights {
+        self.damping.weights(weights)
     }
 
     /// How far a block that is held as a whole is displaced at time t [m]; the last motion counts.
@@ -229,6 +257,11 @@ impl Shape {
     /// Whether nothing holds the block, so that its momentum changes by outside forces only.
     pub fn is_free(&self) -> bool {
         self.kind != BodyKind::Fixed && self.supports.held.is_empty() && self.supports.springs.is_empty()
+    }
+
+    /// Whether velocities of the block change by impulses beside the forces: those of damping, and of prescribed velocities.
+    pub fn has_impulses(&self) -> bool {
+        self.kind != BodyKind::Fixed && !(self.damping.is_none() && self.supports.motions.is_empty())
     }
 
     /// What the books must know of the block.

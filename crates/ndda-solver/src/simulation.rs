@@ -108,6 +108,8 @@ pub struct Simulation {
     pub(crate) contact_position: Vec<Vec3>,
     /// Room for places that contact sees further ahead.
     pub(crate) seen_position: Vec<Vec3>,
+    /// Whether blocks are damped, or nodes of them follow a prescribed motion.
+    pub(crate) has_impulses: bool,
     /// Part of contact forces whose direction is not known in this step, and that no friction bears.
     pub(crate) loose: f64,
     pub(crate) least_friction: f64,
@@ -270,13 +272,14 @@ impl Simulation {
         })
     }
 
-    /// What block `index` needs to know of a step.
-    pub(crate) fn context(&self, index: usize) -> StepContext<'_> {
+    /// What block `index` of a shape needs to know of a step.
+    pub(crate) fn context(&self, index: usize, shape: &Shape) -> StepContext<'_> {
         let range = self.blocks.nodes_of(BlockId(index as u32));
         let acted = if self.contact_has_acted { range.clone() } else { 0..0 };
         StepContext {
             integrator: self.integrator.as_ref(),
-            weights: self.weights,
+            drag: shape.damping.mass,
+            weights: shape.weights(&self.weights),
             dt_s: self.part_s,
             time_s: self.clock_s(0.0),
             end_s: self.clock_s(1.0),
@@ -331,12 +334,14 @@ impl Simulation {
         let together = run[0].batch.is_some();
         if together {
             each_of_run(first, run, starts, slices.again(), |index, body: &mut Body, nodes| {
-                body.prepare(&self.shapes[body.shape], &self.context(index), &nodes.view());
+                let shape = &self.shapes[body.shape];
+                body.prepare(shape, &self.context(index, shape), &nodes.view());
             });
             solve_together(&self.shapes[run[0].shape], run);
         }
         each_of_run(first, run, starts, slices, |index, body: &mut Body, nodes| {
-            let (shape, context) = (&self.shapes[body.shape], self.context(index));
+            let shape = &self.shapes[body.shape];
+            let context = self.context(index, shape);
             if together { body.finish(shape, &context, nodes) } else { body.step(shape, &context, nodes) }
         });
     }
@@ -378,6 +383,9 @@ impl Simulation {
         self.ledger.add_impulse(self.part_s, &self.weights, force, torque);
         self.ledger.add_whole_impulse(impulse, orbital);
         self.ledger.add_work(friction_j, motion_j, load_j, damping_j);
+        if self.has_impulses {
+            self.book_impulses();
+        }
         let contact_work_j = self.book_work_of_contact(&contact);
         if self.loose > 0.0 {
             self.book_squeezing();
@@ -417,6 +425,13 @@ impl Simulation {
         });
         books.close_step();
         contact_work_j
+    }
+
+    /// Books the impulses of damping and of prescribed velocities, and how well the step resolves damping.
+    fn book_impulses(&mut self) {
+        for report in self.bodies.iter().map(|body| &body.report) {
+            self.ledger.add_impulses(report.impulse, report.impulse_moment, report.damping_error_m_s);
+        }
     }
 
     /// Books what the step gave blocks that are squeezed.

@@ -12,12 +12,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::damping::StepDamping;
 use crate::ledger::Ledger;
 use crate::linear_solver::{Factor, LinearSolver};
 use crate::simulation::{Simulation, StepReport};
 use crate::state::State;
 use crate::step_error::StepError;
-use crate::time_integrator::StepDamping;
 
 /// When a step is too long.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +76,7 @@ pub(crate) struct Control {
     state: State,
     ledger: Ledger,
     /// Factors of the shapes that are not in use, by halvings.
-    spare: Vec<Vec<Option<Box<dyn Factor>>>>,
+    spare: Vec<Vec<Option<Factors>>>,
     /// Halvings that the factors in use are for.
     halvings: u32,
     /// The balance of energy after a step \[J\], and after which: it is that before the next.
@@ -84,6 +84,9 @@ pub(crate) struct Control {
     /// Room for a ledger that is evaluated and dropped.
     spare_ledger: Ledger,
 }
+
+/// Factors of a shape for one length of step: that of the step, and that of the filter of velocities.
+type Factors = (Box<dyn Factor>, Option<Box<dyn Factor>>);
 
 /// Why a step has to be done again.
 enum Rejection {
@@ -261,15 +264,15 @@ impl Simulation {
         control.spare.resize_with(self.shapes.len(), || (0..most).map(|_| None).collect());
         for (index, spare) in control.spare.iter_mut().enumerate() {
             let shape = &mut self.shapes[index];
-            shape.damping = StepDamping::new(&shape.material.damping(), self.part_s);
-            spare[control.halvings as usize] = shape.factor.take();
-            shape.factor = match spare[halvings as usize].take() {
-                None => {
-                    let factor = shape.factored(&self.weights, control.solver.as_ref());
-                    factor.map_err(|source| StepError::Factor { step_s: self.part_s, source })?
-                }
-                known => known,
-            };
+            shape.damping = StepDamping::new(&shape.material.damping(), self.part_s, &self.weights);
+            spare[control.halvings as usize] = shape.factor.take().map(|step| (step, shape.filter.take()));
+            if let Some((step, filter)) = spare[halvings as usize].take() {
+                (shape.factor, shape.filter) = (Some(step), filter);
+                continue;
+            }
+            let failed = |source| StepError::Factor { step_s: self.part_s, source };
+            shape.factor = shape.factored(&self.weights, control.solver.as_ref()).map_err(failed)?;
+            shape.filter = shape.factored_filter(&self.weights, control.solver.as_ref()).map_err(failed)?;
         }
         control.halvings = halvings;
         self.renew_scratches();
@@ -279,8 +282,9 @@ impl Simulation {
     /// Memory of solves for the factors in use.
     fn renew_scratches(&mut self) {
         for body in &mut self.bodies {
-            let Some(factor) = self.shapes[body.shape].factor.as_deref() else { continue };
-            body.renew_scratch(factor);
+            let shape = &self.shapes[body.shape];
+            let Some(factor) = shape.factor.as_deref() else { continue };
+            body.renew_scratch(factor, shape.filter.as_deref());
         }
     }
 }

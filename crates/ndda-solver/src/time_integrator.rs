@@ -1,6 +1,5 @@
 //! What a time integrator must say.
 
-use ndda_fem::Damping;
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
@@ -69,27 +68,6 @@ pub struct Inertia {
     pub carried: Vec3,
     /// Moment about the mass centre that past contact forces have where they acted, as seen by an observer who moves at w [N m].
     pub lag: Vec3,
-}
-
-/// Rayleigh damping in a step: the force −C u/Δt, C/Δt = stiffness · K + mass_per_s2 · M.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct StepDamping {
-    /// b/Δt.
-    pub stiffness: f64,
-    /// a/Δt [1/s²].
-    pub mass_per_s2: f64,
-}
-
-impl StepDamping {
-    /// Of a material in a step Δt [s].
-    pub fn new(damping: &Damping, dt_s: f64) -> Self {
-        Self { stiffness: damping.stiffness_s / dt_s, mass_per_s2: damping.mass_per_s / dt_s }
-    }
-
-    /// Whether there is none.
-    pub fn is_none(&self) -> bool {
-        *self == Self::default()
-    }
 }
 
 /// A one-step integrator for M a + K d = f, solved per block as

@@ -5,7 +5,7 @@ use ndda_fem::{BlockOperator, BlockSupports};
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::linear_solver::SymmetricMatrix;
-use crate::time_integrator::{StepDamping, StepWeights};
+use crate::time_integrator::StepWeights;
 
 /// Motions held with less than this part of the stiffness of the best held one are free.
 const HELD: f64 = 1e-12;
@@ -157,16 +157,15 @@ impl Unknowns {
         }
     }
 
-    /// K̃ = θ (K + S) + c M + C/Δt over the unknowns (eq 12), S being the springs and C the damping.
+    /// K̃ = θ (K + S) + c M + d K over the unknowns (eq 12), S being the springs and d = b/Δt damping in proportion to stiffness.
     pub fn matrix(
         &self,
         operator: &BlockOperator,
         supports: &BlockSupports,
         weights: &StepWeights,
-        damping: &StepDamping,
+        damping: f64,
     ) -> SymmetricMatrix {
-        let (on_stiffness, on_mass) =
-            (weights.stiffness + damping.stiffness, weights.mass_per_s2 + damping.mass_per_s2);
+        let (on_stiffness, on_mass) = (weights.stiffness + damping, weights.mass_per_s2);
         let mut springs = vec![Mat3::zeros(); operator.nodes()];
         for spring in &supports.springs {
             let projector = spring.along.map_or(Mat3::identity(), |n| n * n.transpose());

@@ -8,8 +8,7 @@ use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockSet, Mat3, Vec3};
 use ndda_solver::unknowns::Unknowns;
 use ndda_solver::{
-    BodyKind, BodySetup, Direct, Mass, Midpoint, Setup, Simulation, StepDamping, SymmetricMatrix,
-    TimeIntegrator,
+    BodyKind, BodySetup, Direct, Mass, Midpoint, Setup, Simulation, SymmetricMatrix, TimeIntegrator,
 };
 
 /// K̃ of a cube of n³ cells in a step of 0.1 ms.
@@ -19,12 +18,7 @@ pub fn matrix(n: u32) -> SymmetricMatrix {
     let operator = BlockOperator::new(&mesh.nodes, mesh.tets, &rock);
     let supports = BlockSupports::new(&operator, &[]).expect("no supports");
     let weights = Midpoint { theta: 0.5 }.weights(1e-4);
-    Unknowns::nodal(operator.nodes(), &supports).matrix(
-        &operator,
-        &supports,
-        &weights,
-        &StepDamping::default(),
-    )
+    Unknowns::nodal(operator.nodes(), &supports).matrix(&operator, &supports, &weights, 0.0)
 }
 
 /// A load on so many unknowns.
