@@ -14,6 +14,7 @@ mod elastic_waves;
 mod end_contact;
 mod evidence;
 mod extreme;
+mod friction_of_patches;
 mod glancing_collision;
 mod ground_stress;
 mod hertz;
