@@ -17,6 +17,7 @@ mod end_contact;
 mod evidence;
 mod extreme;
 mod free_flight;
+mod friction_of_patches;
 mod glancing_collision;
 mod ground_stress;
 mod hertz;

@@ -6,7 +6,7 @@ use ndda_solver::{Simulation, Worst};
 /// Energy gained or lost for good over the largest energy. Speeds are as its root: twice the 1 % that they may be off.
 const MOST_ENERGY: f64 = 0.02;
 /// Energy by which friction was off Coulomb's law over ½ m V²: an energy of m v δv is a speed that is off by δv.
-const MOST_FRICTION: f64 = 0.02;
+const MOST_FRICTION: f64 = 1e-3;
 /// Penetration over the height of the tetrahedron. A collision that goes d deep delays blocks by up to π d / 2, which is
 /// within the tenth of a height that places may be off.
 const MOST_DEPTH: f64 = 0.05;
@@ -135,7 +135,7 @@ fn energy_of_the_lighter(simulation: &Simulation) -> Entry {
 fn friction(simulation: &Simulation) -> Entry {
     let worst = simulation.invariants().unresolved_friction;
     let reason = format!(
-        "steps are too long for the friction of block `{}`: {:.1} % of its largest kinetic energy was off Coulomb's law, limit {:.0} %; reduce step_s",
+        "steps are too long for the friction of block `{}`: {:.1} % of its largest kinetic energy was off Coulomb's law, limit {:.1} %; reduce step_s",
         name(simulation, worst),
         100.0 * worst.value,
         100.0 * MOST_FRICTION

@@ -139,14 +139,15 @@ impl BlockBooks {
         self.books[lighter].coulomb_gap_j += gap_j;
     }
 
-    /// Largest energy by which friction of a lighter block was off Coulomb's law, over ½ m V²; what rounding may have done does not count.
+    /// Largest energy by which friction of a lighter block was off Coulomb's law, over ½ m V² or its largest energy of contact; what rounding may have done does not count.
     pub fn unresolved_friction(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
         let mut worst = Worst::default();
         for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
             let moving_j = 0.5 * scale.mass_kg * speed_m_s * speed_m_s;
+            let energy_j = moving_j.max(book.largest_contact_j);
             let gap_j = book.coulomb_gap_j - rounding_j;
-            if gap_j > 0.0 && moving_j > 0.0 {
-                worst.take(gap_j / moving_j, block);
+            if gap_j > 0.0 && energy_j > 0.0 {
+                worst.take(gap_j / energy_j, block);
             }
         }
         worst

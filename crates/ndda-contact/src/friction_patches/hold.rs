@@ -32,6 +32,7 @@ impl ContactPatch {
             force_n: spring_n,
             torque_n_m: spring_n_m,
             slides,
+            held: true,
             normal: self.normal,
             ..FaceMemory::default()
         };

@@ -2,12 +2,16 @@
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
-use crate::facets::{FacetForce, relative_motion, relative_velocity};
+use crate::facets::{FacetForce, mass_per_area, reduced, relative_motion, relative_velocity};
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
 use crate::friction_patches::limit_surface::LimitSurface;
 use crate::friction_patches::{PatchScene, Place};
 use crate::integrals::{FacetSums, Integrals};
 use crate::model::{Body, ContactHistory, FaceMemory};
+
+/// Change of friction in a step, over μN, below which a patch that sticks begins to be held by a spring, and beyond which it no longer is.
+const QUIET: f64 = 0.01;
+const LOUD: f64 = 0.3;
 
 /// What a patch is, in short.
 #[derive(Clone, Copy, Debug, Default)]
@@ -54,8 +58,13 @@ pub struct ContactPatch {
     pub spin_rad_s: f64,
     /// Whether one of both blocks deforms.
     deforms: bool,
+    held: bool,
+    /// Whether its friction hardly changes meanwhile.
+    quiet: bool,
     /// Friction of the last step, turned with the face; none at first touch.
     pub previous: Option<FaceMemory>,
+    /// Slip that loads other than contact bring within a step from rest: less is not resolved [m].
+    least_slip_m: f64,
     /// Turn about the normal in this step, where it is found from the motion of the blocks.
     pub turn_rad: Option<f64>,
     /// Friction of this step [N, N m], and what is kept of it.
@@ -83,14 +92,30 @@ impl ContactPatch {
         if !self.has_friction() {
             return;
         }
+        let load_m_s2 = |block: BlockId| {
+            let body = &scene.input.bodies[block.index()];
+            body.load_n.norm() / body.mass_kg
+        };
+        self.least_slip_m = scene.input.dt_s.powi(2) * load_m_s2(owner).max(load_m_s2(target));
         self.most_n = law.map_or(0.0, |law| self.capacity_n(law));
         let (axes, second_moment_m2) = self.principal_axes();
         (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
         let old = remembered.of(&run[0]).filter(|old| old.normal.dot(&self.normal) > 0.0);
         self.previous = old.map(|old| old.turned_to(&self.normal));
-        if self.is_held() {
+        if self.deforms && self.previous.is_some_and(|old| !old.slides) {
             self.measure_slip(run, scene, forces);
+            self.quiet = self.is_quiet(scene, QUIET);
+            let was_held = self.previous.is_some_and(|old| old.held);
+            self.held = self.quiet || (was_held && self.is_quiet(scene, LOUD));
         }
+    }
+
+    /// Whether a spring would hardly change the friction of a patch that sticks.
+    fn is_quiet(&self, scene: &PatchScene, part: f64) -> bool {
+        let dt_s = scene.input.dt_s;
+        let mass = |block: BlockId| mass_per_area(&scene.input.bodies[block.index()], self.area_m2, dt_s);
+        let rate = reduced(mass(self.owner), mass(self.target)) * self.area_m2 / dt_s;
+        rate * self.velocity_m_s.norm() <= part * self.most_n
     }
 
     pub fn summary(&self) -> PatchSummary {
@@ -103,9 +128,9 @@ impl ContactPatch {
         self.has_law && self.pressure > 0.0 && self.area_m2 > 0.0
     }
 
-    /// Whether it is held by a spring: it stuck in the last step, and one of both blocks deforms.
+    /// Whether it is held by a spring: it stuck in the last step, hardly slips now, and one of both blocks deforms.
     pub fn is_held(&self) -> bool {
-        self.deforms && self.previous.is_some_and(|old| !old.slides)
+        self.held
     }
 
     /// Mean square distance of the pressure from its centre [m²].
@@ -159,7 +184,8 @@ impl ContactPatch {
     /// Energy [J] by which friction did less than Coulomb's law takes from a displacement of the surfaces, D(u, θ) + F·u + T θ ≥ 0: none where the
     /// patch sticks without slip or slides against its friction. `moved` are the displacements of the nodes [m].
     pub fn coulomb_gap_j(&self, run: &[Place], scene: &Moved, forces: &[FacetForce]) -> f64 {
-        if !self.has_friction() {
+        // What a spring holds hardly slips, and gives back what it takes.
+        if !self.has_friction() || self.quiet {
             return 0.0;
         }
         let (mut shift, mut twist) = (Vec3::zeros(), 0.0);
@@ -178,6 +204,9 @@ impl ContactPatch {
         // Facets do not see their own spin, the motion of the blocks does.
         let spin = self.turn_rad.map_or(twist / radius_m, |turn_rad| turn_rad * radius_m);
         let slip = Vec3::new(self.axes[0].dot(&shift), self.axes[1].dot(&shift), spin);
+        if slip.norm() <= self.least_slip_m {
+            return 0.0;
+        }
         let work_j = self.force_n.dot(&shift) + self.torque_n_m / radius_m * spin;
         (self.surface.work_j(&slip) + work_j).max(0.0)
     }
