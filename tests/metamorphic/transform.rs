@@ -42,6 +42,14 @@ impl Map {
 pub fn compare(case: &Case, twin: &Scene, map: &Map, reorder: impl Fn(&Motion) -> Motion) -> Found {
     let (ready, stopped) = run(&case.text);
     let mut start = build(&case.text).expect("it has been built");
+    let begun = build(&text_of(twin));
+    if let Ok(begun) = &begun {
+        let (mapped, there) =
+            (map.apply(&Motion::of(&start.simulation), 0.0), reorder(&Motion::of(&begun.simulation)));
+        if mapped.apart(&there, extent_m(&start.simulation), f64::INFINITY) > DISTURBED {
+            return Found::Skipped("rock is cut in another order");
+        }
+    }
     let (steps, length_m) = (ready.simulation.state().step, extent_m(&ready.simulation));
     let end = Motion::of(&ready.simulation);
     let first_m_s = Motion::of(&start.simulation).speed_m_s();

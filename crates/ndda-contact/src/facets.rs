@@ -62,7 +62,7 @@ impl FacetScene<'_> {
         (force.push, force.touches) = (-penalty_pa * normal, true);
         force.center = sums.center(&corners);
         if let Some(joints) = self.joints {
-            self.add_friction(joints, touch, (hits, sums), penalty_pa, &mut force);
+            self.add_friction(joints, touch, (hits, sums), (penalty_pa, &normal), &mut force);
         }
         force
     }
@@ -74,14 +74,14 @@ impl FacetScene<'_> {
         joints: &Joints,
         touch: &Touch,
         (hits, sums): (&[Hit], &FacetSums),
-        penalty_pa: f64,
+        (penalty_pa, normal): (f64, &Vec3),
         force: &mut FacetForce,
     ) {
         let law = joints.law(self.input.blocks, touch.triangle, touch.target);
         let Some(law) = law.filter(|law| !law.acts_on_faces()) else { return };
         let facet = &self.candidates.facets[touch.facet as usize];
         let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
-        let basis = facet_basis(&corners, &(-force.push / penalty_pa));
+        let basis = facet_basis(&corners, normal);
         let mut memory = self.remembered(facet);
         let bonds = &self.history.bonds;
         let key = (facet.triangle, facet.target, self.element_of(facet));
