@@ -77,7 +77,9 @@ fn a_ringing_stack_on_shear_springs_creeps_as_two_masses_with_sliders_do() {
     for (friction_deg, shear_pa_m) in [(30.0, 1e9), (30.0, 1e8), (60.0, 1e9)] {
         let (expected, found) = (oscillators(friction_deg, shear_pa_m), plates(friction_deg, shear_pa_m));
         for (k, which) in ["lower", "upper"].into_iter().enumerate() {
-            let what = format!("slip of the {which} plate, φ = {friction_deg}°, k_s = {shear_pa_m:e} Pa/m, after {END_S} s [m]");
+            let what = format!(
+                "slip of the {which} plate, φ = {friction_deg}°, k_s = {shear_pa_m:e} Pa/m, after {END_S} s [m]"
+            );
             // Swings that differ in phase after a hundred of them: a few per cent of the slip.
             row("spring creep", &what, found[k], Within(expected[k], 0.05));
         }
