@@ -52,11 +52,7 @@ pub fn form(
 }
 
 /// The bond of a facet over the area where it touches its target; none where that is nothing.
-fn bond_of(
-    facet: &Facet,
-    (candidates, hulls): (&Candidates, &Hulls),
-    input: &ContactInput,
-) -> Option<Bond> {
+fn bond_of(facet: &Facet, (candidates, hulls): (&Candidates, &Hulls), input: &ContactInput) -> Option<Bond> {
     let blocks = input.blocks;
     let corners = blocks.triangle_corners(facet.triangle, input.position);
     let normal = triangle_area_vector(&corners).normalize();
@@ -68,7 +64,9 @@ fn bond_of(
         let mut polygon = Polygon::all_of(&Outline::TRIANGLE);
         let mut cut = |at: [f64; 3]| polygon.cut(&Form::through(&at), f64::MIN_POSITIVE);
         match hulls.whole(facet.target) {
-            Some(_) => hulls.faces_of(facet.target).iter().for_each(|face| cut(shifted.map(|x| face.phi(&x)))),
+            Some(_) => {
+                hulls.faces_of(facet.target).iter().for_each(|face| cut(shifted.map(|x| face.phi(&x))))
+            }
             None => frame.lambda(&shifted).into_iter().for_each(&mut cut),
         }
         if polygon.corners().len() < 3 {

@@ -6,7 +6,9 @@
 use std::ops::Range;
 
 use ndda_contact::testing::{evaluate, test_box, test_set};
-use ndda_contact::{ContactHistory, ContactInput, ContactModel, MohrCoulomb, PotentialContact, SmoothPotential};
+use ndda_contact::{
+    ContactHistory, ContactInput, ContactModel, MohrCoulomb, PotentialContact, SmoothPotential,
+};
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 const PENALTY_PA: f64 = 1e12;
@@ -34,8 +36,10 @@ impl Plates {
         let model = PotentialContact::new(PENALTY_PA)
             .with_potential(Box::new(SmoothPotential { reference_m: 1.0 }))
             .with_friction(Box::new(law));
-        let (last, friction) = (blocks.rest_position.clone(), vec![Vec3::zeros(); blocks.rest_position.len()]);
-        let mut plates = Self { blocks, model, history: ContactHistory::default(), last, friction, work_j: 0.0 };
+        let (last, friction) =
+            (blocks.rest_position.clone(), vec![Vec3::zeros(); blocks.rest_position.len()]);
+        let mut plates =
+            Self { blocks, model, history: ContactHistory::default(), last, friction, work_j: 0.0 };
         plates.shifted(Vec3::zeros());
         plates
     }
@@ -54,7 +58,10 @@ impl Plates {
         let (sum, scale): (Vec3, f64) =
             (answer.force.iter().sum(), answer.force.iter().map(|f| f.norm()).sum());
         let torque: Vec3 = position.iter().zip(&answer.force).map(|(x, f)| x.cross(f)).sum();
-        assert!(sum.norm() <= 1e-12 * scale && torque.norm() <= 1e-11 * scale, "{sum:?} {torque:?} of {scale}");
+        assert!(
+            sum.norm() <= 1e-12 * scale && torque.norm() <= 1e-11 * scale,
+            "{sum:?} {torque:?} of {scale}"
+        );
         let on_upper = |forces: &[Vec3]| forces[self.upper()].iter().sum();
         let found = (on_upper(&answer.force), on_upper(&answer.friction_force));
         (self.last, self.friction) = (position, answer.friction_force);
@@ -82,7 +89,10 @@ fn strength_pa(friction_deg: f64, cohesion_pa: f64, sigma_pa: f64) -> f64 {
     let mut plates = Plates::new(friction_deg, cohesion_pa);
     let lifted = Plates::opening_m(sigma_pa) * Vec3::z();
     let normal_n = -plates.shifted(lifted).0.z;
-    assert!((normal_n + sigma_pa).abs() <= 2e-3 * sigma_pa.abs().max(cohesion_pa), "{normal_n} at {sigma_pa}");
+    assert!(
+        (normal_n + sigma_pa).abs() <= 2e-3 * sigma_pa.abs().max(cohesion_pa),
+        "{normal_n} at {sigma_pa}"
+    );
     let enough_pa = cohesion_pa + sigma_pa.abs();
     let slip = |k: u32| f64::from(k) * INCREMENT * cohesion_pa / SHEAR_PA_M * across();
     let last = (1.5 * enough_pa / (INCREMENT * cohesion_pa)) as u32;
@@ -94,12 +104,21 @@ fn shear_strength_is_that_of_mohr_and_coulomb_with_a_tension_cut_off() {
     for ratio in [0.1, 0.3, 1.0, 3.0, 10.0] {
         for friction_deg in [0.0f64, 20.0, 40.0] {
             let cohesion_pa = ratio * TENSION_PA;
-            for sigma_pa in [-0.9, -0.5, -0.1].map(|part| part * TENSION_PA).into_iter().chain([0.0, 0.5, 1.0].map(|part| part * cohesion_pa)) {
+            for sigma_pa in [-0.9, -0.5, -0.1]
+                .map(|part| part * TENSION_PA)
+                .into_iter()
+                .chain([0.0, 0.5, 1.0].map(|part| part * cohesion_pa))
+            {
                 let expected = (cohesion_pa + sigma_pa * friction_deg.to_radians().tan()).max(0.0);
                 let found = strength_pa(friction_deg, cohesion_pa, sigma_pa);
                 let error = (found - expected).abs() / cohesion_pa;
-                println!("c/σ_t {ratio}, φ {friction_deg}°, σ {sigma_pa:e} Pa: {found:.5e} Pa, {expected:.5e} expected");
-                assert!(error <= 1e-2, "c/σ_t {ratio}, φ {friction_deg}°, σ {sigma_pa:e}: {found:e} for {expected:e}");
+                println!(
+                    "c/σ_t {ratio}, φ {friction_deg}°, σ {sigma_pa:e} Pa: {found:.5e} Pa, {expected:.5e} expected"
+                );
+                assert!(
+                    error <= 1e-2,
+                    "c/σ_t {ratio}, φ {friction_deg}°, σ {sigma_pa:e}: {found:e} for {expected:e}"
+                );
             }
         }
     }
@@ -128,7 +147,10 @@ fn tension_breaks_at_the_tensile_strength_and_shear_survives_a_change_of_sign() 
     for sigma_pa in [0.5, 0.1, -0.1, -0.5, 0.5, -0.5].map(|part| part * TENSION_PA) {
         let (total, bonds) = plates.shifted(slip + Plates::opening_m(sigma_pa) * Vec3::z());
         // Walls of plates that overlap by the depth press, too: 1e-6 of the pressure per micrometre.
-        assert!((bonds.x / -TENSION_PA - 1.0).abs() <= 1e-4 && bonds.y.abs() <= 1e-4 * TENSION_PA, "{bonds:?}");
+        assert!(
+            (bonds.x / -TENSION_PA - 1.0).abs() <= 1e-4 && bonds.y.abs() <= 1e-4 * TENSION_PA,
+            "{bonds:?}"
+        );
         assert!((total.z / sigma_pa - 1.0).abs() <= 2e-3, "{total:?} at {sigma_pa}");
     }
     assert!(plates.shifted(-1.01 * Plates::opening_m(TENSION_PA) * 2.0 * Vec3::z()).0 == Vec3::zeros());
@@ -162,8 +184,10 @@ fn a_bonded_pair_that_turns_keeps_its_bonds_and_its_forces_turn_with_it() {
     let bonds = plates.history.bonds.len();
     let (start, upper) = (plates.blocks.rest_position.clone(), plates.upper());
     for k in 1..=90u32 {
-        let turn: Mat3 = *nalgebra::Rotation3::new(f64::from(k).to_radians() * Vec3::new(0.6, 0.0, 0.8)).matrix();
-        let moved = |(i, x): (usize, &Vec3)| turn * (x + if upper.contains(&i) { shift } else { Vec3::zeros() });
+        let turn: Mat3 =
+            *nalgebra::Rotation3::new(f64::from(k).to_radians() * Vec3::new(0.6, 0.0, 0.8)).matrix();
+        let moved =
+            |(i, x): (usize, &Vec3)| turn * (x + if upper.contains(&i) { shift } else { Vec3::zeros() });
         let force = plates.at(start.iter().enumerate().map(moved).collect()).0;
         assert_eq!(plates.history.bonds.len(), bonds);
         // The offset of half a micrometre is known to the rounding of coordinates of a metre.
@@ -185,7 +209,8 @@ fn a_bond_has_the_area_that_touches_not_that_of_the_facet() {
             .with_potential(Box::new(SmoothPotential { reference_m: 1.0 }))
             .with_friction(Box::new(law));
         let mut history = ContactHistory::default();
-        let input = |position| ContactInput { affine, ..ContactInput::new(&blocks, position, &velocity, 1.0) };
+        let input =
+            |position| ContactInput { affine, ..ContactInput::new(&blocks, position, &velocity, 1.0) };
         evaluate(&mut model, &input(&blocks.rest_position), &mut history);
         let mut lifted = blocks.rest_position.clone();
         let upper = blocks.nodes_of(BlockId(1));
