@@ -75,6 +75,7 @@ impl Frictionless {
         self.by_block.arrange(blocks.len(), touching.iter().map(|touch| (touch.owner, touch.target)));
         let scene = ScatterScene {
             blocks,
+            position: None,
             integrals,
             by_block: &self.by_block,
             hulls: &self.hulls,
