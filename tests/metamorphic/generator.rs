@@ -111,10 +111,13 @@ fn advised_step_s(plan: &Plan) -> Option<f64> {
         gap_m: 0.05 * plan.length_m,
         time: "step_s: 1e-6, end_s: 1e-6".into(),
     };
-    let ready = build(&write(plan, &still)).ok()?;
+    let mut ready = build(&write(plan, &still)).ok()?;
     let wave_m_s = 2000.0;
     let waves_s = 0.05 * plan.length_m / wave_m_s;
-    Some(step_advice::advise(&ready.loaded.scene, &ready.simulation).map_or(waves_s, |advice| advice.step_s))
+    Some(
+        step_advice::advise(&ready.loaded.scene, &mut ready.simulation)
+            .map_or(waves_s, |advice| advice.step_s),
+    )
 }
 
 /// Speeds are such that blocks meet once or twice and go a thousandth to a tenth of their size into each other.

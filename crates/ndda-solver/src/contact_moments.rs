@@ -112,7 +112,8 @@ pub(crate) fn spin_torque(
 ) -> Vec3 {
     let (weights, dt_s, old) = (&context.weights, context.dt_s, &context.inertia);
     // The integrator's own β: damping in proportion to mass changes the weights of this block.
-    let beta = if context.drag.is_none() { weights.beta(dt_s) } else { context.integrator.weights(dt_s).beta(dt_s) };
+    let beta =
+        if context.drag.is_none() { weights.beta(dt_s) } else { context.integrator.weights(dt_s).beta(dt_s) };
     let gamma = weights.new_force;
     // (½ − γ + β) A₀ + (γ − β) A₁, and (½ γ − β) Δt²/m.
     let after_start = |a0: &Vec3, a1: &Vec3| (0.5 - gamma + beta) * a0 + (gamma - beta) * a1;
