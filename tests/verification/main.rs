@@ -31,6 +31,7 @@ mod rocking_block;
 mod settling;
 mod shaken_base;
 mod sliding_over_element_borders;
+mod spring_creep;
 mod springs_and_elimination;
 mod step_control;
 mod sticking_plate;

@@ -4,7 +4,8 @@ use ndda_contact::{PairResultant, resultants};
 use ndda_io::code::Code;
 use ndda_io::diagnostic::Diagnostic;
 use ndda_io::read::LoadedScene;
-use ndda_mesh::BlockId;
+use ndda_mesh::geometry::{Aabb, tet_volume};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{BodyKind, Simulation, StepError};
 
 /// Mean depth over the smaller of two blocks' smallest tetrahedron heights. Blocks that are laid as deep as contact carries
@@ -20,6 +21,15 @@ const MOST_LISTED: usize = 10;
 /// # Errors
 /// [`StepError`] when contact cannot be computed.
 pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Option<Diagnostic>, StepError> {
+    if !simulation.has_contact() {
+        return Ok(None);
+    }
+    if let Some((inner, outer)) = enclosed(simulation) {
+        let name = |block: BlockId| &simulation.blocks().names[block.index()];
+        let message = format!("block `{}` lies wholly inside block `{}`", name(inner), name(outer));
+        let help = "move one of them away: contact acts on surfaces that cross, and here none do";
+        return Ok(Some(loaded.diagnose_as(Code::Overlap, "blocks", message).with_help(help)));
+    }
     if loaded.scene.settle.is_some() {
         return Ok(None);
     }
@@ -56,6 +66,45 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
         format!("{} pair(s) of blocks overlap at the start: {}{more}", pairs.len(), listed.join("; "));
     let help = "move them apart, or let them come to rest before the run begins: `settle: ()`";
     Ok(Some(loaded.diagnose_as(Code::Overlap, "blocks", message).with_help(help)))
+}
+
+/// A block with all nodes in the solid of another, and that other, unless both are fixed.
+fn enclosed(simulation: &Simulation) -> Option<(BlockId, BlockId)> {
+    let (blocks, position) = (simulation.blocks(), &simulation.state().position);
+    let mut boxes: Vec<(BlockId, Aabb)> =
+        blocks.ids().map(|block| (block, Aabb::around(&position[blocks.nodes_of(block)]))).collect();
+    boxes.sort_by(|a, b| a.1.min.x.total_cmp(&b.1.min.x));
+    let within = |inner: &Aabb, outer: &Aabb| {
+        (0..3).all(|i| outer.min[i] < inner.min[i] && inner.max[i] < outer.max[i])
+    };
+    // An outer box begins before an inner one and ends after it.
+    let mut open: Vec<(BlockId, Aabb)> = Vec::new();
+    for (inner, bounds) in boxes {
+        open.retain(|(_, outer)| outer.max.x >= bounds.min.x);
+        let holds = |(outer, around): &&(BlockId, Aabb)| {
+            let moves = [inner, *outer].iter().any(|&block| !is_fixed(simulation, block));
+            let nodes = &position[blocks.nodes_of(inner)];
+            moves && within(&bounds, around) && nodes.iter().all(|x| is_in_solid(blocks, position, *outer, x))
+        };
+        if let Some((outer, _)) = open.iter().find(holds) {
+            return Some((inner, *outer));
+        }
+        open.push((inner, bounds));
+    }
+    None
+}
+
+/// Whether a point is in one of a block's tetrahedra: none of the four that it makes with their faces has negative volume.
+fn is_in_solid(blocks: &BlockSet, position: &[Vec3], block: BlockId, x: &Vec3) -> bool {
+    blocks.tets_of(block).any(|tet| {
+        let corners = blocks.tets[tet].map(|n| position[n.index()]);
+        let with_point = |k: usize| {
+            let mut part = corners;
+            part[k] = *x;
+            tet_volume(&part)
+        };
+        (0..4).all(|k| with_point(k) >= 0.0)
+    })
 }
 
 fn is_fixed(simulation: &Simulation, block: BlockId) -> bool {

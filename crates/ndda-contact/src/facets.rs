@@ -3,6 +3,7 @@
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockSet, TetId, Vec3};
 
+use crate::bonds;
 use crate::candidates::{Candidates, Facet};
 use crate::friction::{FacetSlip, ShearMemory, length};
 use crate::integrals::{FacetSums, Hit, Touch};
@@ -80,6 +81,13 @@ impl FacetScene<'_> {
         let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
         let basis = facet_basis(&corners, &(-force.push / penalty_pa));
         let mut memory = self.remembered(facet);
+        let bonds = &self.history.bonds;
+        let key = (facet.triangle, facet.target, self.element_of(facet));
+        if !bonds.is_empty() && bonds::holds(bonds, self.input.blocks, joints.memory, key) {
+            // The bond carries the shear.
+            (force.sticks, force.memory) = (true, Some(ShearMemory { broken: false, ..memory }));
+            return;
+        }
         let slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
         law.advance(&slip, &mut memory);
         let [x, y] = memory.shear_n;
@@ -115,7 +123,7 @@ impl FacetScene<'_> {
                 let FacetMemory { shear_n, broken, .. } = self.history.facets[place];
                 ShearMemory { shear_n, broken }
             }
-            Err(_) => ShearMemory { broken: self.history.begun, ..ShearMemory::default() },
+            Err(_) => ShearMemory::default(),
         }
     }
 
@@ -168,7 +176,7 @@ pub fn mass_per_area(body: &Body, area_m2: f64, dt_s: f64) -> f64 {
 }
 
 /// Two unit vectors in the facet: along its first edge, and across. They turn with the facet.
-fn facet_basis(corners: &[Vec3; 3], normal: &Vec3) -> [Vec3; 2] {
+pub fn facet_basis(corners: &[Vec3; 3], normal: &Vec3) -> [Vec3; 2] {
     let along = (corners[1] - corners[0]).normalize();
     [along, normal.cross(&along)]
 }

@@ -3,7 +3,7 @@
 /// What a facet, or a whole face, does against its target in this step; vectors are in the facet's own basis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FacetSlip {
-    /// Normal force f_n on the facet [N].
+    /// Normal force f_n on the facet [N]; negative for tension, which only an unbroken contact carries.
     pub normal_n: f64,
     /// Area in contact S [m²].
     pub area_m2: f64,
@@ -47,6 +47,11 @@ pub trait FrictionLaw: Send + Sync {
     /// Stiffness of the law against slip, of both sides together [Pa/m]: with it a step has to be short enough.
     fn shear_stiffness_pa_m(&self) -> f64 {
         0.0
+    }
+
+    /// Whether what touches when contact is first evaluated holds together until it breaks.
+    fn holds_together(&self) -> bool {
+        false
     }
 
     /// Tension that an unbroken contact carries [Pa].

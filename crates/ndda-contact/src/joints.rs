@@ -134,7 +134,7 @@ impl Joints {
 
     /// Whether all of them do, and none holds together what touches: then facets have nothing to remember.
     pub fn act_on_faces_only(&self) -> bool {
-        self.laws.iter().all(|law| law.acts_on_faces()) && !self.carry_tension()
+        self.laws.iter().all(|law| law.acts_on_faces()) && !self.hold_together()
     }
 
     /// Friction over normal force that bears at least, whatever touches.
@@ -149,9 +149,9 @@ impl Joints {
         laws.map(|law| law.as_ref().map_or(0.0, bears)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether a law carries tension.
-    pub fn carry_tension(&self) -> bool {
-        self.laws.iter().any(|law| law.tension_pa() > 0.0)
+    /// Whether a law makes bonds.
+    pub fn hold_together(&self) -> bool {
+        self.laws.iter().any(|law| law.holds_together())
     }
 }
 

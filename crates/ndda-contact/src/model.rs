@@ -165,15 +165,19 @@ pub struct FaceMemory {
     pub normal: Vec3,
 }
 
-/// A facet that is glued to a point of another block until it breaks.
+/// A facet that holds to a point of another block by cohesion and tensile strength until it breaks.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Bond {
-    /// The facet; its centroid is the glued point.
+    /// The facet.
     pub facet: TriangleId,
     /// The element that holds the other end.
     pub tet: TetId,
-    /// Where in it, as barycentric coordinates.
+    /// Centre of the bonded area, as barycentric coordinates of the facet.
+    pub weights: [f64; 3],
+    /// The point that it holds to, as barycentric coordinates of the element.
     pub lambda: [f64; 4],
+    /// Bonded area over the area of the facet.
+    pub share: f64,
 }
 
 /// What contact remembers from step to step; part of the state, so it is saved and rolled back with it.
@@ -183,7 +187,7 @@ pub struct ContactHistory {
     pub facets: Vec<FacetMemory>,
     /// One entry per face and target in contact, for laws that act on faces; sorted by (face, target).
     pub faces: Vec<FaceMemory>,
-    /// Bonds that hold, sorted by facet.
+    /// Bonds that hold, sorted by (facet, target, element).
     pub bonds: Vec<Bond>,
     /// Whether contact has been evaluated before: what touches then, and only that, may hold together.
     pub begun: bool,
@@ -204,7 +208,7 @@ pub struct FacetContact {
     pub center: Vec3,
     /// Force on the triangle but for friction [N].
     pub push_n: Vec3,
-    /// Friction on the triangle [N].
+    /// Friction on the triangle, or the shear of a bond [N].
     pub friction_n: Vec3,
     /// Whether friction holds it.
     pub sticks: bool,
@@ -225,7 +229,7 @@ pub trait ContactModel: Send + Sync {
         output: &mut ContactOutput,
     ) -> Result<ContactReport, ContactError>;
 
-    /// Potential energy of contact at `input.position`, bonds included [J].
+    /// Potential energy of contact at `input.position` [J]; what shear springs and bonds store is work of friction.
     ///
     /// # Errors
     /// As [`add_forces`](Self::add_forces).

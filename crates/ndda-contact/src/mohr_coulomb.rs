@@ -2,8 +2,9 @@
 
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory, capped};
 
-/// Mohr–Coulomb: shear up to c S + μ |f_n| and tension up to σ_t S, until either is passed; then friction alone, for
-/// good. Only contacts that exist at the start of a run hold together.
+/// Mohr–Coulomb with a tension cut-off: shear up to τ = max(0, c + σ tan φ), σ being the normal stress, compression
+/// positive, and tension up to σ_t, until either is exceeded; then friction alone, for good. Only contacts that exist
+/// at the start of a run hold together.
 ///
 /// Shear is a spring as in [`Coulomb`](crate::Coulomb).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +38,7 @@ impl FrictionLaw for MohrCoulomb {
         }
     }
 
-    /// ½ c S + μ |f_n| (the other half of c is the other side's), without c once broken.
+    /// max(0, ½ c S + μ f_n) (the other half of c is the other side's), without c once broken.
     fn capacity_n(&self, slip: &FacetSlip, memory: &ShearMemory) -> f64 {
         let cohesion = if memory.broken { 0.0 } else { 0.5 * self.cohesion_pa * slip.area_m2 };
         (cohesion + self.friction * slip.normal_n).max(0.0)
@@ -45,6 +46,10 @@ impl FrictionLaw for MohrCoulomb {
 
     fn shear_stiffness_pa_m(&self) -> f64 {
         self.shear_penalty_pa_m
+    }
+
+    fn holds_together(&self) -> bool {
+        self.cohesion_pa > 0.0 || self.tension_pa > 0.0
     }
 
     fn tension_pa(&self) -> f64 {

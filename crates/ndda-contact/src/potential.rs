@@ -148,7 +148,8 @@ pub enum PotentialError {
     },
     /// Too many faces of a block are nearest to points of one tetrahedron.
     #[error(
-        "tet {} of block `{block}` is near {faces} faces of the block at once, more than {MOST_PIECES}: mesh it finer",
+        "tet {} of block `{block}` is near {faces} faces of the block at once, more than {MOST_PIECES}: take \
+         `potential: Element` or `Volume`, or give the block fewer faces; a finer surface has more",
         tet.0
     )]
     TooManyFaces {

@@ -280,11 +280,18 @@ impl ContactModel for PotentialContact {
         output: &mut ContactOutput,
     ) -> Result<ContactReport, ContactError> {
         self.integrate(input)?;
+        if let Some(joints) = self.joints.as_ref().filter(|joints| joints.hold_together() && !history.begun) {
+            bonds::form(joints, (&self.candidates, &self.hulls), input, &mut history.bonds);
+        }
         let Some((_, field)) = &self.field else { return Ok(ContactReport::default()) };
         let (candidates, integrals) = (&self.candidates, &self.integrals);
         let report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
         let blocks_of = |touch: &Touch| (touch.owner, touch.target);
         self.place_penalties(input);
+        if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
+            let found = (&self.candidates, &self.integrals);
+            bonds::break_overloaded(joints, found, &self.penalty_of_facet, input, history);
+        }
         let rubs = self.needs_bodies() && !input.bodies.is_empty();
         let Self { by_block, faces, integrals, .. } = self;
         let sort = || {
@@ -313,8 +320,8 @@ impl ContactModel for PotentialContact {
             curvature_pa_m: &self.curvature_of_facet,
         };
         scatter::add(&scene, output);
-        if let Some(joints) = self.joints.as_ref().filter(|joints| joints.carry_tension()) {
-            bonds::add_forces(joints, (&self.candidates, &self.hulls), input, history, output);
+        if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
+            bonds::add_forces(joints, input, &history.bonds, output);
         }
         if self.joints.is_some() {
             self.remember(input, history);
@@ -323,10 +330,10 @@ impl ContactModel for PotentialContact {
     }
 
     fn has_acted(&self) -> bool {
-        !self.forces.is_empty() || self.joints.as_ref().is_some_and(Joints::carry_tension)
+        !self.forces.is_empty() || self.joints.as_ref().is_some_and(Joints::hold_together)
     }
 
-    fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError> {
+    fn energy_j(&mut self, input: &ContactInput, _history: &ContactHistory) -> Result<f64, ContactError> {
         let law = self.potential.law();
         match law {
             OverlapLaw::Linear => self.find_pairs(input)?,
@@ -342,8 +349,7 @@ impl ContactModel for PotentialContact {
             hulls: &self.hulls,
         };
         self.overlaps.integrate(input, &parts, law);
-        let bonds = self.joints.as_ref().map_or(0.0, |joints| bonds::energy_j(joints, input, &history.bonds));
-        Ok(self.penalty_pa * self.overlaps.energy_m3(law) + bonds)
+        Ok(self.penalty_pa * self.overlaps.energy_m3(law))
     }
 
     /// The turning and stretching of triangles under their own pressure is left out, and so is what friction owes to
@@ -596,9 +602,11 @@ mod tests {
             position[upper.clone()].iter_mut().for_each(|x| x.z += gap_m);
             let input = ContactInput::new(&blocks, &position, &velocity, 1e-3);
             let answer = evaluate(&mut model, &input, history);
-            let energy = model.energy_j(&input, history).expect("an energy");
+            // What a bond stores is work of friction: from rest, −½ f·u.
+            let moved = position.iter().zip(&blocks.rest_position).map(|(x, rest)| x - rest);
+            let stored: f64 = answer.friction_force.iter().zip(moved).map(|(f, u)| -0.5 * f.dot(&u)).sum();
             assert!(answer.force.iter().sum::<Vec3>().norm() < 1e-9);
-            (answer.force[upper.clone()].iter().sum(), energy)
+            (answer.force[upper.clone()].iter().sum(), stored)
         };
         lifted(0.0, &mut history);
         assert!(!history.bonds.is_empty());

@@ -118,6 +118,27 @@ fn depth_of_nodes(blocks: &BlockSet, block: BlockId) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn a_block_of_too_many_faces_is_told_what_works() {
+        let sphere = |levels| ndda_mesh::generate::sphere(1.0, levels).expect("a sphere");
+        let field = |potential: &dyn ContactPotential, levels| {
+            potential.field(&crate::testing::test_set(vec![sphere(levels)])).map(|_| ())
+        };
+        let smooth = SmoothPotential { reference_m: 1.0 };
+        let faces = |levels| match field(&smooth, levels) {
+            Err(PotentialError::TooManyFaces { faces, .. }) => faces,
+            other => panic!("{other:?}"),
+        };
+        assert!(faces(3) > faces(2), "a finer surface has more faces");
+        let message = field(&smooth, 2).expect_err("too many faces").to_string();
+        assert!(
+            ["`potential: Element`", "`Volume`", "fewer faces"].iter().all(|word| message.contains(word))
+        );
+        let volume = crate::VolumePotential { exponent: 2.0, reference_m3: 1.0 };
+        assert!(field(&smooth, 1).is_ok(), "fewer faces");
+        assert!(field(&crate::ElementPotential, 2).is_ok() && field(&volume, 2).is_ok());
+    }
+
     use super::*;
     use crate::testing::{check_potential, test_box, test_set};
 

@@ -562,10 +562,10 @@ pub struct Friction {
     /// Shear penalty k_s [Pa/m]; the paper's "0.1 E" is 0.1 · E / 1 m. Default: no spring.
     #[serde(default)]
     pub shear_penalty_pa_m: Option<f64>,
-    /// Cohesion c [Pa], until it breaks for good; needs `shear_penalty_pa_m`. Default: 0.
+    /// Cohesion c [Pa]: shear strength max(0, c + σ tan φ), compression positive, until it breaks for good; needs `shear_penalty_pa_m`. Default: 0.
     #[serde(default)]
     pub cohesion_pa: f64,
-    /// Tensile strength σ_t [Pa], until it breaks for good; needs `shear_penalty_pa_m`. Default: 0.
+    /// Tensile strength σ_t [Pa], until it breaks for good; beyond c/tan φ it holds only without shear; needs `shear_penalty_pa_m`. Default: 0.
     #[serde(default)]
     pub tension_pa: f64,
 }

@@ -51,3 +51,24 @@ fn blocks_that_overlap_come_to_rest_on_request() {
         row("X9", &what, rests, Answer::Within(statics, 0.01));
     }
 }
+
+#[test]
+fn a_block_wholly_inside_the_solid_of_another_is_refused_but_not_one_in_its_hollow() {
+    let refusal = |name: &str, changes: &[&str]| {
+        let changes: Vec<String> = changes.iter().map(|&change| change.into()).collect();
+        prepare(&scene(name), &changes).err().map(|errors| errors.render(false))
+    };
+    let small =
+        |at: &str| [format!("blocks.cube.at_m={at}"), "blocks.cube.shape.size_m=(0.4, 0.4, 0.4)".into()];
+    let inside = |name: &str, at: &str| refusal(name, &small(at).each_ref().map(String::as_str));
+    let says = |text: Option<String>, host: &str| {
+        text.is_some_and(|text| {
+            text.contains("error[overlap]")
+                && text.contains(&format!("`cube` lies wholly inside block `{host}`"))
+        })
+    };
+    assert!(says(inside("extreme/overlap.ron", "(0.1, 0.2, -0.7)"), "slab"));
+    // The hollow of the L is inside the box around it.
+    assert_eq!(inside("extreme/concave.ron", "(1.5, 0.5, 1.2)"), None);
+    assert!(says(inside("extreme/concave.ron", "(0.3, 0.5, 0.3)"), "ell"), "settling does not let it out");
+}

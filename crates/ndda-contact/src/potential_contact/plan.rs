@@ -60,9 +60,9 @@ fn friction(joints: &Joints) -> [Part; 3] {
         Part::included(MEMORY, memory),
         Part::of(
             "bonds",
-            joints.carry_tension(),
-            "tension until it breaks",
-            "no joint has a tensile strength",
+            joints.hold_together(),
+            "cohesion and tension until they break",
+            "no joint has cohesion or tensile strength",
         ),
     ]
 }
