@@ -81,7 +81,7 @@ fn a_ringing_stack_on_shear_springs_creeps_as_two_masses_with_sliders_do() {
                 "slip of the {which} plate, φ = {friction_deg}°, k_s = {shear_pa_m:e} Pa/m, after {END_S} s [m]"
             );
             // Swings that differ in phase after a hundred of them: a few per cent of the slip.
-            row("spring creep", &what, found[k], Within(expected[k], 0.05));
+            row("creep", &what, found[k], Within(expected[k], 0.05));
         }
     }
 }
