@@ -9,6 +9,7 @@ use ndda_mesh::geometry::{Aabb, tet_volume};
 
 use crate::kernel::MOST_CUTS;
 use crate::pair::TetFrame;
+use crate::twofold::Barycentric;
 
 /// Three faces meet in each corner, so F faces have 2 F − 4 corners: 18 for two tetrahedra and three rivals of a
 /// potential, 148 for two blocks of [`MOST_CUTS`](crate::kernel::MOST_CUTS) faces in a box, and their rivals.
@@ -92,16 +93,22 @@ impl ScaledPair {
         if !self.may_overlap() {
             return Ok(TetOverlap::default());
         }
-        let [c, t] = &self.corners;
-        // From here on coordinates are local: map coordinates lose no digits.
-        let origin = c[0];
-        let frames = [c, t].map(TetFrame::new);
-        let overlap = overlap_of(c, &frames[1], &origin);
+        let smaller = usize::from(tet_volume(&self.corners[1]) < tet_volume(&self.corners[0]));
+        // From here on coordinates are local to the smaller tetrahedron, which the larger one cuts: what is rounded is of its size.
+        let (body, other) = (&self.corners[smaller], &self.corners[1 - smaller]);
+        let origin = body[0];
+        let own = faces_of(&TetFrame::new(body), &origin);
+        let exact = Barycentric::new(other);
+        let cutting =
+            [0, 1, 2, 3].map(|b| Linear { value: exact.at(b, &origin), gradient: exact.gradient(b) });
+        let mut overlap = Polyhedron::tet(&body.map(|x| x - origin));
+        cutting.iter().for_each(|face| overlap.cut(face));
         let (volume, moment) = overlap.volume_and_moment();
         let cubed = |v: f64| v * self.unit_m * self.unit_m * self.unit_m;
         let mut part = Polyhedron::default();
-        let phi = frames.map(|frame| {
-            let of_region = faces_of(&frame, &origin).map(|lambda| lambda.times(4.0));
+        let fields = if smaller == 0 { [own, cutting] } else { [cutting, own] };
+        let phi = fields.map(|lambda| {
+            let of_region = lambda.map(|lambda| lambda.times(4.0));
             cubed(overlap.integral_of_smallest(&of_region, &mut part))
         });
         let volume_m3 = cubed(volume);

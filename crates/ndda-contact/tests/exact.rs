@@ -540,3 +540,28 @@ fn volume_energy_and_force_are_those_of_exact_arithmetic() {
         }
     }
 }
+
+#[test]
+fn a_pair_of_very_unlike_sizes_has_its_volume_right_to_the_smaller_one() {
+    let mut random = Random { state: 7, coarse: false };
+    let mut worst = 0.0f64;
+    for case in 0..300 {
+        let (large, small) = (random.tet(), random.tet());
+        // About a corner, an edge, a face or the middle of the larger one.
+        let at = middle(&large[..1 + case % 4]);
+        let tiny = small.map(|x| at + (x - middle(&small)) * 1e-6);
+        if [large, tiny].iter().any(|tet| tet_volume(tet).abs() < 1e-3 * size(tet).powi(3)) {
+            continue;
+        }
+        for (c, t) in [(large, tiny), (tiny, large)] {
+            let ([c_grid, t_grid], exponent) = on_grid(&c, &t);
+            let one = Plane { normal: from_fn(|_| zero()), value: BigInt::from(1) };
+            let exact = integral(&Tet::oriented(c_grid), &Tet::oriented(t_grid), &one, &BigInt::from(1));
+            let found = pair_forces(&c, &t, 1.0).expect("sound tetrahedra").volume_m3;
+            let error = (found - float(&exact, 3 * exponent - KEPT_BITS)).abs();
+            worst = worst.max(error / tet_volume(&tiny).abs());
+        }
+    }
+    println!("largest error of the volume over that of the smaller: {worst:.1e}");
+    assert!(worst <= 1e-13, "{worst:e}");
+}
