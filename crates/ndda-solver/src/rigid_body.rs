@@ -340,7 +340,7 @@ mod tests {
         // From rest, a torque turns the block by ½ Δt² J⁻¹ T = 4 rad in a step: the cause is the torque, not a spin.
         let (block, dt_s) = (slab(), 0.1);
         let torque = block.inertia * Vec3::new(0.0, 0.0, 8.0 / (dt_s * dt_s));
-        assert_eq!(turn(&block, &Vec3::zeros(), &torque, dt_s, 0.0), None);
+        assert_eq!(turn(&block, &Vec3::zeros(), &torque, dt_s), None);
         let error = turned_too_far(&block, dt_s, &Vec3::zeros(), &torque);
         let BlockError::TurnsTooFar { angle_rad, spin_rad_s, torque_n_m, torque_angle_rad } = error else {
             panic!("{error}")
@@ -348,7 +348,7 @@ mod tests {
         assert!((angle_rad - 4.0).abs() < 1e-12 && (torque_angle_rad - 4.0).abs() < 1e-12);
         assert_eq!((spin_rad_s, torque_n_m), (0.0, torque.norm()));
         let nothing = Vec3::repeat(f64::NAN);
-        assert_eq!(turn(&block, &Vec3::zeros(), &nothing, dt_s, 0.0), None);
+        assert_eq!(turn(&block, &Vec3::zeros(), &nothing, dt_s), None);
         assert_eq!(turned_too_far(&block, dt_s, &Vec3::zeros(), &nothing), BlockError::ForceNotFinite);
     }
 
