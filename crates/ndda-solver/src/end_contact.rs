@@ -139,6 +139,9 @@ impl Simulation {
         // A rigid block takes torques about x*: the first evaluation takes them where the blocks are, not where an
         // earlier step, or a part of one that was taken back, left x*.
         self.contact_position.copy_from_slice(&self.state.position);
+        if let Some(moments) = &mut self.contact_moments {
+            moments.carried.fill(Vec3::zeros());
+        }
         newton.lifted.fill(Vec3::zeros());
         loop {
             let report = self.evaluate_at_end(newton, stride)?;
