@@ -86,7 +86,8 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
         assert!(run(&scene, overrides, &whole, "1").wait().expect("an end").success(), "{name}");
         let (lasts, expected) = (started.elapsed().as_secs_f64(), results(&whole));
         for kill in 0..kills.div_ceil(SCENES.len()) {
-            let broken = place.path().join("broken");
+            // A folder of its own: a run that is killed before it has begun leaves the results of an earlier one as they were.
+            let broken = place.path().join(format!("{name}_{}_{kill}", overrides.len()));
             let mut child = run(&scene, overrides, &broken, ["1", "2"][kill % 2]);
             let out = broken.display().to_string();
             // Killed once, and often once more while it is being resumed.
