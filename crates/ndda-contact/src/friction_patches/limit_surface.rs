@@ -49,7 +49,7 @@ impl LimitSurface {
         let radius_m = (along + across).sqrt();
         let half = [(3.0 * along).sqrt() / radius_m, (3.0 * across).sqrt() / radius_m];
         let aspect = (along / across).sqrt();
-        let cells = CELLS.iter().find(|(most, _)| !(aspect > *most)).unwrap_or(&CELLS[2]).1;
+        let cells = CELLS.iter().find(|(most, _)| aspect.is_nan() || aspect <= *most).unwrap_or(&CELLS[2]).1;
         let side = |k: usize| 2.0 * half[k] / f64::from(cells[k]);
         let cell_radius2 = (side(0).powi(2) + side(1).powi(2)) / 24.0;
         let mut surface = Self { most_n, radius_m, half, cells, cell_radius2, most_twist_n: 0.0 };
@@ -146,7 +146,7 @@ impl LimitSurface {
             let Some(factor) = curvature.cholesky() else { break };
             let step = factor.solve(&slope);
             let gain = slope.dot(&step);
-            if !(gain > TOLERANCE * least) {
+            if gain.is_nan() || gain <= TOLERANCE * least {
                 break;
             }
             let mut part = 1.0;
