@@ -84,6 +84,6 @@ fn a_table_that_starts_late_holds_the_block_until_then_and_may_not_begin_with_a_
     }
     // From (0.001, 0, 0) on at 0.05 s: the block would leap there in the first step, at 1 m/s.
     let refused = ndda_io::read::load_text("case.ron", &late("(0.001, 0, 0)"), &[], None);
-    let message = refused.err().map_or_else(|| panic!("a jump is refused"), |e| e).to_string();
+    let message = refused.err().unwrap_or_else(|| panic!("a jump is refused")).to_string();
     assert!(message.contains("the motion does not begin where the block is"), "{message}");
 }

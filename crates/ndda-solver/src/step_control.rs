@@ -8,7 +8,7 @@
 //! The balance of energy costs more than a step, so it is evaluated only after steps that may have gained more than they are
 //! allowed. Explicit contact takes its force f at x*, halfway between two places; where f is linear, the work f·Δx differs from what
 //! contact stores by ¼ (ω_c Δt)² f·Δx, and a first contact stores at most ⅛ (ω_c Δt)² m v² before its force has acted
-//! ([`may_meet_with`](Simulation::may_meet_with)). h bounds ω_c Δt, and the work of contact is known from the books.
+//! (`Simulation::may_meet_with`). h bounds ω_c Δt, and the work of contact is known from the books.
 
 use serde::{Deserialize, Serialize};
 
