@@ -40,7 +40,7 @@ pub fn plan(random: &mut Random, wanted: &Wanted) -> Plan {
 }
 
 fn kind(random: &mut Random) -> &'static str {
-    random.one_of(&["Rigid", "Rigid", "Affine", "Elastic"])
+    random.one_of::<&str>(&["Rigid", "Rigid", "Affine", "Elastic"])
 }
 
 fn piece(random: &mut Random, wanted: &Wanted, name: String, length_m: f64) -> Piece {

@@ -2,8 +2,8 @@
 //!
 //! A face is a set of boundary triangles in one plane and of one surface. Its contact with another block is a patch: its friction
 //! is one force F and one torque T about the normal, spread in proportion to the pressure, and obeys Coulomb's law point by point
-//! ([`limit_surface`]). The friction of all patches of rigid blocks is found together ([`solve`]); patches of
-//! blocks that deform are part of that while they slide or begin to touch, and are held by springs while they stick ([`hold`]).
+//! (`limit_surface.rs`). The friction of all patches of rigid blocks is found together (`solve.rs`); patches of
+//! blocks that deform are part of that while they slide or begin to touch, and are held by springs while they stick (`hold.rs`).
 
 mod hold;
 mod limit_surface;
