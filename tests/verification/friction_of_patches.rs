@@ -80,14 +80,14 @@ fn a_plank_that_spins_and_slides_is_slowed_point_by_point() {
             let case = format!("{speed_m_s} m/s and {spin_rad_s} rad/s, {width_m} m wide");
             let tolerance = 0.02;
             row(
-                "F3",
+                "twisting friction",
                 &format!("spin of a plank after {case} [rad/s]"),
                 spin,
                 Near(exact_spin, tolerance * spin_rad_s),
             );
             if speed_m_s > 0.0 {
                 row(
-                    "F3",
+                    "twisting friction",
                     &format!("speed along x after {case} [m/s]"),
                     speed,
                     Near(exact_speed, tolerance * speed_m_s),
