@@ -96,7 +96,12 @@ fn a_plank_that_spins_and_slides_is_slowed_point_by_point() {
         }
     }
     let (_, spin) = plank(0.1, 0.0, 5.0, 0.2328);
-    row("twisting friction", "spin of the plank of 1 m × 0.1 m after 0.2328 s [rad/s]", spin, Within(2.5, 0.02));
+    row(
+        "twisting friction",
+        "spin of the plank of 1 m × 0.1 m after 0.2328 s [rad/s]",
+        spin,
+        Within(2.5, 0.02),
+    );
 }
 
 /// Velocity of a rigid cube, turned, after an impact with a fixed floor.
@@ -123,6 +128,16 @@ fn friction_in_an_impact_hardly_depends_on_the_step() {
     let (coarse, middle, fine) = (impact(1e-4), impact(5e-5), impact(3.125e-6));
     let speed = 6.0;
     let error = |v: &Vec3| (v - fine).norm() / speed;
-    row("friction in impacts", "velocity after an impact at Δt = 1e-4 s, over 6 m/s", error(&coarse), Near(0.0, 0.01));
-    row("friction in impacts", "velocity after an impact at Δt = 5e-5 s, over 6 m/s", error(&middle), Near(0.0, 0.005));
+    row(
+        "friction in impacts",
+        "velocity after an impact at Δt = 1e-4 s, over 6 m/s",
+        error(&coarse),
+        Near(0.0, 0.01),
+    );
+    row(
+        "friction in impacts",
+        "velocity after an impact at Δt = 5e-5 s, over 6 m/s",
+        error(&middle),
+        Near(0.0, 0.005),
+    );
 }

@@ -174,8 +174,6 @@ pub struct FaceMemory {
     pub torque_n_m: f64,
     /// Whether the face slides.
     pub slides: bool,
-    /// Whether a spring held it.
-    pub held: bool,
     /// Outward normal of the face then.
     pub normal: Vec3,
 }

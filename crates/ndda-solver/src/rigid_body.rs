@@ -36,6 +36,11 @@ impl RigidInertia {
         Self { inertia, inverse: inverse(inertia), inverse_lumped: inverse(lumped) }
     }
 
+    /// R J⁻¹ Rᵀ of a block turned by R [1/(kg m²)].
+    pub fn inverse_turned(&self, rotation: &Mat3) -> Mat3 {
+        rotation * self.inverse * rotation.transpose()
+    }
+
     /// dω/dt of a block that turns freely, as seen in its frame, J⁻¹ (J ω × ω) [rad/s²].
     pub fn change_of_spin(&self, spin: &Vec3) -> Vec3 {
         self.inverse * (self.inertia * spin).cross(spin)

@@ -279,6 +279,16 @@ impl Shape {
         if self.supports.frame == Frame::Held { 0.0 } else { self.inertia_error }
     }
 
+    /// Inverse of the inertia of a rigid block at these positions [1/(kg m²)]; lumped masses would make that of a coarse mesh several times too large.
+    pub fn rigid_inverse_inertia(
+        &self,
+        position: &[Vec3],
+        motion: &ndda_fem::block_operator::RigidMotion,
+    ) -> Option<Mat3> {
+        let rotation = self.supports.frame.rotation(&self.operator, position, &motion.center).ok()?;
+        Some(self.rigid.as_ref()?.inverse_turned(&rotation))
+    }
+
     /// What contact may know of the block's inertia. Supports that leave no rigid motion make it immovable.
     pub fn contact_body(&self) -> ndda_contact::Body {
         let immovable = self.kind == BodyKind::Fixed || self.supports.hold_all_rigid_motions(&self.operator);

@@ -221,7 +221,8 @@ impl Simulation {
                 }
                 continue;
             }
-            body.inverse_inertia = motion.inverse_inertia;
+            body.inverse_inertia =
+                shape.rigid_inverse_inertia(position, &motion).unwrap_or(motion.inverse_inertia);
             (body.load_n, body.torque_n_m) = (Vec3::zeros(), Vec3::zeros());
             for (x, load) in position.iter().zip(&self.loads.total()[range]) {
                 body.push(&(x + ahead), load);

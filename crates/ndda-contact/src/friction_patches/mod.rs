@@ -2,10 +2,10 @@
 //!
 //! A face is a set of boundary triangles in one plane and of one surface. Its contact with another block is a patch: its friction
 //! is one force F and one torque T about the normal, spread in proportion to the pressure, and obeys Coulomb's law point by point
-//! (`limit_surface.rs`). The friction of all patches of rigid blocks is found together (`solve.rs`); patches of
-//! blocks that deform are part of that while they slide or begin to touch, and are held by springs while they stick (`hold.rs`).
+//! (`limit_surface.rs`). The friction of all patches between blocks that do not deform is found together (`solve.rs`), that of
+//! every other patch from that patch alone (`deforming.rs`).
 
-mod hold;
+mod deforming;
 mod limit_surface;
 mod moments;
 mod patch;
@@ -87,8 +87,9 @@ pub struct FrictionPatches {
     mass_per_area: Vec<f64>,
     /// Blocks with the velocities at the end of the step.
     bodies: Vec<Body>,
-    /// Whether a block has patches whose friction is found together.
+    /// Whether a block has patches whose friction is found together, and whether its motion to come is asked for.
     is_coupled: Vec<bool>,
+    is_asked: Vec<bool>,
     /// One per run.
     patches: Vec<ContactPatch>,
     summaries: Vec<PatchSummary>,
@@ -143,8 +144,8 @@ impl FrictionPatches {
         let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
         self.by_block.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
         self.share_masses(scene);
-        self.hold(scene.input.dt_s);
         self.advance_bodies(scene);
+        self.advance_alone(scene.input.dt_s);
         self.solve(scene);
         let Self { patches, runs, run_of, order, new_faces, own_m2, .. } = self;
         let spread = |((t, force), run): ((usize, &mut FacetForce), &u32)| {
@@ -180,8 +181,10 @@ impl FrictionPatches {
         self.own_m2.resize(forces.len(), Mat3::zeros());
         let own = |(t, (own, force)): (u32, (&mut Mat3, &FacetForce))| {
             let FacetSums { pressure, area, .. } = *scene.sums(t);
-            if pressure > 0.0 {
-                *own = moments::second_moment_m2(scene, scene.touch(t), area, &force.center);
+            let touch = scene.touch(t);
+            let deforms = |block: BlockId| scene.input.bodies[block.index()].deforms();
+            if pressure > 0.0 && !deforms(touch.owner) && !deforms(touch.target) {
+                *own = moments::second_moment_m2(scene, touch, area, &force.center);
             }
         };
         let each = self.own_m2.par_iter_mut().zip(forces).enumerate();
@@ -214,31 +217,26 @@ impl FrictionPatches {
         }
     }
 
-    /// Friction of the patches that springs hold.
-    fn hold(&mut self, dt_s: f64) {
-        let mass = &self.mass_per_area;
-        self.patches.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(|patch| {
-            if patch.has_friction() && patch.is_held() {
-                patch.hold(reduced(mass[patch.owner.index()], mass[patch.target.index()]), dt_s);
-            }
-        });
-    }
-
-    /// Takes the blocks that have coupled patches to the end of the step under all loads, normal forces, the friction that is known and the
-    /// coupled patches' friction of the last step.
+    /// Takes the blocks whose motion to come is asked for to the end of the step under all loads, normal forces and the friction of the last step.
     fn advance_bodies(&mut self, scene: &PatchScene) {
         self.bodies.clear();
         self.bodies.extend_from_slice(scene.input.bodies);
-        self.is_coupled.clear();
-        self.is_coupled.resize(self.bodies.len(), false);
-        for summary in self.summaries.iter().filter(|summary| summary.is_coupled) {
-            self.is_coupled[summary.owner.index()] = true;
-            self.is_coupled[summary.target.index()] = true;
+        for flags in [&mut self.is_coupled, &mut self.is_asked] {
+            flags.clear();
+            flags.resize(scene.input.bodies.len(), false);
         }
-        let (is_coupled, by_block, patches) = (&self.is_coupled, &self.by_block, &self.patches);
+        for summary in self.summaries.iter().filter(|summary| summary.stops_motion) {
+            for block in [summary.owner.index(), summary.target.index()] {
+                self.is_asked[block] = true;
+                self.is_coupled[block] |= summary.is_coupled;
+            }
+        }
+        let (is_asked, by_block, patches) = (&self.is_asked, &self.by_block, &self.patches);
         let advance = |(block, body): (usize, &mut Body)| {
-            if is_coupled[block] && body.mass_kg.is_finite() {
-                body.add_gyroscopic_torque();
+            if is_asked[block] && body.mass_kg.is_finite() {
+                if !body.deforms() {
+                    body.add_gyroscopic_torque();
+                }
                 for (k, sign) in by_block.at(BlockId(block as u32)) {
                     patches[k as usize].apply_loads(body, sign);
                     patches[k as usize].apply_previous_friction(body, sign);
@@ -249,13 +247,36 @@ impl FrictionPatches {
         self.bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(advance);
     }
 
+    /// Friction of the patches of blocks that deform, and what it changes the motion of blocks by that have coupled patches, too.
+    fn advance_alone(&mut self, dt_s: f64) {
+        let (bodies, mass) = (&self.bodies, &self.mass_per_area);
+        self.patches.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(|patch| {
+            if patch.has_friction() && patch.deforms {
+                let mass_per_area = reduced(mass[patch.owner.index()], mass[patch.target.index()]);
+                patch.advance_alone(bodies, mass_per_area, dt_s);
+            }
+        });
+        let (is_coupled, by_block, patches) = (&self.is_coupled, &self.by_block, &self.patches);
+        for (block, body) in self.bodies.iter_mut().enumerate() {
+            if is_coupled[block] && body.mass_kg.is_finite() {
+                (body.load_n, body.torque_n_m) = (Vec3::zeros(), Vec3::zeros());
+                for (k, sign) in by_block.at(BlockId(block as u32)) {
+                    if patches[k as usize].deforms {
+                        patches[k as usize].apply_change_of_friction(body, sign);
+                    }
+                }
+                body.advance_velocity(dt_s);
+            }
+        }
+    }
+
     /// Friction of the coupled patches.
     fn solve(&mut self, scene: &PatchScene) {
         let Self { patches, bodies, coupled, .. } = self;
         let (start, dt_s) = (scene.input.bodies, scene.input.dt_s);
         coupled.clear();
         for (number, patch) in (0..).zip(&*patches) {
-            if patch.has_friction() && !patch.is_held() {
+            if patch.has_friction() && !patch.deforms {
                 coupled.extend(CoupledPatch::new(number, patch, start, dt_s));
             }
         }

@@ -9,9 +9,8 @@ use crate::friction_patches::{PatchScene, Place};
 use crate::integrals::{FacetSums, Integrals};
 use crate::model::{Body, ContactHistory, FaceMemory};
 
-/// Change of friction in a step, over μN, below which a patch that sticks begins to be held by a spring, and beyond which it no longer is.
+/// Change of friction in a step, over μN, below which a patch that a spring holds is at rest.
 const QUIET: f64 = 0.01;
-const LOUD: f64 = 0.3;
 
 /// What a patch is, in short.
 #[derive(Clone, Copy, Debug, Default)]
@@ -21,6 +20,8 @@ pub struct PatchSummary {
     pub area_m2: f64,
     /// Whether its friction is found together with that of others.
     pub is_coupled: bool,
+    /// Whether it is found from the motion to come, alone or together.
+    pub stops_motion: bool,
 }
 
 /// How far a step moved the nodes, and what touched meanwhile.
@@ -45,21 +46,23 @@ pub struct ContactPatch {
     pub area_m2: f64,
     /// Most friction [N].
     pub most_n: f64,
-    /// The axes of the pressure, and the normal; what friction can carry along them.
+    /// The axes of the pressure, and the normal; what friction can carry along them. Only where no block deforms.
     pub axes: [Vec3; 3],
     pub surface: LimitSurface,
     /// Force [N] on it, and torque [N m] about the centre, but for its own friction.
     load_n: Vec3,
     load_torque_n_m: Vec3,
-    /// Mean of r rᵀ about the centre, weighted by pressure [m²].
+    /// Mean of r rᵀ about the centre, weighted by pressure, where no block deforms [m²].
     pub second_moment_m2: Mat3,
+    /// Means of r² and r, where one deforms [m², m].
+    radius2_m2: f64,
+    pub radius_m: f64,
     /// Slip velocity, and spin about the normal, weighted by pressure; only for a patch that is held by a spring.
     pub velocity_m_s: Vec3,
     pub spin_rad_s: f64,
     /// Whether one of both blocks deforms.
-    deforms: bool,
-    held: bool,
-    /// Whether its friction hardly changes meanwhile.
+    pub deforms: bool,
+    /// Whether a spring holds it, and its friction hardly changes.
     quiet: bool,
     /// Friction of the last step, turned with the face; none at first touch.
     pub previous: Option<FaceMemory>,
@@ -98,15 +101,15 @@ impl ContactPatch {
         };
         self.least_slip_m = scene.input.dt_s.powi(2) * load_m_s2(owner).max(load_m_s2(target));
         self.most_n = law.map_or(0.0, |law| self.capacity_n(law));
-        let (axes, second_moment_m2) = self.principal_axes();
-        (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
+        if !self.deforms {
+            let (axes, second_moment_m2) = self.principal_axes();
+            (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
+        }
         let old = remembered.of(&run[0]).filter(|old| old.normal.dot(&self.normal) > 0.0);
         self.previous = old.map(|old| old.turned_to(&self.normal));
-        if self.deforms && self.previous.is_some_and(|old| !old.slides) {
+        if self.is_held() {
             self.measure_slip(run, scene, forces);
             self.quiet = self.is_quiet(scene, QUIET);
-            let was_held = self.previous.is_some_and(|old| old.held);
-            self.held = self.quiet || (was_held && self.is_quiet(scene, LOUD));
         }
     }
 
@@ -120,7 +123,9 @@ impl ContactPatch {
 
     pub fn summary(&self) -> PatchSummary {
         let Self { owner, target, area_m2, .. } = *self;
-        PatchSummary { owner, target, area_m2, is_coupled: self.has_friction() && !self.is_held() }
+        let is_coupled = self.has_friction() && !self.deforms;
+        let stops_motion = self.has_friction() && !self.is_held();
+        PatchSummary { owner, target, area_m2, is_coupled, stops_motion }
     }
 
     /// Whether there is friction on it.
@@ -128,14 +133,14 @@ impl ContactPatch {
         self.has_law && self.pressure > 0.0 && self.area_m2 > 0.0
     }
 
-    /// Whether it is held by a spring: it stuck in the last step, hardly slips now, and one of both blocks deforms.
+    /// Whether it is held by a spring: it stuck in the last step, and one of both blocks deforms.
     pub fn is_held(&self) -> bool {
-        self.held
+        self.deforms && self.previous.is_some_and(|old| !old.slides)
     }
 
     /// Mean square distance of the pressure from its centre [m²].
     pub fn radius2(&self) -> f64 {
-        self.second_moment_m2.trace()
+        if self.deforms { self.radius2_m2 } else { self.second_moment_m2.trace() }
     }
 
     /// What it does to one of its facets.
@@ -144,7 +149,9 @@ impl ContactPatch {
             let twist = self.torque_n_m / self.pressure / self.radius2();
             let arm = force.center - self.center;
             force.shear = self.force_n / self.pressure + twist * self.normal.cross(&arm);
-            force.couple_n_m = pressure * twist * own.trace() * self.normal;
+            if !self.deforms {
+                force.couple_n_m = pressure * twist * own.trace() * self.normal;
+            }
             force.sticks = !self.memory.slides;
         }
     }
@@ -155,15 +162,19 @@ impl ContactPatch {
         body.torque_n_m += sign * self.load_torque_n_m;
     }
 
-    /// The same by its friction of the last step, or of this one where that is known.
+    /// The same by its friction of the last step.
     pub fn apply_previous_friction(&self, body: &mut Body, sign: f64) {
-        if self.is_held() {
-            body.push(&self.center, &(sign * self.force_n));
-            body.torque_n_m += sign * self.torque_n_m * self.normal;
-        } else if let Some(old) = &self.previous {
+        if let Some(old) = &self.previous {
             body.push(&self.center, &(sign * old.force_n));
             body.torque_n_m += sign * old.torque_n_m * self.normal;
         }
+    }
+
+    /// The same by what its friction has changed since then.
+    pub fn apply_change_of_friction(&self, body: &mut Body, sign: f64) {
+        let old = self.previous.unwrap_or_default();
+        body.push(&self.center, &(sign * (self.force_n - old.force_n)));
+        body.torque_n_m += sign * (self.torque_n_m - old.torque_n_m) * self.normal;
     }
 
     /// Two unit vectors in the face along which the pressure has its principal second moments, the normal, and these moments [m²].
@@ -199,6 +210,14 @@ impl ContactPatch {
                 let arm = forces[t as usize].center - self.center;
                 twist += arm.cross(&slip).dot(&self.normal);
             }
+        }
+        if self.deforms {
+            if shift.norm() <= self.least_slip_m {
+                return 0.0;
+            }
+            let turn = twist / self.radius2();
+            let most_j = self.most_n * shift.norm().hypot(self.radius_m * turn);
+            return (most_j + self.force_n.dot(&shift) + self.torque_n_m * turn).max(0.0);
         }
         let radius_m = self.surface.radius_m;
         // Facets do not see their own spin, the motion of the blocks does.
@@ -240,13 +259,21 @@ impl ContactPatch {
     /// Loads, and second moments about the centre; a facet counts with its own size, so that one facet has some, too.
     fn measure(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce], own: &[Mat3]) {
         for &(_, _, t) in run {
-            let FacetSums { pressure, .. } = *scene.sums(t);
+            let FacetSums { pressure, area, .. } = *scene.sums(t);
             if pressure > 0.0 {
                 let FacetForce { push, shear, center, .. } = &forces[t as usize];
                 let (arm, load) = (center - self.center, pressure * (push + shear));
                 self.load_n += load;
                 self.load_torque_n_m += arm.cross(&load);
-                self.second_moment_m2 += pressure / self.pressure * (arm * arm.transpose() + own[t as usize]);
+                let share = pressure / self.pressure;
+                if self.deforms {
+                    // A disc of the same area: mean r² = A/2π.
+                    let radius2 = arm.norm_squared() + area / std::f64::consts::TAU;
+                    self.radius2_m2 += share * radius2;
+                    self.radius_m += share * radius2.sqrt();
+                } else {
+                    self.second_moment_m2 += share * (arm * arm.transpose() + own[t as usize]);
+                }
             }
         }
     }

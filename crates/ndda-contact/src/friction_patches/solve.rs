@@ -1,4 +1,4 @@
-//! Friction of all patches together, as forces that stop their slip or oppose it.
+//! Friction of all patches between blocks that do not deform, found together, as forces that stop their slip or oppose it.
 //!
 //! Normal forces are known, so friction is a problem of Tresca: with the velocities u of the blocks, their inertia M and the
 //! forces f_i ∈ −∂D_i(slip_i) of the patches, M u′ = F + Σ f_i. It is convex, and each step of
@@ -63,10 +63,6 @@ impl CoupledPatch {
         };
         for (body, arm) in [own, other].into_iter().zip(arms) {
             found.flexibility += dt_s * found.flexibility_of(body, &arm);
-            if body.mass_kg.is_finite() && body.deforms() {
-                let local = 1.0 / (body.impedance_pa_s_m * patch.area_m2);
-                found.flexibility += local * Mat3::identity();
-            }
         }
         found.stiffness = found.flexibility.try_inverse().filter(|a| a.iter().all(|x| x.is_finite()))?;
         if let Some(old) = &patch.previous {
