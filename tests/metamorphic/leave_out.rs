@@ -5,7 +5,7 @@ use ndda_io::scene::{Body, Contact, ContactAt, Friction, Integrator, Potential, 
 /// A defect: the relations that it spoils, its name, and the scenes that have it.
 type Switch = (&'static [&'static str], &'static str, fn(&Scene) -> bool);
 
-const SWITCHES: [Switch; 10] = [
+const SWITCHES: [Switch; 11] = [
     // A block that flies under gravity begins to turn: Newmark and contact at the end by much, GeneralizedAlpha by little.
     (&["boosted", "shifted", "label"], "left out: spin in free flight", spins),
     // A fixed block that is moved from the start has no velocity at the first step, in which contact sees it behind.
@@ -22,6 +22,8 @@ const SWITCHES: [Switch; 10] = [
     // What the label knows of turns depends on where a run with divided steps was interrupted, by a ten-thousandth.
     (&["split"], "left out: books of divided steps", divided),
     (&["label"], "left out: velocity friction in impacts", velocity_friction),
+    // Friction on velocities is found patch by patch to a thousandth of what it may be, in the order of the blocks.
+    (&["renumbered"], "left out: order of patches in velocity friction", velocity_friction),
     (&["label"], "left out: strength of bonds", bonds),
     (&["resumed", "split"], "left out: resume of rigid blocks with contact at the end", rigid_end),
     // The 2 % of a pile's energy are more than 1 % of the speeds of what bounces in it; phases of bounces are not seen either.
