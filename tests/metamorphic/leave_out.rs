@@ -1,16 +1,15 @@
 //! Scenes that a defect which is known, and not yet mended, spoils: one switch per defect, to be taken out with it.
 
-use ndda_io::scene::{Body, Contact, ContactAt, Friction, Integrator, Potential, Scene, Step};
+use ndda_io::scene::{Body, Contact, ContactAt, Friction, Integrator, Potential, Scene};
 
 /// A defect: the relations that it spoils, its name, and the scenes that have it.
 type Switch = (&'static [&'static str], &'static str, fn(&Scene) -> bool);
 
-const SWITCHES: [Switch; 11] = [
-    // A block that flies under gravity begins to turn: Newmark and contact at the end by much, GeneralizedAlpha by little.
-    (&["boosted", "shifted", "label"], "left out: spin in free flight", spins),
+const SWITCHES: [Switch; 6] = [
+    // Collisions at a distance from the origin differ from those at the origin, by the cause of one scene in forty (seed 26).
+    (&["boosted", "shifted"], "left out: other integrators than Midpoint", spins),
     // A fixed block that is moved from the start has no velocity at the first step, in which contact sees it behind.
     (&["boosted"], "left out: fixed blocks that move", fixed),
-    (&["label"], "left out: moved bases", moved),
     // Regions of the smooth potential depend on how a block is turned; some are refused one way and not the other.
     (
         &["rotated", "shifted", "mirrored", "boosted", "renumbered"],
@@ -19,13 +18,8 @@ const SWITCHES: [Switch; 11] = [
     ),
     // Off by 1e-9 to 1e-7 in a mirror; the cause is not known.
     (&["mirrored"], "left out: friction in a mirror", rubs),
-    // What the label knows of turns depends on where a run with divided steps was interrupted, by a ten-thousandth.
-    (&["split"], "left out: books of divided steps", divided),
-    (&["label"], "left out: velocity friction in impacts", velocity_friction),
     // Friction on velocities is found patch by patch to a thousandth of what it may be, in the order of the blocks.
     (&["renumbered"], "left out: order of patches in velocity friction", velocity_friction),
-    (&["label"], "left out: strength of bonds", bonds),
-    (&["resumed", "split"], "left out: resume of rigid blocks with contact at the end", rigid_end),
     // The 2 % of a pile's energy are more than 1 % of the speeds of what bounces in it; phases of bounces are not seen either.
     (&["label"], "left out: piles that bounce", piles),
 ];
@@ -46,14 +40,6 @@ fn spins(scene: &Scene) -> bool {
 
 fn ends(scene: &Scene) -> bool {
     matches!(scene.time.contact_at, ContactAt::End { .. })
-}
-
-fn divided(scene: &Scene) -> bool {
-    scene.time.step != Step::Fixed
-}
-
-fn moved(scene: &Scene) -> bool {
-    scene.title.ends_with("moved base")
 }
 
 /// A boosted scene moves all of them.
@@ -78,16 +64,6 @@ fn rubs(scene: &Scene) -> bool {
 
 fn velocity_friction(scene: &Scene) -> bool {
     friction(scene).is_some_and(|friction| friction.shear_penalty_pa_m.is_none())
-}
-
-fn bonds(scene: &Scene) -> bool {
-    friction(scene).is_some_and(|friction| friction.cohesion_pa > 0.0 || friction.tension_pa > 0.0)
-}
-
-fn rigid_end(scene: &Scene) -> bool {
-    let rigid = scene.blocks.iter().any(|b| b.body == Body::Rigid)
-        || scene.rock.iter().any(|r| r.body == Body::Rigid);
-    ends(scene) && rigid
 }
 
 fn piles(scene: &Scene) -> bool {
