@@ -292,8 +292,7 @@ impl FrictionPatches {
     }
 
     /// How far friction of the last [`add`](Self::add) was from Coulomb's law over displacements of the nodes [m]: blocks and energy [J], one call for
-    /// each patch between blocks that do not deform. Where one does, the vibrations of quiet contacts leave gaps as large as those of impacts
-    /// that the step does not resolve, so that the gap says nothing.
+    /// each patch.
     pub fn each_coulomb_gap(
         &mut self,
         (blocks, integrals, forces): (&BlockSet, &Integrals, &[FacetForce]),
@@ -304,12 +303,10 @@ impl FrictionPatches {
         let Self { patches, runs, order, gaps_j, .. } = self;
         gaps_j.resize(patches.len(), 0.0);
         let gap = |((gap_j, patch), run): ((&mut f64, &ContactPatch), &Range<usize>)| {
-            if !patch.deforms {
-                *gap_j = patch.coulomb_gap_j(&order[run.clone()], &scene, forces);
-            }
+            *gap_j = patch.coulomb_gap_j(&order[run.clone()], &scene, forces);
         };
         gaps_j.par_iter_mut().zip(&*patches).zip(&*runs).with_min_len(GRAIN_PATCHES).for_each(gap);
-        for (patch, &gap_j) in patches.iter().zip(&*gaps_j).filter(|(patch, _)| !patch.deforms) {
+        for (patch, &gap_j) in patches.iter().zip(&*gaps_j) {
             add(patch.owner, patch.target, gap_j);
         }
     }

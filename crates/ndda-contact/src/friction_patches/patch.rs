@@ -2,15 +2,12 @@
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
-use crate::facets::{FacetForce, mass_per_area, reduced, relative_motion, relative_velocity};
+use crate::facets::{FacetForce, relative_motion, relative_velocity};
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
 use crate::friction_patches::limit_surface::LimitSurface;
 use crate::friction_patches::{PatchScene, Place};
 use crate::integrals::{FacetSums, Integrals};
 use crate::model::{Body, ContactHistory, FaceMemory};
-
-/// Change of friction in a step, over μN, below which a patch that a spring holds is at rest.
-const QUIET: f64 = 0.01;
 
 /// What a patch is, in short.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,8 +59,6 @@ pub struct ContactPatch {
     pub spin_rad_s: f64,
     /// Whether one of both blocks deforms.
     pub deforms: bool,
-    /// Whether a spring holds it, and its friction hardly changes.
-    quiet: bool,
     /// Friction of the last step, turned with the face; none at first touch.
     pub previous: Option<FaceMemory>,
     /// Slip that loads other than contact bring within a step from rest: less is not resolved [m].
@@ -109,16 +104,7 @@ impl ContactPatch {
         self.previous = old.map(|old| old.turned_to(&self.normal));
         if self.is_held() {
             self.measure_slip(run, scene, forces);
-            self.quiet = self.is_quiet(scene, QUIET);
         }
-    }
-
-    /// Whether a spring would hardly change the friction of a patch that sticks.
-    fn is_quiet(&self, scene: &PatchScene, part: f64) -> bool {
-        let dt_s = scene.input.dt_s;
-        let mass = |block: BlockId| mass_per_area(&scene.input.bodies[block.index()], self.area_m2, dt_s);
-        let rate = reduced(mass(self.owner), mass(self.target)) * self.area_m2 / dt_s;
-        rate * self.velocity_m_s.norm() <= part * self.most_n
     }
 
     pub fn summary(&self) -> PatchSummary {
@@ -193,10 +179,10 @@ impl ContactPatch {
     }
 
     /// Energy [J] by which friction did less than Coulomb's law takes from a displacement of the surfaces, D(u, θ) + F·u + T θ ≥ 0: none where the
-    /// patch sticks without slip or slides against its friction. `moved` are the displacements of the nodes [m].
+    /// patch sticks without slip or slides against its friction. `moved` are the displacements of the nodes [m]. Zero where a block deforms: its
+    /// vibrations leave gaps in quiet contacts that are as large as those of impacts which the step does not resolve.
     pub fn coulomb_gap_j(&self, run: &[Place], scene: &Moved, forces: &[FacetForce]) -> f64 {
-        // What a spring holds hardly slips, and gives back what it takes.
-        if !self.has_friction() || self.quiet {
+        if !self.has_friction() || self.deforms {
             return 0.0;
         }
         let (mut shift, mut twist) = (Vec3::zeros(), 0.0);
@@ -210,14 +196,6 @@ impl ContactPatch {
                 let arm = forces[t as usize].center - self.center;
                 twist += arm.cross(&slip).dot(&self.normal);
             }
-        }
-        if self.deforms {
-            if shift.norm() <= self.least_slip_m {
-                return 0.0;
-            }
-            let turn = twist / self.radius2();
-            let most_j = self.most_n * shift.norm().hypot(self.radius_m * turn);
-            return (most_j + self.force_n.dot(&shift) + self.torque_n_m * turn).max(0.0);
         }
         let radius_m = self.surface.radius_m;
         // Facets do not see their own spin, the motion of the blocks does.
