@@ -60,7 +60,7 @@ pub struct Trial {
     pub loaded: LoadedStudy,
     /// Its name: the file without its ending.
     pub name: String,
-    /// What its runs have in common.
+    /// Settings that its runs share.
     pub plan: Plan,
     /// The output folder.
     pub out: PathBuf,
@@ -103,7 +103,7 @@ impl Trial {
         Ok((Self { loaded: LoadedStudy::of_scene(scene, text), name, plan, out }, ready))
     }
 
-    /// What launches its runs.
+    /// The launcher of its runs.
     pub fn launch<'a>(&'a self, how: &TrialHow, asked_to_end: &'a AtomicBool) -> Launch<'a> {
         let (jobs, threads, quiet) = (how.jobs, how.threads, how.quiet);
         Launch { loaded: &self.loaded, out: &self.out, jobs, threads, quiet, asked_to_end }

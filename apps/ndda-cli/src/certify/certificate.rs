@@ -44,7 +44,7 @@ pub struct Certificate {
     pub quantities: Vec<Certified>,
     /// The error of the last of the three runs against the scene's closed form; null where it has none.
     pub closed_form: Option<ClosedForm>,
-    /// What makes single trajectories mean nothing; null for a regular motion.
+    /// Reason why single trajectories mean nothing; null for a regular motion.
     pub chaos: Option<Chaos>,
     /// Energy of vibrations that none of the steps resolves [J]; 0 where the energy error falls with the step.
     pub unresolved_energy_j: f64,
