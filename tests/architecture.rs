@@ -5,13 +5,14 @@ use std::fs;
 use std::path::Path;
 
 /// Every crate of the workspace with the crates of the workspace that it may depend on.
-const ARROWS: [(&str, &[&str]); 6] = [
+const ARROWS: [(&str, &[&str]); 7] = [
     ("crates/ndda-mesh", &[]),
     ("crates/ndda-fem", &["ndda-mesh"]),
     ("crates/ndda-contact", &["ndda-mesh"]),
     ("crates/ndda-solver", &["ndda-mesh", "ndda-fem", "ndda-contact"]),
-    ("crates/ndda-io", &["ndda-mesh", "ndda-fem", "ndda-contact", "ndda-solver"]),
-    ("apps/ndda-cli", &["ndda-mesh", "ndda-fem", "ndda-contact", "ndda-solver", "ndda-io"]),
+    ("crates/ndda-io", &["ndda-mesh"]),
+    ("crates/ndda", &["ndda-mesh", "ndda-fem", "ndda-contact", "ndda-solver", "ndda-io"]),
+    ("apps/ndda-cli", &["ndda-mesh", "ndda-fem", "ndda-contact", "ndda-solver", "ndda-io", "ndda"]),
 ];
 
 fn root() -> &'static Path {
@@ -27,7 +28,7 @@ fn uses(manifest: &str, all: bool) -> BTreeSet<String> {
             inside = section.starts_with("dependencies") || all && section.contains("dependencies");
         }
         let name = line.split(['.', ' ', '=']).next().unwrap_or("");
-        if inside && name.starts_with("ndda-") {
+        if inside && name == "ndda" || name.starts_with("ndda-") {
             found.insert(name.to_string());
         }
     }
@@ -40,6 +41,31 @@ fn crates_depend_on_each_other_only_along_the_allowed_arrows() {
         let manifest = fs::read_to_string(root().join(folder).join("Cargo.toml")).unwrap();
         for name in uses(&manifest, true) {
             assert!(allowed.contains(&name.as_str()), "{folder} must not depend on {name}");
+        }
+    }
+}
+
+/// Rust sources of a folder, all in one text.
+fn sources(folder: &Path) -> String {
+    let mut text = String::new();
+    for entry in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        if entry.is_dir() {
+            text += &sources(&entry);
+        } else if entry.extension().is_some_and(|ending| ending == "rs") {
+            text += &fs::read_to_string(entry).unwrap();
+        }
+    }
+    text
+}
+
+#[test]
+fn every_crate_uses_the_crates_that_it_depends_on() {
+    for (folder, _) in ARROWS {
+        let folder = root().join(folder);
+        let text = sources(&folder.join("src"));
+        for name in uses(&fs::read_to_string(folder.join("Cargo.toml")).unwrap(), false) {
+            let module = format!("{}::", name.replace('-', "_"));
+            assert!(text.contains(&module), "{} names {name} and does not use it", folder.display());
         }
     }
 }

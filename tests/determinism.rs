@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use ndda_cli::args::{HowArgs, RunArgs, SceneArgs};
-use ndda_cli::{exit, run};
+use ndda::{Model, Run};
+use ndda_io::OutputFolder;
+use ndda_io::summary::Status;
 
 /// Scenes with contact, friction and spin, cut short.
 const SCENES: [(&str, &[&str]); 5] = [
@@ -14,19 +15,18 @@ const SCENES: [(&str, &[&str]); 5] = [
     ("sticking_30_phi35", &["time.end_s=0.5"]),
 ];
 
-fn history(scene: &str, overrides: &[&str], threads: u16) -> Vec<u8> {
+fn history(scene: &str, overrides: &[&str], threads: usize) -> Vec<u8> {
     let out = tempfile::tempdir().unwrap();
-    let args = RunArgs {
-        input: SceneArgs {
-            scene: Some(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"))),
-            overrides: overrides.iter().chain(&["output.frames=0"]).map(ToString::to_string).collect(),
-            ..SceneArgs::default()
-        },
-        out: Some(out.path().join("results")),
-        force: false,
-        how: HowArgs { threads: Some(threads), quiet: true, ..HowArgs::default() },
-    };
-    assert_eq!(run::run(&args), exit::DONE, "{scene}");
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"));
+    let overrides: Vec<String> =
+        overrides.iter().chain(&["output.frames=0"]).map(ToString::to_string).collect();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| {
+        let model = Model::open(&file, &overrides).unwrap();
+        let folder = OutputFolder::create(&out.path().join("results"), false).unwrap();
+        let outcome = Run::new(model).record(folder, file).unwrap().finish(&mut []).unwrap();
+        assert_eq!(outcome.summary.status, Status::Done, "{scene}");
+    });
     std::fs::read(out.path().join("results/history.csv")).unwrap()
 }
 

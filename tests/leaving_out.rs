@@ -3,7 +3,7 @@
 //! One block has no contact: tests/verification/one_block_alone.rs. Without friction no friction code acts:
 //! crates/ndda-contact/tests/without_friction.rs. Files and arrays are those asked for: apps/ndda-cli/tests/output.rs.
 
-use ndda_cli::wiring;
+use ndda::build;
 use ndda_io::read::load_text;
 use ndda_solver::{BodyKind, Simulation};
 
@@ -16,8 +16,8 @@ fn scene(time: &str, material: &str, blocks: &str, more: &str) -> Simulation {
     );
     let loaded = load_text("case.ron", &text, &[], None).unwrap_or_else(|e| panic!("{}", e.render(false)));
     let folder = std::path::Path::new(".");
-    let blocks = wiring::blocks(&loaded.scene, folder).unwrap_or_else(|faults| panic!("{faults:?}"));
-    wiring::simulation(&loaded.scene, blocks, folder).unwrap_or_else(|faults| panic!("{faults:?}"))
+    let blocks = build::blocks(&loaded.scene, folder).unwrap_or_else(|faults| panic!("{faults:?}"));
+    build::simulation(&loaded.scene, blocks, folder).unwrap_or_else(|faults| panic!("{faults:?}"))
 }
 
 /// A box with its corner at x, on z = 0.
@@ -134,7 +134,7 @@ fn packages(features: &str) -> usize {
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
     let text = String::from_utf8(out.stdout).unwrap();
     let packages = text.lines().map(|line| line.trim_end_matches(" (*)"));
-    let others = packages.filter(|line| !line.is_empty() && !line.starts_with("ndda-"));
+    let others = packages.filter(|line| !line.is_empty() && !line.starts_with("ndda"));
     others.collect::<std::collections::BTreeSet<&str>>().len()
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda_cli::wiring;
+use ndda::build;
 use ndda_contact::testing::check_model;
 use ndda_contact::{ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport};
 use ndda_mesh::{BlockId, Vec3};
@@ -73,10 +73,10 @@ fn the_model_of_a_fork_keeps_the_contract() {
 fn two_blocks_on_the_model_of_a_fork_exchange_their_velocities() {
     let scene = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/collision_equal_free.ron");
     let loaded = ndda_io::read::load(&scene, &["time.step_s=1e-4".into()]).unwrap();
-    let blocks = wiring::blocks(&loaded.scene, scene.parent().unwrap()).unwrap();
+    let blocks = build::blocks(&loaded.scene, scene.parent().unwrap()).unwrap();
     let model = LinearSprings { stiffness_n_m: 1e8, reach_m: 1.0 };
     let mut simulation =
-        wiring::simulation_with(&loaded.scene, blocks, Path::new("."), Some(Box::new(model))).unwrap();
+        build::simulation_with(&loaded.scene, blocks, Path::new("."), Some(Box::new(model))).unwrap();
     // Met after 20 ms, apart half a period π √(m/2k) = 11 ms later.
     for _ in 0..400 {
         simulation.step().unwrap();

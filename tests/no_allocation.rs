@@ -5,7 +5,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use ndda_cli::check::prepare;
+use ndda::Model;
 
 /// Counts every request for memory of the whole process.
 struct Counting;
@@ -36,7 +36,7 @@ static ALLOCATOR: Counting = Counting;
 /// thread of the pool that comes to work late makes room for itself once.
 fn requests(scene: &str, threads: usize, warm_up: usize, steps: usize) -> usize {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"));
-    let mut simulation = prepare(&scene, &[]).unwrap().simulation;
+    let mut simulation = Model::open(&scene, &[]).unwrap().simulation;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     // Threads make room for themselves when they start.
     pool.broadcast(|_| ());

@@ -4,7 +4,7 @@
 //! snapshot goes through the encoding of a checkpoint. Real kills are in `apps/ndda-cli/tests/kill_and_resume.rs`.
 //! The gate takes every 13th of the 1200 cells, in which each choice of each axis occurs; `NDDA_LARGE=1` takes all.
 
-use ndda_cli::wiring;
+use ndda::build;
 use ndda_contact::testing::Random;
 use ndda_io::read::load_text;
 use ndda_solver::{Simulation, Snapshot};
@@ -104,8 +104,8 @@ impl Cell {
         let loaded =
             load_text("case.ron", &text, &[], None).unwrap_or_else(|e| panic!("{}", e.render(false)));
         let folder = std::path::Path::new(".");
-        let blocks = wiring::blocks(&loaded.scene, folder).unwrap_or_else(|faults| panic!("{faults:?}"));
-        wiring::simulation(&loaded.scene, blocks, folder).unwrap_or_else(|faults| panic!("{faults:?}"))
+        let blocks = build::blocks(&loaded.scene, folder).unwrap_or_else(|faults| panic!("{faults:?}"));
+        build::simulation(&loaded.scene, blocks, folder).unwrap_or_else(|faults| panic!("{faults:?}"))
     }
 
     fn name(&self) -> String {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda_cli::wiring;
+use ndda::build;
 use ndda_io::read::{LoadedScene, load_text};
 use ndda_mesh::BlockSet;
 use ndda_mesh::geometry::tet_volume;
@@ -20,7 +20,7 @@ fn load(rock: &str, rest: &str) -> LoadedScene {
 }
 
 fn blocks(loaded: &LoadedScene) -> BlockSet {
-    wiring::blocks(&loaded.scene, Path::new(".")).unwrap_or_else(|e| panic!("{e:?}"))
+    build::blocks(&loaded.scene, Path::new(".")).unwrap_or_else(|e| panic!("{e:?}"))
 }
 
 fn volume_m3(blocks: &BlockSet) -> f64 {
@@ -46,8 +46,8 @@ fn a_pattern_holds_the_blocks_that_have_a_part_in_the_region() {
         "supports: [(block: \"rock_*\", on: Plane(point_m: (0, 0, 0), normal: (0, 0, 1)), hold: Fixed)],
                 monitors: [(name: \"m\", block: \"rock_*\", at: Largest((1, 0, 0)))]";
     let loaded = load(COLUMN, rest);
-    let mut simulation = wiring::simulation(&loaded.scene, blocks(&loaded), Path::new(".")).unwrap();
-    let monitors = wiring::monitors(&loaded.scene, &simulation).unwrap();
+    let mut simulation = build::simulation(&loaded.scene, blocks(&loaded), Path::new(".")).unwrap();
+    let monitors = build::monitors(&loaded.scene, &simulation).unwrap();
     for _ in 0..20 {
         simulation.step().unwrap();
     }
@@ -72,8 +72,8 @@ fn removed_blocks_are_gone_and_fixed_ones_stay() {
     assert!((volume_m3(&blocks) - 112.0).abs() < 1e-9);
     let unknowns = |scene: &str| {
         let loaded = load(scene, "");
-        let blocks = wiring::blocks(&loaded.scene, Path::new(".")).unwrap();
-        wiring::simulation(&loaded.scene, blocks, Path::new(".")).unwrap().unknowns()
+        let blocks = build::blocks(&loaded.scene, Path::new(".")).unwrap();
+        build::simulation(&loaded.scene, blocks, Path::new(".")).unwrap().unknowns()
     };
     // Eight blocks of nine nodes; one is gone and two are fixed.
     assert_eq!(unknowns(COLUMN), 8 * 27);
@@ -158,7 +158,7 @@ fn what_is_wrong_with_a_rock_is_found_at_its_place() {
     }
     let all_removed =
         format!("(material: \"rock\", {domain}, removed: [Beyond(point_m: (0, 0, 0), normal: (0, 0, 1))])");
-    let faults = wiring::blocks(&load(&all_removed, "").scene, Path::new(".")).unwrap_err();
+    let faults = build::blocks(&load(&all_removed, "").scene, Path::new(".")).unwrap_err();
     assert_eq!(faults[0].path, "rock[0].removed");
 }
 
@@ -204,7 +204,7 @@ fn in_folder(file: &str, content: &str, scene: &str) -> Result<BlockSet, String>
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join(file), content).unwrap();
     let loaded = load_text("t.ron", scene, &[], Some(folder.path())).map_err(|e| e.to_string())?;
-    wiring::blocks(&loaded.scene, folder.path()).map_err(|faults| format!("{faults:?}"))
+    build::blocks(&loaded.scene, folder.path()).map_err(|faults| format!("{faults:?}"))
 }
 
 #[test]

@@ -22,8 +22,8 @@ fn the_example_of_the_reference_is_a_scene_without_warnings_that_runs() {
     let loaded =
         ndda_io::read::load_text("docs/scene.md", example, &[], None).unwrap_or_else(|e| panic!("{e}"));
     assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
-    let blocks = ndda_cli::wiring::blocks(&loaded.scene, Path::new(".")).unwrap();
-    let mut simulation = ndda_cli::wiring::simulation(&loaded.scene, blocks, Path::new(".")).unwrap();
-    assert_eq!(ndda_cli::wiring::monitors(&loaded.scene, &simulation).unwrap().len(), 1);
+    let blocks = ndda::build::blocks(&loaded.scene, Path::new(".")).unwrap();
+    let mut simulation = ndda::build::simulation(&loaded.scene, blocks, Path::new(".")).unwrap();
+    assert_eq!(ndda::build::monitors(&loaded.scene, &simulation).unwrap().len(), 1);
     simulation.step().unwrap();
 }

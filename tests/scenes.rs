@@ -8,9 +8,9 @@ mod evidence;
 
 use evidence::Answer::AtMost;
 use evidence::row;
-use ndda_cli::args::{HowArgs, RunArgs, SceneArgs};
-use ndda_cli::{check, exit, run};
-use ndda_io::study;
+use ndda::{Model, Run};
+use ndda_io::summary::Status;
+use ndda_io::{OutputFolder, study};
 use serde_json::Value;
 
 /// Row of the manual, scene, largest `error_end` and largest `error_max` that its header allows.
@@ -59,17 +59,14 @@ fn scenes() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes")
 }
 
-fn args(scene: &str, out: &Path) -> RunArgs {
-    RunArgs {
-        out: Some(out.join(scene)),
-        force: false,
-        input: SceneArgs {
-            scene: Some(scenes().join(format!("{scene}.ron"))),
-            overrides: vec!["output.frames=2".into()],
-            ..SceneArgs::default()
-        },
-        how: HowArgs { quiet: true, ..HowArgs::default() },
-    }
+/// Runs a scene with its results in a folder of its name.
+fn recorded(scene: &str, out: &Path, overrides: &[String], replace: bool) -> Result<Status, String> {
+    let file = scenes().join(format!("{scene}.ron"));
+    let overrides: Vec<String> = overrides.iter().cloned().chain(["output.frames=2".into()]).collect();
+    let model = Model::open(&file, &overrides).map_err(|errors| errors.render(false))?;
+    let folder = OutputFolder::create(&out.join(scene), replace).map_err(|error| error.to_string())?;
+    let run = Run::new(model).record(folder, file).map_err(|error| error.to_string())?;
+    run.finish(&mut []).map(|outcome| outcome.summary.status).map_err(|error| error.to_string())
 }
 
 #[test]
@@ -104,7 +101,7 @@ fn scenes_of_extreme_cases_and_failures_load_and_say_what_is_expected() {
         if text.contains("\n    scene: \"") {
             study::load(&path).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
         } else {
-            check::prepare(&path, &[]).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
+            Model::open(&path, &[]).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
         }
         let word = if path.to_string_lossy().contains("failures") { "// Seen: " } else { "// Passes " };
         assert!(text.contains(word), "{name} has no line `{word}`");
@@ -115,7 +112,7 @@ fn scenes_of_extreme_cases_and_failures_load_and_say_what_is_expected() {
 fn every_scene_passes_its_criterion_and_fills_its_summary() {
     let out = tempfile::tempdir().unwrap();
     for (id, scene, end, max) in CRITERIA {
-        assert_eq!(run::run(&args(scene, out.path())), exit::DONE, "{scene}");
+        assert_eq!(recorded(scene, out.path(), &[], false), Ok(Status::Done), "{scene}");
         let text = std::fs::read_to_string(out.path().join(scene).join("summary.json")).unwrap();
         let summary: Value = serde_json::from_str(&text).unwrap();
         let error = |name: &str| summary["reference"][name].as_f64().unwrap();
@@ -136,9 +133,8 @@ fn every_scene_passes_its_criterion_and_fills_its_summary() {
 fn scenes_of_many_blocks_begin_without_a_complaint() {
     let out = tempfile::tempdir().unwrap();
     for (scene, end_s) in SHORT {
-        let mut args = args(scene, out.path());
-        args.input.overrides.push(format!("time.end_s={end_s}"));
-        assert_eq!(run::run(&args), exit::DONE, "{scene}");
+        let end = [format!("time.end_s={end_s}")];
+        assert_eq!(recorded(scene, out.path(), &end, false), Ok(Status::Done), "{scene}");
         let text = std::fs::read_to_string(out.path().join(scene).join("summary.json")).unwrap();
         let summary: Value = serde_json::from_str(&text).unwrap();
         for (name, verdict) in summary["verdicts"].as_object().unwrap() {
@@ -186,9 +182,8 @@ fn has_the_promised_keys(scene: &str, summary: &Value) {
 #[test]
 fn a_run_past_the_reach_of_contact_stops_with_its_cause_and_no_nan() {
     let out = tempfile::tempdir().unwrap();
-    let mut soft = args("collision_equal_free", out.path());
-    soft.input.overrides.push("contact.penalty_pa=1e3".into());
-    assert_eq!(run::run(&soft), exit::STOPPED);
+    let soft = ["contact.penalty_pa=1e3".into()];
+    assert_eq!(recorded("collision_equal_free", out.path(), &soft, false), Ok(Status::Stopped));
     let folder = out.path().join("collision_equal_free");
     let text = std::fs::read_to_string(folder.join("summary.json")).unwrap();
     let summary: Value = serde_json::from_str(&text).unwrap();
@@ -201,9 +196,8 @@ fn a_run_past_the_reach_of_contact_stops_with_its_cause_and_no_nan() {
 #[test]
 fn results_of_another_run_are_not_replaced_unless_asked() {
     let out = tempfile::tempdir().unwrap();
-    let mut fall = args("free_fall", out.path());
-    assert_eq!(run::run(&fall), exit::DONE);
-    assert_eq!(run::run(&fall), exit::INPUT_OUTPUT);
-    fall.force = true;
-    assert_eq!(run::run(&fall), exit::DONE);
+    let fall = |replace| recorded("free_fall", out.path(), &[], replace);
+    assert_eq!(fall(false), Ok(Status::Done));
+    assert!(fall(false).is_err_and(|error| error.contains("--force")));
+    assert_eq!(fall(true), Ok(Status::Done));
 }

@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use ndda_cli::{check, step_advice};
+use ndda::Model;
+use ndda::forecast::step;
 
 /// A slope of 40 blocks that joints cut out of the rock, filled with slivers.
 const SLOPE: &str = r#"(
@@ -29,10 +30,9 @@ fn the_stability_number_of_a_cut_slope_is_foreseen_whatever_fills_its_blocks() {
             let text = SLOPE.replace("BODY", body).replace("POTENTIAL", potential);
             let change = format!("time.step_s={step_s:e}");
             let loaded = ndda_io::read::load_text("slope.ron", &text, &[change], None).unwrap();
-            let mut ready = check::prepare_loaded(loaded, Path::new("."))
-                .unwrap_or_else(|e| panic!("{}", e.render(false)));
-            let advice =
-                step_advice::advise(&ready.loaded.scene, &mut ready.simulation).expect("there is contact");
+            let mut ready =
+                Model::new(loaded, Path::new(".")).unwrap_or_else(|e| panic!("{}", e.render(false)));
+            let advice = step::advise(&ready.loaded.scene, &mut ready.simulation).expect("there is contact");
             let mut found = 0.0f64;
             for _ in 0..1000 {
                 found = found.max(ready.simulation.step().unwrap().h);
@@ -51,9 +51,8 @@ fn the_stability_number_of_a_cut_slope_is_foreseen_whatever_fills_its_blocks() {
 fn foreseen_and_found(scene: &str, changes: &[&str], steps: usize) -> ((f64, f64), f64) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
     let changes: Vec<String> = changes.iter().map(|change| change.to_string()).collect();
-    let mut ready =
-        check::prepare(&path, &changes).unwrap_or_else(|errors| panic!("{}", errors.render(false)));
-    let advice = step_advice::advise(&ready.loaded.scene, &mut ready.simulation).expect("there is contact");
+    let mut ready = Model::open(&path, &changes).unwrap_or_else(|errors| panic!("{}", errors.render(false)));
+    let advice = step::advise(&ready.loaded.scene, &mut ready.simulation).expect("there is contact");
     let mut found = 0.0f64;
     for _ in 0..steps {
         found = found.max(ready.simulation.step().unwrap().h);
@@ -105,8 +104,8 @@ fn the_stability_number_of_contact_is_foreseen_within_a_factor_of_two_on_the_gal
 fn a_scene_whose_contact_is_stable_at_any_step_gets_no_advice() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/collision_equal_free.ron");
     for change in ["time.contact_at=End()", "contact=Off"] {
-        let mut ready = check::prepare(&path, &[change.to_string()])
+        let mut ready = Model::open(&path, &[change.to_string()])
             .unwrap_or_else(|errors| panic!("{}", errors.render(false)));
-        assert_eq!(step_advice::advise(&ready.loaded.scene, &mut ready.simulation), None, "{change}");
+        assert_eq!(step::advise(&ready.loaded.scene, &mut ready.simulation), None, "{change}");
     }
 }

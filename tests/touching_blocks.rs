@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda_cli::check;
+use ndda::Model;
 
 #[test]
 fn blocks_that_touch_to_rounding_neither_stop_a_run_nor_stiffen_it() {
@@ -22,9 +22,8 @@ fn faces_that_meet_exactly_are_not_taken_for_a_block_inside_another() {
 fn run_steps(scene: &str, changes: &[&str], steps: usize) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"));
     let changes: Vec<String> = changes.iter().map(|change| (*change).into()).collect();
-    let mut simulation = check::prepare(&path, &changes)
-        .unwrap_or_else(|errors| panic!("{}", errors.render(false)))
-        .simulation;
+    let mut simulation =
+        Model::open(&path, &changes).unwrap_or_else(|errors| panic!("{}", errors.render(false))).simulation;
     for _ in 0..steps {
         let report = simulation.step().unwrap();
         assert!(report.h < 2.0, "{report:?}");

@@ -2,7 +2,7 @@
 
 use std::hint::black_box;
 
-use ndda_cli::machine;
+use ndda::machine;
 use ndda_contact::ContactInput;
 use ndda_contact::batch::Batches;
 use ndda_contact::candidates::Candidates;

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use ndda_cli::check::prepare;
+use ndda::Model;
 use ndda_solver::{BodyKind, Simulation};
 
 /// Time that cubes fall freely before they are watched [s]: 4 mm above the ridge, of 0.2 m.
@@ -17,7 +17,7 @@ pub const STEPS: u32 = 50;
 pub fn prepared(scene: &str, settings: &[&str]) -> Simulation {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"));
     let settings: Vec<String> = settings.iter().map(ToString::to_string).collect();
-    prepare(&file, &settings).expect("a sound scene").simulation
+    Model::open(&file, &settings).expect("a sound scene").simulation
 }
 
 /// A pile after its fall, which needs no steps: nothing touches the cubes but each other.

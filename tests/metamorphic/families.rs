@@ -1,6 +1,6 @@
 //! Families of random scenes.
 
-use ndda_cli::wiring;
+use ndda::build;
 use ndda_io::read::load_text;
 use ndda_mesh::Vec3;
 use std::path::Path;
@@ -219,7 +219,7 @@ fn bounds(piece: &Piece) -> (Vec3, Vec3) {
         piece.shape, piece.turns
     );
     let loaded = load_text("piece.ron", &text, &[], None).unwrap_or_else(|e| panic!("{}", e.render(false)));
-    let (meshes, _) = wiring::meshes(&loaded.scene, Path::new(".")).expect("a shape that can be built");
+    let (meshes, _) = build::meshes(&loaded.scene, Path::new(".")).expect("a shape that can be built");
     let nodes = &meshes[0].1.nodes;
     nodes.iter().fold((nodes[0], nodes[0]), |(low, high), x| (low.inf(x), high.sup(x)))
 }

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use ndda_cli::check::{self, Ready};
-use ndda_cli::step_advice;
+use ndda::Model;
+use ndda::forecast::step;
 use ndda_io::read::load_text;
 use ndda_io::scene::Scene;
 
@@ -96,10 +96,10 @@ fn attempt(seed: u64, random: &mut Random, wanted: &Wanted) -> Option<Case> {
 }
 
 /// Reads, checks and builds the text of a scene.
-pub fn build(text: &str) -> Result<Ready, String> {
+pub fn build(text: &str) -> Result<Model, String> {
     let folder = Path::new(".");
     let loaded = load_text("random.ron", text, &[], Some(folder)).map_err(|e| e.render(false))?;
-    check::prepare_loaded(loaded, folder).map_err(|e| e.render(false))
+    Model::new(loaded, folder).map_err(|e| e.render(false))
 }
 
 /// The step that contact asks for [s]; that of waves where there is no contact.
@@ -114,10 +114,7 @@ fn advised_step_s(plan: &Plan) -> Option<f64> {
     let mut ready = build(&write(plan, &still)).ok()?;
     let wave_m_s = 2000.0;
     let waves_s = 0.05 * plan.length_m / wave_m_s;
-    Some(
-        step_advice::advise(&ready.loaded.scene, &mut ready.simulation)
-            .map_or(waves_s, |advice| advice.step_s),
-    )
+    Some(step::advise(&ready.loaded.scene, &mut ready.simulation).map_or(waves_s, |advice| advice.step_s))
 }
 
 /// Speeds are such that blocks meet once or twice and go a thousandth to a tenth of their size into each other.

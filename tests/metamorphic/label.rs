@@ -5,8 +5,8 @@
 //! judges are runs with Δt/8 and Δt/16, or Δt/32 where these leave a doubt: twice their difference is what the finer one may
 //! be off by. A motion is sensitive where a push of a hundredth of what is promised grows thirtyfold.
 
-use ndda_cli::check::Ready;
-use ndda_cli::{verdict, wiring};
+use ndda::Model;
+use ndda::{build, judge::verdict};
 use ndda_io::summary::LabelWord;
 use ndda_mesh::geometry::tet_heights;
 use ndda_mesh::{BlockId, TetId, Vec3};
@@ -87,7 +87,7 @@ fn courses(simulation: &Simulation) -> Vec<Course> {
 /// Runs with steps `finer` times shorter, and a step of the case further; none where it stops.
 fn judge(case: &Case, finer: u32, push_m_s: f64) -> Option<End> {
     let mut scene = case.scene.clone();
-    let whole = wiring::steps(&scene.time);
+    let whole = build::steps(&scene.time);
     scene.time.step_s /= f64::from(finer);
     // Steps that are divided anyway are judged by whole ones.
     scene.time.step = ndda_io::scene::Step::Fixed;
@@ -152,7 +152,7 @@ fn decide(error: f64, doubt: f64) -> Option<bool> {
 }
 
 /// Judges a run: errors of speeds and places, doubt, and whether it is right; in words if that is not known.
-fn truth(case: &Case, ready: &Ready, sizes: &Sizes) -> (f64, f64, f64, Result<bool, &'static str>) {
+fn truth(case: &Case, ready: &Model, sizes: &Sizes) -> (f64, f64, f64, Result<bool, &'static str>) {
     let (position, course) = (&ready.simulation.state().position, courses(&ready.simulation));
     let mut coarser = judge(case, 8, 0.0);
     let mut found = (f64::NAN, f64::NAN, f64::NAN, Err("undecided: the judge stops"));

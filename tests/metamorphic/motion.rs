@@ -2,9 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use ndda_cli::check::Ready;
-use ndda_cli::recorder::is_due;
-use ndda_cli::wiring;
+use ndda::Model;
+use ndda::build;
+use ndda::run::recorder::is_due;
 use ndda_mesh::Vec3;
 use ndda_solver::{Simulation, Sink, SinkError, View};
 
@@ -45,9 +45,9 @@ pub fn run_to(simulation: &mut Simulation, step: u64, steps: u64, rows: u64) -> 
 }
 
 /// A scene that has been run to its end, and why it stopped.
-pub fn run(text: &str) -> (Ready, Option<String>) {
+pub fn run(text: &str) -> (Model, Option<String>) {
     let mut ready = build(text).unwrap_or_else(|errors| panic!("{errors}\n{text}"));
-    let steps = wiring::steps(&ready.loaded.scene.time);
+    let steps = build::steps(&ready.loaded.scene.time);
     let stopped = run_to(&mut ready.simulation, steps, steps, ROWS);
     (ready, stopped)
 }

@@ -1,6 +1,6 @@
 //! A run that is killed goes on from its checkpoint to the same end, bit for bit: what is not in the file is lost.
 
-use ndda_cli::wiring;
+use ndda::build;
 use ndda_io::{OutputFolder, checkpoint};
 use ndda_solver::Snapshot;
 
@@ -13,7 +13,7 @@ use crate::search::{Found, search};
 fn resumed_runs_are_the_run() {
     search("resumed", 40, &Wanted::default(), |case| {
         let (whole, stopped) = run(&case.text);
-        let steps = wiring::steps(&case.scene.time);
+        let steps = build::steps(&case.scene.time);
         let place = tempfile::tempdir().expect("a folder");
         let folder = OutputFolder::create(&place.path().join("out"), false).expect("a folder");
         let (mut random, mut killed_at) = (Random::new(!case.seed), 0);

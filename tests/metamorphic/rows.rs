@@ -1,6 +1,6 @@
 //! Looking does not change what is seen: fewer rows of the history, the same motion.
 
-use ndda_cli::wiring;
+use ndda::build;
 
 use crate::generator::{Wanted, build};
 use crate::motion::{run, run_to};
@@ -11,7 +11,7 @@ fn rows_do_not_change_the_motion() {
     search("rows", 40, &Wanted::default(), |case| {
         let (many, stopped) = run(&case.text);
         let mut few = build(&case.text).unwrap();
-        let steps = wiring::steps(&case.scene.time);
+        let steps = build::steps(&case.scene.time);
         let also = run_to(&mut few.simulation, steps, steps, 3);
         if many.simulation.state().step != few.simulation.state().step {
             return match stopped {

@@ -1,6 +1,6 @@
 //! A run of n steps and one of m more that goes on from its snapshot are the run of n + m steps, bit for bit.
 
-use ndda_cli::wiring;
+use ndda::build;
 
 use crate::generator::{Wanted, build};
 use crate::motion::{ROWS, run, run_to};
@@ -11,7 +11,7 @@ use crate::search::{Found, search};
 fn split_runs_are_the_run() {
     search("split", 40, &Wanted::default(), |case| {
         let (whole, stopped) = run(&case.text);
-        let steps = wiring::steps(&case.scene.time);
+        let steps = build::steps(&case.scene.time);
         let middle = u64::from(Random::new(!case.seed).whole(1, steps as u32 - 1));
         let (mut first, mut second) = (build(&case.text).unwrap(), build(&case.text).unwrap());
         if run_to(&mut first.simulation, middle, steps, ROWS).is_some() {

@@ -163,8 +163,8 @@ fn supports_that_a_kind_of_body_cannot_have_are_refused_by_name() {
         );
         let loaded = ndda_io::read::load_text("case.ron", &text, &[], None).unwrap();
         let folder = std::path::Path::new(".");
-        let blocks = ndda_cli::wiring::blocks(&loaded.scene, folder).unwrap();
-        let faults = ndda_cli::wiring::simulation(&loaded.scene, blocks, folder).err().expect("a refusal");
+        let blocks = ndda::build::blocks(&loaded.scene, folder).unwrap();
+        let faults = ndda::build::simulation(&loaded.scene, blocks, folder).err().expect("a refusal");
         assert_eq!(faults[0].path, "supports[0]");
         assert!(faults[0].message.contains(word), "{faults:?}");
     }

@@ -1,7 +1,7 @@
 //! Rayleigh damping in steps that do not resolve it: monotone at any a Δt and b ω² Δt, second order in short steps, and no work on
 //! rigid motion.
 
-use ndda_cli::verdict;
+use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
 use ndda_mesh::Vec3;
 use ndda_solver::Simulation;

@@ -8,7 +8,7 @@
 
 use std::path::Path;
 
-use ndda_cli::wiring;
+use ndda::build;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
 use ndda_solver::Simulation;
 
@@ -90,11 +90,11 @@ fn pressed(thirds: u32) -> Simulation {
     let loaded =
         ndda_io::read::load_text("hertz.ron", &scene(thirds), &[], None).unwrap_or_else(|e| panic!("{e}"));
     let folder = Path::new(".");
-    let (mut meshes, _) = wiring::meshes(&loaded.scene, folder).unwrap_or_else(|f| panic!("{f:?}"));
+    let (mut meshes, _) = build::meshes(&loaded.scene, folder).unwrap_or_else(|f| panic!("{f:?}"));
     shape_flat(&mut meshes[0].1);
     shape_cap(&mut meshes[1].1);
     let blocks = BlockSet::new(meshes).unwrap_or_else(|e| panic!("{e}"));
-    wiring::simulation(&loaded.scene, blocks, folder).unwrap_or_else(|f| panic!("{f:?}"))
+    build::simulation(&loaded.scene, blocks, folder).unwrap_or_else(|f| panic!("{f:?}"))
 }
 
 /// Force F on the whole flat [N], and ∫ p r² dA / F [m²].

@@ -1,7 +1,7 @@
 //! Friction by the name of the joint: blocks slide and stick by the law of the joint that made their faces.
 
-use ndda_cli::check::prepare;
-use ndda_cli::wiring;
+use ndda::Model;
+use ndda::build;
 use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 
@@ -113,8 +113,8 @@ fn a_wedge_on_two_joints_of_unlike_friction_slides_by_their_mean() {
     let scene = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/wedge_two_planes.ron");
     let (left, right) = (10.0, 25.0);
     let laws = format!("contact.laws=[{}{}]", friction("left", left), friction("right", right));
-    let mut ready = prepare(&scene, &["contact.friction.friction_deg=0".into(), laws]).unwrap();
-    let steps = wiring::steps(&ready.loaded.scene.time);
+    let mut ready = Model::open(&scene, &["contact.friction.friction_deg=0".into(), laws]).unwrap();
+    let steps = build::steps(&ready.loaded.scene.time);
     for _ in 0..steps {
         ready.simulation.step().unwrap();
     }

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use ndda_cli::check::prepare;
+use ndda::Model;
 
 use crate::evidence::Answer::AtMost;
 use crate::evidence::row;
@@ -11,7 +11,7 @@ use crate::evidence::row;
 /// Largest x-displacement at the end [m].
 fn spreads(friction_deg: u32, end_s: f64) -> f64 {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/column_phi{friction_deg}.ron"));
-    let mut ready = prepare(&path, &[]).unwrap();
+    let mut ready = Model::open(&path, &[]).unwrap();
     let steps = (end_s / ready.simulation.step_s()).round() as u32;
     for _ in 0..steps {
         ready.simulation.step().unwrap();

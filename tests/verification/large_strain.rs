@@ -1,6 +1,6 @@
 //! Strains of a linear material: found as they are, and told where they are too large for it.
 
-use ndda_cli::verdict;
+use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
 
 use crate::evidence::Answer::Within;

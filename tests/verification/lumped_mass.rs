@@ -1,6 +1,6 @@
 //! Lumped mass: the same weight and momentum, frequencies from below where consistent mass has them from above.
 
-use ndda_cli::verdict;
+use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
 use ndda_mesh::{BlockId, TetId, Vec3};
 use ndda_solver::Simulation;

@@ -46,7 +46,7 @@ mod tall_stack;
 mod toppling_slope;
 mod travel;
 
-use ndda_cli::wiring;
+use ndda::build;
 use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 
@@ -57,8 +57,8 @@ use evidence::row;
 fn simulation(text: &str) -> Simulation {
     let loaded = ndda_io::read::load_text("case.ron", text, &[], None).unwrap_or_else(|e| panic!("{e}"));
     let folder = std::path::Path::new(".");
-    let blocks = wiring::blocks(&loaded.scene, folder).unwrap_or_else(|faults| panic!("{faults:?}"));
-    wiring::simulation(&loaded.scene, blocks, folder).unwrap_or_else(|faults| panic!("{faults:?}"))
+    let blocks = build::blocks(&loaded.scene, folder).unwrap_or_else(|faults| panic!("{faults:?}"));
+    build::simulation(&loaded.scene, blocks, folder).unwrap_or_else(|faults| panic!("{faults:?}"))
 }
 
 /// A bar of 2 × 1 × 0.5 m on rollers at its lower faces, damped as the paper's integrator damps at ω Δt ≈ 1; `more`

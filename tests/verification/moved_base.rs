@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use ndda_cli::verdict;
+use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
 use ndda_solver::{Sample, Simulation};
 
@@ -110,7 +110,7 @@ fn a_block_clamped_between_moved_plates_balances_to_rounding() {
 
 #[test]
 fn the_toppling_template_is_accurate() {
-    let mut simulation = simulation(include_str!("../../apps/ndda-cli/templates/topple.ron"));
+    let mut simulation = simulation(include_str!("../../crates/ndda/templates/topple.ron"));
     simulation.sample().unwrap();
     for _ in 0..400 {
         for _ in 0..25 {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda_cli::check::prepare;
+use ndda::Model;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{Settle, Simulation};
 
@@ -51,7 +51,7 @@ fn a_run_that_goes_on_from_a_snapshot_has_the_same_friction_to_the_bit() {
     // A plate on its way from sticking to sliding, with either law of friction.
     for scene in ["sliding_30_phi25_spring", "sliding_30_phi25_velocity"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"));
-        let start = || prepare(&path, &[]).unwrap().simulation;
+        let start = || Model::open(&path, &[]).unwrap().simulation;
         let mut whole = start();
         advance(&mut whole, 150);
         let mut resumed = start();

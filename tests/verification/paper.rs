@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
-use ndda_cli::reference::{slide_after_sticking_m, slide_m};
-use ndda_cli::wiring;
+use ndda::build;
+use ndda::judge::reference::{slide_after_sticking_m, slide_m};
 use ndda_io::read;
 use ndda_io::scene::Reference;
 use ndda_mesh::Vec3;
@@ -36,17 +36,17 @@ fn ramp(slope_deg: u32, values: &[&str]) -> (Vec<Slid>, f64) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/paper/ramp_{slope_deg}.ron"));
     let overrides: Vec<String> = values.iter().map(ToString::to_string).collect();
     let scene = read::load(&path, &overrides).unwrap_or_else(|errors| panic!("{errors}")).scene;
-    let blocks = wiring::blocks(&scene, Path::new(".")).unwrap_or_else(|faults| panic!("{faults:?}"));
+    let blocks = build::blocks(&scene, Path::new(".")).unwrap_or_else(|faults| panic!("{faults:?}"));
     let mut simulation =
-        wiring::simulation(&scene, blocks, Path::new(".")).unwrap_or_else(|faults| panic!("{faults:?}"));
+        build::simulation(&scene, blocks, Path::new(".")).unwrap_or_else(|faults| panic!("{faults:?}"));
     let monitor =
-        wiring::monitors(&scene, &simulation).unwrap_or_else(|faults| panic!("{faults:?}")).remove(0);
+        build::monitors(&scene, &simulation).unwrap_or_else(|faults| panic!("{faults:?}")).remove(0);
     let Some(Reference::SlidingBlock { downhill, friction_deg, .. }) = &scene.reference else {
         panic!("a ramp names its closed form");
     };
     let (downhill, friction) = (Vec3::from(*downhill).normalize(), friction_deg.to_radians().tan());
     let mut slid = Vec::new();
-    let steps = wiring::steps(&scene.time);
+    let steps = build::steps(&scene.time);
     simulation.sample().unwrap();
     for i in 1..=steps {
         simulation.step().unwrap();

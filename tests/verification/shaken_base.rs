@@ -63,8 +63,8 @@ fn a_block_on_a_shaken_base_slips_as_newmarks_sliding_block() {
               contact: Potential(penalty_pa: 1e9, potential: Smooth(reference_m: 1), friction: (friction_deg: {FRICTION_DEG})))"
         );
         let loaded = ndda_io::read::load_text("case.ron", &text, &[], None).unwrap_or_else(|e| panic!("{e}"));
-        let blocks = ndda_cli::wiring::blocks(&loaded.scene, folder.path()).unwrap();
-        let mut simulation = ndda_cli::wiring::simulation(&loaded.scene, blocks, folder.path()).unwrap();
+        let blocks = ndda::build::blocks(&loaded.scene, folder.path()).unwrap();
+        let mut simulation = ndda::build::simulation(&loaded.scene, blocks, folder.path()).unwrap();
         simulation.settle(&ndda_solver::Settle { tolerance: 1e-3, most_steps: 20_000 }).unwrap();
         let start = simulation.start_position().to_vec();
         let mut error = 0.0f64;

@@ -1,6 +1,6 @@
 //! A plate that sticks on a slope must not creep (φ = 35° on 30°, ten seconds).
 
-use ndda_cli::check::prepare;
+use ndda::Model;
 use ndda_mesh::Vec3;
 
 use crate::evidence::Answer::{AtLeast, AtMost};
@@ -10,7 +10,7 @@ use crate::evidence::row;
 /// Also how far it has moved from the start.
 fn crept(scene: &str) -> (f64, f64) {
     let scene = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(scene);
-    let mut ready = prepare(&scene, &[]).unwrap();
+    let mut ready = Model::open(&scene, &[]).unwrap();
     let steps = |time_s: f64| (time_s / ready.simulation.step_s()).round() as usize;
     let (second, between) = (steps(1.0), steps(7.0));
     let mut advance = |steps: usize| -> Vec3 {

@@ -1,7 +1,7 @@
 //! Blocks that may pass through each other between two evaluations of contact: relative travel in a step over the width of the
 //! thinner block, for pairs that may meet.
 
-use ndda_cli::verdict;
+use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
 use ndda_solver::Simulation;
 

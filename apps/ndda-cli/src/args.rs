@@ -6,7 +6,7 @@ mod trial;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-pub use study::{Emit, StudyArgs, StudyCaseArgs, StudyCollectArgs, StudyHow, StudyPart};
+pub use study::{Emit, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 
 /// Rock blocks that slide, topple, collide and fall: 3D discontinuous deformation analysis with contact potential.
@@ -19,7 +19,7 @@ pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 )]
 pub struct Cli {
     /// Most memory to use, such as 8GB: what would take more is refused before it is built [default: what the machine has left].
-    #[arg(long, global = true, value_name = "SIZE", value_parser = crate::memory::parse)]
+    #[arg(long, global = true, value_name = "SIZE", value_parser = ndda::forecast::memory::parse)]
     pub memory: Option<u64>,
     /// What to do.
     #[command(subcommand)]

@@ -1,5 +1,10 @@
 //! Exit codes, so that scripts can tell what happened.
 
+use ndda::certify::error::CertifyError;
+use ndda::study::error::StudyError;
+use ndda::tune::TuneError;
+use ndda_io::WriteError;
+
 /// The run reached its end.
 pub const DONE: u8 = 0;
 /// The run reached its end, but a criterion was not met.
@@ -16,3 +21,47 @@ pub const INPUT_OUTPUT: u8 = 5;
 pub const RESOURCE: u8 = 6;
 /// Somebody asked the run to end; it can be resumed.
 pub const INTERRUPTED: u8 = 130;
+
+/// Of a file that could not be written.
+pub fn of_write(error: &WriteError) -> u8 {
+    match error {
+        WriteError::NotFinite { .. } => STOPPED,
+        _ => INPUT_OUTPUT,
+    }
+}
+
+/// Of a study that cannot go on.
+pub fn of_study(error: &StudyError) -> u8 {
+    match error {
+        StudyError::Scene(_)
+        | StudyError::Names(_)
+        | StudyError::NoReference(_)
+        | StudyError::NoMonitor(..)
+        | StudyError::NoCase(_)
+        | StudyError::Difference { .. }
+        | StudyError::NoProcessorTime => BAD_INPUT,
+        StudyError::Reference { .. } => STOPPED,
+        StudyError::Table(_) | StudyError::Write(_) | StudyError::Record { .. } => INPUT_OUTPUT,
+        StudyError::Start(_) => RESOURCE,
+        StudyError::Interrupted => INTERRUPTED,
+    }
+}
+
+/// Of a scene that cannot be certified.
+pub fn of_certify(error: &CertifyError) -> u8 {
+    match error {
+        CertifyError::Run(error) => of_study(error),
+        CertifyError::Stopped { .. } | CertifyError::Failed { .. } => STOPPED,
+        CertifyError::NoMesh | CertifyError::NoContact | CertifyError::NoQuantity { .. } => BAD_INPUT,
+        CertifyError::Write(_) => INPUT_OUTPUT,
+    }
+}
+
+/// Of a scene that cannot be tuned.
+pub fn of_tune(error: &TuneError) -> u8 {
+    match error {
+        TuneError::Run(error) => of_certify(error),
+        TuneError::NoTruth { .. } => FAILED,
+        TuneError::NoClosedForm => BAD_INPUT,
+    }
+}

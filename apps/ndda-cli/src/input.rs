@@ -2,13 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::read;
+use ndda::{Model, examples, forecast};
+use ndda_io::read::{self, LoadedScene};
 
 use crate::args::SceneArgs;
-use crate::check::{Ready, prepare, prepare_loaded};
-use crate::console::say;
-use crate::events::Events;
-use crate::{examples, exit};
+use crate::exit;
+use crate::terminal::console::{complain, say};
+use crate::terminal::events::Events;
 
 /// The file of a scene; an example is as if it lay in the present folder.
 pub fn file(args: &SceneArgs) -> PathBuf {
@@ -16,21 +16,30 @@ pub fn file(args: &SceneArgs) -> PathBuf {
     example.or_else(|| args.scene.clone()).unwrap_or_default()
 }
 
-/// Reads, checks and builds a scene.
+/// Reads, checks and builds a scene; says beforehand if that takes long.
 ///
 /// # Errors
 /// The exit code, after the reason has been printed: what is wrong with the scene, or which examples there are.
-pub fn ready(args: &SceneArgs, events: Events) -> Result<Ready, u8> {
+pub fn model(args: &SceneArgs, events: Events) -> Result<Model, u8> {
     let file = file(args);
-    let ready = match &args.example {
-        None => prepare(&file, &args.overrides),
+    let (loaded, folder) = match &args.example {
+        None => (read::load(&file, &args.overrides), file.parent().unwrap_or(Path::new("."))),
         Some(name) => {
-            let loaded =
-                read::load_text(&file.display().to_string(), text(name, events)?, &args.overrides, None);
-            loaded.and_then(|loaded| prepare_loaded(loaded, Path::new(".")))
+            let name_of_file = file.display().to_string();
+            (read::load_text(&name_of_file, text(name, events)?, &args.overrides, None), Path::new("."))
         }
     };
-    ready.map_err(|errors| events.refuse(&errors))
+    let refuse = |errors| events.refuse(&errors);
+    let loaded = loaded.map_err(refuse)?;
+    warn_of_slow_build(&loaded, folder);
+    Model::new(loaded, folder).map_err(refuse)
+}
+
+/// Says beforehand that building a scene takes long.
+pub fn warn_of_slow_build(loaded: &LoadedScene, folder: &Path) {
+    if let Some(text) = forecast::size::slow_build(loaded, folder) {
+        complain(&text);
+    }
 }
 
 /// The text of an example.

@@ -1,19 +1,27 @@
-//! The binary `ndda`.
+//! ndda on the command line: arguments, a terminal, and one `match`.
+
+mod args;
+mod exit;
+mod input;
+mod terminal;
+mod verbs;
 
 use std::process::ExitCode;
 
 use clap::Parser;
-use ndda_cli::args::{Cli, Verb};
-use ndda_cli::console::has_lost;
-#[cfg(feature = "report")]
-use ndda_cli::html_report;
+use ndda::forecast::memory as limits;
+
+use args::{Cli, Verb};
+use terminal::console::has_lost;
 #[cfg(feature = "plots")]
-use ndda_cli::plot;
+use verbs::plot;
+#[cfg(feature = "report")]
+use verbs::report;
 #[cfg(feature = "schema")]
-use ndda_cli::schema;
+use verbs::schema;
 #[cfg(feature = "shell")]
-use ndda_cli::shell;
-use ndda_cli::{certify, check, exit, explain, memory as limits, mesh, new, resume, run, study, tune};
+use verbs::shell;
+use verbs::{certify, check, explain, mesh, new, resume, run, study, tune};
 
 fn main() -> ExitCode {
     let Cli { memory, verb } = Cli::parse();
@@ -36,9 +44,9 @@ fn main() -> ExitCode {
         Verb::Man(args) => shell::man(&args),
         Verb::Mesh(args) => mesh::mesh(&args),
         #[cfg(feature = "report")]
-        Verb::Report(args) => html_report::report(&args),
+        Verb::Report(args) => report::report(&args),
         #[cfg(feature = "report")]
-        Verb::View(args) => html_report::view(&args),
+        Verb::View(args) => report::view(&args),
         Verb::Certify(args) => certify::certify(&args),
         Verb::Tune(args) => tune::tune(&args),
         Verb::Study(args) => study::study(&args),

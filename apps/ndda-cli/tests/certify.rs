@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use evidence::{Answer, row};
-use ndda_cli::certify::certificate::Certificate;
-use ndda_cli::certify::extrapolate::Behaviour;
-use ndda_cli::certify::quantities::{common_rows, rounding, values};
+use ndda::certify::certificate::Certificate;
+use ndda::certify::extrapolate::Behaviour;
+use ndda::certify::quantities::{common_rows, rounding, values};
 use ndda_io::table::{self, Table};
 use serde_json::Value;
 

@@ -113,7 +113,7 @@ fn a_surface_whose_volume_only_its_file_tells_is_refused_before_it_is_filled() {
 
 #[test]
 fn what_fits_takes_what_was_foreseen_within_a_factor_of_two() {
-    use ndda_cli::forecast;
+    use ndda::forecast::size;
     let folder = tempfile::tempdir().expect("a folder");
     for text in [
         cube(24, "body: Rigid"),
@@ -124,7 +124,7 @@ fn what_fits_takes_what_was_foreseen_within_a_factor_of_two() {
         rock(10.0, "body: Rigid, fill: Size(size_m: 0.5)"),
     ] {
         let loaded = ndda_io::read::load_text("scene.ron", &text, &[], None).expect("a scene");
-        let foreseen = forecast::bytes(&forecast::parts(&loaded.scene, folder.path()));
+        let foreseen = size::bytes(&size::parts(&loaded.scene, folder.path()));
         let output = ndda(folder.path(), &text, &["check", "--json"]);
         let said = String::from_utf8_lossy(&output.stdout);
         assert!(output.status.success(), "{text}: {}", String::from_utf8_lossy(&output.stderr));

@@ -3,8 +3,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ndda_cli::args::{Export, Fix, MeshArgs};
-use ndda_cli::{exit, mesh};
+mod common;
+
+use common::{code, exit, ndda};
 use serde_json::Value;
 
 const SCENE: &str = "(
@@ -18,18 +19,10 @@ const SCENE: &str = "(
 const GMSH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n8\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 1\n5 0 0 0\n6 1 0 0\n\
                     7 0 1 0\n8 0 0 -1\n$EndNodes\n$Elements\n2\n1 4 2 1 1 1 2 3 4\n2 4 2 1 1 5 6 7 8\n$EndElements\n";
 
-fn args(input: PathBuf, fix: &[Fix]) -> MeshArgs {
-    let out = Some(input.with_extension("out"));
-    MeshArgs {
-        input,
-        fix: fix.to_vec(),
-        within: 1e-9,
-        out,
-        force: true,
-        json: true,
-        also: Vec::new(),
-        overrides: Vec::new(),
-    }
+/// Runs `ndda mesh` with results beside the input; returns the exit code.
+fn mesh(input: &Path, words: &[&str]) -> i32 {
+    let out = input.with_extension("out");
+    code(ndda().arg("mesh").arg(input).arg("--out").arg(out).args(["--force", "--json"]).args(words))
 }
 
 fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
@@ -42,8 +35,7 @@ fn written(folder: &Path, name: &str, text: &str) -> PathBuf {
 fn a_scene_is_measured_and_drawn() {
     let folder = tempfile::tempdir().unwrap();
     let scene = written(folder.path(), "s.ron", SCENE);
-    let also = vec![Export::Gmsh, Export::Polyhedra, Export::Obj, Export::Tetgen];
-    assert_eq!(mesh::mesh(&MeshArgs { also, ..args(scene, &[]) }), exit::DONE);
+    assert_eq!(mesh(&scene, &["--also", "gmsh,polyhedra,obj,tetgen"]), exit::DONE);
     let out = folder.path().join("s.out");
     let report: Value = serde_json::from_str(&fs::read_to_string(out.join("mesh.json")).unwrap()).unwrap();
     assert_eq!(report["blocks"], 2);
@@ -66,8 +58,8 @@ fn a_scene_is_measured_and_drawn() {
 fn a_file_is_repaired_only_when_asked() {
     let folder = tempfile::tempdir().unwrap();
     let file = written(folder.path(), "f.msh", GMSH);
-    assert_eq!(mesh::mesh(&args(file.clone(), &[])), exit::BAD_INPUT);
-    assert_eq!(mesh::mesh(&args(file.clone(), &[Fix::Orient, Fix::Merge])), exit::DONE);
+    assert_eq!(mesh(&file, &[]), exit::BAD_INPUT);
+    assert_eq!(mesh(&file, &["--fix", "orient,merge"]), exit::DONE);
     let text = fs::read_to_string(folder.path().join("f.out/mesh.json")).unwrap();
     let report: Value = serde_json::from_str(&text).unwrap();
     assert_eq!((&report["nodes"], &report["tets"]), (&Value::from(5), &Value::from(2)));
@@ -79,11 +71,11 @@ fn a_file_is_repaired_only_when_asked() {
 fn a_scene_is_not_repaired_and_a_missing_file_is_no_panic() {
     let folder = tempfile::tempdir().unwrap();
     let scene = written(folder.path(), "s.ron", SCENE);
-    assert_eq!(mesh::mesh(&args(scene, &[Fix::Orient])), exit::BAD_INPUT);
-    assert_eq!(mesh::mesh(&args(folder.path().join("no.msh"), &[])), exit::BAD_INPUT);
+    assert_eq!(mesh(&scene, &["--fix", "orient"]), exit::BAD_INPUT);
+    assert_eq!(mesh(&folder.path().join("no.msh"), &[]), exit::BAD_INPUT);
     fs::create_dir(folder.path().join("folder.msh")).unwrap();
-    assert_eq!(mesh::mesh(&args(folder.path().join("folder.msh"), &[])), exit::BAD_INPUT);
-    assert_eq!(mesh::mesh(&args(folder.path().to_path_buf(), &[])), exit::BAD_INPUT);
+    assert_eq!(mesh(&folder.path().join("folder.msh"), &[]), exit::BAD_INPUT);
+    assert_eq!(mesh(folder.path(), &[]), exit::BAD_INPUT);
 }
 
 /// Penalty contact is a spring: ω² grows as the penalty, so the step falls by √10 from one row to the next.
@@ -92,7 +84,7 @@ fn steps_are_advised_for_each_material_and_penalty() {
     let folder = tempfile::tempdir().unwrap();
     let text = SCENE.replace("contact: Off", "contact: Potential(penalty_pa: 1e8, potential: Smooth())");
     let scene = written(folder.path(), "s.ron", &text);
-    assert_eq!(mesh::mesh(&args(scene, &[])), exit::DONE);
+    assert_eq!(mesh(&scene, &[]), exit::DONE);
     let text = fs::read_to_string(folder.path().join("s.out/mesh.json")).unwrap();
     let report: Value = serde_json::from_str(&text).unwrap();
     let steps: Vec<f64> =

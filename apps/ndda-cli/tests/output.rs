@@ -3,29 +3,25 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-#[cfg(feature = "parquet")]
 use std::process::Command;
 
-use ndda_cli::args::{HowArgs, RunArgs, SceneArgs};
-use ndda_cli::{exit, run};
 use serde_json::Value;
+
+fn ndda() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_ndda"))
+}
 
 /// Runs a hundred steps of the ramp without friction.
 fn run_ramp(place: &Path, overrides: &[&str]) -> PathBuf {
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/sliding_45.ron");
     let out = place.join("out");
     let always = ["time.end_s=0.01", "output.frames=1", "reference.after_s=0.001"];
-    let args = RunArgs {
-        input: SceneArgs {
-            scene: Some(scene),
-            overrides: always.iter().chain(overrides).map(|text| text.to_string()).collect(),
-            ..SceneArgs::default()
-        },
-        out: Some(out.clone()),
-        force: true,
-        how: HowArgs { quiet: true, ..HowArgs::default() },
-    };
-    assert_eq!(run::run(&args), exit::DONE);
+    let mut command = ndda();
+    command.arg("run").arg(scene).arg("--out").arg(&out).args(["--force", "--quiet"]);
+    for text in always.iter().chain(overrides) {
+        command.args(["--set", text]);
+    }
+    assert!(command.status().unwrap().success());
     out
 }
 
@@ -111,13 +107,9 @@ fn stages_sum_to_the_whole_of_a_run_that_settles_first() {
                  (name: \"block\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (2, 2, 2)))],
         contact: Potential(penalty_pa: 2e8, potential: Smooth(reference_m: 1)), settle: (tolerance: 1e-6, most_steps: 100000))";
     fs::write(&scene, text).unwrap();
-    let args = RunArgs {
-        input: SceneArgs { scene: Some(scene), ..SceneArgs::default() },
-        out: Some(place.path().join("out")),
-        force: false,
-        how: HowArgs { quiet: true, ..HowArgs::default() },
-    };
-    assert_eq!(run::run(&args), exit::DONE);
+    let mut command = ndda();
+    command.arg("run").arg(scene).arg("--out").arg(place.path().join("out")).arg("--quiet");
+    assert!(command.status().unwrap().success());
     let summary: Value =
         serde_json::from_str(&fs::read_to_string(place.path().join("out/summary.json")).unwrap()).unwrap();
     let stages: f64 = summary["stages_s"].as_object().unwrap().values().map(|s| s.as_f64().unwrap()).sum();

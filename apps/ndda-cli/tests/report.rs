@@ -4,8 +4,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ndda_cli::args::{HowArgs, ReportArgs, RunArgs, SceneArgs, ViewArgs};
-use ndda_cli::{exit, html_report, run};
+mod common;
+
+use common::{code, exit, ndda};
 
 const HOSTILE: &str = "</script><script>document.title='taken'</script><img src=x onerror=alert(1)>&'";
 
@@ -27,10 +28,9 @@ fn run_in(folder: &Path, frames: u32) -> PathBuf {
     );
     fs::write(&scene, text).unwrap();
     let out = folder.join("out");
-    let how = HowArgs { threads: Some(1), quiet: true, ..HowArgs::default() };
-    let input = SceneArgs { scene: Some(scene), ..SceneArgs::default() };
-    let args = RunArgs { input, out: Some(out.clone()), force: true, how };
-    assert_eq!(run::run(&args), exit::DONE);
+    let mut command = ndda();
+    command.arg("run").arg(scene).arg("--out").arg(&out).args(["--force", "--quiet", "--threads", "1"]);
+    assert_eq!(code(&mut command), exit::DONE);
     for file in ["summary.json", "history.csv"] {
         let text = fs::read_to_string(out.join(file)).unwrap();
         assert!(text.contains("m_NAME"));
@@ -39,8 +39,13 @@ fn run_in(folder: &Path, frames: u32) -> PathBuf {
     out
 }
 
-fn report(folder: &Path, frames: Option<u32>) -> u8 {
-    html_report::report(&ReportArgs { folder: folder.to_path_buf(), out: None, frames, json: true })
+fn report(folder: &Path, frames: Option<u32>) -> i32 {
+    let mut command = ndda();
+    command.arg("report").arg(folder).arg("--json");
+    if let Some(frames) = frames {
+        command.args(["--frames", &frames.to_string()]);
+    }
+    code(&mut command)
 }
 
 fn page(folder: &Path) -> String {
@@ -98,10 +103,7 @@ fn folders_that_are_no_run_or_half_of_one_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     assert_eq!(report(&folder.path().join("none"), None), exit::BAD_INPUT);
     assert_eq!(report(folder.path(), None), exit::BAD_INPUT);
-    assert_eq!(
-        html_report::view(&ViewArgs { folder: folder.path().to_path_buf(), json: false }),
-        exit::BAD_INPUT
-    );
+    assert_eq!(code(ndda().arg("view").arg(folder.path())), exit::BAD_INPUT);
     let out = run_in(folder.path(), 4);
     let frame = out.join("fields/frame_000002.vtu");
     let whole = fs::read(&frame).unwrap();
@@ -120,11 +122,6 @@ fn folders_that_are_no_run_or_half_of_one_are_refused() {
 fn a_page_that_cannot_be_written_is_an_error_of_output() {
     let folder = tempfile::tempdir().unwrap();
     let folder_of_run = run_in(folder.path(), 1);
-    let args = ReportArgs {
-        folder: folder_of_run,
-        out: Some(folder.path().join("no/such.html")),
-        frames: None,
-        json: false,
-    };
-    assert_eq!(html_report::report(&args), exit::INPUT_OUTPUT);
+    let file = folder.path().join("no/such.html");
+    assert_eq!(code(ndda().arg("report").arg(folder_of_run).arg("--out").arg(file)), exit::INPUT_OUTPUT);
 }

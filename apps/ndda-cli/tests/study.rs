@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::time::SystemTime;
 
-use ndda_cli::study::case;
+use ndda::study::case;
 use serde_json::Value;
 
 /// A tetrahedron thrown sideways in gravity: its closed form is exact at any step.

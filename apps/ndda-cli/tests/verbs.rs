@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
-use ndda_cli::new::TEMPLATES;
+use ndda::templates::TEMPLATES;
 use serde_json::Value;
 
 fn ndda(folder: &Path, words: &[&str]) -> Output {

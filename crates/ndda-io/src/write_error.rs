@@ -124,7 +124,7 @@ impl WriteError {
     }
 
     /// A number of `array` in the file at `path` is not finite.
-    pub(crate) fn not_finite(path: &Path, array: impl Into<String>, index: Option<usize>) -> Self {
+    pub fn not_finite(path: &Path, array: impl Into<String>, index: Option<usize>) -> Self {
         Self::NotFinite { path: path.to_path_buf(), array: array.into(), index }
     }
 }

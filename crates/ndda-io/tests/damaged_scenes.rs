@@ -14,7 +14,7 @@ use proptest::sample::Index;
 
 /// Sound scenes with the places of their values.
 static SCENES: LazyLock<Vec<(String, Vec<Range<usize>>)>> = LazyLock::new(|| {
-    let folders = ["../../scenes", "../../apps/ndda-cli/templates", "tests"];
+    let folders = ["../../scenes", "../ndda/templates", "tests"];
     let entries = folders.iter().flat_map(|folder| fs::read_dir(folder).unwrap());
     let mut files: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
     files.retain(|file| file.extension().is_some_and(|extension| extension == "ron"));

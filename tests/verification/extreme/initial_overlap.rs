@@ -1,6 +1,6 @@
 //! X9: blocks that overlap at the start are refused with the list of pairs; with `settle` they come to rest first.
 
-use ndda_cli::check::prepare;
+use ndda::Model;
 use ndda_solver::Settle;
 
 use super::labelled::scene;
@@ -16,10 +16,10 @@ fn sunk(depth: &str) -> String {
 #[test]
 fn blocks_that_overlap_at_the_start_are_refused_with_their_names_and_depth() {
     let path = scene("extreme/overlap.ron");
-    assert!(prepare(&path, &[]).is_ok(), "blocks that only touch are no overlap");
+    assert!(Model::open(&path, &[]).is_ok(), "blocks that only touch are no overlap");
     let mut refused = 0;
     for depth in DEPTHS {
-        let Err(errors) = prepare(&path, &[sunk(depth)]) else { continue };
+        let Err(errors) = Model::open(&path, &[sunk(depth)]) else { continue };
         let text = errors.render(false);
         let named =
             ["error[overlap]", "`slab` and `cube`", "settle: ()"].iter().all(|word| text.contains(word));
@@ -38,7 +38,7 @@ fn blocks_that_overlap_come_to_rest_on_request() {
     let path = scene("extreme/overlap.ron");
     for depth in ["0.01", "0.9"] {
         let mut ready =
-            prepare(&path, &[sunk(depth), "settle=()".into(), "time.step_s=5e-4".into()]).unwrap();
+            Model::open(&path, &[sunk(depth), "settle=()".into(), "time.step_s=5e-4".into()]).unwrap();
         ready.simulation.settle(&Settle { tolerance: 1e-4, most_steps: 1_000_000 }).unwrap();
         let cube = ready.simulation.blocks().find("cube").unwrap();
         let nodes = ready.simulation.blocks().nodes_of(cube);
@@ -56,7 +56,7 @@ fn blocks_that_overlap_come_to_rest_on_request() {
 fn a_block_wholly_inside_the_solid_of_another_is_refused_but_not_one_in_its_hollow() {
     let refusal = |name: &str, changes: &[&str]| {
         let changes: Vec<String> = changes.iter().map(|&change| change.into()).collect();
-        prepare(&scene(name), &changes).err().map(|errors| errors.render(false))
+        Model::open(&scene(name), &changes).err().map(|errors| errors.render(false))
     };
     let small =
         |at: &str| [format!("blocks.cube.at_m={at}"), "blocks.cube.shape.size_m=(0.4, 0.4, 0.4)".into()];

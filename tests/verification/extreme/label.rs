@@ -1,6 +1,6 @@
 //! The label on a second problem (X1): an elastic block that bounces on a held one, over all h = ω_c Δt.
 
-use ndda_cli::verdict;
+use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
 
 use super::labelled::{SPEED, summary_of, word};
@@ -40,7 +40,7 @@ fn a_bar_whose_contact_is_not_resolved_says_so() {
             "contact.potential=Smooth(reference_m: 0.01)".into(),
             format!("blocks.bar.shape.cells=({cells}, 1, 1)"),
         ];
-        let (_, summary) = summary_of("studies/base/bar_impact.ron", &set);
+        let summary = summary_of("studies/base/bar_impact.ron", &set);
         let summary = summary.unwrap();
         let (error, h) = (&summary["reference"]["error_max"], &summary["invariants"]["max_h"]);
         println!("Δt = {step_s:e} s: h = {h}, error {error}, {}", summary["label"]);

@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_cli::args::{HowArgs, RunArgs, SceneArgs};
-use ndda_cli::run;
+use ndda::{Model, Run};
+use ndda_io::OutputFolder;
 use serde_json::Value;
 
 /// What an accurate run promises: speeds to 1 %, places to a tenth of a tetrahedron's height.
@@ -15,22 +15,16 @@ pub fn scene(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)
 }
 
-/// Runs a scene of `scenes/`; returns the exit code and, if it came to that, its summary.
-pub fn summary_of(name: &str, overrides: &[String]) -> (u8, Option<Value>) {
+/// Runs a scene of `scenes/`; returns the summary that it writes, or why it writes none.
+pub fn summary_of(name: &str, overrides: &[String]) -> Result<Value, String> {
     let out = tempfile::tempdir().unwrap();
-    let args = RunArgs {
-        out: Some(out.path().join("run")),
-        force: false,
-        input: SceneArgs {
-            scene: Some(scene(name)),
-            overrides: overrides.iter().cloned().chain(["output.frames=0".into()]).collect(),
-            ..SceneArgs::default()
-        },
-        how: HowArgs { quiet: true, ..HowArgs::default() },
-    };
-    let code = run::run(&args);
-    let text = std::fs::read_to_string(out.path().join("run/summary.json")).ok();
-    (code, text.map(|text| serde_json::from_str(&text).unwrap()))
+    let overrides: Vec<String> = overrides.iter().cloned().chain(["output.frames=0".into()]).collect();
+    let model = Model::open(&scene(name), &overrides).map_err(|errors| errors.render(false))?;
+    let folder = OutputFolder::create(&out.path().join("run"), false).unwrap();
+    let run = Run::new(model).record(folder, scene(name)).unwrap();
+    run.finish(&mut []).map_err(|error| error.to_string())?;
+    let text = std::fs::read_to_string(out.path().join("run/summary.json")).unwrap();
+    Ok(serde_json::from_str(&text).unwrap())
 }
 
 /// The word of a run's label.

@@ -1,6 +1,6 @@
 //! X1: the error of a small block is not hidden by a large one (`small_beside_large.ron`), far away or hit by it.
 
-use ndda_cli::verdict;
+use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
 
 use super::labelled::{SPEED, summary_of, word};
@@ -48,7 +48,7 @@ fn meeting(integrator: &str, step_s: f64, mass_ratio: f64) -> (f64, bool) {
 
 #[test]
 fn a_small_block_answers_for_its_own_energy() {
-    let (_, summary) = summary_of("extreme/small_beside_large.ron", &[]);
+    let summary = summary_of("extreme/small_beside_large.ron", &[]);
     let summary = summary.unwrap();
     let gain = summary["verdicts"]["I4 lighter of a pair"]["value"].as_f64().unwrap();
     let leaves = summary["monitors"]["cube"]["velocity"][2].as_f64().unwrap();
@@ -63,7 +63,7 @@ fn a_small_block_answers_for_its_own_energy() {
         Within(more, 0.1),
     );
     let midpoint = ["time.integrator=Midpoint(theta: 0.5)".to_string()];
-    let (_, summary) = summary_of("extreme/small_beside_large.ron", &midpoint);
+    let summary = summary_of("extreme/small_beside_large.ron", &midpoint);
     assert_eq!(word(&summary.unwrap()), "accurate");
 }
 

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use ndda_cli::check;
+use ndda::Model;
 use ndda_io::code::Code;
 
 use super::extreme;
@@ -18,6 +18,6 @@ fn nearly_incompressible_rock_is_warned_of_and_incompressible_rock_refused() {
         );
     }
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/extreme/locking.ron");
-    let refused = check::prepare(&path, &["materials.rock.poisson=0.5".into()]).err().expect("a refusal");
+    let refused = Model::open(&path, &["materials.rock.poisson=0.5".into()]).err().expect("a refusal");
     assert_eq!(refused.diagnostics[0].code, Code::OutOfRange);
 }

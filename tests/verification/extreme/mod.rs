@@ -25,17 +25,17 @@ mod vibration;
 
 use std::path::Path;
 
-use ndda_cli::check::{self, Ready};
+use ndda::Model;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Simulation;
 
 use crate::{advance, displacements};
 
 /// A scene of `scenes/extreme/`, ready to run.
-fn extreme(name: &str, overrides: &[&str]) -> Ready {
+fn extreme(name: &str, overrides: &[&str]) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/extreme").join(format!("{name}.ron"));
     let overrides: Vec<String> = overrides.iter().map(|text| text.to_string()).collect();
-    check::prepare(&path, &overrides).unwrap_or_else(|errors| panic!("{}", errors.render(false)))
+    Model::open(&path, &overrides).unwrap_or_else(|errors| panic!("{}", errors.render(false)))
 }
 
 fn block(simulation: &Simulation, name: &str) -> BlockId {

@@ -1,6 +1,6 @@
 //! X1: loads and motions that come and go between two steps (`pulse_between_steps.ron`).
 
-use ndda_cli::verdict;
+use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
 use ndda_solver::Simulation;
 
@@ -59,7 +59,7 @@ fn a_push_brings_its_impulse_however_short_it_is() {
         }
     }
     row("X1", "speed after a push of 0.001 to 10 steps", worst, AtMost(1e-9));
-    let (_, summary) = summary_of("extreme/pulse_between_steps.ron", &[]);
+    let summary = summary_of("extreme/pulse_between_steps.ron", &[]);
     let summary = summary.unwrap();
     let speed = summary["monitors"]["cube"]["velocity"][0].as_f64().unwrap();
     row("X1", "a push between two steps [m/s]", speed, Within(1e4 / 2650.0, 1e-9));

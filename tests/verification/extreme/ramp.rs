@@ -1,6 +1,6 @@
 //! X17: a plate on a ramp with μ = tan α exactly, none, and a thousand.
 
-use ndda_cli::check::Ready;
+use ndda::Model;
 use ndda_mesh::Vec3;
 use ndda_solver::Settle;
 
@@ -9,7 +9,7 @@ use crate::evidence::Answer::{AtMost, Within};
 use crate::evidence::row;
 
 /// Where the plate's centre is, mean of a second.
-fn second(ready: &mut Ready) -> Vec3 {
+fn second(ready: &mut Model) -> Vec3 {
     let mut sum = Vec3::zeros();
     for _ in 0..1000 {
         ready.simulation.step().unwrap();

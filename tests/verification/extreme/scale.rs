@@ -1,6 +1,6 @@
 //! The same scene at any size, in other units (X6) and anywhere (X7).
 
-use ndda_cli::check::Ready;
+use ndda::Model;
 use ndda_io::code::Code;
 use ndda_mesh::Vec3;
 
@@ -18,7 +18,7 @@ struct Units {
 
 impl Units {
     /// The glancing collision with every number in these units, or at this size.
-    fn scene(&self) -> Ready {
+    fn scene(&self) -> Model {
         let Self { length: l, time: t, mass: m } = self;
         let vector = |factor: f64, v: [f64; 3]| {
             format!("({:e}, {:e}, {:e})", factor * v[0], factor * v[1], factor * v[2])
@@ -82,7 +82,7 @@ fn a_collision_in_map_coordinates_is_the_one_at_the_origin_until_a_warning_says_
         let [a, b] = [0.0, 1.06].map(|x| format!("at_m=({}, {far}, {})", x + far, -far));
         extreme("far_away", &[&format!("blocks.a.{a}"), &format!("blocks.b.{b}")])
     };
-    let run = |mut ready: Ready| {
+    let run = |mut ready: Model| {
         advance(&mut ready.simulation, 200);
         displacements(&ready.simulation)
     };

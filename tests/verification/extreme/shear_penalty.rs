@@ -10,7 +10,7 @@ fn stiffer_shear_springs_slide_more_as_if_there_were_none() {
     for (ratio, penalty, step_s) in
         [("1e-3", "2e8", "1e-4"), ("1e-2", "2e9", "1e-4"), ("0.1", "2e10", "1e-4"), ("1", "2e11", "2.5e-5")]
     {
-        let (_, summary) = summary_of(
+        let summary = summary_of(
             "sliding_45_phi35_spring.ron",
             &[
                 format!("contact.friction.shear_penalty_pa_m={penalty}"),

@@ -1,6 +1,6 @@
 //! X3: a light block between heavy ones that nothing holds sideways (`squeezed_out.ron`).
 
-use ndda_cli::verdict;
+use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
 use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
@@ -173,7 +173,7 @@ fn a_wedge_is_pressed_out_as_it_should_be_and_called_accurate() {
 
 #[test]
 fn a_scene_in_which_a_slab_leaves_says_so() {
-    let (_, summary) = summary_of("extreme/squeezed_out.ron", &[]);
+    let summary = summary_of("extreme/squeezed_out.ron", &[]);
     let summary = summary.unwrap();
     let (value, left) = (&summary["verdicts"]["I5 squeezed / speed"]["value"], &summary["monitors"]["light"]);
     let left_m = left["displacement"][0].as_f64().unwrap().hypot(left["displacement"][1].as_f64().unwrap());

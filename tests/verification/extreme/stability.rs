@@ -3,7 +3,7 @@
 //! Here the corners and both sides of the borders between accurate, inaccurate and stopped; `NDDA_LARGE=1` runs all 252
 //! cells, which `docs/evidence/stability/map.py` draws.
 
-use ndda_cli::study::case::{Case, cases};
+use ndda::study::case::{Case, cases};
 
 use super::labelled::{agrees, scene, summary_of, word};
 use crate::evidence::{Answer, row};
@@ -37,8 +37,8 @@ fn a_run_knows_whether_it_is_accurate_whatever_the_penalty_and_the_step() {
     let cells = cases(&study).unwrap();
     let (mut count, mut differ, mut words) = (0, 0, [0; 3]);
     for case in cells.iter().filter(wanted) {
-        let (code, summary) = summary_of("extreme/collision.ron", &case.overrides);
-        let summary = summary.unwrap_or_else(|| panic!("{}: exit code {code}", case.name));
+        let summary = summary_of("extreme/collision.ron", &case.overrides);
+        let summary = summary.unwrap_or_else(|error| panic!("{}: {error}", case.name));
         count += 1;
         words[["accurate", "inaccurate", "stopped"].iter().position(|w| *w == word(&summary)).unwrap()] += 1;
         if !agrees(&summary) {

@@ -1,7 +1,7 @@
 //! X8: steps that take a cube 0.1 to 100 times the height of a plate's tetrahedra. What passes through is flagged, and with
 //! steps that are controlled nothing does.
 
-use ndda_cli::study::case::cases;
+use ndda::study::case::cases;
 
 use super::labelled::{agrees, is_true, scene, summary_of, word};
 use crate::evidence::{Answer, row};
@@ -11,7 +11,7 @@ fn whatever_jumps_through_a_plate_is_flagged_or_prevented() {
     let study = ndda_io::study::load(&scene("extreme/thin_plate_steps.ron")).unwrap();
     let (mut through, mut differ, mut prevented) = (0, 0, 0);
     for case in cases(&study).unwrap() {
-        let (_, summary) = summary_of("extreme/thin_plate.ron", &case.overrides);
+        let summary = summary_of("extreme/thin_plate.ron", &case.overrides);
         let summary = summary.expect("a scene that is sound");
         println!("{}: {}, {}", case.name, word(&summary), summary["reference"]["error_end"]);
         let controlled = case.labels[0].1 == "auto";

@@ -1,6 +1,6 @@
 //! Neighbours of unlike mass (X3), stiffness (X4) and size (X13).
 
-use ndda_cli::step_advice;
+use ndda::forecast::step;
 use ndda_solver::Settle;
 
 use super::{advance, block, extreme, sunk};
@@ -40,7 +40,7 @@ fn stiff_rock_on_soft_ground_bears_the_stress_of_springs_in_series() {
 #[test]
 fn the_advised_step_is_that_of_the_smallest_block_and_will_do() {
     let mut ready = extreme("small_between_large", &[]);
-    let advice = step_advice::advise(&ready.loaded.scene, &mut ready.simulation).expect("there is contact");
+    let advice = step::advise(&ready.loaded.scene, &mut ready.simulation).expect("there is contact");
     assert_eq!(advice.worst().block, "grain");
     let mut simulation =
         extreme("small_between_large", &[&format!("time.step_s={}", advice.step_s)]).simulation;

@@ -1,1 +1,0 @@
-//! Nothing: the manifest beside it is what is asked for.

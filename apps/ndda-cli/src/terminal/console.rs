@@ -1,0 +1,42 @@
+//! Words to the person: what a closed pipe or a full disk behind them does must not end a run.
+
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether something that was said has not arrived.
+static LOST: AtomicBool = AtomicBool::new(false);
+
+/// Whether messages on standard error may be coloured.
+pub fn colour() -> bool {
+    std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
+}
+
+/// Prints to standard output. Whoever closed it does not want to hear more; but a disk that is full is told of at the end.
+pub fn say(text: &str) {
+    let mut out = std::io::stdout().lock();
+    if let Err(error) = writeln!(out, "{text}").and_then(|()| out.flush())
+        && error.kind() != ErrorKind::BrokenPipe
+        && !LOST.swap(true, Ordering::Relaxed)
+    {
+        complain(&format!("error: standard output cannot be written: {error}"));
+    }
+}
+
+/// Whether something that was said to a listener has not arrived.
+pub fn has_lost() -> bool {
+    LOST.load(Ordering::Relaxed)
+}
+
+/// Prints to standard error, if anybody listens.
+pub fn complain(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
+}
+
+/// [`complain`], or nothing where a person asked for quiet.
+pub fn complain_unless(quiet: bool) -> impl Fn(&str) + Sync {
+    move |text: &str| {
+        if !quiet {
+            complain(text);
+        }
+    }
+}

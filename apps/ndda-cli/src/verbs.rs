@@ -1,0 +1,21 @@
+//! A module per verb: arguments in, words and an exit code out.
+
+pub mod certify;
+pub mod check;
+pub mod explain;
+pub mod mesh;
+pub mod new;
+#[cfg(feature = "plots")]
+pub mod plot;
+mod processes;
+#[cfg(feature = "report")]
+pub mod report;
+pub mod resume;
+pub mod run;
+#[cfg(feature = "schema")]
+pub mod schema;
+#[cfg(feature = "shell")]
+pub mod shell;
+pub mod study;
+mod trial;
+pub mod tune;

@@ -1,0 +1,85 @@
+//! `ndda check`: everything that can be wrong with a scene, without running it.
+
+use std::fmt;
+use std::path::Path;
+
+use ndda::forecast::cost::{self, Guess};
+use ndda::forecast::step::{self, Advice};
+use serde::Serialize;
+
+use crate::args::CheckArgs;
+use crate::terminal::console::say;
+use crate::terminal::events::{self, Events};
+use crate::{exit, input};
+
+/// What is found in a scene without errors.
+#[derive(Serialize)]
+struct Checked<'a> {
+    exit_code: u8,
+    scene: &'a Path,
+    warnings: usize,
+    blocks: usize,
+    nodes: usize,
+    tets: usize,
+    unknowns: usize,
+    factors: usize,
+    steps: u64,
+    advised_step_s: Option<f64>,
+    contact_stability: Option<&'a Advice>,
+    guess: Option<Guess>,
+}
+
+/// Runs `ndda check`; returns the exit code.
+pub fn check(args: &CheckArgs) -> u8 {
+    let events = Events::new(args.json, events::CHECK);
+    let mut model = match input::model(&args.input, events) {
+        Ok(model) => model,
+        Err(code) => return code,
+    };
+    let loaded = &model.loaded;
+    if !loaded.warnings.is_empty() {
+        events.doubt(&loaded.errors(loaded.warnings.clone()));
+    }
+    let advice = step::advise(&loaded.scene, &mut model.simulation);
+    let guess = cost::guess(&loaded.scene, &mut model.simulation);
+    let file = input::file(&args.input);
+    let stops = guess.as_ref().err().map(|error| format!("the first steps stop: {error}"));
+    if let Some(stops) = &stops {
+        events.warn(stops);
+    }
+    let (simulation, blocks) = (&model.simulation, model.simulation.blocks());
+    let checked = Checked {
+        exit_code: exit::DONE,
+        scene: &file,
+        warnings: loaded.warnings.len() + usize::from(stops.is_some()),
+        blocks: blocks.len(),
+        nodes: blocks.rest_position.len(),
+        tets: blocks.tets.len(),
+        unknowns: simulation.unknowns(),
+        factors: simulation.factors(),
+        steps: model.steps(),
+        advised_step_s: advice.as_ref().map(|advice| advice.step_s),
+        contact_stability: advice.as_ref(),
+        guess: guess.ok(),
+    };
+    events.emit("finished", &checked);
+    if !args.json {
+        say(&format!(
+            "{checked}{}",
+            advice.as_ref().map_or_else(String::new, |advice| format!("\n{advice}"))
+        ));
+    }
+    checked.exit_code
+}
+
+impl fmt::Display for Checked<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { blocks, nodes, tets, unknowns, factors, steps, warnings, .. } = self;
+        writeln!(f, "{}: no errors, {warnings} warning(s)", self.scene.display())?;
+        write!(
+            f,
+            "{blocks} block(s), {nodes} nodes, {tets} tets, {unknowns} unknowns, {factors} factor(s); {steps} steps"
+        )?;
+        self.guess.as_ref().map_or(Ok(()), |guess| write!(f, "\n{guess}"))
+    }
+}

@@ -1,0 +1,205 @@
+//! `ndda mesh`: the blocks of a scene or of a mesh file, counted, measured and drawn without running anything.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use ndda::build::{self, CutRock, Meshes};
+use ndda::forecast;
+use ndda::mesh_report::MeshReport;
+use ndda_io::folder::MESH_REPORT;
+use ndda_io::read::load;
+use ndda_io::scene::{FieldFormat, Scene};
+use ndda_io::vtu::{self, Frame, Topology};
+use ndda_io::{OutputFolder, WriteError, mesh_file, surface_file, vtk_file};
+use ndda_mesh::{BlockSet, MeshError, repair};
+use serde::Serialize;
+
+use crate::args::{Export, Fix, MeshArgs};
+use crate::terminal::console::{colour, say};
+use crate::terminal::events::{self, Events};
+use crate::{exit, input};
+
+/// Blocks before they are checked.
+struct Input {
+    /// Kept for files in other formats only.
+    meshes: Meshes,
+    scene: Option<Scene>,
+    rock: Vec<CutRock>,
+    fixes: Vec<String>,
+}
+
+/// Runs `ndda mesh`; returns the exit code.
+pub fn mesh(args: &MeshArgs) -> u8 {
+    let events = Events::new(args.json, events::MESH);
+    let input = if is_scene(&args.input) { from_scene(args) } else { from_file(args) };
+    let mut input = match input {
+        Ok(input) => input,
+        Err(message) => return events.fail(exit::BAD_INPUT, message.trim_start_matches("error: ")),
+    };
+    let mut measured = MeshReport::new(&input.meshes);
+    measured.rock = input.rock.iter().map(|rock| rock.report.clone()).collect();
+    measured.fixes.clone_from(&input.fixes);
+    let meshes = std::mem::take(&mut input.meshes);
+    if !args.also.is_empty() {
+        input.meshes.clone_from(&meshes);
+    }
+    match BlockSet::new(meshes) {
+        Ok(blocks) => {
+            measured.steps =
+                input.scene.as_ref().map_or(Vec::new(), |s| forecast::step::advise_materials(s, &blocks));
+            finish(args, events, &measured, &input, &blocks)
+        }
+        Err(error) => {
+            events.emit("measured", &Measured { report: &measured });
+            if !args.json {
+                say(&measured.to_string());
+            }
+            events.fail(exit::BAD_INPUT, &refusal(&args.input, &error))
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct Measured<'a> {
+    report: &'a MeshReport,
+}
+
+#[derive(Serialize)]
+struct Finished<'a> {
+    exit_code: u8,
+    folder: &'a Path,
+}
+
+fn is_scene(path: &Path) -> bool {
+    path.extension().is_none_or(|ending| ending.eq_ignore_ascii_case("ron"))
+}
+
+/// All defects, and what may cure them.
+fn refusal(input: &Path, error: &MeshError) -> String {
+    let mut text = format!("{} is not fit to run:", input.display());
+    for (block, problem) in &error.problems {
+        let _ = write!(text, "\n  {block}: {problem}");
+    }
+    text + "\n  --fix orient turns inverted tetrahedra round, --fix merge joins coincident nodes"
+}
+
+fn from_scene(args: &MeshArgs) -> Result<Input, String> {
+    if !args.fix.is_empty() {
+        return Err("error: --fix is for mesh files: correct a scene where it is written".into());
+    }
+    let loaded = load(&args.input, &args.overrides).map_err(|errors| errors.render(colour()))?;
+    let folder = args.input.parent().unwrap_or(Path::new("."));
+    input::warn_of_slow_build(&loaded, folder);
+    forecast::size::admit(&loaded, folder)
+        .map_err(|refused| loaded.errors(vec![refused]).render(colour()))?;
+    let (meshes, rock) = build::meshes(&loaded.scene, folder).map_err(|faults| {
+        let diagnostics = faults.into_iter().map(|f| loaded.diagnose(&f.path, f.message)).collect();
+        loaded.errors(diagnostics).render(colour())
+    })?;
+    Ok(Input { meshes, scene: Some(loaded.scene), rock, fixes: Vec::new() })
+}
+
+fn from_file(args: &MeshArgs) -> Result<Input, String> {
+    if !args.overrides.is_empty() {
+        return Err("error: --set is for scenes".into());
+    }
+    let mut meshes = mesh_file::read(&args.input).map_err(|e| format!("error: {e}"))?.bodies;
+    let mut fixes = Vec::new();
+    for fix in &args.fix {
+        for (name, mesh) in &mut meshes {
+            let done = match fix {
+                Fix::Orient => format!("{} tetrahedra turned round", repair::orient(mesh).flipped.len()),
+                Fix::Merge => {
+                    let merged =
+                        repair::merge(mesh, args.within).map_err(|e| format!("error: body `{name}`: {e}"))?;
+                    let (nodes, tets) = (merged.nodes.len(), merged.dropped_tets.len());
+                    format!(
+                        "{nodes} nodes merged within {:e} m, {tets} flat tetrahedra dropped",
+                        merged.tolerance_m
+                    )
+                }
+            };
+            fixes.push(format!("{name}: {done}"));
+        }
+    }
+    Ok(Input { meshes, scene: None, rock: Vec::new(), fixes })
+}
+
+fn finish(args: &MeshArgs, events: Events, measured: &MeshReport, input: &Input, blocks: &BlockSet) -> u8 {
+    let folder = args.out.clone().unwrap_or_else(|| {
+        let stem = args.input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned());
+        PathBuf::from("out").join(stem + "_mesh")
+    });
+    match write(&folder, args, measured, input, blocks) {
+        Ok(files) => {
+            events.emit("measured", &Measured { report: measured });
+            events.emit("finished", &Finished { exit_code: exit::DONE, folder: &folder });
+            if !args.json {
+                say(&format!("{}: no errors\n{measured}{files}", args.input.display()));
+            }
+            exit::DONE
+        }
+        Err(error) => events.fail(exit::INPUT_OUTPUT, &error.to_string()),
+    }
+}
+
+/// Writes the picture and the blocks; returns a line that says where.
+fn write(
+    folder: &Path,
+    args: &MeshArgs,
+    measured: &MeshReport,
+    input: &Input,
+    blocks: &BlockSet,
+) -> Result<String, WriteError> {
+    let folder = OutputFolder::create(folder, args.force)?;
+    let folder = folder.path();
+    let path = folder.join("blocks.vtu");
+    let topology = Topology::new(blocks, FieldFormat::default()).with_blocks(blocks);
+    let frame = Frame::new(blocks, &blocks.rest_position);
+    ndda_io::atomic::write(&path, &vtu::encode(&path, &topology, &frame)?)?;
+    ndda_io::atomic::write(&folder.join(MESH_REPORT), measured.json().as_bytes())?;
+    #[cfg(feature = "plots")]
+    {
+        use ndda::{mesh_picture, picture};
+        let draw = |root: &picture::Area| mesh_picture::draw(measured, root);
+        picture::write(&folder.join("mesh.svg"), mesh_picture::SIZE, draw)?;
+    }
+    let mut exported = String::new();
+    for export in &args.also {
+        for name in written(folder, *export, input)? {
+            let _ = write!(exported, ", {name}");
+        }
+    }
+    let picture = if cfg!(feature = "plots") { ", mesh.svg (histograms)" } else { "" };
+    Ok(format!("{}: blocks.vtu (open it in ParaView), mesh.json{picture}{exported}", folder.display()))
+}
+
+/// Writes the blocks in another format; returns the names of the files.
+fn written(folder: &Path, export: Export, input: &Input) -> Result<Vec<String>, WriteError> {
+    let ending = match export {
+        Export::Gmsh => "msh",
+        Export::Abaqus => "inp",
+        Export::Tetgen => "ele",
+        Export::Vtu => "vtu",
+        Export::Polyhedra | Export::Obj => return parts(folder, export, input),
+    };
+    let name = format!("mesh.{ending}");
+    mesh_file::write(&folder.join(&name), &input.meshes)?;
+    Ok(vec![name])
+}
+
+/// Writes the convex parts of each rock.
+fn parts(folder: &Path, export: Export, input: &Input) -> Result<Vec<String>, WriteError> {
+    let mut names = Vec::new();
+    for CutRock { report, blocks } in &input.rock {
+        let is_obj = export == Export::Obj;
+        let name = format!("{}_parts.{}", report.name, if is_obj { "obj" } else { "vtu" });
+        if is_obj {
+            surface_file::write_blocks(&folder.join(&name), blocks)?;
+        } else {
+            vtk_file::write_polyhedra(&folder.join(&name), blocks)?;
+        }
+        names.push(name);
+    }
+    Ok(names)
+}

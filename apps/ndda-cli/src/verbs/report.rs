@@ -1,0 +1,66 @@
+//! `ndda report` and `ndda view`: a run as one page that needs no network.
+
+use std::path::Path;
+
+use ndda::report::{self, ReportError, Written};
+use ndda_io::folder::REPORT;
+use serde::Serialize;
+
+use crate::args::{ReportArgs, ViewArgs};
+use crate::exit;
+use crate::terminal::console::say;
+use crate::terminal::events::{self, Events};
+
+#[derive(Serialize)]
+struct Finished<'a> {
+    exit_code: u8,
+    report: &'a Path,
+}
+
+/// Says what was written, in words or as an event.
+fn tell(written: &Written, events: Events) {
+    events.emit("written", written);
+    if !events.are_read() {
+        say(&written.to_string());
+    }
+}
+
+/// Runs `ndda report`; returns the exit code.
+pub fn report(args: &ReportArgs) -> u8 {
+    let file = args.out.clone().unwrap_or_else(|| args.folder.join(REPORT));
+    let events = Events::new(args.json, events::REPORT);
+    match report::write(&args.folder, &file, args.frames) {
+        Ok(written) => {
+            tell(&written, events);
+            events.emit("finished", &Finished { exit_code: exit::DONE, report: &file });
+            exit::DONE
+        }
+        Err(error) => failed(events, &error),
+    }
+}
+
+/// Runs `ndda view`; returns the exit code.
+pub fn view(args: &ViewArgs) -> u8 {
+    let file = args.folder.join(REPORT);
+    let events = Events::new(args.json, events::REPORT);
+    if !report::is_current(&args.folder, &file) {
+        match report::write(&args.folder, &file, None) {
+            Ok(written) => tell(&written, events),
+            Err(error) => return failed(events, &error),
+        }
+    }
+    let file = std::path::absolute(&file).unwrap_or(file);
+    if !args.json {
+        say(&format!("opening {}", file.display()));
+    }
+    if let Err(error) = open::that(&file) {
+        events.warn(&format!("no program was found that shows it ({error}): open it in a browser"));
+    }
+    events.emit("finished", &Finished { exit_code: exit::DONE, report: &file });
+    exit::DONE
+}
+
+fn failed(events: Events, error: &ReportError) -> u8 {
+    let code = if matches!(error, ReportError::Write(_)) { exit::INPUT_OUTPUT } else { exit::BAD_INPUT };
+    events.fail(code, &error.to_string())
+}

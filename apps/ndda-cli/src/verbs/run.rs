@@ -1,0 +1,183 @@
+//! `ndda run`: a scene from its text to its files.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use ndda::judge::table;
+use ndda::{Run, RunError};
+use ndda_io::summary::{Judgement, Status, Summary};
+use ndda_io::{OutputFolder, WriteError};
+use ndda_solver::Settled;
+use serde::Serialize;
+
+use crate::args::{HowArgs, RunArgs};
+use crate::terminal::console::{complain, say};
+use crate::terminal::events::{self, Events};
+use crate::terminal::interrupt;
+use crate::terminal::progress::Progress;
+use crate::{exit, input};
+
+/// How often a scene that settles says how far it is.
+const SAY_SETTLING: Duration = Duration::from_secs(2);
+
+/// Runs a scene and reports; the result is the exit code.
+pub fn run(args: &RunArgs) -> u8 {
+    in_pool(&args.how, |options| run_here(args, options))
+}
+
+/// Does `work` on as many threads as are asked for.
+pub fn in_pool(how: &HowArgs, work: impl FnOnce(&Options) -> u8 + Send) -> u8 {
+    let started = Instant::now();
+    let events = Events::new(how.json, events::RUN);
+    let threads = how.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    // This thread is the first of them, if it is in no pool yet: a small scene is over before another has woken up.
+    let pool = if rayon::current_thread_index().is_none() { pool.use_current_thread() } else { pool };
+    let pool = match pool.build() {
+        Ok(pool) => pool,
+        Err(error) => {
+            let message = format!("cannot start {threads} threads: {error}; use a smaller --threads");
+            return events.fail(exit::RESOURCE, &message);
+        }
+    };
+    // Everything runs inside the pool: a step handed in from outside would allocate.
+    let quiet = how.quiet || how.json;
+    pool.install(|| work(&Options { strict: how.strict, quiet, events, started }))
+}
+
+/// How to run, whatever the scene.
+pub struct Options {
+    /// Whether a limit that is passed fails the run.
+    pub strict: bool,
+    /// No progress and no table.
+    pub quiet: bool,
+    /// What programs read.
+    pub events: Events,
+    /// When this process began.
+    pub started: Instant,
+}
+
+fn run_here(args: &RunArgs, options: &Options) -> u8 {
+    let model = match input::model(&args.input, options.events) {
+        Ok(model) => model,
+        Err(code) => return code,
+    };
+    if !model.loaded.warnings.is_empty() && (!options.quiet || options.events.are_read()) {
+        options.events.doubt(&model.loaded.errors(model.loaded.warnings.clone()));
+    }
+    let file = input::file(&args.input);
+    let folder = args.out.clone().unwrap_or_else(|| {
+        let stem =
+            file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
+        PathBuf::from("out").join(stem)
+    });
+    let file = std::path::absolute(&file).unwrap_or(file);
+    let run = Run::new(model).started(options.started);
+    let recorded = OutputFolder::create(&folder, args.force)
+        .and_then(|folder| Ok((folder.path().to_path_buf(), run.record(folder, file)?)));
+    match recorded {
+        Ok((folder, run)) => execute(run, &folder, options),
+        Err(error) => options.events.fail(exit::of_write(&error), &error.to_string()),
+    }
+}
+
+#[derive(Serialize)]
+struct Started<'a> {
+    version: &'static str,
+    scene: &'a str,
+    title: &'a str,
+    folder: &'a Path,
+    threads: usize,
+    step: u64,
+    steps: u64,
+    step_s: f64,
+    blocks: usize,
+    tets: usize,
+    unknowns: usize,
+}
+
+/// Runs to the end and reports; the result is the exit code.
+pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
+    let run = run.strict(options.strict).stop_when(interrupt::watch());
+    let (steps, simulation) = (run.model().steps(), &run.model().simulation);
+    options.events.emit(
+        "started",
+        &Started {
+            version: env!("CARGO_PKG_VERSION"),
+            scene: run.name(),
+            title: &run.model().loaded.scene.title,
+            folder,
+            threads: rayon::current_num_threads(),
+            step: simulation.state().step,
+            steps,
+            step_s: simulation.step_s(),
+            blocks: simulation.blocks().len(),
+            tets: simulation.blocks().tets.len(),
+            unknowns: simulation.unknowns(),
+        },
+    );
+    let mut progress = Progress::new(simulation.state().step, steps, options);
+    let until = run.model().loaded.scene.settle.map(|settle| settle.tolerance);
+    let mut said = Instant::now();
+    let mut settling = |settled: &Settled| {
+        let Some(until) = until.filter(|_| !options.quiet) else { return };
+        let Settled { steps, speed_ratio, .. } = settled;
+        if *speed_ratio <= until {
+            complain(&format!("settled in {steps} steps"));
+        } else if said.elapsed() >= SAY_SETTLING {
+            said = Instant::now();
+            complain(&format!(
+                "settling: {steps} steps, speed {speed_ratio:.1e} of the largest, until {until:e}"
+            ));
+        }
+    };
+    let outcome = run.finish_watched(&mut [&mut progress], &mut settling);
+    progress.finish();
+    match outcome {
+        Ok(outcome) => {
+            if !options.quiet {
+                say(&format!("{}results in {}", table::text(&outcome.summary), folder.display()));
+            }
+            conclude(&outcome.summary, options)
+        }
+        Err(error) => {
+            let code = match &error {
+                RunError::Settling(_) => exit::STOPPED,
+                RunError::InterruptedWhileSettling => exit::INTERRUPTED,
+                // A number that is not finite is the fault of the run, not of the disk.
+                RunError::Write(WriteError::NotFinite { .. }) => exit::STOPPED,
+                RunError::Write(_) => exit::INPUT_OUTPUT,
+            };
+            options.events.fail(code, &error.to_string())
+        }
+    }
+}
+
+#[derive(Serialize)]
+struct Finished<'a> {
+    exit_code: u8,
+    summary: &'a Summary,
+}
+
+/// Says what is beyond its limit, and gives the exit code.
+fn conclude(summary: &Summary, options: &Options) -> u8 {
+    for (name, _) in summary.verdicts.0.iter().filter(|(_, v)| v.verdict == Judgement::Fail) {
+        options.events.warn(&format!("{name} is beyond its limit: do not use this result"));
+    }
+    let exit_code = match summary.status {
+        Status::Done => exit::DONE,
+        Status::Failed => exit::FAILED,
+        Status::Interrupted => {
+            complain(&format!("interrupted at t = {} s: `ndda resume` goes on from here", summary.end_s));
+            exit::INTERRUPTED
+        }
+        Status::Stopped => {
+            if let Some(cause) = &summary.stopped_by {
+                complain(&format!("error: stopped {cause}"));
+            }
+            exit::STOPPED
+        }
+    };
+    options.events.emit("finished", &Finished { exit_code, summary });
+    exit_code
+}

@@ -1,0 +1,77 @@
+//! `ndda study`: a scene with other steps, integrators, meshes, …, and what each costs and is worth.
+
+use std::path::Path;
+
+use ndda::study::emit::{self, Plan};
+use ndda::study::error::StudyError;
+use ndda::study::{Study, make_folder, table};
+
+use super::processes::{Processes, refuse};
+use crate::args::{Emit, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
+use crate::exit;
+use crate::terminal::console::{complain_unless, say};
+use crate::terminal::interrupt;
+
+/// Runs `ndda study`; returns the exit code.
+pub fn study(args: &StudyArgs) -> u8 {
+    let outcome = match (&args.part, &args.study) {
+        (Some(StudyPart::Case(case)), _) => run_one(case),
+        (Some(StudyPart::Collect(collect)), _) => {
+            open(&collect.study, &collect.how).and_then(|opened| gather(&opened, collect.json))
+        }
+        (None, Some(study)) => run_all(study, args),
+        // The command line asks for one before it comes to this.
+        (None, None) => return exit::USAGE,
+    };
+    outcome.unwrap_or_else(|error| refuse(&error))
+}
+
+fn open(study: &Path, how: &StudyHow) -> Result<Study, StudyError> {
+    Study::open(study, how.out.clone(), &how.overrides)
+}
+
+fn run_all(study: &Path, args: &StudyArgs) -> Result<u8, StudyError> {
+    let opened = open(study, &args.how)?;
+    let StudyHow { threads, quiet, overrides, .. } = &args.how;
+    if let Some(kind) = args.emit {
+        let kind = match kind {
+            Emit::Slurm => emit::Emit::Slurm,
+            Emit::Parallel => emit::Emit::Parallel,
+            Emit::List => emit::Emit::List,
+        };
+        let plan = Plan { study, out: &opened.out, jobs: args.jobs, threads: *threads, overrides };
+        say(&emit::script(&plan, &opened.runs(), kind));
+        return Ok(exit::DONE);
+    }
+    opened.check_reference()?;
+    make_folder(&opened.out)?;
+    let (runner, tell) = (Processes { stop: interrupt::watch() }, complain_unless(*quiet));
+    opened.launch(&runner, &tell, (args.jobs, *threads)).run_all(&opened.runs())?;
+    gather(&opened, args.json)
+}
+
+fn run_one(args: &StudyCaseArgs) -> Result<u8, StudyError> {
+    let opened = open(&args.study, &args.how)?;
+    let (runs, name) = (opened.runs(), &args.case);
+    let case = runs.iter().find(|case| case.name == *name).ok_or_else(|| StudyError::NoCase(name.clone()))?;
+    make_folder(&opened.out)?;
+    let (runner, tell) = (Processes { stop: interrupt::watch() }, complain_unless(args.how.quiet));
+    let said = opened.launch(&runner, &tell, (1, args.how.threads)).run_case(case)?;
+    if !args.how.quiet {
+        say(&format!("{name}: {said}"));
+    }
+    Ok(exit::DONE)
+}
+
+/// Reads what has run, writes and prints the results.
+fn gather(opened: &Study, as_json: bool) -> Result<u8, StudyError> {
+    let (runner, tell) = (Processes { stop: Default::default() }, complain_unless(true));
+    let (results, json) = opened.gather(&opened.launch(&runner, &tell, (1, 1)))?;
+    say(&if as_json {
+        json
+    } else {
+        format!("{}results in {}", table::text(&results), opened.out.display())
+    });
+    let (done, missing) = (results.points.iter().any(|p| p.figures.is_some()), !results.missing.is_empty());
+    Ok(if done && !missing { exit::DONE } else { exit::FAILED })
+}

@@ -1,0 +1,62 @@
+//! What `ndda certify` and `ndda tune` share: a scene that runs over and over.
+
+use std::path::PathBuf;
+
+use ndda::certify::Trial;
+use ndda::certify::error::CertifyError;
+use ndda::{Model, examples};
+use ndda_io::scene::Scene;
+use ndda_io::{WriteError, atomic, read};
+
+use super::processes;
+use crate::args::{SceneArgs, TrialHow};
+use crate::terminal::console::complain;
+use crate::terminal::events::Events;
+use crate::{exit, input};
+
+/// Reads, checks and builds a scene once, and makes its output folder, `out/NAME_purpose` unless another is asked for;
+/// `steps` is the number of steps of its longest step.
+///
+/// # Errors
+/// The exit code, after the reason has been printed.
+pub fn open(
+    args: &SceneArgs,
+    how: &TrialHow,
+    purpose: &str,
+    steps: impl FnOnce(&Scene) -> u64,
+) -> Result<(Trial, Model), u8> {
+    let events = Events::default();
+    let model = input::model(args, events)?;
+    if !model.loaded.warnings.is_empty() && !how.quiet {
+        events.doubt(&model.loaded.errors(model.loaded.warnings.clone()));
+    }
+    let file = input::file(args);
+    let name = file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
+    let out = how.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_{purpose}")));
+    let text = match &args.example {
+        None => read::text_of(&file).map_err(|errors| events.refuse(&errors))?,
+        Some(example) => examples::find(example).unwrap_or_default().to_string(),
+    };
+    let steps = steps(&model.loaded.scene);
+    let mut trial =
+        Trial::new(&model, (file, text), &args.overrides, out, steps).map_err(|error| refuse(&error))?;
+    if args.example.is_some() {
+        trial.loaded.scene = example_file(&trial).map_err(|error| refuse(&error.into()))?;
+    }
+    Ok((trial, model))
+}
+
+/// Writes an example to the folder, so that runs have a file to read.
+fn example_file(trial: &Trial) -> Result<PathBuf, WriteError> {
+    let file = trial.out.join("scene.ron");
+    atomic::write(&file, trial.loaded.scene_text.as_bytes()).map(|()| file)
+}
+
+/// Says why a scene cannot be certified; gives the exit code.
+pub fn refuse(error: &CertifyError) -> u8 {
+    if let CertifyError::Run(error) = error {
+        return processes::refuse(error);
+    }
+    complain(&format!("error: {error}"));
+    exit::of_certify(error)
+}

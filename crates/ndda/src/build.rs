@@ -1,0 +1,344 @@
+//! Scene → simulation: the only place where names become objects.
+//!
+//! A fork that brings its own contact model changes [`contact_model`], one match arm.
+
+mod bodies;
+pub mod overlaps;
+mod regions;
+mod rock;
+mod shapes;
+mod solid;
+
+use std::path::Path;
+
+use ndda_contact::{
+    ContactModel, ContactPotential, Coulomb, ElementPotential, FrictionLaw, Joints, Memory, MohrCoulomb,
+    PotentialContact, SmoothPotential, VelocityCoulomb, VolumePotential,
+};
+use ndda_fem::Table;
+use ndda_io::scene::{self, At, Contact, Integrator, Scene};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
+use ndda_solver::{
+    AutoStep, ConjugateGradients, Direct, EndContact, GeneralizedAlpha, LinearSolver, Mass, Midpoint,
+    Newmark, Setup, SetupError, Simulation, TimeIntegrator,
+};
+
+use crate::run::monitor::Monitor;
+use regions::{find, find_all};
+pub use rock::{CutRock, Meshes, RockReport};
+
+/// A node is on a plane when it is nearer than this part of its block's size.
+const ON_PLANE: f64 = 1e-6;
+
+/// Something in the scene that cannot be built, with its path in the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// Path of the value, as in `blocks[1].shape`.
+    pub path: String,
+    /// What is wrong and what to do.
+    pub message: String,
+}
+
+impl Fault {
+    fn new(path: impl Into<String>, message: impl ToString) -> Self {
+        Self { path: path.into(), message: message.to_string() }
+    }
+}
+
+/// The blocks of a scene, meshed and placed; `folder` is where the scene file is.
+///
+/// # Errors
+/// All shapes that cannot be built, and all defects of their meshes.
+pub fn blocks(scene: &Scene, folder: &Path) -> Result<BlockSet, Vec<Fault>> {
+    BlockSet::new(meshes(scene, folder)?.0).map_err(|error| {
+        let fault = |(name, problem): (String, _)| Fault::new(path_of(scene, &name, ".shape"), problem);
+        error.problems.into_iter().map(fault).collect()
+    })
+}
+
+/// The meshes of a scene before they are checked, and what each rock was cut into.
+///
+/// # Errors
+/// All shapes that cannot be built.
+pub fn meshes(scene: &Scene, folder: &Path) -> Result<(Meshes, Vec<CutRock>), Vec<Fault>> {
+    let (mut meshes, mut rocks, mut faults) = (Meshes::new(), Vec::new(), Vec::new());
+    for (i, block) in scene.blocks.iter().enumerate() {
+        match shapes::mesh(&block.shape, folder) {
+            Ok(mesh) => {
+                let placed = mesh.placed(&shapes::turned(&block.turns), &vec3(block.at_m));
+                meshes.push((block.name.clone(), placed));
+            }
+            Err(message) => faults.push(Fault::new(format!("blocks[{i}].shape"), message)),
+        }
+    }
+    for index in 0..scene.rock.len() {
+        match rock::cut_rock(scene, folder, index) {
+            Ok((filled, cut)) => {
+                meshes.extend(filled);
+                rocks.push(cut);
+            }
+            Err(found) => faults.extend(found),
+        }
+    }
+    if faults.is_empty() { Ok((meshes, rocks)) } else { Err(faults) }
+}
+
+/// Where in the scene a block comes from.
+enum Source<'a> {
+    Block(&'a scene::Block),
+    Rock(&'a scene::Rock),
+}
+
+impl Source<'_> {
+    fn material(&self) -> &str {
+        match self {
+            Self::Block(block) => &block.material,
+            Self::Rock(rock) => &rock.material,
+        }
+    }
+}
+
+/// Where each block comes from; `None` for blocks that the scene does not name.
+fn sources<'a>(scene: &'a Scene, blocks: &BlockSet) -> Vec<Option<Source<'a>>> {
+    let rock = |name: &String| scene.rock.iter().find(|rock| rock.makes(name)).map(Source::Rock);
+    let written = scene.blocks.iter().map(|block| Some(Source::Block(block)));
+    written.chain(blocks.names.iter().skip(scene.blocks.len()).map(rock)).collect()
+}
+
+/// Index of the material of each block that can move, and its kind of body.
+pub fn moving(scene: &Scene, blocks: &BlockSet) -> Vec<Option<(usize, scene::Body)>> {
+    let material = |(block, source): (BlockId, Option<Source>)| {
+        let source = source?;
+        let body = match source {
+            Source::Block(block) => block.body,
+            Source::Rock(rock) => rock::body(rock, blocks, block),
+        };
+        let index = scene.materials.iter().position(|m| m.name == source.material());
+        index.filter(|_| body != scene::Body::Fixed).map(|index| (index, body))
+    };
+    blocks.ids().zip(sources(scene, blocks)).map(material).collect()
+}
+
+/// Path of what makes a block; `field` is that of an explicit one.
+fn path_of(scene: &Scene, block: &str, field: &str) -> String {
+    match scene.rock.iter().position(|rock| rock.makes(block)) {
+        Some(index) => format!("rock[{index}]"),
+        None => {
+            let index = scene.blocks.iter().position(|b| b.name == *block).unwrap_or(0);
+            format!("blocks[{index}]{field}")
+        }
+    }
+}
+
+fn vec3(v: [f64; 3]) -> Vec3 {
+    Vec3::from(v)
+}
+
+/// The simulation of a scene on its blocks, with the contact model that the scene names.
+///
+/// # Errors
+/// All supports, tractions and materials that cannot be built.
+pub fn simulation(scene: &Scene, blocks: BlockSet, folder: &Path) -> Result<Simulation, Vec<Fault>> {
+    let contact = contact_model(scene, &blocks).map_err(|fault| vec![fault])?;
+    simulation_with(scene, blocks, folder, contact)
+}
+
+/// The simulation of a scene with a contact model of one's own.
+///
+/// # Errors
+/// As [`simulation`].
+pub fn simulation_with(
+    scene: &Scene,
+    blocks: BlockSet,
+    folder: &Path,
+    contact: Option<Box<dyn ContactModel>>,
+) -> Result<Simulation, Vec<Fault>> {
+    let bodies = bodies::bodies(scene, &blocks, folder)?;
+    let setup = Setup {
+        blocks,
+        bodies,
+        gravity_m_s2: vec3(scene.gravity_m_s2),
+        gravity_factor: (scene.gravity_ramp_s > 0.0)
+            .then(|| Table { rows: vec![(0.0, 0.0), (scene.gravity_ramp_s, 1.0)] }),
+        mass: match scene.time.mass {
+            scene::Mass::Consistent => Mass::Consistent,
+            scene::Mass::Lumped => Mass::Lumped,
+        },
+        step_s: scene.time.step_s,
+        integrator: integrator(&scene.time.integrator),
+        contact,
+        auto_step: match scene.time.step {
+            scene::Step::Fixed => None,
+            scene::Step::Auto { safety, energy, most_halvings } => {
+                Some(AutoStep { safety, energy, most_halvings })
+            }
+        },
+        end_contact: match scene.time.contact_at {
+            scene::ContactAt::Predicted => None,
+            scene::ContactAt::End { tolerance, most_iterations } => {
+                Some(EndContact { tolerance, most_iterations })
+            }
+        },
+        solver: linear_solver(scene.time.solver),
+    };
+    Simulation::new(setup).map_err(|error| vec![setup_fault(scene, error)])
+}
+
+/// Where in the scene a simulation could not be set up.
+fn setup_fault(scene: &Scene, error: SetupError) -> Fault {
+    let (block, supported) = match &error {
+        SetupError::Support { block, .. } | SetupError::Kind { block, .. } => (block, true),
+        SetupError::Factor { block, .. } | SetupError::Solve { block, .. } => (block, false),
+        SetupError::Contact(_) => return Fault::new("contact", error),
+    };
+    let support = scene.supports.iter().position(|s| supported && scene::matches(&s.block, block));
+    let path = support.map_or(path_of(scene, block, ""), |i| format!("supports[{i}]"));
+    Fault::new(path, error)
+}
+
+/// The contact model that a scene names: a fork adds its own arm here.
+///
+/// # Errors
+/// A potential that cannot serve the blocks.
+pub fn contact_model(scene: &Scene, blocks: &BlockSet) -> Result<Option<Box<dyn ContactModel>>, Fault> {
+    match &scene.contact {
+        None | Some(Contact::Off) => Ok(None),
+        Some(Contact::Potential { penalty_pa, potential, friction, joints, laws, memory }) => {
+            let potential = contact_potential(potential);
+            potential.field(blocks).map_err(|e| Fault::new("contact.potential", e))?;
+            let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);
+            let mut table = between_materials(scene, blocks, friction.as_ref(), joints);
+            add_joint_laws(&mut table, laws, blocks);
+            table.memory = match memory {
+                scene::Memory::Body => Memory::Body,
+                scene::Memory::Element => Memory::Element,
+            };
+            // Where nothing rubs, no shear spring and no memory is made.
+            if table.have_laws() {
+                model = model.with_joints(table);
+            }
+            Ok(Some(Box::new(model)))
+        }
+    }
+}
+
+/// The potential that a scene names.
+fn contact_potential(potential: &scene::Potential) -> Box<dyn ContactPotential> {
+    match *potential {
+        scene::Potential::Element => Box::new(ElementPotential),
+        scene::Potential::Smooth { reference_m } => Box::new(SmoothPotential { reference_m }),
+        scene::Potential::Volume { exponent, reference_m3 } => {
+            Box::new(VolumePotential { exponent, reference_m3 })
+        }
+    }
+}
+
+fn material_index(scene: &Scene, name: &str) -> u32 {
+    scene.materials.iter().position(|m| m.name == name).unwrap_or(0) as u32
+}
+
+/// Number of each block's material, in the order of the scene's materials.
+pub fn materials_of(scene: &Scene, blocks: &BlockSet) -> Vec<u32> {
+    let index = |source: &Option<Source>| source.as_ref().map_or(0, |s| material_index(scene, s.material()));
+    sources(scene, blocks).iter().map(index).collect()
+}
+
+/// Laws between materials.
+fn between_materials(
+    scene: &Scene,
+    blocks: &BlockSet,
+    everywhere: Option<&scene::Friction>,
+    special: &[scene::Joint],
+) -> Joints {
+    let index = |name: &str| material_index(scene, name);
+    let mut joints = Joints::between(materials_of(scene, blocks), scene.materials.len());
+    let all = || 0..scene.materials.len() as u32;
+    let pairs: Vec<(u32, u32)> = all().flat_map(|a| all().map(move |b| (a, b))).collect();
+    joints.set(&pairs, everywhere.and_then(friction_law));
+    for joint in special {
+        let pair = (index(&joint.between.0), index(&joint.between.1));
+        joints.set(&[pair], joint.friction.as_ref().and_then(friction_law));
+    }
+    joints
+}
+
+/// Laws on the faces that joints made.
+fn add_joint_laws(joints: &mut Joints, laws: &[scene::JointLaw], blocks: &BlockSet) {
+    for law in laws {
+        let named = |(_, name): &(u32, &String)| scene::matches(&law.joint, name);
+        let surfaces: Vec<u32> =
+            (0..).zip(&blocks.surface_names).filter(named).map(|(surface, _)| surface).collect();
+        joints.set_on(&surfaces, law.friction.as_ref().and_then(friction_law));
+    }
+}
+
+/// The law that a scene's friction asks for; `None` where nothing rubs.
+fn friction_law(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> {
+    let scene::Friction { friction_deg, shear_penalty_pa_m, cohesion_pa, tension_pa } = *friction;
+    if friction_deg <= 0.0 && cohesion_pa <= 0.0 && tension_pa <= 0.0 {
+        return None;
+    }
+    Some(match shear_penalty_pa_m {
+        None => Box::new(VelocityCoulomb::new(friction_deg)),
+        Some(shear) if cohesion_pa > 0.0 || tension_pa > 0.0 => {
+            Box::new(MohrCoulomb::new(friction_deg, shear, cohesion_pa, tension_pa))
+        }
+        Some(shear) => Box::new(Coulomb::new(friction_deg, shear)),
+    })
+}
+
+/// The time integrator that a scene names.
+pub fn integrator(choice: &Integrator) -> Box<dyn TimeIntegrator> {
+    match choice {
+        Integrator::Midpoint { theta } => Box::new(Midpoint { theta: *theta }),
+        Integrator::GeneralizedAlpha { radius } => Box::new(GeneralizedAlpha { radius: *radius }),
+        Integrator::Newmark { alpha, delta } => Box::new(Newmark { alpha: *alpha, delta: *delta }),
+    }
+}
+
+fn linear_solver(solver: scene::Solver) -> Box<dyn LinearSolver> {
+    match solver {
+        scene::Solver::Cholesky => Box::new(Direct),
+        scene::Solver::ConjugateGradients { tolerance } => Box::new(ConjugateGradients { tolerance }),
+    }
+}
+
+/// The monitors of a scene.
+///
+/// # Errors
+/// All monitors whose point is outside their block.
+pub fn monitors(scene: &Scene, simulation: &Simulation) -> Result<Vec<Monitor>, Vec<Fault>> {
+    let mut faults = Vec::new();
+    let mut monitors = Vec::new();
+    for (i, monitor) in scene.monitors.iter().enumerate() {
+        let path = || format!("monitors[{i}].at");
+        let built = one_monitor(monitor, simulation);
+        match built {
+            Ok(monitor) => monitors.push(monitor),
+            Err(message) => faults.push(Fault::new(path(), message)),
+        }
+    }
+    if faults.is_empty() { Ok(monitors) } else { Err(faults) }
+}
+
+fn one_monitor(monitor: &scene::Monitor, simulation: &Simulation) -> Result<Monitor, String> {
+    let blocks = simulation.blocks();
+    match &monitor.at {
+        At::Centre => Ok(Monitor::centre(&monitor.name, simulation, find(blocks, &monitor.block)?)),
+        At::Point(place) => {
+            let block = find(blocks, &monitor.block)?;
+            let point = Monitor::point(&monitor.name, blocks, block, &(vec3(*place) - blocks.origin_m));
+            point.ok_or_else(|| format!("this point is outside block `{}` at the start", monitor.block))
+        }
+        At::Largest(direction) => {
+            let found = find_all(blocks, &monitor.block)?;
+            let nodes = found.into_iter().map(|block| blocks.nodes_of(block)).collect();
+            Ok(Monitor::largest(&monitor.name, nodes, vec3(*direction).normalize()))
+        }
+    }
+}
+
+/// Steps of a run: its end rounded to whole steps, at least one.
+pub fn steps(time: &scene::Time) -> u64 {
+    ((time.end_s / time.step_s).round() as u64).max(1)
+}

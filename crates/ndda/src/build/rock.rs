@@ -1,0 +1,274 @@
+//! Rock of a scene as blocks.
+
+use std::fmt;
+use std::path::Path;
+
+use ndda_io::scene::{self, Rock, Scene, Whereabouts};
+use ndda_mesh::cut::{
+    self, Axis, Blocks, CutOptions, Disc, DiscRule, Discontinuity, Domain, JointSet, OrientationScatter,
+    Plane, SpacingScatter, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
+};
+use ndda_mesh::geometry::tet_volume;
+use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{Fault, solid, vec3};
+use crate::forecast::size;
+
+/// What a rock was cut into, and what was left out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RockReport {
+    /// Name of the rock.
+    pub name: String,
+    /// Blocks that are left.
+    pub blocks: usize,
+    /// Volume of the rock before it was cut [m³].
+    pub domain_m3: f64,
+    /// Slivers left out, and their volume [m³].
+    pub slivers: (usize, f64),
+    /// Parts taken out by `removed`, and their volume [m³].
+    pub removed: (usize, f64),
+    /// Cuts that would have left a needle thinner than rounding, and were not made.
+    pub refused: usize,
+}
+
+impl fmt::Display for RockReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, blocks, domain_m3, slivers, removed, refused } = self;
+        write!(f, "rock {name}: {domain_m3:.6e} m³ in {blocks} block(s)")?;
+        for (what, (count, volume)) in [("sliver(s) left out", slivers), ("part(s) removed", removed)] {
+            if *count > 0 {
+                write!(f, ", {count} {what} ({volume:.3e} m³)")?;
+            }
+        }
+        if *refused > 0 { write!(f, ", {refused} cut(s) refused as needles") } else { Ok(()) }
+    }
+}
+
+/// A rock in blocks.
+#[derive(Clone, Debug)]
+pub struct CutRock {
+    /// What the cut amounted to.
+    pub report: RockReport,
+    /// The convex parts of the blocks that are left.
+    pub blocks: Blocks,
+}
+
+/// Names and meshes of blocks.
+pub type Meshes = Vec<(String, BlockMesh)>;
+
+/// Cuts and fills rock `index` of a scene.
+///
+/// # Errors
+/// What cannot be cut or filled.
+pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Meshes, CutRock), Vec<Fault>> {
+    let rock = &scene.rock[index];
+    let at = |field: &str| format!("rock[{index}]{field}");
+    let domain = domain(&rock.domain, folder).map_err(|m| vec![Fault::new(at(".domain"), m)])?;
+    let cut_field = if rock.voronoi.is_some() { ".voronoi" } else { ".joints" };
+    let mut blocks = cut(rock, &domain).map_err(|m| vec![Fault::new(at(cut_field), m)])?;
+    let refused = blocks.report.refused.iter().map(|(_, count)| count).sum();
+    let slivers = if rock.sliver_width_m > 0.0 { slivers(&blocks) } else { Vec::new() };
+    let sliver_m3 = blocks.remove(&slivers);
+    let removed = chosen(&blocks, &rock.removed);
+    let removed_m3 = blocks.remove(&removed);
+    let mut meshes = Meshes::new();
+    let mut report = RockReport {
+        name: rock.name.clone(),
+        blocks: 0,
+        domain_m3: domain.volume_m3(),
+        slivers: (slivers.len(), sliver_m3),
+        removed: (removed.len(), removed_m3),
+        refused,
+    };
+    let mut faults = Vec::new();
+    let groups = blocks.groups();
+    size::admit_fill(groups.len(), &rock.fill, report.domain_m3 - sliver_m3 - removed_m3)
+        .map_err(|m| vec![Fault::new(at(".fill"), m)])?;
+    let filled: Vec<_> =
+        groups.par_iter().map(|group| solid::filled_group(&blocks, group, &rock.fill)).collect();
+    for (number, filled) in (1..).zip(filled) {
+        match filled {
+            Ok(mesh) => meshes.push((format!("{}_{number:04}", rock.name), mesh)),
+            Err(error) => faults.push(Fault::new(
+                at(".fill"),
+                format!(
+                    "block {}_{number:04} cannot be filled: {error}; `sliver_width_m` leaves thin ones out",
+                    rock.name
+                ),
+            )),
+        }
+    }
+    if meshes.is_empty() && faults.is_empty() {
+        faults.push(Fault::new(at(".removed"), "no block is left: take out fewer"));
+    }
+    report.blocks = meshes.len();
+    if faults.is_empty() { Ok((meshes, CutRock { report, blocks })) } else { Err(faults) }
+}
+
+/// Slivers that are blocks of their own, not parts of a concave one.
+fn slivers(blocks: &Blocks) -> Vec<u32> {
+    let alone: Vec<u32> = blocks.groups().iter().filter(|g| g.len() == 1).map(|g| g[0]).collect();
+    let listed = blocks.report.slivers.iter().map(|sliver| sliver.block);
+    listed.filter(|block| alone.binary_search(block).is_ok()).collect()
+}
+
+/// Blocks whose centroid, that of all glued parts, is in one of the places.
+fn chosen(blocks: &Blocks, places: &[Whereabouts]) -> Vec<u32> {
+    let groups = if places.is_empty() { Vec::new() } else { blocks.groups() };
+    let inside = |group: &Vec<u32>| {
+        let parts = group.iter().map(|&b| blocks.blocks[b as usize].volume_and_centroid());
+        let (volume, moment) =
+            parts.fold((0.0, Vec3::zeros()), |(v, m), (volume, c)| (v + volume, m + volume * c));
+        holds(places, &(moment / volume))
+    };
+    groups.into_iter().filter(inside).flatten().collect()
+}
+
+fn holds(places: &[Whereabouts], at: &Vec3) -> bool {
+    places.iter().any(|place| match place {
+        Whereabouts::Inside { min_m, max_m } => (0..3).all(|i| min_m[i] <= at[i] && at[i] <= max_m[i]),
+        Whereabouts::Beyond { point_m, normal } => (at - vec3(*point_m)).dot(&vec3(*normal)) > 0.0,
+    })
+}
+
+/// How a block of a rock may move.
+pub(super) fn body(rock: &Rock, blocks: &BlockSet, block: BlockId) -> scene::Body {
+    if rock.fixed.is_empty() {
+        return rock.body;
+    }
+    let (mut volume, mut moment) = (0.0, Vec3::zeros());
+    for tet in blocks.tets_of(block) {
+        let corners = blocks.tets[tet].map(|n| blocks.rest_position[n.index()]);
+        let part = tet_volume(&corners);
+        volume += part;
+        moment += part * corners.iter().sum::<Vec3>() / 4.0;
+    }
+    let centroid = moment / volume + blocks.origin_m;
+    if holds(&rock.fixed, &centroid) { scene::Body::Fixed } else { rock.body }
+}
+
+fn domain(domain: &scene::Domain, folder: &Path) -> Result<Domain, String> {
+    match domain {
+        scene::Domain::Box { min_m, max_m } => {
+            Domain::cuboid(vec3(*min_m), vec3(*max_m)).map_err(|e| e.to_string())
+        }
+        scene::Domain::Column { outline_m, axis, start_m, end_m } => {
+            let axis = match axis {
+                scene::Axis::X => Axis::X,
+                scene::Axis::Y => Axis::Y,
+                scene::Axis::Z => Axis::Z,
+            };
+            Domain::extruded(outline_m, axis, *start_m, *end_m).map_err(|e| e.to_string())
+        }
+        scene::Domain::Polyhedron { corners_m, faces } => {
+            solid::domain(&solid::of_corners(corners_m, faces), solid::EXACT)
+        }
+        scene::Domain::File { file, unit_m } => {
+            solid::domain(&solid::of_file(&folder.join(file), *unit_m)?, solid::ROUNDED)
+        }
+        scene::Domain::Terrain { origin_m, step_m, heights_m, base_m } => {
+            terrain(*origin_m, *step_m, heights_m, *base_m)
+        }
+    }
+}
+
+/// Two triangles per cell of the grid.
+fn terrain(
+    origin_m: [f64; 2],
+    step_m: [f64; 2],
+    heights_m: &[Vec<f64>],
+    base_m: f64,
+) -> Result<Domain, String> {
+    let columns = heights_m.first().map_or(0, Vec::len);
+    if columns < 2 || heights_m.len() < 2 || heights_m.iter().any(|row| row.len() != columns) {
+        return Err("give at least two rows of heights, all of the same length of at least two".into());
+    }
+    let mut vertices = Vec::new();
+    for (j, row) in heights_m.iter().enumerate() {
+        let place = |(i, z): (usize, &f64)| {
+            Vec3::new(origin_m[0] + i as f64 * step_m[0], origin_m[1] + j as f64 * step_m[1], *z)
+        };
+        vertices.extend(row.iter().enumerate().map(place));
+    }
+    let mut triangles = Vec::new();
+    for j in 0..heights_m.len() - 1 {
+        for i in 0..columns - 1 {
+            let [a, b] = [j * columns + i, (j + 1) * columns + i].map(|v| v as u32);
+            triangles.extend([[a, a + 1, b + 1], [a, b + 1, b]]);
+        }
+    }
+    Domain::terrain(&vertices, &triangles, base_m).map_err(|e| e.to_string())
+}
+
+fn cut(rock: &Rock, domain: &Domain) -> Result<Blocks, String> {
+    if let Some(voronoi) = rock.voronoi {
+        let seeds = random_seeds(domain, voronoi.count as usize, voronoi.least_distance_m, rock.seed);
+        let options = VoronoiOptions { sliver_width_m: rock.sliver_width_m };
+        return voronoi_blocks(domain, &seeds, &options).map_err(|e| e.to_string());
+    }
+    let joints =
+        rock.joints.iter().map(discontinuity).collect::<Result<Vec<_>, _>>().map_err(|e| e.to_string())?;
+    // What scatter makes of the spacings is known only while it is cut.
+    let most_blocks = size::most_blocks(CutOptions::default().most_blocks);
+    let options = CutOptions { seed: rock.seed, sliver_width_m: rock.sliver_width_m, most_blocks };
+    cut_blocks(domain, &joints, &options).map_err(|e| e.to_string())
+}
+
+fn discontinuity(joint: &scene::Discontinuity) -> Result<Discontinuity, cut::CutError> {
+    match joint {
+        scene::Discontinuity::Set {
+            name,
+            dip_deg,
+            dip_direction_deg,
+            spacing_m,
+            origin_m,
+            persistence,
+            orientation_scatter,
+            spacing_scatter,
+        } => Ok(Discontinuity::Set(JointSet {
+            origin_m: vec3(*origin_m),
+            persistence: *persistence,
+            orientation: orientation(*orientation_scatter),
+            spacing: spacing(*spacing_scatter),
+            ..JointSet::new(name.as_str(), *dip_deg, *dip_direction_deg, *spacing_m)
+        })),
+        scene::Discontinuity::Plane { name, dip_deg, dip_direction_deg, point_m } => {
+            let plane = Plane::dipping(*dip_deg, *dip_direction_deg, vec3(*point_m))?;
+            Ok(Discontinuity::Plane { name: name.clone(), plane })
+        }
+        scene::Discontinuity::Disc { name, dip_deg, dip_direction_deg, center_m, radius_m, rule } => {
+            let rule = match rule {
+                scene::DiscRule::Meets => DiscRule::Meets,
+                scene::DiscRule::Covers => DiscRule::Covers,
+            };
+            Ok(Discontinuity::Disc(Disc {
+                name: name.clone(),
+                dip_deg: *dip_deg,
+                dip_direction_deg: *dip_direction_deg,
+                center_m: vec3(*center_m),
+                radius_m: *radius_m,
+                rule,
+            }))
+        }
+    }
+}
+
+fn orientation(scatter: scene::OrientationScatter) -> OrientationScatter {
+    match scatter {
+        scene::OrientationScatter::None => OrientationScatter::None,
+        scene::OrientationScatter::Normal { deviation_deg } => OrientationScatter::Normal { deviation_deg },
+        scene::OrientationScatter::Fisher { kappa } => OrientationScatter::Fisher { kappa },
+        scene::OrientationScatter::Uniform { within_deg } => OrientationScatter::Uniform { within_deg },
+    }
+}
+
+fn spacing(scatter: scene::SpacingScatter) -> SpacingScatter {
+    match scatter {
+        scene::SpacingScatter::None => SpacingScatter::None,
+        scene::SpacingScatter::Uniform { half_width_m } => SpacingScatter::Uniform { half_width_m },
+        scene::SpacingScatter::Normal { deviation_m } => SpacingScatter::Normal { deviation_m },
+        scene::SpacingScatter::Exponential => SpacingScatter::Exponential,
+    }
+}

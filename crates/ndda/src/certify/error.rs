@@ -1,0 +1,51 @@
+//! Why a scene cannot be certified.
+
+use ndda_io::WriteError;
+
+use crate::study::error::StudyError;
+
+/// Why a scene cannot be certified.
+#[derive(Debug, thiserror::Error)]
+pub enum CertifyError {
+    /// A run cannot be started, recorded or read.
+    #[error(transparent)]
+    Run(#[from] StudyError),
+    /// Runs stop, whatever the step.
+    #[error(
+        "the run of steps of {step_s:e} s stopped ({reason}): certify a scene that runs; `ndda check` advises a \
+         step, --set time.step_s=… tries a shorter one"
+    )]
+    Stopped {
+        /// The step [s].
+        step_s: f64,
+        /// Why it stopped.
+        reason: String,
+    },
+    /// A run of a finer mesh or of a stiffer contact, or the disturbed twin, did not end.
+    #[error(
+        "the run `{name}` failed ({reason}): leave out --mesh or --penalty, or shorten time.step_s with --set"
+    )]
+    Failed {
+        /// Name of the run.
+        name: String,
+        /// Why.
+        reason: String,
+    },
+    /// Nothing to refine.
+    #[error("--mesh: no block of the scene has cells, levels or a size that could be halved")]
+    NoMesh,
+    /// No contact to make stiffer.
+    #[error("--penalty: the scene has no contact: leave the option out")]
+    NoContact,
+    /// A name that no quantity begins with.
+    #[error("--of {name}: no column of the history begins with it; there are {known}")]
+    NoQuantity {
+        /// What was asked for.
+        name: String,
+        /// What there is.
+        known: String,
+    },
+    /// A result cannot be written.
+    #[error("{0}")]
+    Write(#[from] WriteError),
+}

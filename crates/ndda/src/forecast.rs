@@ -1,0 +1,8 @@
+//! What is known of a run before its first step.
+
+pub mod cost;
+pub mod lumped;
+pub mod memory;
+pub mod rounding;
+pub mod size;
+pub mod step;

@@ -1,0 +1,132 @@
+//! What a run will take and write, from a few of its steps.
+
+use std::fmt;
+use std::time::{Duration, Instant};
+
+use ndda_io::scene::Scene;
+use ndda_io::{checkpoint, folder};
+use ndda_solver::{Simulation, SinkError};
+use serde::Serialize;
+
+use crate::run::fields::FieldWriter;
+use crate::run::recorder::{columns, events, held_blocks};
+use crate::{build, machine, run::contacts};
+
+/// Steps are timed this long, but at least a few of them: a check of a small scene is to be felt as instant.
+const TIMED: Duration = Duration::from_millis(10);
+const FEWEST_STEPS: u64 = 3;
+/// A number in a table and its comma, on average [B].
+const NUMBER_BYTES: u64 = 20;
+
+/// A file that a run writes, or several of them.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FileGuess {
+    /// Its name.
+    pub name: String,
+    /// How many.
+    pub count: u64,
+    /// Size of all of them [B].
+    pub bytes: u64,
+}
+
+/// What a run will take and write.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Guess {
+    /// Steps that were timed.
+    pub timed_steps: u64,
+    /// Wall-clock time of a run on as many threads as this process has, if contacts stay as many [s].
+    pub run_s: f64,
+    /// Most memory of this process, which has done all that a run does [B]; none where the system does not tell.
+    pub memory_bytes: Option<u64>,
+    /// Files.
+    pub files: Vec<FileGuess>,
+}
+
+/// Does a few steps, a row and a frame, and reckons.
+///
+/// # Errors
+/// What would stop the run in these steps.
+pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkError> {
+    let steps = build::steps(&scene.time);
+    simulation.watch_contacts(scene.output.contacts);
+    let started = Instant::now();
+    let mut timed_steps = 0;
+    // The first one makes lists that the others keep.
+    simulation.step()?;
+    let first_s = started.elapsed().as_secs_f64();
+    let started = Instant::now();
+    while timed_steps + 1 < steps && (timed_steps < FEWEST_STEPS || started.elapsed() < TIMED) {
+        simulation.step()?;
+        timed_steps += 1;
+    }
+    let step_s = started.elapsed().as_secs_f64() / timed_steps.max(1) as f64;
+    let started = Instant::now();
+    simulation.sample()?;
+    let row_s = started.elapsed().as_secs_f64();
+    let started = Instant::now();
+    let frame = if scene.output.frames > 0 { FieldWriter::encode(scene, simulation)? } else { Vec::new() };
+    let frame_s = started.elapsed().as_secs_f64();
+    let rows = events(steps, scene.output.history_rows.into());
+    let frames = frames(scene);
+    let run_s = first_s + steps as f64 * step_s + rows as f64 * row_s + frames as f64 * frame_s;
+    let files = files(scene, simulation, (rows, frames), frame.len() as u64);
+    Ok(Guess { timed_steps, run_s, memory_bytes: machine::peak_memory_bytes(), files })
+}
+
+/// Frames of a run, that of the start among them.
+pub fn frames(scene: &Scene) -> u64 {
+    let asked = u64::from(scene.output.frames);
+    if asked > 0 { events(build::steps(&scene.time), asked) } else { 0 }
+}
+
+fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), frame: u64) -> Vec<FileGuess> {
+    let output = &scene.output;
+    let file = |name: &str, count: u64, bytes: u64| FileGuess { name: name.to_string(), count, bytes };
+    let held = if output.reactions { held_blocks(simulation) } else { Vec::new() };
+    let monitors = scene.monitors.iter().map(|monitor| monitor.name.as_str());
+    let columns = columns(monitors, &held, scene.reference.is_some()).len() as u64;
+    // Of the scene, its text is kept.
+    let saved = checkpoint::size(&simulation.snapshot()) + checkpoint::size(scene);
+    let blocks = simulation.blocks().len() as u64;
+    let mut files = vec![
+        file(folder::HISTORY, 1, rows * columns * NUMBER_BYTES),
+        file(folder::CHECKPOINT, 2, 2 * saved),
+        file(folder::SUMMARY, 1, 3000 + 600 * blocks),
+        file(folder::LOG, 1, 4000 + 100 * blocks),
+    ];
+    if frames > 0 {
+        files.push(file(&format!("{}/*.vtu", folder::FIELDS_FOLDER), frames, frames * frame));
+    }
+    if output.contacts {
+        let pairs = ndda_contact::resultants(simulation.blocks(), &mut simulation.contacts().to_vec()).len();
+        let numbers = (pairs * contacts::COLUMNS.len()) as u64;
+        files.push(file(folder::CONTACTS, 1, rows * numbers * NUMBER_BYTES));
+    }
+    files
+}
+
+/// Bytes as a person reads them.
+pub(crate) fn readable(bytes: u64) -> String {
+    let powers = [(1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
+    let found = powers.iter().find(|(size, _)| bytes as f64 >= *size);
+    found.map_or_else(|| format!("{bytes} B"), |(size, unit)| format!("{:.1} {unit}", bytes as f64 / size))
+}
+
+impl fmt::Display for Guess {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let steps = self.timed_steps;
+        write!(f, "a run would take {:.1} s ({steps} steps timed; more as contacts grow)", self.run_s)?;
+        if let Some(bytes) = self.memory_bytes {
+            write!(f, " and {} of memory", readable(bytes))?;
+        }
+        for FileGuess { name, count, bytes } in &self.files {
+            write!(
+                f,
+                "\n  {:9} {name}{}",
+                readable(*bytes),
+                if *count > 1 { format!(" ({count})") } else { String::new() }
+            )?;
+        }
+        Ok(())
+    }
+}

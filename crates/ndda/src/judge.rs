@@ -1,0 +1,6 @@
+//! How good a run is: closed forms, verdicts on invariants, the label, and the summary that says it all.
+
+pub mod reference;
+pub mod summary;
+pub mod table;
+pub mod verdict;

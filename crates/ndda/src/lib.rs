@@ -1,0 +1,64 @@
+//! Runs scenes of rock blocks that slide, topple, collide and fall.
+//!
+//! A scene is a description of blocks, materials, contact, supports and time; [`Model`] builds its simulation, [`Run`] steps
+//! it to the end, shows each step to observers, records results if asked to, and judges what came out.
+//!
+//! ```
+//! use ndda::{Model, Run};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let scene = r#"Scene(
+//!     title: "A block falls for a second",
+//!     time: (step_s: 0.01, end_s: 1.0), gravity_m_s2: (0, 0, -9.81), contact: Off,
+//!     materials: [(name: "rock", density_kg_m3: 2600, young_pa: 1e9, poisson: 0.25)],
+//!     blocks: [(name: "block", material: "rock", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+//!     monitors: [(name: "centre", block: "block")],
+//! )"#;
+//! let outcome = Run::new(Model::from_text(scene)?).finish(&mut [])?;
+//! let fallen_m = outcome.monitor("centre").expect("the scene has it").displacement[2];
+//! assert!((fallen_m + 0.5 * 9.81).abs() < 1e-9);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! # Map
+//!
+//! | module | contents |
+//! |---|---|
+//! | [`build`] | scene → blocks, materials, supports, contact model, simulation: the place where names become objects |
+//! | [`forecast`] | what is known before the first step: memory, run time, stable time step |
+//! | [`run`] | a run with its history, fields, contacts, checkpoints and log |
+//! | [`judge`] | closed forms, verdicts, the label `accurate` or `inaccurate`, the summary |
+//! | [`explain`] | what a run will do, what it leaves out and why |
+//! | [`study`] | many runs of one scene: error against time |
+//! | [`certify`] | every result as value ± error |
+//! | [`tune`] | the cheapest settings that reach an error |
+//! | [`examples`], [`templates`] | scenes that come with the program |
+//! | `report` | a run as a page of HTML (feature `report`) |
+//! | `picture` | pictures as SVG and PNG (features `plots`, `png`) |
+
+pub mod build;
+pub mod certify;
+pub mod columns;
+pub mod examples;
+pub mod explain;
+pub mod forecast;
+pub mod judge;
+pub mod machine;
+#[cfg(feature = "plots")]
+pub mod mesh_picture;
+pub mod mesh_report;
+mod model;
+#[cfg(feature = "plots")]
+pub mod picture;
+#[cfg(feature = "plots")]
+pub mod plot;
+#[cfg(feature = "report")]
+pub mod report;
+pub mod run;
+pub mod study;
+pub mod templates;
+pub mod tune;
+
+pub use model::Model;
+pub use run::{Outcome, Run, RunError};

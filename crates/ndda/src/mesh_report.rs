@@ -1,0 +1,116 @@
+//! What a set of blocks amounts to.
+
+use std::fmt;
+
+use ndda_mesh::BlockMesh;
+use ndda_mesh::quality::{Histogram, QualityReport, quality};
+use ndda_mesh::stats::stats;
+use ndda_mesh::validate::problems;
+use serde::Serialize;
+
+use crate::build::RockReport;
+use crate::forecast::step::AdvisedStep;
+
+/// Most bars of the histogram of volumes.
+const MOST_BARS: i32 = 24;
+
+/// Counts, sizes and quality of blocks.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MeshReport {
+    /// Number of blocks.
+    pub blocks: usize,
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Number of boundary triangles.
+    pub triangles: usize,
+    /// Volume of all blocks [m³].
+    pub volume_m3: f64,
+    /// Sizes of blocks.
+    pub block_size: BlockSizes,
+    /// Number and quality of the tetrahedra.
+    #[serde(flatten)]
+    pub quality: QualityReport,
+    /// Steps that contact asks for; empty without a scene, or where contact is stable at any step.
+    pub steps: Vec<AdvisedStep>,
+    /// What each rock was cut into.
+    pub rock: Vec<RockReport>,
+    /// What `--fix` did.
+    pub fixes: Vec<String>,
+}
+
+/// Volumes of blocks.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct BlockSizes {
+    /// Smallest volume [m³] and its block.
+    pub smallest_m3: (f64, String),
+    /// The volume that half of the blocks are below [m³].
+    pub median_m3: f64,
+    /// Largest volume [m³] and its block.
+    pub largest_m3: (f64, String),
+    /// Blocks by volume [m³], in bars that double.
+    pub volume_m3: Histogram,
+}
+
+impl MeshReport {
+    /// Measures blocks; those with defects count in nodes, tetrahedra and quality only.
+    pub fn new(meshes: &[(String, BlockMesh)]) -> Self {
+        let quality = quality(meshes.iter().map(|(name, mesh)| (name.as_str(), mesh)));
+        let sound: Vec<_> = meshes.iter().filter(|(_, mesh)| problems(mesh).is_empty()).collect();
+        let measured: Vec<_> = sound.iter().map(|(name, mesh)| (stats(mesh), name)).collect();
+        Self {
+            blocks: meshes.len(),
+            nodes: meshes.iter().map(|(_, mesh)| mesh.nodes.len()).sum(),
+            triangles: measured.iter().map(|(stats, _)| stats.triangles).sum(),
+            // The empty sum is −0.
+            volume_m3: measured.iter().map(|(stats, _)| stats.volume_m3).sum::<f64>() + 0.0,
+            block_size: sizes(
+                measured.iter().map(|(stats, name)| (stats.volume_m3, name.as_str())).collect(),
+            ),
+            quality,
+            steps: Vec::new(),
+            rock: Vec::new(),
+            fixes: Vec::new(),
+        }
+    }
+
+    /// The report as JSON.
+    pub fn json(&self) -> String {
+        serde_json::to_string_pretty(self).unwrap_or_else(|error| format!("{{\"error\": \"{error}\"}}"))
+    }
+}
+
+fn sizes(mut volumes: Vec<(f64, &str)>) -> BlockSizes {
+    volumes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (Some(first), Some(last)) = (volumes.first(), volumes.last()) else { return BlockSizes::default() };
+    let alone: Vec<f64> = volumes.iter().map(|(volume, _)| *volume).collect();
+    BlockSizes {
+        smallest_m3: (first.0, first.1.into()),
+        median_m3: volumes[volumes.len() / 2].0,
+        largest_m3: (last.0, last.1.into()),
+        volume_m3: Histogram::doubling(&alone, MOST_BARS),
+    }
+}
+
+impl fmt::Display for MeshReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.fixes.iter().try_for_each(|fix| writeln!(f, "fixed {fix}"))?;
+        let Self { blocks, nodes, quality, triangles, volume_m3, block_size: size, .. } = self;
+        let tets = quality.tets;
+        writeln!(
+            f,
+            "{blocks} block(s), {nodes} nodes, {tets} tets, {triangles} boundary triangles, {volume_m3:.6e} m³"
+        )?;
+        for rock in &self.rock {
+            writeln!(f, "{rock}")?;
+        }
+        let ((smallest, first), (largest, last)) = (&size.smallest_m3, &size.largest_m3);
+        writeln!(
+            f,
+            "blocks of {smallest:.3e} m³ ({first}) to {largest:.3e} m³ ({last}), median {:.3e} m³",
+            size.median_m3
+        )?;
+        size.volume_m3.show(f, "volume of blocks [m³]")?;
+        write!(f, "{quality}")?;
+        self.steps.iter().try_for_each(|step| writeln!(f, "{step}"))
+    }
+}

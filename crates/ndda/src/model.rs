@@ -1,0 +1,84 @@
+//! A scene that is ready to run.
+
+use std::path::Path;
+
+use ndda_io::diagnostic::{Diagnostic, SceneErrors};
+use ndda_io::read::{self, LoadedScene};
+use ndda_solver::Simulation;
+
+use crate::build::{self, Fault, overlaps};
+use crate::forecast::{lumped, rounding, size};
+use crate::judge::reference::Comparison;
+use crate::run::monitor::Monitor;
+
+/// A scene, its simulation at the start, and its monitors.
+pub struct Model {
+    /// The scene and its text.
+    pub loaded: LoadedScene,
+    /// The simulation at its start.
+    pub simulation: Simulation,
+    /// Its monitors.
+    pub monitors: Vec<Monitor>,
+}
+
+impl Model {
+    /// Reads, checks and builds the scene in a file; `overrides` are `path=value` as `ndda run --set` takes them.
+    ///
+    /// # Errors
+    /// All that is wrong with it, as far as the earlier errors let one see.
+    pub fn open(file: &Path, overrides: &[String]) -> Result<Self, SceneErrors> {
+        Self::new(read::load(file, overrides)?, file.parent().unwrap_or(Path::new(".")))
+    }
+
+    /// Checks and builds the scene in a text; files that it names are in the present folder.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn from_text(text: &str) -> Result<Self, SceneErrors> {
+        let folder = Path::new(".");
+        Self::new(read::load_text("scene.ron", text, &[], Some(folder))?, folder)
+    }
+
+    /// Builds a scene that has been read and checked; files that it names are in `folder`.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn new(loaded: LoadedScene, folder: &Path) -> Result<Self, SceneErrors> {
+        let mut model = Self::resuming(loaded, folder)?;
+        // What contact cannot compute at the start stops the run with its own cause.
+        match overlaps::refusal(&model.loaded, &mut model.simulation) {
+            Ok(Some(refused)) => Err(model.loaded.errors(vec![refused])),
+            _ => Ok(model),
+        }
+    }
+
+    /// As [`new`](Self::new), without a look at contact at the start: for a run that is past it.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open), but for blocks that overlap.
+    pub fn resuming(mut loaded: LoadedScene, folder: &Path) -> Result<Self, SceneErrors> {
+        let located = |faults: Vec<Fault>| {
+            let diagnostics: Vec<Diagnostic> =
+                faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();
+            loaded.errors(diagnostics)
+        };
+        size::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
+        let blocks = build::blocks(&loaded.scene, folder).map_err(located)?;
+        let far = rounding::warning(&loaded, &blocks);
+        let simulation = build::simulation(&loaded.scene, blocks, folder).map_err(located)?;
+        let monitors = build::monitors(&loaded.scene, &simulation).map_err(located)?;
+        loaded.warnings.extend(far);
+        loaded.warnings.extend(lumped::warning(&loaded, &simulation));
+        Ok(Self { loaded, simulation, monitors })
+    }
+
+    /// The scene's closed form, bound to the blocks as they are now.
+    pub fn comparison(&self) -> Option<Comparison> {
+        Comparison::new(&self.loaded.scene, &self.simulation, &self.monitors)
+    }
+
+    /// Steps of the run.
+    pub fn steps(&self) -> u64 {
+        build::steps(&self.loaded.scene.time)
+    }
+}

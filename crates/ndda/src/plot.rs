@@ -1,0 +1,241 @@
+//! Columns of histories over time, or over each other.
+
+use std::path::{Path, PathBuf};
+
+use ndda_io::table::{self, Table, TableError};
+use ndda_io::{WriteError, folder, results};
+use plotters::coord::ranged1d::{AsRangedCoord, Ranged, ValueFormatter};
+use plotters::prelude::*;
+use serde::Serialize;
+
+use crate::picture::{self, Area, Drawn, colour, log_axis, log_range, range, short};
+
+/// Width and height of the picture [px].
+const SIZE: (u32, u32) = (1160, 600);
+/// Width of the part of it that tells colours [px].
+const KEY: u32 = 230;
+/// Endings of columns that are units, the longer ones before those that they end in.
+const UNITS: [(&str, &str); 6] =
+    [("_kg_m2_s", "kg m²/s"), ("_kg_m_s", "kg m/s"), ("_m_s", "m/s"), ("_m", "m"), ("_j", "J"), ("_s", "s")];
+
+/// One line of the picture.
+struct Line {
+    name: String,
+    points: Vec<(f64, f64)>,
+}
+
+/// Why nothing is drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum PlotError {
+    /// A history cannot be read.
+    #[error("{0}")]
+    Table(#[from] TableError),
+    /// No such column, or several of them.
+    #[error("{}: {reason}; there is {}", file.display(), names.join(", "))]
+    Column {
+        /// The history.
+        file: PathBuf,
+        /// What is wrong.
+        reason: String,
+        /// The columns that it has.
+        names: Vec<String>,
+    },
+    /// Nothing that can be drawn.
+    #[error("nothing to draw: no value is finite{0}")]
+    Empty(&'static str),
+    /// The picture cannot be written.
+    #[error("{0}")]
+    Write(#[from] WriteError),
+}
+
+/// What is drawn.
+#[derive(Clone, Debug)]
+pub struct Plot {
+    /// Output folders of runs, or history files; several are drawn over each other.
+    pub inputs: Vec<PathBuf>,
+    /// Columns, by name or its beginning.
+    pub columns: Vec<String>,
+    /// Column to draw against.
+    pub against: String,
+    /// Logarithms of values; what is not above zero is left out.
+    pub log: bool,
+}
+
+/// The columns of a history.
+#[derive(Debug, Serialize)]
+pub struct Columns {
+    /// The history.
+    pub file: PathBuf,
+    /// Names.
+    pub columns: Vec<String>,
+}
+
+/// The columns that there are to draw in the histories of runs.
+///
+/// # Errors
+/// [`PlotError::Table`] when one cannot be read.
+pub fn columns(inputs: &[PathBuf]) -> Result<Vec<Columns>, PlotError> {
+    let columns = |input: &PathBuf| -> Result<Columns, PlotError> {
+        let file = history(input);
+        Ok(Columns { columns: table::read(&file)?.names, file })
+    };
+    inputs.iter().map(columns).collect()
+}
+
+/// Draws columns to an SVG or PNG file.
+///
+/// # Errors
+/// [`PlotError`].
+pub fn plot(plot: &Plot, out: &Path) -> Result<(), PlotError> {
+    let files: Vec<PathBuf> = plot.inputs.iter().map(|input| history(input)).collect();
+    let tables = files.iter().map(|file| table::read(file)).collect::<Result<Vec<_>, _>>()?;
+    let mut lines = Vec::new();
+    let (mut names, mut against) = (Vec::new(), String::new());
+    for ((file, table), input) in files.iter().zip(&tables).zip(&plot.inputs) {
+        let place = |name: &str| find(table, name).map_err(|reason| lost(file, table, reason));
+        let x = place(&plot.against)?;
+        against.clone_from(&table.names[x]);
+        for column in &plot.columns {
+            let y = place(column)?;
+            names.push(table.names[y].clone());
+            let run = if tables.len() > 1 { format!("{}: ", label(input)) } else { String::new() };
+            let points = table.columns[x].iter().copied().zip(table.columns[y].iter().copied());
+            lines.push(Line { name: format!("{run}{}", table.names[y]), points: points.collect() });
+        }
+    }
+    if !lines.iter().flat_map(|line| &line.points).any(|(x, y)| drawable(*x, *y, plot.log)) {
+        return Err(PlotError::Empty(if plot.log { " and above zero" } else { "" }));
+    }
+    let axes = [axis_title(&[against]), axis_title(&names)];
+    Ok(picture::write(out, SIZE, |root| draw(root, &lines, &axes, plot.log))?)
+}
+
+/// The history of a run's folder, or the file itself.
+fn history(input: &Path) -> PathBuf {
+    if !input.is_dir() {
+        return input.to_path_buf();
+    }
+    results::history_file(input).unwrap_or_else(|| input.join(folder::HISTORY))
+}
+
+/// What a run is called in the legend.
+fn label(input: &Path) -> String {
+    let named = if input.is_dir() { input } else { input.parent().unwrap_or(input) };
+    named.file_name().unwrap_or(named.as_os_str()).to_string_lossy().into_owned()
+}
+
+fn lost(file: &Path, table: &Table, reason: String) -> PlotError {
+    PlotError::Column { file: file.to_path_buf(), reason, names: table.names.clone() }
+}
+
+/// The column called `name`, or the only one whose name begins so.
+fn find(table: &Table, name: &str) -> Result<usize, String> {
+    if let Some(exact) = table.names.iter().position(|known| known == name) {
+        return Ok(exact);
+    }
+    let begins: Vec<usize> = (0..table.names.len()).filter(|i| table.names[*i].starts_with(name)).collect();
+    match begins[..] {
+        [only] => Ok(only),
+        [] => Err(format!("no column begins with `{name}`")),
+        _ => Err(format!("more than one column begins with `{name}`")),
+    }
+}
+
+/// The unit that a column's name ends in.
+fn unit(name: &str) -> Option<&'static str> {
+    UNITS.iter().find(|(ending, _)| name.ends_with(ending)).map(|found| found.1)
+}
+
+/// Title of an axis: the one name that all share, and the unit that all share.
+fn axis_title(names: &[String]) -> String {
+    let first = unit(&names[0]);
+    let unit = first.filter(|_| names.iter().all(|name| unit(name) == first));
+    let bare = names[0].as_str();
+    let ending = UNITS.iter().find(|(ending, _)| bare.ends_with(ending)).map_or("", |found| found.0);
+    let name =
+        if names.iter().all(|name| *name == names[0]) { &bare[..bare.len() - ending.len()] } else { "" };
+    let unit = unit.map_or(String::new(), |unit| format!("[{unit}]"));
+    format!("{} {unit}", name.replace('_', " ")).trim().to_string()
+}
+
+fn draw(root: &Area, lines: &[Line], axes: &[String; 2], log: bool) -> Drawn {
+    let (frame, key) = root.split_horizontally(SIZE.0 - KEY);
+    let entry = |(i, line): (usize, &Line)| (line.name.clone(), colour(i), 2);
+    picture::key(&key, &lines.iter().enumerate().map(entry).collect::<Vec<_>>())?;
+    let points = || lines.iter().flat_map(|line| line.points.iter().copied());
+    let (x, y) = (range(points().map(|p| p.0)), || points().map(|p| p.1));
+    match log {
+        true => chart(&frame, lines, axes, x, log_axis(log_range(y())), log),
+        false => chart(&frame, lines, axes, x, range(y()), log),
+    }
+}
+
+/// Lines in one frame; the vertical axis is plain or logarithmic.
+fn chart<Y>(
+    root: &Area,
+    lines: &[Line],
+    [x_title, y_title]: &[String; 2],
+    x: std::ops::Range<f64>,
+    y: Y,
+    log: bool,
+) -> Drawn
+where
+    Y: AsRangedCoord<Value = f64>,
+    Y::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
+    let mut chart = ChartBuilder::on(root)
+        .margin(16)
+        .x_label_area_size(46)
+        .y_label_area_size(84)
+        .build_cartesian_2d(x, y)?;
+    chart
+        .configure_mesh()
+        .light_line_style(WHITE)
+        .bold_line_style(RGBColor(225, 225, 225))
+        .x_labels(8)
+        .y_labels(8)
+        .x_desc(x_title.as_str())
+        .y_desc(y_title.as_str())
+        .label_style(("sans-serif", 14))
+        .axis_desc_style(("sans-serif", 16))
+        .x_label_formatter(&|x| short(*x))
+        .y_label_formatter(&|y| short(*y))
+        .draw()?;
+    for (i, line) in lines.iter().enumerate() {
+        // What has no logarithm leaves a gap.
+        for part in line.points.split(|(x, y)| !drawable(*x, *y, log)) {
+            chart.draw_series(LineSeries::new(part.iter().copied(), colour(i).stroke_width(2)))?;
+        }
+    }
+    Ok(())
+}
+
+fn drawable(x: f64, y: f64, log: bool) -> bool {
+    x.is_finite() && y.is_finite() && (!log || y > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_go_by_their_beginning_if_only_one_begins_so() {
+        let names = ["time_s", "kinetic_j", "momentum_x_kg_m_s", "momentum_y_kg_m_s", "h"].map(String::from);
+        let table = Table { names: names.to_vec(), columns: vec![Vec::new(); 5] };
+        assert_eq!(find(&table, "t"), Ok(0));
+        assert_eq!(find(&table, "kinetic"), Ok(1));
+        assert!(find(&table, "momentum").unwrap_err().contains("more than one"));
+        assert!(find(&table, "x").unwrap_err().contains("no column"));
+    }
+
+    #[test]
+    fn axes_are_titled_by_what_their_columns_share() {
+        let title =
+            |names: &[&str]| axis_title(&names.iter().map(|name| name.to_string()).collect::<Vec<_>>());
+        assert_eq!(title(&["kinetic_j", "strain_j"]), "[J]");
+        assert_eq!(title(&["momentum_x_kg_m_s", "momentum_x_kg_m_s"]), "momentum x [kg m/s]");
+        assert_eq!(title(&["time_s"]), "time [s]");
+        assert_eq!(title(&["h", "kinetic_j"]), "");
+        assert_eq!(title(&["reference_error"]), "reference error");
+    }
+}

@@ -1,0 +1,259 @@
+//! A run: a scene stepped to its end, shown to observers, recorded if asked to, and judged.
+
+pub mod contacts;
+mod error;
+pub mod fields;
+mod identity;
+pub mod monitor;
+mod outputs;
+pub mod recorder;
+mod resume;
+pub mod run_log;
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use ndda_io::summary::{MonitorEnd, Status, Summary};
+use ndda_io::table::Table;
+use ndda_io::{OutputFolder, WriteError, checkpoint, summary, tables};
+use ndda_solver::{Settle, Settled, Simulation, Sink};
+
+use crate::Model;
+use crate::judge::reference::Comparison;
+use crate::judge::summary::{Ending, summarise};
+use crate::judge::table;
+pub use error::RunError;
+pub use identity::Identity;
+use outputs::{Course, Earlier, Outputs};
+pub use resume::{ResumeError, Resumed};
+use run_log::RunLog;
+
+/// A run that is about to begin, or to go on.
+pub struct Run {
+    model: Model,
+    /// The closed form, bound to the blocks as they were at the start.
+    comparison: Option<Comparison>,
+    name: String,
+    recording: Option<Recording>,
+    strict: bool,
+    started: Instant,
+    stop: Arc<AtomicBool>,
+}
+
+/// Where a run is recorded.
+struct Recording {
+    identity: Identity,
+    folder: OutputFolder,
+    log: RunLog,
+    /// How far it had come before, where it goes on.
+    earlier: Option<Earlier>,
+}
+
+/// What came out of a run.
+pub struct Outcome {
+    /// Energies, momenta, verdicts, the label, and where blocks and monitors ended.
+    pub summary: Summary,
+    /// The history, where the run was not recorded in a folder.
+    pub history: Option<Table>,
+    /// The simulation at its end.
+    pub simulation: Simulation,
+}
+
+impl Outcome {
+    /// Displacement [m] and velocity [m/s] of a monitor at the end; `None` if the scene has no monitor of this name.
+    pub fn monitor(&self, name: &str) -> Option<&MonitorEnd> {
+        self.summary.monitors.0.iter().find(|(known, _)| known == name).map(|(_, end)| end)
+    }
+}
+
+impl Run {
+    /// A run that writes no files: its history is kept in memory.
+    pub fn new(model: Model) -> Self {
+        let comparison = model.comparison();
+        let name = stem(Path::new(&model.loaded.file));
+        let (started, stop) = (Instant::now(), Arc::default());
+        Self { model, comparison, name, recording: None, strict: false, started, stop }
+    }
+
+    /// Records the run in a folder: history, fields, contacts, checkpoints, log and summary, as the scene's `output` asks.
+    /// `scene_file` is where the scene was read, beside the files that it names.
+    ///
+    /// # Errors
+    /// [`WriteError`] when files cannot be made there, or another run writes to the folder.
+    pub fn record(mut self, folder: OutputFolder, scene_file: PathBuf) -> Result<Self, WriteError> {
+        self.name = stem(&scene_file);
+        let loaded = &self.model.loaded;
+        let identity = Identity::new(self.name.clone(), loaded.text.clone(), scene_file, &loaded.scene);
+        self.record_as(identity, folder, None)
+    }
+
+    fn record_as(
+        mut self,
+        identity: Identity,
+        folder: OutputFolder,
+        earlier: Option<Earlier>,
+    ) -> Result<Self, WriteError> {
+        let mut log = RunLog::open(&folder, self.started)?;
+        log.begin(&identity, rayon::current_num_threads())?;
+        for warning in &self.model.loaded.warnings {
+            log.line(&format!("warning: {}: {}", warning.path, warning.message))?;
+        }
+        self.recording = Some(Recording { identity, folder, log, earlier });
+        Ok(self)
+    }
+
+    /// Whether a limit that is passed makes the run's status `failed`.
+    pub fn strict(mut self, strict: bool) -> Self {
+        self.strict = strict;
+        self
+    }
+
+    /// Counts the time of the run from here, so that reading and building the scene are in it.
+    pub fn started(mut self, started: Instant) -> Self {
+        self.started = started;
+        self
+    }
+
+    /// Ends the run after the step at which `stop` is raised, with a checkpoint and a summary.
+    pub fn stop_when(mut self, stop: Arc<AtomicBool>) -> Self {
+        self.stop = stop;
+        self
+    }
+
+    /// The scene and its simulation.
+    pub fn model(&self) -> &Model {
+        &self.model
+    }
+
+    /// Name of the run: that of the scene's file without its ending.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Runs to the end and judges; each observer is shown the start and every step.
+    ///
+    /// # Errors
+    /// [`RunError`]. A numerical stop after the first step is no error: the summary names its cause.
+    pub fn finish(self, observers: &mut [&mut dyn Sink]) -> Result<Outcome, RunError> {
+        self.finish_watched(observers, &mut |_| {})
+    }
+
+    /// As [`finish`](Self::finish); `settling` is shown how far a scene has settled that begins with that.
+    ///
+    /// # Errors
+    /// As [`finish`](Self::finish).
+    pub fn finish_watched(
+        mut self,
+        observers: &mut [&mut dyn Sink],
+        settling: &mut dyn FnMut(&Settled),
+    ) -> Result<Outcome, RunError> {
+        let began = Instant::now();
+        if let Err(error) = self.settle(settling) {
+            self.log_line(&error.to_string())?;
+            return Err(error);
+        }
+        let steps = self.model.steps();
+        self.log_line(&format!("from step {} of {steps}", self.model.simulation.state().step))?;
+        self.step_to_end(steps, began.elapsed().as_secs_f64(), observers)
+    }
+
+    fn log_line(&mut self, text: &str) -> Result<(), WriteError> {
+        self.recording.as_mut().map_or(Ok(()), |recording| recording.log.line(text))
+    }
+
+    fn goes_on(&self) -> bool {
+        self.recording.as_ref().is_some_and(|recording| recording.earlier.is_some())
+    }
+
+    /// Brings the scene to rest, if it asks for that and has not been.
+    fn settle(&mut self, settling: &mut dyn FnMut(&Settled)) -> Result<(), RunError> {
+        let Some(settle) = self.model.loaded.scene.settle.filter(|_| !self.goes_on()) else { return Ok(()) };
+        let settle = Settle { tolerance: settle.tolerance, most_steps: settle.most_steps };
+        let stop = self.stop.clone();
+        let mut watch = |settled: &Settled| {
+            settling(settled);
+            if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        let settled =
+            self.model.simulation.settle_watched(&settle, &mut watch).map_err(RunError::Settling)?;
+        if self.stop.load(Ordering::Relaxed) {
+            return Err(RunError::InterruptedWhileSettling);
+        }
+        settling(&settled);
+        Ok(self.log_line(&format!("settled in {} steps", settled.steps))?)
+    }
+
+    /// Steps, and writes all that there is to be known.
+    fn step_to_end(
+        self,
+        steps: u64,
+        settled_s: f64,
+        observers: &mut [&mut dyn Sink],
+    ) -> Result<Outcome, RunError> {
+        let Self { model: Model { loaded, mut simulation, monitors }, comparison, name, recording, .. } =
+            self;
+        let (scene, started) = (&loaded.scene, self.started);
+        let (mut log, place) = match recording {
+            Some(Recording { identity, folder, log, earlier }) => {
+                (Some(log), Some((identity, folder, earlier)))
+            }
+            None => (None, None),
+        };
+        let earlier = place.as_ref().and_then(|(_, _, earlier)| earlier.as_ref());
+        let (earlier_s, goes_on) = (earlier.map_or(0.0, |earlier| earlier.wall_s), earlier.is_some());
+        let course = Course { steps, started, stop: self.stop };
+        let mut outputs =
+            Outputs::new((scene, &simulation), (monitors, comparison), place, observers, course)?;
+        let setup_s = started.elapsed().as_secs_f64() - settled_s;
+        let go = if goes_on { ndda_solver::resume } else { ndda_solver::run };
+        let ended = go(&mut simulation, steps, &mut [&mut outputs]);
+        let stopped_by = ended.map_or_else(|error| error::numerical_stop(error).map(Some), |()| Ok(None))?;
+        outputs.flush()?;
+        let ending = Ending {
+            scene,
+            name: &name,
+            stopped_by,
+            interrupted: simulation.state().step < steps,
+            wall_s: earlier_s + started.elapsed().as_secs_f64(),
+            threads: rayon::current_num_threads(),
+            stages: vec![("output".into(), outputs.output_s()), ("setup".into(), setup_s)],
+            warnings: loaded.warnings.iter().map(|w| w.message.clone()).collect(),
+            strict: self.strict,
+            state_crc32: checkpoint::fingerprint(simulation.state()),
+        };
+        let summary = summarise(&simulation, &outputs.recorder, ending);
+        let (folder, history) = outputs.end();
+        if let (Some(folder), Some(log)) = (folder, &mut log) {
+            write_results(&folder, &loaded.scene.output, &summary, log)?;
+        }
+        Ok(Outcome { summary, history, simulation })
+    }
+}
+
+/// Name of a file without its ending.
+fn stem(file: &Path) -> String {
+    file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned())
+}
+
+/// Writes what is written at the end only.
+fn write_results(
+    folder: &OutputFolder,
+    output: &ndda_io::scene::Output,
+    summary: &Summary,
+    log: &mut RunLog,
+) -> Result<(), WriteError> {
+    let has_ended = matches!(summary.status, Status::Done | Status::Failed);
+    #[cfg(feature = "parquet")]
+    if has_ended {
+        tables::write_parquet(folder, output)?;
+    }
+    summary::write(&folder.summary(), summary)?;
+    if has_ended {
+        tables::remove_csv(folder, output)?;
+    }
+    log.line("ended")?;
+    log.block(&table::text(summary))
+}

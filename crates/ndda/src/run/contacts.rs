@@ -1,0 +1,97 @@
+//! Sink of contacts: what each pair of touching blocks does to each other, a row per pair and time.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use ndda_contact::{FacetContact, resultants};
+use ndda_io::{History, OutputFolder, WriteError};
+use ndda_solver::{Sink, SinkError, View};
+
+use crate::run::recorder::is_due;
+
+/// Columns of the table; blocks are numbered from 0 in the order of `block_id` and of the summary.
+pub const COLUMNS: [&str; 18] = [
+    "time_s",
+    "first_block",
+    "second_block",
+    "force_x_n",
+    "force_y_n",
+    "force_z_n",
+    "friction_x_n",
+    "friction_y_n",
+    "friction_z_n",
+    "center_x_m",
+    "center_y_m",
+    "center_z_m",
+    "moment_x_n_m",
+    "moment_y_n_m",
+    "moment_z_n_m",
+    "area_m2",
+    "depth_m",
+    "sliding",
+];
+
+/// Writes `contacts.csv`.
+pub struct ContactTable {
+    table: History,
+    steps: u64,
+    rows: u64,
+    facets: Vec<FacetContact>,
+    /// Seconds spent in this part of the run.
+    pub spent_s: f64,
+}
+
+impl ContactTable {
+    /// Begins a table, or goes on after so many rows of it.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the file cannot be written, or is another table.
+    pub fn new(
+        folder: &OutputFolder,
+        (steps, rows): (u64, u64),
+        saved: Option<usize>,
+    ) -> Result<Self, WriteError> {
+        let columns = COLUMNS.map(String::from);
+        let table = match saved {
+            None => History::create(&folder.contacts(), &columns)?,
+            Some(saved) => History::resume(&folder.contacts(), &columns, saved)?,
+        };
+        Ok(Self { table, steps, rows, facets: Vec::new(), spent_s: 0.0 })
+    }
+
+    /// Rows so far, all of them on the disk.
+    ///
+    /// # Errors
+    /// [`WriteError`] when they are not.
+    pub fn save(&mut self) -> Result<usize, WriteError> {
+        self.table.sync()?;
+        Ok(self.table.rows())
+    }
+}
+
+impl Sink for ContactTable {
+    fn wants_contacts(&self, step: u64) -> bool {
+        is_due(step, self.steps, self.rows)
+    }
+
+    fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
+        let simulation = &*view.simulation;
+        if !is_due(simulation.state().step, self.steps, self.rows) {
+            return Ok(ControlFlow::Continue(()));
+        }
+        let started = Instant::now();
+        let (time_s, blocks) = (simulation.time_s(), simulation.blocks());
+        self.facets.clear();
+        self.facets.extend_from_slice(simulation.contacts());
+        for pair in resultants(blocks, &mut self.facets) {
+            let center = pair.center + blocks.origin_m;
+            let vectors = [pair.force_n, pair.friction_n, center, pair.moment_n_m];
+            let mut row = vec![time_s, f64::from(pair.first.0), f64::from(pair.second.0)];
+            row.extend(vectors.iter().flat_map(|v| v.iter()));
+            row.extend([pair.area_m2, pair.depth_m, pair.sliding]);
+            self.table.push(&row)?;
+        }
+        self.spent_s += started.elapsed().as_secs_f64();
+        Ok(ControlFlow::Continue(()))
+    }
+}

@@ -1,0 +1,43 @@
+//! Which scene a run is of.
+
+use std::path::{Path, PathBuf};
+
+use ndda_io::checkpoint;
+use ndda_io::outside_files::{self, OutsideFile};
+use ndda_io::scene::Scene;
+use serde::{Deserialize, Serialize};
+
+/// Which scene a run is of.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Identity {
+    /// Name of the run.
+    pub name: String,
+    /// The scene's text, overrides included.
+    pub text: String,
+    /// The scene's file, from the root of the file system: its meshes are beside it.
+    pub file: PathBuf,
+    /// The files that the scene names, as they were when the run began.
+    pub outside: Vec<OutsideFile>,
+}
+
+impl Identity {
+    /// Of a scene that is read from `file`, by its text and the files that it names.
+    pub fn new(name: String, text: String, file: PathBuf, scene: &Scene) -> Self {
+        let outside = outside_files::of_scene(scene, folder_of(&file));
+        Self { name, text, file, outside }
+    }
+
+    /// Folder of the scene.
+    pub fn folder(&self) -> &Path {
+        folder_of(&self.file)
+    }
+
+    /// CRC-32 of the scene's text.
+    pub fn crc32(&self) -> u32 {
+        checkpoint::fingerprint(&self.text)
+    }
+}
+
+fn folder_of(file: &Path) -> &Path {
+    file.parent().unwrap_or(Path::new("."))
+}

@@ -1,0 +1,228 @@
+//! All that is written while a run goes on, and what a checkpoint holds.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use ndda_io::scene::Scene;
+use ndda_io::table::Table;
+use ndda_io::{OutputFolder, WriteError, checkpoint};
+use ndda_solver::{Simulation, Sink, SinkError, Snapshot, View};
+use serde::{Deserialize, Serialize};
+
+use super::contacts::ContactTable;
+use super::fields::{FieldWriter, SavedFields};
+use super::identity::Identity;
+use super::monitor::Monitor;
+use super::recorder::{Recorder, SavedRecorder, held_blocks};
+use crate::judge::reference::{self, Comparison};
+
+/// Everything that `ndda resume` needs.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct SavedRun {
+    /// The scene.
+    pub identity: Identity,
+    /// State and books.
+    pub snapshot: Snapshot,
+    /// How far the outputs had come.
+    pub earlier: Earlier,
+}
+
+/// What the outputs of a run that goes on have to know.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Earlier {
+    /// The history.
+    pub recorder: SavedRecorder,
+    /// The fields.
+    pub fields: Option<SavedFields>,
+    /// Rows of the contacts.
+    pub contacts: Option<usize>,
+    /// Seconds of wall clock spent, all parts of the run together.
+    pub wall_s: f64,
+}
+
+/// All that watches a run: its records, observers, and a checkpoint from time to time.
+pub struct Outputs<'a, 'b> {
+    /// History.
+    pub recorder: Recorder,
+    files: Option<Files>,
+    observers: &'a mut [&'b mut dyn Sink],
+    /// The last step.
+    steps: u64,
+    /// When this part of the run began.
+    started: Instant,
+    /// Raised when somebody asks the run to end.
+    stop: Arc<AtomicBool>,
+}
+
+/// What a recorded run writes besides its history.
+struct Files {
+    fields: Option<FieldWriter>,
+    contacts: Option<ContactTable>,
+    identity: Identity,
+    folder: OutputFolder,
+    /// Between checkpoints; none between start and end if zero.
+    every: Duration,
+    /// When the last one was written.
+    last: Instant,
+    /// Seconds that earlier parts took.
+    earlier_s: f64,
+    /// Seconds spent on checkpoints.
+    spent_s: f64,
+}
+
+/// How long a run is, when it began and what ends it early.
+pub struct Course {
+    /// The last step.
+    pub steps: u64,
+    /// When this part of the run began.
+    pub started: Instant,
+    /// Raised when somebody asks the run to end.
+    pub stop: Arc<AtomicBool>,
+}
+
+/// Where a run is recorded, and how far it had come before.
+pub type Place = (Identity, OutputFolder, Option<Earlier>);
+
+impl<'a, 'b> Outputs<'a, 'b> {
+    /// The outputs that a scene asks for; in memory where there is no place.
+    ///
+    /// # Errors
+    /// [`WriteError`] when a file cannot be written.
+    pub fn new(
+        (scene, simulation): (&Scene, &Simulation),
+        (monitors, comparison): (Vec<Monitor>, Option<Comparison>),
+        place: Option<Place>,
+        observers: &'a mut [&'b mut dyn Sink],
+        Course { steps, started, stop }: Course,
+    ) -> Result<Self, WriteError> {
+        let after_s = scene.reference.as_ref().map_or(0.0, |r| reference::kind(r).1);
+        let rows = (steps, u64::from(scene.output.history_rows));
+        let held = if scene.output.reactions { held_blocks(simulation) } else { Vec::new() };
+        let (mut saved, mut files, mut history) = (None, None, None);
+        if let Some((identity, folder, earlier)) = place {
+            history = Some(folder.history());
+            let mut goes_on = None;
+            if let Some(earlier) = earlier {
+                (saved, goes_on) =
+                    (Some(earlier.recorder), Some((earlier.fields, earlier.contacts, earlier.wall_s)));
+            }
+            let (saved_fields, saved_contacts, earlier_s) = goes_on.unwrap_or_default();
+            let fields = || FieldWriter::new(&folder, simulation, scene, steps, saved_fields);
+            let contacts = || ContactTable::new(&folder, rows, saved_contacts);
+            files = Some(Files {
+                fields: (scene.output.frames > 0).then(fields).transpose()?,
+                contacts: scene.output.contacts.then(contacts).transpose()?,
+                every: Duration::from_secs_f64(scene.output.checkpoint_wall_s),
+                last: Instant::now(),
+                earlier_s,
+                spent_s: 0.0,
+                identity,
+                folder,
+            });
+        }
+        let recorder = Recorder::new(history.as_deref(), monitors, comparison, after_s, rows, held, saved)?;
+        Ok(Self { recorder, files, observers, steps, started, stop })
+    }
+
+    /// Closes the tables, and waits until fields are on the disk.
+    ///
+    /// # Errors
+    /// [`WriteError`] when one of them cannot be written.
+    pub fn flush(&mut self) -> Result<(), WriteError> {
+        self.recorder.finish()?;
+        let Some(files) = &mut self.files else { return Ok(()) };
+        if let Some(fields) = &mut files.fields {
+            fields.save()?;
+        }
+        match &mut files.contacts {
+            Some(contacts) => contacts.save().map(drop),
+            None => Ok(()),
+        }
+    }
+
+    /// Seconds spent on output.
+    pub fn output_s(&self) -> f64 {
+        self.recorder.spent_s + self.files.as_ref().map_or(0.0, Files::spent_s)
+    }
+
+    /// The folder of a recorded run, and the history of another.
+    pub fn end(self) -> (Option<OutputFolder>, Option<Table>) {
+        (self.files.map(|files| files.folder), self.recorder.table())
+    }
+
+    fn is_due(&self, step: u64) -> bool {
+        let passed = self.files.as_ref().is_some_and(|f| !f.every.is_zero() && f.last.elapsed() >= f.every);
+        step == 0 || step >= self.steps || passed
+    }
+
+    fn write_checkpoint(&mut self, view: &View) -> Result<(), WriteError> {
+        let Some(files) = &mut self.files else { return Ok(()) };
+        let started = Instant::now();
+        let saved = SavedRun {
+            identity: files.identity.clone(),
+            snapshot: view.simulation.snapshot(),
+            earlier: Earlier {
+                recorder: self.recorder.save()?,
+                fields: files.fields.as_mut().map(FieldWriter::save).transpose()?,
+                contacts: files.contacts.as_mut().map(ContactTable::save).transpose()?,
+                wall_s: files.earlier_s + self.started.elapsed().as_secs_f64(),
+            },
+        };
+        checkpoint::write(&files.folder, &saved)?;
+        files.last = Instant::now();
+        files.spent_s += started.elapsed().as_secs_f64();
+        Ok(())
+    }
+}
+
+impl Files {
+    fn spent_s(&self) -> f64 {
+        let fields_s = self.fields.as_ref().map_or(0.0, |fields| fields.spent_s);
+        let contacts_s = self.contacts.as_ref().map_or(0.0, |contacts| contacts.spent_s);
+        fields_s + contacts_s + self.spent_s
+    }
+
+    fn wants_contacts(&self, step: u64) -> bool {
+        let of_fields = self.fields.as_ref().is_some_and(|fields| fields.wants_contacts(step));
+        of_fields || self.contacts.as_ref().is_some_and(|contacts| contacts.wants_contacts(step))
+    }
+}
+
+impl Sink for Outputs<'_, '_> {
+    fn wants_sample(&self, step: u64) -> bool {
+        self.recorder.wants_sample(step) || self.observers.iter().any(|sink| sink.wants_sample(step))
+    }
+
+    fn wants_contacts(&self, step: u64) -> bool {
+        let of_files = self.files.as_ref().is_some_and(|files| files.wants_contacts(step));
+        of_files || self.observers.iter().any(|sink| sink.wants_contacts(step))
+    }
+
+    fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
+        let step = view.simulation.state().step;
+        // A sample that only an observer wanted is no row of the history.
+        let mut ends = false;
+        if self.recorder.wants_sample(step) || step >= self.steps {
+            ends |= self.recorder.step_done(view)?.is_break();
+        }
+        if let Some(Files { fields, contacts, .. }) = &mut self.files {
+            if let Some(fields) = fields {
+                ends |= fields.step_done(view)?.is_break();
+            }
+            if let Some(contacts) = contacts {
+                ends |= contacts.step_done(view)?.is_break();
+            }
+        }
+        for observer in self.observers.iter_mut() {
+            ends |= observer.step_done(view)?.is_break();
+        }
+        ends |= self.stop.load(Ordering::Relaxed);
+        // Last, so that it knows of all rows and frames.
+        if ends || self.is_due(step) {
+            self.write_checkpoint(view)?;
+        }
+        Ok(if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
+    }
+}

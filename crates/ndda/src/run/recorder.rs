@@ -1,0 +1,292 @@
+//! Sink of a run: history, and comparison with the closed form.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::time::Instant;
+
+use ndda_io::table::Table;
+use ndda_io::{History, WriteError};
+use ndda_mesh::{BlockId, Vec3};
+use ndda_solver::{Sample, Simulation, Sink, SinkError, View};
+use serde::{Deserialize, Serialize};
+
+use super::monitor::Monitor;
+use crate::judge::reference::{Comparison, Errors};
+
+/// Whether one of `count` evenly spaced events falls on `step` of `steps`; the first and last steps always count.
+pub fn is_due(step: u64, steps: u64, count: u64) -> bool {
+    let passed = |s: u64| u128::from(s) * u128::from(count.min(steps)) / u128::from(steps.max(1));
+    step == 0 || step >= steps || passed(step) != passed(step - 1)
+}
+
+/// How many times [`is_due`] says yes in a run of `steps`.
+pub fn events(steps: u64, count: u64) -> u64 {
+    count.clamp(1, steps.max(1)) + 1
+}
+
+/// Keeps the history, as `history.csv` or in memory, and follows the errors against the closed form.
+pub struct Recorder {
+    history: Rows,
+    steps: u64,
+    rows: u64,
+    after_s: f64,
+    comparison: Option<Comparison>,
+    row: Vec<f64>,
+    /// Held blocks whose supports' forces are columns.
+    held: Vec<BlockId>,
+    /// Points whose motion is recorded.
+    pub monitors: Vec<Monitor>,
+    /// Errors at the last row.
+    pub error_end: Option<Errors>,
+    /// Largest errors since `after_s`.
+    pub error_max: Option<Errors>,
+    /// The last row's energies.
+    pub last: Sample,
+    /// Seconds spent.
+    pub spent_s: f64,
+}
+
+/// Where rows go.
+enum Rows {
+    File(History),
+    Memory(Table),
+}
+
+impl Rows {
+    fn push(&mut self, values: &[f64]) -> Result<(), WriteError> {
+        match self {
+            Self::File(history) => history.push(values),
+            Self::Memory(table) => {
+                if let Some(column) = values.iter().position(|value| !value.is_finite()) {
+                    let row = table.columns[0].len();
+                    return Err(WriteError::not_finite(
+                        Path::new("history"),
+                        &table.names[column],
+                        Some(row),
+                    ));
+                }
+                table.columns.iter_mut().zip(values).for_each(|(column, value)| column.push(*value));
+                Ok(())
+            }
+        }
+    }
+}
+
+/// What a checkpoint keeps of a [`Recorder`].
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct SavedRecorder {
+    rows: usize,
+    error_end: Option<Errors>,
+    error_max: Option<Errors>,
+    last: Sample,
+    spent_s: f64,
+}
+
+impl Recorder {
+    /// Begins a history, in memory where there is no file, or goes on with a saved one.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the file cannot be written, two columns have one name, or the saved table is another one.
+    pub fn new(
+        file: Option<&Path>,
+        monitors: Vec<Monitor>,
+        comparison: Option<Comparison>,
+        after_s: f64,
+        (steps, rows): (u64, u64),
+        held: Vec<(BlockId, String)>,
+        saved: Option<SavedRecorder>,
+    ) -> Result<Self, WriteError> {
+        let names = monitors.iter().map(|monitor| monitor.name.as_str());
+        let columns = columns(names, &held, comparison.is_some());
+        let history = match (file, &saved) {
+            (None, _) => {
+                Rows::Memory(Table { columns: vec![Vec::new(); columns.len()], names: columns.clone() })
+            }
+            (Some(file), None) => Rows::File(History::create(file, &columns)?),
+            (Some(file), Some(saved)) => Rows::File(History::resume(file, &columns, saved.rows)?),
+        };
+        let SavedRecorder { error_end, error_max, last, spent_s, .. } = saved.unwrap_or_default();
+        let row = Vec::with_capacity(columns.len());
+        Ok(Self {
+            history,
+            steps,
+            rows,
+            after_s,
+            comparison,
+            row,
+            held: held.into_iter().map(|(block, _)| block).collect(),
+            monitors,
+            error_end,
+            error_max,
+            last,
+            spent_s,
+        })
+    }
+
+    /// What a checkpoint keeps of it, all rows being on the disk.
+    ///
+    /// # Errors
+    /// [`WriteError`] when they are not.
+    pub fn save(&mut self) -> Result<SavedRecorder, WriteError> {
+        let rows = match &mut self.history {
+            Rows::File(history) => {
+                history.sync()?;
+                history.rows()
+            }
+            Rows::Memory(table) => table.columns[0].len(),
+        };
+        Ok(SavedRecorder {
+            rows,
+            error_end: self.error_end,
+            error_max: self.error_max,
+            last: self.last,
+            spent_s: self.spent_s,
+        })
+    }
+
+    /// Closes the file.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the last rows cannot be written.
+    pub fn finish(&mut self) -> Result<(), WriteError> {
+        match &mut self.history {
+            Rows::File(history) => history.flush(),
+            Rows::Memory(_) => Ok(()),
+        }
+    }
+
+    /// The history, where it was kept in memory.
+    pub fn table(self) -> Option<Table> {
+        match self.history {
+            Rows::Memory(table) => Some(table),
+            Rows::File(_) => None,
+        }
+    }
+
+    fn compare(&mut self, simulation: &Simulation) -> Option<Errors> {
+        let errors = self.comparison.as_ref()?.errors(simulation, &self.monitors)?;
+        self.error_end = Some(errors);
+        if simulation.time_s() >= self.after_s {
+            let larger = |a: Option<f64>, b: Option<f64>| a.zip(b).map(|(a, b)| a.max(b)).or(a).or(b);
+            let old = self.error_max.unwrap_or_default();
+            self.error_max = Some(Errors {
+                plain: old.plain.max(errors.plain),
+                stick_stage: larger(old.stick_stage, errors.stick_stage),
+                place: larger(old.place, errors.place),
+            });
+        }
+        Some(errors)
+    }
+}
+
+/// Blocks that supports hold, and their names.
+pub fn held_blocks(simulation: &Simulation) -> Vec<(BlockId, String)> {
+    let blocks = simulation.blocks();
+    let held = blocks.ids().filter(|&block| !simulation.shape(block).is_free());
+    held.map(|block| (block, blocks.names[block.index()].clone())).collect()
+}
+
+/// Columns of the history, with those of monitors, held blocks and the comparison.
+pub fn columns<'a>(
+    monitors: impl Iterator<Item = &'a str>,
+    held: &[(BlockId, String)],
+    compared: bool,
+) -> Vec<String> {
+    let fixed = [
+        "time_s",
+        "kinetic_j",
+        "strain_j",
+        "contact_j",
+        "load_j",
+        "spring_j",
+        "friction_work_j",
+        "motion_work_j",
+        "load_work_j",
+        "damping_work_j",
+        "balance_j",
+        "momentum_x_kg_m_s",
+        "momentum_y_kg_m_s",
+        "momentum_z_kg_m_s",
+        "angular_x_kg_m2_s",
+        "angular_y_kg_m2_s",
+        "angular_z_kg_m2_s",
+        "contact_pairs",
+        "penetration_ratio",
+        "h",
+    ];
+    let mut columns: Vec<String> = fixed.map(String::from).to_vec();
+    for monitor in monitors {
+        for (quantity, unit) in [("displacement", "m"), ("velocity", "m_s")] {
+            columns.extend(["x", "y", "z"].map(|axis| format!("{monitor}.{quantity}_{axis}_{unit}")));
+        }
+    }
+    for (_, name) in held {
+        columns.extend(["x", "y", "z"].map(|axis| format!("{name}.reaction_{axis}_n")));
+    }
+    if compared {
+        columns.push("reference_error".into());
+    }
+    columns
+}
+
+impl Sink for Recorder {
+    fn wants_sample(&self, step: u64) -> bool {
+        is_due(step, self.steps, self.rows)
+    }
+
+    fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
+        let Some(sample) = view.sample else { return Ok(ControlFlow::Continue(())) };
+        let started = Instant::now();
+        let simulation = &*view.simulation;
+        self.last = *sample;
+        self.row.clear();
+        self.row.extend([
+            sample.time_s,
+            sample.kinetic_j,
+            sample.strain_j,
+            sample.contact_j,
+            sample.load_j,
+            sample.spring_j,
+            sample.friction_work_j,
+            sample.motion_work_j,
+            sample.load_work_j,
+            sample.damping_work_j,
+            sample.balance_j,
+        ]);
+        self.row.extend(sample.momentum.iter().chain(sample.angular_momentum.iter()));
+        let contact = &view.report.contact;
+        self.row.extend([contact.contact_pairs as f64, contact.max_penetration_ratio, view.report.h]);
+        for monitor in &self.monitors {
+            self.row.extend(monitor.displacement(simulation).iter());
+            self.row.extend(monitor.velocity(simulation).iter());
+        }
+        for &block in &self.held {
+            let reaction = if sample.step == 0 { Vec3::zeros() } else { simulation.reaction_n(block) };
+            self.row.extend(reaction.iter());
+        }
+        let errors = self.compare(simulation);
+        if self.comparison.is_some() {
+            self.row.push(errors.unwrap_or_default().plain);
+        }
+        self.history.push(&self.row)?;
+        self.spent_s += started.elapsed().as_secs_f64();
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn events_are_evenly_spaced_and_never_more_than_asked_for() {
+        let due = |steps, count| (0..=steps).filter(|&s| is_due(s, steps, count)).collect::<Vec<_>>();
+        assert_eq!(due(10, 2), [0, 5, 10]);
+        assert_eq!(due(3, 100), [0, 1, 2, 3]);
+        assert_eq!(due(7, 0), [0, 7]);
+        assert_eq!(due(1000, 7).len(), 8);
+        for (steps, count) in [(10, 2), (3, 100), (7, 0), (1000, 7), (1, 1)] {
+            assert_eq!(due(steps, count).len() as u64, events(steps, count), "{steps} {count}");
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! A run from its last checkpoint.
+
+use std::path::{Path, PathBuf};
+
+use ndda_io::diagnostic::SceneErrors;
+use ndda_io::{OutputFolder, WriteError, checkpoint, outside_files, read};
+
+use super::outputs::SavedRun;
+use super::run_log;
+use super::{Run, stem};
+use crate::Model;
+
+/// A run that goes on.
+pub struct Resumed {
+    /// The run.
+    pub run: Run,
+    /// What was wrong with the last checkpoint, where the one before it was taken.
+    pub warnings: Vec<String>,
+}
+
+/// Why a run cannot go on.
+#[derive(Debug, thiserror::Error)]
+pub enum ResumeError {
+    /// The run has reached its end.
+    #[error("{} has run to its end: nothing to resume", .0.display())]
+    HasEnded(PathBuf),
+    /// The folder, its checkpoints or the files of its scene cannot be used.
+    #[error("{0}")]
+    Unusable(String),
+    /// The scene cannot be built any more.
+    #[error(transparent)]
+    Scene(#[from] SceneErrors),
+    /// The checkpoint is of another scene or program.
+    #[error("the checkpoint does not fit: {0}")]
+    DoesNotFit(String),
+    /// The folder cannot be read or written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+impl Run {
+    /// Goes on with the run that is recorded in a folder.
+    ///
+    /// # Errors
+    /// [`ResumeError`].
+    pub fn resume(folder: &Path) -> Result<Resumed, ResumeError> {
+        let folder = OutputFolder::open(folder)?;
+        let mut warnings = Vec::new();
+        let saved = last_checkpoint(&folder, &mut warnings)?;
+        let meshes = saved.identity.folder();
+        outside_files::verify(&saved.identity.outside, meshes)
+            .map_err(|error| ResumeError::Unusable(error.to_string()))?;
+        let name = saved.identity.file.display().to_string();
+        let loaded = read::load_text(&name, &saved.identity.text, &[], Some(meshes))?;
+        let mut run = Self::new(Model::resuming(loaded, meshes)?);
+        // Killed between its last step and its summary, a run still owes the summary.
+        if saved.snapshot.state.step >= run.model.steps() && folder.summary().exists() {
+            return Err(ResumeError::HasEnded(folder.path().to_path_buf()));
+        }
+        let SavedRun { identity, snapshot, earlier } = saved;
+        run.name = stem(&identity.file);
+        let restored = run.model.simulation.restore(snapshot);
+        restored.map_err(|error| ResumeError::DoesNotFit(error.to_string()))?;
+        let run = run.record_as(identity, folder, Some(earlier))?;
+        Ok(Resumed { run, warnings })
+    }
+}
+
+/// The last checkpoint that can be read, of the scene that the log begins with.
+fn last_checkpoint(folder: &OutputFolder, warnings: &mut Vec<String>) -> Result<SavedRun, ResumeError> {
+    let scene = run_log::scene_crc32(folder);
+    let of_this_run = |saved: &SavedRun| match scene {
+        Some(known) if known != saved.identity.crc32() => {
+            Err(format!("of {}", saved.identity.file.display()))
+        }
+        _ => Ok(()),
+    };
+    let (saved, passed_over) =
+        checkpoint::read(folder, of_this_run).map_err(|error| ResumeError::Unusable(error.to_string()))?;
+    if let Some(error) = passed_over {
+        warnings.push(format!("{error}; going on from the checkpoint before"));
+        checkpoint::go_back(folder)?;
+    }
+    Ok(saved)
+}

@@ -1,0 +1,68 @@
+//! Why a study cannot go on.
+
+use std::path::PathBuf;
+
+use ndda_io::WriteError;
+use ndda_io::diagnostic::SceneErrors;
+use ndda_io::table::TableError;
+
+use super::difference::DifferenceError;
+
+/// Why a study cannot go on. A case that fails is no such reason: it is listed.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// Something is wrong with the study or its scene.
+    #[error("{}", .0.render(false))]
+    Scene(SceneErrors),
+    /// Names of cases.
+    #[error("the case name `{0}` is too long or there twice: give shorter or other labels with Choose")]
+    Names(String),
+    /// No closed form.
+    #[error("the scene {} names no reference: write `reference: Runs(first: {{…}}, second: {{…}})`", .0.display())]
+    NoReference(PathBuf),
+    /// A monitor of the reference that the scene does not have.
+    #[error("reference.monitors: the scene has no monitor `{0}`: it has {1}")]
+    NoMonitor(String, String),
+    /// The system does not tell processor times.
+    #[error("this system does not tell processor times: leave out `clock: Processor`")]
+    NoProcessorTime,
+    /// No such case.
+    #[error("the study has no case `{0}`: `ndda study STUDY --emit list` prints all")]
+    NoCase(String),
+    /// A reference run failed.
+    #[error("the reference run `{name}` failed: {reason}")]
+    Reference {
+        /// Name of the run.
+        name: String,
+        /// Why.
+        reason: String,
+    },
+    /// The two reference runs, or a case and the first of them, cannot be compared.
+    #[error("case `{name}`: {source}")]
+    Difference {
+        /// Name of the case.
+        name: String,
+        /// Why.
+        source: DifferenceError,
+    },
+    /// A history cannot be read.
+    #[error("{0}")]
+    Table(#[from] TableError),
+    /// A result cannot be written.
+    #[error("{0}")]
+    Write(#[from] WriteError),
+    /// A record of a case cannot be used.
+    #[error("{} is no record of a case ({reason}): delete it", file.display())]
+    Record {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        reason: String,
+    },
+    /// A run cannot be started.
+    #[error("cannot start a run: {0}")]
+    Start(std::io::Error),
+    /// Somebody asked it to end.
+    #[error("interrupted: the same command goes on from here")]
+    Interrupted,
+}

@@ -1,0 +1,171 @@
+//! Runs the cases of a study that have not run yet, several at a time, and keeps a record of each.
+
+use std::fs;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use ndda_io::WriteError;
+use ndda_io::study::{Clock, LoadedStudy};
+use serde_json::Value;
+
+use super::case::{Case, fingerprint};
+use super::error::StudyError;
+use super::record::{Cause, Identity, RESULTS, Record, RunOutcome, folder};
+use super::runner::{CaseRun, CaseRunner};
+
+/// Where and how cases run.
+pub struct Launch<'a> {
+    /// The study.
+    pub loaded: &'a LoadedStudy,
+    /// Its output folder.
+    pub out: &'a Path,
+    /// Cases at a time.
+    pub jobs: u16,
+    /// Threads of each.
+    pub threads: u16,
+    /// What runs a case.
+    pub runner: &'a dyn CaseRunner,
+    /// Told how far it is, a line at a time.
+    pub say: &'a (dyn Fn(&str) + Sync),
+}
+
+impl Launch<'_> {
+    /// The identity of a case as it would run now; what is wrong with its scene otherwise.
+    pub fn identity(&self, case: &Case) -> Identity {
+        // A scene that is wrong has a fingerprint, too: its errors.
+        let scene = fingerprint(self.loaded, case).unwrap_or_else(|errors| errors.render(false));
+        Identity::new(scene, self.threads, case.repeats)
+    }
+
+    /// The record of a case that was run as it would run now.
+    ///
+    /// # Errors
+    /// [`StudyError::Record`] when its file is something else.
+    pub fn record(&self, case: &Case) -> Result<Option<Record>, StudyError> {
+        let record = Record::read(&folder(self.out, &case.name))?;
+        Ok(record.filter(|record| record.identity == self.identity(case)))
+    }
+
+    /// The same, if it need not be run again.
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    pub fn finished(&self, case: &Case) -> Result<Option<Record>, StudyError> {
+        Ok(self.record(case)?.filter(Record::is_final))
+    }
+
+    /// Runs what has not run yet, `jobs` at a time.
+    ///
+    /// # Errors
+    /// The first error of any case that is not the case's own.
+    pub fn run_all(&self, cases: &[Case]) -> Result<(), StudyError> {
+        let (next, failed) = (AtomicUsize::new(0), Mutex::new(None));
+        let work = || {
+            loop {
+                let index = next.fetch_add(1, Ordering::Relaxed);
+                let Some(case) = cases.get(index) else { break };
+                match self.run_case(case) {
+                    Ok(said) => {
+                        (self.say)(&format!("{} of {}: {}: {said}", index + 1, cases.len(), case.name));
+                    }
+                    Err(error) => {
+                        next.store(cases.len(), Ordering::Relaxed);
+                        failed.lock().expect("no thread panics").get_or_insert(error);
+                    }
+                }
+            }
+        };
+        std::thread::scope(|scope| (0..self.jobs).for_each(|_| drop(scope.spawn(work))));
+        failed.into_inner().expect("no thread panics").map_or(Ok(()), Err)
+    }
+
+    /// Runs one case unless it has run; returns a few words on how it went.
+    ///
+    /// # Errors
+    /// [`StudyError`] when runs cannot be started, recorded, or somebody asks to end.
+    pub fn run_case(&self, case: &Case) -> Result<String, StudyError> {
+        if self.finished(case)?.is_some() {
+            return Ok("has run".into());
+        }
+        let folder = folder(self.out, &case.name);
+        fs::create_dir_all(&folder).map_err(|source| WriteError::Io {
+            operation: "create the folder",
+            path: folder.clone(),
+            source,
+        })?;
+        let outcome = self.repeat(case, &folder)?;
+        let said = match &outcome {
+            RunOutcome::Done { walls_s, processors_s, .. } => {
+                let times_s = clocked(self.loaded.study.clock, walls_s, processors_s)?;
+                format!("{:.3} s, the least of {}", least(times_s), walls_s.len())
+            }
+            RunOutcome::Failed { reason, .. } => format!("failed: {reason}"),
+        };
+        Record { name: case.name.clone(), identity: self.identity(case), outcome }.write(&folder)?;
+        Ok(said)
+    }
+
+    /// All runs of a case, until one fails.
+    fn repeat(&self, case: &Case, folder: &Path) -> Result<RunOutcome, StudyError> {
+        let (mut walls_s, mut processors_s): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+        let mut fastest = Value::Null;
+        for _ in 0..case.repeats {
+            let summary = match self.run_once(case, &folder.join(RESULTS))? {
+                Ok(summary) => summary,
+                Err(failed) => return Ok(failed),
+            };
+            if !walls_s.is_empty() && summary["state_crc32"] != fastest["state_crc32"] {
+                let reason = "two runs of it ended in different bits: please report this".into();
+                return Ok(RunOutcome::Failed { cause: Cause::Other, reason });
+            }
+            walls_s.push(summary["wall_s"].as_f64().unwrap_or(f64::INFINITY));
+            processors_s.extend(summary["machine"]["processor_time_s"].as_f64());
+            let (last, before) = clocked(self.loaded.study.clock, &walls_s, &processors_s)?
+                .split_last()
+                .expect("a run has ended");
+            if *last < least(before) {
+                fastest = summary;
+            }
+        }
+        Ok(RunOutcome::Done { walls_s, processors_s, summary: fastest })
+    }
+
+    /// One run: its summary, or how it failed.
+    fn run_once(&self, case: &Case, results: &Path) -> Result<Result<Value, RunOutcome>, StudyError> {
+        let run = CaseRun {
+            scene: &self.loaded.scene,
+            overrides: &case.overrides,
+            out: results,
+            threads: self.threads,
+        };
+        if let Some((cause, reason)) = self.runner.run(&run)? {
+            return Ok(Err(RunOutcome::Failed { cause, reason }));
+        }
+        let file = results.join(ndda_io::folder::SUMMARY);
+        let broken = |reason: String| StudyError::Record { file: file.clone(), reason };
+        let text = fs::read_to_string(&file).map_err(|e| broken(e.to_string()))?;
+        serde_json::from_str(&text).map(Ok).map_err(|e| broken(e.to_string()))
+    }
+}
+
+/// The times that count.
+///
+/// # Errors
+/// [`StudyError::NoProcessorTime`] where the system does not tell.
+pub fn clocked<'a>(
+    clock: Clock,
+    walls_s: &'a [f64],
+    processors_s: &'a [f64],
+) -> Result<&'a [f64], StudyError> {
+    match clock {
+        Clock::Wall => Ok(walls_s),
+        Clock::Processor if processors_s.len() == walls_s.len() => Ok(processors_s),
+        Clock::Processor => Err(StudyError::NoProcessorTime),
+    }
+}
+
+/// The least of some times; infinite if there are none.
+pub fn least(times_s: &[f64]) -> f64 {
+    times_s.iter().copied().fold(f64::INFINITY, f64::min)
+}
