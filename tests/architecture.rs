@@ -28,7 +28,7 @@ fn uses(manifest: &str, all: bool) -> BTreeSet<String> {
             inside = section.starts_with("dependencies") || all && section.contains("dependencies");
         }
         let name = line.split(['.', ' ', '=']).next().unwrap_or("");
-        if inside && name == "ndda" || name.starts_with("ndda-") {
+        if inside && (name == "ndda" || name.starts_with("ndda-")) {
             found.insert(name.to_string());
         }
     }
