@@ -26,7 +26,7 @@ fn every_code_has_its_section_and_every_section_a_code() {
 
 #[test]
 fn every_code_is_in_the_list_of_all() {
-    let source = read("crates/ndda-io/src/code.rs");
+    let source = read("crates/ndda-io/src/scene/code.rs");
     let declared = source.split("pub enum Code {").nth(1).unwrap().split('}').next().unwrap();
     let variants = declared.lines().filter(|line| line.ends_with(',')).count();
     assert_eq!(variants, Code::ALL.len());

@@ -1,42 +1,27 @@
 //! Files in and out: RON scenes with their diagnostics, meshes of other programs, VTU fields, history, summary and checkpoints.
+//!
+//! | module | contents |
+//! |---|---|
+//! | [`scene`] | the scene's types, reading and checking them, messages with their places, studies, records |
+//! | [`mesh`] | meshes of tetrahedra and surfaces in the formats of Gmsh, TetGen, VTK, Abaqus, STL and OBJ |
+//! | [`results`] | fields, history, tables, summary and checkpoints: written, and read back |
+//! | [`atomic`] | whole files or none |
 
-pub mod abaqus;
 pub mod atomic;
-pub mod check;
-pub mod checkpoint;
-pub mod code;
-pub mod diagnostic;
-pub mod folder;
-pub mod gmsh_program;
-pub mod history;
-pub mod locate;
-pub mod mesh_file;
-pub mod msh;
-pub mod outside_files;
-pub mod overrides;
-#[cfg(feature = "parquet")]
-pub mod parquet_file;
-#[cfg(feature = "fancy")]
-mod picture;
-pub mod pvd;
-pub mod read;
-pub mod record;
+pub mod mesh;
 pub mod results;
 pub mod scene;
-#[cfg(feature = "schema")]
-pub mod schema;
-pub mod study;
-pub mod summary;
-pub mod surface_file;
-pub mod table;
-pub mod tables;
-pub mod tetgen;
-#[cfg(feature = "tetgen")]
-pub mod tetgen_fill;
-pub mod units;
-pub mod vtk_file;
-pub mod vtu;
 pub mod write_error;
+
+#[cfg(feature = "tetgen")]
+pub use mesh::tetgen_fill;
+pub use mesh::{self as mesh_file, abaqus, gmsh_program, msh, surface_file, tetgen, vtk_file};
+#[cfg(feature = "parquet")]
+pub use results::table::parquet as parquet_file;
+pub use results::{checkpoint, folder, history, pvd, summary, table, tables, vtu};
+#[cfg(feature = "schema")]
+pub use scene::schema;
+pub use scene::{check, code, diagnostic, locate, outside_files, overrides, read, record, study, units};
 
 pub use folder::OutputFolder;
 pub use history::History;

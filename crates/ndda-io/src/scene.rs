@@ -1,8 +1,21 @@
 //! The scene: everything a run needs, as a person writes it in RON. Every quantity is SI with its unit in the key.
 
+pub mod check;
+pub mod code;
+pub mod diagnostic;
+pub mod locate;
 mod output;
+pub mod outside_files;
+pub mod overrides;
+pub mod read;
+pub mod record;
 mod rock;
+#[cfg(feature = "schema")]
+pub mod schema;
 mod shape;
+pub mod study;
+mod suggest;
+pub mod units;
 
 use serde::{Deserialize, Serialize};
 

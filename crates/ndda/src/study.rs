@@ -5,6 +5,7 @@ pub mod difference;
 pub mod emit;
 pub mod error;
 pub mod front;
+mod gather;
 mod judge;
 pub mod launch;
 #[cfg(feature = "plots")]

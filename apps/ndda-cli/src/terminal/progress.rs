@@ -11,7 +11,6 @@ use serde::Serialize;
 use crate::terminal::bar::Bar;
 use crate::terminal::console::complain;
 use crate::terminal::events::Events;
-use crate::verbs::run::Options;
 
 /// Shows progress on standard error.
 pub struct Progress {
@@ -28,8 +27,7 @@ pub struct Progress {
 
 impl Progress {
     /// Progress from step `first` towards `steps`; shows nothing when it has to be quiet.
-    pub fn new(first: u64, steps: u64, options: &Options) -> Self {
-        let quiet = options.quiet;
+    pub fn new(first: u64, steps: u64, quiet: bool, events: Events) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let bar = if terminal && !quiet { Bar::new(steps) } else { None };
         Self {
@@ -39,7 +37,7 @@ impl Progress {
             started: Instant::now(),
             tenths: 10 * first / steps.max(1),
             percent: 100 * first / steps.max(1),
-            events: options.events,
+            events,
             first,
         }
     }

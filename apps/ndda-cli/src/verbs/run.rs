@@ -116,7 +116,7 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
             unknowns: simulation.unknowns(),
         },
     );
-    let mut progress = Progress::new(simulation.state().step, steps, options);
+    let mut progress = Progress::new(simulation.state().step, steps, options.quiet, options.events);
     let until = run.model().loaded.scene.settle.map(|settle| settle.tolerance);
     let mut said = Instant::now();
     let mut settling = |settled: &Settled| {

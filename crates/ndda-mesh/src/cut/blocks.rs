@@ -1,50 +1,8 @@
 //! The result of a cut: blocks, what made their faces, who meets whom.
 
 use super::neighbours::neighbours;
-use super::plane::Plane;
 use super::polyhedron::{Face, Polyhedron};
-
-/// What kind of surface made a face.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum SurfaceKind {
-    /// A face of the domain. Where blocks meet across it (a concave domain in convex parts), they are glued.
-    Domain,
-    /// Plane `number` of discontinuity `joint`, both counted from 0.
-    Joint {
-        /// Index in the list of discontinuities.
-        joint: u32,
-        /// Number of the plane in its set, rising along the normal; 0 for a single plane or disc.
-        number: u32,
-    },
-    /// The border of two Voronoi cells.
-    Cell,
-}
-
-/// The plane behind faces of blocks, and what it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
-    /// Its plane.
-    pub plane: Plane,
-    /// What it is.
-    pub kind: SurfaceKind,
-    /// Index of its name in [`Blocks::names`].
-    pub name: u32,
-}
-
-/// Two faces that meet over an area.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Neighbour {
-    /// The block below the surface, and the one above.
-    pub blocks: [u32; 2],
-    /// Their faces.
-    pub faces: [u32; 2],
-    /// The surface between them.
-    pub surface: u32,
-    /// Area over which they meet [m²].
-    pub area_m2: f64,
-    /// Whether the two are parts of one rock: they meet across a face of the domain, not of a joint.
-    pub glued: bool,
-}
+use super::surfaces::{Neighbour, Surface};
 
 /// A block thinner than asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

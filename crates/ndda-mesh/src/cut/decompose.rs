@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 use super::CutError;
-use super::blocks::Surface;
 use super::neighbours::neighbours;
 use super::plane::Plane;
 use super::polyhedron::{Face, Polyhedron};
 use super::split::{Split, Tolerance, split};
+use super::surfaces::Surface;
 use crate::Vec3;
 use crate::geometry::Aabb;
 

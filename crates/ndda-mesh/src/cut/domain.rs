@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-use super::blocks::{Surface, SurfaceKind};
 use super::decompose::{convex_parts, triangulate};
 use super::plane::Plane;
 use super::polyhedron::Polyhedron;
 use super::split::Tolerance;
-use super::system::index_of;
+use super::surfaces::index_of;
+use super::surfaces::{Surface, SurfaceKind};
 use super::{CutError, decompose};
 use super::{LEAST_DEPTH_RATIO, ON_PLANE_RATIO};
 use crate::Vec3;

@@ -16,11 +16,12 @@ pub mod plane;
 mod polyhedron;
 mod random;
 mod split;
+mod surfaces;
 mod system;
 mod terrain;
 mod voronoi;
 
-pub use blocks::{Blocks, CutReport, Neighbour, Sliver, Surface, SurfaceKind};
+pub use blocks::{Blocks, CutReport, Sliver};
 pub use domain::{Axis, Domain, DomainFace};
 pub use error::CutError;
 pub use joints::{Disc, DiscRule, Discontinuity, JointSet, OrientationScatter, SpacingScatter};
@@ -28,6 +29,7 @@ pub use plane::Plane;
 pub use polyhedron::{Face, Polyhedron};
 pub(crate) use random::frame as plane_frame;
 pub use split::{Split, Tolerance, split};
+pub use surfaces::{Neighbour, Surface, SurfaceKind};
 pub use system::{CutOptions, cut_blocks};
 pub use voronoi::{CELLS, VoronoiOptions, random_seeds, voronoi_blocks};
 

@@ -1,7 +1,7 @@
 //! Faces that meet: both lie on one surface, from opposite sides, and overlap.
 
-use super::blocks::{Neighbour, Surface, SurfaceKind};
 use super::polyhedron::Polyhedron;
+use super::surfaces::{Neighbour, Surface, SurfaceKind};
 use crate::Vec3;
 
 /// A face in its plane: the two coordinates across the largest component of the normal.

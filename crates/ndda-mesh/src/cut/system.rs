@@ -3,12 +3,14 @@
 use std::collections::BTreeMap;
 
 use super::CutError;
-use super::blocks::{Blocks, CutReport, Surface, SurfaceKind};
+use super::blocks::{Blocks, CutReport};
 use super::domain::Domain;
 use super::joints::{DiscRule, Discontinuity, Knife};
 use super::polyhedron::{Face, Polyhedron};
 use super::random::{Stream, key};
 use super::split::{Split, Tolerance, split};
+use super::surfaces::index_of;
+use super::surfaces::{Surface, SurfaceKind};
 use crate::Vec3;
 
 /// Choices of a cut.
@@ -68,15 +70,6 @@ pub fn cut_blocks(
     report.refused = carving.refused.into_iter().collect();
     let blocks = Blocks { blocks: carving.blocks, surfaces, names, neighbours: Vec::new(), report };
     Ok(blocks.finish(domain.tolerance().least_depth_m, options.sliver_width_m))
-}
-
-/// Index of a name, added if it is new.
-pub(super) fn index_of(names: &mut Vec<String>, name: &str) -> u32 {
-    let known = names.iter().position(|n| n == name).unwrap_or_else(|| {
-        names.push(name.into());
-        names.len() - 1
-    });
-    known as u32
 }
 
 struct Carving {

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::CutError;
-use super::blocks::{Surface, SurfaceKind};
 use super::domain::{Domain, check_extent, tolerance};
 use super::plane::Plane;
 use super::polyhedron::{Face, Polyhedron};
+use super::surfaces::{Surface, SurfaceKind};
 use crate::Vec3;
 use crate::geometry::Aabb;
 

@@ -1,13 +1,14 @@
 //! Voronoi cells of seeds as blocks.
 
 use super::CutError;
-use super::blocks::{Blocks, CutReport, Surface, SurfaceKind};
+use super::blocks::{Blocks, CutReport};
 use super::domain::Domain;
 use super::plane::Plane;
 use super::polyhedron::Polyhedron;
 use super::random::Stream;
 use super::split::{Split, Tolerance, split};
-use super::system::index_of;
+use super::surfaces::index_of;
+use super::surfaces::{Surface, SurfaceKind};
 use crate::Vec3;
 use crate::geometry::Aabb;
 

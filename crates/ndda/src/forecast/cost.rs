@@ -8,6 +8,7 @@ use ndda_io::{checkpoint, folder};
 use ndda_solver::{Simulation, SinkError};
 use serde::Serialize;
 
+use super::memory::readable;
 use crate::run::fields::FieldWriter;
 use crate::run::recorder::{columns, events, held_blocks};
 use crate::{build, machine, run::contacts};
@@ -103,13 +104,6 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
         files.push(file(folder::CONTACTS, 1, rows * numbers * NUMBER_BYTES));
     }
     files
-}
-
-/// Bytes as a person reads them.
-pub(crate) fn readable(bytes: u64) -> String {
-    let powers = [(1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
-    let found = powers.iter().find(|(size, _)| bytes as f64 >= *size);
-    found.map_or_else(|| format!("{bytes} B"), |(size, unit)| format!("{:.1} {unit}", bytes as f64 / size))
 }
 
 impl fmt::Display for Guess {

@@ -52,6 +52,13 @@ pub fn parse(text: &str) -> Result<u64, String> {
     if bytes.is_finite() && bytes >= 1.0 { Ok(bytes as u64) } else { Err("give a size above zero".into()) }
 }
 
+/// Bytes as a person reads them.
+pub fn readable(bytes: u64) -> String {
+    let powers = [(1e9, "GB"), (1e6, "MB"), (1e3, "kB")];
+    let found = powers.iter().find(|(size, _)| bytes as f64 >= *size);
+    found.map_or_else(|| format!("{bytes} B"), |(size, unit)| format!("{:.1} {unit}", bytes as f64 / size))
+}
+
 /// What the machine can give without swapping [B].
 fn available() -> Option<u64> {
     kibibytes(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable")

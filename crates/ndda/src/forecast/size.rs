@@ -21,8 +21,7 @@ use ndda_io::scene::{
 use ndda_mesh::Vec3;
 use std::path::Path;
 
-use crate::forecast::cost::readable;
-use crate::forecast::memory;
+use super::memory::{self, readable};
 
 /// Of the program itself [B].
 const PROGRAM_B: f64 = 1.2e7;

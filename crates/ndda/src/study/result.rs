@@ -1,16 +1,11 @@
 //! What a study has found: a point per case, its errors and figures, and the fronts.
 
-use ndda_io::study::Clock;
 use ndda_io::summary::{Invariants, Label, Named, ReferenceError};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use super::case::Case;
-use super::error::StudyError;
-use super::front::{Point, front};
-use super::judge::Judge;
-use super::launch::Launch;
-use super::record::{Record, RunOutcome, folder};
+use super::front::Point;
 
 /// Everything that a study has found.
 pub struct Results {
@@ -189,47 +184,6 @@ impl Figures {
 }
 
 impl Results {
-    /// Reads the records of all cases and compares them.
-    ///
-    /// # Errors
-    /// [`StudyError`] when there is nothing to compare with, or a file cannot be read.
-    pub fn gather(
-        launch: &Launch,
-        name: &str,
-        (cases, references): (&[Case], &[Case]),
-    ) -> Result<Self, StudyError> {
-        let loaded = launch.loaded;
-        let judge = Judge::new(launch, references)?;
-        let (mut points, mut missing) = (Vec::new(), Vec::new());
-        let mut kind = String::new();
-        for case in cases {
-            match launch.finished(case)? {
-                Some(record) => points.push(judge.point(launch, case, record, &mut kind)?),
-                None => match unfinished(launch, case)? {
-                    Some(point) => points.push(point),
-                    None => missing.push(case.name.clone()),
-                },
-            }
-        }
-        let reference = judge.compared(kind);
-        mark_fronts(&mut points, reference.floors());
-        let scene = loaded.scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let title = loaded.study.title.clone();
-        Ok(Self {
-            name: name.into(),
-            title,
-            scene,
-            curves: loaded.curves.clone(),
-            clock: match loaded.study.clock {
-                Clock::Wall => "wall",
-                Clock::Processor => "processor",
-            },
-            reference,
-            points,
-            missing,
-        })
-    }
-
     /// Names of the curves, in the order of the cases.
     pub fn curve_names(&self) -> Vec<String> {
         let mut names: Vec<String> = Vec::new();
@@ -247,25 +201,5 @@ impl Results {
         let on = |point: &&CasePoint| curve.is_none_or(|name| point.curve(&self.curves) == name);
         let points = self.points.iter().filter(on);
         points.filter_map(|point| Some(point.figures.as_ref()?.point(which, floor))).collect()
-    }
-}
-
-/// A case whose run ended in a way that another attempt may not: it is told, and run again the next time.
-fn unfinished(launch: &Launch, case: &Case) -> Result<Option<CasePoint>, StudyError> {
-    let record = Record::read(&folder(launch.out, &case.name))?;
-    let record = record.filter(|record| record.identity == launch.identity(case));
-    Ok(record.and_then(|record| match record.outcome {
-        RunOutcome::Failed { reason, .. } => Some(CasePoint::failed(case, reason)),
-        RunOutcome::Done { .. } => None,
-    }))
-}
-
-fn mark_fronts(points: &mut [CasePoint], floors: [f64; 2]) {
-    for which in [0, 1] {
-        let mut done: Vec<&mut Figures> = points.iter_mut().filter_map(|p| p.figures.as_mut()).collect();
-        let all: Vec<Point> = done.iter().map(|figures| figures.point(which, floors[which])).collect();
-        for i in front(&all) {
-            done[i].on_front[which] = true;
-        }
     }
 }

@@ -1,0 +1,206 @@
+//! What can be wrong with a file of a mesh or a surface.
+
+use std::path::{Path, PathBuf};
+
+use super::msh::error::MshError;
+
+/// Why a file of a mesh or a surface cannot be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MeshFileError {
+    /// A Gmsh mesh; the error names file and place.
+    #[error(transparent)]
+    Msh(#[from] MshError),
+    /// A file of another format.
+    #[error("{}{}: {problem}", path.display(), line.map(|l| format!(":{l}")).unwrap_or_default())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Line of a text, from 1, if it is one line.
+        line: Option<usize>,
+        /// What is wrong.
+        problem: FileProblem,
+    },
+}
+
+/// One defect of a file.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FileProblem {
+    /// The operating system does not let the file be read.
+    #[error("cannot be read: {0}")]
+    Unreadable(String),
+    /// A folder or a device.
+    #[error("is not a file: name the file itself")]
+    NotAFile,
+    /// An ending that says no format that is read here.
+    #[error("`.{found}` is no format that is read here: give one of {known}")]
+    Extension {
+        /// The ending.
+        found: String,
+        /// The endings that are read.
+        known: &'static str,
+    },
+    /// The file ends too early.
+    #[error("the file ends where {0} was expected: it is truncated, save it again")]
+    Truncated(String),
+    /// Something else than expected.
+    #[error("expected {expected}, found `{found}`")]
+    Unexpected {
+        /// What the format asks for here.
+        expected: String,
+        /// What is here.
+        found: String,
+    },
+    /// A header promises more than the file can hold.
+    #[error(
+        "promises {count} {what}, more than the file can hold: it is truncated or damaged, save it again"
+    )]
+    TooShort {
+        /// What is promised.
+        what: &'static str,
+        /// How many.
+        count: u64,
+    },
+    /// Lists that should have one length have two.
+    #[error("{what}: {found} where {needed} are needed; the file is damaged, save it again")]
+    Count {
+        /// Which list.
+        what: String,
+        /// Entries found.
+        found: usize,
+        /// Entries needed.
+        needed: usize,
+    },
+    /// More nodes than 32-bit indices can hold.
+    #[error("more nodes than 32-bit indices hold: mesh more coarsely")]
+    TooManyNodes,
+    /// Something with a number that something else has.
+    #[error("{what} {id} is there twice: remove one")]
+    Twice {
+        /// What it is.
+        what: &'static str,
+        /// Its number.
+        id: u64,
+    },
+    /// A cell with a node that is not in the file.
+    #[error("{what} has node {node}, which is not in the file: save the whole mesh again")]
+    NoSuchNode {
+        /// The cell.
+        what: String,
+        /// The node.
+        node: i64,
+    },
+    /// A part of the format that is not read.
+    #[error("{what} is not read: {cure}")]
+    NotRead {
+        /// What it is.
+        what: String,
+        /// What to do.
+        cure: &'static str,
+    },
+    /// No tetrahedra.
+    #[error("holds no tetrahedra: mesh the volume and save it with its cells")]
+    NoTetrahedra,
+    /// Tetrahedra of no body in a file with bodies.
+    #[error(
+        "{count} of {tets} tetrahedra are in no {kind}: put every tetrahedron in one, or save without any"
+    )]
+    Unassigned {
+        /// How many.
+        count: usize,
+        /// Of how many.
+        tets: usize,
+        /// What the format calls a body.
+        kind: &'static str,
+    },
+    /// A tetrahedron of two bodies.
+    #[error(
+        "tetrahedron {element} is in the sets `{a}` and `{b}`: put it in one only, or name the bodies by sections"
+    )]
+    InTwoBodies {
+        /// Its number.
+        element: u64,
+        /// One body.
+        a: String,
+        /// The other.
+        b: String,
+    },
+    /// A surface without faces.
+    #[error("holds no faces: save a surface of triangles or polygons")]
+    NoFaces,
+    /// A surface with edges of one face only, or of faces that disagree.
+    #[error("the surface is not closed: {count} edges have no partner that runs the other way, the first {edges}; \
+             close it, all faces outward{}", if *count > 4 { ", or weld at a larger tolerance" } else { "" })]
+    Open {
+        /// How many edges.
+        count: usize,
+        /// The first of them, by their ends [unit of the file].
+        edges: String,
+    },
+    /// Another program was needed and did not do its work.
+    #[error("{0}")]
+    Program(String),
+}
+
+/// A problem and the line where it is.
+#[derive(Debug)]
+pub(crate) struct Fault {
+    /// Line from 1, if it is one line.
+    pub line: Option<usize>,
+    /// What is wrong.
+    pub problem: FileProblem,
+}
+
+impl Fault {
+    /// `problem` in `line`.
+    pub fn at(line: usize, problem: FileProblem) -> Self {
+        Self { line: Some(line), problem }
+    }
+
+    /// Something else than `expected` in `line`.
+    pub fn unexpected(line: usize, expected: impl Into<String>, found: &[u8]) -> Self {
+        Self::at(line, FileProblem::Unexpected { expected: expected.into(), found: excerpt(found) })
+    }
+
+    /// The file ends before `what`.
+    pub fn truncated(what: impl Into<String>) -> Self {
+        FileProblem::Truncated(what.into()).into()
+    }
+
+    /// With the file that it is in.
+    pub fn of(self, path: &Path) -> MeshFileError {
+        MeshFileError::File { path: path.to_owned(), line: self.line, problem: self.problem }
+    }
+}
+
+impl From<FileProblem> for Fault {
+    fn from(problem: FileProblem) -> Self {
+        Self { line: None, problem }
+    }
+}
+
+/// The bytes of the file at `path`.
+pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, MeshFileError> {
+    let fail = |problem: FileProblem| Fault::from(problem).of(path);
+    match whole_file(path) {
+        Ok(bytes) => bytes.ok_or_else(|| fail(FileProblem::NotAFile)),
+        Err(error) => Err(fail(FileProblem::Unreadable(error.to_string()))),
+    }
+}
+
+/// The bytes of a file; `None` for a folder or a device, which may have no end.
+pub(crate) fn whole_file(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
+    if std::fs::metadata(path)?.is_file() { std::fs::read(path).map(Some) } else { Ok(None) }
+}
+
+/// The ending of a path, in small letters.
+pub(crate) fn ending(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default()
+}
+
+/// The start of what was found, printable.
+pub(crate) fn excerpt(found: &[u8]) -> String {
+    let clean = |c: char| if c.is_control() { '\u{FFFD}' } else { c };
+    let head = String::from_utf8_lossy(&found[..found.len().min(160)]);
+    let text: String = head.chars().map(clean).take(40).collect();
+    if text.len() < found.len() { text + "…" } else { text }
+}

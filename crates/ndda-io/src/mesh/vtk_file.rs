@@ -1,0 +1,42 @@
+//! VTK's files: meshes from `.vtu` and legacy `.vtk`, and what a mesh and blocks are written to.
+//!
+//! Format: VTK user's guide, "VTK File Formats". Read here and not through `vtkio`, which knows no compression without
+//! a crate with an advisory, and no line numbers for what it refuses.
+
+mod base64;
+mod binary;
+mod data;
+pub(crate) mod grid;
+mod legacy;
+mod polyhedra;
+mod sections;
+mod write;
+mod xml;
+
+use std::path::Path;
+
+use crate::mesh::error::bytes_of;
+use crate::mesh::{MeshFile, MeshFileError};
+
+pub use data::Array;
+pub(crate) use data::{Data, TETRA};
+pub use polyhedra::write as write_polyhedra;
+pub use write::write;
+
+/// Reads a mesh: `.vtu` (ASCII, binary, appended; plain or zlib) or legacy `.vtk` (ASCII or binary).
+///
+/// The cell data `body`, `block`, `block_id`, `material` or `gmsh:physical` is the body; point data `set:name` of
+/// 0 and 1 is a node set. Cells of surfaces and lines are left out.
+///
+/// # Errors
+/// [`MeshFileError`] with the line of a text.
+pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
+    let bytes = bytes_of(path)?;
+    let bodies = data(&bytes).and_then(|data| data.parts()?.split());
+    Ok(MeshFile { bodies: bodies.map_err(|fault| fault.of(path))? })
+}
+
+/// What either format holds.
+pub(crate) fn data(bytes: &[u8]) -> Result<Data, crate::mesh::error::Fault> {
+    if bytes.starts_with(b"# vtk") { legacy::read(bytes) } else { xml::read(bytes) }
+}

@@ -1,0 +1,232 @@
+//! Checkpoints: all that a run needs to go on, in one file that is whole or not there; the one before is kept.
+//!
+//! ```text
+//! "NDDA-CHECKPOINT\n"  format [u32]  length of the content [u64]  content  CRC-32 of all before [u32]
+//! ```
+//!
+//! Numbers are little-endian. The content is a value in the postcard encoding, whose floats keep their bits.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::atomic;
+use crate::results::folder::OutputFolder;
+use crate::write_error::WriteError;
+
+/// Changes whenever what is kept changes.
+pub const FORMAT: u32 = 6;
+
+const MAGIC: &[u8; 16] = b"NDDA-CHECKPOINT\n";
+const HEADER: usize = 16 + 4 + 8;
+const TRAILER: usize = 4;
+
+/// Why a checkpoint cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum CheckpointError {
+    /// There is none.
+    #[error("{} holds no checkpoint: run the scene again with `ndda run`", folder.display())]
+    None {
+        /// The output folder.
+        folder: PathBuf,
+    },
+    /// The file cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// The file is not a checkpoint, or not a whole one.
+    #[error("{} is damaged ({what}): delete it to go on from the one before, if there is one", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        what: String,
+    },
+    /// The file belongs to another run.
+    #[error("{} is of another run ({what}): put it back where it came from", path.display())]
+    Foreign {
+        /// The file.
+        path: PathBuf,
+        /// How it tells.
+        what: String,
+    },
+    /// The file is of another version.
+    #[error("{} is of format {found}, this ndda reads format {FORMAT}: resume it with the ndda that wrote it", path.display())]
+    Version {
+        /// The file.
+        path: PathBuf,
+        /// Its format.
+        found: u32,
+    },
+}
+
+/// CRC-32 of a value's encoding: equal values, bit for bit, have equal ones.
+pub fn fingerprint(value: &impl Serialize) -> u32 {
+    crc32fast::hash(&postcard::to_stdvec(value).unwrap_or_default())
+}
+
+/// Bytes of a value's encoding.
+pub fn size(value: &impl Serialize) -> u64 {
+    postcard::to_stdvec(value).map_or(0, |bytes| bytes.len() as u64)
+}
+
+/// Writes a checkpoint; the file that was there becomes the previous one.
+///
+/// # Errors
+/// [`WriteError`] when the value cannot be encoded or the file not be written; the files before are then as they were.
+pub fn write(folder: &OutputFolder, value: &impl Serialize) -> Result<(), WriteError> {
+    let (path, previous) = (folder.checkpoint(), folder.previous_checkpoint());
+    let content = postcard::to_stdvec(value)
+        .map_err(|e| WriteError::Encode { path: path.clone(), reason: e.to_string() })?;
+    let mut bytes = Vec::with_capacity(HEADER + content.len() + TRAILER);
+    bytes.extend_from_slice(MAGIC);
+    bytes.extend_from_slice(&FORMAT.to_le_bytes());
+    bytes.extend_from_slice(&(content.len() as u64).to_le_bytes());
+    bytes.extend_from_slice(&content);
+    bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
+    let waiting = folder.waiting_checkpoint();
+    atomic::write(&waiting, &bytes)?;
+    match fs::rename(&path, &previous) {
+        Err(e) if e.kind() != ErrorKind::NotFound => return Err(WriteError::io("rename", &path)(e)),
+        _ => {}
+    }
+    fs::rename(&waiting, &path).map_err(WriteError::io("rename the new checkpoint to", &path))
+}
+
+/// Reads the newest checkpoint of a folder that is whole and of its run, and says why a newer one was passed over;
+/// `fits` says what a foreign one gives itself away by.
+///
+/// # Errors
+/// [`CheckpointError`] of the newest file when none can be used.
+pub fn read<T: DeserializeOwned>(
+    folder: &OutputFolder,
+    fits: impl Fn(&T) -> Result<(), String>,
+) -> Result<(T, Option<CheckpointError>), CheckpointError> {
+    let mut passed_over = None;
+    for path in [folder.checkpoint(), folder.previous_checkpoint()] {
+        let found = read_file(&path).and_then(|found| match found.as_ref().map_or(Ok(()), &fits) {
+            Ok(()) => Ok(found),
+            Err(what) => Err(CheckpointError::Foreign { path: path.clone(), what }),
+        });
+        match found {
+            Ok(Some(value)) => return Ok((value, passed_over)),
+            Ok(None) => {}
+            Err(error) => passed_over = passed_over.or(Some(error)),
+        }
+    }
+    Err(passed_over.unwrap_or(CheckpointError::None { folder: folder.path().to_path_buf() }))
+}
+
+/// Puts the checkpoint before in the place of a newer one that cannot be used, so that the next one written does not
+/// take its place.
+///
+/// # Errors
+/// [`WriteError::Io`] when the file cannot be renamed.
+pub fn go_back(folder: &OutputFolder) -> Result<(), WriteError> {
+    let previous = folder.previous_checkpoint();
+    fs::rename(&previous, folder.checkpoint()).map_err(WriteError::io("rename", &previous))
+}
+
+fn read_file<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, CheckpointError> {
+    let bytes = match fs::read(path) {
+        Ok(bytes) => bytes,
+        Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(source) => return Err(CheckpointError::Unreadable { path: path.to_path_buf(), source }),
+    };
+    let damaged = |what: &str| CheckpointError::Damaged { path: path.to_path_buf(), what: what.to_owned() };
+    if bytes.len() < HEADER + TRAILER {
+        return Err(damaged("too short"));
+    }
+    if &bytes[..16] != MAGIC {
+        return Err(damaged("it does not begin as a checkpoint does"));
+    }
+    let (body, sum) = bytes.split_at(bytes.len() - TRAILER);
+    if crc32fast::hash(body).to_le_bytes() != sum {
+        return Err(damaged("its checksum is wrong"));
+    }
+    let found = u32::from_le_bytes([body[16], body[17], body[18], body[19]]);
+    if found != FORMAT {
+        return Err(CheckpointError::Version { path: path.to_path_buf(), found });
+    }
+    let length = u64::from_le_bytes(body[20..28].try_into().expect("eight bytes"));
+    if length != (body.len() - HEADER) as u64 {
+        return Err(damaged("its length is wrong"));
+    }
+    postcard::from_bytes(&body[HEADER..]).map(Some).map_err(|e| damaged(&e.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn folder() -> (tempfile::TempDir, OutputFolder) {
+        let place = tempfile::tempdir().unwrap();
+        let folder = OutputFolder::create(&place.path().join("out"), false).unwrap();
+        (place, folder)
+    }
+
+    #[test]
+    fn a_checkpoint_comes_back_bit_for_bit_and_the_one_before_is_kept() {
+        let (_place, folder) = folder();
+        let value = vec![0.1 + 0.2, -0.0, f64::MIN_POSITIVE / 8.0, f64::INFINITY];
+        write(&folder, &vec![1.0f64]).unwrap();
+        write(&folder, &value).unwrap();
+        let (found, passed_over): (Vec<f64>, _) = read(&folder, any).unwrap();
+        assert!(found.iter().zip(&value).all(|(a, b)| a.to_bits() == b.to_bits()) && passed_over.is_none());
+        fs::remove_file(folder.checkpoint()).unwrap();
+        assert_eq!(read(&folder, any::<Vec<f64>>).unwrap().0, [1.0]);
+    }
+
+    fn any<T>(_: &T) -> Result<(), String> {
+        Ok(())
+    }
+
+    #[test]
+    fn one_of_another_run_is_passed_over_and_does_not_come_back() {
+        let (_place, folder) = folder();
+        write(&folder, &1.0f64).unwrap();
+        write(&folder, &2.0f64).unwrap();
+        let fits = |value: &f64| if *value == 1.0 { Ok(()) } else { Err("it is two".to_owned()) };
+        let (found, passed_over) = read(&folder, fits).unwrap();
+        assert!(found == 1.0 && matches!(passed_over, Some(CheckpointError::Foreign { .. })));
+        go_back(&folder).unwrap();
+        assert!(read(&folder, fits).unwrap().1.is_none() && !folder.previous_checkpoint().exists());
+    }
+
+    #[test]
+    fn a_folder_without_one_and_another_format_are_named() {
+        let (_place, folder) = folder();
+        assert!(matches!(read(&folder, any::<f64>), Err(CheckpointError::None { .. })));
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend_from_slice(&99u32.to_le_bytes());
+        bytes.extend_from_slice(&0u64.to_le_bytes());
+        bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
+        fs::write(folder.checkpoint(), bytes).unwrap();
+        assert!(matches!(read(&folder, any::<f64>), Err(CheckpointError::Version { found: 99, .. })));
+    }
+
+    proptest! {
+        #[test]
+        fn a_damaged_file_is_passed_over_for_the_one_before(at in 0usize..1000, cut in prop::bool::ANY, bit in 0u8..8) {
+            let (_place, folder) = folder();
+            let values = [vec![1.5f64; 7], vec![2.5f64; 9]];
+            write(&folder, &values[0]).unwrap();
+            write(&folder, &values[1]).unwrap();
+            let mut bytes = fs::read(folder.checkpoint()).unwrap();
+            let at = at % bytes.len();
+            if cut { bytes.truncate(at) } else { bytes[at] ^= 1 << bit }
+            fs::write(folder.checkpoint(), bytes).unwrap();
+            let (found, passed_over): (Vec<f64>, _) = read(&folder, any).unwrap();
+            prop_assert_eq!(&found, &values[0]);
+            prop_assert!(passed_over.is_some());
+        }
+    }
+}

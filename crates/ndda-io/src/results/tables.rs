@@ -1,0 +1,49 @@
+//! Tables in columns: what grew as CSV becomes Parquet at the end of a run.
+//!
+//! A Parquet file can only be read once its last bytes are there; so a run grows text, which survives a crash and can be
+//! gone on with.
+
+use std::fs;
+
+use crate::results::folder::OutputFolder;
+#[cfg(feature = "parquet")]
+use crate::results::folder::PARQUET;
+use crate::scene::{Output, TableFormat};
+use crate::write_error::WriteError;
+
+/// Whether this build writes Parquet.
+pub const HAS_PARQUET: bool = cfg!(feature = "parquet");
+
+/// Writes the tables of a run that has ended as Parquet, where the scene asks for that.
+///
+/// # Errors
+/// [`WriteError`] when a table cannot be read or a file not be written.
+#[cfg(feature = "parquet")]
+pub fn write_parquet(folder: &OutputFolder, output: &Output) -> Result<(), WriteError> {
+    if !output.history.has_parquet() {
+        return Ok(());
+    }
+    let tables = [Some(folder.history()), output.contacts.then(|| folder.contacts())];
+    for (csv, name) in tables.into_iter().zip(PARQUET) {
+        if let Some(csv) = csv {
+            crate::results::table::parquet::from_csv(&csv, &folder.path().join(name))?;
+        }
+    }
+    Ok(())
+}
+
+/// Removes the text of tables that are wanted as Parquet only; after the summary, as a run that lacks it is resumed.
+///
+/// # Errors
+/// [`WriteError::Io`] when a file cannot be removed.
+pub fn remove_csv(folder: &OutputFolder, output: &Output) -> Result<(), WriteError> {
+    if output.history != TableFormat::Parquet {
+        return Ok(());
+    }
+    for (path, is_there) in [(folder.history(), true), (folder.contacts(), output.contacts)] {
+        if is_there {
+            fs::remove_file(&path).map_err(WriteError::io("remove", &path))?;
+        }
+    }
+    Ok(())
+}

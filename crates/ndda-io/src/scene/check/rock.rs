@@ -1,0 +1,182 @@
+//! Checks of rock that is cut. What it is cut into is found when it is.
+
+use std::path::Path;
+
+use super::Check;
+use crate::scene::code::Code;
+use crate::scene::{Discontinuity, Domain, OrientationScatter, Rock, SpacingScatter, Whereabouts};
+
+/// More points of Voronoi cells than this are a slip of the keyboard.
+const MOST_CELLS: u32 = 10_000_000;
+
+impl Check<'_> {
+    pub(super) fn rock(&mut self, folder: Option<&Path>) {
+        let scene = self.scene;
+        self.names("rock", &scene.rock.iter().map(|rock| rock.name.as_str()).collect::<Vec<_>>());
+        let materials: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+        for (i, rock) in scene.rock.iter().enumerate() {
+            let path = |field: &str| format!("rock[{i}].{field}");
+            self.known(path("material"), "material", &rock.material, &materials);
+            self.domain(&path("domain"), &rock.domain, folder);
+            self.joints_of(&format!("rock[{i}]"), rock);
+            self.fill(&path("fill"), &rock.fill);
+            if !(rock.sliver_width_m >= 0.0 && rock.sliver_width_m.is_finite()) {
+                let message = format!("{} m: must not be negative", rock.sliver_width_m);
+                self.error(path("sliver_width_m"), message, "0 leaves nothing out");
+            }
+            for (list, places) in [("removed", &rock.removed), ("fixed", &rock.fixed)] {
+                for (k, place) in places.iter().enumerate() {
+                    self.whereabouts(&path(&format!("{list}[{k}]")), place);
+                }
+            }
+            if let Some(k) = scene.blocks.iter().position(|block| rock.makes(&block.name)) {
+                let message =
+                    format!("`{}` may be a block of rock `{}`, too", scene.blocks[k].name, rock.name);
+                self.report(
+                    Code::BadName,
+                    format!("blocks[{k}].name"),
+                    message,
+                    "give the block or the rock another name",
+                );
+            }
+        }
+    }
+
+    fn whereabouts(&mut self, path: &str, place: &Whereabouts) {
+        match place {
+            Whereabouts::Inside { min_m, max_m } => self.extent(path, min_m, max_m),
+            Whereabouts::Beyond { point_m, normal } => {
+                self.numbers(&format!("{path}.point_m"), point_m);
+                self.direction(format!("{path}.normal"), normal);
+            }
+        }
+    }
+
+    /// A box between two corners.
+    fn extent(&mut self, path: &str, min_m: &[f64; 3], max_m: &[f64; 3]) {
+        for (i, (min, max)) in min_m.iter().zip(max_m).enumerate() {
+            if min >= max {
+                let message = format!("{max} m: must be above min_m[{i}], which is {min} m");
+                self.error(
+                    format!("{path}.max_m[{i}]"),
+                    message,
+                    "min_m is the lowest corner, max_m the highest",
+                );
+            }
+        }
+    }
+
+    fn domain(&mut self, path: &str, domain: &Domain, folder: Option<&Path>) {
+        match domain {
+            Domain::Box { min_m, max_m } => self.extent(path, min_m, max_m),
+            Domain::Column { outline_m, start_m, end_m, .. } => {
+                outline_m.iter().for_each(|corner| self.numbers(&format!("{path}.outline_m"), corner));
+                if outline_m.len() < 3 {
+                    let message = format!("{} corners are no outline", outline_m.len());
+                    self.error(format!("{path}.outline_m"), message, "give at least three");
+                }
+                if end_m <= start_m {
+                    let message = format!("{end_m} m: must be above start_m, which is {start_m} m");
+                    self.error(format!("{path}.end_m"), message, "exchange the two");
+                }
+            }
+            Domain::Polyhedron { corners_m, faces } => self.polyhedron(path, corners_m, faces),
+            Domain::File { file, unit_m } => {
+                self.positive(format!("{path}.unit_m"), *unit_m, "m");
+                self.file(format!("{path}.file"), file, folder);
+            }
+            Domain::Terrain { origin_m, step_m, heights_m, .. } => {
+                self.numbers(&format!("{path}.origin_m"), origin_m);
+                self.positive(format!("{path}.step_m[0]"), step_m[0], "m");
+                self.positive(format!("{path}.step_m[1]"), step_m[1], "m");
+                heights_m.iter().for_each(|row| self.numbers(&format!("{path}.heights_m"), row));
+            }
+        }
+    }
+
+    fn joints_of(&mut self, path: &str, rock: &Rock) {
+        if let Some(voronoi) = rock.voronoi {
+            if !rock.joints.is_empty() {
+                let help = "leave out one of the two";
+                self.misfit(
+                    format!("{path}.voronoi"),
+                    "a rock is cut by joints or into cells, not both",
+                    help,
+                );
+            }
+            if voronoi.count == 0 || voronoi.count > MOST_CELLS {
+                let message = format!("{} points", voronoi.count);
+                self.error(format!("{path}.voronoi.count"), message, "give 1 to 1e7");
+            }
+            self.numbers(&format!("{path}.voronoi.least_distance_m"), &[voronoi.least_distance_m]);
+        }
+        for (k, joint) in rock.joints.iter().enumerate() {
+            self.joint(&format!("{path}.joints[{k}]"), joint);
+        }
+    }
+
+    fn joint(&mut self, path: &str, joint: &Discontinuity) {
+        let field = |name: &str| format!("{path}.{name}");
+        let (Discontinuity::Set { name, dip_deg, dip_direction_deg, .. }
+        | Discontinuity::Plane { name, dip_deg, dip_direction_deg, .. }
+        | Discontinuity::Disc { name, dip_deg, dip_direction_deg, .. }) = joint;
+        if name.trim().is_empty() {
+            self.report(Code::BadName, field("name"), "a joint has a name", "node sets go by it");
+        }
+        if !(0.0..=90.0).contains(dip_deg) {
+            let message = format!("{dip_deg}°: must be from 0 to 90");
+            self.error(field("dip_deg"), message, "0 is level, 90 upright");
+        }
+        if !(-360.0..=360.0).contains(dip_direction_deg) {
+            let message = format!("{dip_direction_deg}°: must be from -360 to 360");
+            self.error(field("dip_direction_deg"), message, "0 is north (y), 90 east (x)");
+        }
+        match joint {
+            Discontinuity::Set {
+                spacing_m,
+                origin_m,
+                persistence,
+                orientation_scatter,
+                spacing_scatter,
+                ..
+            } => {
+                self.positive(field("spacing_m"), *spacing_m, "m");
+                self.numbers(&field("origin_m"), origin_m);
+                if !(0.0..=1.0).contains(persistence) {
+                    let message = format!("{persistence}: must be from 0 to 1");
+                    self.error(field("persistence"), message, "1 cuts every block that a plane crosses");
+                }
+                self.scatter(path, *spacing_m, *orientation_scatter, *spacing_scatter);
+            }
+            Discontinuity::Plane { point_m, .. } => self.numbers(&field("point_m"), point_m),
+            Discontinuity::Disc { center_m, radius_m, .. } => {
+                self.numbers(&field("center_m"), center_m);
+                self.positive(field("radius_m"), *radius_m, "m");
+            }
+        }
+    }
+
+    fn scatter(&mut self, path: &str, spacing_m: f64, poles: OrientationScatter, gaps: SpacingScatter) {
+        let angle = match poles {
+            OrientationScatter::Normal { deviation_deg } => Some(("deviation_deg", deviation_deg)),
+            OrientationScatter::Uniform { within_deg } => Some(("within_deg", within_deg)),
+            _ => None,
+        };
+        if let Some((name, angle)) = angle.filter(|(_, angle)| !(0.0..=90.0).contains(angle)) {
+            let message = format!("{angle}°: must be from 0 to 90");
+            self.error(format!("{path}.orientation_scatter.{name}"), message, "5 to 15 is common");
+        }
+        if let OrientationScatter::Fisher { kappa } = poles {
+            self.positive(format!("{path}.orientation_scatter.kappa"), kappa, "");
+        }
+        let length = match gaps {
+            SpacingScatter::Uniform { half_width_m } => Some(("half_width_m", half_width_m)),
+            SpacingScatter::Normal { deviation_m } => Some(("deviation_m", deviation_m)),
+            _ => None,
+        };
+        if let Some((name, length)) = length.filter(|(_, length)| !(0.0..spacing_m).contains(length)) {
+            let message = format!("{length} m: must be from 0 to below the spacing of {spacing_m} m");
+            self.error(format!("{path}.spacing_scatter.{name}"), message, "distances stay above 0");
+        }
+    }
+}

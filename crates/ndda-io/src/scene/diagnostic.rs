@@ -1,0 +1,119 @@
+//! Messages about a scene, each with its place in the text.
+
+#[cfg(feature = "fancy")]
+mod picture;
+
+use std::fmt;
+use std::ops::Range;
+
+use crate::scene::code::Code;
+
+/// How much a message matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// The scene cannot be used.
+    Error,
+    /// The scene can be used, but may not mean what was meant.
+    Warning,
+}
+
+/// One message about a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagnostic {
+    /// How much it matters.
+    pub severity: Severity,
+    /// What kind of thing it is.
+    pub code: Code,
+    /// Path of the value, as in `blocks[1].shape.size_m`; empty when it is about the whole file.
+    pub path: String,
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub help: Option<String>,
+    /// Bytes of the text that it is about.
+    pub span: Option<Range<usize>>,
+}
+
+impl Diagnostic {
+    /// An error at a place of the text.
+    pub fn error(
+        code: Code,
+        path: impl Into<String>,
+        message: impl Into<String>,
+        span: Option<Range<usize>>,
+    ) -> Self {
+        let (path, message) = (path.into(), message.into());
+        Self { severity: Severity::Error, code, path, message, help: None, span }
+    }
+
+    /// The same message with advice.
+    pub fn with_help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+/// Messages about one scene file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SceneErrors {
+    /// The file, as it was named.
+    pub file: String,
+    /// Its text, after overrides; empty when it could not be read.
+    pub text: String,
+    /// The messages, in the order of the text where they have a place.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl SceneErrors {
+    /// All messages as text: `file:line:column`, advice, and with the feature `fancy` the source line and a mark.
+    pub fn render(&self, colour: bool) -> String {
+        let mut out = String::new();
+        for diagnostic in &self.diagnostics {
+            out.push_str(&self.headline(diagnostic));
+            match self.picture(diagnostic, colour) {
+                Some(picture) => out.push_str(&picture),
+                None => out.extend(diagnostic.help.iter().map(|help| format!("  help: {help}\n"))),
+            }
+        }
+        out
+    }
+
+    /// The line of the text that a message is about; none without a place, or in a build that draws none.
+    #[cfg(feature = "fancy")]
+    fn picture(&self, diagnostic: &Diagnostic, colour: bool) -> Option<String> {
+        picture::draw(self, diagnostic, colour)
+    }
+
+    #[cfg(not(feature = "fancy"))]
+    fn picture(&self, _diagnostic: &Diagnostic, _colour: bool) -> Option<String> {
+        None
+    }
+
+    /// `file:line:column: error[code]: path: message`.
+    fn headline(&self, diagnostic: &Diagnostic) -> String {
+        let word = match diagnostic.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        let place = diagnostic.span.as_ref().map_or(String::new(), |span| {
+            let (line, column) = line_column(&self.text, span.start);
+            format!(":{line}:{column}")
+        });
+        let path = if diagnostic.path.is_empty() { String::new() } else { format!("{}: ", diagnostic.path) };
+        format!("{}{place}: {word}[{}]: {path}{}\n", self.file, diagnostic.code, diagnostic.message)
+    }
+}
+
+impl fmt::Display for SceneErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for SceneErrors {}
+
+/// Line and column of a byte, both from 1, the column in characters.
+pub fn line_column(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.char_indices().take_while(|(i, _)| *i < offset).map(|(_, c)| c);
+    before.fold((1, 1), |(line, column), c| if c == '\n' { (line + 1, 1) } else { (line, column + 1) })
+}

@@ -1,0 +1,401 @@
+//! Values with a unit: `Megapascal(20)` in a field `…_pa` is 20e6.
+//!
+//! The unit of a field is the end of its name. A value in another unit of the same dimension is turned into it in the text,
+//! before types are read; what is found wrong later is mapped back to the text as it was written.
+
+use std::ops::Range;
+
+use crate::scene::code::Code;
+use crate::scene::diagnostic::Diagnostic;
+use crate::scene::locate::Node;
+use crate::scene::suggest::nearest;
+
+/// A unit that a value may be written in: one of it is `factor` · 10^`decimals` of the field's own.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// Its name.
+    pub name: &'static str,
+    decimals: i32,
+    factor: f64,
+}
+
+/// A kind of quantity, known by the end of a field's name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dimension {
+    /// End of the field's name.
+    pub suffix: &'static str,
+    /// What it is.
+    pub name: &'static str,
+    /// Units of it.
+    pub units: &'static [Unit],
+}
+
+const fn decimal(name: &'static str, decimals: i32) -> Unit {
+    Unit { name, decimals, factor: 1.0 }
+}
+
+const fn times(name: &'static str, factor: f64) -> Unit {
+    Unit { name, decimals: 0, factor }
+}
+
+const fn dimension(suffix: &'static str, name: &'static str, units: &'static [Unit]) -> Dimension {
+    Dimension { suffix, name, units }
+}
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// Dimensions; an end that is part of another comes after it.
+pub const DIMENSIONS: [Dimension; 13] = [
+    dimension(
+        "_kg_m3",
+        "a density",
+        &[
+            decimal("KilogramPerCubicMetre", 0),
+            decimal("TonnePerCubicMetre", 3),
+            decimal("GramPerCubicCentimetre", 3),
+        ],
+    ),
+    dimension(
+        "_m_s2",
+        "an acceleration",
+        &[decimal("MetrePerSecondSquared", 0), times("StandardGravity", 9.80665)],
+    ),
+    dimension(
+        "_rad_s",
+        "a rate of rotation",
+        &[
+            decimal("RadiansPerSecond", 0),
+            times("DegreesPerSecond", DEGREE),
+            times("RevolutionsPerMinute", 6.0 * DEGREE),
+        ],
+    ),
+    dimension("_per_s", "a rate", &[decimal("PerSecond", 0), times("PerMinute", 1.0 / 60.0)]),
+    dimension(
+        "_m_s",
+        "a velocity",
+        &[
+            decimal("MetrePerSecond", 0),
+            decimal("MillimetrePerSecond", -3),
+            times("KilometrePerHour", 1.0 / 3.6),
+        ],
+    ),
+    dimension(
+        "_pa_m",
+        "a pressure per length",
+        &[
+            decimal("PascalPerMetre", 0),
+            decimal("KilopascalPerMetre", 3),
+            decimal("MegapascalPerMetre", 6),
+            decimal("GigapascalPerMetre", 9),
+        ],
+    ),
+    dimension(
+        "_n_m",
+        "a stiffness",
+        &[
+            decimal("NewtonPerMetre", 0),
+            decimal("KilonewtonPerMetre", 3),
+            decimal("MeganewtonPerMetre", 6),
+            decimal("GiganewtonPerMetre", 9),
+        ],
+    ),
+    dimension(
+        "_m3",
+        "a volume",
+        &[decimal("CubicMetre", 0), decimal("CubicDecimetre", -3), decimal("CubicCentimetre", -6)],
+    ),
+    dimension("_deg", "an angle", &[decimal("Degrees", 0), times("Radians", 1.0 / DEGREE)]),
+    dimension(
+        "_pa",
+        "a pressure",
+        &[decimal("Pascal", 0), decimal("Kilopascal", 3), decimal("Megapascal", 6), decimal("Gigapascal", 9)],
+    ),
+    dimension(
+        "_m",
+        "a length",
+        &[
+            decimal("Metre", 0),
+            decimal("Kilometre", 3),
+            decimal("Decimetre", -1),
+            decimal("Centimetre", -2),
+            decimal("Millimetre", -3),
+            decimal("Micrometre", -6),
+        ],
+    ),
+    dimension("_n", "a force", &[decimal("Newton", 0), decimal("Kilonewton", 3), decimal("Meganewton", 6)]),
+    dimension(
+        "_s",
+        "a time",
+        &[
+            decimal("Second", 0),
+            decimal("Millisecond", -3),
+            decimal("Microsecond", -6),
+            times("Minute", 60.0),
+            times("Hour", 3600.0),
+        ],
+    ),
+];
+
+/// A choice whose value is a place [m], though its name does not end in it.
+const PLACE: &str = "Point";
+
+/// The dimension of a field, by its name.
+pub fn dimension_of(field: &str) -> Option<&'static Dimension> {
+    DIMENSIONS.iter().find(|d| field.ends_with(d.suffix))
+}
+
+impl Dimension {
+    /// Names of its units.
+    pub fn unit_names(&self) -> Vec<&'static str> {
+        self.units.iter().map(|unit| unit.name).collect()
+    }
+
+    /// The unit of this name.
+    fn unit(&self, name: &str) -> Option<&'static Unit> {
+        self.units.iter().find(|unit| unit.name == name)
+    }
+}
+
+impl Unit {
+    /// A number in this unit, as text in the field's own. Powers of ten move the decimal point, so that
+    /// `Gigapascal(20.7)` has the bits of 20.7e9.
+    fn in_field(&self, number: &str) -> Option<String> {
+        let digits = number.replace('_', "");
+        let (mantissa, exponent) = digits.split_once(['e', 'E']).unwrap_or((&digits, "0"));
+        let exponent = exponent.parse::<i32>().ok()?.checked_add(self.decimals)?;
+        let value = format!("{mantissa}e{exponent}").parse::<f64>().ok()? * self.factor;
+        value.is_finite().then(|| format!("{value:e}"))
+    }
+}
+
+/// A text in which every value is in the unit of its field.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Resolved {
+    /// The text.
+    pub text: String,
+    /// What is wrong with units.
+    pub errors: Vec<Diagnostic>,
+    edits: Vec<Edit>,
+}
+
+/// Bytes of the source, and what stands in their place.
+#[derive(Clone, Debug, PartialEq)]
+struct Edit {
+    at: Range<usize>,
+    with: String,
+}
+
+/// Turns every value of a text into the unit of its field.
+pub fn resolve(text: &str, tree: &Node) -> Resolved {
+    let mut resolver = Resolver { text, tree, edits: Vec::new(), errors: Vec::new() };
+    resolver.visit(tree, None);
+    let Resolver { edits, errors, .. } = resolver;
+    let mut out = String::with_capacity(text.len());
+    let mut from = 0;
+    for edit in &edits {
+        out.push_str(&text[from..edit.at.start]);
+        out.push_str(&edit.with);
+        from = edit.at.end;
+    }
+    out.push_str(&text[from..]);
+    Resolved { text: out, errors, edits }
+}
+
+impl Resolved {
+    /// Byte of the source that a byte of the text comes from.
+    pub fn source(&self, offset: usize) -> usize {
+        let (mut in_source, mut in_text) = (0, 0);
+        for edit in &self.edits {
+            let begins = in_text + (edit.at.start - in_source);
+            if offset < begins {
+                break;
+            }
+            if offset < begins + edit.with.len() {
+                return edit.at.start;
+            }
+            (in_source, in_text) = (edit.at.end, begins + edit.with.len());
+        }
+        in_source + (offset - in_text)
+    }
+}
+
+struct Resolver<'a> {
+    text: &'a str,
+    tree: &'a Node,
+    edits: Vec<Edit>,
+    errors: Vec<Diagnostic>,
+}
+
+impl Resolver<'_> {
+    /// Looks for units in a value; items and components of a quantity are of its dimension.
+    fn visit(&mut self, node: &Node, outer: Option<&'static Dimension>) {
+        let own = node.key.as_deref().and_then(dimension_of).or(outer);
+        let word = node.word(self.text);
+        if DIMENSIONS.iter().any(|d| d.unit(word).is_some()) {
+            return self.convert(node, word, own);
+        }
+        let places = node.children.iter().all(|child| child.key.is_none());
+        match own {
+            Some(dimension) if !word.is_empty() && places => {
+                let close = nearest(word, &dimension.unit_names());
+                let help =
+                    close.map_or_else(|| units_of(dimension), |name| format!("did you mean `{name}`?"));
+                self.refuse(node, format!("`{word}` is no unit of {}", dimension.name), help);
+            }
+            _ => {
+                let inside = if word == PLACE { dimension_of("_m") } else { own };
+                node.children.iter().for_each(|child| self.visit(child, inside));
+            }
+        }
+    }
+
+    fn convert(&mut self, node: &Node, word: &str, dimension: Option<&'static Dimension>) {
+        let Some(dimension) = dimension else {
+            return self.refuse(node, format!("`{word}` in a field without a unit"), "write a plain number");
+        };
+        let Some(unit) = dimension.unit(word) else {
+            let message = format!("`{word}` is no unit of {}", dimension.name);
+            return self.refuse(node, message, units_of(dimension));
+        };
+        let (Some(first), Some(last)) = (node.children.first(), node.children.last()) else {
+            return self.refuse(
+                node,
+                format!("`{word}` of nothing"),
+                format!("write {word}(1), or any number"),
+            );
+        };
+        // One value stands without the brackets; several keep them, as a vector does.
+        let alone = node.children.len() == 1 && first.key.is_none();
+        let bracket = node.span.start + word.len();
+        let begins = if alone { first.span.start } else { bracket };
+        self.edit(node.span.start..begins, String::new());
+        node.children.iter().for_each(|child| self.convert_numbers(child, unit));
+        if alone {
+            self.edit(last.span.end..node.span.end, String::new());
+        }
+    }
+
+    fn convert_numbers(&mut self, node: &Node, unit: &Unit) {
+        if node.opening.is_none() {
+            match unit.in_field(&self.text[node.span.clone()]) {
+                Some(number) => self.edit(node.span.clone(), number),
+                None => {
+                    self.refuse(node, "is no number that has a unit", "write a plain number in the brackets")
+                }
+            }
+        } else if !node.word(self.text).is_empty() {
+            self.refuse(node, "a unit inside a unit", "leave out one of the two");
+        } else {
+            node.children.iter().for_each(|child| self.convert_numbers(child, unit));
+        }
+    }
+
+    fn edit(&mut self, at: Range<usize>, with: String) {
+        self.edits.push(Edit { at, with });
+    }
+
+    fn refuse(&mut self, node: &Node, message: impl Into<String>, help: impl Into<String>) {
+        let path = self.tree.path_at(node.span.start);
+        let found = Diagnostic::error(Code::Unit, path, message, Some(node.span.clone()));
+        self.errors.push(found.with_help(help));
+    }
+}
+
+/// All units that would be allowed.
+fn units_of(dimension: &Dimension) -> String {
+    format!("{} is a plain number, or one in {}", dimension.name, dimension.unit_names().join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::locate;
+
+    fn resolved(text: &str) -> Resolved {
+        resolve(text, &locate::tree(text))
+    }
+
+    fn number(field: &str, value: &str) -> f64 {
+        let text = format!("({field}: {value})");
+        let resolved = resolved(&text);
+        assert!(resolved.errors.is_empty(), "{text}: {:?}", resolved.errors);
+        let inside = resolved.text.trim_start_matches('(').trim_end_matches(')');
+        inside.split_once(": ").unwrap().1.trim().parse().unwrap_or_else(|_| panic!("{}", resolved.text))
+    }
+
+    #[test]
+    fn powers_of_ten_have_the_bits_of_the_number_in_the_fields_unit() {
+        assert_eq!(number("young_pa", "Gigapascal(20.7)"), 20.7e9);
+        assert_eq!(number("cohesion_pa", "Kilopascal( 5 )"), 5e3);
+        assert_eq!(number("step_s", "Millisecond(0.1)"), 1e-4);
+        assert_eq!(number("radius_m", "Millimetre(-1_2.5e1,)"), -0.125);
+        assert_eq!(number("density_kg_m3", "GramPerCubicCentimetre(2.65)"), 2650.0);
+        assert_eq!(number("reference_m3", "CubicCentimetre(7)"), 7e-6);
+    }
+
+    #[test]
+    fn other_units_are_converted_to_rounding() {
+        let close = |field: &str, value: &str, expected: f64| {
+            let found = number(field, value);
+            assert!((found / expected - 1.0).abs() < 4e-16, "{field}: {value} is {found}, not {expected}");
+        };
+        close("friction_deg", "Radians(0.6)", 0.6f64.to_degrees());
+        close("spin_rad_s", "RevolutionsPerMinute(30)", std::f64::consts::PI);
+        close("velocity_m_s", "KilometrePerHour(36)", 10.0);
+        close("gravity_m_s2", "StandardGravity(1)", 9.80665);
+        close("end_s", "Minute(2)", 120.0);
+    }
+
+    #[test]
+    fn vectors_and_tensors_take_units_as_a_whole_and_by_components() {
+        for (source, plain) in [
+            ("(size_m: Millimetre((1, 20, 300)))", "(size_m: (1e-3, 2e-2, 3e-1))"),
+            ("(size_m: Millimetre(1, 20, 300))", "(size_m: (1e-3, 2e-2, 3e-1))"),
+            ("(size_m: (Metre(1), 2, Centimetre(3)))", "(size_m: (1e0, 2, 3e-2))"),
+            ("(stress_pa: (xx: Megapascal(-5), yy: 1))", "(stress_pa: (xx: -5e6, yy: 1))"),
+            ("(stress_pa: Megapascal((xx: -5, yy: 1)))", "(stress_pa: (xx: -5e6, yy: 1e6))"),
+            ("(at: Point(Millimetre(1, 2, 3)))", "(at: Point((1e-3, 2e-3, 3e-3)))"),
+            ("(origin_m: Some(Metre(3)))", "(origin_m: Some(3e0))"),
+        ] {
+            assert_eq!(resolved(source).errors, []);
+            assert_eq!(resolved(source).text, plain);
+        }
+    }
+
+    #[test]
+    fn what_is_no_unit_of_a_field_is_refused_with_those_that_are() {
+        for (source, path, word) in [
+            ("(young_pa: Millimetre(3))", "young_pa", "Gigapascal"),
+            ("(young_pa: Megapascals(3))", "young_pa", "did you mean `Megapascal`"),
+            ("(poisson: Degrees(3))", "poisson", "plain number"),
+            ("(a: [(young_pa: Pascal(Pascal(3)))])", "a[0].young_pa[0]", "one of the two"),
+            ("(young_pa: Pascal())", "young_pa", "any number"),
+            ("(young_pa: Pascal(x))", "young_pa[0]", "plain number"),
+            ("(young_pa: Gigapascal(1e300))", "young_pa[0]", "plain number"),
+        ] {
+            let errors = resolved(source).errors;
+            assert_eq!(errors.len(), 1, "{source}");
+            assert_eq!(errors[0].path, path);
+            assert!(errors[0].help.as_ref().unwrap().contains(word), "{source}: {errors:?}");
+        }
+    }
+
+    #[test]
+    fn places_in_the_text_map_back_to_the_source() {
+        let source = "(young_pa: Gigapascal(20), size_m: Millimetre(1, 2), title: x)";
+        let resolved = resolved(source);
+        for word in ["young_pa", "size_m", "title", "x)"] {
+            let offset = resolved.text.find(word).unwrap();
+            assert_eq!(resolved.source(offset), source.find(word).unwrap(), "{word}");
+        }
+        assert_eq!(resolved.source(resolved.text.len()), source.len());
+        assert_eq!(resolved.source(resolved.text.find("2e10").unwrap()), source.find("20").unwrap());
+    }
+
+    #[test]
+    fn a_suffix_is_not_hidden_by_a_shorter_one() {
+        for (i, dimension) in DIMENSIONS.iter().enumerate() {
+            assert_eq!(dimension_of(dimension.suffix), Some(&DIMENSIONS[i]));
+        }
+    }
+}
