@@ -48,7 +48,7 @@ pub struct Recorder {
 
 /// Where rows go.
 enum Rows {
-    File(History),
+    File(Box<History>),
     Memory(Table),
 }
 
@@ -102,8 +102,8 @@ impl Recorder {
             (None, _) => {
                 Rows::Memory(Table { columns: vec![Vec::new(); columns.len()], names: columns.clone() })
             }
-            (Some(file), None) => Rows::File(History::create(file, &columns)?),
-            (Some(file), Some(saved)) => Rows::File(History::resume(file, &columns, saved.rows)?),
+            (Some(file), None) => Rows::File(Box::new(History::create(file, &columns)?)),
+            (Some(file), Some(saved)) => Rows::File(Box::new(History::resume(file, &columns, saved.rows)?)),
         };
         let SavedRecorder { error_end, error_max, last, spent_s, .. } = saved.unwrap_or_default();
         let row = Vec::with_capacity(columns.len());
