@@ -213,3 +213,19 @@ fn label_tells_the_truth() {
     let wrong = table.print();
     assert!(wrong.is_empty(), "called accurate and wrong: seeds {wrong:?}, scenes in target/metamorphic");
 }
+
+/// The truth about one scene: `NDDA_SCENE=scenes/arch.ron cargo test --test metamorphic judged -- --nocapture`.
+#[test]
+fn a_scene_of_the_user_is_judged() {
+    let Ok(path) = std::env::var("NDDA_SCENE") else { return };
+    let set: Vec<String> =
+        std::env::var("NDDA_SET").unwrap_or_default().split_whitespace().map(Into::into).collect();
+    let loaded = ndda_io::read::load(std::path::Path::new(&path), &set)
+        .unwrap_or_else(|e| panic!("{}", e.render(false)));
+    let mut scene = loaded.scene;
+    scene.reference = None;
+    let text = text_of(&scene);
+    let case = Case { seed: 0, family: "given", factor: 1.0, text, scene };
+    let record = record(&case);
+    println!("{}", record.line());
+}

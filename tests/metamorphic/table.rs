@@ -82,7 +82,8 @@ impl Record {
 
 /// What a reason is about, without its numbers.
 fn short(reason: &str) -> &'static str {
-    const KINDS: [(&str, &str); 16] = [
+    const KINDS: [(&str, &str); 17] = [
+        ("vibrate or jump", "ringing"),
         ("for good: speeds", "energy of all"),
         ("from nowhere for a time", "energy for a time"),
         ("contact gave", "energy of a pair"),

@@ -7,6 +7,7 @@
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
+use crate::ringing::{Drive, Quadrature, Ringing};
 use crate::squeeze::Sideways;
 
 /// Part of ½ m V² that an error of V/100 is measured by where blocks meet at next to no speed: m v δv + ½ m δv².
@@ -71,6 +72,8 @@ struct Book {
     /// Elastic energy at the first sample, and at the last [J].
     strain_start_j: f64,
     strain_j: f64,
+    /// What vibration and jumps of forces have left of errors.
+    ringing: Ringing,
 }
 
 /// The worst of all blocks, with the block that it is of.
@@ -234,6 +237,23 @@ impl BlockBooks {
             }
         }
         (speed, place)
+    }
+
+    /// Books what drove a block in a step, and with it the error that the step leaves.
+    pub fn add_ringing(&mut self, block: usize, step: &Quadrature, drive: &Drive) {
+        self.books[block].ringing.add(step, drive);
+    }
+
+    /// Largest error of a velocity for ringing, over a speed; what rounding may have done does not count.
+    pub fn ringing(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
+        let mut worst = Worst::default();
+        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
+            let error_m_s = book.ringing.error_m_s();
+            if 0.5 * scale.mass_kg * error_m_s * error_m_s > rounding_j {
+                worst.take(error_m_s / speed_m_s, block);
+            }
+        }
+        worst
     }
 
     /// Books what squeezing gave a block in a step.

@@ -11,6 +11,7 @@ use crate::for_each_block::{NodeSlices, Nodes};
 use crate::linear_solver::{Factor, SolveError};
 use crate::mass_damping::MassDamping;
 use crate::rigid_body::RigidBody;
+use crate::ringing::Drive;
 use crate::shape::Shape;
 use crate::squeeze::Sideways;
 use crate::time_integrator::{Inertia, StepWeights, TimeIntegrator};
@@ -191,6 +192,8 @@ pub struct BlockReport {
     pub sideways: Sideways,
     /// M a of the block as a whole at the end; for free blocks only.
     pub inertia: Inertia,
+    /// What drives it as a whole.
+    pub drive: Drive,
 }
 
 /// One block on its way: memory sized once, written every step.
@@ -353,6 +356,7 @@ impl BlockReport {
         for (stiffness, mass) in context.contact_stiffness.iter().zip(&shape.operator.node_mass) {
             self.contact_rate2 = self.contact_rate2.max(stiffness / mass);
         }
+        self.drive = Drive::of(shape, context, self);
         if self.contact_rate2 > 0.0 && context.loose > 0.0 {
             self.sideways = Sideways::of(shape, context, self);
         }

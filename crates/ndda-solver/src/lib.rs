@@ -28,6 +28,7 @@ pub mod midpoint;
 pub mod newmark;
 pub mod plan;
 pub mod rigid_body;
+mod ringing;
 pub mod sample;
 pub mod settle;
 pub mod setup;

@@ -135,6 +135,8 @@ pub struct Shape {
     pub rigid: Option<RigidInertia>,
     /// Smallest height of its elements at rest [m].
     pub smallest_height_m: f64,
+    /// Acceleration of the farthest node by a torque about the mass centre, the mean over its directions [m/s² per N m].
+    pub turn_per_n_m: f64,
     /// Trace of K [N/m].
     pub stiffness_n_m: f64,
     /// Largest part by which its inertia of rotation is too large about any axis, for lumped masses; zero for consistent ones.
@@ -184,6 +186,7 @@ impl Shape {
             .tets
             .iter()
             .flat_map(|tet| ndda_mesh::geometry::tet_heights(&tet.map(|n| operator.rest[n as usize])));
+        let turn_per_n_m = turn_per_n_m(&operator);
         let smallest_height_m = heights.fold(f64::INFINITY, f64::min);
         let diagonal = |i: usize| operator.row(i).filter(move |(j, ..)| *j == i).map(|(_, k, _)| k.trace());
         let stiffness_n_m = match kind {
@@ -202,6 +205,7 @@ impl Shape {
             filter: None,
             rigid,
             smallest_height_m,
+            turn_per_n_m,
             stiffness_n_m,
             inertia_error,
         };
@@ -366,4 +370,10 @@ fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
         }
         BodyKind::Fixed => Ok(()),
     }
+}
+/// r/J: J = 2/3 Σ m x² is the mean moment of inertia, r the distance of the farthest node from the mass centre.
+fn turn_per_n_m(operator: &BlockOperator) -> f64 {
+    let moment: f64 = operator.node_mass.iter().zip(&operator.rest).map(|(m, x)| m * x.norm_squared()).sum();
+    let farthest_m = operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
+    1.5 * farthest_m / moment
 }

@@ -18,6 +18,7 @@ use crate::first_step::seen;
 use crate::for_each_block::{NodeSlices, Runs, each_of_run, for_each_run};
 use crate::ledger::{Invariants, Ledger};
 use crate::loads::Loads;
+use crate::ringing::Quadrature;
 use crate::shape::Shape;
 use crate::state::State;
 use crate::step_control::{Control, StepState};
@@ -365,9 +366,11 @@ impl Simulation {
         self.ledger.watch_load(force.norm());
         let (mut impulse, mut orbital) = (Vec3::zeros(), Vec3::zeros());
         let (mut rate2, mut speed_m_s) = (0.0f64, 0.0f64);
+        let quadrature = self.quadrature();
         let (mut friction_j, mut motion_j, mut load_j, mut damping_j) = (0.0, 0.0, 0.0, 0.0);
-        for body in &self.bodies {
+        for (k, body) in self.bodies.iter().enumerate() {
             let report = &body.report;
+            self.ledger.blocks().add_ringing(k, &quadrature, &report.drive);
             force += report.reaction - report.motion_impulse / self.part_s;
             torque += report.outside_torque;
             impulse += report.motion_impulse;
@@ -396,6 +399,16 @@ impl Simulation {
         self.ledger.watch(&report);
         self.advance_clock();
         report
+    }
+
+    /// How this step takes forces.
+    fn quadrature(&self) -> Quadrature {
+        Quadrature {
+            dt_s: self.part_s,
+            is_one_sided: self.newton.is_some() || self.integrator.contact_bound().is_none(),
+            judges_pairs: self.weights.forces_do_their_work(),
+            is_first: self.steps_done(0.0) == 0.0,
+        }
     }
 
     /// Whether anything touches, and the work of its forces is what changes the energy of blocks.

@@ -75,6 +75,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.push(strain(simulation));
     entries.extend(resolution(simulation));
     entries.extend(turns(simulation));
+    entries.push(ringing(simulation));
     entries.extend(within_a_step(simulation));
     if simulation.has_lumped_rotation() {
         entries.extend(lumped_rotation(simulation));
@@ -266,6 +267,19 @@ fn lumped_rotation(simulation: &Simulation) -> [Entry; 2] {
         warned("lumped rotation / height", place.value, PLACE, where_it_is),
         warned("lumped rotation / speed", speed.value, SPEED, how_fast),
     ]
+}
+
+/// Whether steps are short enough for blocks that ring on their contacts or supports.
+fn ringing(simulation: &Simulation) -> Entry {
+    let worst = simulation.invariants().ringing;
+    let reason = format!(
+        "the velocity of block `{}` may be wrong by {:.1} % of the largest speed, limit {:.0} %, because its contact forces vibrate or jump \
+         and steps are too long to follow: reduce step_s",
+        name(simulation, worst),
+        100.0 * worst.value,
+        100.0 * SPEED
+    );
+    warned("I8 ringing / speed", worst.value, SPEED, reason)
 }
 
 /// Whether anything comes and goes within a step.

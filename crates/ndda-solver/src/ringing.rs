@@ -1,0 +1,256 @@
+//! Errors of velocities that steps leave where contact or supports make a block vibrate, or change its forces abruptly.
+//!
+//! A step takes forces at one instant for their mean over the step. Taken in the middle of it, at a predicted place, the impulse of a force F is off by
+//! Δt |Δ²F|/12, Δ²F = Fₙ₊₁ − 2Fₙ + Fₙ₋₁ being Δt² F″. Where a force jumps by J, because a block begins to slide or a bond breaks, it does so anywhere
+//! within a step, which leaves up to ½ Δt J, and two steps see |Δ²F| = J. So ¼ Δt |Δ²F| is taken for both: three times the error of a force that is smooth.
+//! Taken at the start or the end of a step, an impulse is off by ½ Δt |ΔF|.
+//!
+//! In a collision without friction these errors cancel: the force begins and ends at zero, and what is left is an error of energy, which is judged by
+//! itself (`block_books.rs`). They add up where a force has more than one maximum before the block is free again, and where friction makes of the
+//! history of a force a velocity that stays. While a block vibrates, the error is at most twice the speed of its vibration, which is all wrong in phase then.
+
+use ndda_mesh::Vec3;
+use serde::{Deserialize, Serialize};
+
+use crate::body::{BlockReport, BodyKind, StepContext};
+use crate::shape::Shape;
+
+/// Largest speed of a node of a supported block over that of its mass centre: 2.6 for the first mode of a beam that is held at one end.
+const END_OF_A_BEAM: f64 = 3.0;
+
+/// What a step leaves of the sums of squares of the steps before it: they reach over about 64 steps.
+const KEPT: f64 = 1.0 - 1.0 / 64.0;
+
+/// What a block reports of its acceleration as a whole.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Drive {
+    /// Force of loads over its mass [m/s²].
+    pub load_m_s2: Vec3,
+    /// The same of loads, contact and supports [m/s²].
+    pub shift_m_s2: Vec3,
+    /// Torque about its mass centre over its moment of inertia, times its radius; zero for a held block [m/s²].
+    pub turn_m_s2: Vec3,
+    /// Whether contact or supports act on it.
+    pub is_held: bool,
+    /// Whether friction does.
+    pub rubs: bool,
+}
+
+impl Drive {
+    /// What drives a block in a step.
+    pub fn of(shape: &Shape, context: &StepContext, report: &BlockReport) -> Self {
+        let touches = report.contact_rate2 > 0.0;
+        let is_held = shape.kind != BodyKind::Fixed && (touches || !shape.is_free());
+        if !is_held {
+            return Self::default();
+        }
+        let operator = &shape.operator;
+        let load: Vec3 = context.external.iter().sum();
+        let mut force: Vec3 = context.force.iter().sum();
+        // What moves supports does so exactly, jumps of velocities included.
+        if shape.supports.motions.is_empty() {
+            force += report.reaction;
+        }
+        let mut turn_m_s2 = Vec3::zeros();
+        if !shape.is_free() {
+            force *= END_OF_A_BEAM;
+        } else {
+            let center = operator.center(context.contact_position);
+            let arms = context.contact_position.iter().zip(context.force);
+            let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
+            turn_m_s2 = torque * shape.turn_per_n_m;
+        }
+        Self {
+            load_m_s2: load / operator.mass_kg,
+            shift_m_s2: force / operator.mass_kg,
+            turn_m_s2,
+            is_held,
+            rubs: context.friction_force.iter().any(|f| *f != Vec3::zeros()),
+        }
+    }
+}
+
+/// How a step takes forces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quadrature {
+    /// Δt [s].
+    pub dt_s: f64,
+    /// Whether contact is taken at the start or the end of a step.
+    pub is_one_sided: bool,
+    /// Whether energies of pairs are judged, so that collisions need not be.
+    pub judges_pairs: bool,
+    /// Whether this is the first step.
+    pub is_first: bool,
+}
+
+/// Errors of velocities of a block, added up without regard to their direction.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Ringing {
+    last: [Vec3; 2],
+    change: [Vec3; 2],
+    /// Means of |Δa|² and |Δ²a|² over the last steps, as sums with weights, and the sum of the weights.
+    first2: f64,
+    second2: f64,
+    weight: f64,
+    /// Whether the acceleration grew in the last step, and how often it has begun to fall since contact began.
+    grows: bool,
+    maxima: u32,
+    rubs: bool,
+    is_held: bool,
+    /// Sum since contact began [m/s].
+    now_m_s: f64,
+    /// What contacts that are over have left [m/s].
+    past_m_s: f64,
+    /// All of it that is left now [m/s].
+    error_m_s: f64,
+}
+
+impl Ringing {
+    /// Books a step.
+    pub fn add(&mut self, step: &Quadrature, drive: &Drive) {
+        if !drive.is_held && !self.is_held {
+            return;
+        }
+        let now = [drive.shift_m_s2, drive.turn_m_s2];
+        if !self.is_held {
+            // Contact begins at zero, but for what touches from the start.
+            self.last = if step.is_first { now } else { [drive.load_m_s2, Vec3::zeros()] };
+        }
+        let change = [now[0] - self.last[0], now[1] - self.last[1]];
+        let second = [change[0] - self.change[0], change[1] - self.change[1]];
+        let (first2, second2) = (square(&change), square(&second));
+        self.first2 = KEPT * self.first2 + first2;
+        self.second2 = KEPT * self.second2 + second2;
+        self.weight = KEPT * self.weight + 1.0;
+        self.count_maxima(square(&now) - square(&self.last));
+        self.rubs |= drive.rubs;
+        let error_m_s2 = if step.is_one_sided { 0.5 * first2.sqrt() } else { 0.25 * second2.sqrt() };
+        self.now_m_s += step.dt_s * error_m_s2;
+        let cancels = self.maxima <= 1 && !self.rubs && (step.judges_pairs || !step.is_one_sided);
+        let new_m_s = if cancels { 0.0 } else { self.now_m_s };
+        self.error_m_s = (self.past_m_s + new_m_s).min(self.bound_m_s(step));
+        (self.last, self.change, self.is_held) = (now, change, drive.is_held);
+        if !drive.is_held {
+            *self = Self { past_m_s: self.error_m_s, error_m_s: self.error_m_s, ..Self::default() };
+        }
+    }
+
+    fn count_maxima(&mut self, growth: f64) {
+        if growth < 0.0 && self.grows {
+            self.maxima += 1;
+        }
+        if growth != 0.0 {
+            self.grows = growth > 0.0;
+        }
+    }
+
+    /// Twice the speed of a vibration: an acceleration of amplitude a that turns by θ in a step has |Δa| = θ a and |Δ²a| = θ² a, √½ of that
+    /// in root mean squares, and belongs to a speed of a Δt/θ = |Δa| Δt/θ². None while forces are one-sided, which damp or feed vibrations.
+    fn bound_m_s(&self, step: &Quadrature) -> f64 {
+        if step.is_one_sided || self.maxima <= 1 || self.second2 == 0.0 {
+            return f64::INFINITY;
+        }
+        let turn2 = self.second2 / self.first2;
+        2.0 * step.dt_s * (2.0 * self.first2 / self.weight).sqrt() / turn2
+    }
+
+    /// Error of the velocity now [m/s].
+    pub fn error_m_s(&self) -> f64 {
+        self.error_m_s
+    }
+}
+
+fn square(a: &[Vec3; 2]) -> f64 {
+    a[0].norm_squared() + a[1].norm_squared()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use super::*;
+
+    fn step(dt_s: f64, is_one_sided: bool) -> Quadrature {
+        Quadrature { dt_s, is_one_sided, judges_pairs: true, is_first: false }
+    }
+
+    fn pushed(acceleration: f64, is_held: bool) -> Drive {
+        Drive { shift_m_s2: Vec3::new(0.0, 0.0, acceleration), is_held, ..Drive::default() }
+    }
+
+    /// Half a period of ω = 1 in `steps`, as often as `collisions` says, without or with friction.
+    fn collide(ringing: &mut Ringing, steps: u32, collisions: u32, rubs: bool) {
+        let dt_s = PI / f64::from(steps);
+        for _ in 0..collisions {
+            for k in 1..steps {
+                let drive = Drive { rubs, ..pushed((dt_s * f64::from(k)).sin(), true) };
+                ringing.add(&step(dt_s, false), &drive);
+            }
+            ringing.add(&step(dt_s, false), &Drive::default());
+        }
+    }
+
+    #[test]
+    fn errors_of_a_collision_cancel_unless_there_is_friction() {
+        let mut ringing = Ringing::default();
+        collide(&mut ringing, 100, 5, false);
+        assert_eq!(ringing.error_m_s(), 0.0);
+        collide(&mut ringing, 100, 1, true);
+        // |Δ²F| adds up to θ where the force begins and to 2 θ in its course.
+        let expected = 0.75 * (PI / 100.0).powi(2);
+        assert!((ringing.error_m_s() / expected - 1.0).abs() < 0.01, "{}", ringing.error_m_s() / expected);
+    }
+
+    #[test]
+    fn a_vibration_is_late_by_a_part_of_its_speed_and_never_more_than_all_wrong() {
+        for (turn, periods) in [(0.1, 3u32), (0.1, 1000), (0.02, 20)] {
+            let mut ringing = Ringing::default();
+            let steps = (TAU / turn * f64::from(periods)) as u32;
+            for k in 0..steps {
+                let mut step = step(turn, false);
+                step.is_first = k == 0;
+                ringing.add(&step, &pushed((turn * f64::from(k)).cos(), true));
+            }
+            // True is θ²/24 per radian for forces at predicted places, θ²/12 for elastic ones; the sum has θ²/4 times the mean of |cos|.
+            let (late, time) = (turn * turn / 12.0, TAU * f64::from(periods));
+            let (least, most) = ((late * time).min(1.0), (4.0 * late * time).min(3.0));
+            assert!(
+                (least..most).contains(&ringing.error_m_s()),
+                "{turn} {periods}: {} in {least}..{most}",
+                ringing.error_m_s()
+            );
+        }
+    }
+
+    #[test]
+    fn what_a_vibration_has_left_goes_with_it() {
+        let mut ringing = Ringing::default();
+        for k in 0..20_000 {
+            let time = 0.1 * f64::from(k);
+            let step = Quadrature { is_first: k == 0, ..step(0.1, false) };
+            ringing.add(&step, &pushed(time.cos() * (-0.01 * time).exp(), true));
+        }
+        assert!(ringing.error_m_s() < 1e-7, "{}", ringing.error_m_s());
+    }
+
+    #[test]
+    fn a_force_that_jumps_leaves_half_the_jump() {
+        let mut ringing = Ringing::default();
+        for k in 0..10 {
+            let step = Quadrature { is_first: k == 0, ..step(0.01, false) };
+            ringing.add(&step, &Drive { rubs: true, ..pushed(if k < 5 { 2.0 } else { 1.0 }, true) });
+        }
+        assert!((ringing.error_m_s() - 0.5 * 0.01 * 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn forces_at_the_end_of_steps_are_off_by_half_their_change() {
+        let mut ringing = Ringing::default();
+        let step = Quadrature { judges_pairs: false, ..step(0.01, true) };
+        for push in [1.0, 2.0, 1.0] {
+            ringing.add(&step, &pushed(push, true));
+        }
+        ringing.add(&step, &Drive::default());
+        assert!((ringing.error_m_s() - 0.5 * 0.01 * 4.0).abs() < 1e-15);
+    }
+}
