@@ -141,3 +141,58 @@ fn friction_in_an_impact_hardly_depends_on_the_step() {
         Near(0.0, 0.005),
     );
 }
+
+/// Velocity of the mass centre of a cube of a kind, turned, after an impact with a fixed floor, and the work of friction [J].
+fn impact_of(kind: &str, cells: u32, step_s: f64, friction: &str) -> (Vec3, f64) {
+    let mut simulation = simulation(&format!(
+        "(title: \"impact\", time: (step_s: {step_s:e}, end_s: 1),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
+          blocks: [
+            (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (10, 10, 1), cells: (5, 5, 1)), at_m: (-5, -5, -1)),
+            (name: \"cube\", material: \"rock\", body: {kind}, shape: Box(size_m: (1, 1, 1), cells: ({cells}, {cells}, {cells})),
+             turns: [(axis: (1, 1, 0.3), angle_deg: 20)], at_m: (0, 0, 0.5), velocity_m_s: (1.5, 0, -6)),
+          ],
+          contact: Potential(penalty_pa: 1e10, potential: Smooth(), friction: ({friction})))"
+    ));
+    for _ in 0..(0.1 / step_s).round() as u32 {
+        simulation.step().unwrap();
+    }
+    let friction_j = simulation.sample().unwrap().friction_work_j;
+    let operator = &simulation.shape(BlockId(1)).operator;
+    let nodes = simulation.blocks().nodes_of(BlockId(1));
+    (operator.momentum(&simulation.state().velocity[nodes]) / operator.mass_kg, friction_j)
+}
+
+#[test]
+fn friction_in_impacts_of_deforming_blocks_is_the_limit_of_stiff_springs_and_hardly_depends_on_the_step() {
+    for kind in ["Affine", "Elastic"] {
+        for cells in [1, 2] {
+            let (velocity, work_j) = impact_of(kind, cells, 6.25e-6, "friction_deg: 35");
+            for step_s in [2e-4, 1e-4, 5e-5] {
+                let (coarse, coarse_j) = impact_of(kind, cells, step_s, "friction_deg: 35");
+                let what = format!("in an impact at Δt = {step_s:e} s, {kind} cube of {cells}³ cells");
+                row(
+                    "friction in impacts",
+                    &format!("work of friction {what}, over that at 6.25e-6 s"),
+                    coarse_j / work_j,
+                    Near(1.0, 2e-3),
+                );
+                row(
+                    "friction in impacts",
+                    &format!("velocity after it {what}, against that at 6.25e-6 s, over 6 m/s"),
+                    (coarse - velocity).norm() / 6.0,
+                    Near(0.0, 0.01),
+                );
+            }
+            // Springs so stiff that they store next to nothing.
+            let springs = "friction_deg: 35, shear_penalty_pa_m: 1e13";
+            let (_, spring_j) = impact_of(kind, cells, 2e-6, springs);
+            row(
+                "friction in impacts",
+                &format!("work of friction in an impact, {kind} cube of {cells}³ cells, over that of shear springs of 10¹³ Pa/m"),
+                work_j / spring_j,
+                Near(1.0, 1e-2),
+            );
+        }
+    }
+}

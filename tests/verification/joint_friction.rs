@@ -75,7 +75,9 @@ fn tan(angle_deg: f64) -> f64 {
 
 #[test]
 fn a_slab_slides_on_one_joint_by_its_friction_and_sticks_on_the_other() {
-    let rock = cut_box("slope", &[("lower", 2.0), ("upper", 3.0)], &format!("fixed: [{}]", below(2.0)));
+    // Rigid, as the closed form: slabs that deform vibrate along the joints, too, for 0.1 ms is long for them.
+    let fixed = format!("body: Rigid, fixed: [{}]", below(2.0));
+    let rock = cut_box("slope", &[("lower", 2.0), ("upper", 3.0)], &fixed);
     let slide_m = closed_form_m(tan(20.0));
     // Gravity comes at once, so blocks bounce: what is to stick needs friction to spare.
     for (laws, exact) in [

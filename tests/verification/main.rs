@@ -32,6 +32,7 @@ mod nothing_far_or_stale;
 mod one_block_alone;
 mod paper;
 mod prescribed_motion;
+mod random_impacts;
 mod release_of_initial_stress;
 mod rocking_block;
 mod settling;

@@ -8,7 +8,7 @@ use crate::candidates::{Candidates, Facet};
 use crate::friction::{FacetSlip, ShearMemory, length};
 use crate::integrals::{FacetSums, Hit, Touch};
 use crate::joints::{Joints, Memory};
-use crate::model::{Body, ContactHistory, ContactInput, FacetMemory};
+use crate::model::{ContactHistory, ContactInput, FacetMemory};
 
 /// Friction below this part of what it may be holds like a spring.
 const STICKS: f64 = 1.0 - 1e-9;
@@ -156,25 +156,6 @@ pub fn relative_motion(
         }
     }
     sum
-}
-
-/// 1/(1/a + 1/b), also where one of them is infinite; nothing where both are.
-pub fn reduced(a: f64, b: f64) -> f64 {
-    match (a.is_finite(), b.is_finite()) {
-        (true, true) if a + b > 0.0 => a * b / (a + b),
-        (true, false) => a,
-        (false, true) => b,
-        _ => 0.0,
-    }
-}
-
-/// Mass that a square metre of contact moves within a step [kg/m²]: the block's, spread over all of its contacts, but
-/// no more than a shear wave reaches, ρ c_s Δt.
-pub fn mass_per_area(body: &Body, area_m2: f64, dt_s: f64) -> f64 {
-    if body.mass_kg.is_infinite() || area_m2 <= 0.0 {
-        return f64::INFINITY;
-    }
-    (body.mass_kg / area_m2).min(body.impedance_pa_s_m * dt_s)
 }
 
 /// Two unit vectors in the facet: along its first edge, and across. They turn with the facet.

@@ -93,7 +93,7 @@ pub use plan::Part;
 
 pub use model::{
     Body, Bond, ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport,
-    FaceMemory, FacetContact, FacetMemory,
+    Deformation, FaceMemory, FacetContact, FacetMemory,
 };
 
 pub use pair_stiffness::PairStiffness;

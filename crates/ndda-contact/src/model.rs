@@ -21,12 +21,33 @@ pub struct ContactInput<'a> {
     pub affine: &'a [bool],
     /// Rigid motion of each block; empty unless the model [`needs_bodies`](ContactModel::needs_bodies).
     pub bodies: &'a [Body],
+    /// How blocks that deform move in the step, for friction that acts on velocities; without it they count as rigid there.
+    pub deformation: Option<&'a dyn Deformation>,
+    /// Whether the solver iterates on the forces of a step, and compares those of one evaluation with the next: whatever the model finds by
+    /// iterations of its own must then be found to far below the solver's tolerance.
+    pub is_iterated: bool,
+}
+
+/// How blocks that deform move in a step: what friction that acts on velocities asks the solver.
+pub trait Deformation: Sync {
+    /// `velocity` ← that of the nodes of a block at the end of the step under all its loads and `force` of contact per node [N], which is
+    /// overwritten. Asked before [`respond`](Self::respond).
+    fn end_velocity(&self, block: BlockId, force: &mut [Vec3], velocity: &mut [Vec3]);
+
+    /// `velocity` ← what a force per node [N] all through the step adds to that.
+    fn respond(&self, block: BlockId, force: &[Vec3], velocity: &mut [Vec3]);
+}
+
+impl std::fmt::Debug for dyn Deformation + '_ {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("Deformation")
+    }
 }
 
 impl<'a> ContactInput<'a> {
     /// An input about blocks of which only the nodes' motion is known.
     pub fn new(blocks: &'a BlockSet, position: &'a [Vec3], velocity: &'a [Vec3], dt_s: f64) -> Self {
-        Self { blocks, position, velocity, dt_s, affine: &[], bodies: &[] }
+        Self { blocks, position, velocity, dt_s, affine: &[], bodies: &[], deformation: None, is_iterated: false }
     }
 }
 
@@ -47,9 +68,8 @@ pub struct Body {
     pub velocity_m_s: Vec3,
     /// Rate of rotation [rad/s].
     pub spin_rad_s: Vec3,
-    /// Impedance for shear, ρ c_s [Pa s/m]: what a step shorter than the block's wave time has to move; infinite for a block that does
-    /// not deform.
-    pub impedance_pa_s_m: f64,
+    /// Whether it deforms, so that its surface answers to forces as [`Deformation`] says.
+    pub deforms: bool,
 }
 
 impl Body {
@@ -57,11 +77,6 @@ impl Body {
     pub fn push(&mut self, x: &Vec3, force_n: &Vec3) {
         self.load_n += force_n;
         self.torque_n_m += (x - self.center).cross(force_n);
-    }
-
-    /// Whether it deforms: a block that does not has no impedance.
-    pub fn deforms(&self) -> bool {
-        self.impedance_pa_s_m.is_finite()
     }
 
     /// Adds −ω × J ω, which turns the axis of a block that spins.

@@ -203,24 +203,17 @@ impl BlockNodes<'_> {
         }
     }
 
-    /// A torque T as forces w × d on nodes at d from their mean, Σ d × (w × d) = T.
     fn add_couple(&mut self, nodes: &[NodeId], position: &[Vec3], couple_n_m: &Vec3) {
         if *couple_n_m == Vec3::zeros() {
             return;
         }
-        let at = |n: &NodeId| position[n.index()];
-        let mean = nodes.iter().map(at).sum::<Vec3>() / nodes.len() as f64;
-        let spread: Mat3 = nodes.iter().map(|n| (at(n) - mean) * (at(n) - mean).transpose()).sum();
-        let inertia = Mat3::identity() * spread.trace() - spread;
-        let Some(turn) = inertia.try_inverse().map(|inverse| inverse * couple_n_m) else { return };
-        for n in nodes {
-            let force = turn.cross(&(at(n) - mean));
+        each_of_couple(nodes, position, couple_n_m, |n, force| {
             let i = n.index() - self.first;
             self.output.force[i] += force;
             if let Some(sum) = self.output.friction_force.get_mut(i) {
                 *sum += force;
             }
-        }
+        });
     }
 
     fn add(&mut self, node: usize, weight: f64, force: &FacetForce, stiffness: f64) {
@@ -232,4 +225,19 @@ impl BlockNodes<'_> {
             *sum += friction;
         }
     }
+}
+
+/// A torque T as forces w × d on nodes at d from their mean, Σ d × (w × d) = T.
+pub fn each_of_couple(
+    nodes: &[NodeId],
+    position: &[Vec3],
+    couple_n_m: &Vec3,
+    mut add: impl FnMut(NodeId, Vec3),
+) {
+    let at = |n: &NodeId| position[n.index()];
+    let mean = nodes.iter().map(at).sum::<Vec3>() / nodes.len() as f64;
+    let spread: Mat3 = nodes.iter().map(|n| (at(n) - mean) * (at(n) - mean).transpose()).sum();
+    let inertia = Mat3::identity() * spread.trace() - spread;
+    let Some(turn) = inertia.try_inverse().map(|inverse| inverse * couple_n_m) else { return };
+    nodes.iter().for_each(|n| add(*n, turn.cross(&(at(n) - mean))));
 }

@@ -142,6 +142,15 @@ impl ElasticBody {
         &self.correction
     }
 
+    /// Velocities at the end of the step as last tried [m/s].
+    pub fn end_velocity(&self, context: &StepContext, nodes: &Nodes, out: &mut [Vec3]) {
+        for (i, (out, u)) in out.iter_mut().zip(&self.correction).enumerate() {
+            let (mut velocity, mut acceleration) = (nodes.velocity[i], nodes.acceleration[i]);
+            context.correct(u, &self.predicted[i], &mut velocity, &mut acceleration);
+            *out = velocity;
+        }
+    }
+
     /// out ← R K̃⁻¹ Rᵀ f: how u as last tried changes with the force.
     ///
     /// # Errors

@@ -30,6 +30,8 @@ pub struct EndContact {
     pub most_iterations: u32,
 }
 
+/// Evaluations of contact in which friction is found anew.
+const FRICTION_EVALUATIONS: u32 = 30;
 /// Reduction of the linear residual (squared) that a Newton step asks for.
 const KRYLOV_REDUCTION2: f64 = 1e-4;
 /// Conjugate gradient steps after which a Newton step takes what it has.
@@ -67,6 +69,8 @@ pub(crate) struct Newton {
     product: Vec<Vec3>,
     /// Mean velocity of the step, by which facets slip.
     velocity: Vec<Vec3>,
+    /// Friction once it is held [N].
+    friction: Vec<Vec3>,
     pairs: Vec<PairStiffness>,
     touched: Vec<bool>,
     history: ContactHistory,
@@ -121,6 +125,7 @@ impl Newton {
             direction_lifted: zeros(),
             product: zeros(),
             velocity: zeros(),
+            friction: zeros(),
             pairs: Vec::new(),
             touched: vec![false; blocks],
             history: ContactHistory::default(),
@@ -223,10 +228,30 @@ impl Simulation {
         self.state.contact.clone_from(&newton.history);
         self.force.fill(Vec3::zeros());
         let report = self.add_contact_forces(Some(&newton.velocity))?;
+        self.hold_friction(newton);
         for ((q, contact), f) in newton.residual.iter_mut().zip(&self.force).zip(&newton.force) {
             *q = contact - f;
         }
         Ok(report)
+    }
+
+    /// Friction on velocities follows the normal forces, which answer to it, and Newton's matrix does not know how: where that does not end soon, it stays as it is, within the misfit of that
+    /// evaluation, and what is left to find are normal forces.
+    fn hold_friction(&mut self, newton: &mut Newton) {
+        if !self.contact.as_ref().is_some_and(|model| model.needs_bodies()) {
+            return;
+        }
+        let evaluation = newton.iterations.newton + 1;
+        if evaluation == FRICTION_EVALUATIONS {
+            newton.friction.copy_from_slice(&self.friction_force);
+        }
+        if evaluation > FRICTION_EVALUATIONS {
+            let friction = self.friction_force.iter_mut().zip(&newton.friction);
+            for (force, (friction, held)) in self.force.iter_mut().zip(friction) {
+                *force += held - *friction;
+                *friction = *held;
+            }
+        }
     }
 
     /// x* ← x + G(force).
@@ -301,6 +326,8 @@ impl Simulation {
             dt_s: self.part_s,
             affine: &self.affine,
             bodies: &self.contact_bodies,
+            deformation: None,
+            is_iterated: true,
         };
         let found = model.add_stiffness(&input, &self.state.contact, &mut newton.pairs);
         found.map_err(|source| StepError::Contact { time_s, source })?;

@@ -12,6 +12,7 @@ mod contact_fields;
 pub mod contact_moments;
 mod contact_rates;
 pub mod damping;
+mod deformation;
 pub mod dense_inverse;
 pub mod direct;
 pub mod elastic_body;

@@ -3,11 +3,14 @@
 //! A step takes forces at one instant for their mean over the step. Taken in the middle of it, at a predicted place, the impulse of a force F is off by
 //! Δt |Δ²F|/12, Δ²F = Fₙ₊₁ − 2Fₙ + Fₙ₋₁ being Δt² F″. Where a force jumps by J, because a block begins to slide or a bond breaks, it does so anywhere
 //! within a step, which leaves up to ½ Δt J, and two steps see |Δ²F| = J. So ¼ Δt |Δ²F| is taken for both: three times the error of a force that is smooth.
-//! Taken at the start or the end of a step, an impulse is off by ½ Δt |ΔF|.
+//! Taken at the start or the end of a step, an impulse is off by ½ Δt |ΔF|. Supports and elasticity act by their mean over a step without jumps: Δt |Δ²F|/12,
+//! π/2 times that where the error has its maximum rather than in the mean, and more at the end of a beam than at its mass centre.
 //!
 //! In a collision without friction these errors cancel: the force begins and ends at zero, and what is left is an error of energy, which is judged by
 //! itself (`block_books.rs`). They add up where a force has more than one maximum before the block is free again, and where friction makes of the
 //! history of a force a velocity that stays. While a block vibrates, the error is at most twice the speed of its vibration, which is all wrong in phase then.
+
+use std::f64::consts::PI;
 
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
@@ -15,7 +18,8 @@ use serde::{Deserialize, Serialize};
 use crate::body::{BlockReport, BodyKind, StepContext};
 use crate::shape::Shape;
 
-/// Largest speed of a node of a supported block over that of its mass centre: 2.6 for the first mode of a beam that is held at one end.
+/// Largest ratio of the speed of a supported block's fastest node to that of its mass centre that is reckoned with: 2.6 for the first mode of a beam
+/// that is held at one end.
 const END_OF_A_BEAM: f64 = 3.0;
 
 /// What a step leaves of the sums of squares of the steps before it: they reach over about 64 steps.
@@ -32,6 +36,10 @@ pub struct Drive {
     pub turn_m_s2: Vec3,
     /// Whether contact or supports act on it.
     pub is_held: bool,
+    /// Whether contact does.
+    pub touches: bool,
+    /// Speed of its fastest node [m/s].
+    pub speed_m_s: f64,
     /// Whether friction does.
     pub rubs: bool,
 }
@@ -52,9 +60,7 @@ impl Drive {
             force += report.reaction;
         }
         let mut turn_m_s2 = Vec3::zeros();
-        if !shape.is_free() {
-            force *= END_OF_A_BEAM;
-        } else {
+        if shape.is_free() {
             let center = operator.center(context.contact_position);
             let arms = context.contact_position.iter().zip(context.force);
             let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
@@ -65,6 +71,8 @@ impl Drive {
             shift_m_s2: force / operator.mass_kg,
             turn_m_s2,
             is_held,
+            touches,
+            speed_m_s: report.speed_m_s,
             rubs: context.friction_force.iter().any(|f| *f != Vec3::zeros()),
         }
     }
@@ -97,6 +105,10 @@ pub struct Ringing {
     maxima: u32,
     rubs: bool,
     is_held: bool,
+    /// Whether the last step was the first of all.
+    has_begun: bool,
+    /// Fastest node since contact began [m/s].
+    fastest_m_s: f64,
     /// Sum since contact began [m/s].
     now_m_s: f64,
     /// What contacts that are over have left [m/s].
@@ -117,6 +129,10 @@ impl Ringing {
             self.last = if step.is_first { now } else { [drive.load_m_s2, Vec3::zeros()] };
         }
         let change = [now[0] - self.last[0], now[1] - self.last[1]];
+        if std::mem::replace(&mut self.has_begun, step.is_first) {
+            // Nothing is known of the change before the first step.
+            self.change = change;
+        }
         let second = [change[0] - self.change[0], change[1] - self.change[1]];
         let (first2, second2) = (square(&change), square(&second));
         self.first2 = KEPT * self.first2 + first2;
@@ -124,8 +140,14 @@ impl Ringing {
         self.weight = KEPT * self.weight + 1.0;
         self.count_maxima(square(&now) - square(&self.last));
         self.rubs |= drive.rubs;
-        let error_m_s2 = if step.is_one_sided { 0.5 * first2.sqrt() } else { 0.25 * second2.sqrt() };
-        self.now_m_s += step.dt_s * error_m_s2;
+        self.fastest_m_s = self.fastest_m_s.max(drive.speed_m_s);
+        let only_supported = drive.is_held && !drive.touches;
+        self.now_m_s += step.dt_s
+            * match (only_supported, step.is_one_sided) {
+                (true, _) => PI / 24.0 * self.outer_over_mean(step) * second2.sqrt(),
+                (false, true) => 0.5 * first2.sqrt(),
+                (false, false) => 0.25 * second2.sqrt(),
+            };
         let cancels = self.maxima <= 1 && !self.rubs && (step.judges_pairs || !step.is_one_sided);
         let new_m_s = if cancels { 0.0 } else { self.now_m_s };
         self.error_m_s = (self.past_m_s + new_m_s).min(self.bound_m_s(step));
@@ -144,14 +166,26 @@ impl Ringing {
         }
     }
 
-    /// Twice the speed of a vibration: an acceleration of amplitude a that turns by θ in a step has |Δa| = θ a and |Δ²a| = θ² a, √½ of that
-    /// in root mean squares, and belongs to a speed of a Δt/θ = |Δa| Δt/θ². None while forces are one-sided, which damp or feed vibrations.
-    fn bound_m_s(&self, step: &Quadrature) -> f64 {
-        if step.is_one_sided || self.maxima <= 1 || self.second2 == 0.0 {
-            return f64::INFINITY;
+    /// Speed of the fastest node over that of the vibration of the mass centre.
+    fn outer_over_mean(&self, step: &Quadrature) -> f64 {
+        let mean_m_s = self.vibration_m_s(step);
+        if mean_m_s > 0.0 { (self.fastest_m_s / mean_m_s).clamp(1.0, END_OF_A_BEAM) } else { 1.0 }
+    }
+
+    /// Speed of a vibration: an acceleration of amplitude a that turns by θ in a step has |Δa| = θ a and |Δ²a| = θ² a, √½ of that
+    /// in root mean squares, and belongs to a speed of a Δt/θ = |Δa| Δt/θ².
+    fn vibration_m_s(&self, step: &Quadrature) -> f64 {
+        if self.second2 == 0.0 {
+            return 0.0;
         }
         let turn2 = self.second2 / self.first2;
-        2.0 * step.dt_s * (2.0 * self.first2 / self.weight).sqrt() / turn2
+        step.dt_s * (2.0 * self.first2 / self.weight).sqrt() / turn2
+    }
+
+    /// Most that a vibration may be wrong; there is no limit while forces are one-sided, which damp or feed vibrations.
+    fn bound_m_s(&self, step: &Quadrature) -> f64 {
+        let is_bounded = !step.is_one_sided && self.maxima > 1 && self.second2 > 0.0;
+        if is_bounded { 2.0 * self.vibration_m_s(step) } else { f64::INFINITY }
     }
 
     /// Error of the velocity now [m/s].
@@ -166,7 +200,7 @@ fn square(a: &[Vec3; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use std::f64::consts::{PI, TAU};
+    use std::f64::consts::TAU;
 
     use super::*;
 
@@ -175,7 +209,7 @@ mod tests {
     }
 
     fn pushed(acceleration: f64, is_held: bool) -> Drive {
-        Drive { shift_m_s2: Vec3::new(0.0, 0.0, acceleration), is_held, ..Drive::default() }
+        Drive { shift_m_s2: Vec3::new(0.0, 0.0, acceleration), is_held, touches: true, ..Drive::default() }
     }
 
     /// Half a period of ω = 1 in `steps`, as often as `collisions` says, without or with friction.

@@ -296,9 +296,6 @@ impl Shape {
     /// What contact may know of the block's inertia. Supports that leave no rigid motion make it immovable.
     pub fn contact_body(&self) -> ndda_contact::Body {
         let immovable = self.kind == BodyKind::Fixed || self.supports.hold_all_rigid_motions(&self.operator);
-        let density = self.material.density_kg_m3();
-        let moduli = self.material.moduli();
-        let softest = (3..6).map(|i| moduli[(i, i)]).fold(f64::INFINITY, f64::min);
         ndda_contact::Body {
             mass_kg: if immovable { f64::INFINITY } else { self.operator.mass_kg },
             inverse_inertia: Mat3::zeros(),
@@ -307,10 +304,7 @@ impl Shape {
             center: Vec3::zeros(),
             velocity_m_s: Vec3::zeros(),
             spin_rad_s: Vec3::zeros(),
-            impedance_pa_s_m: match self.kind {
-                BodyKind::Rigid | BodyKind::Fixed => f64::INFINITY,
-                BodyKind::Elastic | BodyKind::Affine => (density * softest).sqrt(),
-            },
+            deforms: matches!(self.kind, BodyKind::Elastic | BodyKind::Affine),
         }
     }
 

@@ -4,7 +4,7 @@ use std::mem::take;
 use std::time::Instant;
 
 use ndda_contact::{
-    Body as ContactBody, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
+    Body as ContactBody, ContactInput, ContactModel, ContactOutput, ContactReport, Deformation, FacetContact,
 };
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 use serde::{Deserialize, Serialize};
@@ -13,6 +13,7 @@ use crate::batch::solve_together;
 use crate::block_books::Worst;
 use crate::body::{Body, BodyKind, StepContext};
 use crate::contact_moments::ContactMoments;
+use crate::deformation::StepDeformation;
 use crate::end_contact::{Iterations, Newton};
 use crate::first_step::seen;
 use crate::for_each_block::{NodeSlices, Runs, each_of_run, for_each_run};
@@ -238,26 +239,40 @@ impl Simulation {
     ) -> Result<ContactReport, StepError> {
         self.place_bodies();
         let time_s = self.time_s();
-        let Some(model) = &mut self.contact else { return Ok(ContactReport::default()) };
+        let Some(mut model) = self.contact.take() else { return Ok(ContactReport::default()) };
         if std::mem::replace(&mut self.contact_has_acted, true) {
             self.friction_force.fill(Vec3::zeros());
             self.contact_stiffness.fill(0.0);
         }
+        // What contact writes is taken out, so that it may ask how the blocks answer.
+        let (mut force, mut history) = (take(&mut self.force), take(&mut self.state.contact));
+        let mut friction_force = take(&mut self.friction_force);
+        let mut stiffness = take(&mut self.contact_stiffness);
+        let (mut bodies, mut seen_position) = (take(&mut self.bodies), take(&mut self.seen_position));
+        let deformation = StepDeformation::new(self, &mut bodies);
+        let velocity = facet_velocity.filter(|_| !model.needs_bodies()).unwrap_or(&self.state.velocity);
         let input = ContactInput {
             blocks: &self.blocks,
-            position: seen(&self.blocks, &self.state.ahead, &self.contact_position, &mut self.seen_position),
-            velocity: facet_velocity.filter(|_| !model.needs_bodies()).unwrap_or(&self.state.velocity),
+            position: seen(&self.blocks, &self.state.ahead, &self.contact_position, &mut seen_position),
+            velocity,
             dt_s: self.part_s,
             affine: &self.affine,
             bodies: &self.contact_bodies,
+            // While the end of the step is being found, how blocks answer to that is part of what is looked for.
+            deformation: facet_velocity.is_none().then_some(&deformation as &dyn Deformation),
+            is_iterated: facet_velocity.is_some(),
         };
         let mut output = ContactOutput {
-            force: &mut self.force,
-            friction_force: &mut self.friction_force,
-            stiffness: &mut self.contact_stiffness,
+            force: &mut force,
+            friction_force: &mut friction_force,
+            stiffness: &mut stiffness,
         };
-        let report = model.add_forces(&input, &mut self.state.contact, &mut output);
+        let report = model.add_forces(&input, &mut history, &mut output);
+        drop(deformation);
         self.contact_has_acted = report.is_err() || model.has_acted();
+        (self.force, self.state.contact, self.friction_force) = (force, history, friction_force);
+        (self.contact_stiffness, self.bodies, self.seen_position) = (stiffness, bodies, seen_position);
+        self.contact = Some(model);
         report.map_err(|source| StepError::Contact { time_s, source })
     }
 
@@ -277,6 +292,17 @@ impl Simulation {
     /// What block `index` of a shape needs to know of a step.
     pub(crate) fn context(&self, index: usize, shape: &Shape) -> StepContext<'_> {
         let range = self.blocks.nodes_of(BlockId(index as u32));
+        self.context_under(index, shape, &self.force[range])
+    }
+
+    /// The same with other forces on its nodes.
+    pub(crate) fn context_under<'a>(
+        &'a self,
+        index: usize,
+        shape: &Shape,
+        force: &'a [Vec3],
+    ) -> StepContext<'a> {
+        let range = self.blocks.nodes_of(BlockId(index as u32));
         let acted = if self.contact_has_acted { range.clone() } else { 0..0 };
         StepContext {
             integrator: self.integrator.as_ref(),
@@ -287,7 +313,7 @@ impl Simulation {
             end_s: self.clock_s(1.0),
             contact_position: &self.contact_position[range.clone()],
             ahead: self.state.ahead_of(BlockId(index as u32)),
-            force: &self.force[range.clone()],
+            force,
             external: &self.loads.total()[range.clone()],
             changing: self.loads.changing().get(range.clone()).unwrap_or(&[]),
             friction_force: self.friction_force.get(acted.clone()).unwrap_or(&[]),

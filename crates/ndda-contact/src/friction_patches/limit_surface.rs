@@ -25,6 +25,8 @@ const MOST_STEPS: usize = 30;
 const MOST_HALVINGS: usize = 30;
 /// What is left of D where Newton's method ends.
 const TOLERANCE: f64 = 1e-11;
+/// What is left of friction there, as parts of μN: D alone is too coarse a measure of it where the slip of a step is far from what friction changes.
+const FORCE_TOLERANCE: f64 = 1e-7;
 
 /// What friction of a patch can carry. Slips are (V₁, V₂, Ω r) along the axes of the rectangle, forces (F₁, F₂, T/r), r the radius of gyration.
 #[derive(Clone, Copy, Debug, Default)]
@@ -116,15 +118,15 @@ impl LimitSurface {
     }
 
     /// Friction on a patch that would slip at s without, and slips at σ = s + A⁻¹ F with it: the σ of least ½ (σ − s)·A (σ − s) + D(σ).
-    /// Sought from `start`; gives F.
-    pub fn friction(&self, stiffness: &Mat3, free_slip: &Vec3, start: &Vec3) -> Vec3 {
+    /// Sought from `start`, which is near σ unless it `is_first`; gives F.
+    pub fn friction(&self, stiffness: &Mat3, free_slip: &Vec3, start: &Vec3, is_first: bool) -> Vec3 {
         let stopping = -(stiffness * free_slip);
         if self.holds(&stopping) {
             return stopping;
         }
         let surface = self.for_slip(free_slip);
         let mut slip = *start;
-        for smoothing in SMOOTHING {
+        for &smoothing in &SMOOTHING[usize::from(!is_first)..] {
             slip = surface.least(stiffness, free_slip, slip, smoothing * free_slip.norm());
         }
         let force = stiffness * (slip - free_slip);
@@ -143,10 +145,10 @@ impl LimitSurface {
         let mut slip = start;
         let (mut least, mut slope, mut curvature) = value(&slip);
         for _ in 0..MOST_STEPS {
-            let Some(factor) = curvature.cholesky() else { break };
-            let step = factor.solve(&slope);
+            let Some(step) = solved(&curvature, &slope) else { break };
             let gain = slope.dot(&step);
-            if gain.is_nan() || gain <= TOLERANCE * least {
+            let is_found = gain <= TOLERANCE * least && slope.amax() <= FORCE_TOLERANCE * self.most_n;
+            if gain.is_nan() || is_found {
                 break;
             }
             let mut part = 1.0;
@@ -173,4 +175,22 @@ impl LimitSurface {
         let part = if along > self.most_n { self.most_n / along } else { 1.0 };
         Vec3::new(part * force.x, part * force.y, force.z.clamp(-self.most_twist_n, self.most_twist_n))
     }
+}
+
+/// A⁻¹ b for a positive definite A.
+#[inline]
+fn solved(a: &Mat3, b: &Vec3) -> Option<Vec3> {
+    let d0 = a[(0, 0)];
+    let (l1, l2) = (a[(1, 0)] / d0, a[(2, 0)] / d0);
+    let d1 = a[(1, 1)] - l1 * a[(1, 0)];
+    let w = a[(2, 1)] - l2 * a[(1, 0)];
+    let l3 = w / d1;
+    let d2 = a[(2, 2)] - l2 * a[(2, 0)] - l3 * w;
+    if !(d0 > 0.0 && d1 > 0.0 && d2 > 0.0) {
+        return None;
+    }
+    let y1 = b.y - l1 * b.x;
+    let z = (b.z - l2 * b.x - l3 * y1) / d2;
+    let y = y1 / d1 - l3 * z;
+    Some(Vec3::new(b.x / d0 - l1 * y - l2 * z, y, z))
 }

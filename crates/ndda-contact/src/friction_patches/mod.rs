@@ -2,27 +2,28 @@
 //!
 //! A face is a set of boundary triangles in one plane and of one surface. Its contact with another block is a patch: its friction
 //! is one force F and one torque T about the normal, spread in proportion to the pressure, and obeys Coulomb's law point by point
-//! (`limit_surface.rs`). The friction of all patches between blocks that do not deform is found together (`solve.rs`), that of
-//! every other patch from that patch alone (`deforming.rs`).
+//! (`limit_surface.rs`). The friction of all patches is found together (`solve.rs`); blocks that deform answer to it at their nodes,
+//! as the solver says (`nodal.rs`).
 
-mod deforming;
 mod limit_surface;
 mod moments;
+mod nodal;
 mod patch;
 mod solve;
 
 use std::ops::Range;
 
-use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Mat3, NodeId, Vec3};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
 use crate::both::both;
 use crate::by_block::ByBlock;
-use crate::facets::{FacetForce, mass_per_area, reduced};
+use crate::facets::FacetForce;
 use crate::friction::FrictionLaw;
+use crate::friction_patches::nodal::{Nodal, NodalSide};
 use crate::friction_patches::patch::{ContactPatch, Moved, PatchSummary, Remembered};
-use crate::friction_patches::solve::CoupledPatch;
+use crate::friction_patches::solve::{CoupledPatch, Motion};
 use crate::hulls::Hulls;
 use crate::integrals::{FacetSums, Integrals, Touch};
 use crate::joints::Joints;
@@ -60,6 +61,17 @@ impl PatchScene<'_> {
         self.touch(t).owner
     }
 
+    /// Nodes that feel the couple of a facet: its own, or those of what it presses on.
+    fn couple_nodes(&self, t: u32, is_owner: bool) -> Option<&[NodeId]> {
+        let (touch, blocks) = (self.touch(t), self.input.blocks);
+        if is_owner {
+            return Some(&blocks.triangles[touch.triangle.index()]);
+        }
+        let tet = self.integrals.hits_of(touch).first()?.tet;
+        let host = self.hulls.whole(touch.target).map_or(tet, |whole| whole.host);
+        Some(&blocks.tets[host.index()])
+    }
+
     /// The law of the facets of a run, if it acts on faces.
     fn law(&self, run: &[Place]) -> Option<&dyn FrictionLaw> {
         let (_, target, first) = run[0];
@@ -83,17 +95,19 @@ pub struct FrictionPatches {
     run_of: Vec<u32>,
     /// Patches by block.
     by_block: ByBlock,
-    /// Mass that a square metre of each block's contacts moves within the step [kg/m²].
-    mass_per_area: Vec<f64>,
     /// Blocks with the velocities at the end of the step.
     bodies: Vec<Body>,
-    /// Whether a block has patches whose friction is found together, and whether its motion to come is asked for.
-    is_coupled: Vec<bool>,
+    /// Whether a block has patches with friction.
     is_asked: Vec<bool>,
+    /// Nodes of those that deform.
+    nodal: Nodal,
     /// One per run.
     patches: Vec<ContactPatch>,
     summaries: Vec<PatchSummary>,
     coupled: Vec<CoupledPatch>,
+    /// Room for their solution, by block.
+    most_n: Vec<f64>,
+    pushed: Vec<u32>,
     new_faces: Vec<FaceMemory>,
     gaps_j: Vec<f64>,
     /// Second moments of each facet about its own centre of pressure [m²].
@@ -143,10 +157,8 @@ impl FrictionPatches {
         self.find_patches(scene, forces, history);
         let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
         self.by_block.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
-        self.share_masses(scene);
         self.advance_bodies(scene);
-        self.advance_alone(scene.input.dt_s);
-        self.solve(scene);
+        self.solve(scene, forces);
         let Self { patches, runs, run_of, order, new_faces, own_m2, .. } = self;
         let spread = |((t, force), run): ((usize, &mut FacetForce), &u32)| {
             let FacetSums { pressure, .. } = *scene.sums(t as u32);
@@ -182,8 +194,7 @@ impl FrictionPatches {
         let own = |(t, (own, force)): (u32, (&mut Mat3, &FacetForce))| {
             let FacetSums { pressure, area, .. } = *scene.sums(t);
             let touch = scene.touch(t);
-            let deforms = |block: BlockId| scene.input.bodies[block.index()].deforms();
-            if pressure > 0.0 && !deforms(touch.owner) && !deforms(touch.target) {
+            if pressure > 0.0 {
                 *own = moments::second_moment_m2(scene, touch, area, &force.center);
             }
         };
@@ -203,40 +214,22 @@ impl FrictionPatches {
         });
     }
 
-    /// Spreads each block's mass over what of it touches.
-    fn share_masses(&mut self, scene: &PatchScene) {
-        let shares = &mut self.mass_per_area;
-        shares.clear();
-        shares.resize(scene.input.blocks.len(), 0.0);
-        for summary in &self.summaries {
-            shares[summary.owner.index()] += summary.area_m2;
-            shares[summary.target.index()] += summary.area_m2;
-        }
-        for (share, body) in shares.iter_mut().zip(scene.input.bodies) {
-            *share = mass_per_area(body, *share, scene.input.dt_s);
-        }
-    }
-
-    /// Takes the blocks whose motion to come is asked for to the end of the step under all loads, normal forces and the friction of the last step.
+    /// Takes the blocks that do not deform to the end of the step under all loads, normal forces and the friction of the last step.
     fn advance_bodies(&mut self, scene: &PatchScene) {
         self.bodies.clear();
         self.bodies.extend_from_slice(scene.input.bodies);
-        for flags in [&mut self.is_coupled, &mut self.is_asked] {
-            flags.clear();
-            flags.resize(scene.input.bodies.len(), false);
-        }
-        for summary in self.summaries.iter().filter(|summary| summary.stops_motion) {
+        self.is_asked.clear();
+        self.is_asked.resize(scene.input.bodies.len(), false);
+        for summary in self.summaries.iter().filter(|summary| summary.has_friction) {
             for block in [summary.owner.index(), summary.target.index()] {
                 self.is_asked[block] = true;
-                self.is_coupled[block] |= summary.is_coupled;
             }
         }
         let (is_asked, by_block, patches) = (&self.is_asked, &self.by_block, &self.patches);
+        let is_nodal = |body: &Body| scene.input.deformation.is_some() && body.deforms;
         let advance = |(block, body): (usize, &mut Body)| {
-            if is_asked[block] && body.mass_kg.is_finite() {
-                if !body.deforms() {
-                    body.add_gyroscopic_torque();
-                }
+            if is_asked[block] && body.mass_kg.is_finite() && !is_nodal(body) {
+                body.add_gyroscopic_torque();
                 for (k, sign) in by_block.at(BlockId(block as u32)) {
                     patches[k as usize].apply_loads(body, sign);
                     patches[k as usize].apply_previous_friction(body, sign);
@@ -247,40 +240,40 @@ impl FrictionPatches {
         self.bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(advance);
     }
 
-    /// Friction of the patches of blocks that deform, and what it changes the motion of blocks by that have coupled patches, too.
-    fn advance_alone(&mut self, dt_s: f64) {
-        let (bodies, mass) = (&self.bodies, &self.mass_per_area);
-        self.patches.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(|patch| {
-            if patch.has_friction() && patch.deforms {
-                let mass_per_area = reduced(mass[patch.owner.index()], mass[patch.target.index()]);
-                patch.advance_alone(bodies, mass_per_area, dt_s);
-            }
-        });
-        let (is_coupled, by_block, patches) = (&self.is_coupled, &self.by_block, &self.patches);
-        for (block, body) in self.bodies.iter_mut().enumerate() {
-            if is_coupled[block] && body.mass_kg.is_finite() {
-                (body.load_n, body.torque_n_m) = (Vec3::zeros(), Vec3::zeros());
-                for (k, sign) in by_block.at(BlockId(block as u32)) {
-                    if patches[k as usize].deforms {
-                        patches[k as usize].apply_change_of_friction(body, sign);
-                    }
-                }
-                body.advance_velocity(dt_s);
+    /// Velocities at the end of the step of the nodes of blocks that deform, under the loads and all but the friction of patches.
+    fn advance_nodes(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
+        let Self { nodal, is_asked, by_block, runs, order, .. } = self;
+        nodal.begin(scene.input.velocity);
+        let Some(deformation) = scene.input.deformation else { return };
+        for (block, body) in scene.input.blocks.ids().zip(scene.input.bodies) {
+            if is_asked[block.index()] && body.deforms {
+                let at = by_block.at(block).map(|(k, sign)| (&order[runs[k as usize].clone()], sign));
+                nodal.add_block(block, scene, forces, deformation, at);
             }
         }
     }
 
-    /// Friction of the coupled patches.
-    fn solve(&mut self, scene: &PatchScene) {
-        let Self { patches, bodies, coupled, .. } = self;
-        let (start, dt_s) = (scene.input.bodies, scene.input.dt_s);
+    /// Friction of the patches.
+    fn solve(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
+        self.advance_nodes(scene, forces);
+        let Self { patches, bodies, coupled, nodal, runs, order, most_n, pushed, own_m2, .. } = self;
+        let (start, dt_s, blocks) = (scene.input.bodies, scene.input.dt_s, scene.input.blocks);
         coupled.clear();
-        for (number, patch) in (0..).zip(&*patches) {
-            if patch.has_friction() && !patch.deforms {
-                coupled.extend(CoupledPatch::new(number, patch, start, dt_s));
+        for ((number, patch), run) in (0..).zip(&*patches).zip(&*runs) {
+            if patch.has_friction() {
+                let run = &order[run.clone()];
+                let mut side = |block: BlockId| -> Option<NodalSide> {
+                    let deformation = scene.input.deformation.filter(|_| start[block.index()].deforms)?;
+                    Some(nodal.add_side(block, scene, (patch, run), (forces, own_m2), deformation))
+                };
+                let sides = [side(patch.owner), side(patch.target)];
+                coupled.extend(CoupledPatch::new((number, patch), (start, nodal), sides, dt_s));
             }
         }
-        solve::solve(coupled, start, bodies, dt_s);
+        coupled.iter().for_each(|patch| patch.push_nodes(nodal));
+        let is_iterated = scene.input.is_iterated;
+        let mut motion = Motion { blocks, bodies, nodal, dt_s, is_iterated, most_n, pushed };
+        solve::solve(coupled, start, &mut motion);
         for found in coupled.iter() {
             let patch = &mut patches[found.patch as usize];
             let (force_n, torque_n_m, slides) = found.friction();

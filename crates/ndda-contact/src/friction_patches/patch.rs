@@ -2,7 +2,7 @@
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
-use crate::facets::{FacetForce, relative_motion, relative_velocity};
+use crate::facets::{FacetForce, relative_motion};
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
 use crate::friction_patches::limit_surface::LimitSurface;
 use crate::friction_patches::{PatchScene, Place};
@@ -14,11 +14,8 @@ use crate::model::{Body, ContactHistory, FaceMemory};
 pub struct PatchSummary {
     pub owner: BlockId,
     pub target: BlockId,
-    pub area_m2: f64,
-    /// Whether its friction is found together with that of others.
-    pub is_coupled: bool,
-    /// Whether it is found from the motion to come, alone or together.
-    pub stops_motion: bool,
+    /// Whether there is friction on it.
+    pub has_friction: bool,
 }
 
 /// How far a step moved the nodes, and what touched meanwhile.
@@ -43,20 +40,14 @@ pub struct ContactPatch {
     pub area_m2: f64,
     /// Most friction [N].
     pub most_n: f64,
-    /// The axes of the pressure, and the normal; what friction can carry along them. Only where no block deforms.
+    /// The axes of the pressure, and the normal; what friction can carry along them.
     pub axes: [Vec3; 3],
     pub surface: LimitSurface,
     /// Force [N] on it, and torque [N m] about the centre, but for its own friction.
     load_n: Vec3,
     load_torque_n_m: Vec3,
-    /// Mean of r rᵀ about the centre, weighted by pressure, where no block deforms [m²].
+    /// Mean of r rᵀ about the centre, weighted by pressure [m²].
     pub second_moment_m2: Mat3,
-    /// Means of r² and r, where one deforms [m², m].
-    radius2_m2: f64,
-    pub radius_m: f64,
-    /// Slip velocity, and spin about the normal, weighted by pressure; only for a patch that is held by a spring.
-    pub velocity_m_s: Vec3,
-    pub spin_rad_s: f64,
     /// Whether one of both blocks deforms.
     pub deforms: bool,
     /// Friction of the last step, turned with the face; none at first touch.
@@ -82,7 +73,7 @@ impl ContactPatch {
     ) {
         let (_, target, first) = run[0];
         let (owner, law) = (scene.owner(first), scene.law(run));
-        let deforms = |block: BlockId| scene.input.bodies[block.index()].deforms();
+        let deforms = |block: BlockId| scene.input.bodies[block.index()].deforms;
         let (has_law, deforms) = (law.is_some(), deforms(owner) || deforms(target));
         *self = Self { owner, target, has_law, deforms, ..Self::default() };
         self.sum(run, scene, forces);
@@ -96,22 +87,14 @@ impl ContactPatch {
         };
         self.least_slip_m = scene.input.dt_s.powi(2) * load_m_s2(owner).max(load_m_s2(target));
         self.most_n = law.map_or(0.0, |law| self.capacity_n(law));
-        if !self.deforms {
-            let (axes, second_moment_m2) = self.principal_axes();
-            (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
-        }
+        let (axes, second_moment_m2) = self.principal_axes();
+        (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
         let old = remembered.of(&run[0]).filter(|old| old.normal.dot(&self.normal) > 0.0);
         self.previous = old.map(|old| old.turned_to(&self.normal));
-        if self.is_held() {
-            self.measure_slip(run, scene, forces);
-        }
     }
 
     pub fn summary(&self) -> PatchSummary {
-        let Self { owner, target, area_m2, .. } = *self;
-        let is_coupled = self.has_friction() && !self.deforms;
-        let stops_motion = self.has_friction() && !self.is_held();
-        PatchSummary { owner, target, area_m2, is_coupled, stops_motion }
+        PatchSummary { owner: self.owner, target: self.target, has_friction: self.has_friction() }
     }
 
     /// Whether there is friction on it.
@@ -119,14 +102,9 @@ impl ContactPatch {
         self.has_law && self.pressure > 0.0 && self.area_m2 > 0.0
     }
 
-    /// Whether it is held by a spring: it stuck in the last step, and one of both blocks deforms.
-    pub fn is_held(&self) -> bool {
-        self.deforms && self.previous.is_some_and(|old| !old.slides)
-    }
-
     /// Mean square distance of the pressure from its centre [m²].
     pub fn radius2(&self) -> f64 {
-        if self.deforms { self.radius2_m2 } else { self.second_moment_m2.trace() }
+        self.second_moment_m2.trace()
     }
 
     /// What it does to one of its facets.
@@ -135,9 +113,7 @@ impl ContactPatch {
             let twist = self.torque_n_m / self.pressure / self.radius2();
             let arm = force.center - self.center;
             force.shear = self.force_n / self.pressure + twist * self.normal.cross(&arm);
-            if !self.deforms {
-                force.couple_n_m = pressure * twist * own.trace() * self.normal;
-            }
+            force.couple_n_m = pressure * twist * own.trace() * self.normal;
             force.sticks = !self.memory.slides;
         }
     }
@@ -154,13 +130,6 @@ impl ContactPatch {
             body.push(&self.center, &(sign * old.force_n));
             body.torque_n_m += sign * old.torque_n_m * self.normal;
         }
-    }
-
-    /// The same by what its friction has changed since then.
-    pub fn apply_change_of_friction(&self, body: &mut Body, sign: f64) {
-        let old = self.previous.unwrap_or_default();
-        body.push(&self.center, &(sign * (self.force_n - old.force_n)));
-        body.torque_n_m += sign * (self.torque_n_m - old.torque_n_m) * self.normal;
     }
 
     /// Two unit vectors in the face along which the pressure has its principal second moments, the normal, and these moments [m²].
@@ -237,37 +206,16 @@ impl ContactPatch {
     /// Loads, and second moments about the centre; a facet counts with its own size, so that one facet has some, too.
     fn measure(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce], own: &[Mat3]) {
         for &(_, _, t) in run {
-            let FacetSums { pressure, area, .. } = *scene.sums(t);
+            let FacetSums { pressure, .. } = *scene.sums(t);
             if pressure > 0.0 {
                 let FacetForce { push, shear, center, .. } = &forces[t as usize];
                 let (arm, load) = (center - self.center, pressure * (push + shear));
                 self.load_n += load;
                 self.load_torque_n_m += arm.cross(&load);
                 let share = pressure / self.pressure;
-                if self.deforms {
-                    // A disc of the same area: mean r² = A/2π.
-                    let radius2 = arm.norm_squared() + area / std::f64::consts::TAU;
-                    self.radius2_m2 += share * radius2;
-                    self.radius_m += share * radius2.sqrt();
-                } else {
-                    self.second_moment_m2 += share * (arm * arm.transpose() + own[t as usize]);
-                }
+                self.second_moment_m2 += share * (arm * arm.transpose() + own[t as usize]);
             }
         }
-    }
-
-    /// Slip velocity, and spin about the centre.
-    fn measure_slip(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce]) {
-        let mut twist = 0.0;
-        for &(_, _, t) in run.iter().filter(|(_, _, t)| scene.sums(*t).pressure > 0.0) {
-            let found = (scene.integrals.hits_of(scene.touch(t)), scene.sums(t));
-            let arm = forces[t as usize].center - self.center;
-            let slip = relative_velocity(scene.touch(t), found, scene.input) / self.pressure;
-            self.velocity_m_s += slip;
-            twist += arm.cross(&slip).dot(&self.normal);
-        }
-        self.velocity_m_s -= self.normal * self.normal.dot(&self.velocity_m_s);
-        self.spin_rad_s = twist / self.radius2();
     }
 }
 

@@ -1,7 +1,7 @@
-//! Friction of all patches between blocks that do not deform, found together, as forces that stop their slip or oppose it.
+//! Friction of all patches, found together, as forces that stop their slip or oppose it.
 //!
-//! Normal forces are known, so friction is a problem of Tresca: with the velocities u of the blocks, their inertia M and the
-//! forces f_i ∈ −∂D_i(slip_i) of the patches, M u′ = F + Σ f_i. It is convex, and each step of
+//! Normal forces are known, so friction is a problem of Tresca: with the velocities u of rigid blocks and of the nodes of others, their inertia
+//! M and the forces f_i ∈ −∂D_i(slip_i) of the patches, M u′ = F + Σ f_i. It is convex, and each step of
 //!
 //! ```text
 //! u_a = u₀ + γ Δt M⁻¹ (F + Σ f_a)                        f_a ∈ −∂D(slip of u_a)
@@ -9,20 +9,29 @@
 //! ```
 //!
 //! (Alexander 1977: of second order, and a patch that sticks has no slip at the end) is a minimum of ½ u·M u − … + γ Δt Σ D_i, found
-//! patch by patch (Gauss–Seidel), from the friction of the last step.
+//! patch by patch (Gauss–Seidel), from the friction of the last step. For blocks that deform Δt M⁻¹ is how their nodes answer within the whole
+//! step, elasticity included (`nodal.rs`).
 
-use ndda_mesh::{BlockId, Mat3, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::friction_patches::limit_surface::LimitSurface;
+use crate::friction_patches::nodal::{Nodal, NodalSide};
 use crate::friction_patches::patch::ContactPatch;
 use crate::model::Body;
 
 /// γ of Alexander's method.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
-/// Friction is found when no patch changes its own by more than this part of μN.
-const TOLERANCE: f64 = 1e-3;
-/// Sweeps over all patches.
+/// Friction is found when no patch changes its own by more than this part of μN, or of the largest on both of its blocks.
+const TOLERANCE: f64 = 1e-5;
+/// The same, and sweeps, where the solver compares forces of one evaluation with the next.
+const ITERATED_TOLERANCE: f64 = 1e-8;
+const ITERATED_SWEEPS: usize = 100;
+/// Least flexibility of a patch in any direction over the largest.
+const REGULAR: f64 = 1e-9;
+/// Sweeps over all patches, and over those of blocks that deform: two faces that touch each other are two patches which stop the same slip, and
+/// settle slowly which of them carries how much.
 const MOST_SWEEPS: usize = 30;
+const MOST_NODAL_SWEEPS: usize = 30;
 
 /// One patch among others.
 #[derive(Clone, Copy, Debug, Default)]
@@ -33,9 +42,14 @@ pub struct CoupledPatch {
     target: BlockId,
     /// Axes of the patch, and its normal.
     axes: [Vec3; 3],
-    /// From the mass centres to the patch [m].
+    /// From the mass centres to the patch [m], and what acts on nodes instead, where a block deforms.
     arms: [Vec3; 2],
+    sides: [Option<NodalSide>; 2],
     surface: LimitSurface,
+    /// Change of friction that does not matter to the blocks [N].
+    tolerance_n: f64,
+    /// When this patch was advanced last.
+    seen: u32,
     /// What a force changes the slip by in a whole step, and the inverse.
     flexibility: Mat3,
     stiffness: Mat3,
@@ -48,7 +62,12 @@ pub struct CoupledPatch {
 
 impl CoupledPatch {
     /// A patch with its friction of the last step; none where nothing it touches can move.
-    pub fn new(number: u32, patch: &ContactPatch, bodies: &[Body], dt_s: f64) -> Option<Self> {
+    pub fn new(
+        (number, patch): (u32, &ContactPatch),
+        (bodies, nodal): (&[Body], &Nodal),
+        sides: [Option<NodalSide>; 2],
+        dt_s: f64,
+    ) -> Option<Self> {
         let (axes, surface) = (patch.axes, patch.surface);
         let [own, other] = [patch.owner, patch.target].map(|block| &bodies[block.index()]);
         let arms = [patch.center - own.center, patch.center - other.center];
@@ -58,11 +77,19 @@ impl CoupledPatch {
             target: patch.target,
             axes,
             arms,
+            sides,
             surface,
             ..Self::default()
         };
-        for (body, arm) in [own, other].into_iter().zip(arms) {
-            found.flexibility += dt_s * found.flexibility_of(body, &arm);
+        for ((body, arm), side) in [own, other].into_iter().zip(arms).zip(&sides) {
+            found.flexibility += match side {
+                Some(side) => nodal.flexibility(side, &axes),
+                None => dt_s * found.flexibility_of(body, &arm),
+            };
+        }
+        if patch.deforms {
+            // Supports may leave some motions only, a single facet feels no torque.
+            found.flexibility += Mat3::from_diagonal_element(REGULAR * found.flexibility.trace());
         }
         found.stiffness = found.flexibility.try_inverse().filter(|a| a.iter().all(|x| x.is_finite()))?;
         if let Some(old) = &patch.previous {
@@ -85,23 +112,43 @@ impl CoupledPatch {
     }
 
     /// (V₁, V₂, Ω r).
-    fn slip(&self, bodies: &[Body]) -> Vec3 {
-        let (own, other) = (&bodies[self.owner.index()], &bodies[self.target.index()]);
-        let velocity = |body: &Body, arm: &Vec3| body.velocity_m_s + body.spin_rad_s.cross(arm);
-        let slip = velocity(own, &self.arms[0]) - velocity(other, &self.arms[1]);
-        let spin = self.surface.radius_m * (own.spin_rad_s - other.spin_rad_s);
-        Vec3::new(self.axes[0].dot(&slip), self.axes[1].dot(&slip), self.axes[2].dot(&spin))
+    fn slip(&self, motion: &Motion) -> Vec3 {
+        let of = |block: BlockId, k: usize| match &self.sides[k] {
+            Some(side) => motion.nodal.slip(side, &self.axes),
+            None => self.slip_of(&motion.bodies[block.index()], &self.arms[k]),
+        };
+        of(self.owner, 0) - of(self.target, 1)
+    }
+
+    /// The same of one block that does not deform.
+    fn slip_of(&self, body: &Body, arm: &Vec3) -> Vec3 {
+        let velocity = body.velocity_m_s + body.spin_rad_s.cross(arm);
+        let spin = self.surface.radius_m * body.spin_rad_s;
+        Vec3::new(self.axes[0].dot(&velocity), self.axes[1].dot(&velocity), self.axes[2].dot(&spin))
     }
 
     /// Adds what a force of this patch changes velocities by in some time.
-    fn push(&self, bodies: &mut [Body], force: &Vec3, time_s: f64) {
+    fn push(&self, motion: &mut Motion, force: &Vec3, time_s: f64) {
         let along = self.axes[0] * force.x + self.axes[1] * force.y;
         let torque = self.axes[2] * (force.z * self.surface.radius_m);
-        for (block, arm, sign) in [(self.owner, &self.arms[0], 1.0), (self.target, &self.arms[1], -1.0)] {
-            let body = &mut bodies[block.index()];
+        for (k, block, sign) in [(0, self.owner, 1.0), (1, self.target, -1.0)] {
+            if let Some(side) = &self.sides[k] {
+                motion.nodal.push(side, force, sign * time_s / motion.dt_s);
+                continue;
+            }
+            let (body, arm) = (&mut motion.bodies[block.index()], &self.arms[k]);
             if body.mass_kg.is_finite() {
                 body.velocity_m_s += sign * time_s / body.mass_kg * along;
                 body.spin_rad_s += body.inverse_inertia * (sign * time_s * (arm.cross(&along) + torque));
+            }
+        }
+    }
+
+    /// Adds its friction of the last step to the nodes of blocks that deform.
+    pub fn push_nodes(&self, nodal: &mut Nodal) {
+        for (side, sign) in self.sides.iter().zip([1.0, -1.0]) {
+            if let Some(side) = side {
+                nodal.push(side, &self.force, sign);
             }
         }
     }
@@ -121,29 +168,73 @@ impl CoupledPatch {
     }
 }
 
-/// Finds the friction of all patches; `bodies` come with the velocities at the end of the step under all loads, normal forces and the patches'
-/// friction of the last step, `start` with those at its start. Gives the sweeps.
-pub fn solve(patches: &mut [CoupledPatch], start: &[Body], bodies: &mut [Body], dt_s: f64) -> usize {
-    each_motion(start, bodies, |from, to| from + GAMMA * (to - from));
-    let first = solve_stage(patches, bodies, dt_s);
-    each_motion(start, bodies, |from, to| from + (to - from) / GAMMA);
-    patches.iter_mut().for_each(|patch| patch.first = patch.force);
-    first + solve_stage(patches, bodies, dt_s)
+/// All that moves.
+pub struct Motion<'a> {
+    pub blocks: &'a BlockSet,
+    pub bodies: &'a mut [Body],
+    pub nodal: &'a mut Nodal,
+    pub dt_s: f64,
+    /// Whether the solver compares forces of one evaluation with the next.
+    pub is_iterated: bool,
+    /// Largest friction that a patch of each block can carry [N].
+    pub most_n: &'a mut Vec<f64>,
+    /// When each block was pushed last by more than a tolerance.
+    pub pushed: &'a mut Vec<u32>,
 }
 
-fn each_motion(start: &[Body], bodies: &mut [Body], change: impl Fn(Vec3, Vec3) -> Vec3) {
-    for (from, to) in start.iter().zip(bodies) {
-        to.velocity_m_s = change(from.velocity_m_s, to.velocity_m_s);
-        to.spin_rad_s = change(from.spin_rad_s, to.spin_rad_s);
+/// Finds the friction of all patches; `motion` comes with the velocities at the end of the step under all loads, normal forces and the patches'
+/// friction of the last step, `start` with those at its start. Gives the sweeps.
+pub fn solve(patches: &mut [CoupledPatch], start: &[Body], motion: &mut Motion) -> usize {
+    motion.set_tolerances(patches);
+    motion.change(start, |from, to| from + GAMMA * (to - from));
+    let first = solve_stage(patches, motion);
+    motion.change(start, |from, to| from + (to - from) / GAMMA);
+    patches.iter_mut().for_each(|patch| patch.first = patch.force);
+    first + solve_stage(patches, motion)
+}
+
+impl Motion<'_> {
+    /// A change of friction matters by what else acts on both blocks: the lesser of both largest.
+    fn set_tolerances(&mut self, patches: &mut [CoupledPatch]) {
+        self.most_n.clear();
+        self.most_n.resize(self.bodies.len(), 0.0);
+        for patch in &*patches {
+            for block in [patch.owner.index(), patch.target.index()] {
+                self.most_n[block] = self.most_n[block].max(patch.surface.most_n);
+            }
+        }
+        let tolerance = if self.is_iterated { ITERATED_TOLERANCE } else { TOLERANCE };
+        for patch in patches {
+            let of = |block: BlockId| {
+                let is_held = self.bodies[block.index()].mass_kg.is_infinite();
+                if is_held { f64::INFINITY } else { self.most_n[block.index()] }
+            };
+            patch.tolerance_n = tolerance * of(patch.owner).min(of(patch.target));
+        }
+    }
+
+    fn change(&mut self, start: &[Body], change: impl Fn(Vec3, Vec3) -> Vec3) {
+        for (from, to) in start.iter().zip(&mut *self.bodies) {
+            to.velocity_m_s = change(from.velocity_m_s, to.velocity_m_s);
+            to.spin_rad_s = change(from.spin_rad_s, to.spin_rad_s);
+        }
+        self.nodal.change(self.blocks, change);
     }
 }
 
 /// One of both minima.
-fn solve_stage(patches: &mut [CoupledPatch], bodies: &mut [Body], dt_s: f64) -> usize {
-    let time_s = GAMMA * dt_s;
-    for sweep in 0..MOST_SWEEPS {
+fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
+    let time_s = GAMMA * motion.dt_s;
+    motion.pushed.clear();
+    motion.pushed.resize(motion.bodies.len(), 0);
+    let mut now = 0;
+    let most_sweeps = if motion.is_iterated { ITERATED_SWEEPS } else { MOST_SWEEPS };
+    for sweep in 0..most_sweeps {
         let mut changes = false;
-        let mut advance = |patch: &mut CoupledPatch| changes |= patch.advance(bodies, time_s, sweep == 0);
+        let mut advance = |patch: &mut CoupledPatch| {
+            now += 1;
+            changes |= patch.takes_part(sweep) && patch.advance(motion, time_s, (now, sweep == 0));
+        };
         if sweep % 2 == 0 {
             patches.iter_mut().for_each(&mut advance);
         } else {
@@ -153,23 +244,37 @@ fn solve_stage(patches: &mut [CoupledPatch], bodies: &mut [Body], dt_s: f64) -> 
             return sweep;
         }
     }
-    MOST_SWEEPS
+    most_sweeps
 }
 
 impl CoupledPatch {
+    fn takes_part(&self, sweep: usize) -> bool {
+        sweep < MOST_NODAL_SWEEPS || self.sides.iter().all(Option::is_none)
+    }
+
     /// Friction of this patch while that of the others stays; whether it had to change.
-    fn advance(&mut self, bodies: &mut [Body], time_s: f64, is_first: bool) -> bool {
-        let slip = self.slip(bodies);
+    fn advance(&mut self, motion: &mut Motion, time_s: f64, (now, is_first): (u32, bool)) -> bool {
+        let pushed = motion.pushed[self.owner.index()].max(motion.pushed[self.target.index()]);
+        if !is_first && pushed <= self.seen {
+            return false;
+        }
+        self.seen = now;
+        let slip = self.slip(motion);
         let free_slip = slip - GAMMA * (self.flexibility * self.force);
-        let most = TOLERANCE * self.surface.most_n;
-        if !is_first && (self.stiffness * (free_slip - self.free_slip)).amax() <= GAMMA * most {
+        if !is_first && (self.stiffness * (free_slip - self.free_slip)).amax() <= GAMMA * self.tolerance_n {
             return false;
         }
         self.free_slip = free_slip;
-        let force = self.surface.friction(&(self.stiffness / GAMMA), &free_slip, &slip);
+        let force = self.surface.friction(&(self.stiffness / GAMMA), &free_slip, &slip, is_first);
         let change = force - self.force;
         self.force = force;
-        self.push(bodies, &change, time_s);
-        change.amax() > most
+        self.push(motion, &change, time_s);
+        if change.amax() <= self.tolerance_n {
+            return false;
+        }
+        for block in [self.owner, self.target] {
+            motion.pushed[block.index()] = now;
+        }
+        true
     }
 }
