@@ -82,7 +82,11 @@ impl Record {
 
 /// What a reason is about, without its numbers.
 fn short(reason: &str) -> &'static str {
-    const KINDS: [(&str, &str); 17] = [
+    const KINDS: [(&str, &str); 21] = [
+        ("too long for the friction", "friction"),
+        ("strains reach", "strains"),
+        ("lumped masses", "lumped masses"),
+        ("does not resolve damping", "damping"),
         ("vibrate or jump", "ringing"),
         ("for good: speeds", "energy of all"),
         ("from nowhere for a time", "energy for a time"),

@@ -189,7 +189,9 @@ fn friction_in_impacts_of_deforming_blocks_is_the_limit_of_stiff_springs_and_har
             let (_, spring_j) = impact_of(kind, cells, 2e-6, springs);
             row(
                 "friction in impacts",
-                &format!("work of friction in an impact, {kind} cube of {cells}³ cells, over that of shear springs of 10¹³ Pa/m"),
+                &format!(
+                    "work of friction in an impact, {kind} cube of {cells}³ cells, over that of shear springs of 10¹³ Pa/m"
+                ),
                 work_j / spring_j,
                 Near(1.0, 1e-2),
             );

@@ -37,7 +37,9 @@ fn scene(random: &mut Random, kind: &str) -> (String, f64, f64) {
     let target = KINDS[(3.0 * between(0.0, 1.0)) as usize];
     let floats = between(0.0, 1.0) > 0.5;
     let floor = if floats {
-        format!("(name: \"floor\", material: \"rock\", body: {target}, shape: Box(size_m: (2.4, 2.4, 0.8), cells: (3, 3, 1)), at_m: (-1.2, -1.2, -0.8))")
+        format!(
+            "(name: \"floor\", material: \"rock\", body: {target}, shape: Box(size_m: (2.4, 2.4, 0.8), cells: (3, 3, 1)), at_m: (-1.2, -1.2, -0.8))"
+        )
     } else {
         "(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (10, 10, 1), cells: (5, 5, 1)), at_m: (-5, -5, -1))".into()
     };
@@ -83,7 +85,9 @@ fn run(text: &str, step_s: f64, steps: u64) -> Outcome {
 /// Errors of friction's work over it, or over a hundredth of all energy, and of the velocity over the largest speed.
 fn errors(seed: u64, kind: &str) -> [f64; 2] {
     let mut random = Random(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
-    (0..5).for_each(|_| drop(random.unit()));
+    for _ in 0..5 {
+        random.unit();
+    }
     let (text, time_s, speed_m_s) = scene(&mut random, kind);
     let step_s = begun(&text, 1e-4).1.expect("there is contact").min(time_s / 20.0);
     let steps = (time_s / step_s + STEPS).ceil() as u64;
@@ -112,11 +116,17 @@ fn friction_in_random_impacts_hardly_depends_on_the_step_whatever_body_it_is() {
         let beyond = works.iter().filter(|w| **w > 0.02).count();
         println!(
             "{kind}: work median {:.1e}, 95 % {:.1e}, largest {:.1e}, {beyond} of {cases} beyond 2 %; velocity 95 % {:.1e}, largest {:.1e}",
-            at(&works, 0.5), at(&works, 0.95), at(&works, 1.0), at(&speeds, 0.95), at(&speeds, 1.0)
+            at(&works, 0.5),
+            at(&works, 0.95),
+            at(&works, 1.0),
+            at(&speeds, 0.95),
+            at(&speeds, 1.0)
         );
         row(
             "friction in impacts",
-            &format!("random impacts of {kind} blocks: error of friction's work at the advised step, 90th of 100"),
+            &format!(
+                "random impacts of {kind} blocks: error of friction's work at the advised step, 90th of 100"
+            ),
             at(&works, 0.9),
             AtMost(0.02),
         );

@@ -47,7 +47,16 @@ impl std::fmt::Debug for dyn Deformation + '_ {
 impl<'a> ContactInput<'a> {
     /// An input about blocks of which only the nodes' motion is known.
     pub fn new(blocks: &'a BlockSet, position: &'a [Vec3], velocity: &'a [Vec3], dt_s: f64) -> Self {
-        Self { blocks, position, velocity, dt_s, affine: &[], bodies: &[], deformation: None, is_iterated: false }
+        Self {
+            blocks,
+            position,
+            velocity,
+            dt_s,
+            affine: &[],
+            bodies: &[],
+            deformation: None,
+            is_iterated: false,
+        }
     }
 }
 

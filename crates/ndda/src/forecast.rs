@@ -1,6 +1,7 @@
 //! What is known of a run before its first step.
 
 pub mod cost;
+pub mod creep;
 pub mod lumped;
 pub mod memory;
 pub mod rounding;

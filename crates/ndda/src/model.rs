@@ -7,7 +7,7 @@ use ndda_io::read::{self, LoadedScene};
 use ndda_solver::Simulation;
 
 use crate::build::{self, Fault, overlaps};
-use crate::forecast::{lumped, rounding, size};
+use crate::forecast::{creep, lumped, rounding, size};
 use crate::judge::reference::Comparison;
 use crate::run::monitor::Monitor;
 
@@ -69,6 +69,7 @@ impl Model {
         let monitors = build::monitors(&loaded.scene, &simulation).map_err(located)?;
         loaded.warnings.extend(far);
         loaded.warnings.extend(lumped::warning(&loaded, &simulation));
+        loaded.warnings.extend(creep::warning(&loaded));
         Ok(Self { loaded, simulation, monitors })
     }
 

@@ -38,6 +38,8 @@ pub struct NodalSide {
 #[derive(Default)]
 pub struct Nodal {
     weights: Vec<Weight>,
+    /// Where among them the one of each node was put last.
+    place_of: Vec<u32>,
     /// U, three columns for each side of a patch [m/s per N in a whole step].
     answers: Vec<Vec3>,
     /// Velocities at the start of the step and at a time within it; only those of blocks that deform.
@@ -58,6 +60,7 @@ impl Nodal {
         self.start.resize(start.len(), Vec3::zeros());
         self.velocity.resize(start.len(), Vec3::zeros());
         self.force.resize(start.len(), Vec3::zeros());
+        self.place_of.resize(start.len(), 0);
     }
 
     /// Velocities of a block at the end of the step under all loads and these patches without their friction, by runs of facets.
@@ -99,18 +102,16 @@ impl Nodal {
             let twist = patch.normal.cross(&arm) / patch.surface.radius_m;
             each_weight(scene, t, is_owner, |node, w| {
                 let share = w / patch.pressure;
-                add_weight(
-                    &mut self.weights,
-                    from,
-                    Weight { node: node as u32, share, twist: share * twist },
-                );
+                let weight = Weight { node: node as u32, share, twist: share * twist };
+                add_weight(&mut self.weights, &mut self.place_of, from, weight);
             });
             let (pressure, own_m2) = (scene.sums(t).pressure, own_m2[t as usize].trace());
             let Some(nodes) = scene.couple_nodes(t, is_owner).filter(|_| pressure > 0.0) else { continue };
             let couple = pressure / patch.pressure * own_m2 / patch.surface.radius_m * patch.normal;
             each_of_couple(nodes, scene.input.position, &couple, |node, force| {
                 let node = node.index() as u32;
-                add_weight(&mut self.weights, from, Weight { node, share: 0.0, twist: force });
+                let weight = Weight { node, share: 0.0, twist: force };
+                add_weight(&mut self.weights, &mut self.place_of, from, weight);
             });
         }
         let nodes = scene.input.blocks.nodes_of(block);
@@ -198,14 +199,18 @@ impl Weight {
     }
 }
 
-/// Adds to the weight of a node, those of a patch beginning at `from`.
-fn add_weight(weights: &mut Vec<Weight>, from: u32, weight: Weight) {
-    match weights[from as usize..].iter_mut().find(|other| other.node == weight.node) {
+/// Adds to the weight of a node, those of a patch beginning at `from`; `place_of` says where a node's may be.
+fn add_weight(weights: &mut Vec<Weight>, place_of: &mut [u32], from: u32, weight: Weight) {
+    let place = &mut place_of[weight.node as usize];
+    match weights.get_mut(*place as usize).filter(|other| *place >= from && other.node == weight.node) {
         Some(other) => {
             other.share += weight.share;
             other.twist += weight.twist;
         }
-        None => weights.push(weight),
+        None => {
+            *place = weights.len() as u32;
+            weights.push(weight);
+        }
     }
 }
 

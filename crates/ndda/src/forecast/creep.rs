@@ -1,0 +1,29 @@
+//! What sudden gravity does to blocks that shear springs hold: they creep while their contact vibrates.
+
+use ndda_io::code::Code;
+use ndda_io::diagnostic::{Diagnostic, Severity};
+use ndda_io::read::LoadedScene;
+use ndda_io::scene::{Contact, Friction, Scene};
+
+/// A warning for scenes that begin with sudden gravity on blocks held by shear springs.
+pub fn warning(loaded: &LoadedScene) -> Option<Diagnostic> {
+    let scene = &loaded.scene;
+    let has_gravity = scene.gravity_m_s2 != [0.0; 3];
+    let is_sudden = has_gravity && scene.gravity_ramp_s == 0.0 && scene.settle.is_none();
+    if !is_sudden || !has_springs(scene) {
+        return None;
+    }
+    let message = "gravity comes suddenly, so contact will vibrate, and shear springs let blocks creep while it does, even where friction could hold them";
+    let help = "begin with settle: (), apply gravity over gravity_ramp_s, or leave out shear_penalty_pa_m, so that friction acts on velocities";
+    let mut found = loaded.diagnose("contact.friction.shear_penalty_pa_m", message.into()).with_help(help);
+    (found.code, found.severity) = (Code::Inexact, Severity::Warning);
+    Some(found)
+}
+
+fn has_springs(scene: &Scene) -> bool {
+    let Some(Contact::Potential { friction, laws, .. }) = &scene.contact else { return false };
+    let is_spring =
+        |friction: &Friction| friction.shear_penalty_pa_m.is_some() && friction.friction_deg > 0.0;
+    friction.as_ref().is_some_and(is_spring)
+        || laws.iter().filter_map(|law| law.friction.as_ref()).any(is_spring)
+}
