@@ -7,7 +7,6 @@
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::creep::Creep;
 use crate::ringing::{Drive, Quadrature, Ringing};
 use crate::squeeze::Sideways;
 
@@ -75,8 +74,6 @@ struct Book {
     strain_j: f64,
     /// What vibration and jumps of forces have left of errors.
     ringing: Ringing,
-    /// How far shear springs may have let it creep.
-    creep: Creep,
 }
 
 /// The worst of all blocks, with the block that it is of.
@@ -245,20 +242,6 @@ impl BlockBooks {
     /// Books what drove a block in a step, and with it the error that the step leaves.
     pub fn add_ringing(&mut self, block: usize, step: &Quadrature, drive: &Drive) {
         self.books[block].ringing.add(step, drive);
-    }
-
-    /// Books what drove a block in a step that shear springs hold.
-    pub fn add_creep(&mut self, block: usize, dt_s: f64, drive: &Drive) {
-        self.books[block].creep.add(dt_s, drive);
-    }
-
-    /// Longest way of a block that shear springs may have let creep, over the smallest height of its tetrahedra.
-    pub fn creep(&self) -> Worst {
-        let mut worst = Worst::default();
-        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
-            worst.take(book.creep.way_m() / scale.height_m, block);
-        }
-        worst
     }
 
     /// Largest error of a velocity for ringing, over a speed; what rounding may have done does not count.

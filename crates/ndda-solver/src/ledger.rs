@@ -128,8 +128,6 @@ pub struct Invariants {
     pub lumped_place: Worst,
     /// I8: error of a velocity over the largest speed, for the ringing of contact and supports.
     pub ringing: Worst,
-    /// Way of a block that shear springs may have let creep, over the smallest tet height of it.
-    pub creep: Worst,
     /// I8: speed of elastic vibrations that turns over in a step, over the largest speed and what the block bears; none below 0.001,
     /// and that of the last sample where the integrator lets them die out.
     pub vibration: f64,
@@ -210,7 +208,6 @@ impl Ledger {
             lumped_speed: Worst::default(),
             lumped_place: Worst::default(),
             ringing: Worst::default(),
-            creep: Worst::default(),
             vibration: 0.0,
             unseen_speed: 0.0,
             damping_speed: 0.0,
@@ -444,7 +441,6 @@ impl Ledger {
             lumped_place,
             turn_place: self.blocks.turned_over_height(),
             turn_speed: speed(self.blocks.turned_m_s()),
-            creep: self.blocks.creep(),
             ringing: self.blocks.ringing(self.largest_speed_m_s, self.rounding_j),
             vibration: self.vibration.over(self.largest_speed_m_s),
             unseen_speed: speed(self.unseen_m_s),

@@ -11,7 +11,6 @@ pub mod conjugate_gradients;
 mod contact_fields;
 pub mod contact_moments;
 mod contact_rates;
-mod creep;
 pub mod damping;
 mod deformation;
 pub mod dense_inverse;

@@ -42,10 +42,6 @@ pub struct Drive {
     pub speed_m_s: f64,
     /// Whether friction does.
     pub rubs: bool,
-    /// Sums of normal forces and of friction over its mass [m/s²].
-    pub normal_m_s2: Vec3,
-    /// See above.
-    pub friction_m_s2: Vec3,
 }
 
 impl Drive {
@@ -70,11 +66,7 @@ impl Drive {
             let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
             turn_m_s2 = torque * shape.turn_per_n_m;
         }
-        let friction: Vec3 = context.friction_force.iter().sum();
-        let contact: Vec3 = context.force.iter().sum::<Vec3>() - load;
         Self {
-            normal_m_s2: (contact - friction) / operator.mass_kg,
-            friction_m_s2: friction / operator.mass_kg,
             load_m_s2: load / operator.mass_kg,
             shift_m_s2: force / operator.mass_kg,
             turn_m_s2,

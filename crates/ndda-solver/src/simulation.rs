@@ -392,14 +392,10 @@ impl Simulation {
         let (mut impulse, mut orbital) = (Vec3::zeros(), Vec3::zeros());
         let (mut rate2, mut speed_m_s) = (0.0f64, 0.0f64);
         let quadrature = self.quadrature();
-        let has_springs = self.has_shear_springs();
         let (mut friction_j, mut motion_j, mut load_j, mut damping_j) = (0.0, 0.0, 0.0, 0.0);
         for (k, body) in self.bodies.iter().enumerate() {
             let report = &body.report;
             self.ledger.blocks().add_ringing(k, &quadrature, &report.drive);
-            if has_springs {
-                self.ledger.blocks().add_creep(k, self.part_s, &report.drive);
-            }
             force += report.reaction - report.motion_impulse / self.part_s;
             torque += report.outside_torque;
             impulse += report.motion_impulse;
@@ -428,11 +424,6 @@ impl Simulation {
         self.ledger.watch(&report);
         self.advance_clock();
         report
-    }
-
-    /// Whether there is friction, and it acts by springs that remember, not on velocities.
-    fn has_shear_springs(&self) -> bool {
-        !self.friction_force.is_empty() && self.contact.as_ref().is_some_and(|model| !model.needs_bodies())
     }
 
     /// How this step takes forces.

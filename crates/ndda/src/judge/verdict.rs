@@ -76,7 +76,6 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(resolution(simulation));
     entries.extend(turns(simulation));
     entries.push(ringing(simulation));
-    entries.push(creep(simulation));
     entries.extend(within_a_step(simulation));
     if simulation.has_lumped_rotation() {
         entries.extend(lumped_rotation(simulation));
@@ -281,18 +280,6 @@ fn ringing(simulation: &Simulation) -> Entry {
         100.0 * SPEED
     );
     warned("I8 ringing / speed", worst.value, SPEED, reason)
-}
-
-/// Whether shear springs held what they should while contact vibrated.
-fn creep(simulation: &Simulation) -> Entry {
-    let worst = simulation.invariants().creep;
-    let reason = format!(
-        "block `{}` moved by {:.2} of its smallest height, limit {PLACE}, while its contact forces vibrated and friction could have held it: shear springs \
-         let it creep then; begin with settle: (), apply gravity by gravity_ramp_s, or leave out shear_penalty_pa_m",
-        name(simulation, worst),
-        worst.value
-    );
-    warned("creep / height", worst.value, PLACE, reason)
 }
 
 /// Whether anything comes and goes within a step.
