@@ -46,7 +46,7 @@ const SHORT: [(&str, f64); 10] = [
     ("arch", 2e-3),
     ("bounce", 0.15),
     ("column_phi0", 2e-3),
-    ("column_phi5", 2e-3),
+    ("column_phi5", 4e-3),
     ("column_phi10", 2e-3),
     ("dominoes", 5e-3),
     ("pile_1000", 1e-3),
