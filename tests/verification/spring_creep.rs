@@ -2,6 +2,8 @@
 //! weight, the limit of friction μ N falls with it in each swing, and the spring loses what is above the limit each time. An independent
 //! integration of two masses on springs and sliders creeps as fast, so that this is the law and not its implementation.
 
+use ndda::judge::verdict;
+use ndda_io::summary::LabelWord;
 use ndda_mesh::BlockId;
 use ndda_solver::{Settle, Simulation};
 
@@ -114,4 +116,41 @@ fn a_stack_that_starts_at_rest_does_not_creep() {
     let late = slips(&simulation);
     let crept_m = (0..2).map(|k| (late[k] - early[k]).abs()).fold(0.0, f64::max);
     row("creep", "slip of a stack at rest after its first second [m]", crept_m, AtMost(1e-6));
+}
+
+/// The label of a stack after so many seconds, and how far its upper plate is [m].
+fn labelled(simulation: &mut Simulation, step_s: f64, end_s: f64) -> (LabelWord, String, f64) {
+    for _ in 0..10 {
+        advance(simulation, (0.1 * end_s / step_s).round() as u64);
+        simulation.sample().expect("a sound state");
+    }
+    let label = verdict::label(simulation, None);
+    (label.word, label.reasons.join("; "), slips(simulation)[1])
+}
+
+#[test]
+fn a_stack_that_creeps_is_not_called_accurate() {
+    let step_s = 1e-4;
+    for shear_pa_m in [1e8, 1e9] {
+        let mut simulation = stack(0.1, step_s, 30.0, shear_pa_m);
+        let (word, reasons, slip_m) = labelled(&mut simulation, step_s, 5.0);
+        println!("k_s = {shear_pa_m:e} Pa/m: {slip_m:.3e} m, {word:?}: {reasons}, {:?}", simulation.invariants());
+        assert_eq!(word, LabelWord::Inaccurate, "k_s = {shear_pa_m:e} Pa/m, slip {slip_m} m");
+        assert!(reasons.contains("cre"), "{reasons}");
+    }
+}
+
+#[test]
+fn a_stack_that_is_held_or_slides_is_not_said_to_creep() {
+    for (friction_deg, settles) in [(30.0, true), (10.0, false), (5.0, false)] {
+        let step_s = 1e-4;
+        let mut simulation = stack(0.1, step_s, friction_deg, 1e9);
+        if settles {
+            let settle = Settle { tolerance: 1e-6, most_steps: 1_000_000 };
+            simulation.settle(&settle).expect("a stack that comes to rest");
+        }
+        let (_, reasons, slip_m) = labelled(&mut simulation, step_s, 0.5);
+        println!("φ = {friction_deg}°: {slip_m:.3e} m: {reasons}, {:?}", simulation.invariants());
+        assert!(!reasons.contains("cre"), "φ = {friction_deg}°, slip {slip_m} m: {reasons}");
+    }
 }

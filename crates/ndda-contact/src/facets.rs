@@ -26,6 +26,8 @@ pub struct FacetForce {
     pub shear_slope: f64,
     /// Whether its friction is below what it may be.
     pub sticks: bool,
+    /// What a shear spring did in the step, where there is one.
+    pub spring: Option<SpringSlip>,
     /// Memory to keep, where there is friction and contact.
     pub memory: Option<ShearMemory>,
     /// Whether there is a force at all.
@@ -34,6 +36,17 @@ pub struct FacetForce {
     pub center: Vec3,
     /// In [`Candidates::facets`].
     pub facet: u32,
+}
+
+/// What the shear spring of a facet, or of several, did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpringSlip {
+    /// Most that it carries [N].
+    pub capacity_n: f64,
+    /// What it carries [N].
+    pub shear_n: f64,
+    /// Slip that it did not take up as a spring, of the contactor on the target [m].
+    pub lost_m: Vec3,
 }
 
 /// What the evaluation of a facet reads.
@@ -91,11 +104,19 @@ impl FacetScene<'_> {
             return;
         }
         let slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
+        let before_n = memory.shear_n;
         law.advance(&slip, &mut memory);
         let [x, y] = memory.shear_n;
         force.sticks = length([x, y]) < STICKS * law.capacity_n(&slip, &memory);
         force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / sums.pressure;
         force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / sums.pressure;
+        let spring_n_m = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2;
+        if spring_n_m > 0.0 {
+            let lost = [0, 1].map(|i| slip.slip_m[i] - (before_n[i] - memory.shear_n[i]) / spring_n_m);
+            let lost_m = if force.sticks { Vec3::zeros() } else { basis[0] * lost[0] + basis[1] * lost[1] };
+            let capacity_n = law.capacity_n(&slip, &memory);
+            force.spring = Some(SpringSlip { capacity_n, shear_n: length([x, y]), lost_m });
+        }
         force.memory = Some(memory);
     }
 
