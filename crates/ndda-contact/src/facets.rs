@@ -45,8 +45,10 @@ pub struct SpringSlip {
     pub capacity_n: f64,
     /// What it carries [N].
     pub shear_n: f64,
-    /// Slip that it did not take up as a spring, of the contactor on the target [m].
-    pub lost_m: Vec3,
+    /// Slip of the contactor on the target [m].
+    pub slip_m: Vec3,
+    /// Whether it carries all that it may.
+    pub slides: bool,
 }
 
 /// What the evaluation of a facet reads.
@@ -104,18 +106,15 @@ impl FacetScene<'_> {
             return;
         }
         let slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
-        let before_n = memory.shear_n;
         law.advance(&slip, &mut memory);
         let [x, y] = memory.shear_n;
         force.sticks = length([x, y]) < STICKS * law.capacity_n(&slip, &memory);
         force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / sums.pressure;
         force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / sums.pressure;
-        let spring_n_m = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2;
-        if spring_n_m > 0.0 {
-            let lost = [0, 1].map(|i| slip.slip_m[i] - (before_n[i] - memory.shear_n[i]) / spring_n_m);
-            let lost_m = if force.sticks { Vec3::zeros() } else { basis[0] * lost[0] + basis[1] * lost[1] };
-            let capacity_n = law.capacity_n(&slip, &memory);
-            force.spring = Some(SpringSlip { capacity_n, shear_n: length([x, y]), lost_m });
+        if force.shear_slope > 0.0 {
+            let slip_m = basis[0] * slip.slip_m[0] + basis[1] * slip.slip_m[1];
+            let (capacity_n, shear_n) = (law.capacity_n(&slip, &memory), length([x, y]));
+            force.spring = Some(SpringSlip { capacity_n, shear_n, slip_m, slides: !force.sticks });
         }
         force.memory = Some(memory);
     }

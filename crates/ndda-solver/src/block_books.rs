@@ -162,8 +162,7 @@ impl BlockBooks {
         // Of two equal ones the second counts, which may lie on the first.
         let lies_on = self.scales[target.index()].weight() < self.scales[owner.index()].weight();
         let ties = self.scales[target.index()].weight() == self.scales[owner.index()].weight();
-        let (lighter, sign) =
-            if lies_on || (ties && target > owner) { (target, -1.0) } else { (owner, 1.0) };
+        let (lighter, sign) = if lies_on || (ties && target > owner) { (target, -1.0) } else { (owner, 1.0) };
         self.creep.add(lighter, sign, spring);
     }
 

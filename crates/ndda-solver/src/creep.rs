@@ -2,7 +2,7 @@
 //!
 //! Where the normal force swings about a mean N̄, the limit μ N of a spring falls below what the spring carries in each swing, and what it
 //! loses then does not come back, though in the mean it carries less than μ N̄ and a load at rest would be held. A swing ends where the
-//! limit, having been below its mean over the swing, rises above it. Slip counts as creep in swings in which springs carry less than
+//! limit, having been below its mean over the swing, rises above it; what the spring stretches within it comes back by then. Slip counts as creep in swings in which springs carry less than
 //! they may in the mean, from the second of such swings in a row: the only one is a block that slides and comes to rest. A
 //! swing of which more than half passes without contact is flight.
 
@@ -20,10 +20,11 @@ const STICKS: f64 = 1.0 - 1e-6;
 struct Swing {
     time_s: f64,
     parted_s: f64,
-    /// Integrals over time of the limit, of what springs carry [N s], and the slip that they lost [m].
+    /// Integrals over time of the limit, of what springs carry [N s], slip [m], and whether a spring ever slid.
     limit_n_s: f64,
     shear_n_s: f64,
-    lost_m: Vec3,
+    slip_m: Vec3,
+    slides: bool,
     /// Whether the limit has been below its mean.
     has_fallen: bool,
 }
@@ -31,19 +32,18 @@ struct Swing {
 impl Swing {
     /// Whether springs slip, though they carry less than they may in the mean.
     fn creeps(&self) -> bool {
-        self.lost_m != Vec3::zeros()
-            && self.shear_n_s < STICKS * self.limit_n_s
-            && self.parted_s <= 0.5 * self.time_s
+        self.slides && self.shear_n_s < STICKS * self.limit_n_s && self.parted_s <= 0.5 * self.time_s
     }
 }
 
 /// The creep of one block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Book {
-    /// Of the step: limit [N], what springs carry [N], limit times lost slip [N m].
+    /// Of the step: limit [N], what springs carry [N], limit times slip [N m], and whether any slides.
     limit_n: f64,
     shear_n: f64,
-    lost_n_m: Vec3,
+    slip_n_m: Vec3,
+    slides: bool,
     swing: Swing,
     /// Whether the swing before crept.
     crept_before: bool,
@@ -55,8 +55,8 @@ struct Book {
 
 impl Book {
     fn close_step(&mut self, dt_s: f64) {
-        let (limit_n, shear_n, lost_n_m) = (self.limit_n, self.shear_n, self.lost_n_m);
-        (self.limit_n, self.shear_n, self.lost_n_m) = (0.0, 0.0, Vec3::zeros());
+        let (limit_n, shear_n, slip_n_m) = (self.limit_n, self.shear_n, self.slip_n_m);
+        (self.limit_n, self.shear_n, self.slip_n_m) = (0.0, 0.0, Vec3::zeros());
         if self.time_s == 0.0 && limit_n == 0.0 {
             return;
         }
@@ -71,8 +71,9 @@ impl Book {
         swing.time_s += dt_s;
         swing.limit_n_s += dt_s * limit_n;
         swing.shear_n_s += dt_s * shear_n;
+        swing.slides |= std::mem::take(&mut self.slides);
         if limit_n > 0.0 {
-            swing.lost_m += lost_n_m / limit_n;
+            swing.slip_m += slip_n_m / limit_n;
         } else {
             swing.parted_s += dt_s;
         }
@@ -81,7 +82,7 @@ impl Book {
     fn close_swing(&mut self) {
         let creeps = self.swing.creeps();
         if creeps && self.crept_before {
-            self.crept_m += self.swing.lost_m;
+            self.crept_m += self.swing.slip_m;
             self.farthest_m = self.farthest_m.max(self.crept_m.norm());
         }
         self.crept_before = creeps;
@@ -101,12 +102,13 @@ impl CreepBooks {
         self.books.resize(blocks, Book::default());
     }
 
-    /// Books what a spring did to the lighter of two blocks; `lost_sign` is −1 where that is the target.
-    pub fn add(&mut self, lighter: BlockId, lost_sign: f64, spring: &SpringSlip) {
+    /// Books what a spring did to the lighter of two blocks; `sign` is −1 where that is the target.
+    pub fn add(&mut self, lighter: BlockId, sign: f64, spring: &SpringSlip) {
         let book = &mut self.books[lighter.index()];
         book.limit_n += spring.capacity_n;
         book.shear_n += spring.shear_n;
-        book.lost_n_m += lost_sign * spring.capacity_n * spring.lost_m;
+        book.slip_n_m += sign * spring.capacity_n * spring.slip_m;
+        book.slides |= spring.slides;
     }
 
     /// Ends a step.
@@ -141,8 +143,12 @@ mod tests {
             let phase = std::f64::consts::TAU * f64::from(step) / 100.0;
             let capacity_n = 1.0 - (1.0 - least_n) * phase.cos();
             let slides = shear_n >= capacity_n;
-            let lost_m = if slides { Vec3::x() * 1e-3 } else { Vec3::zeros() };
-            books.add(BlockId(0), 1.0, &SpringSlip { capacity_n, shear_n: shear_n.min(capacity_n), lost_m });
+            let slip_m = if slides { Vec3::x() * 1e-3 } else { Vec3::zeros() };
+            books.add(
+                BlockId(0),
+                1.0,
+                &SpringSlip { capacity_n, shear_n: shear_n.min(capacity_n), slip_m, slides },
+            );
             books.close_step(1e-3);
         }
         books.books[0].farthest_m

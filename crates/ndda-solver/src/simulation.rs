@@ -640,6 +640,11 @@ impl Simulation {
         self.newton.is_some() || !asked || self.shapes.iter().all(rigid)
     }
 
+    /// Largest speed of the run so far [m/s].
+    pub fn largest_speed_m_s(&self) -> f64 {
+        self.ledger.largest_speed_m_s()
+    }
+
     /// The worst of the run so far.
     pub fn invariants(&self) -> Invariants {
         self.ledger.invariants()
