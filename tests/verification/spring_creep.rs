@@ -2,6 +2,8 @@
 //! weight, the limit of friction μ N falls with it in each swing, and the spring loses what is above the limit each time. An independent
 //! integration of two masses on springs and sliders creeps as fast, so that this is the law and not its implementation.
 
+use ndda::judge::verdict;
+use ndda_io::summary::LabelWord;
 use ndda_mesh::BlockId;
 use ndda_solver::{Settle, Simulation};
 
@@ -114,4 +116,57 @@ fn a_stack_that_starts_at_rest_does_not_creep() {
     let late = slips(&simulation);
     let crept_m = (0..2).map(|k| (late[k] - early[k]).abs()).fold(0.0, f64::max);
     row("creep", "slip of a stack at rest after its first second [m]", crept_m, AtMost(1e-6));
+}
+
+/// The label of a stack after so many seconds.
+fn labelled(simulation: &mut Simulation, step_s: f64, end_s: f64) -> (LabelWord, String) {
+    simulation.sample().expect("a sound state");
+    for _ in 0..10 {
+        advance(simulation, (0.1 * end_s / step_s).round() as u64);
+        simulation.sample().expect("a sound state");
+    }
+    let label = verdict::label(simulation, None);
+    (label.word, label.reasons.join("; "))
+}
+
+#[test]
+fn a_stack_that_creeps_is_not_called_accurate() {
+    let step_s = 1e-4;
+    for shear_pa_m in [1e8, 1e9] {
+        let mut simulation = stack(0.1, step_s, 30.0, shear_pa_m);
+        let (word, reasons) = labelled(&mut simulation, step_s, 5.0);
+        println!("k_s = {shear_pa_m:e} Pa/m: {:?} m, {word:?}: {reasons}", slips(&simulation));
+        assert_eq!(word, LabelWord::Inaccurate, "k_s = {shear_pa_m:e} Pa/m");
+        assert!(reasons.contains("creeps"), "{reasons}");
+    }
+}
+
+#[test]
+fn what_is_judged_as_creep_is_what_two_masses_with_sliders_slip() {
+    let step_s = 2e-5;
+    for shear_pa_m in [1e8, 1e9] {
+        let mut simulation = stack(1e-3, step_s, 30.0, shear_pa_m);
+        let (word, reasons) = labelled(&mut simulation, step_s, END_S);
+        assert_eq!(word, LabelWord::Inaccurate, "{reasons}");
+        let [lower, upper] = oscillators(30.0, shear_pa_m);
+        let worst = simulation.invariants();
+        let speed_m_s = worst.creep_speed.value * simulation.largest_speed_m_s();
+        let what = format!("mean speed of creep that the label sees, k_s = {shear_pa_m:e} Pa/m [m/s]");
+        // The first swing and an unfinished one do not count.
+        row("creep", &what, speed_m_s, Within(lower.max(upper - lower) / END_S, 0.1));
+    }
+}
+
+#[test]
+fn a_stack_that_is_held_or_slides_is_accurate() {
+    for (friction_deg, settles) in [(30.0, true), (10.0, false), (5.0, false)] {
+        let step_s = 1e-4;
+        let mut simulation = stack(0.1, step_s, friction_deg, 1e9);
+        if settles {
+            let settle = Settle { tolerance: 1e-6, most_steps: 1_000_000 };
+            simulation.settle(&settle).expect("a stack that comes to rest");
+        }
+        let (word, reasons) = labelled(&mut simulation, step_s, 0.5);
+        assert_eq!(word, LabelWord::Accurate, "φ = {friction_deg}°: {reasons}");
+    }
 }

@@ -26,6 +26,8 @@ pub struct FacetForce {
     pub shear_slope: f64,
     /// Whether its friction is below what it may be.
     pub sticks: bool,
+    /// What a shear spring did in the step, where there is one.
+    pub spring: Option<SpringSlip>,
     /// Memory to keep, where there is friction and contact.
     pub memory: Option<ShearMemory>,
     /// Whether there is a force at all.
@@ -34,6 +36,19 @@ pub struct FacetForce {
     pub center: Vec3,
     /// In [`Candidates::facets`].
     pub facet: u32,
+}
+
+/// What the shear spring of a facet, or of several, did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpringSlip {
+    /// Most that it carries [N].
+    pub capacity_n: f64,
+    /// What it carries [N].
+    pub shear_n: f64,
+    /// Slip of the contactor on the target [m].
+    pub slip_m: Vec3,
+    /// Whether it carries all that it may.
+    pub slides: bool,
 }
 
 /// What the evaluation of a facet reads.
@@ -96,6 +111,11 @@ impl FacetScene<'_> {
         force.sticks = length([x, y]) < STICKS * law.capacity_n(&slip, &memory);
         force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / sums.pressure;
         force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / sums.pressure;
+        if force.shear_slope > 0.0 {
+            let slip_m = basis[0] * slip.slip_m[0] + basis[1] * slip.slip_m[1];
+            let (capacity_n, shear_n) = (law.capacity_n(&slip, &memory), length([x, y]));
+            force.spring = Some(SpringSlip { capacity_n, shear_n, slip_m, slides: !force.sticks });
+        }
         force.memory = Some(memory);
     }
 

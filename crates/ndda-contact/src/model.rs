@@ -3,6 +3,7 @@
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 use serde::{Deserialize, Serialize};
 
+use crate::facets::SpringSlip;
 use crate::pair_stiffness::PairStiffness;
 use crate::plan::Part;
 
@@ -292,6 +293,10 @@ pub trait ContactModel: Send + Sync {
         _add: &mut dyn FnMut(BlockId, BlockId, f64),
     ) {
     }
+
+    /// What shear springs did in the last [`add_forces`](Self::add_forces): the block of a facet, its target, and the slip of the first on
+    /// the second, one call for each facet that has a spring, always in the same order.
+    fn each_spring_slip(&self, _add: &mut dyn FnMut(BlockId, BlockId, &SpringSlip)) {}
 
     /// Energies of normal contact as [`energy_j`](Self::energy_j) found them in the call before: two blocks and their
     /// energy [J], at most one call for each pair.

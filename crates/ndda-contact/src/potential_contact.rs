@@ -13,7 +13,7 @@ use crate::candidates::Candidates;
 use crate::closing::closing_m_s;
 use crate::element_potential::ElementPotential;
 use crate::energy::{self, OverlapParts};
-use crate::facets::{FacetForce, FacetScene, relative_motion};
+use crate::facets::{FacetForce, FacetScene, SpringSlip, relative_motion};
 use crate::friction::FrictionLaw;
 use crate::friction_patches::{FrictionPatches, PatchScene};
 use crate::hulls::Hulls;
@@ -396,6 +396,17 @@ impl ContactModel for PotentialContact {
     ) {
         if self.needs_bodies() {
             self.faces.each_coulomb_gap((blocks, &self.integrals, &self.forces), moved, add);
+        }
+    }
+
+    fn each_spring_slip(&self, add: &mut dyn FnMut(BlockId, BlockId, &SpringSlip)) {
+        if self.joints.is_none() {
+            return;
+        }
+        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
+            if let Some(spring) = &force.spring {
+                add(touch.owner, touch.target, spring);
+            }
         }
     }
 

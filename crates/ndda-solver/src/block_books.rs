@@ -4,9 +4,11 @@
 //! work of its forces on both blocks is not what its potential energy loses. The lighter block feels it: where two meet at v,
 //! an error of energy δE is one of its speed δv = δE/(m v), whatever the other weighs.
 
+use ndda_contact::facets::SpringSlip;
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
+use crate::creep::CreepBooks;
 use crate::ringing::{Drive, Quadrature, Ringing};
 use crate::squeeze::Sideways;
 
@@ -103,13 +105,14 @@ pub struct BlockBooks {
     solves_contact: bool,
     /// Largest error of a velocity for being turned too little [m/s].
     turned_m_s: f64,
+    creep: CreepBooks,
 }
 
 impl BlockBooks {
     /// Empty books.
     pub fn new(scales: Vec<BlockScale>, solves_contact: bool) -> Self {
         let books = vec![Book::default(); scales.len()];
-        Self { scales, books, begun: false, solves_contact, turned_m_s: 0.0 }
+        Self { scales, books, begun: false, solves_contact, turned_m_s: 0.0, creep: CreepBooks::default() }
     }
 
     /// Number of blocks.
@@ -154,6 +157,26 @@ impl BlockBooks {
             }
         }
         worst
+    }
+
+    /// Books what the shear spring of a facet of `owner` did in a step.
+    pub fn add_spring_slip(&mut self, owner: BlockId, target: BlockId, spring: &SpringSlip) {
+        self.creep.make_room(self.scales.len());
+        // Of two equal ones the second counts, which may lie on the first.
+        let lies_on = self.scales[target.index()].weight() < self.scales[owner.index()].weight();
+        let ties = self.scales[target.index()].weight() == self.scales[owner.index()].weight();
+        let (lighter, sign) = if lies_on || (ties && target > owner) { (target, -1.0) } else { (owner, 1.0) };
+        self.creep.add(lighter, sign, spring);
+    }
+
+    /// Ends a step of shear springs.
+    pub fn close_springs(&mut self, dt_s: f64) {
+        self.creep.close_step(dt_s);
+    }
+
+    /// Largest speed of creep over a speed, and largest place over the smallest height of the block's tetrahedra.
+    pub fn creep(&self, speed_m_s: f64) -> (Worst, Worst) {
+        self.creep.worst(&self.scales, speed_m_s)
     }
 
     /// Keeps how fast contact has met each block, once all work of a step is booked.

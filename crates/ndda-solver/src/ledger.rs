@@ -108,6 +108,10 @@ pub struct Invariants {
     pub squeezed_speed: Worst,
     /// I5: where that took it, over the smallest tet height of its block.
     pub squeezed_place: Worst,
+    /// I4: mean speed at which a block creeps on shear springs that contact makes slip by ringing, over the largest speed.
+    pub creep_speed: Worst,
+    /// I4: where that took it, over the smallest tet height of its block.
+    pub creep_place: Worst,
     /// I6: |action + reaction| / |force| over the pairs.
     pub action_reaction: f64,
     /// I7: smallest det F.
@@ -198,6 +202,8 @@ impl Ledger {
             max_penetration_ratio: 0.0,
             squeezed_speed: Worst::default(),
             squeezed_place: Worst::default(),
+            creep_speed: Worst::default(),
+            creep_place: Worst::default(),
             action_reaction: 0.0,
             smallest_volume_ratio: 1.0,
             largest_strain: Worst::default(),
@@ -423,6 +429,7 @@ impl Ledger {
         let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
         let (block_gain, block_loss) = self.blocks.lasting(self.largest_speed_m_s, self.rounding_j);
         let (squeezed_speed, squeezed_place) = self.blocks.squeezed(self.largest_speed_m_s, self.rounding_j);
+        let (creep_speed, creep_place) = self.blocks.creep(self.largest_speed_m_s);
         let (lumped_speed, lumped_place) = self.blocks.lumped(self.largest_speed_m_s, self.rounding_j);
         let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
         Invariants {
@@ -437,6 +444,8 @@ impl Ledger {
             unresolved_friction: self.blocks.unresolved_friction(self.largest_speed_m_s, self.rounding_j),
             squeezed_speed,
             squeezed_place,
+            creep_speed,
+            creep_place,
             lumped_speed,
             lumped_place,
             turn_place: self.blocks.turned_over_height(),

@@ -11,6 +11,7 @@ pub mod conjugate_gradients;
 mod contact_fields;
 pub mod contact_moments;
 mod contact_rates;
+pub mod creep;
 pub mod damping;
 mod deformation;
 pub mod dense_inverse;

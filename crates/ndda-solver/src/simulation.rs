@@ -419,6 +419,7 @@ impl Simulation {
         if self.loose > 0.0 {
             self.book_squeezing();
         }
+        self.book_springs(&contact);
         self.ledger.watch_speeds(speed_m_s, self.unseen_m_s());
         let report = StepReport { contact, h, travel, contact_work_j, iterations };
         self.ledger.watch(&report);
@@ -464,6 +465,18 @@ impl Simulation {
         });
         books.close_step();
         contact_work_j
+    }
+
+    /// Books the slip that shear springs lost in the step.
+    fn book_springs(&mut self, contact: &ContactReport) {
+        let Some(model) = self.contact.as_ref() else { return };
+        let books = self.ledger.blocks();
+        if contact.contact_pairs > 0 {
+            model.each_spring_slip(&mut |owner, target, spring| {
+                books.add_spring_slip(owner, target, spring);
+            });
+        }
+        books.close_springs(self.part_s);
     }
 
     /// Books the impulses of damping and of prescribed velocities, and how well the step resolves damping.
@@ -663,6 +676,11 @@ impl Simulation {
         let asked = self.integrator.damps_elasticity();
         let rigid = |shape: &Shape| matches!(shape.kind, BodyKind::Rigid | BodyKind::Fixed);
         self.newton.is_some() || !asked || self.shapes.iter().all(rigid)
+    }
+
+    /// Largest speed of the run so far [m/s].
+    pub fn largest_speed_m_s(&self) -> f64 {
+        self.ledger.largest_speed_m_s()
     }
 
     /// The worst of the run so far.

@@ -67,6 +67,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(energy(simulation));
     entries.push(energy_of_the_lighter(simulation));
     entries.push(friction(simulation));
+    entries.extend(creep(simulation));
     entries.extend(contact(simulation));
     entries.extend(squeezed(simulation));
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
@@ -142,6 +143,28 @@ fn friction(simulation: &Simulation) -> Entry {
         100.0 * MOST_FRICTION
     );
     warned("I4 friction resolved", worst.value, MOST_FRICTION, reason)
+}
+
+/// Whether blocks creep on shear springs while contact rings.
+fn creep(simulation: &Simulation) -> [Entry; 2] {
+    let worst = simulation.invariants();
+    let (place, speed) = (worst.creep_place, worst.creep_speed);
+    let cure = "because contact rings and its shear springs slip in each swing: begin with settle: (), ramp gravity by gravity_ramp_s, or leave out shear_penalty_pa_m";
+    let where_it_is = format!(
+        "block `{}` crept by {:.2} of its smallest height, limit {PLACE}, {cure}",
+        name(simulation, place),
+        place.value
+    );
+    let how_fast = format!(
+        "block `{}` creeps at {:.1} % of the largest speed, limit {:.0} %, {cure}",
+        name(simulation, speed),
+        100.0 * speed.value,
+        100.0 * SPEED
+    );
+    [
+        warned("I4 creep / height", place.value, PLACE, where_it_is),
+        warned("I4 creep / speed", speed.value, SPEED, how_fast),
+    ]
 }
 
 fn name(simulation: &Simulation, worst: Worst) -> &str {
