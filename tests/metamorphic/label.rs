@@ -188,7 +188,6 @@ fn record(case: &Case) -> Record {
         LabelWord::Stopped => "stopped",
     };
     let mut record = Record::new(case, word, &label.reasons);
-    if std::env::var_os("NDDA_VERDICTS").is_some() { println!("{:#?}", ready.simulation.invariants()); }
     if stopped.is_none() {
         let (speeds, places, doubt, right) = truth(case, &ready, &sizes(&ready.simulation));
         record.judged(speeds, places, doubt, right);

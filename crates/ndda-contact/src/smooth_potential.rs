@@ -6,6 +6,9 @@ use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, Vec3};
 use crate::block_faces::{BlockFaces, Plane};
 use crate::potential::{ContactPotential, Field, MOST_PIECES, PieceTable, PotentialError};
 
+/// Depths closer than this fraction of the block's largest are the same: by rounding, they differ with how it is turned.
+const SAME_DEPTH: f64 = 1e-11;
+
 /// φ = depth / L₀, depth being the distance to the nearest face of the block in its rest shape; it moves and
 /// stretches with the block's nodes.
 ///
@@ -52,15 +55,20 @@ impl SmoothPotential {
         table: &mut PieceTable,
     ) -> Result<(), PotentialError> {
         let (mut pieces, mut kept) = (Vec::new(), Vec::new());
+        let deepest = blocks.nodes_of(block).map(|n| blocks.rest_position[n]);
+        let deepest = deepest.flat_map(|x| planes.iter().map(move |plane| plane.depth_m(&x)));
+        let same = SAME_DEPTH * deepest.fold(0.0, f64::max) / self.reference_m;
         for tet in blocks.tets_of(block) {
             let corners = blocks.tets[tet].map(|n| blocks.rest_position[n.index()]);
-            let depth = |plane: &Plane| corners.map(|x| plane.depth_m(&x).max(0.0) / self.reference_m);
+            let depth = |plane: &Plane| {
+                corners.map(|x| plane.depth_m(&x) / self.reference_m).map(|d| if d > same { d } else { 0.0 })
+            };
             // A function that is nowhere below another's largest value is never the smallest.
             let largest = |piece: &[f64; 4]| piece.iter().copied().fold(0.0, f64::max);
             let enough = planes.iter().map(|plane| largest(&depth(plane))).fold(f64::INFINITY, f64::min);
             pieces.clear();
-            pieces.extend(planes.iter().map(depth).filter(|piece| piece.iter().any(|&d| d <= enough)));
-            keep_the_smallest(&pieces, &mut kept);
+            pieces.extend(planes.iter().map(depth).filter(|piece| piece.iter().any(|&d| d <= enough + same)));
+            keep_the_smallest(&pieces, same, &mut kept);
             if kept.len() > MOST_PIECES {
                 let (block, tet) = (blocks.names[block.index()].clone(), TetId(tet as u32));
                 return Err(PotentialError::TooManyFaces { block, tet, faces: kept.len() });
@@ -90,13 +98,15 @@ impl SmoothPotential {
     }
 }
 
-/// Drops functions that another is nowhere above: they are never the only smallest.
-fn keep_the_smallest(pieces: &[[f64; 4]], kept: &mut Vec<[f64; 4]>) {
+/// Drops functions that another is nowhere above, but for rounding: they are never the only smallest.
+fn keep_the_smallest(pieces: &[[f64; 4]], same: f64, kept: &mut Vec<[f64; 4]>) {
     kept.clear();
+    let below = |o: &[f64; 4], p: &[f64; 4]| o.iter().zip(p).all(|(o, p)| *o <= p + same);
     for (k, piece) in pieces.iter().enumerate() {
-        let below = |other: &[f64; 4]| other.iter().zip(piece).all(|(o, p)| o <= p);
-        let beaten = |(j, other): (usize, &[f64; 4])| j != k && below(other) && (other != piece || j < k);
-        if !pieces.iter().enumerate().any(beaten) {
+        // Of two that are the same the former is kept.
+        let beaten = kept.iter().any(|other| below(other, piece))
+            || pieces[k + 1..].iter().any(|other| below(other, piece) && !below(piece, other));
+        if !beaten {
             kept.push(*piece);
         }
     }

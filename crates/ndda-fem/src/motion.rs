@@ -23,7 +23,7 @@ impl Motion {
     }
 
     /// Velocity just after a time [m/s].
-    fn velocity(&self, time_s: f64) -> Vec3 {
+    pub fn velocity(&self, time_s: f64) -> Vec3 {
         match self {
             Self::Rows(rows) => {
                 let next = rows.partition_point(|row| row.0 <= time_s);

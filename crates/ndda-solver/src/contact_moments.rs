@@ -87,6 +87,19 @@ impl Simulation {
         }
         self.contact_moments = Some(moments);
     }
+
+    /// Σ v × F of the contact forces of the last step, v being the velocity of each block itself: what they carry as long as nobody
+    /// knows between which pairs they act, and the same for all observers.
+    pub(crate) fn carry_by_blocks(&mut self) {
+        let Some(mut moments) = self.contact_moments.take() else { return };
+        for block in self.blocks.ids() {
+            let nodes = self.blocks.nodes_of(block);
+            let velocity_m_s = self.shape(block).operator.center(&self.state.velocity[nodes.clone()]);
+            let force: Vec3 = self.state.contact_force[nodes].iter().sum();
+            moments.carried[block.index()] = velocity_m_s.cross(&force);
+        }
+        self.contact_moments = Some(moments);
+    }
 }
 
 /// Places and velocities of a block as a whole at the start of a step, and how far it goes.

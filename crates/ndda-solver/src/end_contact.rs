@@ -144,9 +144,7 @@ impl Simulation {
         // A rigid block takes torques about x*: the first evaluation takes them where the blocks are, not where an
         // earlier step, or a part of one that was taken back, left x*.
         self.contact_position.copy_from_slice(&self.state.position);
-        if let Some(moments) = &mut self.contact_moments {
-            moments.carried.fill(Vec3::zeros());
-        }
+        self.carry_by_blocks();
         newton.lifted.fill(Vec3::zeros());
         loop {
             let report = self.evaluate_at_end(newton, stride)?;
@@ -229,6 +227,8 @@ impl Simulation {
         self.force.fill(Vec3::zeros());
         let report = self.add_contact_forces(Some(&newton.velocity))?;
         self.hold_friction(newton);
+        // What these forces turn the blocks by is that of all observers only together with the velocities of their pairs.
+        self.carry_contact_forces();
         for ((q, contact), f) in newton.residual.iter_mut().zip(&self.force).zip(&newton.force) {
             *q = contact - f;
         }

@@ -184,13 +184,16 @@ impl Simulation {
                 Motion::Elastic(Box::new(body))
             }
             BodyKind::Rigid => Motion::Rigid(RigidBody::new(shape)),
-            BodyKind::Fixed => {
-                self.state.velocity[range].fill(Vec3::zeros());
-                Motion::Fixed(FixedBody::new(shape, rest))
-            }
+            BodyKind::Fixed => Motion::Fixed(FixedBody::new(shape, rest)),
         };
         let report = BlockReport::default();
         self.bodies.push(Body { shape: shape_index, motion, report, error: None, batch: None });
+        if shape.kind == BodyKind::Fixed {
+            // It moves as prescribed from the start: contact sees it ahead of where it is, and facets slip by its velocity.
+            let nodes = self.blocks.nodes_of(block);
+            self.state.velocity[nodes].fill(shape.velocity_as_a_whole(0.0));
+            return;
+        }
         if shape.kind == BodyKind::Affine && !shape.is_free() {
             let velocity = &mut self.state.velocity[self.blocks.nodes_of(block)];
             shape.unknowns.restrict(&shape.operator.node_mass, velocity);

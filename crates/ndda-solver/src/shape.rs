@@ -258,6 +258,11 @@ impl Shape {
         self.supports.motions.last().map_or_else(Vec3::zeros, |motion| motion.displacement(time_s))
     }
 
+    /// How fast it moves just after time t [m/s].
+    pub fn velocity_as_a_whole(&self, time_s: f64) -> Vec3 {
+        self.supports.motions.last().map_or_else(Vec3::zeros, |motion| motion.velocity(time_s))
+    }
+
     /// Whether nothing holds the block, so that its momentum changes by outside forces only.
     pub fn is_free(&self) -> bool {
         self.kind != BodyKind::Fixed && self.supports.held.is_empty() && self.supports.springs.is_empty()

@@ -146,7 +146,6 @@ impl Simulation {
             self.begin_ahead()?;
         }
         let (contact, iterations) = self.gather_contact()?;
-        self.carry_contact_forces();
         let depth = contact.max_penetration_ratio;
         self.loose = if depth > self.least_friction { depth } else { 0.0 };
         self.note_contacts();
@@ -175,6 +174,7 @@ impl Simulation {
         let Some(mut newton) = self.newton.take() else {
             self.place_contact();
             let report = self.add_contact_forces(None)?;
+            self.carry_contact_forces();
             self.stop_past_centroid(&report)?;
             return Ok((report, Iterations::default()));
         };
@@ -195,6 +195,22 @@ impl Simulation {
         if lead != 0.0 {
             let accelerations = self.contact_position.iter_mut().zip(&self.state.acceleration);
             accelerations.for_each(|(place, a)| *place += lead * a);
+        }
+        self.place_moved_bases();
+    }
+
+    /// x* of blocks that go where they are told to: where they are at that time.
+    fn place_moved_bases(&mut self) {
+        let (now_s, then_s) = (self.clock_s(0.0), self.clock_s(self.weights.contact_lead));
+        for (block, body) in self.blocks.ids().zip(&self.bodies) {
+            let shape = &self.shapes[body.shape];
+            if shape.kind != BodyKind::Fixed || shape.supports.motions.is_empty() {
+                continue;
+            }
+            let gone = shape.displacement_as_a_whole(then_s) - shape.displacement_as_a_whole(now_s);
+            let nodes = self.blocks.nodes_of(block);
+            let (places, start) = (&mut self.contact_position[nodes.clone()], &self.state.position[nodes]);
+            places.iter_mut().zip(start).for_each(|(place, x)| *place = x + gone);
         }
     }
 

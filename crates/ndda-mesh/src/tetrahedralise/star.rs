@@ -8,6 +8,9 @@ use crate::quality::least_sine;
 /// A fan counts as sound if no dihedral angle is closer to 0 or 180° than this: sin 5°.
 const SOUND_SINE: f64 = 0.087;
 
+/// Sines closer than this are equal: by rounding, they differ with the place of a block.
+const EQUAL_SINES: f64 = 1e-9;
+
 /// The fan with the fewest sound tetrahedra, or the best of fans and star.
 pub(super) fn fewest(block: &Polyhedron) -> Filled {
     let triangles = triangles(block);
@@ -17,15 +20,14 @@ pub(super) fn fewest(block: &Polyhedron) -> Filled {
         (worst.fold(f64::INFINITY, f64::min), filled)
     };
     let all: Vec<(f64, Filled)> = fans.chain([centre(block)]).map(graded).collect();
-    let is_sound = all.iter().any(|(sine, _)| *sine >= SOUND_SINE);
-    let best = all.into_iter().min_by(|(p, a), (q, b)| {
-        let count = |sine: &f64, filled: &Filled| {
-            if *sine >= SOUND_SINE || !is_sound { filled.tets.len() } else { usize::MAX }
-        };
-        let fewer = if is_sound { count(p, a).cmp(&count(q, b)) } else { std::cmp::Ordering::Equal };
-        fewer.then(q.total_cmp(p))
-    });
-    best.map(|best| best.1).unwrap_or_default()
+    let sound = all.iter().filter(|(sine, _)| *sine >= SOUND_SINE);
+    let least = sound.map(|(_, filled)| filled.tets.len()).min();
+    // Where none is sound, all of them compete.
+    let competes =
+        |(sine, filled): &&(f64, Filled)| least.is_none_or(|n| *sine >= SOUND_SINE && filled.tets.len() == n);
+    let best = all.iter().filter(competes).map(|(sine, _)| *sine).fold(f64::NEG_INFINITY, f64::max);
+    let chosen = all.iter().filter(competes).find(|(sine, _)| *sine >= best - EQUAL_SINES);
+    chosen.or(all.first()).map(|(_, filled)| filled.clone()).unwrap_or_default()
 }
 
 /// The star from the centroid.
@@ -80,7 +82,8 @@ pub(super) fn best_triangles(ring: &[Vec3]) -> Vec<[usize; 3]> {
                 let sine = triangle_sine(&ring[i], &ring[k], &ring[j]);
                 (sine.min(best[i][k].0).min(best[k][j].0), k)
             };
-            let choice = (i + 1..j).map(value).max_by(|a, b| a.0.total_cmp(&b.0));
+            let largest = (i + 1..j).map(|k| value(k).0).fold(f64::NEG_INFINITY, f64::max);
+            let choice = (i + 1..j).rev().map(value).find(|(sine, _)| *sine >= largest - EQUAL_SINES);
             best[i][j] = choice.unwrap_or((0.0, i + 1));
         }
     }
