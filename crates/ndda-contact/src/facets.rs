@@ -8,7 +8,7 @@ use crate::candidates::{Candidates, Facet};
 use crate::friction::{FacetSlip, ShearMemory, length};
 use crate::integrals::{FacetSums, Hit, Touch};
 use crate::joints::{Joints, Memory};
-use crate::model::{ContactHistory, ContactInput, FacetMemory};
+use crate::model::{ContactHistory, ContactInput, FacetMemory, SpringSlip};
 
 /// Friction below this part of what it may be holds like a spring.
 const STICKS: f64 = 1.0 - 1e-9;
@@ -36,19 +36,6 @@ pub struct FacetForce {
     pub center: Vec3,
     /// In [`Candidates::facets`].
     pub facet: u32,
-}
-
-/// What the shear spring of a facet, or of several, did in a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct SpringSlip {
-    /// Most that it carries [N].
-    pub capacity_n: f64,
-    /// What it carries [N].
-    pub shear_n: f64,
-    /// Slip of the contactor on the target [m].
-    pub slip_m: Vec3,
-    /// Whether it carries all that it may.
-    pub slides: bool,
 }
 
 /// What the evaluation of a facet reads.

@@ -93,7 +93,7 @@ pub use plan::Part;
 
 pub use model::{
     Body, Bond, ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport,
-    Deformation, FaceMemory, FacetContact, FacetMemory,
+    Deformation, FaceMemory, FacetContact, FacetMemory, SpringSlip,
 };
 
 pub use pair_stiffness::PairStiffness;

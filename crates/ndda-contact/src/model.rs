@@ -3,7 +3,6 @@
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::facets::SpringSlip;
 use crate::pair_stiffness::PairStiffness;
 use crate::plan::Part;
 
@@ -27,6 +26,19 @@ pub struct ContactInput<'a> {
     /// Whether the solver iterates on the forces of a step, and compares those of one evaluation with the next: whatever the model finds by
     /// iterations of its own must then be found to far below the solver's tolerance.
     pub is_iterated: bool,
+}
+
+/// What the shear spring of a facet, or of several, did in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SpringSlip {
+    /// Most that it carries [N].
+    pub capacity_n: f64,
+    /// What it carries [N].
+    pub shear_n: f64,
+    /// Slip of the contactor on the target [m].
+    pub slip_m: Vec3,
+    /// Whether it carries all that it may.
+    pub slides: bool,
 }
 
 /// How blocks that deform move in a step: what friction that acts on velocities asks the solver.

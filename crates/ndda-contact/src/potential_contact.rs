@@ -13,7 +13,7 @@ use crate::candidates::Candidates;
 use crate::closing::closing_m_s;
 use crate::element_potential::ElementPotential;
 use crate::energy::{self, OverlapParts};
-use crate::facets::{FacetForce, FacetScene, SpringSlip, relative_motion};
+use crate::facets::{FacetForce, FacetScene, relative_motion};
 use crate::friction::FrictionLaw;
 use crate::friction_patches::{FrictionPatches, PatchScene};
 use crate::hulls::Hulls;
@@ -21,7 +21,7 @@ use crate::integrals::{Integrals, Scene, Touch};
 use crate::joints::{Joints, Memory};
 use crate::model::{
     ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
-    FacetMemory,
+    FacetMemory, SpringSlip,
 };
 use crate::pair::{OnTarget, TetFrame};
 use crate::pair_stiffness::PairStiffness;

@@ -4,7 +4,7 @@
 //! work of its forces on both blocks is not what its potential energy loses. The lighter block feels it: where two meet at v,
 //! an error of energy δE is one of its speed δv = δE/(m v), whatever the other weighs.
 
-use ndda_contact::facets::SpringSlip;
+use ndda_contact::SpringSlip;
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 

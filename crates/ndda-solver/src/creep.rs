@@ -6,7 +6,7 @@
 //! they may in the mean, from the second of such swings in a row: the only one is a block that slides and comes to rest. A
 //! swing of which more than half passes without contact is flight.
 
-use ndda_contact::facets::SpringSlip;
+use ndda_contact::SpringSlip;
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 

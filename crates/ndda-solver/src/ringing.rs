@@ -32,6 +32,8 @@ pub struct Drive {
     pub load_m_s2: Vec3,
     /// The same of loads, contact and supports [m/s²].
     pub shift_m_s2: Vec3,
+    /// Half the sum of the sizes of contact forces on its nodes, over its mass: what presses it from both sides; zero for a block that does not deform [m/s²].
+    pub pressed_m_s2: f64,
     /// Torque about its mass centre over its moment of inertia, times its radius; zero for a held block [m/s²].
     pub turn_m_s2: Vec3,
     /// Whether contact or supports act on it.
@@ -66,7 +68,11 @@ impl Drive {
             let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
             turn_m_s2 = torque * shape.turn_per_n_m;
         }
+        let deforms = matches!(shape.kind, BodyKind::Elastic | BodyKind::Affine);
+        let pressing = context.force.iter().zip(context.external).map(|(f, load)| (f - load).norm());
+        let pressed_n = if touches && deforms { 0.5 * pressing.sum::<f64>() } else { 0.0 };
         Self {
+            pressed_m_s2: pressed_n / operator.mass_kg,
             load_m_s2: load / operator.mass_kg,
             shift_m_s2: force / operator.mass_kg,
             turn_m_s2,
@@ -85,6 +91,8 @@ pub struct Quadrature {
     pub dt_s: f64,
     /// Whether contact is taken at the start or the end of a step.
     pub is_one_sided: bool,
+    /// How far from the middle of a step elasticity is taken, over the step: ½ where it is taken at the end.
+    pub elastic_lag: f64,
     /// Whether energies of pairs are judged, so that collisions need not be.
     pub judges_pairs: bool,
     /// Whether this is the first step.
@@ -95,6 +103,7 @@ pub struct Quadrature {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ringing {
     last: [Vec3; 2],
+    pressed_m_s2: f64,
     change: [Vec3; 2],
     /// Means of |Δa|² and |Δ²a|² over the last steps, as sums with weights, and the sum of the weights.
     first2: f64,
@@ -127,6 +136,7 @@ impl Ringing {
         if !self.is_held {
             // Contact begins at zero, but for what touches from the start.
             self.last = if step.is_first { now } else { [drive.load_m_s2, Vec3::zeros()] };
+            self.pressed_m_s2 = if step.is_first { drive.pressed_m_s2 } else { 0.0 };
         }
         let change = [now[0] - self.last[0], now[1] - self.last[1]];
         if std::mem::replace(&mut self.has_begun, step.is_first) {
@@ -144,14 +154,18 @@ impl Ringing {
         let only_supported = drive.is_held && !drive.touches;
         self.now_m_s += step.dt_s
             * match (only_supported, step.is_one_sided) {
-                (true, _) => PI / 24.0 * self.outer_over_mean(step) * second2.sqrt(),
-                (false, true) => 0.5 * first2.sqrt(),
+                (true, _) => {
+                    let error_m_s2 = step.elastic_lag * first2.sqrt() + PI / 24.0 * second2.sqrt();
+                    self.outer_over_mean(step) * error_m_s2
+                }
+                (false, true) => 0.5 * first2.sqrt().max((drive.pressed_m_s2 - self.pressed_m_s2).abs()),
                 (false, false) => 0.25 * second2.sqrt(),
             };
         let cancels = self.maxima <= 1 && !self.rubs && (step.judges_pairs || !step.is_one_sided);
         let new_m_s = if cancels { 0.0 } else { self.now_m_s };
-        self.error_m_s = (self.past_m_s + new_m_s).min(self.bound_m_s(step));
+        self.error_m_s = (self.past_m_s + new_m_s).min(self.bound_m_s(step, only_supported));
         (self.last, self.change, self.is_held) = (now, change, drive.is_held);
+        self.pressed_m_s2 = drive.pressed_m_s2;
         if !drive.is_held {
             *self = Self { past_m_s: self.error_m_s, error_m_s: self.error_m_s, ..Self::default() };
         }
@@ -183,8 +197,8 @@ impl Ringing {
     }
 
     /// Most that a vibration may be wrong; there is no limit while forces are one-sided, which damp or feed vibrations.
-    fn bound_m_s(&self, step: &Quadrature) -> f64 {
-        let is_bounded = !step.is_one_sided && self.maxima > 1 && self.second2 > 0.0;
+    fn bound_m_s(&self, step: &Quadrature, only_supported: bool) -> f64 {
+        let is_bounded = (only_supported || !step.is_one_sided) && self.maxima > 1 && self.second2 > 0.0;
         if is_bounded { 2.0 * self.vibration_m_s(step) } else { f64::INFINITY }
     }
 
@@ -205,7 +219,7 @@ mod tests {
     use super::*;
 
     fn step(dt_s: f64, is_one_sided: bool) -> Quadrature {
-        Quadrature { dt_s, is_one_sided, judges_pairs: true, is_first: false }
+        Quadrature { dt_s, is_one_sided, elastic_lag: 0.0, judges_pairs: true, is_first: false }
     }
 
     fn pushed(acceleration: f64, is_held: bool) -> Drive {

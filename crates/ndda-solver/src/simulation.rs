@@ -448,6 +448,7 @@ impl Simulation {
         Quadrature {
             dt_s: self.part_s,
             is_one_sided: self.newton.is_some() || self.integrator.contact_bound().is_none(),
+            elastic_lag: self.weights.elastic_lag(),
             judges_pairs: self.weights.forces_do_their_work(),
             is_first: self.steps_done(0.0) == 0.0,
         }

@@ -34,6 +34,18 @@ impl StepWeights {
         self.contact_lead == 0.5 && self.mean_velocity
     }
 
+    /// How far from the middle of a step elasticity acts, over the step: θ − ½ of `Midpoint`, γ − ½ of `Newmark`, nothing where inertia is weighted so as
+    /// to make up for it (`GeneralizedAlpha`).
+    pub fn elastic_lag(&self) -> f64 {
+        if self.old_inertia != 0.0 {
+            0.0
+        } else if self.forces_do_their_work() {
+            (self.stiffness - 0.5).abs()
+        } else {
+            (self.new_force - 0.5).abs()
+        }
+    }
+
     /// Whether the work of a force over a step is what it changes of kinetic energy.
     pub fn forces_do_their_work(&self) -> bool {
         self.mean_velocity && self.new_force == 1.0 && self.old_inertia == 0.0
