@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::block_books::{BlockScale, Worst};
 
-/// Part of the limit below which springs stick; the rest is rounding.
-const STICKS: f64 = 1.0 - 1e-6;
+/// Part of the limit below which springs that are not all sliding could hold; above it a block slides, but for facets at its rim that come and go.
+const STICKS: f64 = 0.95;
 
 /// What the springs between a block and heavier ones did in a step, and in a swing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
