@@ -16,8 +16,10 @@ pub const MESH: &str = "ndda.mesh/1";
 /// Schema of `ndda new`.
 pub const NEW: &str = "ndda.new/1";
 /// Schema of `ndda plot`.
+#[cfg(feature = "plots")]
 pub const PLOT: &str = "ndda.plot/1";
 /// Schema of `ndda report` and `ndda view`.
+#[cfg(feature = "report")]
 pub const REPORT: &str = "ndda.report/1";
 
 /// Where events go: to standard output as lines of a schema, or nowhere.
