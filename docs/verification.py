@@ -113,7 +113,7 @@ def plain(number):
 def natural(text):
     """Sorts V9 before V10, and numbers before words."""
     parts = re.findall(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?|\D+", text)
-    return tuple((0, float(part), "") if part[0].isdigit() else (1, 0.0, part) for part in parts)
+    return tuple((0, float(part), "") if part[0].isdecimal() else (1, 0.0, part) for part in parts)
 
 
 def title(file):
