@@ -43,12 +43,10 @@ pub struct SpringSlip {
 
 /// How blocks that deform move in a step: what friction that acts on velocities asks the solver.
 pub trait Deformation: Sync {
-    /// `velocity` ← that of the nodes of a block at the end of the step under all its loads and `force` of contact per node [N], which is
-    /// overwritten. Asked before [`respond`](Self::respond).
-    fn end_velocity(&self, block: BlockId, force: &mut [Vec3], velocity: &mut [Vec3]);
-
-    /// `velocity` ← what a force per node [N] all through the step adds to that.
-    fn respond(&self, block: BlockId, force: &[Vec3], velocity: &mut [Vec3]);
+    /// Answers in place for all blocks at once. `columns` has an entry for each block, empty where nothing is asked, with columns of one
+    /// vector per node of the block. The first column is the force of contact on each node [N] and becomes the velocity at the end of the step under all
+    /// loads [m/s]; each other one is a force that acts all through the step, and becomes what it adds to that velocity.
+    fn answer(&self, columns: &mut [Vec<Vec3>]);
 }
 
 impl std::fmt::Debug for dyn Deformation + '_ {

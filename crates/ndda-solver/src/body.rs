@@ -293,7 +293,8 @@ impl Body {
     pub fn respond(&mut self, shape: &Shape, weights: &StepWeights, force: &[Vec3], out: &mut [Vec3]) {
         match &mut self.motion {
             Motion::Elastic(body) => {
-                if let Err(error) = body.respond(shape, force, out) {
+                out.copy_from_slice(force);
+                if let Err(error) = body.respond_in_place(shape, out) {
                     self.error = Some(error);
                 }
             }

@@ -4,6 +4,7 @@ use std::sync::{Mutex, PoisonError};
 
 use ndda_contact::Deformation;
 use ndda_mesh::{BlockId, Vec3};
+use rayon::prelude::*;
 
 use crate::body::{Body, Motion};
 use crate::for_each_block::Nodes;
@@ -12,6 +13,7 @@ use crate::simulation::Simulation;
 /// The blocks of a simulation before their step.
 pub(crate) struct StepDeformation<'a> {
     simulation: &'a Simulation,
+    /// Contact asks through a shared reference, once for all blocks.
     bodies: Mutex<&'a mut [Body]>,
 }
 
@@ -20,17 +22,11 @@ impl<'a> StepDeformation<'a> {
         Self { simulation, bodies: Mutex::new(bodies) }
     }
 
-    /// Works on one block, whose failure is kept until its step.
-    fn with_body(&self, block: BlockId, work: impl FnOnce(&mut Body)) {
-        let mut bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
-        work(&mut bodies[block.index()]);
-    }
-}
-
-impl Deformation for StepDeformation<'_> {
-    fn end_velocity(&self, block: BlockId, force: &mut [Vec3], velocity: &mut [Vec3]) {
+    /// One block, whose failure is kept until its step.
+    fn answer_block(&self, block: BlockId, body: &mut Body, columns: &mut [Vec3]) {
         let simulation = self.simulation;
         let range = simulation.blocks.nodes_of(block);
+        let (force, others) = columns.split_at_mut(range.len());
         let loads = &simulation.loads.total()[range.clone()];
         force.iter_mut().zip(loads).for_each(|(force, load)| *force += load);
         let state = &simulation.state;
@@ -38,25 +34,33 @@ impl Deformation for StepDeformation<'_> {
             position: &state.position[range.clone()],
             velocity: &state.velocity[range.clone()],
             acceleration: state.acceleration.get(range.clone()).unwrap_or(&[]),
-            internal_force: state.internal_force.get(range).unwrap_or(&[]),
+            internal_force: state.internal_force.get(range.clone()).unwrap_or(&[]),
         };
-        self.with_body(block, |body| {
-            let shape = &simulation.shapes[body.shape];
-            let context = simulation.context_under(block.index(), shape, force);
-            body.try_step(shape, &context, &nodes);
-            if let Motion::Elastic(body) = &body.motion {
-                body.end_velocity(&context, &nodes, velocity);
+        let shape = &simulation.shapes[body.shape];
+        let context = simulation.context_under(block.index(), shape, force);
+        body.try_step(shape, &context, &nodes);
+        let Motion::Elastic(elastic) = &mut body.motion else {
+            unreachable!("contact asks blocks that deform alone")
+        };
+        let context = simulation.context_under(block.index(), shape, &[]);
+        elastic.end_velocity(&context, &nodes, force);
+        let velocity_per_m = shape.weights(&simulation.weights).velocity_per_m;
+        for column in others.chunks_exact_mut(range.len()) {
+            if let Err(error) = elastic.respond_in_place(shape, column) {
+                body.error = Some(error);
+                return;
             }
-        });
+            column.iter_mut().for_each(|v| *v *= velocity_per_m);
+        }
     }
+}
 
-    fn respond(&self, block: BlockId, force: &[Vec3], velocity: &mut [Vec3]) {
-        let simulation = self.simulation;
-        self.with_body(block, |body| {
-            let shape = &simulation.shapes[body.shape];
-            let weights = shape.weights(&simulation.weights);
-            body.respond(shape, &weights, force, velocity);
-            velocity.iter_mut().for_each(|v| *v *= weights.velocity_per_m);
+impl Deformation for StepDeformation<'_> {
+    fn answer(&self, columns: &mut [Vec<Vec3>]) {
+        let mut bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+        let each = bodies.par_iter_mut().zip(columns).enumerate();
+        each.filter(|(_, (_, columns))| !columns.is_empty()).for_each(|(block, (body, columns))| {
+            self.answer_block(BlockId(block as u32), body, columns);
         });
     }
 }

@@ -151,19 +151,19 @@ impl ElasticBody {
         }
     }
 
-    /// out ← R K̃⁻¹ Rᵀ f: how u as last tried changes with the force.
+    /// f ← R K̃⁻¹ Rᵀ f: how u as last tried changes with the force.
     ///
     /// # Errors
     /// [`BlockError::Solve`] when the solver does not get there.
-    pub fn respond(&mut self, shape: &Shape, force: &[Vec3], out: &mut [Vec3]) -> Result<(), BlockError> {
-        for (turned, f) in self.correction.iter_mut().zip(force) {
+    pub fn respond_in_place(&mut self, shape: &Shape, force: &mut [Vec3]) -> Result<(), BlockError> {
+        for (turned, f) in self.correction.iter_mut().zip(&*force) {
             *turned = self.rotation.tr_mul(f);
         }
         shape.unknowns.gather(&self.correction, &mut self.unknowns);
         self.solve(shape)?;
-        out.fill(Vec3::zeros());
-        shape.unknowns.scatter(&self.unknowns, out);
-        out.iter_mut().for_each(|u| *u = self.rotation * *u);
+        force.fill(Vec3::zeros());
+        shape.unknowns.scatter(&self.unknowns, force);
+        force.iter_mut().for_each(|u| *u = self.rotation * *u);
         Ok(())
     }
 

@@ -1,14 +1,17 @@
 //! Errors of velocities that steps leave where contact or supports make a block vibrate, or change its forces abruptly.
 //!
-//! A step takes forces at one instant for their mean over the step. Taken in the middle of it, at a predicted place, the impulse of a force F is off by
-//! Δt |Δ²F|/12, Δ²F = Fₙ₊₁ − 2Fₙ + Fₙ₋₁ being Δt² F″. Where a force jumps by J, because a block begins to slide or a bond breaks, it does so anywhere
-//! within a step, which leaves up to ½ Δt J, and two steps see |Δ²F| = J. So ¼ Δt |Δ²F| is taken for both: three times the error of a force that is smooth.
-//! Taken at the start or the end of a step, an impulse is off by ½ Δt |ΔF|. Supports and elasticity act by their mean over a step without jumps: Δt |Δ²F|/12,
-//! π/2 times that where the error has its maximum rather than in the mean, and more at the end of a beam than at its mass centre.
+//! A step takes forces at one instant for their mean over the step. Taken in the middle of it, at a predicted place, the
+//! impulse of a force F is off by Δt |Δ²F|/12, Δ²F = Fₙ₊₁ − 2Fₙ + Fₙ₋₁ being Δt² F″. Where a force jumps by J, because a block
+//! begins to slide or a bond breaks, it does so anywhere within a step, which leaves up to ½ Δt J, and two steps see |Δ²F| = J.
+//! So ¼ Δt |Δ²F| is taken for both: three times the error of a force that is smooth. Taken at the start or the end of a step,
+//! an impulse is off by ½ Δt |ΔF|, F being the resultant, or the force by which other blocks press a block from both sides, if
+//! that changes more. Supports and elasticity act by their mean over a step without jumps: Δt |Δ²F|/12, π/2 times that where
+//! the error has its maximum rather than in the mean, and more at the end of a beam than at its mass centre.
 //!
-//! In a collision without friction these errors cancel: the force begins and ends at zero, and what is left is an error of energy, which is judged by
-//! itself (`block_books.rs`). They add up where a force has more than one maximum before the block is free again, and where friction makes of the
-//! history of a force a velocity that stays. While a block vibrates, the error is at most twice the speed of its vibration, which is all wrong in phase then.
+//! In a collision without friction these errors cancel: the force begins and ends at zero, and what is left is an error of
+//! energy, which is judged by itself (`block_books.rs`). They add up where a force has more than one maximum before the block
+//! is free again, and where friction makes of the history of a force a velocity that stays. While a block vibrates, the error
+//! is at most twice the speed of its vibration, which is all wrong in phase then.
 
 use std::f64::consts::PI;
 
@@ -32,7 +35,8 @@ pub struct Drive {
     pub load_m_s2: Vec3,
     /// The same of loads, contact and supports [m/s²].
     pub shift_m_s2: Vec3,
-    /// Half the sum of the sizes of contact forces on its nodes, over its mass: what presses it from both sides; zero for a block that does not deform [m/s²].
+    /// Half the sum of the sizes of contact forces on its nodes, over its mass: what presses it from both sides [m/s²]. Zero for a
+    /// block that does not deform, and where contact is taken in the middle of a step.
     pub pressed_m_s2: f64,
     /// Torque about its mass centre over its moment of inertia, times its radius; zero for a held block [m/s²].
     pub turn_m_s2: Vec3,
@@ -42,7 +46,7 @@ pub struct Drive {
     pub touches: bool,
     /// Speed of its fastest node [m/s].
     pub speed_m_s: f64,
-    /// Whether friction does.
+    /// Whether friction acts on it.
     pub rubs: bool,
 }
 
@@ -69,8 +73,11 @@ impl Drive {
             turn_m_s2 = torque * shape.turn_per_n_m;
         }
         let deforms = matches!(shape.kind, BodyKind::Elastic | BodyKind::Affine);
-        let pressing = context.force.iter().zip(context.external).map(|(f, load)| (f - load).norm());
-        let pressed_n = if touches && deforms { 0.5 * pressing.sum::<f64>() } else { 0.0 };
+        let mut pressed_n = 0.0;
+        if touches && deforms && !context.weights.contact_in_the_middle() {
+            let pressing = context.force.iter().zip(context.external).map(|(f, load)| (f - load).norm());
+            pressed_n = 0.5 * pressing.sum::<f64>();
+        }
         Self {
             pressed_m_s2: pressed_n / operator.mass_kg,
             load_m_s2: load / operator.mass_kg,

@@ -25,8 +25,6 @@ const MOST_STEPS: usize = 30;
 const MOST_HALVINGS: usize = 30;
 /// What is left of D where Newton's method ends.
 const TOLERANCE: f64 = 1e-11;
-/// What is left of friction there, as parts of μN: D alone is too coarse a measure of it where the slip of a step is far from what friction changes.
-const FORCE_TOLERANCE: f64 = 1e-7;
 
 /// What friction of a patch can carry. Slips are (V₁, V₂, Ω r) along the axes of the rectangle, forces (F₁, F₂, T/r), r the radius of gyration.
 #[derive(Clone, Copy, Debug, Default)]
@@ -118,8 +116,15 @@ impl LimitSurface {
     }
 
     /// Friction on a patch that would slip at s without, and slips at σ = s + A⁻¹ F with it: the σ of least ½ (σ − s)·A (σ − s) + D(σ).
-    /// Sought from `start`, which is near σ unless it `is_first`; gives F.
-    pub fn friction(&self, stiffness: &Mat3, free_slip: &Vec3, start: &Vec3, is_first: bool) -> Vec3 {
+    /// Sought from `start`, which is near σ unless it `is_first`; gives F, to `tolerance_n`: D alone is too coarse a measure of it where the slip of a
+    /// step is far from what friction changes.
+    pub fn friction(
+        &self,
+        stiffness: &Mat3,
+        (free_slip, start): (&Vec3, &Vec3),
+        tolerance_n: f64,
+        is_first: bool,
+    ) -> Vec3 {
         let stopping = -(stiffness * free_slip);
         if self.holds(&stopping) {
             return stopping;
@@ -127,14 +132,20 @@ impl LimitSurface {
         let surface = self.for_slip(free_slip);
         let mut slip = *start;
         for &smoothing in &SMOOTHING[usize::from(!is_first)..] {
-            slip = surface.least(stiffness, free_slip, slip, smoothing * free_slip.norm());
+            slip = surface.least(stiffness, (free_slip, slip), smoothing * free_slip.norm(), tolerance_n);
         }
         let force = stiffness * (slip - free_slip);
         self.shortened(force)
     }
 
     /// Newton's method with a line search.
-    fn least(&self, stiffness: &Mat3, free_slip: &Vec3, start: Vec3, smoothing: f64) -> Vec3 {
+    fn least(
+        &self,
+        stiffness: &Mat3,
+        (free_slip, start): (&Vec3, Vec3),
+        smoothing: f64,
+        tolerance_n: f64,
+    ) -> Vec3 {
         let smoothing2 = smoothing * smoothing;
         let value = |slip: &Vec3| {
             let gap = slip - free_slip;
@@ -147,7 +158,7 @@ impl LimitSurface {
         for _ in 0..MOST_STEPS {
             let Some(step) = solved(&curvature, &slope) else { break };
             let gain = slope.dot(&step);
-            let is_found = gain <= TOLERANCE * least && slope.amax() <= FORCE_TOLERANCE * self.most_n;
+            let is_found = gain <= TOLERANCE * least && slope.amax() <= tolerance_n;
             if gain.is_nan() || is_found {
                 break;
             }

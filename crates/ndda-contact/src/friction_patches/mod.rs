@@ -1,13 +1,14 @@
 //! Friction of whole faces, for laws that act on velocities.
 //!
-//! A face is a set of boundary triangles in one plane and of one surface. Its contact with another block is a patch: its friction
-//! is one force F and one torque T about the normal, spread in proportion to the pressure, and obeys Coulomb's law point by point
-//! (`limit_surface.rs`). The friction of all patches is found together (`solve.rs`); blocks that deform answer to it at their nodes,
-//! as the solver says (`nodal.rs`).
+//! A face is a set of boundary triangles in one plane and of one surface. Its contact with another block is a patch, together with a
+//! face of the other block that lies on it (`opposite.rs`): its friction is one force F and one torque T about the normal, spread in
+//! proportion to the pressure, and obeys Coulomb's law point by point (`limit_surface.rs`). The friction of all patches is found
+//! together (`solve.rs`); blocks that deform answer to it at their nodes, as the solver says (`nodal.rs`).
 
 mod limit_surface;
 mod moments;
 mod nodal;
+mod opposite;
 mod patch;
 mod solve;
 
@@ -22,6 +23,7 @@ use crate::by_block::ByBlock;
 use crate::facets::FacetForce;
 use crate::friction::FrictionLaw;
 use crate::friction_patches::nodal::{Nodal, NodalSide};
+use crate::friction_patches::opposite::Opposite;
 use crate::friction_patches::patch::{ContactPatch, Moved, PatchSummary, Remembered};
 use crate::friction_patches::solve::{CoupledPatch, Motion};
 use crate::hulls::Hulls;
@@ -89,10 +91,12 @@ pub struct FrictionPatches {
     /// Face of each boundary triangle, numbered over all blocks.
     face_of: Vec<u32>,
     /// Touching facets by face and target.
+    by_face: Vec<Place>,
+    /// Touching facets by patch, those of each patch among them, and the patch of each facet.
     order: Vec<Place>,
-    /// Those of each face and target, in `order`, and which of them each facet is in.
     runs: Vec<Range<usize>>,
     run_of: Vec<u32>,
+    opposite: Opposite,
     /// Patches by block.
     by_block: ByBlock,
     /// Blocks with the velocities at the end of the step.
@@ -105,6 +109,8 @@ pub struct FrictionPatches {
     patches: Vec<ContactPatch>,
     summaries: Vec<PatchSummary>,
     coupled: Vec<CoupledPatch>,
+    /// Sides of each patch on blocks that deform.
+    sides: Vec<[Option<NodalSide>; 2]>,
     /// Room for their solution, by block.
     most_n: Vec<f64>,
     pushed: Vec<u32>,
@@ -134,26 +140,29 @@ impl FrictionPatches {
 
     /// Sorts touching facets by face and target; those of a block are together already, and its faces follow each other.
     pub fn arrange(&mut self, integrals: &Integrals) {
-        self.order.clear();
+        self.by_face.clear();
         let place = |(t, touch): (u32, &Touch)| (self.face_of[touch.triangle.index()], touch.target, t);
         let touching = integrals.touching();
-        self.order.extend((0..).zip(touching).map(place));
+        self.by_face.extend((0..).zip(touching).map(place));
         let of_one_block =
             |a: &Place, b: &Place| touching[a.2 as usize].owner == touching[b.2 as usize].owner;
-        self.order.par_chunk_by_mut(of_one_block).for_each(<[Place]>::sort_unstable);
-        self.runs.clear();
-        self.run_of.resize(touching.len(), 0);
-        let mut start = 0;
-        for run in self.order.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
-            run.iter().for_each(|&(_, _, t)| self.run_of[t as usize] = self.runs.len() as u32);
-            self.runs.push(start..start + run.len());
-            start += run.len();
+        self.by_face.par_chunk_by_mut(of_one_block).for_each(<[Place]>::sort_unstable);
+    }
+
+    /// Which facets each patch has.
+    fn join_faces(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
+        let Self { opposite, by_face, order, runs, run_of, .. } = self;
+        opposite.join(scene, forces, (by_face, order), runs);
+        run_of.resize(forces.len(), 0);
+        for (number, run) in (0..).zip(&*runs) {
+            order[run.clone()].iter().for_each(|&(_, _, t)| run_of[t as usize] = number);
         }
     }
 
     /// Adds the friction of faces whose law acts on faces to the facets' forces, and takes over what they remember; the facets are
     /// [arranged](Self::arrange).
     pub fn add(&mut self, scene: &PatchScene, forces: &mut [FacetForce], history: &mut ContactHistory) {
+        self.join_faces(scene, forces);
         self.find_patches(scene, forces, history);
         let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
         self.by_block.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
@@ -163,7 +172,8 @@ impl FrictionPatches {
         let spread = |((t, force), run): ((usize, &mut FacetForce), &u32)| {
             let FacetSums { pressure, .. } = *scene.sums(t as u32);
             if pressure > 0.0 {
-                patches[*run as usize].spread_to(force, pressure, &own_m2[t]);
+                let patch = &patches[*run as usize];
+                patch.spread_to(force, (pressure, &own_m2[t]), patch.sign_of(scene.touch(t as u32)));
             }
         };
         let memory_of = |(patch, run): (&ContactPatch, &Range<usize>)| {
@@ -240,39 +250,46 @@ impl FrictionPatches {
         self.bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(advance);
     }
 
-    /// Velocities at the end of the step of the nodes of blocks that deform, under the loads and all but the friction of patches.
-    fn advance_nodes(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
-        let Self { nodal, is_asked, by_block, runs, order, .. } = self;
-        nodal.begin(scene.input.velocity);
+    /// How blocks that deform answer to the loads, and to the friction of patches, whose sides on them are found.
+    fn ask_blocks(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
+        let Self { nodal, is_asked, by_block, runs, order, patches, sides, own_m2, .. } = self;
+        sides.clear();
+        sides.resize(patches.len(), [None; 2]);
+        nodal.begin(scene.input.blocks, scene.input.velocity.len());
         let Some(deformation) = scene.input.deformation else { return };
-        for (block, body) in scene.input.blocks.ids().zip(scene.input.bodies) {
+        let bodies = scene.input.bodies;
+        for (block, body) in scene.input.blocks.ids().zip(bodies) {
             if is_asked[block.index()] && body.deforms {
-                let at = by_block.at(block).map(|(k, sign)| (&order[runs[k as usize].clone()], sign));
-                nodal.add_block(block, scene, forces, deformation, at);
+                let at = by_block.at(block).map(|(k, _)| &order[runs[k as usize].clone()]);
+                nodal.add_block(block, scene, forces, at);
             }
         }
+        for ((patch, run), sides) in patches.iter().zip(&*runs).zip(sides) {
+            if patch.has_friction() {
+                let side = |block: BlockId| {
+                    let found = (patch, &order[run.clone()]);
+                    let deforms = bodies[block.index()].deforms;
+                    deforms.then(|| nodal.add_side(block, scene, found, (forces, own_m2)))
+                };
+                *sides = [patch.owner, patch.target].map(side);
+            }
+        }
+        nodal.answer(deformation);
     }
 
     /// Friction of the patches.
     fn solve(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
-        self.advance_nodes(scene, forces);
-        let Self { patches, bodies, coupled, nodal, runs, order, most_n, pushed, own_m2, .. } = self;
-        let (start, dt_s, blocks) = (scene.input.bodies, scene.input.dt_s, scene.input.blocks);
+        self.ask_blocks(scene, forces);
+        let Self { patches, bodies, coupled, nodal, sides, most_n, pushed, .. } = self;
+        let ContactInput { blocks, velocity, bodies: start, dt_s, is_iterated, .. } = *scene.input;
         coupled.clear();
-        for ((number, patch), run) in (0..).zip(&*patches).zip(&*runs) {
+        for ((number, patch), sides) in (0..).zip(&*patches).zip(&*sides) {
             if patch.has_friction() {
-                let run = &order[run.clone()];
-                let mut side = |block: BlockId| -> Option<NodalSide> {
-                    let deformation = scene.input.deformation.filter(|_| start[block.index()].deforms)?;
-                    Some(nodal.add_side(block, scene, (patch, run), (forces, own_m2), deformation))
-                };
-                let sides = [side(patch.owner), side(patch.target)];
-                coupled.extend(CoupledPatch::new((number, patch), (start, nodal), sides, dt_s));
+                coupled.extend(CoupledPatch::new((number, patch), (start, nodal), *sides, dt_s));
             }
         }
         coupled.iter().for_each(|patch| patch.push_nodes(nodal));
-        let is_iterated = scene.input.is_iterated;
-        let mut motion = Motion { blocks, bodies, nodal, dt_s, is_iterated, most_n, pushed };
+        let mut motion = Motion { blocks, start: velocity, bodies, nodal, dt_s, is_iterated, most_n, pushed };
         solve::solve(coupled, start, &mut motion);
         for found in coupled.iter() {
             let patch = &mut patches[found.patch as usize];

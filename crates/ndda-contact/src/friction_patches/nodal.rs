@@ -28,10 +28,11 @@ struct Weight {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NodalSide {
     weights: [u32; 2],
-    /// First node of the block, nodes, and where its three columns of answers begin.
+    block: BlockId,
+    /// First node of the block, nodes, and the first of its three columns of answers.
     first: u32,
     nodes: u32,
-    answers: u32,
+    column: u32,
 }
 
 /// Nodes of blocks that deform, and what their patches do to them.
@@ -40,49 +41,42 @@ pub struct Nodal {
     weights: Vec<Weight>,
     /// Where among them the one of each node was put last.
     place_of: Vec<u32>,
-    /// U, three columns for each side of a patch [m/s per N in a whole step].
-    answers: Vec<Vec3>,
-    /// Velocities at the start of the step and at a time within it; only those of blocks that deform.
-    start: Vec<Vec3>,
-    pub velocity: Vec<Vec3>,
-    /// Forces on the nodes of a block.
-    force: Vec<Vec3>,
-    /// Blocks that deform and have coupled patches.
+    /// For each block that deforms and has coupled patches, one vector per node in each column: velocities at a time within the step [m/s], and U,
+    /// three columns for each side of a patch [m/s per N in a whole step]. Forces on the nodes until the solver has answered to them.
+    columns: Vec<Vec<Vec3>>,
+    /// These blocks.
     blocks: Vec<BlockId>,
 }
 
 impl Nodal {
     /// Forgets the last step.
-    pub fn begin(&mut self, start: &[Vec3]) {
+    pub fn begin(&mut self, all: &BlockSet, nodes: usize) {
         self.weights.clear();
-        self.answers.clear();
         self.blocks.clear();
-        self.start.resize(start.len(), Vec3::zeros());
-        self.velocity.resize(start.len(), Vec3::zeros());
-        self.force.resize(start.len(), Vec3::zeros());
-        self.place_of.resize(start.len(), 0);
+        self.columns.resize_with(all.len(), Vec::new);
+        self.columns.iter_mut().for_each(Vec::clear);
+        self.place_of.resize(nodes, 0);
     }
 
-    /// Velocities of a block at the end of the step under all loads and these patches without their friction, by runs of facets.
+    /// A block with the forces of its contacts but for the friction of these patches, by runs of facets.
     pub fn add_block<'a>(
         &mut self,
         block: BlockId,
         scene: &PatchScene,
         forces: &[FacetForce],
-        deformation: &dyn Deformation,
-        runs: impl Iterator<Item = (&'a [Place], f64)>,
+        runs: impl Iterator<Item = &'a [Place]>,
     ) {
         let nodes = scene.input.blocks.nodes_of(block);
-        self.force[nodes.clone()].fill(Vec3::zeros());
-        for (run, sign) in runs {
+        let column = &mut self.columns[block.index()];
+        column.resize(nodes.len(), Vec3::zeros());
+        for run in runs {
             for &(_, _, t) in run {
                 let FacetForce { push, shear, .. } = forces[t as usize];
-                let force = sign * (push + shear);
-                each_weight(scene, t, sign > 0.0, |node, w| self.force[node] += w * force);
+                let is_owner = scene.owner(t) == block;
+                let force = if is_owner { push + shear } else { -(push + shear) };
+                each_weight(scene, t, is_owner, |node, w| column[node - nodes.start] += w * force);
             }
         }
-        self.start[nodes.clone()].copy_from_slice(&scene.input.velocity[nodes.clone()]);
-        deformation.end_velocity(block, &mut self.force[nodes.clone()], &mut self.velocity[nodes]);
         self.blocks.push(block);
     }
 
@@ -93,11 +87,10 @@ impl Nodal {
         scene: &PatchScene,
         (patch, run): (&ContactPatch, &[Place]),
         (forces, own_m2): (&[FacetForce], &[Mat3]),
-        deformation: &dyn Deformation,
     ) -> NodalSide {
         let from = self.weights.len() as u32;
-        let is_owner = block == patch.owner;
         for &(_, _, t) in run {
+            let is_owner = scene.owner(t) == block;
             let arm = forces[t as usize].center - patch.center;
             let twist = patch.normal.cross(&arm) / patch.surface.radius_m;
             each_weight(scene, t, is_owner, |node, w| {
@@ -115,30 +108,35 @@ impl Nodal {
             });
         }
         let nodes = scene.input.blocks.nodes_of(block);
+        let columns = &mut self.columns[block.index()];
         let side = NodalSide {
             weights: [from, self.weights.len() as u32],
+            block,
             first: nodes.start as u32,
             nodes: nodes.len() as u32,
-            answers: self.answers.len() as u32,
+            column: (columns.len() / nodes.len()) as u32,
         };
-        self.answers.resize(self.answers.len() + 3 * nodes.len(), Vec3::zeros());
+        columns.resize(columns.len() + 3 * nodes.len(), Vec3::zeros());
         for k in 0..3 {
-            let force = &mut self.force[nodes.clone()];
-            force.fill(Vec3::zeros());
+            let force = &mut columns[side.column(k)];
             for weight in &self.weights[side.range()] {
                 force[weight.node as usize - nodes.start] += weight.column(&patch.axes, k);
             }
-            let start = side.answers as usize + k * nodes.len();
-            deformation.respond(block, force, &mut self.answers[start..start + nodes.len()]);
         }
         side
+    }
+
+    /// Lets the solver answer for all blocks: velocities and U in place of forces.
+    pub fn answer(&mut self, deformation: &dyn Deformation) {
+        deformation.answer(&mut self.columns);
     }
 
     /// Pᵀ v.
     pub fn slip(&self, side: &NodalSide, axes: &[Vec3; 3]) -> Vec3 {
         let (mut shift, mut twist) = (Vec3::zeros(), 0.0);
+        let velocity = &self.columns[side.block.index()];
         for weight in &self.weights[side.range()] {
-            let v = &self.velocity[weight.node as usize];
+            let v = &velocity[(weight.node - side.first) as usize];
             shift += weight.share * v;
             twist += weight.twist.dot(v);
         }
@@ -149,7 +147,7 @@ impl Nodal {
     pub fn flexibility(&self, side: &NodalSide, axes: &[Vec3; 3]) -> Mat3 {
         let mut found = Mat3::zeros();
         for (l, mut column) in found.column_iter_mut().enumerate() {
-            let answers = &self.answers[side.column(l)];
+            let answers = &self.columns[side.block.index()][side.column(l)];
             for weight in &self.weights[side.range()] {
                 let u = &answers[(weight.node - side.first) as usize];
                 for k in 0..3 {
@@ -162,20 +160,23 @@ impl Nodal {
 
     /// v ← v + s U f.
     pub fn push(&mut self, side: &NodalSide, force: &Vec3, part: f64) {
-        for l in 0..3 {
-            let nodes = side.first as usize..(side.first + side.nodes) as usize;
-            for (v, u) in self.velocity[nodes].iter_mut().zip(&self.answers[side.column(l)]) {
-                *v += part * force[l] * u;
-            }
+        let nodes = side.nodes as usize;
+        let (velocity, answers) = self.columns[side.block.index()].split_at_mut(nodes);
+        let start = side.column(0).start - nodes;
+        let (first, rest) = answers[start..start + 3 * nodes].split_at(nodes);
+        let (second, third) = rest.split_at(nodes);
+        let force = part * force;
+        for (((v, a), b), c) in velocity.iter_mut().zip(first).zip(second).zip(third) {
+            *v += force.x * a + force.y * b + force.z * c;
         }
     }
 
-    /// Velocities from those at the start and now.
-    pub fn change(&mut self, all: &BlockSet, change: impl Fn(Vec3, Vec3) -> Vec3) {
-        let Self { blocks, start, velocity, .. } = self;
-        for &block in &*blocks {
-            for node in all.nodes_of(block) {
-                velocity[node] = change(start[node], velocity[node]);
+    /// Velocities from those at the start of the step and now.
+    pub fn change(&mut self, all: &BlockSet, start: &[Vec3], change: impl Fn(Vec3, Vec3) -> Vec3) {
+        for &block in &self.blocks {
+            let velocity = &mut self.columns[block.index()];
+            for (v, from) in velocity.iter_mut().zip(&start[all.nodes_of(block)]) {
+                *v = change(*from, *v);
             }
         }
     }
@@ -187,7 +188,7 @@ impl NodalSide {
     }
 
     fn column(&self, k: usize) -> std::ops::Range<usize> {
-        let start = (self.answers + k as u32 * self.nodes) as usize;
+        let start = (self.column as usize + k) * self.nodes as usize;
         start..start + self.nodes as usize
     }
 }

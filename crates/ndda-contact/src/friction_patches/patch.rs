@@ -1,4 +1,4 @@
-//! One face of a block on another block: where it presses, how hard, and how it slips.
+//! A face of a block on another block, and the face that lies on it: where they press, how hard, and how they slip.
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
@@ -6,7 +6,7 @@ use crate::facets::{FacetForce, relative_motion};
 use crate::friction::{FacetSlip, FrictionLaw, ShearMemory};
 use crate::friction_patches::limit_surface::LimitSurface;
 use crate::friction_patches::{PatchScene, Place};
-use crate::integrals::{FacetSums, Integrals};
+use crate::integrals::{FacetSums, Integrals, Touch};
 use crate::model::{Body, ContactHistory, FaceMemory};
 
 /// What a patch is, in short.
@@ -26,7 +26,7 @@ pub struct Moved<'a> {
     pub moved: &'a [Vec3],
 }
 
-/// The contact of one face with one block.
+/// The contact of one face with one block; facets of the block's own face that lies on it count with the opposite sign.
 #[derive(Clone, Debug, Default)]
 pub struct ContactPatch {
     pub owner: BlockId,
@@ -107,12 +107,17 @@ impl ContactPatch {
         self.second_moment_m2.trace()
     }
 
-    /// What it does to one of its facets.
-    pub fn spread_to(&self, force: &mut FacetForce, pressure: f64, own: &Mat3) {
+    /// 1 for a facet of the owner, −1 for one of the target.
+    pub fn sign_of(&self, touch: &Touch) -> f64 {
+        if touch.owner == self.owner { 1.0 } else { -1.0 }
+    }
+
+    /// What it does to one of its facets, of the owner or, with the opposite sign, of the target.
+    pub fn spread_to(&self, force: &mut FacetForce, (pressure, own): (f64, &Mat3), sign: f64) {
         if self.has_friction() {
-            let twist = self.torque_n_m / self.pressure / self.radius2();
+            let twist = sign * self.torque_n_m / self.pressure / self.radius2();
             let arm = force.center - self.center;
-            force.shear = self.force_n / self.pressure + twist * self.normal.cross(&arm);
+            force.shear = sign * self.force_n / self.pressure + twist * self.normal.cross(&arm);
             force.couple_n_m = pressure * twist * own.trace() * self.normal;
             force.sticks = !self.memory.slides;
         }
@@ -160,7 +165,8 @@ impl ContactPatch {
             let sums = scene.integrals.sums_of(touch);
             if sums.pressure > 0.0 {
                 let found = (scene.integrals.hits_of(touch), sums);
-                let slip = relative_motion(touch, found, (scene.blocks, scene.moved)) / self.pressure;
+                let moved = relative_motion(touch, found, (scene.blocks, scene.moved));
+                let slip = self.sign_of(touch) * moved / self.pressure;
                 shift += slip;
                 let arm = forces[t as usize].center - self.center;
                 twist += arm.cross(&slip).dot(&self.normal);
@@ -191,7 +197,7 @@ impl ContactPatch {
                 self.pressure += pressure;
                 self.center += pressure * forces[t as usize].center;
                 self.area_m2 += area;
-                push += pressure * forces[t as usize].push;
+                push += self.sign_of(scene.touch(t)) * pressure * forces[t as usize].push;
             }
         }
         if self.pressure > 0.0 {
@@ -209,7 +215,8 @@ impl ContactPatch {
             let FacetSums { pressure, .. } = *scene.sums(t);
             if pressure > 0.0 {
                 let FacetForce { push, shear, center, .. } = &forces[t as usize];
-                let (arm, load) = (center - self.center, pressure * (push + shear));
+                let sign = self.sign_of(scene.touch(t));
+                let (arm, load) = (center - self.center, sign * pressure * (push + shear));
                 self.load_n += load;
                 self.load_torque_n_m += arm.cross(&load);
                 let share = pressure / self.pressure;

@@ -26,12 +26,12 @@ const TOLERANCE: f64 = 1e-5;
 /// The same, and sweeps, where the solver compares forces of one evaluation with the next.
 const ITERATED_TOLERANCE: f64 = 1e-8;
 const ITERATED_SWEEPS: usize = 100;
+/// What is left of the friction of one patch when it is found, as a part of the change that does not matter.
+const LOCAL_TOLERANCE: f64 = 0.1;
 /// Least flexibility of a patch in any direction over the largest.
 const REGULAR: f64 = 1e-9;
-/// Sweeps over all patches, and over those of blocks that deform: two faces that touch each other are two patches which stop the same slip, and
-/// settle slowly which of them carries how much.
+/// Sweeps over all patches.
 const MOST_SWEEPS: usize = 30;
-const MOST_NODAL_SWEEPS: usize = 30;
 
 /// One patch among others.
 #[derive(Clone, Copy, Debug, Default)]
@@ -171,6 +171,8 @@ impl CoupledPatch {
 /// All that moves.
 pub struct Motion<'a> {
     pub blocks: &'a BlockSet,
+    /// Of the nodes, at the start of the step [m/s].
+    pub start: &'a [Vec3],
     pub bodies: &'a mut [Body],
     pub nodal: &'a mut Nodal,
     pub dt_s: f64,
@@ -218,7 +220,7 @@ impl Motion<'_> {
             to.velocity_m_s = change(from.velocity_m_s, to.velocity_m_s);
             to.spin_rad_s = change(from.spin_rad_s, to.spin_rad_s);
         }
-        self.nodal.change(self.blocks, change);
+        self.nodal.change(self.blocks, self.start, change);
     }
 }
 
@@ -233,7 +235,7 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
         let mut changes = false;
         let mut advance = |patch: &mut CoupledPatch| {
             now += 1;
-            changes |= patch.takes_part(sweep) && patch.advance(motion, time_s, (now, sweep == 0));
+            changes |= patch.advance(motion, time_s, (now, sweep == 0));
         };
         if sweep % 2 == 0 {
             patches.iter_mut().for_each(&mut advance);
@@ -248,10 +250,6 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
 }
 
 impl CoupledPatch {
-    fn takes_part(&self, sweep: usize) -> bool {
-        sweep < MOST_NODAL_SWEEPS || self.sides.iter().all(Option::is_none)
-    }
-
     /// Friction of this patch while that of the others stays; whether it had to change.
     fn advance(&mut self, motion: &mut Motion, time_s: f64, (now, is_first): (u32, bool)) -> bool {
         let pushed = motion.pushed[self.owner.index()].max(motion.pushed[self.target.index()]);
@@ -265,7 +263,9 @@ impl CoupledPatch {
             return false;
         }
         self.free_slip = free_slip;
-        let force = self.surface.friction(&(self.stiffness / GAMMA), &free_slip, &slip, is_first);
+        let tolerance_n = LOCAL_TOLERANCE * self.tolerance_n;
+        let slips = (&free_slip, &slip);
+        let force = self.surface.friction(&(self.stiffness / GAMMA), slips, tolerance_n, is_first);
         let change = force - self.force;
         self.force = force;
         self.push(motion, &change, time_s);
