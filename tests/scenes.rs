@@ -43,7 +43,7 @@ const STICK_STAGE: [(&str, f64); 2] = [("sliding_30_phi25_spring", 1e-3), ("slid
 
 /// Scenes without a closed form that take up to minutes: here only their first moments [s].
 const SHORT: [(&str, f64); 10] = [
-    ("arch", 2e-3),
+    ("arch", 4e-3),
     ("bounce", 0.15),
     ("column_phi0", 2e-3),
     ("column_phi5", 4e-3),

@@ -10,7 +10,7 @@ use crate::evidence::row;
 use crate::{displacements, simulation};
 
 const STEP_S: f64 = 1e-4;
-const END_S: f64 = 0.2;
+const END_S: f64 = 0.25;
 const SLOPE_DEG: f64 = 30.0;
 const GRAVITY_M_S2: f64 = 9.8;
 

@@ -22,7 +22,7 @@ use crate::model::Body;
 /// γ of Alexander's method.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 /// Friction is found when no patch changes its own by more than this part of μN, or of the largest on both of its blocks.
-const TOLERANCE: f64 = 1e-5;
+const TOLERANCE: f64 = 1e-6;
 /// The same, and sweeps, where the solver compares forces of one evaluation with the next.
 const ITERATED_TOLERANCE: f64 = 1e-8;
 const ITERATED_SWEEPS: usize = 100;
