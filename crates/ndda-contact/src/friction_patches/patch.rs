@@ -9,6 +9,9 @@ use crate::friction_patches::{PatchScene, Place};
 use crate::integrals::{FacetSums, Integrals, Touch};
 use crate::model::{Body, ContactHistory, FaceMemory};
 
+/// Second moments that differ by less than this part are the same.
+const TIE: f64 = 1e-6;
+
 /// What a patch is, in short.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PatchSummary {
@@ -87,7 +90,7 @@ impl ContactPatch {
         };
         self.least_slip_m = scene.input.dt_s.powi(2) * load_m_s2(owner).max(load_m_s2(target));
         self.most_n = law.map_or(0.0, |law| self.capacity_n(law));
-        let (axes, second_moment_m2) = self.principal_axes();
+        let (axes, second_moment_m2) = self.principal_axes(run, scene, forces);
         (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
         let old = remembered.of(&run[0]).filter(|old| old.normal.dot(&self.normal) > 0.0);
         self.previous = old.map(|old| old.turned_to(&self.normal));
@@ -138,18 +141,47 @@ impl ContactPatch {
     }
 
     /// Two unit vectors in the face along which the pressure has its principal second moments, the normal, and these moments [m²].
-    fn principal_axes(&self) -> ([Vec3; 3], [f64; 2]) {
+    fn principal_axes(
+        &self,
+        run: &[Place],
+        scene: &PatchScene,
+        forces: &[FacetForce],
+    ) -> ([Vec3; 3], [f64; 2]) {
         let [s, t] = tangents(&self.normal);
         let moment = |a: &Vec3, b: &Vec3| a.dot(&(self.second_moment_m2 * b));
         let (xx, xy, yy) = (moment(&s, &s), moment(&s, &t), moment(&t, &t));
         let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
         let spread = half.hypot(xy);
-        let angle = 0.5 * xy.atan2(half);
+        let angle = if spread > TIE * mean {
+            0.5 * xy.atan2(half)
+        } else {
+            self.fourfold_angle(run, scene, forces, &[s, t])
+        };
         let (sin, cos) = angle.sin_cos();
         let along = s * cos + t * sin;
         // The lesser one is positive but for rounding.
         let least = (mean - spread).max(1e-6 * mean);
         ([along, self.normal.cross(&along), self.normal], [mean + spread, least])
+    }
+
+    /// Angle of the axes where both second moments are the same, as those of a square: it follows the facets, Σ p (x + iy)⁴ being real and
+    /// negative along the axes of facets that lie in the corners, so that it turns with the blocks.
+    fn fourfold_angle(
+        &self,
+        run: &[Place],
+        scene: &PatchScene,
+        forces: &[FacetForce],
+        [s, t]: &[Vec3; 2],
+    ) -> f64 {
+        let (mut real, mut imaginary) = (0.0, 0.0);
+        for &(_, _, facet) in run {
+            let arm = forces[facet as usize].center - self.center;
+            let (x, y) = (s.dot(&arm), t.dot(&arm));
+            let pressure = scene.sums(facet).pressure.max(0.0);
+            real += pressure * (x * x * (x * x - 6.0 * y * y) + y.powi(4));
+            imaginary += pressure * 4.0 * x * y * (x * x - y * y);
+        }
+        0.25 * (-imaginary).atan2(-real)
     }
 
     /// Energy [J] by which friction did less than Coulomb's law takes from a displacement of the surfaces, D(u, θ) + F·u + T θ ≥ 0: none where the
@@ -200,13 +232,16 @@ impl ContactPatch {
                 push += self.sign_of(scene.touch(t)) * pressure * forces[t as usize].push;
             }
         }
-        if self.pressure > 0.0 {
-            self.center /= self.pressure;
-            // Per unit of pressure: that of blocks which only just touch is too small a number to be squared.
-            let push = push / self.pressure;
-            self.normal_n = push.norm() * self.pressure;
-            self.normal = -push.normalize();
+        if push == Vec3::zeros() {
+            // Where blocks only just touch, an overlap may be too small for a force: without one there is no friction.
+            self.pressure = 0.0;
+            return;
         }
+        self.center /= self.pressure;
+        // Per unit of pressure: that of blocks which only just touch is too small a number to be squared.
+        let push = push / self.pressure;
+        self.normal_n = push.norm() * self.pressure;
+        self.normal = -push.normalize();
     }
 
     /// Loads, and second moments about the centre; a facet counts with its own size, so that one facet has some, too.
