@@ -165,8 +165,13 @@ pub fn relative_motion(
     sum
 }
 
-/// Two unit vectors in the facet: along its first edge, and across. They turn with the facet.
+/// Two unit vectors in the facet that turn with it as a whole, whichever corner is the first: along
+/// a = x₀ + R(−120°) x₁ + R(120°) x₂, R being turns about the normal, and across. Other first corners turn a by 120°; it does not
+/// vanish where the facet has an area.
 pub fn facet_basis(corners: &[Vec3; 3], normal: &Vec3) -> [Vec3; 2] {
-    let along = (corners[1] - corners[0]).normalize();
+    let [x0, x1, x2] = corners;
+    let half_root_of_3 = 0.5 * 3f64.sqrt();
+    let along = 0.5 * ((x0 - x1) + (x0 - x2)) + half_root_of_3 * normal.cross(&(x2 - x1));
+    let along = (along - normal * normal.dot(&along)).normalize();
     [along, normal.cross(&along)]
 }

@@ -37,6 +37,8 @@ pub mod contactors;
 #[cfg(feature = "potential")]
 pub mod coulomb;
 #[cfg(feature = "potential")]
+mod couples;
+#[cfg(feature = "potential")]
 pub mod element_potential;
 #[cfg(feature = "potential")]
 pub mod energy;

@@ -3,10 +3,11 @@
 use std::ops::Range;
 
 use nalgebra::{Matrix4, Vector4};
-use ndda_mesh::{BlockId, BlockSet, Mat3, NodeId, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use crate::both::both;
 use crate::by_block::ByBlock;
+use crate::couples::CoupleScene;
 use crate::facets::FacetForce;
 use crate::hulls::{Hulls, Whole};
 use crate::integrals::{FacetSums, Hit, Integrals};
@@ -190,30 +191,24 @@ impl BlockNodes<'_> {
     /// The couples of facets of this block, and the opposite of those on it.
     #[inline(never)]
     fn add_couples(&mut self, scene: &ScatterScene, block: BlockId, position: &[Vec3]) {
-        for t in scene.by_block.of(block) {
-            let nodes = scene.blocks.triangles[scene.integrals.touching()[t as usize].triangle.index()];
-            self.add_couple(&nodes, position, &scene.forces[t as usize].couple_n_m);
-        }
-        for &t in scene.by_block.on(block) {
-            let couple_n_m = -scene.forces[t as usize].couple_n_m;
-            if let [hit, ..] = scene.integrals.hits_of(&scene.integrals.touching()[t as usize]) {
-                let host = scene.hulls.whole(block).map_or(hit.tet, |whole| whole.host);
-                self.add_couple(&scene.blocks.tets[host.index()], position, &couple_n_m);
+        let own = scene.by_block.of(block).map(|t| (t, true));
+        let on_block = scene.by_block.on(block).iter().map(|&t| (t, false));
+        let ScatterScene { blocks, integrals, hulls, .. } = *scene;
+        let couples = CoupleScene { blocks, position, integrals, hulls };
+        for (t, is_owner) in own.chain(on_block) {
+            let couple_n_m = scene.forces[t as usize].couple_n_m;
+            if couple_n_m == Vec3::zeros() {
+                continue;
             }
+            let couple_n_m = if is_owner { couple_n_m } else { -couple_n_m };
+            couples.each_force(&integrals.touching()[t as usize], is_owner, &couple_n_m, |node, force| {
+                let i = node - self.first;
+                self.output.force[i] += force;
+                if let Some(sum) = self.output.friction_force.get_mut(i) {
+                    *sum += force;
+                }
+            });
         }
-    }
-
-    fn add_couple(&mut self, nodes: &[NodeId], position: &[Vec3], couple_n_m: &Vec3) {
-        if *couple_n_m == Vec3::zeros() {
-            return;
-        }
-        each_of_couple(nodes, position, couple_n_m, |n, force| {
-            let i = n.index() - self.first;
-            self.output.force[i] += force;
-            if let Some(sum) = self.output.friction_force.get_mut(i) {
-                *sum += force;
-            }
-        });
     }
 
     fn add(&mut self, node: usize, weight: f64, force: &FacetForce, stiffness: f64) {
@@ -225,19 +220,4 @@ impl BlockNodes<'_> {
             *sum += friction;
         }
     }
-}
-
-/// A torque T as forces w × d on nodes at d from their mean, Σ d × (w × d) = T.
-pub fn each_of_couple(
-    nodes: &[NodeId],
-    position: &[Vec3],
-    couple_n_m: &Vec3,
-    mut add: impl FnMut(NodeId, Vec3),
-) {
-    let at = |n: &NodeId| position[n.index()];
-    let mean = nodes.iter().map(at).sum::<Vec3>() / nodes.len() as f64;
-    let spread: Mat3 = nodes.iter().map(|n| (at(n) - mean) * (at(n) - mean).transpose()).sum();
-    let inertia = Mat3::identity() * spread.trace() - spread;
-    let Some(turn) = inertia.try_inverse().map(|inverse| inverse * couple_n_m) else { return };
-    nodes.iter().for_each(|n| add(*n, turn.cross(&(at(n) - mean))));
 }

@@ -14,12 +14,13 @@ mod solve;
 
 use std::ops::Range;
 
-use ndda_mesh::{BlockId, BlockSet, Mat3, NodeId, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use rayon::prelude::*;
 
 use crate::block_faces::BlockFaces;
 use crate::both::both;
 use crate::by_block::ByBlock;
+use crate::couples::CoupleScene;
 use crate::facets::FacetForce;
 use crate::friction::FrictionLaw;
 use crate::friction_patches::nodal::{Nodal, NodalSide};
@@ -63,15 +64,10 @@ impl PatchScene<'_> {
         self.touch(t).owner
     }
 
-    /// Nodes that feel the couple of a facet: its own, or those of what it presses on.
-    fn couple_nodes(&self, t: u32, is_owner: bool) -> Option<&[NodeId]> {
-        let (touch, blocks) = (self.touch(t), self.input.blocks);
-        if is_owner {
-            return Some(&blocks.triangles[touch.triangle.index()]);
-        }
-        let tet = self.integrals.hits_of(touch).first()?.tet;
-        let host = self.hulls.whole(touch.target).map_or(tet, |whole| whole.host);
-        Some(&blocks.tets[host.index()])
+    /// What couples of facets read.
+    fn couples(&self) -> CoupleScene<'_> {
+        let ContactInput { blocks, position, .. } = *self.input;
+        CoupleScene { blocks, position, integrals: self.integrals, hulls: self.hulls }
     }
 
     /// The law of the facets of a run, if it acts on faces.

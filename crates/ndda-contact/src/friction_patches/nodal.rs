@@ -11,7 +11,6 @@ use crate::facets::FacetForce;
 use crate::friction_patches::patch::ContactPatch;
 use crate::friction_patches::{PatchScene, Place};
 use crate::model::Deformation;
-use crate::scatter::each_of_couple;
 
 /// What a node feels of one facet of a patch.
 #[derive(Clone, Copy, Debug)]
@@ -99,13 +98,13 @@ impl Nodal {
                 add_weight(&mut self.weights, &mut self.place_of, from, weight);
             });
             let (pressure, own_m2) = (scene.sums(t).pressure, own_m2[t as usize].trace());
-            let Some(nodes) = scene.couple_nodes(t, is_owner).filter(|_| pressure > 0.0) else { continue };
-            let couple = pressure / patch.pressure * own_m2 / patch.surface.radius_m * patch.normal;
-            each_of_couple(nodes, scene.input.position, &couple, |node, force| {
-                let node = node.index() as u32;
-                let weight = Weight { node, share: 0.0, twist: force };
-                add_weight(&mut self.weights, &mut self.place_of, from, weight);
-            });
+            if pressure > 0.0 {
+                let couple = pressure / patch.pressure * own_m2 / patch.surface.radius_m * patch.normal;
+                scene.couples().each_force(scene.touch(t), is_owner, &couple, |node, force| {
+                    let weight = Weight { node: node as u32, share: 0.0, twist: force };
+                    add_weight(&mut self.weights, &mut self.place_of, from, weight);
+                });
+            }
         }
         let nodes = scene.input.blocks.nodes_of(block);
         let columns = &mut self.columns[block.index()];

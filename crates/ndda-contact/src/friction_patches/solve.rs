@@ -22,16 +22,16 @@ use crate::model::Body;
 /// γ of Alexander's method.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 /// Friction is found when no patch changes its own by more than this part of μN, or of the largest on both of its blocks.
-const TOLERANCE: f64 = 1e-6;
+const TOLERANCE: f64 = 1e-7;
 /// The same, and sweeps, where the solver compares forces of one evaluation with the next.
 const ITERATED_TOLERANCE: f64 = 1e-8;
-const ITERATED_SWEEPS: usize = 100;
+const ITERATED_SWEEPS: usize = 300;
 /// What is left of the friction of one patch when it is found, as a part of the change that does not matter.
 const LOCAL_TOLERANCE: f64 = 0.1;
 /// Least flexibility of a patch in any direction over the largest.
 const REGULAR: f64 = 1e-9;
 /// Sweeps over all patches.
-const MOST_SWEEPS: usize = 30;
+const MOST_SWEEPS: usize = 100;
 
 /// One patch among others.
 #[derive(Clone, Copy, Debug, Default)]
