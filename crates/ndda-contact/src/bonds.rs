@@ -145,6 +145,7 @@ fn hand_over(
         target,
         element,
         shear_n: [shear.dot(&basis[0]), shear.dot(&basis[1])],
+        area_m2: 2.0 * stretch.half_area,
         broken: true,
     };
     let key = |known: &FacetMemory| (known.facet, known.target, known.element);

@@ -169,7 +169,7 @@ impl PotentialContact {
     fn remember(&mut self, input: &ContactInput, history: &mut ContactHistory) {
         self.new_facets.clear();
         let scene = FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
-        for force in &self.forces {
+        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
             let facet = &self.candidates.facets[force.facet as usize];
             if let Some(memory) = force.memory {
                 self.new_facets.push(FacetMemory {
@@ -177,6 +177,7 @@ impl PotentialContact {
                     target: facet.target,
                     element: scene.element_of(facet),
                     shear_n: memory.shear_n,
+                    area_m2: self.integrals.sums_of(touch).area,
                     broken: memory.broken,
                 });
             }
