@@ -145,6 +145,8 @@ pub struct ContactReport {
     pub past_centroid: Option<(TriangleId, TetId)>,
     /// Largest |force on contactor + force on target| / |force| over all pairs.
     pub action_reaction_error: f64,
+    /// By how much the strength of a bond was exceeded that broke in this evaluation, over its strength without normal stress.
+    pub bond_overload: f64,
 }
 
 /// Why contact forces could not be computed.

@@ -287,12 +287,13 @@ impl ContactModel for PotentialContact {
         }
         let Some((_, field)) = &self.field else { return Ok(ContactReport::default()) };
         let (candidates, integrals) = (&self.candidates, &self.integrals);
-        let report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
+        let mut report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
         let blocks_of = |touch: &Touch| (touch.owner, touch.target);
         self.place_penalties(input);
         if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
             let found = (&self.candidates, &self.integrals);
-            bonds::break_overloaded(joints, found, &self.penalty_of_facet, input, history);
+            report.bond_overload =
+                bonds::break_overloaded(joints, found, &self.penalty_of_facet, input, history);
         }
         let rubs = self.needs_bodies() && !input.bodies.is_empty();
         let Self { by_block, faces, integrals, .. } = self;
