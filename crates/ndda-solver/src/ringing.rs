@@ -168,8 +168,8 @@ impl Ringing {
                 (false, true) => 0.5 * first2.sqrt().max((drive.pressed_m_s2 - self.pressed_m_s2).abs()),
                 (false, false) => 0.25 * second2.sqrt(),
             };
-        // Taken at one end of a step, forces leave errors of first order until the block is free again.
-        let is_over = !step.is_one_sided || step.judges_pairs && !drive.is_held;
+        // Taken at one end of a step, forces of contact leave errors of first order until the block is free again.
+        let is_over = !step.is_one_sided || step.judges_pairs && !drive.touches;
         let cancels = self.maxima <= 1 && !self.rubs && is_over;
         let new_m_s = if cancels { 0.0 } else { self.now_m_s };
         self.error_m_s = (self.past_m_s + new_m_s).min(self.bound_m_s(step, only_supported));
