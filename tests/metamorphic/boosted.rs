@@ -51,7 +51,7 @@ fn boosted_scenes_move_as_before() {
         let fastest = |v: [f64; 3]| Vec3::from(v).norm();
         let speed_m_s = case.scene.blocks.iter().map(|b| fastest(b.velocity_m_s)).fold(1e-3, f64::max);
         let boost = Random::new(!case.seed).vector(speed_m_s);
-        let map = Map { turn: Mat3::identity(), shift_m: Vec3::zeros(), boost_m_s: Vec3::from(boost) };
+        let map = Map { boost_m_s: Vec3::from(boost), ..Map::of_turn(Mat3::identity()) };
         compare(case, &boosted(&case.scene, boost), &map, Clone::clone)
     });
 }

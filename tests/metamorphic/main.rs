@@ -9,7 +9,6 @@ mod families;
 mod generator;
 mod label;
 mod laws;
-mod leave_out;
 mod mirrored;
 mod motion;
 mod random;

@@ -7,6 +7,9 @@ use crate::motion::Motion;
 use crate::search::{Found, search, text_of};
 use crate::transform::{Map, compare};
 
+/// What the order of patches leaves of size and speed, where a hundred sweeps do not find friction to 1e-7.
+const ORDER: f64 = 1e-6;
+
 #[test]
 fn renumbered_scenes_move_as_before() {
     search("renumbered", 40, &Wanted { uncut: true, ..Wanted::default() }, |case| {
@@ -25,6 +28,7 @@ fn renumbered_scenes_move_as_before() {
                 velocity: nodes().map(|n| motion.velocity[n]).collect(),
             }
         };
-        compare(case, &twin, &Map::of_turn(Mat3::identity()), reorder)
+        let map = Map { friction: ORDER, ..Map::of_turn(Mat3::identity()) };
+        compare(case, &twin, &map, reorder)
     });
 }

@@ -47,7 +47,7 @@ fn shifted_scenes_move_as_before() {
         let mut random = Random::new(!case.seed);
         // Farther away the coordinates of the scene have fewer digits, and so another shape.
         let shift = random.vector(100.0);
-        let map = Map { turn: Mat3::identity(), shift_m: Vec3::from(shift), boost_m_s: Vec3::zeros() };
+        let map = Map { shift_m: Vec3::from(shift), ..Map::of_turn(Mat3::identity()) };
         compare(case, &shifted(&case.scene, shift), &map, Clone::clone)
     });
 }

@@ -82,7 +82,7 @@ impl Record {
 
 /// What a reason is about, without its numbers.
 fn short(reason: &str) -> &'static str {
-    const KINDS: [(&str, &str); 21] = [
+    const KINDS: [(&str, &str); 22] = [
         ("too long for the friction", "friction"),
         ("strains reach", "strains"),
         ("lumped masses", "lumped masses"),
@@ -94,6 +94,7 @@ fn short(reason: &str) -> &'static str {
         ("contact took", "energy of a pair"),
         ("into each other", "penetration"),
         ("squeezed out", "squeezed out"),
+        ("a bond broke", "bonds"),
         ("too long for contact", "h of contact"),
         ("in a step, limit", "travel"),
         ("turns too far", "turn"),

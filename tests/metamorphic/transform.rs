@@ -1,6 +1,6 @@
 //! Scenes moved as a whole, and compared with what they were.
 
-use ndda_io::scene::{Hold, Region, Scene, Turn};
+use ndda_io::scene::{Contact, Hold, Region, Scene, Turn};
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::generator::{Case, build};
@@ -9,8 +9,10 @@ use crate::search::{Found, text_of};
 
 /// Part of the scene's size and speed by which a twin is disturbed.
 const DISTURBED: f64 = 1e-9;
-/// What rounding is of that disturbance: 1e-13 of the size of coordinates, in each of a hundred steps.
-const ROUNDING: f64 = 1e-2;
+/// What rounding is of that disturbance: 2e-13 of the size of coordinates, in each of a hundred steps.
+const ROUNDING: f64 = 2e-2;
+/// What friction on velocities leaves of size and speed, which is found to 1e-7 of the largest force in each step.
+const FRICTION: f64 = 5e-9;
 /// Growth of the disturbance beyond which nothing can be said.
 const CHAOS: f64 = 1e5;
 
@@ -19,11 +21,13 @@ pub struct Map {
     pub turn: Mat3,
     pub shift_m: Vec3,
     pub boost_m_s: Vec3,
+    /// What friction on velocities leaves of size and speed.
+    pub friction: f64,
 }
 
 impl Map {
     pub fn of_turn(turn: Mat3) -> Self {
-        Self { turn, shift_m: Vec3::zeros(), boost_m_s: Vec3::zeros() }
+        Self { turn, shift_m: Vec3::zeros(), boost_m_s: Vec3::zeros(), friction: FRICTION }
     }
 
     /// A motion as it is after the map, at a time [s].
@@ -71,7 +75,8 @@ pub fn compare(case: &Case, twin: &Scene, map: &Map, reorder: impl Fn(&Motion) -
     let found = map.apply(&end, time_s).apart(&reorder(&Motion::of(&other.simulation)), length_m, speed_m_s);
     let farthest_m = |motion: &Motion| motion.position.iter().map(|x| x.amax()).fold(length_m, f64::max);
     let coordinates = farthest_m(&end).max(farthest_m(&reorder(&Motion::of(&other.simulation)))) / length_m;
-    let bound = ROUNDING * DISTURBED * (1.0 + growth) * coordinates;
+    let friction = if has_velocity_friction(&case.scene) { map.friction } else { 0.0 };
+    let bound = (ROUNDING * DISTURBED * coordinates + friction) * (1.0 + growth);
     if found <= bound {
         Found::Holds
     } else if growth > CHAOS {
@@ -81,6 +86,11 @@ pub fn compare(case: &Case, twin: &Scene, map: &Map, reorder: impl Fn(&Motion) -
             "apart by {found:.2e} of size and speed, rounding explains {bound:.1e}: a disturbance of 1e-9 grows {growth:.1e} times"
         ))
     }
+}
+
+fn has_velocity_friction(scene: &Scene) -> bool {
+    let Some(Contact::Potential { friction: Some(friction), .. }) = &scene.contact else { return false };
+    friction.shear_penalty_pa_m.is_none()
 }
 
 /// The axis and the angle [°] of a rotation.

@@ -102,14 +102,16 @@ fn key(blocks: &BlockSet, memory: Memory, bond: &Bond) -> Key {
     (bond.facet, blocks.tet_block[bond.tet.index()], element)
 }
 
-/// Drops the bonds that break, and hands their shear to the friction law of their facet.
+/// Drops the bonds that break, and hands their shear to the friction law of their facet. Gives the largest [overload](Stretch::overload) of those that
+/// break.
 pub fn break_overloaded(
     joints: &Joints,
     (candidates, integrals): (&Candidates, &Integrals),
     penalty_of_facet: &[f64],
     input: &ContactInput,
     history: &mut ContactHistory,
-) {
+) -> f64 {
+    let mut largest = 0.0f64;
     let (blocks, touching) = (input.blocks, integrals.touching());
     let ContactHistory { bonds, facets, .. } = history;
     bonds.retain(|bond| {
@@ -122,12 +124,17 @@ pub fn break_overloaded(
         let pressed_n =
             place.map_or(0.0, |t| penalty_of_facet[t] * integrals.sums_of(&touching[t]).pressure.max(0.0));
         let stretch = Stretch::of(input, bond);
-        let is_whole = stretch.is_carried(law, pressed_n);
-        if !is_whole && place.is_ok() {
+        let overload = stretch.overload(law, pressed_n);
+        if overload <= 0.0 {
+            return true;
+        }
+        largest = largest.max(overload);
+        if place.is_ok() {
             hand_over(wanted, &stretch, law, input, facets);
         }
-        is_whole
+        false
     });
+    largest
 }
 
 /// Makes the shear of a bond that breaks the friction that its facet remembers; the law then limits it.
@@ -145,6 +152,7 @@ fn hand_over(
         target,
         element,
         shear_n: [shear.dot(&basis[0]), shear.dot(&basis[1])],
+        area_m2: 2.0 * stretch.half_area,
         broken: true,
     };
     let key = |known: &FacetMemory| (known.facet, known.target, known.element);
@@ -230,18 +238,21 @@ impl Stretch {
         law.shear_stiffness_pa_m() * self.half_area * self.offset_m
     }
 
-    /// Whether the joint's strength is not exceeded: k_b δ ≤ σ_t and |k_s s| ≤ max(0, c + σ tan φ), to rounding.
-    fn is_carried(&self, law: &dyn FrictionLaw, pressed_n: f64) -> bool {
-        let tensile_pa = law.bond_stiffness_pa_m() * (self.opening_m - self.rounding_m);
-        let slip = FacetSlip {
-            normal_n: pressed_n - self.tension_n(law),
-            area_m2: 2.0 * self.half_area,
-            ..FacetSlip::default()
-        };
+    /// By how much the joint's strength is exceeded, over its strength without normal stress; not above zero while it holds:
+    /// k_b δ ≤ σ_t and |k_s s| ≤ max(0, c + σ tan φ), to rounding.
+    fn overload(&self, law: &dyn FrictionLaw, pressed_n: f64) -> f64 {
         let whole = ShearMemory { broken: false, ..ShearMemory::default() };
+        let capacity_n = |normal_n: f64| {
+            let slip = FacetSlip { normal_n, area_m2: 2.0 * self.half_area, ..FacetSlip::default() };
+            law.capacity_n(&slip, &whole)
+        };
+        let tensile_pa = law.bond_stiffness_pa_m() * (self.opening_m - self.rounding_m);
         let rounding_n = law.shear_stiffness_pa_m() * self.half_area * self.rounding_m;
-        tensile_pa <= law.tension_pa()
-            && self.shear_n(law).norm() <= law.capacity_n(&slip, &whole) + rounding_n
+        let strength_n = capacity_n(pressed_n - self.tension_n(law)) + rounding_n;
+        let tensile_n = (tensile_pa - law.tension_pa()) * self.half_area;
+        let excess_n = tensile_n.max(self.shear_n(law).norm() - strength_n);
+        let unstressed_n = capacity_n(0.0).max(law.tension_pa() * self.half_area);
+        if unstressed_n > 0.0 { excess_n / unstressed_n } else { excess_n }
     }
 }
 

@@ -23,9 +23,10 @@ impl FrictionLaw for Coulomb {
         "Coulomb with a shear spring"
     }
 
-    /// f′ = f − ½ k_s Δu S, capped at μ |f_n| along its own direction.
+    /// f′ = f − ½ k_s Δu S̄, capped at μ |f_n| along its own direction; S̄ is the mean area of the step, so that springs of contacts that grow are of
+    /// second order.
     fn advance(&self, slip: &FacetSlip, memory: &mut ShearMemory) {
-        let spring = 0.5 * self.shear_penalty_pa_m * slip.area_m2;
+        let spring = 0.5 * self.shear_penalty_pa_m * slip.mean_area_m2;
         let trial = [0, 1].map(|i| memory.shear_n[i] - spring * slip.slip_m[i]);
         memory.shear_n = capped(trial, self.capacity_n(slip, memory)).0;
     }
@@ -55,7 +56,8 @@ mod tests {
     fn below_the_cap_it_is_a_spring_and_above_it_slides() {
         let law = Coulomb::new(45.0, 2.0);
         let mut memory = ShearMemory::default();
-        let slip = FacetSlip { normal_n: 10.0, area_m2: 3.0, slip_m: [1.0, 0.0], ..FacetSlip::default() };
+        let slip =
+            FacetSlip { normal_n: 10.0, mean_area_m2: 3.0, slip_m: [1.0, 0.0], ..FacetSlip::default() };
         law.advance(&slip, &mut memory);
         assert_eq!(memory.shear_n, [-3.0, 0.0]);
         law.advance(&FacetSlip { slip_m: [0.0, 100.0], ..slip }, &mut memory);

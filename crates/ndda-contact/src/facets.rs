@@ -84,7 +84,7 @@ impl FacetScene<'_> {
         let facet = &self.candidates.facets[touch.facet as usize];
         let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
         let basis = facet_basis(&corners, normal);
-        let mut memory = self.remembered(facet);
+        let (mut memory, last_area_m2) = self.remembered(facet, sums);
         let bonds = &self.history.bonds;
         let key = (facet.triangle, facet.target, self.element_of(facet));
         if !bonds.is_empty() && bonds::holds(bonds, self.input.blocks, joints.memory, key) {
@@ -92,7 +92,8 @@ impl FacetScene<'_> {
             (force.sticks, force.memory) = (true, Some(ShearMemory { broken: false, ..memory }));
             return;
         }
-        let slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
+        let mut slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
+        slip.mean_area_m2 = 0.5 * (last_area_m2 + sums.area);
         law.advance(&slip, &mut memory);
         let [x, y] = memory.shear_n;
         force.sticks = length([x, y]) < STICKS * law.capacity_n(&slip, &memory);
@@ -118,21 +119,23 @@ impl FacetScene<'_> {
         FacetSlip {
             normal_n: penalty_pa * sums.pressure,
             area_m2: sums.area,
+            mean_area_m2: sums.area,
             slip_m: in_basis(&(self.input.dt_s * velocity)),
             stopping_n: [0.0; 2],
         }
     }
 
-    /// What the facet remembers of its target; nothing when they did not touch before.
-    fn remembered(&self, facet: &Facet) -> ShearMemory {
+    /// What the facet remembers of its target, and the area of the last step; nothing when they did not touch before.
+    fn remembered(&self, facet: &Facet, sums: &FacetSums) -> (ShearMemory, f64) {
         let key = |memory: &FacetMemory| (memory.facet, memory.target, memory.element);
         let wanted = (facet.triangle, facet.target, self.element_of(facet));
         match self.history.facets.binary_search_by_key(&wanted, key) {
             Ok(place) => {
-                let FacetMemory { shear_n, broken, .. } = self.history.facets[place];
-                ShearMemory { shear_n, broken }
+                let FacetMemory { shear_n, broken, area_m2, .. } = self.history.facets[place];
+                (ShearMemory { shear_n, broken }, area_m2)
             }
-            Err(_) => ShearMemory::default(),
+            // What touches from the start has done so before.
+            Err(_) => (ShearMemory::default(), if self.history.begun { 0.0 } else { sums.area }),
         }
     }
 

@@ -7,6 +7,8 @@ pub struct FacetSlip {
     pub normal_n: f64,
     /// Area in contact S [m²].
     pub area_m2: f64,
+    /// Mean of that and of the area in the last step, of which the shear spring is that the slip stretches [m²].
+    pub mean_area_m2: f64,
     /// Slip of this step, contactor minus target, predicted from the velocities [m].
     pub slip_m: [f64; 2],
     /// Change of the shear force on the contactor that would leave no slip velocity at the end of the step [N].

@@ -145,6 +145,8 @@ pub struct ContactReport {
     pub past_centroid: Option<(TriangleId, TetId)>,
     /// Largest |force on contactor + force on target| / |force| over all pairs.
     pub action_reaction_error: f64,
+    /// By how much the strength of a bond was exceeded that broke in this evaluation, over its strength without normal stress.
+    pub bond_overload: f64,
 }
 
 /// Why contact forces could not be computed.
@@ -192,6 +194,8 @@ pub struct FacetMemory {
     /// Shear force on the contactor in the facet's own basis (first edge, normal × first edge) [N].
     /// The basis turns with the facet, so the force does too.
     pub shear_n: [f64; 2],
+    /// Area in contact [m²].
+    pub area_m2: f64,
     /// Whether cohesion is gone.
     pub broken: bool,
 }

@@ -28,7 +28,7 @@ impl FrictionLaw for MohrCoulomb {
     }
 
     fn advance(&self, slip: &FacetSlip, memory: &mut ShearMemory) {
-        let spring = 0.5 * self.shear_penalty_pa_m * slip.area_m2;
+        let spring = 0.5 * self.shear_penalty_pa_m * slip.mean_area_m2;
         let trial = [0, 1].map(|i| memory.shear_n[i] - spring * slip.slip_m[i]);
         let (shear_n, slides) = capped(trial, self.capacity_n(slip, memory));
         memory.shear_n = shear_n;
@@ -76,7 +76,13 @@ mod tests {
     fn cohesion_holds_until_it_breaks_and_never_again() {
         let law = MohrCoulomb::new(45.0, 2.0, 20.0, 0.0);
         let mut memory = ShearMemory { broken: false, ..ShearMemory::default() };
-        let slip = FacetSlip { normal_n: 1.0, area_m2: 1.0, slip_m: [10.5, 0.0], ..FacetSlip::default() };
+        let slip = FacetSlip {
+            normal_n: 1.0,
+            area_m2: 1.0,
+            mean_area_m2: 1.0,
+            slip_m: [10.5, 0.0],
+            ..FacetSlip::default()
+        };
         law.advance(&slip, &mut memory);
         assert_eq!((memory.shear_n, memory.broken), ([-10.5, 0.0], false));
         law.advance(&FacetSlip { slip_m: [1.0, 0.0], ..slip }, &mut memory);

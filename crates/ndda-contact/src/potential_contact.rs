@@ -169,7 +169,7 @@ impl PotentialContact {
     fn remember(&mut self, input: &ContactInput, history: &mut ContactHistory) {
         self.new_facets.clear();
         let scene = FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
-        for force in &self.forces {
+        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
             let facet = &self.candidates.facets[force.facet as usize];
             if let Some(memory) = force.memory {
                 self.new_facets.push(FacetMemory {
@@ -177,6 +177,7 @@ impl PotentialContact {
                     target: facet.target,
                     element: scene.element_of(facet),
                     shear_n: memory.shear_n,
+                    area_m2: self.integrals.sums_of(touch).area,
                     broken: memory.broken,
                 });
             }
@@ -286,12 +287,13 @@ impl ContactModel for PotentialContact {
         }
         let Some((_, field)) = &self.field else { return Ok(ContactReport::default()) };
         let (candidates, integrals) = (&self.candidates, &self.integrals);
-        let report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
+        let mut report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
         let blocks_of = |touch: &Touch| (touch.owner, touch.target);
         self.place_penalties(input);
         if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
             let found = (&self.candidates, &self.integrals);
-            bonds::break_overloaded(joints, found, &self.penalty_of_facet, input, history);
+            report.bond_overload =
+                bonds::break_overloaded(joints, found, &self.penalty_of_facet, input, history);
         }
         let rubs = self.needs_bodies() && !input.bodies.is_empty();
         let Self { by_block, faces, integrals, .. } = self;

@@ -185,6 +185,7 @@ pub fn check_friction(law: &dyn crate::friction::FrictionLaw) {
     let slip = |normal_n: f64| FacetSlip {
         normal_n,
         area_m2: 1.0,
+        mean_area_m2: 1.0,
         slip_m: along,
         stopping_n: along.map(|s| -1e2 * s),
     };

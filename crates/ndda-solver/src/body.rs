@@ -1,7 +1,7 @@
 //! One step of one block, alone, whatever kind of body it is.
 
 use ndda_fem::FrameError;
-use ndda_mesh::Vec3;
+use ndda_mesh::{Mat3, Vec3};
 use serde::Serialize;
 
 use crate::batch::Batch;
@@ -340,8 +340,13 @@ impl BlockReport {
         self.damping_error_m_s += drag.mean_velocity_error() * (square / operator.mass_kg).sqrt();
     }
 
-    /// Torque of loads, work of friction and of changing loads, the contact rate of a step u [m], and what squeezes the block.
-    pub(crate) fn book(&mut self, shape: &Shape, context: &StepContext, increment: &[Vec3]) {
+    /// Torque of loads, work of friction and of changing loads, the contact rate of a step u [m], and what squeezes a block turned by R.
+    pub(crate) fn book(
+        &mut self,
+        shape: &Shape,
+        context: &StepContext,
+        (rotation, increment): (&Mat3, &[Vec3]),
+    ) {
         let point = context.moment_point(shape) - context.ahead;
         for (x, f) in context.contact_position.iter().zip(context.external) {
             self.outside_torque += (x - point).cross(f);
@@ -357,7 +362,7 @@ impl BlockReport {
         for (stiffness, mass) in context.contact_stiffness.iter().zip(&shape.operator.node_mass) {
             self.contact_rate2 = self.contact_rate2.max(stiffness / mass);
         }
-        self.drive = Drive::of(shape, context, self);
+        self.drive = Drive::of(shape, context, rotation, self);
         if self.contact_rate2 > 0.0 && context.loose > 0.0 {
             self.sideways = Sideways::of(shape, context, self);
         }

@@ -505,7 +505,7 @@ impl ElasticBody {
         }
         nodes.velocity.copy_from_slice(&self.load);
         nodes.acceleration.copy_from_slice(&self.elastic);
-        self.report.book(shape, context, &self.correction);
+        self.report.book(shape, context, (&self.rotation, &self.correction));
         Ok(())
     }
 

@@ -104,6 +104,8 @@ pub struct Invariants {
     pub unresolved_friction: Worst,
     /// I5: penetration over tet height.
     pub max_penetration_ratio: f64,
+    /// I8: by how much the strength of a bond was exceeded where one broke, over its strength without normal stress.
+    pub bond_overload: f64,
     /// I5: largest velocity that a block owes to the unknown direction of the forces that squeeze it, over the largest speed.
     pub squeezed_speed: Worst,
     /// I5: where that took it, over the smallest tet height of its block.
@@ -200,6 +202,7 @@ impl Ledger {
             block_loss: Worst::default(),
             unresolved_friction: Worst::default(),
             max_penetration_ratio: 0.0,
+            bond_overload: 0.0,
             squeezed_speed: Worst::default(),
             squeezed_place: Worst::default(),
             creep_speed: Worst::default(),
@@ -378,6 +381,7 @@ impl Ledger {
     pub fn watch(&mut self, report: &StepReport) {
         let (worst, contact) = (&mut self.worst, &report.contact);
         worst.max_penetration_ratio = worst.max_penetration_ratio.max(contact.max_penetration_ratio);
+        worst.bond_overload = worst.bond_overload.max(contact.bond_overload);
         worst.action_reaction = worst.action_reaction.max(contact.action_reaction_error);
         worst.candidate_pairs_max = worst.candidate_pairs_max.max(contact.candidate_pairs);
         worst.contact_pairs_max = worst.contact_pairs_max.max(contact.contact_pairs);

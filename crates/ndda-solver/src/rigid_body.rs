@@ -85,11 +85,11 @@ impl RigidBody {
         mut nodes: NodeSlices,
     ) -> Result<BlockReport, BlockError> {
         let mut report = BlockReport::default();
-        self.place_increment(shape, context, &nodes.view(), &mut report)?;
+        let start = self.place_increment(shape, context, &nodes.view(), &mut report)?;
         report.speed_m_s = checked_speed(shape, &self.velocity)?;
         report.book_drag(shape, context, (&self.increment, nodes.velocity, &self.velocity));
         self.advance(context, &mut nodes);
-        report.book(shape, context, &self.increment);
+        report.book(shape, context, (&start.rotation, &self.increment));
         Ok(report)
     }
 

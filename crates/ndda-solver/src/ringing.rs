@@ -15,7 +15,7 @@
 
 use std::f64::consts::PI;
 
-use ndda_mesh::Vec3;
+use ndda_mesh::{Mat3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use crate::body::{BlockReport, BodyKind, StepContext};
@@ -38,7 +38,7 @@ pub struct Drive {
     /// Half the sum of the sizes of contact forces on its nodes, over its mass: what presses it from both sides [m/s²]. Zero for a
     /// block that does not deform, and where contact is taken in the middle of a step.
     pub pressed_m_s2: f64,
-    /// Torque about its mass centre over its moment of inertia, times its radius; zero for a held block [m/s²].
+    /// Angular acceleration about its mass centre, times its radius; zero for a held block [m/s²].
     pub turn_m_s2: Vec3,
     /// Whether contact or supports act on it.
     pub is_held: bool,
@@ -51,8 +51,8 @@ pub struct Drive {
 }
 
 impl Drive {
-    /// What drives a block in a step.
-    pub fn of(shape: &Shape, context: &StepContext, report: &BlockReport) -> Self {
+    /// What drives a block in a step that is turned by R.
+    pub fn of(shape: &Shape, context: &StepContext, rotation: &Mat3, report: &BlockReport) -> Self {
         let touches = report.contact_rate2 > 0.0;
         let is_held = shape.kind != BodyKind::Fixed && (touches || !shape.is_free());
         if !is_held {
@@ -70,7 +70,7 @@ impl Drive {
             let center = operator.center(context.contact_position);
             let arms = context.contact_position.iter().zip(context.force);
             let torque: Vec3 = arms.map(|(x, f)| (x - center).cross(f)).sum();
-            turn_m_s2 = torque * shape.turn_per_n_m;
+            turn_m_s2 = rotation * (shape.turn_per_n_m * rotation.tr_mul(&torque));
         }
         let deforms = matches!(shape.kind, BodyKind::Elastic | BodyKind::Affine);
         let mut pressed_n = 0.0;
@@ -168,7 +168,9 @@ impl Ringing {
                 (false, true) => 0.5 * first2.sqrt().max((drive.pressed_m_s2 - self.pressed_m_s2).abs()),
                 (false, false) => 0.25 * second2.sqrt(),
             };
-        let cancels = self.maxima <= 1 && !self.rubs && (step.judges_pairs || !step.is_one_sided);
+        // Taken at one end of a step, forces leave errors of first order until the block is free again.
+        let is_over = !step.is_one_sided || step.judges_pairs && !drive.is_held;
+        let cancels = self.maxima <= 1 && !self.rubs && is_over;
         let new_m_s = if cancels { 0.0 } else { self.now_m_s };
         self.error_m_s = (self.past_m_s + new_m_s).min(self.bound_m_s(step, only_supported));
         (self.last, self.change, self.is_held) = (now, change, drive.is_held);

@@ -135,8 +135,8 @@ pub struct Shape {
     pub rigid: Option<RigidInertia>,
     /// Smallest height of its elements at rest [m].
     pub smallest_height_m: f64,
-    /// Acceleration of the farthest node by a torque about the mass centre, the mean over its directions [m/s² per N m].
-    pub turn_per_n_m: f64,
+    /// r J⁻¹ at rest: the acceleration of the farthest node, at r from the mass centre, by a torque about that [m/s² per N m].
+    pub turn_per_n_m: Mat3,
     /// Trace of K [N/m].
     pub stiffness_n_m: f64,
     /// Largest part by which its inertia of rotation is too large about any axis, for lumped masses; zero for consistent ones.
@@ -370,9 +370,10 @@ fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
         BodyKind::Fixed => Ok(()),
     }
 }
-/// r/J: J = 2/3 Σ m x² is the mean moment of inertia, r the distance of the farthest node from the mass centre.
-fn turn_per_n_m(operator: &BlockOperator) -> f64 {
-    let moment: f64 = operator.node_mass.iter().zip(&operator.rest).map(|(m, x)| m * x.norm_squared()).sum();
+
+/// r J⁻¹, r being the distance of the farthest node from the mass centre.
+fn turn_per_n_m(operator: &BlockOperator) -> Mat3 {
+    let inertia = operator.inertia(&operator.rest, &operator.rest);
     let farthest_m = operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
-    1.5 * farthest_m / moment
+    farthest_m * inertia.try_inverse().expect("a validated block is not flat")
 }

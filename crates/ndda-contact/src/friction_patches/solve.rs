@@ -30,8 +30,9 @@ const ITERATED_SWEEPS: usize = 300;
 const LOCAL_TOLERANCE: f64 = 0.1;
 /// Least flexibility of a patch in any direction over the largest.
 const REGULAR: f64 = 1e-9;
-/// Sweeps over all patches.
+/// Sweeps over all patches, and patches looked at in them where these are few.
 const MOST_SWEEPS: usize = 100;
+const MOST_VISITS: usize = 20_000;
 
 /// One patch among others.
 #[derive(Clone, Copy, Debug, Default)]
@@ -230,7 +231,11 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
     motion.pushed.clear();
     motion.pushed.resize(motion.bodies.len(), 0);
     let mut now = 0;
-    let most_sweeps = if motion.is_iterated { ITERATED_SWEEPS } else { MOST_SWEEPS };
+    let most_sweeps = if motion.is_iterated {
+        ITERATED_SWEEPS
+    } else {
+        MOST_SWEEPS.max(MOST_VISITS / patches.len().max(1))
+    };
     for sweep in 0..most_sweeps {
         let mut changes = false;
         let mut advance = |patch: &mut CoupledPatch| {

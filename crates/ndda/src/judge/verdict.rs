@@ -10,6 +10,8 @@ const MOST_FRICTION: f64 = 1e-3;
 /// Penetration over the height of the tetrahedron. A collision that goes d deep delays blocks by up to π d / 2, which is
 /// within the tenth of a height that places may be off.
 const MOST_DEPTH: f64 = 0.05;
+/// Part of its strength by which a bond may be overloaded when it breaks.
+const BOND_OVERLOAD: f64 = 0.05;
 /// What the promise allows: speeds over the largest, and places over a height.
 const SPEED: f64 = 0.01;
 const PLACE: f64 = 0.1;
@@ -78,6 +80,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(turns(simulation));
     entries.push(ringing(simulation));
     entries.extend(within_a_step(simulation));
+    entries.extend(bonds(simulation));
     if simulation.has_lumped_rotation() {
         entries.extend(lumped_rotation(simulation));
     }
@@ -303,6 +306,17 @@ fn ringing(simulation: &Simulation) -> Entry {
         100.0 * SPEED
     );
     warned("I8 ringing / speed", worst.value, SPEED, reason)
+}
+
+/// Whether bonds broke close to their strength, if any broke.
+fn bonds(simulation: &Simulation) -> Option<Entry> {
+    let overload = simulation.invariants().bond_overload;
+    let reason = format!(
+        "a bond broke {:.0} % beyond its strength, limit {:.0} %, so that others may hold or break that should not: reduce step_s",
+        100.0 * overload,
+        100.0 * BOND_OVERLOAD
+    );
+    (overload > 0.0).then(|| warned("I8 bond overload", overload, BOND_OVERLOAD, reason))
 }
 
 /// Whether anything comes and goes within a step.
