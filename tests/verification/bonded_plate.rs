@@ -43,7 +43,9 @@ fn a_glued_plate_under_slight_tension_breaks_at_its_cohesion() {
     for (cohesion_pa, tension_pa, pull_n) in [(1e5, 1e6, 1e5), (1e6, 1e5, 1e4)] {
         let strength_n = cohesion_pa * AREA_M2;
         let found_n = breaking_n(cohesion_pa, tension_pa, pull_n, 0.0, strength_n);
-        let what = format!("shear that breaks a bond, c = {cohesion_pa:e} Pa, σ_t = {tension_pa:e} Pa, pulled by {pull_n:e} N [N]");
+        let what = format!(
+            "shear that breaks a bond, c = {cohesion_pa:e} Pa, σ_t = {tension_pa:e} Pa, pulled by {pull_n:e} N [N]"
+        );
         row("bonds", &what, found_n, Within(strength_n, 1e-2));
     }
 }
@@ -54,7 +56,9 @@ fn a_pull_takes_its_friction_from_the_cohesion_and_a_push_adds_it() {
     for pull_n in [5e4, -2e5] {
         let strength_n = cohesion_pa * AREA_M2 - pull_n * friction_deg.to_radians().tan();
         let found_n = breaking_n(cohesion_pa, 1e5, pull_n, friction_deg, strength_n);
-        let what = format!("shear that breaks a bond of c = {cohesion_pa:e} Pa and φ = 30°, pulled by {pull_n:e} N [N]");
+        let what = format!(
+            "shear that breaks a bond of c = {cohesion_pa:e} Pa and φ = 30°, pulled by {pull_n:e} N [N]"
+        );
         row("bonds", &what, found_n, Within(strength_n, 1e-2));
     }
 }

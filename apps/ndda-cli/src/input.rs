@@ -37,7 +37,7 @@ pub fn model(args: &SceneArgs, events: Events) -> Result<Model, u8> {
 
 /// Says beforehand that building a scene takes long.
 pub fn warn_of_slow_build(loaded: &LoadedScene, folder: &Path) {
-    if let Some(text) = forecast::size::slow_build(loaded, folder) {
+    if let Some(text) = forecast::admit::slow_build(loaded, folder) {
         complain(&text);
     }
 }

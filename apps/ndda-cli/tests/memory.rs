@@ -69,7 +69,27 @@ fn what_does_not_fit_is_refused_with_its_figures_and_nothing_is_built() {
     let round = "blocks: [(name: \"a\", material: \"r\", shape: Sphere(radius_m: 1, levels: 6))]";
     refused(&scene(round), &check, &["2.1e6 tetrahedra", "fewer levels"]);
     refused(&cube(40, "body: Rigid"), &["check", "--memory", "50MB"], &["of memory", "there is 50.0 MB"]);
-    refused(&cube(40, "body: Rigid"), &["run", "--memory", "50MB"], &["there is 50.0 MB"]);
+    for verb in ["run", "mesh", "certify"] {
+        refused(&cube(40, "body: Rigid"), &[verb, "--memory", "50MB"], &["there is 50.0 MB"]);
+    }
+    refused(
+        &cube(40, "body: Rigid"),
+        &["tune", "--error", "1e-2", "--memory", "50MB"],
+        &["there is 50.0 MB"],
+    );
+}
+
+#[test]
+fn a_mesh_file_that_does_not_fit_is_refused_before_it_is_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    // The length of the file decides; what it holds is not looked at.
+    let file = folder.path().join("large.msh");
+    std::fs::File::create(&file).and_then(|made| made.set_len(25_000_000)).expect("a file");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ndda"));
+    let output = command.args(["mesh", "--memory", "100MB"]).arg(&file).output().expect("the program starts");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(output.status.code(), Some(RESOURCE), "{said}");
+    assert!(said.contains("1.0e6 tetrahedra would take 402.0 MB of memory; there is 100.0 MB"), "{said}");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! What is known of a run before its first step.
 
+pub mod admit;
 pub mod cost;
 pub mod creep;
 pub mod lumped;

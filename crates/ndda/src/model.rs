@@ -7,7 +7,7 @@ use ndda_io::read::{self, LoadedScene};
 use ndda_solver::Simulation;
 
 use crate::build::{self, Fault, overlaps};
-use crate::forecast::{creep, lumped, rounding, size};
+use crate::forecast::{admit, creep, lumped, rounding};
 use crate::judge::reference::Comparison;
 use crate::run::monitor::Monitor;
 
@@ -62,7 +62,7 @@ impl Model {
                 faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();
             loaded.errors(diagnostics)
         };
-        size::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
+        admit::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
         let blocks = build::blocks(&loaded.scene, folder).map_err(located)?;
         let far = rounding::warning(&loaded, &blocks);
         let simulation = build::simulation(&loaded.scene, blocks, folder).map_err(located)?;

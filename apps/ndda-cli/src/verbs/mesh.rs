@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use ndda::build::{self, CutRock, Meshes};
 use ndda::forecast;
 use ndda::mesh_report::MeshReport;
+use ndda_io::diagnostic::SceneErrors;
 use ndda_io::folder::MESH_REPORT;
 use ndda_io::read::load;
 use ndda_io::scene::{FieldFormat, Scene};
@@ -15,7 +16,7 @@ use ndda_mesh::{BlockSet, MeshError, repair};
 use serde::Serialize;
 
 use crate::args::{Export, Fix, MeshArgs};
-use crate::terminal::console::{colour, say};
+use crate::terminal::console::say;
 use crate::terminal::events::{self, Events};
 use crate::{exit, input};
 
@@ -28,13 +29,33 @@ struct Input {
     fixes: Vec<String>,
 }
 
+/// Why there are no blocks to measure.
+enum Refused {
+    /// What is wrong with the scene.
+    Scene(Box<SceneErrors>),
+    /// An exit code and what is wrong with the mesh file or the command line.
+    Message(u8, String),
+}
+
+impl From<SceneErrors> for Refused {
+    fn from(errors: SceneErrors) -> Self {
+        Self::Scene(Box::new(errors))
+    }
+}
+
+/// Input that cannot be used.
+fn bad_input(message: impl Into<String>) -> Refused {
+    Refused::Message(exit::BAD_INPUT, message.into())
+}
+
 /// Runs `ndda mesh`; returns the exit code.
 pub fn mesh(args: &MeshArgs) -> u8 {
     let events = Events::new(args.json, events::MESH);
     let input = if is_scene(&args.input) { from_scene(args) } else { from_file(args) };
     let mut input = match input {
         Ok(input) => input,
-        Err(message) => return events.fail(exit::BAD_INPUT, message.trim_start_matches("error: ")),
+        Err(Refused::Scene(errors)) => return events.refuse(&errors),
+        Err(Refused::Message(code, message)) => return events.fail(code, &message),
     };
     let mut measured = MeshReport::new(&input.meshes);
     measured.rock = input.rock.iter().map(|rock| rock.report.clone()).collect();
@@ -83,35 +104,35 @@ fn refusal(input: &Path, error: &MeshError) -> String {
     text + "\n  --fix orient turns inverted tetrahedra round, --fix merge joins coincident nodes"
 }
 
-fn from_scene(args: &MeshArgs) -> Result<Input, String> {
+fn from_scene(args: &MeshArgs) -> Result<Input, Refused> {
     if !args.fix.is_empty() {
-        return Err("error: --fix is for mesh files: correct a scene where it is written".into());
+        return Err(bad_input("--fix is for mesh files: correct a scene where it is written"));
     }
-    let loaded = load(&args.input, &args.overrides).map_err(|errors| errors.render(colour()))?;
+    let loaded = load(&args.input, &args.overrides)?;
     let folder = args.input.parent().unwrap_or(Path::new("."));
     input::warn_of_slow_build(&loaded, folder);
-    forecast::size::admit(&loaded, folder)
-        .map_err(|refused| loaded.errors(vec![refused]).render(colour()))?;
+    forecast::admit::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
     let (meshes, rock) = build::meshes(&loaded.scene, folder).map_err(|faults| {
         let diagnostics = faults.into_iter().map(|f| loaded.diagnose(&f.path, f.message)).collect();
-        loaded.errors(diagnostics).render(colour())
+        loaded.errors(diagnostics)
     })?;
     Ok(Input { meshes, scene: Some(loaded.scene), rock, fixes: Vec::new() })
 }
 
-fn from_file(args: &MeshArgs) -> Result<Input, String> {
+fn from_file(args: &MeshArgs) -> Result<Input, Refused> {
     if !args.overrides.is_empty() {
-        return Err("error: --set is for scenes".into());
+        return Err(bad_input("--set is for scenes"));
     }
-    let mut meshes = mesh_file::read(&args.input).map_err(|e| format!("error: {e}"))?.bodies;
+    forecast::admit::admit_file(&args.input).map_err(|message| Refused::Message(exit::RESOURCE, message))?;
+    let mut meshes = mesh_file::read(&args.input).map_err(|e| bad_input(e.to_string()))?.bodies;
     let mut fixes = Vec::new();
     for fix in &args.fix {
         for (name, mesh) in &mut meshes {
             let done = match fix {
                 Fix::Orient => format!("{} tetrahedra turned round", repair::orient(mesh).flipped.len()),
                 Fix::Merge => {
-                    let merged =
-                        repair::merge(mesh, args.within).map_err(|e| format!("error: body `{name}`: {e}"))?;
+                    let merged = repair::merge(mesh, args.within)
+                        .map_err(|e| bad_input(format!("body `{name}`: {e}")))?;
                     let (nodes, tets) = (merged.nodes.len(), merged.dropped_tets.len());
                     format!(
                         "{nodes} nodes merged within {:e} m, {tets} flat tetrahedra dropped",

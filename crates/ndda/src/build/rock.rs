@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{Fault, solid, vec3};
-use crate::forecast::size;
+use crate::forecast::admit;
 
 /// What a rock was cut into, and what was left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -84,7 +84,7 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     };
     let mut faults = Vec::new();
     let groups = blocks.groups();
-    size::admit_fill(groups.len(), &rock.fill, report.domain_m3 - sliver_m3 - removed_m3)
+    admit::admit_fill(groups.len(), &rock.fill, report.domain_m3 - sliver_m3 - removed_m3)
         .map_err(|m| vec![Fault::new(at(".fill"), m)])?;
     let filled: Vec<_> =
         groups.par_iter().map(|group| solid::filled_group(&blocks, group, &rock.fill)).collect();
@@ -211,7 +211,7 @@ fn cut(rock: &Rock, domain: &Domain) -> Result<Blocks, String> {
     let joints =
         rock.joints.iter().map(discontinuity).collect::<Result<Vec<_>, _>>().map_err(|e| e.to_string())?;
     // What scatter makes of the spacings is known only while it is cut.
-    let most_blocks = size::most_blocks(CutOptions::default().most_blocks);
+    let most_blocks = admit::most_blocks(CutOptions::default().most_blocks);
     let options = CutOptions { seed: rock.seed, sliver_width_m: rock.sliver_width_m, most_blocks };
     cut_blocks(domain, &joints, &options).map_err(|e| e.to_string())
 }

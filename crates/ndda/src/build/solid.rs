@@ -9,7 +9,7 @@ use ndda_mesh::cut::{Blocks, Domain, DomainFace, cut_blocks};
 use ndda_mesh::tetrahedralise::{self, Fill, Towards};
 
 use super::vec3;
-use crate::forecast::size;
+use crate::forecast::admit;
 
 /// Part of its size by which a flat face of a surface may be bent: nothing but rounding.
 pub(super) const EXACT: f64 = 0.0;
@@ -44,7 +44,7 @@ pub(super) fn filled(surface: &Surface, flat_ratio: f64, fill: &scene::Fill) -> 
         return by_tetgen(surface, *size_m);
     }
     let domain = domain(surface, flat_ratio)?;
-    size::admit_fill(1, fill, domain.volume_m3())?;
+    admit::admit_fill(1, fill, domain.volume_m3())?;
     let blocks = cut_blocks(&domain, &[], &Default::default()).map_err(|e| e.to_string())?;
     match blocks.groups().as_slice() {
         [whole] => filled_group(&blocks, whole, fill),

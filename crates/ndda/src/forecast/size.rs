@@ -11,9 +11,6 @@
 //! Bytes are measured: `ndda check` on boxes of 20³ to 60³ cells, grids of 12³ and 24³ blocks, 500 and 2000 cells, under
 //! `/usr/bin/time -f %M`; see `docs/limits.md`.
 
-use ndda_io::code::Code;
-use ndda_io::diagnostic::Diagnostic;
-use ndda_io::read::LoadedScene;
 use ndda_io::scene::{
     Axis, Body, Contact, Discontinuity, Domain, Fill, Grading, Pattern, Potential, Rock, Scene, Shape,
     Solver, Towards,
@@ -21,18 +18,16 @@ use ndda_io::scene::{
 use ndda_mesh::Vec3;
 use std::path::Path;
 
-use super::memory::{self, readable};
-
 /// Of the program itself [B].
-const PROGRAM_B: f64 = 1.2e7;
+pub(super) const PROGRAM_B: f64 = 1.2e7;
 /// Of a tetrahedron in arrays, and of one that deforms [B].
-const TET_B: f64 = 390.0;
+pub(super) const TET_B: f64 = 390.0;
 const ELASTIC_TET_B: f64 = 1500.0;
 /// Of a factor of n unknowns: the lesser of 12 n² (dense) and 230 n^(4/3) (nested dissection in space) [B].
 const DENSE_B: f64 = 12.0;
 const SPARSE_B: f64 = 230.0;
 /// Of a block [B].
-const BLOCK_B: f64 = 8000.0;
+pub(super) const BLOCK_B: f64 = 8000.0;
 /// Of a triangle that touches other blocks, of one of a block that is taken whole, and of one of a block of its own, of whose
 /// surface a part touches [B].
 const TOUCHING_B: f64 = 5000.0;
@@ -48,9 +43,6 @@ const FILE_TRIANGLE_B: f64 = 30.0;
 /// Seconds per tetrahedron, and per Voronoi cell.
 const TET_S: f64 = 1e-5;
 const CELL_S: f64 = 3e-3;
-/// Building for longer is announced [s].
-const LONG_S: f64 = 60.0;
-
 /// What a part of a scene comes to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Count {
@@ -98,68 +90,6 @@ pub fn parts(scene: &Scene, folder: &Path) -> Vec<Part> {
 /// Memory of a run of the scene [B].
 pub fn bytes(parts: &[Part]) -> f64 {
     PROGRAM_B + parts.iter().map(|part| part.bytes).sum::<f64>()
-}
-
-/// Why the scene is not to be built in the memory that there is.
-///
-/// # Errors
-/// A message on its largest part, with the figures and what to change.
-pub fn admit(loaded: &LoadedScene, folder: &Path) -> Result<(), Diagnostic> {
-    let parts = parts(&loaded.scene, folder);
-    let Some(largest) = parts.iter().max_by(|a, b| a.bytes.total_cmp(&b.bytes)) else { return Ok(()) };
-    let (needed, build_s) = (bytes(&parts), parts.iter().map(|part| part.count.build_s).sum::<f64>());
-    let figures = figures(largest);
-    match memory::budget() {
-        Some(budget) if needed > budget as f64 => {
-            let message = format!(
-                "{figures} would take {} of memory (the whole scene {}) and {:.0} s to build; there is {}",
-                readable(largest.bytes as u64),
-                readable(needed as u64),
-                build_s,
-                readable(budget)
-            );
-            let found = loaded.diagnose_as(Code::TooLarge, &largest.path, message);
-            Err(found.with_help(format!("{}; `--memory 64GB` says how much there is", largest.cure)))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// A line for a person to read while a scene is built that takes long.
-pub fn slow_build(loaded: &LoadedScene, folder: &Path) -> Option<String> {
-    let parts = parts(&loaded.scene, folder);
-    let largest = parts.iter().max_by(|a, b| a.bytes.total_cmp(&b.bytes))?;
-    let build_s = parts.iter().map(|part| part.count.build_s).sum::<f64>();
-    let text = || format!("building {} takes about {:.0} min", figures(largest), build_s / 60.0);
-    (build_s > LONG_S).then(text)
-}
-
-fn figures(part: &Part) -> String {
-    let Count { blocks, tets, .. } = part.count;
-    format!("about {} block(s) and {} tetrahedra", rounded(blocks), rounded(tets))
-}
-
-/// Most blocks that a cut may make in the memory that there is.
-pub fn most_blocks(otherwise: usize) -> usize {
-    memory::budget().map_or(otherwise, |bytes| otherwise.min((bytes as f64 / BLOCK_B) as usize).max(1))
-}
-
-/// Holds what filling takes at least, once blocks are cut or a surface is read, against the memory that there is.
-///
-/// # Errors
-/// A message with the figures.
-pub fn admit_fill(blocks: usize, fill: &Fill, volume_m3: f64) -> Result<(), String> {
-    let count = filled(times(Count::default(), blocks as f64), fill, volume_m3, 0.0);
-    let bytes = count.blocks * BLOCK_B + count.tets * TET_B;
-    match memory::budget() {
-        Some(budget) if bytes > budget as f64 => Err(format!(
-            "{blocks} block(s) of {} tetrahedra in all would take {} of memory; there is {}: use a coarser fill",
-            rounded(count.tets),
-            readable(bytes as u64),
-            readable(budget)
-        )),
-        _ => Ok(()),
-    }
 }
 
 fn part(scene: &Scene, path: String, count: Count, body: Body, touching_b: f64, cure: &'static str) -> Part {
@@ -217,7 +147,7 @@ fn of_shape(shape: &Shape, folder: &Path) -> (Count, &'static str) {
             (one_block(0.5 * triangles, 5.0 * triangles, triangles), "use a surface of fewer triangles")
         }
         Shape::Mesh { file, .. } => {
-            let tets = file_b(folder, file) / if file.ends_with(".vtu") { PACKED_TET_B } else { FILE_TET_B };
+            let tets = tets_of_file(&folder.join(file));
             (one_block(0.2 * tets, tets, 0.2 * tets), "use a coarser mesh")
         }
     }
@@ -232,8 +162,14 @@ fn of_cells([x, y, z]: [f64; 3], pattern: Pattern) -> Count {
     }
 }
 
+/// Tetrahedra that a mesh file of its length holds.
+pub(super) fn tets_of_file(file: &Path) -> f64 {
+    let is_packed = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("vtu"));
+    file_b(Path::new(""), file) / if is_packed { PACKED_TET_B } else { FILE_TET_B }
+}
+
 /// Length of a file [B].
-fn file_b(folder: &Path, file: &str) -> f64 {
+fn file_b(folder: &Path, file: impl AsRef<Path>) -> f64 {
     std::fs::metadata(folder.join(file)).map_or(0.0, |file| file.len() as f64)
 }
 
@@ -260,7 +196,7 @@ fn of_rock(rock: &Rock, folder: &Path) -> (Count, &'static str, &'static str) {
     )
 }
 
-fn times(one: Count, blocks: f64) -> Count {
+pub(super) fn times(one: Count, blocks: f64) -> Count {
     let (nodes, tets) = (one.nodes * blocks, one.tets * blocks);
     Count { blocks, nodes, tets, triangles: one.triangles * blocks, build_s: tets * TET_S }
 }
@@ -339,7 +275,7 @@ fn cells_of(sets: &[(Vec3, f64)], extent: &Vec3) -> f64 {
 }
 
 /// Blocks with as few tetrahedra as there can be, as a fill makes them.
-fn filled(bare: Count, fill: &Fill, volume_m3: f64, area_m2: f64) -> Count {
+pub(super) fn filled(bare: Count, fill: &Fill, volume_m3: f64, area_m2: f64) -> Count {
     let (tets, triangles) = match fill {
         Fill::Fewest => return bare,
         Fill::Centre => {
@@ -376,6 +312,6 @@ fn finer_tets(place: &Grading, size_m: f64, volume_m3: f64) -> f64 {
 }
 
 /// A count with two digits.
-fn rounded(count: f64) -> String {
+pub(super) fn rounded(count: f64) -> String {
     if count < 1e4 { format!("{count:.0}") } else { format!("{count:.1e}") }
 }

@@ -1,0 +1,99 @@
+//! Whether what a scene or a mesh file will take fits into the memory that there is.
+
+use std::path::Path;
+
+use ndda_io::code::Code;
+use ndda_io::diagnostic::Diagnostic;
+use ndda_io::read::LoadedScene;
+use ndda_io::scene::Fill;
+
+use super::memory::{self, readable};
+use super::size::{
+    BLOCK_B, Count, PROGRAM_B, Part, TET_B, bytes, filled, parts, rounded, tets_of_file, times,
+};
+
+/// Building for longer is announced [s].
+const LONG_S: f64 = 60.0;
+
+/// Why the scene is not to be built in the memory that there is.
+///
+/// # Errors
+/// A message on its largest part, with the figures and what to change.
+pub fn admit(loaded: &LoadedScene, folder: &Path) -> Result<(), Diagnostic> {
+    let parts = parts(&loaded.scene, folder);
+    let Some(largest) = parts.iter().max_by(|a, b| a.bytes.total_cmp(&b.bytes)) else { return Ok(()) };
+    let (needed, build_s) = (bytes(&parts), parts.iter().map(|part| part.count.build_s).sum::<f64>());
+    let figures = figures(largest);
+    match memory::budget() {
+        Some(budget) if needed > budget as f64 => {
+            let message = format!(
+                "{figures} would take {} of memory (the whole scene {}) and {:.0} s to build; there is {}",
+                readable(largest.bytes as u64),
+                readable(needed as u64),
+                build_s,
+                readable(budget)
+            );
+            let found = loaded.diagnose_as(Code::TooLarge, &largest.path, message);
+            Err(found.with_help(format!("{}; `--memory 64GB` says how much there is", largest.cure)))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Holds what the blocks of a mesh file take, by its length, against the memory that there is. Of a geometry that Gmsh
+/// meshes the length says nothing.
+///
+/// # Errors
+/// A message with the figures and what to change.
+pub fn admit_file(file: &Path) -> Result<(), String> {
+    let tets = tets_of_file(file);
+    let bytes = PROGRAM_B + tets * TET_B;
+    match memory::budget() {
+        Some(budget) if bytes > budget as f64 => Err(format!(
+            "{}: about {} tetrahedra would take {} of memory; there is {}: use a coarser mesh; `--memory 64GB` says how much \
+             there is",
+            file.display(),
+            rounded(tets),
+            readable(bytes as u64),
+            readable(budget)
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// A line for a person to read while a scene is built that takes long.
+pub fn slow_build(loaded: &LoadedScene, folder: &Path) -> Option<String> {
+    let parts = parts(&loaded.scene, folder);
+    let largest = parts.iter().max_by(|a, b| a.bytes.total_cmp(&b.bytes))?;
+    let build_s = parts.iter().map(|part| part.count.build_s).sum::<f64>();
+    let text = || format!("building {} takes about {:.0} min", figures(largest), build_s / 60.0);
+    (build_s > LONG_S).then(text)
+}
+
+fn figures(part: &Part) -> String {
+    let Count { blocks, tets, .. } = part.count;
+    format!("about {} block(s) and {} tetrahedra", rounded(blocks), rounded(tets))
+}
+
+/// Most blocks that a cut may make in the memory that there is.
+pub fn most_blocks(otherwise: usize) -> usize {
+    memory::budget().map_or(otherwise, |bytes| otherwise.min((bytes as f64 / BLOCK_B) as usize).max(1))
+}
+
+/// Holds what filling takes at least, once blocks are cut or a surface is read, against the memory that there is.
+///
+/// # Errors
+/// A message with the figures.
+pub fn admit_fill(blocks: usize, fill: &Fill, volume_m3: f64) -> Result<(), String> {
+    let count = filled(times(Count::default(), blocks as f64), fill, volume_m3, 0.0);
+    let bytes = count.blocks * BLOCK_B + count.tets * TET_B;
+    match memory::budget() {
+        Some(budget) if bytes > budget as f64 => Err(format!(
+            "{blocks} block(s) of {} tetrahedra in all would take {} of memory; there is {}: use a coarser fill",
+            rounded(count.tets),
+            readable(bytes as u64),
+            readable(budget)
+        )),
+        _ => Ok(()),
+    }
+}
