@@ -3,14 +3,18 @@
 
   benches/track.py keep [--clocks] [CRATE ...]     measure, and add a record
   benches/track.py check [CRATE ...]               measure, compare with the last records, fail where instructions grew by more than 2 %
+  benches/track.py caches [CRATE ...]              the same with simulated caches, whose misses instructions do not see; once a day
   benches/track.py compare FROM [TO]               a table per crate of two commits; of the last records and FROM, if TO is not given
   benches/track.py draw                            the figures over the records, as docs/evidence/performance/*.png
 
 A crate's counted benches (benches/counted.rs) give instructions, which repeat to the last digit on one compiler; with
 --clocks its criterion benches are run, too, and give nanoseconds. A commit that compare does not find in the records is
-checked out under target/track and its instructions are counted. Needs cargo and valgrind; the runner that counts is
-installed under target/tools, matplotlib for draw under target/ where it is missing. CRATE is the end of a name, contact for
-ndda-contact, and suite for the scenes in benches/; without one, all.
+checked out under target/track and its instructions are counted. caches counts cycles as callgrind estimates them (an
+instruction 1, a miss of the first cache 5, of the last one 30 more), compares them with the last record that has them, and adds
+one. A crate whose benches do not build or run is named, with the compiler's message, and does not stop the others.
+
+Needs cargo and valgrind; the runner that counts is installed under target/tools, matplotlib for draw under target/ where it is
+missing. CRATE is a crate's name, with or without ndda- before it, and suite for the scenes in benches/; without one, all.
 """
 import argparse
 import json
@@ -31,7 +35,16 @@ PICTURES = ROOT / "docs" / "evidence" / "performance"
 TOLERANCE = 0.02
 # Names in a panel of a picture.
 NAMED = 10
-KINDS = {"instructions": "", "nanoseconds": " ns"}
+# Estimated cycles move with addresses: by this much between two counts of one program.
+CYCLES_TOLERANCE = 0.05
+KINDS = {"instructions": "", "cycles": "", "nanoseconds": " ns"}
+TOLERANCES = {"instructions": TOLERANCE, "cycles": CYCLES_TOLERANCE}
+# Lines of a failed command that are shown: what is wrong stands at their end.
+SHOWN_LINES = 60
+
+
+class Broken(Exception):
+    """A command failed; says which, and how."""
 
 
 def main():
@@ -40,7 +53,8 @@ def main():
     keep = commands.add_parser("keep", help="measure, and add a record")
     keep.add_argument("--clocks", action="store_true", help="run the criterion benches, too")
     check = commands.add_parser("check", help="measure, and compare with the last records")
-    for command in (keep, check):
+    caches = commands.add_parser("caches", help="measure with simulated caches, compare, and add a record")
+    for command in (keep, check, caches):
         command.add_argument("crate", nargs="*")
     compare = commands.add_parser("compare", help="print tables of two commits")
     compare.add_argument("before", metavar="FROM")
@@ -52,24 +66,36 @@ def main():
     if options.command == "compare":
         return compare_commits(options.before, options.after)
     clocks = options.command == "keep" and options.clocks
-    record = measure(ROOT, crates_asked_for(options.crate, clocks), clocks)
+    names = crates_asked_for(options.crate, clocks)
+    record, broken = measure(ROOT, names, clocks, with_caches=options.command == "caches")
     records = load()
     slower = print_tables(lambda kind, crate: last(records, kind, crate), record)
-    if options.command == "keep":
-        FIGURES.write_text(json.dumps(records + [record], indent=1) + "\n")
-        return 0
     for name in slower:
-        print(f"more than {100 * TOLERANCE:.0f} % more instructions than kept: {name}", file=sys.stderr)
-    return 1 if slower else 0
+        print(f"grown: {name}", file=sys.stderr)
+    for crate, why in broken.items():
+        print(f"\n{crate} was not measured:\n{why}", file=sys.stderr)
+    keeps = options.command in ("keep", "caches")
+    if keeps and any(record.get(kind) for kind in KINDS):
+        FIGURES.write_text(json.dumps(records + [record], indent=1) + "\n")
+        print(f"\nkept as {record['commit']}; {len(slower)} figure(s) grew beyond the tolerance")
+    return 1 if broken or (slower and options.command != "keep") else 0
 
 
 def crates_asked_for(names, clocks):
-    """Crates by their names or the ends of these; without clocks only those that are counted."""
-    found = [crate for crate in crates(ROOT) if not names or {crate, crate.split("-")[-1]} & set(names)]
-    found = [crate for crate in found if clocks or is_counted(ROOT, crate)]
+    """The crates of that name, ndda-NAME if none has it; without clocks only those that are counted."""
+    all_crates = crates(ROOT)
+    wanted = [named(name, all_crates) for name in names] or all_crates
+    found = [crate for crate in all_crates if crate in wanted and (clocks or is_counted(ROOT, crate))]
     if not found:
         sys.exit(f"no crate with {'benches' if clocks else 'counted benches'} among {names}")
     return found
+
+
+def named(name, all_crates):
+    for candidate in (name, f"ndda-{name}"):
+        if candidate in all_crates:
+            return candidate
+    sys.exit(f"no crate {name} with benches; there are {', '.join(all_crates)}")
 
 
 def crates(root):
@@ -85,47 +111,82 @@ def is_counted(root, crate):
     return (benches(root, crate) / "counted.rs").exists()
 
 
-def measure(root, names, clocks):
-    """A record of the crates of a working tree."""
-    record = {
-        "commit": commit(root),
-        "rustc": output(root, "rustc", "--version"),
-        "processor": processor(),
-        "instructions": instructions(root, [crate for crate in names if is_counted(root, crate)]),
-    }
+def measure(root, names, clocks, with_caches=False):
+    """A record of the crates of a working tree, and why crates are missing from it."""
+    record = {"commit": commit(root), "rustc": output(root, "rustc", "--version"), "processor": processor()}
+    kind = "cycles" if with_caches else "instructions"
+    counted = [crate for crate in names if is_counted(root, crate)]
+    record[kind], broken = counts(root, counted, with_caches)
     if clocks:
-        record["nanoseconds"] = {crate: nanoseconds(root, crate) for crate in names}
-    return record
+        record["nanoseconds"], slow = each(names, lambda crate: nanoseconds(root, crate))
+        broken |= slow
+    return record, broken
 
 
-def instructions(root, names):
+def each(names, figures, workers=1):
+    """Figures of the crates that have them, and what broke of the others."""
+
+    def attempt(crate):
+        try:
+            return figures(crate), None
+        except Broken as error:
+            return None, str(error)
+
+    with ThreadPoolExecutor(workers) as pool:
+        results = dict(zip(names, pool.map(attempt, names)))
+    found = {crate: result for crate, (result, _) in results.items() if result is not None}
+    return found, {crate: why for crate, (_, why) in results.items() if why}
+
+
+def counts(root, names, with_caches):
     """Crates side by side: what is counted does not see the clock."""
-    binaries = counted_binaries(root) if names else {}
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
-        return dict(zip(names, pool.map(lambda crate: totals(root, crate, binaries[crate]), names)))
+    if not names:
+        return {}, {}
+    binaries, messages = counted_binaries(root)
+
+    def figures(crate):
+        if crate not in binaries:
+            raise Broken(messages)
+        return totals(root, crate, binaries[crate], with_caches)
+
+    return each(names, figures, os.cpu_count())
 
 
 def counted_binaries(root):
-    """All counted benches by crate, built at once: crate by crate, each has other features of what they share."""
-    built = cargo(
-        root, "bench", "--locked", "--workspace", "--bench", "counted", "--no-run", "--message-format=json", runner=runner(root)
-    )
-    artifacts = [json.loads(line) for line in built.splitlines()]
-    return {Path(a["manifest_path"]).parent.name: a["executable"] for a in artifacts if a.get("executable")}
+    """All counted benches by crate, built at once (crate by crate, each has other features of what they share), and the
+    compiler's messages where one does not build."""
+    options = ["--locked", "--workspace", "--bench", "counted", "--profile", "bench", "--keep-going"]
+    options.append("--message-format=json-render-diagnostics")
+    built = command(["cargo", "build", *options], root, cargo_environment(runner(root)))
+    artifacts = [json.loads(line) for line in built.stdout.splitlines() if line.startswith("{")]
+    found = {Path(a["manifest_path"]).parent.name: a["executable"] for a in artifacts if a.get("executable")}
+    return found, shown(built.stderr)
 
 
-def totals(root, crate, binary):
+def totals(root, crate, binary, with_caches):
     folder = TARGET / "gungraun" / crate
     shutil.rmtree(folder, ignore_errors=True)
-    environment = dict(os.environ, CARGO_TARGET_DIR=str(TARGET), CARGO_PKG_NAME=crate)
-    run([binary, "--bench"], benches(root, crate).parent, environment)
+    environment = dict(os.environ, CARGO_TARGET_DIR=str(TARGET), CARGO_PKG_NAME=crate, GUNGRAUN_RUNNER=str(runner(root)))
+    caches = ["--callgrind-args=--cache-sim=yes"] if with_caches else []
+    run([binary, "--bench", *caches], benches(root, crate).parent, environment)
     found = {}
     for path in sorted(folder.glob("counted/*/*/callgrind.*.out")):
-        total = re.search(r"^(?:totals|summary): (\d+)", path.read_text(), re.MULTILINE)
-        found[path.parent.name] = int(total.group(1))
+        found[path.parent.name] = cost(path.read_text(), with_caches)
     if not found:
-        sys.exit(f"{crate}: callgrind left no totals in {folder}")
+        raise Broken(f"callgrind left no totals in {folder}")
     return found
+
+
+def cost(profile, with_caches):
+    """Instructions of a profile, or its estimated cycles."""
+    events = re.search(r"^events: (.+)", profile, re.MULTILINE).group(1).split()
+    figures = re.search(r"^(?:totals|summary): (.+)", profile, re.MULTILINE).group(1).split()
+    by_name = dict(zip(events, map(int, figures)))
+    if not with_caches:
+        return by_name["Ir"]
+    first = sum(by_name.get(name, 0) for name in ("I1mr", "D1mr", "D1mw"))
+    last_level = sum(by_name.get(name, 0) for name in ("ILmr", "DLmr", "DLmw"))
+    return by_name["Ir"] + 5 * first + 30 * last_level
 
 
 def nanoseconds(root, crate):
@@ -187,7 +248,10 @@ def measure_commit(name):
     if not tree.exists():
         git(ROOT, "worktree", "add", "--detach", str(tree), name)
     try:
-        return measure(tree, [crate for crate in crates(tree) if is_counted(tree, crate)], clocks=False)
+        record, broken = measure(tree, [crate for crate in crates(tree) if is_counted(tree, crate)], clocks=False)
+        for crate, why in broken.items():
+            print(f"{crate} was not measured:\n{why}", file=sys.stderr)
+        return record
     finally:
         git(ROOT, "worktree", "remove", "--force", str(tree))
 
@@ -209,11 +273,14 @@ def print_tables(before_of, after):
             print(f"\n{crate}, {kind}, {before.get('commit', 'nothing')} to {after['commit']}")
             for name in dict.fromkeys([*old, *figures]):
                 print(f"  {name:58} {cell(old.get(name), unit)} {cell(figures.get(name), unit)} {change(old.get(name), figures.get(name))}")
-            if kind == "instructions" and before.get("rustc") == after["rustc"]:
-                grown = [name for name in figures if name in old and figures[name] > (1 + TOLERANCE) * old[name]]
-                slower += [f"{crate} {name} {change(old[name], figures[name]).strip()}" for name in grown]
-            elif kind == "instructions" and before:
-                print(f"  another compiler than the record's ({before['rustc']}): shown, not judged")
+            # Simulated caches are those of the processor.
+            same = [field for field in ("rustc", "processor") if field == "rustc" or kind == "cycles"]
+            if kind in TOLERANCES and all(before.get(field) == after[field] for field in same):
+                limit = 1 + TOLERANCES[kind]
+                grown = [name for name in figures if name in old and figures[name] > limit * old[name]]
+                slower += [f"{crate} {name} {change(old[name], figures[name]).strip()} {kind}" for name in grown]
+            elif kind in TOLERANCES and before:
+                print(f"  another compiler or processor than the record's ({before['rustc']}): shown, not judged")
     return slower
 
 
@@ -289,18 +356,35 @@ def output(root, *command, may_fail=False):
     return done.stdout.strip()
 
 
-def cargo(root, *arguments, runner=None):
+def cargo(root, *arguments):
     """Standard output of cargo in a working tree; all of them share one target folder."""
-    environment = dict(os.environ, CARGO_TARGET_DIR=str(TARGET), **({"GUNGRAUN_RUNNER": str(runner)} if runner else {}))
-    return run(["cargo", *map(str, arguments)], root, environment)
+    return run(["cargo", *map(str, arguments)], root, cargo_environment())
 
 
-def run(command, folder, environment):
-    result = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
+def cargo_environment(runner=None):
+    return dict(os.environ, CARGO_TARGET_DIR=str(TARGET), **({"GUNGRAUN_RUNNER": str(runner)} if runner else {}))
+
+
+def run(arguments, folder, environment):
+    result = command(arguments, folder, environment)
     if result.returncode != 0:
-        sys.exit(f"{' '.join(command)}\n{result.stdout}\n{result.stderr}")
+        raise Broken(f"{' '.join(map(str, arguments))}\n{shown(result.stdout)}\n{shown(result.stderr)}")
     return result.stdout
 
 
+def command(arguments, folder, environment):
+    return subprocess.run(arguments, cwd=folder, env=environment, capture_output=True, text=True)
+
+
+def shown(text):
+    """What a person reads of a failed command: no lines of progress."""
+    progress = re.compile(r"\s*(Compiling|Downloading|Downloaded|Updating|Locking|Finished|Fresh|Blocking) ")
+    lines = [line for line in text.splitlines() if not progress.match(line)]
+    return "\n".join(lines[-SHOWN_LINES:])
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except Broken as error:
+        sys.exit(str(error))

@@ -46,12 +46,21 @@ pub enum Verb {
     /// Print what a scene may say, as JSON Schema.
     #[cfg(feature = "schema")]
     Schema(SchemaArgs),
+    /// Not in this program, which was built without the feature `schema`.
+    #[cfg(not(feature = "schema"))]
+    Schema(AbsentArgs),
     /// Print completions for a shell.
     #[cfg(feature = "shell")]
     Completions(CompletionsArgs),
+    /// Not in this program, which was built without the feature `shell`.
+    #[cfg(not(feature = "shell"))]
+    Completions(AbsentArgs),
     /// Print the manual page (ndda man | man -l -).
     #[cfg(feature = "shell")]
     Man(ManArgs),
+    /// Not in this program, which was built without the feature `shell`.
+    #[cfg(not(feature = "shell"))]
+    Man(AbsentArgs),
     /// Build or read the blocks of a scene or a mesh file, check and measure them, and draw them.
     ///
     /// Prints counts, volumes, how large blocks are, how good their tetrahedra are (histograms, and the worst ten with
@@ -62,9 +71,15 @@ pub enum Verb {
     /// Write a run as one HTML page: verdicts, curves, and the blocks moving in 3D; it needs no network.
     #[cfg(feature = "report")]
     Report(ReportArgs),
+    /// Not in this program, which was built without the feature `report`.
+    #[cfg(not(feature = "report"))]
+    Report(AbsentArgs),
     /// Open the report of a run in a browser; it is written first if it is missing or older than the run.
     #[cfg(feature = "report")]
     View(ViewArgs),
+    /// Not in this program, which was built without the feature `report`.
+    #[cfg(not(feature = "report"))]
+    View(AbsentArgs),
     /// Run a scene over and over with other steps, integrators, meshes, …: error against time, as tables and pictures.
     ///
     /// Writes study.csv, study.json, time_to_error.csv and pictures; the same command goes on where it was interrupted.
@@ -86,6 +101,19 @@ pub enum Verb {
     /// Draw columns of histories.
     #[cfg(feature = "plots")]
     Plot(PlotArgs),
+    /// Not in this program, which was built without the feature `plots`.
+    #[cfg(not(feature = "plots"))]
+    Plot(AbsentArgs),
+}
+
+/// Arguments of a verb that this program was built without: whatever is typed.
+#[cfg(not(all(feature = "plots", feature = "report", feature = "schema", feature = "shell")))]
+#[derive(Debug, Args)]
+#[command(disable_help_flag = true)]
+pub struct AbsentArgs {
+    /// Ignored.
+    #[arg(hide = true, trailing_var_arg = true, allow_hyphen_values = true)]
+    pub rest: Vec<String>,
 }
 
 /// Arguments of `ndda report`.

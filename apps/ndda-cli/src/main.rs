@@ -38,21 +38,39 @@ fn main() -> ExitCode {
         Verb::New(args) => new::new(&args),
         #[cfg(feature = "schema")]
         Verb::Schema(args) => schema::schema(&args),
+        #[cfg(not(feature = "schema"))]
+        Verb::Schema(_) => absent("schema"),
         #[cfg(feature = "shell")]
         Verb::Completions(args) => shell::completions(&args),
         #[cfg(feature = "shell")]
         Verb::Man(args) => shell::man(&args),
+        #[cfg(not(feature = "shell"))]
+        Verb::Completions(_) | Verb::Man(_) => absent("shell"),
         Verb::Mesh(args) => mesh::mesh(&args),
         #[cfg(feature = "report")]
         Verb::Report(args) => report::report(&args),
         #[cfg(feature = "report")]
         Verb::View(args) => report::view(&args),
+        #[cfg(not(feature = "report"))]
+        Verb::Report(_) | Verb::View(_) => absent("report"),
         Verb::Certify(args) => certify::certify(&args),
         Verb::Tune(args) => tune::tune(&args),
         Verb::Study(args) => study::study(&args),
         #[cfg(feature = "plots")]
         Verb::Plot(args) => plot::plot(&args),
+        #[cfg(not(feature = "plots"))]
+        Verb::Plot(_) => absent("plots"),
     };
     let lost = outcome == exit::DONE && !results_in_files && has_lost();
     ExitCode::from(if lost { exit::INPUT_OUTPUT } else { outcome })
+}
+
+/// A verb that this program was built without.
+#[cfg(not(all(feature = "plots", feature = "report", feature = "schema", feature = "shell")))]
+fn absent(feature: &str) -> u8 {
+    terminal::console::complain(&format!(
+        "error: this program was built without the feature `{feature}`\n  help: cargo install --path apps/ndda-cli --features {feature}, or \
+         --features full for all of them"
+    ));
+    exit::USAGE
 }

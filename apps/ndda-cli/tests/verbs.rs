@@ -140,3 +140,11 @@ fn completions_and_manual_pages_know_the_verbs() {
     assert!(said(Path::new("."), &["man", "run"]).contains("example"));
     assert_eq!(refused(Path::new("."), &["man", "rum"]).0, 2);
 }
+
+#[cfg(not(feature = "shell"))]
+#[test]
+fn a_verb_that_is_not_built_in_names_its_feature() {
+    let (code, said) = refused(Path::new("."), &["completions", "bash"]);
+    assert_eq!(code, 2);
+    assert!(said.contains("without the feature `shell`") && said.contains("--features shell"), "{said}");
+}

@@ -1,5 +1,8 @@
 //! Pictures: drawn once as SVG; a PNG is that SVG rendered with a font that the program brings.
 
+#[cfg(feature = "png")]
+mod text;
+
 use std::ops::Range;
 use std::path::Path;
 
@@ -74,11 +77,8 @@ fn svg(size: (u32, u32), draw: impl FnOnce(&Area) -> Drawn) -> Result<String, Bo
 #[cfg(feature = "png")]
 fn png(svg: &str) -> Result<Vec<u8>, String> {
     use resvg::{tiny_skia, usvg};
-    let mut options = usvg::Options::default();
-    let fonts = options.fontdb_mut();
-    fonts.load_font_data(dejavu::sans::regular().to_vec());
-    fonts.set_sans_serif_family("DejaVu Sans");
-    let tree = usvg::Tree::from_str(svg, &options).map_err(|e| e.to_string())?;
+    let outlines = text::outlined(svg, dejavu::sans::regular())?;
+    let tree = usvg::Tree::from_str(&outlines, &usvg::Options::default()).map_err(|e| e.to_string())?;
     let size = tree.size().to_int_size().scale_by(PNG_SCALE).ok_or("the picture has no size")?;
     let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height()).ok_or("the picture is too large")?;
     resvg::render(&tree, tiny_skia::Transform::from_scale(PNG_SCALE, PNG_SCALE), &mut pixels.as_mut());
