@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import threading
 
@@ -197,6 +198,18 @@ def test_what_a_callback_raises_ends_the_run(fall: ndda.Simulation) -> None:
     with pytest.raises(LookupError, match="enough"):
         fall.run(every=10, callback=stop)
     assert fall.step_count == 20
+
+
+def test_ctrl_c_ends_a_run_after_a_whole_step() -> None:
+    endless = {"time.end_s": 1e7, "output.history_rows": 1, "gravity_m_s2": (0, 0, 0)}
+    simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE, **endless))
+    threading.Timer(0.2, lambda: signal.raise_signal(signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        simulation.run()
+    done = simulation.step_count
+    assert 0 < done < simulation.steps
+    simulation.step()
+    assert simulation.step_count == done + 1
 
 
 def test_times_in_the_past_and_bad_counts_are_refused(fall: ndda.Simulation) -> None:
