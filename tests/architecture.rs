@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 /// Every crate of the workspace with the crates of the workspace that it may depend on.
-const ARROWS: [(&str, &[&str]); 7] = [
+const ARROWS: [(&str, &[&str]); 8] = [
     ("crates/ndda-mesh", &[]),
     ("crates/ndda-fem", &["ndda-mesh"]),
     ("crates/ndda-contact", &["ndda-mesh"]),
@@ -13,6 +13,7 @@ const ARROWS: [(&str, &[&str]); 7] = [
     ("crates/ndda-io", &["ndda-mesh"]),
     ("crates/ndda", &["ndda-mesh", "ndda-fem", "ndda-contact", "ndda-solver", "ndda-io"]),
     ("apps/ndda-cli", &["ndda-mesh", "ndda-fem", "ndda-contact", "ndda-solver", "ndda-io", "ndda"]),
+    ("apps/ndda-python", &["ndda", "ndda-io", "ndda-solver"]),
 ];
 
 fn root() -> &'static Path {

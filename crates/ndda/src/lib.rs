@@ -28,6 +28,7 @@
 //! | [`build`] | scene → blocks, materials, supports, contact model, simulation: the place where names become objects |
 //! | [`forecast`] | what is known before the first step: memory, run time, stable time step |
 //! | [`run`] | a run with its history, fields, contacts, checkpoints and log |
+//! | [`driver`] | a simulation that a script or another program steps |
 //! | [`judge`] | closed forms, verdicts, the label `accurate` or `inaccurate`, the summary |
 //! | [`explain`] | what a run will do, what it leaves out and why |
 //! | [`study`] | many runs of one scene: error against time |
@@ -40,6 +41,7 @@
 pub mod build;
 pub mod certify;
 pub mod columns;
+pub mod driver;
 pub mod examples;
 pub mod explain;
 pub mod forecast;

@@ -3,10 +3,11 @@
 use std::ops::ControlFlow;
 use std::time::Instant;
 
-use ndda_contact::{FacetContact, resultants};
+use ndda_contact::FacetContact;
 use ndda_io::{History, OutputFolder, WriteError};
 use ndda_solver::{Sink, SinkError, View};
 
+use crate::driver::contact_rows;
 use crate::run::recorder::is_due;
 
 /// Columns of the table; blocks are numbered from 0 in the order of `block_id` and of the summary.
@@ -80,15 +81,7 @@ impl Sink for ContactTable {
             return Ok(ControlFlow::Continue(()));
         }
         let started = Instant::now();
-        let (time_s, blocks) = (simulation.time_s(), simulation.blocks());
-        self.facets.clear();
-        self.facets.extend_from_slice(simulation.contacts());
-        for pair in resultants(blocks, &mut self.facets) {
-            let center = pair.center + blocks.origin_m;
-            let vectors = [pair.force_n, pair.friction_n, center, pair.moment_n_m];
-            let mut row = vec![time_s, f64::from(pair.first.0), f64::from(pair.second.0)];
-            row.extend(vectors.iter().flat_map(|v| v.iter()));
-            row.extend([pair.area_m2, pair.depth_m, pair.sliding]);
+        for row in contact_rows(simulation, &mut self.facets) {
             self.table.push(&row)?;
         }
         self.spent_s += started.elapsed().as_secs_f64();

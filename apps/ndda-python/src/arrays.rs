@@ -1,0 +1,51 @@
+//! Copies of the state as arrays.
+
+use ndda_solver::Simulation;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadwriteArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// A read-only array of rows.
+pub fn rows<'py, const N: usize>(
+    py: Python<'py>,
+    rows: Vec<[f64; N]>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let count = rows.len();
+    let array = PyArray1::from_vec(py, rows.into_flattened()).reshape([count, N])?;
+    array.call_method1("setflags", (false,))?;
+    Ok(array)
+}
+
+/// A quantity of the nodes in global coordinates, passed to `take` row by row.
+pub fn each_node(simulation: &Simulation, name: &str, mut take: impl FnMut(usize, [f64; 3])) -> PyResult<()> {
+    let (state, origin) = (simulation.state(), simulation.blocks().origin_m);
+    let start = simulation.start_position();
+    for (i, x) in state.position.iter().enumerate() {
+        let value = match name {
+            "position" => x + origin,
+            "displacement" => x - start[i],
+            "velocity" => state.velocity[i],
+            "acceleration" => state.acceleration[i],
+            _ => return Err(unknown(name)),
+        };
+        take(i, value.into());
+    }
+    Ok(())
+}
+
+fn unknown(name: &str) -> PyErr {
+    let known = "position, displacement, velocity, acceleration";
+    PyValueError::new_err(format!("nodes have no quantity {name:?}: choose one of {known}"))
+}
+
+/// Writes a quantity of the nodes to an array of the caller's, allocating nothing.
+pub fn fill(simulation: &Simulation, name: &str, out: &mut PyReadwriteArray2<'_, f64>) -> PyResult<()> {
+    let (nodes, mut view) = (simulation.state().position.len(), out.as_array_mut());
+    if view.dim() != (nodes, 3) {
+        let (rows, columns) = view.dim();
+        return Err(PyValueError::new_err(format!(
+            "`out` has shape ({rows}, {columns}): make it ({nodes}, 3)"
+        )));
+    }
+    each_node(simulation, name, |i, value| (0..3).for_each(|axis| view[[i, axis]] = value[axis]))
+}
