@@ -159,8 +159,8 @@ fn what_is_judged_as_creep_is_what_two_masses_with_sliders_slip() {
 
 #[test]
 fn a_stack_that_is_held_or_slides_is_accurate() {
-    for (friction_deg, settles) in [(30.0, true), (10.0, false), (5.0, false)] {
-        let step_s = 1e-4;
+    // Plates that slide rock on their springs, and longer steps leave the phase of that unknown: 1.0 % of the speed at 1e-4 s.
+    for (friction_deg, settles, step_s) in [(30.0, true, 1e-4), (10.0, false, 2e-5), (5.0, false, 2e-5)] {
         let mut simulation = stack(0.1, step_s, friction_deg, 1e9);
         if settles {
             let settle = Settle { tolerance: 1e-6, most_steps: 1_000_000 };

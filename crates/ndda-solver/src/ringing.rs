@@ -2,8 +2,9 @@
 //!
 //! A step takes forces at one instant for their mean over the step. Taken in the middle of it, at a predicted place, the
 //! impulse of a force F is off by Δt |Δ²F|/12, Δ²F = Fₙ₊₁ − 2Fₙ + Fₙ₋₁ being Δt² F″. Where a force jumps by J, because a block
-//! begins to slide or a bond breaks, it does so anywhere within a step, which leaves up to ½ Δt J, and two steps see |Δ²F| = J.
-//! So ¼ Δt |Δ²F| is taken for both: three times the error of a force that is smooth. Taken at the start or the end of a step,
+//! begins to slide or a bond breaks, it does so anywhere within a step, which leaves up to ½ Δt J, and two steps see |Δ²F| = J:
+//! ¼ Δt |Δ²F| each. A second difference is a jump where contact begins, and where it is more than twice its root mean square
+//! over the last steps: that of a vibration is at most √2 times as much. Taken at the start or the end of a step,
 //! an impulse is off by ½ Δt |ΔF|, F being the resultant, or the force by which other blocks press a block from both sides, if
 //! that changes more. Supports and elasticity act by their mean over a step without jumps: Δt |Δ²F|/12, π/2 times that where
 //! the error has its maximum rather than in the mean, and more at the end of a beam than at its mass centre.
@@ -27,6 +28,9 @@ const END_OF_A_BEAM: f64 = 3.0;
 
 /// What a step leaves of the sums of squares of the steps before it: they reach over about 64 steps.
 const KEPT: f64 = 1.0 - 1.0 / 64.0;
+
+/// Square of a second difference over its mean over the last steps from which on it is a jump, and no part of a vibration.
+const JUMP2: f64 = 4.0;
 
 /// What a block reports of its acceleration as a whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -152,6 +156,8 @@ impl Ringing {
         }
         let second = [change[0] - self.change[0], change[1] - self.change[1]];
         let (first2, second2) = (square(&change), square(&second));
+        let jumps = self.weight < 1.0 || second2 * self.weight > JUMP2 * self.second2;
+        let in_the_middle = if jumps { 0.25 } else { 1.0 / 12.0 };
         self.first2 = KEPT * self.first2 + first2;
         self.second2 = KEPT * self.second2 + second2;
         self.weight = KEPT * self.weight + 1.0;
@@ -166,7 +172,7 @@ impl Ringing {
                     self.outer_over_mean(step) * error_m_s2
                 }
                 (false, true) => 0.5 * first2.sqrt().max((drive.pressed_m_s2 - self.pressed_m_s2).abs()),
-                (false, false) => 0.25 * second2.sqrt(),
+                (false, false) => in_the_middle * second2.sqrt(),
             };
         // Taken at one end of a step, forces of contact leave errors of first order until the block is free again.
         let is_over = !step.is_one_sided || step.judges_pairs && !drive.touches;
@@ -253,8 +259,8 @@ mod tests {
         collide(&mut ringing, 100, 5, false);
         assert_eq!(ringing.error_m_s(), 0.0);
         collide(&mut ringing, 100, 1, true);
-        // |Δ²F| adds up to θ where the force begins and to 2 θ in its course.
-        let expected = 0.75 * (PI / 100.0).powi(2);
+        // |Δ²F| is θ where the force begins, a quarter of which counts, and adds up to 2 θ in its course, of which a twelfth does.
+        let expected = (0.25 + 2.0 / 12.0) * (PI / 100.0).powi(2);
         assert!((ringing.error_m_s() / expected - 1.0).abs() < 0.01, "{}", ringing.error_m_s() / expected);
     }
 
@@ -268,8 +274,8 @@ mod tests {
                 step.is_first = k == 0;
                 ringing.add(&step, &pushed((turn * f64::from(k)).cos(), true));
             }
-            // True is θ²/24 per radian for forces at predicted places, θ²/12 for elastic ones; the sum has θ²/4 times the mean of |cos|.
-            let (late, time) = (turn * turn / 12.0, TAU * f64::from(periods));
+            // True is θ²/24 per radian for forces at predicted places; the sum has θ²/12 times the mean of |cos|.
+            let (late, time) = (turn * turn / 24.0, TAU * f64::from(periods));
             let (least, most) = ((late * time).min(1.0), (4.0 * late * time).min(3.0));
             assert!(
                 (least..most).contains(&ringing.error_m_s()),
