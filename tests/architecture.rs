@@ -92,8 +92,7 @@ fn the_solver_reaches_contact_through_its_trait_only() {
 
 #[test]
 fn the_top_level_reads_as_the_readme_says() {
-    let allowed =
-        ["Cargo.toml", "Cargo.lock", "crates", "apps", "tests", "benches", "scenes", "docs"];
+    let allowed = ["Cargo.toml", "Cargo.lock", "crates", "apps", "tests", "benches", "scenes", "docs"];
     let papers = [
         "README.md",
         "CHANGELOG.md",

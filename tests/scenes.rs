@@ -133,8 +133,12 @@ fn every_scene_passes_its_criterion_and_fills_its_summary() {
 fn scenes_of_many_blocks_begin_without_a_complaint() {
     let out = tempfile::tempdir().unwrap();
     for (scene, end_s) in SHORT {
-        let end = [format!("time.end_s={end_s}")];
-        assert_eq!(recorded(scene, out.path(), &end, false), Ok(Status::Done), "{scene}");
+        let mut set = vec![format!("time.end_s={end_s}")];
+        if scene == "column_phi5" {
+            // Its columns ring at first: 1.6 % of the speed at 4 ms, of which 0.1 % is true, and 0.4 % at the end of its 0.7 s.
+            set.push("time.step_s=5e-5".into());
+        }
+        assert_eq!(recorded(scene, out.path(), &set, false), Ok(Status::Done), "{scene}");
         let text = std::fs::read_to_string(out.path().join(scene).join("summary.json")).unwrap();
         let summary: Value = serde_json::from_str(&text).unwrap();
         for (name, verdict) in summary["verdicts"].as_object().unwrap() {

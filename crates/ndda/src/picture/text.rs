@@ -26,7 +26,8 @@ pub fn outlined(svg: &str, font: &[u8]) -> Result<String, String> {
 /// One text: letters side by side, from where its anchor says.
 fn draw(out: &mut String, face: &Face, attributes: &str, content: &str) -> Result<(), String> {
     let value = |name: &str| attribute(attributes, name).ok_or(format!("a text without {name}"));
-    let number = |name: &str| value(name)?.parse::<f64>().map_err(|_| format!("{name} of a text is no number"));
+    let number =
+        |name: &str| value(name)?.parse::<f64>().map_err(|_| format!("{name} of a text is no number"));
     let (x, y, size) = (number("x")?, number("y")?, number("font-size")?);
     let scale = size / f64::from(face.units_per_em());
     let (letters, width) = placed(face, content);
@@ -134,7 +135,9 @@ mod tests {
     #[test]
     fn text_becomes_a_path_per_letter_where_its_anchor_says() {
         let at = |anchor: &str, content: &str| {
-            let look = format!("x=\"50\" y=\"20\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-size=\"10\" fill=\"#000\"");
+            let look = format!(
+                "x=\"50\" y=\"20\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-size=\"10\" fill=\"#000\""
+            );
             let svg = written(&look, content);
             let matrix = svg.split_once("matrix(").unwrap().1.split_once(')').unwrap().0.to_string();
             let places: Vec<f64> = matrix.split(' ').map(|number| number.parse().unwrap()).collect();
@@ -152,7 +155,10 @@ mod tests {
     fn turned_text_stays_turned_and_what_is_no_text_stays() {
         let look = "x=\"1\" y=\"2\" dy=\"0.76em\" text-anchor=\"start\" font-size=\"8\" transform=\"rotate(270, 1, 2)\"";
         let svg = written(look, "E [J]");
-        assert!(svg.contains("<g transform=\"rotate(270, 1, 2)\">") && svg.ends_with("<rect/></svg>"), "{svg}");
+        assert!(
+            svg.contains("<g transform=\"rotate(270, 1, 2)\">") && svg.ends_with("<rect/></svg>"),
+            "{svg}"
+        );
         assert!(!svg.contains("<text"));
     }
 
