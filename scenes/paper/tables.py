@@ -39,7 +39,7 @@ def collision(cases):
     for (case, scheme, _), row in found.items():
         speeds = (row["v_a_m_s"], row["v_b_m_s"], " and ".join(exact[case]))
         rows.append([case, SCHEMES[scheme], *speeds, *(short(row[key]) for key in ("along_end", "energy_gain", "momentum_lost"))])
-    return table(["case", "scheme", "v_A [m/s]", "v_B [m/s]", "exact", "error", "energy gained", "I2"], rows)
+    return table(["case", "scheme", "v_A [m/s]", "v_B [m/s]", "exact", "error", "energy gained", "momentum error"], rows)
 
 
 def penalties(figure):

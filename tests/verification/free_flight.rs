@@ -114,7 +114,7 @@ fn a_block_in_free_flight_keeps_its_spin_and_goes_along_a_parabola() {
         row("flight", &named("change of spin [rad/s]"), largest[0], AtMost(1e-8));
         row("flight", &named("distance from the parabola [m]"), largest[1], AtMost(1e-9));
         row("flight", &named("angular momentum against the moment of the weight"), largest[2], AtMost(1e-12));
-        row("flight", &named("I3"), largest[3], AtMost(1e-12));
+        row("flight", &named("angular momentum error"), largest[3], AtMost(1e-12));
     }
 }
 

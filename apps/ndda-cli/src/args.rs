@@ -276,6 +276,9 @@ pub struct HowArgs {
     /// Print nothing but errors.
     #[arg(long, short)]
     pub quiet: bool,
+    /// Print all tables at the end: time by stage, every check, monitors and blocks. They are in run.log in any case.
+    #[arg(long, short, conflicts_with_all = ["quiet", "json"])]
+    pub verbose: bool,
     /// Print events and results as JSON, one object per line (see docs/json.md).
     #[arg(long)]
     pub json: bool,

@@ -65,7 +65,7 @@ pub enum BlockError {
     /// The loads and contact forces on a rigid block are infinite or not a number.
     #[error("the forces on it are not finite: reduce step_s or penalty_pa, or check the units of its loads")]
     ForceNotFinite,
-    /// A velocity is beyond what the material can carry, or not a number (invariant I1).
+    /// A velocity is beyond what the material can carry, or not a number.
     #[error(
         "node {node} moves at {speed_m_s:e} m/s, more than ten times its wave speed {wave_speed_m_s:e} m/s: \
          reduce step_s, or the penalty if contact is stiff"
@@ -369,7 +369,7 @@ impl BlockReport {
     }
 }
 
-/// The fastest of a block's velocities [m/s], which must be finite and slower than ten waves (invariant I1).
+/// The fastest of a block's velocities [m/s], which must be finite and slower than ten waves.
 ///
 /// # Errors
 /// [`BlockError::TooFast`] naming the node.

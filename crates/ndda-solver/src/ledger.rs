@@ -83,63 +83,63 @@ impl Sample {
 /// The worst values of a run so far; the limits are those of the summary.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Invariants {
-    /// I2: |momentum − impulses| / max Σ m |v|.
+    /// |momentum − impulses| / max Σ m |v|.
     pub linear_momentum: f64,
-    /// I3: |angular momentum − angular impulses| / max Σ m |x| |v|.
+    /// |angular momentum − angular impulses| / max Σ m |x| |v|.
     pub angular_momentum: f64,
-    /// I4: largest energy gain over the peak energy.
+    /// largest energy gain over the peak energy.
     pub energy_gain: f64,
-    /// I4: largest energy loss over the peak energy.
+    /// largest energy loss over the peak energy.
     pub energy_loss: f64,
-    /// I4: largest gain that does not come back when contact parts, over the peak energy.
+    /// largest gain that does not come back when contact parts, over the peak energy.
     pub lasting_gain: f64,
-    /// I4: largest loss that does not come back when contact parts, over the peak energy.
+    /// largest loss that does not come back when contact parts, over the peak energy.
     pub lasting_loss: f64,
-    /// I4: largest lasting gain of the lighter block of a pair, over ½ m v V for the speed v at which contact met it and the largest
+    /// largest lasting gain of the lighter block of a pair, over ½ m v V for the speed v at which contact met it and the largest
     /// speed V, or its largest energy of contact.
     pub block_gain: Worst,
-    /// I4: largest lasting loss of it, over the same.
+    /// largest lasting loss of it, over the same.
     pub block_loss: Worst,
-    /// I4: largest energy by which friction of the lighter block of a pair was off Coulomb's law, summed over all steps, over ½ m V².
+    /// largest energy by which friction of the lighter block of a pair was off Coulomb's law, summed over all steps, over ½ m V².
     pub unresolved_friction: Worst,
-    /// I5: penetration over tet height.
+    /// penetration over tet height.
     pub max_penetration_ratio: f64,
-    /// I8: by how much the strength of a bond was exceeded where one broke, over its strength without normal stress.
+    /// by how much the strength of a bond was exceeded where one broke, over its strength without normal stress.
     pub bond_overload: f64,
-    /// I5: largest velocity that a block owes to the unknown direction of the forces that squeeze it, over the largest speed.
+    /// largest velocity that a block owes to the unknown direction of the forces that squeeze it, over the largest speed.
     pub squeezed_speed: Worst,
-    /// I5: where that took it, over the smallest tet height of its block.
+    /// where that took it, over the smallest tet height of its block.
     pub squeezed_place: Worst,
-    /// I4: mean speed at which a block creeps on shear springs that contact makes slip by ringing, over the largest speed.
+    /// mean speed at which a block creeps on shear springs that contact makes slip by ringing, over the largest speed.
     pub creep_speed: Worst,
-    /// I4: where that took it, over the smallest tet height of its block.
+    /// where that took it, over the smallest tet height of its block.
     pub creep_place: Worst,
-    /// I6: |action + reaction| / |force| over the pairs.
+    /// |action + reaction| / |force| over the pairs.
     pub action_reaction: f64,
-    /// I7: smallest det F.
+    /// smallest det F.
     pub smallest_volume_ratio: f64,
-    /// I7: largest principal strain of an element at a sample, in the frame of its block; none below 0.01.
+    /// largest principal strain of an element at a sample, in the frame of its block; none below 0.01.
     pub largest_strain: Worst,
-    /// I8: h = ω_c Δt, ω_c² bounded by the row sums of the contact stiffness over nodal masses.
+    /// h = ω_c Δt, ω_c² bounded by the row sums of the contact stiffness over nodal masses.
     pub max_h: f64,
-    /// I8: relative travel of two blocks that may meet in a step over the width of the thinner one.
+    /// relative travel of two blocks that may meet in a step over the width of the thinner one.
     pub max_travel: Worst,
-    /// I8: error of a place over the smallest tet height of its block, for turns that are behind.
+    /// error of a place over the smallest tet height of its block, for turns that are behind.
     pub turn_place: Worst,
-    /// I8: error of a velocity over the largest speed, for turns that are behind.
+    /// error of a velocity over the largest speed, for turns that are behind.
     pub turn_speed: f64,
     /// Error of a velocity over the largest speed, for blocks that turn with the inertia of lumped masses.
     pub lumped_speed: Worst,
     /// Error of a place over the smallest tet height of its block, for the same.
     pub lumped_place: Worst,
-    /// I8: error of a velocity over the largest speed, for the ringing of contact and supports.
+    /// error of a velocity over the largest speed, for the ringing of contact and supports.
     pub ringing: Worst,
-    /// I8: speed of elastic vibrations that turns over in a step, over the largest speed and what the block bears; none below 0.001,
+    /// speed of elastic vibrations that turns over in a step, over the largest speed and what the block bears; none below 0.001,
     /// and that of the last sample where the integrator lets them die out.
     pub vibration: f64,
-    /// I8: speed that loads and motions bring and take back within a step, over the largest speed.
+    /// speed that loads and motions bring and take back within a step, over the largest speed.
     pub unseen_speed: f64,
-    /// I8: largest error of velocities that damping leaves in a step, over the largest speed.
+    /// largest error of velocities that damping leaves in a step, over the largest speed.
     pub damping_speed: f64,
     /// Most pairs looked at in a step.
     pub candidate_pairs_max: usize,

@@ -19,7 +19,7 @@ impl Simulation {
     /// Energies and momenta now, balanced against the books.
     ///
     /// # Errors
-    /// [`StepError::Inverted`] when an element is inside out (invariant I7), or as [`step`](Self::step).
+    /// [`StepError::Inverted`] when an element is inside out, or as [`step`](Self::step).
     pub fn sample(&mut self) -> Result<Sample, StepError> {
         let started = Instant::now();
         let time_s = self.time_s();

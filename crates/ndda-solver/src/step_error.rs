@@ -49,7 +49,7 @@ pub enum StepError {
         /// Misfit of contact forces over the largest of contact forces and loads.
         residual: f64,
     },
-    /// A block is past the depth at which contact pushes it out (invariant I5).
+    /// A block is past the depth at which contact pushes it out.
     #[error(
         "at t = {time_s} s: triangle {} of block `{contactor}` is past the centroid of tet {} of block `{target}`, \
          where the contact potential no longer pushes it out: raise penalty_pa or reduce step_s", triangle.0, tet.0
@@ -87,7 +87,7 @@ pub enum StepError {
         /// Speed left over the largest speed.
         speed_ratio: f64,
     },
-    /// An element is inside out (invariant I7).
+    /// An element is inside out.
     #[error(
         "at t = {time_s} s: tet {} of block `{block}` is inverted (det F = {volume_ratio:e}): reduce step_s or the load",
         tet.0

@@ -5,6 +5,7 @@ mod error;
 pub mod fields;
 mod identity;
 pub mod monitor;
+pub mod motion;
 mod outputs;
 pub mod recorder;
 mod resume;
@@ -255,5 +256,9 @@ fn write_results(
         tables::remove_csv(folder, output)?;
     }
     log.line("ended")?;
-    log.block(&table::text(summary))
+    log.block(&(table::text(summary) + &table::ending(summary)))?;
+    match &summary.stopped_by {
+        Some(cause) => log.line(&format!("stopped: {cause}")),
+        None => Ok(()),
+    }
 }

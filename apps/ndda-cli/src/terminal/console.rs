@@ -11,6 +11,11 @@ pub fn colour() -> bool {
     std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
+/// Whether what is printed to standard output may be coloured.
+pub fn is_coloured() -> bool {
+    std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none()
+}
+
 /// Prints to standard output. Whoever closed it does not want to hear more; but a disk that is full is told of at the end.
 pub fn say(text: &str) {
     let mut out = std::io::stdout().lock();

@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 
 use ndda::judge::table;
 use ndda::{Run, RunError};
-use ndda_io::summary::{Judgement, Status, Summary};
+use ndda_io::summary::{Judgement, LabelWord, Status, Summary};
 use ndda_io::{OutputFolder, WriteError};
 use ndda_solver::Settled;
 use serde::Serialize;
 
 use crate::args::{HowArgs, RunArgs};
-use crate::terminal::console::{complain, say};
+use crate::terminal::console::{complain, is_coloured, say};
 use crate::terminal::events::{self, Events};
 use crate::terminal::interrupt;
 use crate::terminal::progress::Progress;
@@ -42,15 +42,18 @@ pub fn in_pool(how: &HowArgs, work: impl FnOnce(&Options) -> u8 + Send) -> u8 {
     };
     // Everything runs inside the pool: a step handed in from outside would allocate.
     let quiet = how.quiet || how.json;
-    pool.install(|| work(&Options { strict: how.strict, quiet, events, started }))
+    let verbose = how.verbose;
+    pool.install(|| work(&Options { strict: how.strict, quiet, verbose, events, started }))
 }
 
 /// How to run, whatever the scene.
 pub struct Options {
     /// Whether a limit that is passed fails the run.
     pub strict: bool,
-    /// No progress and no table.
+    /// No progress and no result.
     pub quiet: bool,
+    /// All tables at the end.
+    pub verbose: bool,
     /// What programs read.
     pub events: Events,
     /// When this process began.
@@ -136,7 +139,7 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
     match outcome {
         Ok(outcome) => {
             if !options.quiet {
-                say(&format!("{}results in {}", table::text(&outcome.summary), folder.display()));
+                say_result(&outcome.summary, folder, options.verbose);
             }
             conclude(&outcome.summary, options)
         }
@@ -150,6 +153,29 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
             };
             options.events.fail(code, &error.to_string())
         }
+    }
+}
+
+/// What a person reads at the end of a run.
+fn say_result(summary: &Summary, folder: &Path, verbose: bool) {
+    if verbose {
+        say(&table::text(summary));
+    }
+    let folder = folder.display();
+    let next = if cfg!(feature = "report") { format!("; next: ndda view {folder}") } else { String::new() };
+    say(&format!("{}results in {folder}{next}", paint(&table::ending(summary), summary.label.word)));
+}
+
+/// The label in colour on a terminal: green, yellow or red.
+fn paint(text: &str, word: LabelWord) -> String {
+    let colour = match word {
+        LabelWord::Accurate => 32,
+        LabelWord::Inaccurate => 33,
+        LabelWord::Stopped => 31,
+    };
+    match text.strip_prefix(word.as_str()) {
+        Some(rest) if is_coloured() => format!("\x1b[1;{colour}m{}\x1b[0m{rest}", word.as_str()),
+        _ => text.to_string(),
     }
 }
 

@@ -13,8 +13,10 @@ pub const SUMMARY: &str = "summary.json";
 pub const HISTORY: &str = "history.csv";
 /// File of the contacts.
 pub const CONTACTS: &str = "contacts.csv";
+/// File of the motion of blocks.
+pub const BLOCKS: &str = "blocks.csv";
 /// The same tables in columns.
-pub const PARQUET: [&str; 2] = ["history.parquet", "contacts.parquet"];
+pub const PARQUET: [&str; 3] = ["history.parquet", "contacts.parquet", "blocks.parquet"];
 /// What the run said of itself.
 pub const LOG: &str = "run.log";
 /// File that lists the frames of fields.
@@ -31,7 +33,7 @@ const WAITING: &str = "checkpoint.new.ndda";
 pub const FIELDS_FOLDER: &str = "fields";
 
 /// Files at the top of the folder, in the order in which an earlier run is deleted: an index before what it lists.
-const TOP_FILES: [&str; 11] = [
+const TOP_FILES: [&str; 13] = [
     CHECKPOINT,
     PREVIOUS,
     WAITING,
@@ -39,8 +41,10 @@ const TOP_FILES: [&str; 11] = [
     FIELDS_INDEX,
     HISTORY,
     CONTACTS,
+    BLOCKS,
     PARQUET[0],
     PARQUET[1],
+    PARQUET[2],
     LOG,
     SUMMARY,
 ];
@@ -133,6 +137,11 @@ impl OutputFolder {
     /// Where the contacts go.
     pub fn contacts(&self) -> PathBuf {
         self.path.join(CONTACTS)
+    }
+
+    /// Where the motion of blocks goes.
+    pub fn blocks(&self) -> PathBuf {
+        self.path.join(BLOCKS)
     }
 
     /// Where the log goes.

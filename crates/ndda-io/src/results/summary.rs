@@ -90,6 +90,9 @@ pub struct Summary {
     pub invariants: Invariants,
     /// The invariants and the scene's own criteria with their limits.
     pub verdicts: Named<Verdict>,
+    /// What moved, and how far. Left out where every block is fixed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub motion: Option<Motion>,
     /// Where the monitors ended.
     pub monitors: Named<MonitorEnd>,
     /// Where the blocks ended.
@@ -243,9 +246,54 @@ pub struct MonitorEnd {
     pub velocity: [f64; 3],
 }
 
+/// What moved in a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Motion {
+    /// Blocks that are not fixed.
+    pub can_move: usize,
+    /// Those of which a point has gone, by the end, farther than 1 % of the distance from their mass centre to their farthest node.
+    pub moved: usize,
+    /// The block of which a point has gone farthest.
+    pub farthest: String,
+    /// How far that was at the end \[m\].
+    pub farthest_m: f64,
+    /// Speed of its mass centre at the end [m/s].
+    pub speed_m_s: f64,
+    /// Whether it moves at the end.
+    pub course: Course,
+}
+
+/// How a block moves at the end of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Course {
+    /// At less than 1 % of its largest speed.
+    AtRest,
+    /// More slowly than it did.
+    Moving,
+    /// At its largest speed.
+    Accelerating,
+}
+
+/// How far a block has gone at the end.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BlockMotion {
+    /// Displacement of its mass centre since the start \[m\].
+    pub displacement_m: [f64; 3],
+    /// How far its farthest node has gone \[m\].
+    pub farthest_m: f64,
+    /// The largest of that in the rows of the history \[m\].
+    pub largest_m: f64,
+    /// Angle by which it has turned, from 0 to 180 \[°\].
+    pub rotation_deg: f64,
+}
+
 /// State of a block at the end.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BlockEnd {
+    /// How far it has gone.
+    #[serde(flatten)]
+    pub motion: BlockMotion,
     /// Mass \[kg\].
     pub mass: f64,
     /// Mass-mean velocity [m/s].
@@ -337,9 +385,10 @@ mod tests {
             stages_s: Named(vec![("contact".into(), 1.5), ("assemble".into(), 0.5)]),
             invariants: Invariants { energy_gain: 1e-9, ..Invariants::default() },
             verdicts: Named(vec![
-                ("I4 energy gain".into(), verdict(Some(1e-9), Some(0.01), Judgement::Pass)),
-                ("I6 action and reaction".into(), verdict(None, None, Judgement::NotYet)),
+                ("energy gained".into(), verdict(Some(1e-9), Some(0.01), Judgement::Pass)),
+                ("action minus reaction".into(), verdict(None, None, Judgement::NotYet)),
             ]),
+            motion: None,
             monitors: Named(vec![("top".into(), MonitorEnd::default())]),
             blocks: Named(vec![("ramp".into(), BlockEnd::default()), ("block".into(), BlockEnd::default())]),
             reference: Some(ReferenceError {
@@ -385,7 +434,7 @@ mod tests {
                 "energy_gain energy_loss linear_momentum angular_momentum max_penetration_ratio max_h",
             ),
             ("/monitors/top", "displacement velocity"),
-            ("/blocks/block", "mass velocity momentum"),
+            ("/blocks/block", "mass velocity momentum displacement_m farthest_m largest_m rotation_deg"),
             ("/reference", "kind error_end error_max"),
         ];
         for (pointer, names) in promised {
@@ -395,7 +444,7 @@ mod tests {
             }
         }
         assert_eq!(value["status"], "done");
-        assert_eq!(value["verdicts"]["I6 action and reaction"], serde_json::json!({ "verdict": "not yet" }));
+        assert_eq!(value["verdicts"]["action minus reaction"], serde_json::json!({ "verdict": "not yet" }));
         assert!(value["reference"].get("stick_stage_end").is_none());
     }
 
@@ -435,7 +484,7 @@ mod tests {
         assert_eq!(refused(&summary), "reference.stick_stage_max");
         let mut summary = example();
         summary.verdicts.0[0].1.value = Some(f64::NEG_INFINITY);
-        assert_eq!(refused(&summary), "verdicts.I4 energy gain.value");
+        assert_eq!(refused(&summary), "verdicts.energy gained.value");
         assert!(!path.exists());
     }
 }

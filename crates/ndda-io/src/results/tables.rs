@@ -23,7 +23,8 @@ pub fn write_parquet(folder: &OutputFolder, output: &Output) -> Result<(), Write
     if !output.history.has_parquet() {
         return Ok(());
     }
-    let tables = [Some(folder.history()), output.contacts.then(|| folder.contacts())];
+    let contacts = output.contacts.then(|| folder.contacts());
+    let tables = [Some(folder.history()), contacts, output.blocks.then(|| folder.blocks())];
     for (csv, name) in tables.into_iter().zip(PARQUET) {
         if let Some(csv) = csv {
             crate::results::table::parquet::from_csv(&csv, &folder.path().join(name))?;
@@ -40,7 +41,9 @@ pub fn remove_csv(folder: &OutputFolder, output: &Output) -> Result<(), WriteErr
     if output.history != TableFormat::Parquet {
         return Ok(());
     }
-    for (path, is_there) in [(folder.history(), true), (folder.contacts(), output.contacts)] {
+    let tables =
+        [(folder.history(), true), (folder.contacts(), output.contacts), (folder.blocks(), output.blocks)];
+    for (path, is_there) in tables {
         if is_there {
             fs::remove_file(&path).map_err(WriteError::io("remove", &path))?;
         }

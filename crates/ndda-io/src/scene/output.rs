@@ -17,10 +17,13 @@ pub struct Output {
     pub precision: Precision,
     /// Rows of `history.csv` after the first, at most one per step. Default: 1000.
     pub history_rows: u32,
-    /// What becomes of the tables `history` and `contacts`. Default: `Csv`.
+    /// What becomes of the tables `history`, `contacts` and `blocks`. Default: `Csv`.
     pub history: TableFormat,
     /// Whether what each pair of touching blocks does to each other is written in every row, as `contacts.csv`. Default: false.
     pub contacts: bool,
+    /// Whether displacement, rotation, velocity and spin of each block are written at the times of the frames, as `blocks.csv`.
+    /// Default: true.
+    pub blocks: bool,
     /// Whether the forces of supports on held blocks are columns of the history. Default: false.
     pub reactions: bool,
     /// Wall-clock time between checkpoints [s], which `ndda resume` goes on from; one is written at the start and at
@@ -43,6 +46,7 @@ impl Default for Output {
             precision: Precision::default(),
             history_rows: 1000,
             history: TableFormat::default(),
+            blocks: true,
             contacts: false,
             reactions: false,
             checkpoint_wall_s: 60.0,

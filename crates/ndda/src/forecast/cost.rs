@@ -11,7 +11,8 @@ use serde::Serialize;
 use super::memory::readable;
 use crate::run::fields::FieldWriter;
 use crate::run::recorder::{columns, events, held_blocks};
-use crate::{build, machine, run::contacts};
+use crate::run::{contacts, motion};
+use crate::{build, machine};
 
 /// Steps are timed this long, but at least a few of them: a check of a small scene is to be felt as instant.
 const TIMED: Duration = Duration::from_millis(10);
@@ -97,6 +98,10 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
     ];
     if frames > 0 {
         files.push(file(&format!("{}/*.vtu", folder::FIELDS_FOLDER), frames, frames * frame));
+    }
+    if output.blocks {
+        let rows = blocks * events(build::steps(&scene.time), output.frames.into());
+        files.push(file(folder::BLOCKS, 1, rows * motion::COLUMNS.len() as u64 * NUMBER_BYTES));
     }
     if output.contacts {
         let pairs = ndda_contact::resultants(simulation.blocks(), &mut simulation.contacts().to_vec()).len();

@@ -77,8 +77,9 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
             max_h: worst.max_h,
         },
         verdicts,
+        motion: recorder.motions.summary(simulation),
         monitors: monitor_ends(simulation, recorder),
-        blocks: block_ends(simulation),
+        blocks: block_ends(simulation, recorder),
         reference: reference_error(ending.scene, recorder),
         warnings,
     }
@@ -168,7 +169,7 @@ fn monitor_ends(simulation: &Simulation, recorder: &Recorder) -> Named<MonitorEn
     recorder.monitors.iter().map(|m| (m.name.clone(), end(m))).collect()
 }
 
-fn block_ends(simulation: &Simulation) -> Named<BlockEnd> {
+fn block_ends(simulation: &Simulation, recorder: &Recorder) -> Named<BlockEnd> {
     let blocks = simulation.blocks();
     let end = |block| {
         let (operator, range) = (&simulation.shape(block).operator, blocks.nodes_of(block));
@@ -177,6 +178,7 @@ fn block_ends(simulation: &Simulation) -> Named<BlockEnd> {
         let momentum = operator.momentum(velocity);
         let angular = operator.angular_momentum(&Vec3::zeros(), position, velocity);
         BlockEnd {
+            motion: recorder.motions.of(simulation, block),
             mass: operator.mass_kg,
             velocity: (momentum / operator.mass_kg).into(),
             momentum: momentum.into(),

@@ -1,10 +1,94 @@
-//! The table that a run ends with.
+//! What a run ends with: a few lines for a person, and tables of everything.
 
-use ndda_io::summary::{Judgement, LabelWord, Summary, Verdict};
+use ndda_io::summary::{Course, Judgement, LabelWord, Motion, Summary, Verdict};
 
 use crate::columns::columns;
 
-/// The table that a run ends with.
+/// What a person wants to know first: whether the result is to be trusted, what moved, the error against a closed form, and the
+/// checks that failed.
+pub fn ending(summary: &Summary) -> String {
+    let mut text = match (summary.label.word, summary.label.reasons.as_slice()) {
+        (LabelWord::Accurate, _) => {
+            "accurate: speeds to 1 % of the largest, positions to a tenth of an element\n".into()
+        }
+        (LabelWord::Inaccurate, [reason]) => format!("inaccurate: {reason}\n"),
+        (LabelWord::Inaccurate, reasons) => format!("inaccurate:\n  {}\n", reasons.join("\n  ")),
+        (LabelWord::Stopped, _) => format!("stopped at t = {} s\n", time(summary.end_s)),
+    };
+    text.extend(summary.motion.as_ref().map(moved));
+    text.push_str(&error(summary));
+    let failed = |(_, verdict): &&(String, Verdict)| {
+        matches!(verdict.verdict, Judgement::Warn | Judgement::Fail)
+    };
+    let bad: Vec<_> = summary.verdicts.0.iter().filter(failed).collect();
+    let passed = summary.verdicts.0.iter().filter(|(_, v)| v.verdict == Judgement::Pass).count();
+    if bad.is_empty() {
+        text.push_str(&format!("{passed} checks passed\n"));
+    } else {
+        text.push_str(&format!("{passed} checks passed, {} did not:\n{}\n", bad.len(), verdict_table(bad.into_iter())));
+    }
+    text.push_str(&format!(
+        "{} steps of {:e} s to t = {} s in {:.2} s\n",
+        summary.steps,
+        summary.step_s,
+        time(summary.end_s),
+        summary.wall_s
+    ));
+    text
+}
+
+/// A time of so many steps, without the digits of rounding.
+fn time(time_s: f64) -> f64 {
+    format!("{time_s:.12e}").parse().unwrap_or(time_s)
+}
+
+/// Which blocks moved, and how far.
+fn moved(motion: &Motion) -> String {
+    let Motion { can_move, moved, farthest, farthest_m, speed_m_s, course } = motion;
+    let course = match course {
+        Course::AtRest => "at rest".to_string(),
+        Course::Moving => format!("moving at {speed_m_s:.3} m/s"),
+        Course::Accelerating => format!("still accelerating, {speed_m_s:.3} m/s"),
+    };
+    format!("{moved} of {can_move} blocks moved; farthest `{farthest}`: {} at the end, {course}\n", length(*farthest_m))
+}
+
+/// A length in a unit that suits it.
+fn length(length_m: f64) -> String {
+    match length_m {
+        l if l >= 1.0 => format!("{} m", figures(l)),
+        l if l >= 1e-3 => format!("{} mm", figures(1e3 * l)),
+        l => format!("{} µm", figures(1e6 * l)),
+    }
+}
+
+/// A number in three figures, or all those before the point.
+fn figures(value: f64) -> String {
+    let decimals = match value.abs() {
+        v if v >= 100.0 => 0,
+        v if v >= 10.0 => 1,
+        v if v >= 1.0 => 2,
+        _ => 3,
+    };
+    format!("{value:.decimals$}")
+}
+
+/// The error against the closed form that the scene names, if it names one.
+fn error(summary: &Summary) -> String {
+    let Some(reference) = &summary.reference else { return String::new() };
+    let mut text = format!(
+        "against the closed form {}: relative error {:.2e} at the end, at most {:.2e} for t ≥ {} s\n",
+        reference.kind, reference.error_end, reference.error_max, reference.after_s
+    );
+    if let (Some(end), Some(max)) = (reference.stick_stage_end, reference.stick_stage_max) {
+        text.push_str(&format!(
+            "against its form with the shear spring's stick stage: {end:.2e} at the end, at most {max:.2e}\n"
+        ));
+    }
+    text
+}
+
+/// Everything, as tables.
 pub fn text(summary: &Summary) -> String {
     let mut text = format!("{}: {}\n", summary.scene, summary.title);
     let speed = summary.steps as f64 / summary.wall_s;
@@ -21,31 +105,12 @@ pub fn text(summary: &Summary) -> String {
         summary.counts.dofs,
         summary.counts.factors,
     ));
-    for part in [stage_table(summary), verdict_table(summary), monitor_table(summary)] {
+    let verdicts = verdict_table(summary.verdicts.0.iter());
+    for part in [stage_table(summary), verdicts, monitor_table(summary), block_table(summary)] {
         text.push_str(&format!("{part}\n"));
-    }
-    if let Some(reference) = &summary.reference {
-        text.push_str(&format!(
-            "against the closed form {}: relative error {:.2e} at the end, at most {:.2e} for t ≥ {} s\n",
-            reference.kind, reference.error_end, reference.error_max, reference.after_s
-        ));
-        if let (Some(end), Some(max)) = (reference.stick_stage_end, reference.stick_stage_max) {
-            text.push_str(&format!(
-                "against its form with the shear spring's stick stage: {end:.2e} at the end, at most {max:.2e}\n"
-            ));
-        }
     }
     for warning in &summary.warnings {
         text.push_str(&format!("warning: {warning}\n"));
-    }
-    if summary.label.word != LabelWord::Stopped {
-        text.push_str(&format!("label: {}\n", summary.label.word.as_str()));
-        for reason in &summary.label.reasons {
-            text.push_str(&format!("  {reason}\n"));
-        }
-    }
-    if let Some(cause) = &summary.stopped_by {
-        text.push_str(&format!("stopped: {cause}\n"));
     }
     text
 }
@@ -60,7 +125,7 @@ fn stage_table(summary: &Summary) -> String {
     framed(&["stage", "time", "share"], rows.collect())
 }
 
-fn verdict_table(summary: &Summary) -> String {
+fn verdict_table<'a>(verdicts: impl Iterator<Item = &'a (String, Verdict)>) -> String {
     let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.2e}"));
     let word = |verdict: &Verdict| match (verdict.verdict, verdict.limit) {
         (Judgement::Pass, None) if verdict.value.is_some() => "shown",
@@ -71,7 +136,7 @@ fn verdict_table(summary: &Summary) -> String {
     };
     let row =
         |(name, v): &(String, Verdict)| vec![name.clone(), number(v.value), number(v.limit), word(v).into()];
-    framed(&["invariant", "worst", "limit", "verdict"], summary.verdicts.0.iter().map(row).collect())
+    framed(&["check", "worst", "limit", "verdict"], verdicts.map(row).collect())
 }
 
 fn monitor_table(summary: &Summary) -> String {
@@ -79,9 +144,22 @@ fn monitor_table(summary: &Summary) -> String {
     let monitors = summary.monitors.0.iter();
     let rows =
         monitors.map(|(name, end)| vec![name.clone(), triple(&end.displacement), triple(&end.velocity)]);
-    let mut rows: Vec<Vec<String>> = rows.collect();
-    for (name, end) in &summary.blocks.0 {
-        rows.push(vec![format!("block {name}"), String::new(), triple(&end.velocity)]);
-    }
-    framed(&["monitor", "displacement [m]", "velocity [m/s]"], rows)
+    framed(&["monitor", "displacement [m]", "velocity [m/s]"], rows.collect())
+}
+
+fn block_table(summary: &Summary) -> String {
+    let triple = |v: &[f64; 3]| format!("({:.6}, {:.6}, {:.6})", v[0], v[1], v[2]);
+    let rows = summary.blocks.0.iter().map(|(name, end)| {
+        let motion = &end.motion;
+        vec![
+            name.clone(),
+            triple(&motion.displacement_m),
+            length(motion.farthest_m),
+            length(motion.largest_m),
+            format!("{:.3}°", motion.rotation_deg),
+            triple(&end.velocity),
+        ]
+    });
+    let header = ["block", "displacement [m]", "farthest point", "largest", "rotation", "velocity [m/s]"];
+    framed(&header, rows.collect())
 }

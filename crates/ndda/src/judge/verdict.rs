@@ -1,4 +1,4 @@
-//! What a run says of itself: the invariants I1–I8 against their limits, and whether its motion is to be trusted.
+//! What a run says of itself: its checks against their limits, and whether its motion is to be trusted.
 
 use ndda_io::summary::{Judgement, Label, LabelWord, Named, Verdict};
 use ndda_solver::{Simulation, Worst};
@@ -44,7 +44,7 @@ impl Entry {
     }
 }
 
-/// The invariants I1–I8 against their limits.
+/// The checks of a run against their limits.
 pub fn verdicts(simulation: &Simulation) -> Named<Verdict> {
     entries(simulation).into_iter().map(|entry| (entry.name.to_string(), entry.verdict)).collect()
 }
@@ -64,7 +64,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     let upright = simulation.invariants().smallest_volume_ratio;
     let sound = Verdict { value: None, limit: None, verdict: Judgement::Pass };
     let fail = Judgement::Fail;
-    let mut entries = vec![Entry::new("I1 finite state", sound, fail, String::new())];
+    let mut entries = vec![Entry::new("finite state", sound, fail, String::new())];
     entries.extend(momentum(simulation));
     entries.extend(energy(simulation));
     entries.push(energy_of_the_lighter(simulation));
@@ -74,7 +74,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(squeezed(simulation));
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
     let verdict = Verdict { value: Some(upright), limit: Some(0.0), verdict };
-    entries.push(Entry::new("I7 smallest det F", verdict, fail, "an element is inside out".into()));
+    entries.push(Entry::new("smallest volume ratio of an element", verdict, fail, "an element is turned inside out; reduce step_s or the load".into()));
     entries.push(strain(simulation));
     entries.extend(resolution(simulation));
     entries.extend(turns(simulation));
@@ -92,15 +92,17 @@ fn momentum(simulation: &Simulation) -> [Entry; 2] {
     let (linear, angular) = (worst.linear_momentum, worst.angular_momentum);
     // Held blocks exchange angular momentum with their supports through strains that the books do not see.
     let turning = if simulation.is_closed() { judged(angular, 1e-8, 1e-6) } else { shown(angular) };
-    let reason = |what: &str, value: f64| format!("{what} came from nowhere: {value:.1e} of the largest");
+    let reason = |what: &str, value: f64| {
+        format!("{what} is not balanced: {value:.1e} of the largest appeared or vanished; please report this scene")
+    };
     [
         Entry::new(
-            "I2 linear momentum",
+            "linear momentum error",
             judged(linear, 1e-10, 1e-6),
             Judgement::Fail,
             reason("momentum", linear),
         ),
-        Entry::new("I3 angular momentum", turning, Judgement::Fail, reason("angular momentum", angular)),
+        Entry::new("angular momentum error", turning, Judgement::Fail, reason("angular momentum", angular)),
     ]
 }
 
@@ -110,15 +112,15 @@ fn energy(simulation: &Simulation) -> [Entry; 3] {
     let lasting = worst.lasting_gain.max(lost);
     let what = if worst.lasting_gain >= lost { "gained" } else { "lost" };
     let reason = format!(
-        "{:.1} % of the energy was {what} for good, limit {:.0} %: speeds are off by half as much",
+        "{:.1} % of the total energy was {what} to numerical error, limit {:.0} %: speeds may be wrong by half as much; reduce step_s",
         100.0 * lasting,
         100.0 * MOST_ENERGY
     );
-    let gained = format!("{:.1} % of the energy came from nowhere for a time", 100.0 * worst.energy_gain);
+    let gained = format!("{:.1} % of the total energy was added by numerical error for a time; reduce step_s", 100.0 * worst.energy_gain);
     [
-        Entry::new("I4 energy gain", judged(worst.energy_gain, 0.01, 0.02), Judgement::Fail, gained),
-        Entry::new("I4 energy loss", shown(worst.energy_loss), Judgement::Fail, String::new()),
-        warned("I4 lasting change", lasting, MOST_ENERGY, reason),
+        Entry::new("energy gained", judged(worst.energy_gain, 0.01, 0.02), Judgement::Fail, gained),
+        Entry::new("energy lost", shown(worst.energy_loss), Judgement::Fail, String::new()),
+        warned("lasting energy error", lasting, MOST_ENERGY, reason),
     ]
 }
 
@@ -126,35 +128,36 @@ fn energy(simulation: &Simulation) -> [Entry; 3] {
 fn energy_of_the_lighter(simulation: &Simulation) -> Entry {
     let worst = simulation.invariants();
     let (gain, loss) = (worst.block_gain, worst.block_loss);
-    let (what, most) = if gain.value >= loss.value { ("gave", gain) } else { ("took", loss) };
+    let (what, most) = if gain.value >= loss.value { ("added", gain) } else { ("removed", loss) };
     let reason = format!(
-        "contact {what} block `{}` {:.1} % of an energy for good, limit {:.0} %: its speed is off by half as much of the largest",
-        name(simulation, most),
+        "contact {what} {:.1} % spurious energy at block `{}`, limit {:.0} %: its velocity may be wrong by {:.1} % of the largest; reduce step_s",
         100.0 * most.value,
-        100.0 * MOST_ENERGY
+        name(simulation, most),
+        100.0 * MOST_ENERGY,
+        50.0 * most.value
     );
-    warned("I4 lighter of a pair", most.value, MOST_ENERGY, reason)
+    warned("spurious contact energy", most.value, MOST_ENERGY, reason)
 }
 
 /// Whether steps are short enough for friction.
 fn friction(simulation: &Simulation) -> Entry {
     let worst = simulation.invariants().unresolved_friction;
     let reason = format!(
-        "steps are too long for the friction of block `{}`: {:.1} % of its largest kinetic energy was off Coulomb's law, limit {:.1} %; reduce step_s",
+        "friction on block `{}` deviates from Coulomb's law by {:.1} % of its largest kinetic energy, limit {:.1} %: reduce step_s",
         name(simulation, worst),
         100.0 * worst.value,
         100.0 * MOST_FRICTION
     );
-    warned("I4 friction resolved", worst.value, MOST_FRICTION, reason)
+    warned("friction energy error", worst.value, MOST_FRICTION, reason)
 }
 
 /// Whether blocks creep on shear springs while contact rings.
 fn creep(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.creep_place, worst.creep_speed);
-    let cure = "because contact rings and its shear springs slip in each swing: begin with settle: (), ramp gravity by gravity_ramp_s, or leave out shear_penalty_pa_m";
+    let cure = "because its shear springs slip while contact vibrates: begin with settle: (), ramp gravity by gravity_ramp_s, or leave out shear_penalty_pa_m";
     let where_it_is = format!(
-        "block `{}` crept by {:.2} of its smallest height, limit {PLACE}, {cure}",
+        "block `{}` crept by {:.2} of its smallest element size, limit {PLACE}, {cure}",
         name(simulation, place),
         place.value
     );
@@ -165,8 +168,8 @@ fn creep(simulation: &Simulation) -> [Entry; 2] {
         100.0 * SPEED
     );
     [
-        warned("I4 creep / height", place.value, PLACE, where_it_is),
-        warned("I4 creep / speed", speed.value, SPEED, how_fast),
+        warned("creep / element size", place.value, PLACE, where_it_is),
+        warned("creep speed / largest speed", speed.value, SPEED, how_fast),
     ]
 }
 
@@ -178,15 +181,15 @@ fn contact(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let depth = worst.max_penetration_ratio;
     let reason = format!(
-        "blocks went {:.1} % of a tetrahedron's height into each other, limit {:.0} %",
+        "blocks penetrate each other by {:.1} % of an element size, limit {:.0} %: raise penalty_pa",
         100.0 * depth,
         100.0 * MOST_DEPTH
     );
-    let unequal = format!("action and reaction of a pair differ by {:.1e}", worst.action_reaction);
+    let unequal = format!("action and reaction of a pair differ by {:.1e} of the force; please report this scene", worst.action_reaction);
     [
-        Entry::new("I5 penetration / height", judged(depth, MOST_DEPTH, 0.25), Judgement::Warn, reason),
+        Entry::new("penetration / element size", judged(depth, MOST_DEPTH, 0.25), Judgement::Warn, reason),
         Entry::new(
-            "I6 action = reaction",
+            "action minus reaction",
             judged(worst.action_reaction, 1e-12, 1e-9),
             Judgement::Fail,
             unequal,
@@ -198,21 +201,21 @@ fn contact(simulation: &Simulation) -> [Entry; 2] {
 fn squeezed(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.squeezed_place, worst.squeezed_speed);
-    let why = "by forces sideways that are as small as contact is deep, and nothing holds it there";
+    let why = "because it is clamped without friction and the direction of its contact forces is known no better than contact is deep: raise penalty_pa, or give the contact friction";
     let where_it_is = format!(
-        "block `{}` is squeezed out by {:.2} of its smallest height, limit {PLACE}, {why}",
+        "block `{}` drifts sideways by {:.2} of its smallest element size, limit {PLACE}, {why}",
         name(simulation, place),
         place.value
     );
     let how_fast = format!(
-        "block `{}` is squeezed out at {:.1} % of the largest speed, limit {:.0} %, {why}",
+        "block `{}` drifts sideways at {:.1} % of the largest speed, limit {:.0} %, {why}",
         name(simulation, speed),
         100.0 * speed.value,
         100.0 * SPEED
     );
     [
-        warned("I5 squeezed / height", place.value, PLACE, where_it_is),
-        warned("I5 squeezed / speed", speed.value, SPEED, how_fast),
+        warned("unresolved lateral drift / element size", place.value, PLACE, where_it_is),
+        warned("unresolved lateral speed / largest speed", speed.value, SPEED, how_fast),
     ]
 }
 
@@ -225,7 +228,7 @@ fn strain(simulation: &Simulation) -> Entry {
         name(simulation, strain),
         100.0 * MOST_STRAIN
     );
-    warned("I7 largest strain", strain.value, MOST_STRAIN, reason)
+    warned("largest strain", strain.value, MOST_STRAIN, reason)
 }
 
 /// Whether steps are short enough for contact.
@@ -233,12 +236,16 @@ fn resolution(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (h, bound) = (worst.max_h, simulation.resolved_h());
     let coarse =
-        format!("steps are too long for contact: h = {h:.2}, bound {:.2}", bound.unwrap_or_default());
+        format!(
+        "contact is unstable or not resolved: stability number {h:.2}, limit {:.2}; divide step_s by {:.0}",
+        bound.unwrap_or_default(),
+        (h / bound.unwrap_or(f64::INFINITY)).ceil().max(2.0)
+    );
     let h = bound.map_or(shown(h), |bound| judged(h, bound, f64::INFINITY));
     let travel = worst.max_travel.value;
     let jumped = format!(
-        "block `{}` and another that it may meet approached by {travel:.2} of its width in a step (limit {MOST_TRAVEL}) and may have \
-         passed through each other: divide step_s by {:.0}",
+        "block `{}` and a neighbour approached each other by {travel:.2} block widths in one step, limit {MOST_TRAVEL}, and may have passed through \
+         each other: divide step_s by {:.0}",
         name(simulation, worst.max_travel),
         (travel / MOST_TRAVEL).ceil()
     );
@@ -248,8 +255,8 @@ fn resolution(simulation: &Simulation) -> [Entry; 2] {
         false => shown(travel),
     };
     [
-        Entry::new("I8 h = ω_c Δt", h, Judgement::Warn, coarse),
-        Entry::new("I8 travel / width", travel, Judgement::Warn, jumped),
+        Entry::new("contact stability number", h, Judgement::Warn, coarse),
+        Entry::new("travel in a step / block width", travel, Judgement::Warn, jumped),
     ]
 }
 
@@ -258,18 +265,18 @@ fn turns(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.turn_place, worst.turn_speed);
     let where_it_is = format!(
-        "block `{}` turns too far in a step: it is behind by {:.2} of its smallest height, limit {PLACE}",
+        "block `{}` rotates too far in a step: its surface is misplaced by {:.2} of its smallest element size, limit {PLACE}; reduce step_s",
         name(simulation, place),
         place.value
     );
     let how_fast = format!(
-        "a block turns too far in a step: its velocities are off by {:.1} % of the largest, limit {:.0} %",
+        "a block rotates too far in a step: its velocities may be wrong by {:.1} % of the largest speed, limit {:.0} %; reduce step_s",
         100.0 * speed,
         100.0 * SPEED
     );
     [
-        warned("I8 turn / height", place.value, PLACE, where_it_is),
-        warned("I8 turn / speed", speed, SPEED, how_fast),
+        warned("rotation error / element size", place.value, PLACE, where_it_is),
+        warned("rotation error / largest speed", speed, SPEED, how_fast),
     ]
 }
 
@@ -279,7 +286,7 @@ fn lumped_rotation(simulation: &Simulation) -> [Entry; 2] {
     let (place, speed) = (worst.lumped_place, worst.lumped_speed);
     let cure = "because lumped masses have too large an inertia of rotation: set mass: Consistent, or use more cells";
     let where_it_is = format!(
-        "block `{}` may have turned wrongly by {:.2} of its smallest height, limit {PLACE}, {cure}",
+        "the rotation of block `{}` may misplace its surface by {:.2} of its smallest element size, limit {PLACE}, {cure}",
         name(simulation, place),
         place.value
     );
@@ -290,8 +297,8 @@ fn lumped_rotation(simulation: &Simulation) -> [Entry; 2] {
         100.0 * SPEED
     );
     [
-        warned("lumped rotation / height", place.value, PLACE, where_it_is),
-        warned("lumped rotation / speed", speed.value, SPEED, how_fast),
+        warned("lumped-mass rotation error / element size", place.value, PLACE, where_it_is),
+        warned("lumped-mass rotation error / largest speed", speed.value, SPEED, how_fast),
     ]
 }
 
@@ -299,13 +306,13 @@ fn lumped_rotation(simulation: &Simulation) -> [Entry; 2] {
 fn ringing(simulation: &Simulation) -> Entry {
     let worst = simulation.invariants().ringing;
     let reason = format!(
-        "the velocity of block `{}` may be wrong by {:.1} % of the largest speed, limit {:.0} %, because its contact forces vibrate or jump \
-         and steps are too long to follow: reduce step_s",
+        "the velocity of block `{}` may be wrong by {:.1} % of the largest speed, limit {:.0} %, because its contact \
+         forces vibrate or jump faster than steps resolve: reduce step_s",
         name(simulation, worst),
         100.0 * worst.value,
         100.0 * SPEED
     );
-    warned("I8 ringing / speed", worst.value, SPEED, reason)
+    warned("contact vibration error / largest speed", worst.value, SPEED, reason)
 }
 
 /// Whether bonds broke close to their strength, if any broke.
@@ -316,7 +323,7 @@ fn bonds(simulation: &Simulation) -> Option<Entry> {
         100.0 * overload,
         100.0 * BOND_OVERLOAD
     );
-    (overload > 0.0).then(|| warned("I8 bond overload", overload, BOND_OVERLOAD, reason))
+    (overload > 0.0).then(|| warned("bond overload", overload, BOND_OVERLOAD, reason))
 }
 
 /// Whether anything comes and goes within a step.
@@ -324,12 +331,12 @@ fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
     let worst = simulation.invariants();
     let percent = |value: f64| 100.0 * value;
     let vibration = format!(
-        "vibrations that steps do not resolve: {:.1} % of the largest speed turns over in one, limit {:.0} %",
+        "steps do not resolve vibrations: {:.1} % of the largest speed reverses within one step, limit {:.0} %; reduce step_s",
         percent(worst.vibration),
         percent(MOST_VIBRATION)
     );
     let unseen = format!(
-        "loads or motions bring and take back {:.1} % of the largest speed within a step, limit {:.0} %",
+        "loads or motions change within a step: {:.1} % of the largest speed is missed, limit {:.0} %; reduce step_s",
         percent(worst.unseen_speed),
         percent(SPEED)
     );
@@ -339,9 +346,9 @@ fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
         percent(SPEED)
     );
     [
-        warned("I8 vibration / speed", worst.vibration, MOST_VIBRATION, vibration),
-        warned("I8 unseen / speed", worst.unseen_speed, SPEED, unseen),
-        warned("I8 damping / speed", worst.damping_speed, SPEED, damping),
+        warned("unresolved vibration / largest speed", worst.vibration, MOST_VIBRATION, vibration),
+        warned("load change within a step / largest speed", worst.unseen_speed, SPEED, unseen),
+        warned("damping error / largest speed", worst.damping_speed, SPEED, damping),
     ]
 }
 

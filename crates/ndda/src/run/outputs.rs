@@ -15,6 +15,7 @@ use super::contacts::ContactTable;
 use super::fields::{FieldWriter, SavedFields};
 use super::identity::Identity;
 use super::monitor::Monitor;
+use super::motion::BlockTable;
 use super::recorder::{Recorder, SavedRecorder, held_blocks};
 use crate::judge::reference::{self, Comparison};
 
@@ -38,6 +39,8 @@ pub struct Earlier {
     pub fields: Option<SavedFields>,
     /// Rows of the contacts.
     pub contacts: Option<usize>,
+    /// Rows of the motion of blocks.
+    pub blocks: Option<usize>,
     /// Seconds of wall clock spent, all parts of the run together.
     pub wall_s: f64,
 }
@@ -60,6 +63,7 @@ pub struct Outputs<'a, 'b> {
 struct Files {
     fields: Option<FieldWriter>,
     contacts: Option<ContactTable>,
+    blocks: Option<BlockTable>,
     identity: Identity,
     folder: OutputFolder,
     /// Between checkpoints; none between start and end if zero.
@@ -105,15 +109,18 @@ impl<'a, 'b> Outputs<'a, 'b> {
             history = Some(folder.history());
             let mut goes_on = None;
             if let Some(earlier) = earlier {
-                (saved, goes_on) =
-                    (Some(earlier.recorder), Some((earlier.fields, earlier.contacts, earlier.wall_s)));
+                saved = Some(earlier.recorder);
+                goes_on = Some((earlier.fields, earlier.contacts, earlier.blocks, earlier.wall_s));
             }
-            let (saved_fields, saved_contacts, earlier_s) = goes_on.unwrap_or_default();
+            let (saved_fields, saved_contacts, saved_blocks, earlier_s) = goes_on.unwrap_or_default();
+            let frames = (steps, u64::from(scene.output.frames));
             let fields = || FieldWriter::new(&folder, simulation, scene, steps, saved_fields);
             let contacts = || ContactTable::new(&folder, rows, saved_contacts);
+            let blocks = || BlockTable::new(&folder, frames, saved_blocks);
             files = Some(Files {
                 fields: (scene.output.frames > 0).then(fields).transpose()?,
                 contacts: scene.output.contacts.then(contacts).transpose()?,
+                blocks: scene.output.blocks.then(blocks).transpose()?,
                 every: Duration::from_secs_f64(scene.output.checkpoint_wall_s),
                 last: Instant::now(),
                 earlier_s,
@@ -136,10 +143,10 @@ impl<'a, 'b> Outputs<'a, 'b> {
         if let Some(fields) = &mut files.fields {
             fields.save()?;
         }
-        match &mut files.contacts {
-            Some(contacts) => contacts.save().map(drop),
-            None => Ok(()),
+        if let Some(contacts) = &mut files.contacts {
+            contacts.save()?;
         }
+        files.blocks.as_mut().map_or(Ok(()), |blocks| blocks.save().map(drop))
     }
 
     /// Seconds spent on output.
@@ -167,6 +174,7 @@ impl<'a, 'b> Outputs<'a, 'b> {
                 recorder: self.recorder.save()?,
                 fields: files.fields.as_mut().map(FieldWriter::save).transpose()?,
                 contacts: files.contacts.as_mut().map(ContactTable::save).transpose()?,
+                blocks: files.blocks.as_mut().map(BlockTable::save).transpose()?,
                 wall_s: files.earlier_s + self.started.elapsed().as_secs_f64(),
             },
         };
@@ -181,7 +189,8 @@ impl Files {
     fn spent_s(&self) -> f64 {
         let fields_s = self.fields.as_ref().map_or(0.0, |fields| fields.spent_s);
         let contacts_s = self.contacts.as_ref().map_or(0.0, |contacts| contacts.spent_s);
-        fields_s + contacts_s + self.spent_s
+        let blocks_s = self.blocks.as_ref().map_or(0.0, |blocks| blocks.spent_s);
+        fields_s + contacts_s + blocks_s + self.spent_s
     }
 
     fn wants_contacts(&self, step: u64) -> bool {
@@ -207,12 +216,15 @@ impl Sink for Outputs<'_, '_> {
         if self.recorder.wants_sample(step) || step >= self.steps {
             ends |= self.recorder.step_done(view)?.is_break();
         }
-        if let Some(Files { fields, contacts, .. }) = &mut self.files {
+        if let Some(Files { fields, contacts, blocks, .. }) = &mut self.files {
             if let Some(fields) = fields {
                 ends |= fields.step_done(view)?.is_break();
             }
             if let Some(contacts) = contacts {
                 ends |= contacts.step_done(view)?.is_break();
+            }
+            if let Some(blocks) = blocks {
+                ends |= blocks.step_done(view)?.is_break();
             }
         }
         for observer in self.observers.iter_mut() {

@@ -11,6 +11,7 @@ use ndda_solver::{Sample, Simulation, Sink, SinkError, View};
 use serde::{Deserialize, Serialize};
 
 use super::monitor::Monitor;
+use super::motion::LargestMotions;
 use crate::judge::reference::{Comparison, Errors};
 
 /// Whether one of `count` evenly spaced events falls on `step` of `steps`; the first and last steps always count.
@@ -40,6 +41,8 @@ pub struct Recorder {
     pub error_end: Option<Errors>,
     /// Largest errors since `after_s`.
     pub error_max: Option<Errors>,
+    /// The largest displacement and speed of each block.
+    pub motions: LargestMotions,
     /// The last row's energies.
     pub last: Sample,
     /// Seconds spent.
@@ -78,6 +81,7 @@ pub struct SavedRecorder {
     rows: usize,
     error_end: Option<Errors>,
     error_max: Option<Errors>,
+    motions: LargestMotions,
     last: Sample,
     spent_s: f64,
 }
@@ -105,7 +109,7 @@ impl Recorder {
             (Some(file), None) => Rows::File(Box::new(History::create(file, &columns)?)),
             (Some(file), Some(saved)) => Rows::File(Box::new(History::resume(file, &columns, saved.rows)?)),
         };
-        let SavedRecorder { error_end, error_max, last, spent_s, .. } = saved.unwrap_or_default();
+        let SavedRecorder { error_end, error_max, motions, last, spent_s, .. } = saved.unwrap_or_default();
         let row = Vec::with_capacity(columns.len());
         Ok(Self {
             history,
@@ -118,6 +122,7 @@ impl Recorder {
             monitors,
             error_end,
             error_max,
+            motions,
             last,
             spent_s,
         })
@@ -139,6 +144,7 @@ impl Recorder {
             rows,
             error_end: self.error_end,
             error_max: self.error_max,
+            motions: self.motions.clone(),
             last: self.last,
             spent_s: self.spent_s,
         })
@@ -239,6 +245,7 @@ impl Sink for Recorder {
         let started = Instant::now();
         let simulation = &*view.simulation;
         self.last = *sample;
+        self.motions.watch(simulation);
         self.row.clear();
         self.row.extend([
             sample.time_s,

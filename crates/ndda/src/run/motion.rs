@@ -1,0 +1,216 @@
+//! How far each block has gone: displacement, rotation and speed, and the largest of a run.
+
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+use ndda_fem::BlockOperator;
+use ndda_io::summary::{BlockMotion, Course, Motion};
+use ndda_io::{History, OutputFolder, WriteError};
+use ndda_mesh::{BlockId, Mat3, Vec3};
+use ndda_solver::{BodyKind, Simulation, Sink, SinkError, View};
+use serde::{Deserialize, Serialize};
+
+use super::recorder::is_due;
+
+/// A block has moved if a point of it has gone farther than this part of the distance from its mass centre to its farthest node.
+const MOVED: f64 = 0.01;
+/// A block rests if it moves at less than this part of its own largest speed.
+const RESTS: f64 = 0.01;
+/// It accelerates if it moves at more than this part of that.
+const ACCELERATES: f64 = 0.99;
+
+/// Columns of `blocks.csv`; blocks are numbered from 0 in the order of `block_id` and of the summary.
+pub const COLUMNS: [&str; 13] = [
+    "time_s",
+    "block",
+    "displacement_x_m",
+    "displacement_y_m",
+    "displacement_z_m",
+    "farthest_m",
+    "rotation_deg",
+    "velocity_x_m_s",
+    "velocity_y_m_s",
+    "velocity_z_m_s",
+    "spin_x_rad_s",
+    "spin_y_rad_s",
+    "spin_z_rad_s",
+];
+
+/// The largest displacement and speed of each block so far.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct LargestMotions {
+    farthest_m: Vec<f64>,
+    fastest_m_s: Vec<f64>,
+}
+
+impl LargestMotions {
+    /// Looks at all blocks as they are now.
+    pub fn watch(&mut self, simulation: &Simulation) {
+        let blocks = simulation.blocks();
+        self.farthest_m.resize(blocks.len(), 0.0);
+        self.fastest_m_s.resize(blocks.len(), 0.0);
+        for block in blocks.ids() {
+            let (farthest, fastest) =
+                (&mut self.farthest_m[block.index()], &mut self.fastest_m_s[block.index()]);
+            *farthest = farthest.max(farthest_m(simulation, block));
+            *fastest = fastest.max(velocity_m_s(simulation, block).norm());
+        }
+    }
+
+    /// Motion of a block now, and its largest.
+    pub fn of(&self, simulation: &Simulation, block: BlockId) -> BlockMotion {
+        let farthest_m = farthest_m(simulation, block);
+        let largest_m = self.farthest_m.get(block.index()).copied().unwrap_or(0.0);
+        BlockMotion {
+            displacement_m: displacement_m(simulation, block).into(),
+            farthest_m,
+            largest_m: largest_m.max(farthest_m),
+            rotation_deg: rotation_deg(simulation, block),
+        }
+    }
+
+    /// What moved, in one record; none where every block is fixed.
+    pub fn summary(&self, simulation: &Simulation) -> Option<Motion> {
+        let blocks = simulation.blocks();
+        let free = || blocks.ids().filter(|&block| simulation.shape(block).kind != BodyKind::Fixed);
+        let has_moved = |&block: &BlockId| {
+            farthest_m(simulation, block) > MOVED * radius_m(&simulation.shape(block).operator)
+        };
+        let farthest = free().map(|block| (farthest_m(simulation, block), block));
+        let (distance_m, block) = farthest.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))?;
+        let speed_m_s = velocity_m_s(simulation, block).norm();
+        let fastest_m_s = self.fastest_m_s.get(block.index()).copied().unwrap_or(0.0).max(speed_m_s);
+        let course = if speed_m_s <= RESTS * fastest_m_s {
+            Course::AtRest
+        } else if speed_m_s >= ACCELERATES * fastest_m_s {
+            Course::Accelerating
+        } else {
+            Course::Moving
+        };
+        Some(Motion {
+            can_move: free().count(),
+            moved: free().filter(has_moved).count(),
+            farthest: blocks.names[block.index()].clone(),
+            farthest_m: distance_m,
+            speed_m_s,
+            course,
+        })
+    }
+}
+
+fn radius_m(operator: &BlockOperator) -> f64 {
+    operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max)
+}
+
+/// How far the farthest node has gone [m].
+fn farthest_m(simulation: &Simulation, block: BlockId) -> f64 {
+    let (now, start) = (&simulation.state().position, simulation.start_position());
+    let squares = simulation.blocks().nodes_of(block).map(|n| (now[n] - start[n]).norm_squared());
+    squares.fold(0.0, f64::max).sqrt()
+}
+
+/// Displacement of the mass centre [m].
+fn displacement_m(simulation: &Simulation, block: BlockId) -> Vec3 {
+    let (operator, nodes) = (&simulation.shape(block).operator, simulation.blocks().nodes_of(block));
+    let now = operator.center(&simulation.state().position[nodes.clone()]);
+    now - operator.center(&simulation.start_position()[nodes])
+}
+
+fn velocity_m_s(simulation: &Simulation, block: BlockId) -> Vec3 {
+    let (operator, nodes) = (&simulation.shape(block).operator, simulation.blocks().nodes_of(block));
+    operator.momentum(&simulation.state().velocity[nodes]) / operator.mass_kg
+}
+
+/// Angle of the rotation that fits the motion of the nodes best, from 0 to 180 [°]: the orthogonal part of Σ m (x − c)(X − C)ᵀ by its
+/// singular values (Kabsch 1976).
+fn rotation_deg(simulation: &Simulation, block: BlockId) -> f64 {
+    let (operator, nodes) = (&simulation.shape(block).operator, simulation.blocks().nodes_of(block));
+    let now = &simulation.state().position[nodes.clone()];
+    let start = &simulation.start_position()[nodes];
+    if now == start {
+        return 0.0;
+    }
+    let (center, first) = (operator.center(now), operator.center(start));
+    let mut moment = Mat3::zeros();
+    for ((&mass, x), old) in operator.node_mass.iter().zip(now).zip(start) {
+        moment += mass * (x - center) * (old - first).transpose();
+    }
+    let parts = moment.svd(true, true);
+    let (Some(left), Some(right)) = (parts.u, parts.v_t) else { return 0.0 };
+    let mut mirror = Mat3::identity();
+    let smallest = parts.singular_values.imin();
+    mirror[(smallest, smallest)] = (left * right).determinant().signum();
+    let rotation = left * mirror * right;
+    let axial = Vec3::new(
+        rotation[(2, 1)] - rotation[(1, 2)],
+        rotation[(0, 2)] - rotation[(2, 0)],
+        rotation[(1, 0)] - rotation[(0, 1)],
+    );
+    axial.norm().atan2(rotation.trace() - 1.0).to_degrees()
+}
+
+/// Writes `blocks.csv`: a row per block at the times of the frames.
+pub struct BlockTable {
+    table: History,
+    steps: u64,
+    frames: u64,
+    /// Seconds spent in this part of the run.
+    pub spent_s: f64,
+}
+
+impl BlockTable {
+    /// Begins a table, or goes on after so many rows of it.
+    ///
+    /// # Errors
+    /// [`WriteError`] when the file cannot be written, or is another table.
+    pub fn new(
+        folder: &OutputFolder,
+        (steps, frames): (u64, u64),
+        saved: Option<usize>,
+    ) -> Result<Self, WriteError> {
+        let columns = COLUMNS.map(String::from);
+        let table = match saved {
+            None => History::create(&folder.blocks(), &columns)?,
+            Some(saved) => History::resume(&folder.blocks(), &columns, saved)?,
+        };
+        Ok(Self { table, steps, frames, spent_s: 0.0 })
+    }
+
+    /// Rows so far, all of them on the disk.
+    ///
+    /// # Errors
+    /// [`WriteError`] when they are not.
+    pub fn save(&mut self) -> Result<usize, WriteError> {
+        self.table.sync()?;
+        Ok(self.table.rows())
+    }
+}
+
+impl Sink for BlockTable {
+    fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
+        let simulation = &*view.simulation;
+        if !is_due(simulation.state().step, self.steps, self.frames) {
+            return Ok(ControlFlow::Continue(()));
+        }
+        let started = Instant::now();
+        for block in simulation.blocks().ids() {
+            self.table.push(&row(simulation, block))?;
+        }
+        self.spent_s += started.elapsed().as_secs_f64();
+        Ok(ControlFlow::Continue(()))
+    }
+}
+
+fn row(simulation: &Simulation, block: BlockId) -> [f64; COLUMNS.len()] {
+    let (operator, nodes) = (&simulation.shape(block).operator, simulation.blocks().nodes_of(block));
+    let state = simulation.state();
+    let motion = operator.rigid_motion(&state.position[nodes.clone()], &state.velocity[nodes]);
+    let displacement_m = displacement_m(simulation, block);
+    let mut row = [0.0; COLUMNS.len()];
+    row[..2].copy_from_slice(&[simulation.time_s(), block.index() as f64]);
+    row[2..5].copy_from_slice(displacement_m.as_slice());
+    row[5..7].copy_from_slice(&[farthest_m(simulation, block), rotation_deg(simulation, block)]);
+    row[7..10].copy_from_slice(motion.velocity_m_s.as_slice());
+    row[10..].copy_from_slice(motion.spin_rad_s.as_slice());
+    row
+}
