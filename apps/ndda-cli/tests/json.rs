@@ -36,7 +36,7 @@ fn out(place: &tempfile::TempDir) -> (PathBuf, String) {
 fn a_run_starts_gets_on_and_finishes_with_its_summary() {
     let place = tempfile::tempdir().unwrap();
     let (_, out) = out(&place);
-    let (code, found) = events(&["run", &scene("free_fall"), "--out", &out], "ndda.run/1");
+    let (code, found) = events(&["run", &scene("free_fall"), "--out", &out], "ndda.run/2");
     assert_eq!((code, names(&found)[0], *names(&found).last().unwrap()), (0, "started", "finished"));
     let steps = found[0]["steps"].as_u64().unwrap();
     let passed: Vec<u64> =
@@ -45,9 +45,9 @@ fn a_run_starts_gets_on_and_finishes_with_its_summary() {
     let last = found.last().unwrap();
     assert_eq!((&last["exit_code"], &last["summary"]["status"]), (&Value::from(0), &Value::from("done")));
 
-    let (code, found) = events(&["resume", &out], "ndda.run/1");
+    let (code, found) = events(&["resume", &out], "ndda.run/2");
     assert_eq!((code, names(&found)), (0, vec!["nothing_to_do"]));
-    let (code, found) = events(&["run", &scene("free_fall"), "--out", &out], "ndda.run/1");
+    let (code, found) = events(&["run", &scene("free_fall"), "--out", &out], "ndda.run/2");
     assert_eq!((code, names(&found)), (5, vec!["failed"]));
     assert!(found[0]["message"].as_str().unwrap().contains("--force"));
 }
@@ -96,7 +96,7 @@ fn a_template_a_picture_and_a_page_are_told_of_as_events() {
     let (code, found) = events(&["new", "slide", "--out", &scene], "ndda.new/1");
     assert_eq!((code, &found[0]["scene"]), (0, &scene.as_str().into()));
 
-    assert_eq!(events(&["run", &scene, "--set", "output.frames=5", "--out", &out], "ndda.run/1").0, 0);
+    assert_eq!(events(&["run", &scene, "--set", "output.frames=5", "--out", &out], "ndda.run/2").0, 0);
     let (code, found) = events(&["plot", &out], "ndda.plot/1");
     assert_eq!((code, &found[0]["tables"][0]["columns"][0]), (0, &"time_s".into()));
     let picture = place.path().join("p.svg").display().to_string();

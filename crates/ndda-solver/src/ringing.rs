@@ -1,7 +1,8 @@
 //! Errors of velocities that steps leave where contact or supports make a block vibrate, or change its forces abruptly.
 //!
 //! A step takes forces at one instant for their mean over the step. Taken in the middle of it, at a predicted place, the
-//! impulse of a force F is off by Δt |Δ²F|/12, Δ²F = Fₙ₊₁ − 2Fₙ + Fₙ₋₁ being Δt² F″. Where a force jumps by J, because a block
+//! impulse of a force F is off by Δt |Δ²F|/6, Δ²F = Fₙ₊₁ − 2Fₙ + Fₙ₋₁ being Δt² F″: 1/24 for one instant instead of the mean, and
+//! 1/8 for the place, which is predicted without the acceleration. Where a force jumps by J, because a block
 //! begins to slide or a bond breaks, it does so anywhere within a step, which leaves up to ½ Δt J, and two steps see |Δ²F| = J:
 //! ¼ Δt |Δ²F| each. A second difference is a jump where contact begins, and where it is more than twice its root mean square
 //! over the last steps: that of a vibration is at most √2 times as much. Taken at the start or the end of a step,
@@ -157,7 +158,7 @@ impl Ringing {
         let second = [change[0] - self.change[0], change[1] - self.change[1]];
         let (first2, second2) = (square(&change), square(&second));
         let jumps = self.weight < 1.0 || second2 * self.weight > JUMP2 * self.second2;
-        let in_the_middle = if jumps { 0.25 } else { 1.0 / 12.0 };
+        let in_the_middle = if jumps { 0.25 } else { 1.0 / 6.0 };
         self.first2 = KEPT * self.first2 + first2;
         self.second2 = KEPT * self.second2 + second2;
         self.weight = KEPT * self.weight + 1.0;
@@ -259,8 +260,8 @@ mod tests {
         collide(&mut ringing, 100, 5, false);
         assert_eq!(ringing.error_m_s(), 0.0);
         collide(&mut ringing, 100, 1, true);
-        // |Δ²F| is θ where the force begins, a quarter of which counts, and adds up to 2 θ in its course, of which a twelfth does.
-        let expected = (0.25 + 2.0 / 12.0) * (PI / 100.0).powi(2);
+        // |Δ²F| is θ where the force begins, a quarter of which counts, and adds up to 2 θ in its course, of which a sixth does.
+        let expected = (0.25 + 2.0 / 6.0) * (PI / 100.0).powi(2);
         assert!((ringing.error_m_s() / expected - 1.0).abs() < 0.01, "{}", ringing.error_m_s() / expected);
     }
 
@@ -274,7 +275,7 @@ mod tests {
                 step.is_first = k == 0;
                 ringing.add(&step, &pushed((turn * f64::from(k)).cos(), true));
             }
-            // True is θ²/24 per radian for forces at predicted places; the sum has θ²/12 times the mean of |cos|.
+            // True is θ²/24 per radian for forces at predicted places; the sum has θ²/6 times the mean of |cos|.
             let (late, time) = (turn * turn / 24.0, TAU * f64::from(periods));
             let (least, most) = ((late * time).min(1.0), (4.0 * late * time).min(3.0));
             assert!(

@@ -8,7 +8,7 @@ use crate::exit;
 use crate::terminal::console::{colour, complain, say};
 
 /// Schema of `ndda run` and `ndda resume`.
-pub const RUN: &str = "ndda.run/1";
+pub const RUN: &str = "ndda.run/2";
 /// Schema of `ndda check`.
 pub const CHECK: &str = "ndda.check/1";
 /// Schema of `ndda mesh`.
