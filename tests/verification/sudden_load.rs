@@ -68,12 +68,7 @@ fn blocks_that_push_each_other_off_keep_momentum_angular_momentum_and_energy() {
     simulation.sample().unwrap();
     let found = simulation.invariants();
     assert!(found.contact_pairs_max > 0 && found.max_h > 1.0, "they do not push: {found:?}");
-    row(
-        "V18",
-        "three blocks pushed off by each other: momentum lost",
-        found.linear_momentum,
-        AtMost(1e-13),
-    );
+    row("V18", "three blocks pushed off by each other: momentum lost", found.linear_momentum, AtMost(1e-13));
     row("V18", "… angular momentum lost", found.angular_momentum, AtMost(1e-12));
     let energy = found.lasting_gain.max(found.lasting_loss);
     row("V18", "… energy lost or gained once they part", energy, AtMost(1e-2));

@@ -69,7 +69,9 @@ fn a_check_reckons_what_a_run_will_take_and_write() {
     assert!(guess["run_s"].as_f64().unwrap() > 0.0, "{guess}");
     let files: Vec<&str> =
         guess["files"].as_array().unwrap().iter().map(|file| file["name"].as_str().unwrap()).collect();
-    assert_eq!(files, ["history.csv", "checkpoint.ndda", "summary.json", "run.log", "fields/*.vtu"]);
+    let expected =
+        ["history.csv", "checkpoint.ndda", "summary.json", "run.log", "fields/*.vtu", "blocks.csv"];
+    assert_eq!(files, expected);
 }
 
 #[test]

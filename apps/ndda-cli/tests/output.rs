@@ -50,8 +50,8 @@ fn set(names: &[&str]) -> BTreeSet<String> {
     names.iter().map(|name| name.to_string()).collect()
 }
 
-const ALWAYS: [&str; 5] =
-    ["checkpoint.ndda", "checkpoint.previous.ndda", "run.log", "summary.json", "history.csv"];
+const ALWAYS: [&str; 6] =
+    ["checkpoint.ndda", "checkpoint.previous.ndda", "run.log", "summary.json", "history.csv", "blocks.csv"];
 
 #[test]
 fn files_and_arrays_are_those_that_are_asked_for() {

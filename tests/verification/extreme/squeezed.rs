@@ -177,7 +177,10 @@ fn a_wedge_is_pressed_out_as_it_should_be_and_called_accurate() {
 fn a_scene_in_which_a_slab_leaves_says_so() {
     let summary = summary_of("extreme/squeezed_out.ron", &[]);
     let summary = summary.unwrap();
-    let (value, left) = (&summary["verdicts"]["unresolved lateral speed / largest speed"]["value"], &summary["monitors"]["light"]);
+    let (value, left) = (
+        &summary["verdicts"]["unresolved lateral speed / largest speed"]["value"],
+        &summary["monitors"]["light"],
+    );
     let left_m = left["displacement"][0].as_f64().unwrap().hypot(left["displacement"][1].as_f64().unwrap());
     row("X3", "way of a slab of a millionth of the mass above it [m]", left_m, AtLeast(1.0));
     // It grows as the instability does; the limit is 1e-2.

@@ -17,15 +17,18 @@ pub fn ending(summary: &Summary) -> String {
     };
     text.extend(summary.motion.as_ref().map(moved));
     text.push_str(&error(summary));
-    let failed = |(_, verdict): &&(String, Verdict)| {
-        matches!(verdict.verdict, Judgement::Warn | Judgement::Fail)
-    };
+    let failed =
+        |(_, verdict): &&(String, Verdict)| matches!(verdict.verdict, Judgement::Warn | Judgement::Fail);
     let bad: Vec<_> = summary.verdicts.0.iter().filter(failed).collect();
     let passed = summary.verdicts.0.iter().filter(|(_, v)| v.verdict == Judgement::Pass).count();
     if bad.is_empty() {
         text.push_str(&format!("{passed} checks passed\n"));
     } else {
-        text.push_str(&format!("{passed} checks passed, {} did not:\n{}\n", bad.len(), verdict_table(bad.into_iter())));
+        text.push_str(&format!(
+            "{passed} checks passed, {} did not:\n{}\n",
+            bad.len(),
+            verdict_table(bad.into_iter())
+        ));
     }
     text.push_str(&format!(
         "{} steps of {:e} s to t = {} s in {:.2} s\n",
@@ -50,7 +53,10 @@ fn moved(motion: &Motion) -> String {
         Course::Moving => format!("moving at {speed_m_s:.3} m/s"),
         Course::Accelerating => format!("still accelerating, {speed_m_s:.3} m/s"),
     };
-    format!("{moved} of {can_move} blocks moved; farthest `{farthest}`: {} at the end, {course}\n", length(*farthest_m))
+    format!(
+        "{moved} of {can_move} blocks moved; farthest `{farthest}`: {} at the end, {course}\n",
+        length(*farthest_m)
+    )
 }
 
 /// A length in a unit that suits it.

@@ -74,7 +74,12 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(squeezed(simulation));
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
     let verdict = Verdict { value: Some(upright), limit: Some(0.0), verdict };
-    entries.push(Entry::new("smallest volume ratio of an element", verdict, fail, "an element is turned inside out; reduce step_s or the load".into()));
+    entries.push(Entry::new(
+        "smallest volume ratio of an element",
+        verdict,
+        fail,
+        "an element is turned inside out; reduce step_s or the load".into(),
+    ));
     entries.push(strain(simulation));
     entries.extend(resolution(simulation));
     entries.extend(turns(simulation));
@@ -93,7 +98,9 @@ fn momentum(simulation: &Simulation) -> [Entry; 2] {
     // Held blocks exchange angular momentum with their supports through strains that the books do not see.
     let turning = if simulation.is_closed() { judged(angular, 1e-8, 1e-6) } else { shown(angular) };
     let reason = |what: &str, value: f64| {
-        format!("{what} is not balanced: {value:.1e} of the largest appeared or vanished; please report this scene")
+        format!(
+            "{what} is not balanced: {value:.1e} of the largest appeared or vanished; please report this scene"
+        )
     };
     [
         Entry::new(
@@ -116,7 +123,10 @@ fn energy(simulation: &Simulation) -> [Entry; 3] {
         100.0 * lasting,
         100.0 * MOST_ENERGY
     );
-    let gained = format!("{:.1} % of the total energy was added by numerical error for a time; reduce step_s", 100.0 * worst.energy_gain);
+    let gained = format!(
+        "{:.1} % of the total energy was added by numerical error for a time; reduce step_s",
+        100.0 * worst.energy_gain
+    );
     [
         Entry::new("energy gained", judged(worst.energy_gain, 0.01, 0.02), Judgement::Fail, gained),
         Entry::new("energy lost", shown(worst.energy_loss), Judgement::Fail, String::new()),
@@ -185,7 +195,10 @@ fn contact(simulation: &Simulation) -> [Entry; 2] {
         100.0 * depth,
         100.0 * MOST_DEPTH
     );
-    let unequal = format!("action and reaction of a pair differ by {:.1e} of the force; please report this scene", worst.action_reaction);
+    let unequal = format!(
+        "action and reaction of a pair differ by {:.1e} of the force; please report this scene",
+        worst.action_reaction
+    );
     [
         Entry::new("penetration / element size", judged(depth, MOST_DEPTH, 0.25), Judgement::Warn, reason),
         Entry::new(
@@ -235,8 +248,7 @@ fn strain(simulation: &Simulation) -> Entry {
 fn resolution(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (h, bound) = (worst.max_h, simulation.resolved_h());
-    let coarse =
-        format!(
+    let coarse = format!(
         "contact is unstable or not resolved: stability number {h:.2}, limit {:.2}; divide step_s by {:.0}",
         bound.unwrap_or_default(),
         (h / bound.unwrap_or(f64::INFINITY)).ceil().max(2.0)

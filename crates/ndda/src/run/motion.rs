@@ -214,3 +214,32 @@ fn row(simulation: &Simulation, block: BlockId) -> [f64; COLUMNS.len()] {
     row[10..].copy_from_slice(motion.spin_rad_s.as_slice());
     row
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Model, Run};
+    use ndda_io::summary::Course;
+
+    #[test]
+    fn displacement_and_rotation_of_a_thrown_block_are_those_of_free_flight() {
+        let text = "(title: \"thrown\", time: (step_s: 1e-3, end_s: 0.5), gravity_m_s2: (0, 0, -10),
+            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+            blocks: [(name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1)), velocity_m_s: (1, 0, 2),
+                      spin_rad_s: (0, 0, 4)),
+                     (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (1, 1, 1)), at_m: (0, 0, -9))])";
+        let model = Model::from_text(text).unwrap();
+        let summary = Run::new(model).finish(&mut []).unwrap().summary;
+        let cube = &summary.blocks.0[0].1.motion;
+        for (found, expected) in cube.displacement_m.into_iter().zip([0.5, 0.0, 2.0 * 0.5 - 5.0 * 0.25]) {
+            assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        }
+        assert!((cube.rotation_deg - 2f64.to_degrees()).abs() < 1e-9, "{}", cube.rotation_deg);
+        // A corner at √½ from the axis is turned by 2 rad about it, and the nearest the flight shifts it is that of the centre.
+        let chord_m = 2.0 * 0.5f64.sqrt() * 1f64.sin();
+        assert!(cube.farthest_m > chord_m && cube.farthest_m < chord_m + 0.5591, "{}", cube.farthest_m);
+        assert!(cube.largest_m >= cube.farthest_m);
+        let motion = summary.motion.unwrap();
+        assert_eq!((motion.can_move, motion.moved, motion.farthest.as_str()), (1, 1, "cube"));
+        assert_eq!(motion.course, Course::Accelerating);
+    }
+}
