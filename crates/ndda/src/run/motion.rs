@@ -222,11 +222,11 @@ mod tests {
 
     #[test]
     fn displacement_and_rotation_of_a_thrown_block_are_those_of_free_flight() {
-        let text = "(title: \"thrown\", time: (step_s: 1e-3, end_s: 0.5), gravity_m_s2: (0, 0, -10),
+        let text = "(title: \"thrown\", contact: Off, time: (step_s: 1e-3, end_s: 0.5), gravity_m_s2: (0, 0, -10),
             materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
-            blocks: [(name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1)), velocity_m_s: (1, 0, 2),
+            blocks: [(name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), velocity_m_s: (1, 0, 2),
                       spin_rad_s: (0, 0, 4)),
-                     (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (1, 1, 1)), at_m: (0, 0, -9))])";
+                     (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, -9))])";
         let model = Model::from_text(text).unwrap();
         let summary = Run::new(model).finish(&mut []).unwrap().summary;
         let cube = &summary.blocks.0[0].1.motion;
