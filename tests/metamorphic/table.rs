@@ -82,7 +82,7 @@ impl Record {
 
 /// What a reason is about, without its numbers.
 fn short(reason: &str) -> &'static str {
-    const KINDS: [(&str, &str); 23] = [
+    const KINDS: [(&str, &str); 25] = [
         ("deviates from Coulomb", "friction"),
         ("strains reach", "strains"),
         ("lumped masses", "lumped masses"),
@@ -95,6 +95,8 @@ fn short(reason: &str) -> &'static str {
         ("contact removed", "energy of a pair"),
         ("penetrate each other", "penetration"),
         ("drifts sideways", "squeezed out"),
+        ("crept by", "creep"),
+        ("creeps at", "creep"),
         ("a bond broke", "bonds"),
         ("unstable or not resolved", "h of contact"),
         ("approached each other", "travel"),

@@ -102,7 +102,7 @@ fn key(blocks: &BlockSet, memory: Memory, bond: &Bond) -> Key {
     (bond.facet, blocks.tet_block[bond.tet.index()], element)
 }
 
-/// Drops the bonds that break, and hands their shear to the friction law of their facet. Gives the largest [overload](Stretch::overload) of those that
+/// Drops the bonds that break, and hands their shear to the friction law of their facet. Gives the largest overload of those that
 /// break.
 pub fn break_overloaded(
     joints: &Joints,
