@@ -1,11 +1,13 @@
 //! What a person can type.
 
+mod safety;
 mod study;
 mod trial;
 
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+pub use safety::{SafetyArgs, SafetyBy};
 pub use study::{Emit, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 
@@ -92,6 +94,11 @@ pub enum Verb {
     /// spread where they do not; says when a motion is chaotic. Writes certificate.json, which `ndda report` shows, too.
     /// The same command goes on where it was interrupted. What the bars mean: docs/certify.md.
     Certify(CertifyArgs),
+    /// Find the factor of safety: by how much joints may weaken, loads grow or gravity tilt before blocks move.
+    ///
+    /// Brings the scene to rest, then runs trials side by side until the largest factor at which blocks stand and the
+    /// smallest at which they fail are as near as asked for. Writes safety.json and the failing run, folder mechanism.
+    Safety(SafetyArgs),
     /// Find the cheapest settings that reach an error: integrator, step, potential, kind of body and penalty.
     ///
     /// Tries settings by short runs that double their effort, judges them by the closed form of the scene or by certified

@@ -1,6 +1,7 @@
 //! Exit codes, so that scripts can tell what happened.
 
 use ndda::certify::error::CertifyError;
+use ndda::safety::SafetyError;
 use ndda::study::error::StudyError;
 use ndda::tune::TuneError;
 use ndda_io::WriteError;
@@ -54,6 +55,22 @@ pub fn of_certify(error: &CertifyError) -> u8 {
         CertifyError::Stopped { .. } | CertifyError::Failed { .. } => STOPPED,
         CertifyError::NoMesh | CertifyError::NoContact | CertifyError::NoQuantity { .. } => BAD_INPUT,
         CertifyError::Write(_) => INPUT_OUTPUT,
+    }
+}
+
+/// Of a scene whose factor of safety cannot be found.
+pub fn of_safety(error: &SafetyError) -> u8 {
+    match error {
+        SafetyError::Scene(_)
+        | SafetyError::NoStrength
+        | SafetyError::NoLoad
+        | SafetyError::NoTilt { .. }
+        | SafetyError::NoSlope { .. }
+        | SafetyError::NoContact
+        | SafetyError::NothingFree => BAD_INPUT,
+        SafetyError::NotSettled { .. } => STOPPED,
+        SafetyError::Interrupted => INTERRUPTED,
+        SafetyError::Write(error) => of_write(error),
     }
 }
 

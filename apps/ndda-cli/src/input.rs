@@ -21,18 +21,26 @@ pub fn file(args: &SceneArgs) -> PathBuf {
 /// # Errors
 /// The exit code, after the reason has been printed: what is wrong with the scene, or which examples there are.
 pub fn model(args: &SceneArgs, events: Events) -> Result<Model, u8> {
+    let (loaded, file) = (scene(args, events)?, file(args));
+    let folder =
+        if args.example.is_some() { Path::new(".") } else { file.parent().unwrap_or(Path::new(".")) };
+    warn_of_slow_build(&loaded, folder);
+    Model::new(loaded, folder).map_err(|errors| events.refuse(&errors))
+}
+
+/// Reads and checks a scene without building it.
+///
+/// # Errors
+/// As [`model`].
+pub fn scene(args: &SceneArgs, events: Events) -> Result<LoadedScene, u8> {
     let file = file(args);
-    let (loaded, folder) = match &args.example {
-        None => (read::load(&file, &args.overrides), file.parent().unwrap_or(Path::new("."))),
+    let loaded = match &args.example {
+        None => read::load(&file, &args.overrides),
         Some(name) => {
-            let name_of_file = file.display().to_string();
-            (read::load_text(&name_of_file, text(name, events)?, &args.overrides, None), Path::new("."))
+            read::load_text(&file.display().to_string(), text(name, events)?, &args.overrides, None)
         }
     };
-    let refuse = |errors| events.refuse(&errors);
-    let loaded = loaded.map_err(refuse)?;
-    warn_of_slow_build(&loaded, folder);
-    Model::new(loaded, folder).map_err(refuse)
+    loaded.map_err(|errors| events.refuse(&errors))
 }
 
 /// Says beforehand that building a scene takes long.

@@ -12,6 +12,7 @@ mod processes;
 pub mod report;
 pub mod resume;
 pub mod run;
+pub mod safety;
 #[cfg(feature = "schema")]
 pub mod schema;
 #[cfg(feature = "shell")]

@@ -58,6 +58,7 @@ pub mod plot;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod run;
+pub mod safety;
 pub mod study;
 pub mod templates;
 pub mod tune;

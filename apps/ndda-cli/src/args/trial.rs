@@ -59,7 +59,7 @@ pub struct TuneArgs {
 }
 
 /// A relative error, above 0 and below 1.
-fn error_of_one(text: &str) -> Result<f64, String> {
+pub(super) fn error_of_one(text: &str) -> Result<f64, String> {
     let error = positive(text)?;
     if error < 1.0 { Ok(error) } else { Err("a relative error lies between 0 and 1, as 1e-2".into()) }
 }

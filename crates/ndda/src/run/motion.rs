@@ -98,7 +98,8 @@ impl LargestMotions {
     }
 }
 
-fn radius_m(operator: &BlockOperator) -> f64 {
+/// Distance from the mass centre to the farthest node at rest [m].
+pub(crate) fn radius_m(operator: &BlockOperator) -> f64 {
     operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max)
 }
 
@@ -111,9 +112,13 @@ fn farthest_m(simulation: &Simulation, block: BlockId) -> f64 {
 
 /// Displacement of the mass centre [m].
 fn displacement_m(simulation: &Simulation, block: BlockId) -> Vec3 {
+    shift_m(simulation, simulation.start_position(), block)
+}
+
+/// Displacement of the mass centre from where nodes were [m].
+pub(crate) fn shift_m(simulation: &Simulation, from: &[Vec3], block: BlockId) -> Vec3 {
     let (operator, nodes) = (&simulation.shape(block).operator, simulation.blocks().nodes_of(block));
-    let now = operator.center(&simulation.state().position[nodes.clone()]);
-    now - operator.center(&simulation.start_position()[nodes])
+    operator.center(&simulation.state().position[nodes.clone()]) - operator.center(&from[nodes])
 }
 
 fn velocity_m_s(simulation: &Simulation, block: BlockId) -> Vec3 {
@@ -121,12 +126,16 @@ fn velocity_m_s(simulation: &Simulation, block: BlockId) -> Vec3 {
     operator.momentum(&simulation.state().velocity[nodes]) / operator.mass_kg
 }
 
+fn rotation_deg(simulation: &Simulation, block: BlockId) -> f64 {
+    turn_deg(simulation, simulation.start_position(), block)
+}
+
 /// Angle of the rotation that fits the motion of the nodes best, from 0 to 180 [°]: the orthogonal part of Σ m (x − c)(X − C)ᵀ by its
 /// singular values (Kabsch 1976).
-fn rotation_deg(simulation: &Simulation, block: BlockId) -> f64 {
+pub(crate) fn turn_deg(simulation: &Simulation, from: &[Vec3], block: BlockId) -> f64 {
     let (operator, nodes) = (&simulation.shape(block).operator, simulation.blocks().nodes_of(block));
     let now = &simulation.state().position[nodes.clone()];
-    let start = &simulation.start_position()[nodes];
+    let start = &from[nodes];
     if now == start {
         return 0.0;
     }

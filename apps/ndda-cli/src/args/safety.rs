@@ -1,0 +1,61 @@
+//! Arguments of `ndda safety`.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::SceneArgs;
+use super::trial::error_of_one;
+
+/// Arguments of `ndda safety`.
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Examples:\n  ndda safety scenes/safety/plane_slide.ron\n  ndda safety scenes/safety/wedge.ron --error 5e-3\n  ndda safety \
+                  scenes/safety/toppling_column.ron --by gravity\n\nThe same command goes on where it was interrupted."
+)]
+pub struct SafetyArgs {
+    /// The scene.
+    #[command(flatten)]
+    pub input: SceneArgs,
+    /// What is changed until blocks fail.
+    #[arg(long, value_enum, default_value_t = SafetyBy::Strength)]
+    pub by: SafetyBy,
+    /// With `--by gravity`: where gravity is tilted to, as x,y,z [default: down the steepest plane that blocks stand on].
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    pub towards: Option<[f64; 3]>,
+    /// Relative width of the bracket.
+    #[arg(long, value_name = "ERROR", default_value_t = 0.01, value_parser = error_of_one)]
+    pub error: f64,
+    /// Output folder [default: out/ and the name of the scene with _safety].
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Threads, which run trials side by side; the answer does not depend on it [default: all cores].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Print nothing but errors and the answer.
+    #[arg(long, short)]
+    pub quiet: bool,
+    /// Print the answer as JSON.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// What a factor of safety changes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum SafetyBy {
+    /// Divide tan φ, cohesion and tensile strength of all joints.
+    Strength,
+    /// Tilt gravity: finds toppling, which a weaker joint may hide.
+    Gravity,
+    /// Multiply forces and tractions.
+    Load,
+}
+
+/// Three numbers with commas between them.
+fn direction(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse::<f64>()).collect();
+    match numbers.ok().and_then(|numbers| <[f64; 3]>::try_from(numbers).ok()) {
+        Some(numbers) if numbers.iter().all(|x| x.is_finite()) && numbers != [0.0; 3] => Ok(numbers),
+        _ => Err("write three numbers that are not all zero, as 1,0,0".into()),
+    }
+}

@@ -1,0 +1,77 @@
+//! `ndda safety`: by how much the strength of joints may fall before blocks move.
+
+use std::path::{Path, PathBuf};
+
+use ndda::safety::{self, Plan, Question, SafetyError, Watch};
+use ndda_io::diagnostic::{Diagnostic, SceneErrors};
+
+use crate::args::{SafetyArgs, SafetyBy};
+use crate::terminal::console::{complain, complain_unless, say};
+use crate::terminal::events::Events;
+use crate::terminal::interrupt;
+use crate::{exit, input};
+
+/// Finds the factor of safety; the result is the exit code.
+pub fn safety(args: &SafetyArgs) -> u8 {
+    let threads = args.threads.map_or(0, usize::from);
+    let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool,
+        Err(error) => {
+            complain(&format!("error: cannot start {threads} threads: {error}; use a smaller --threads"));
+            return exit::RESOURCE;
+        }
+    };
+    pool.install(|| find(args))
+}
+
+fn find(args: &SafetyArgs) -> u8 {
+    let events = Events::default();
+    let loaded = match input::scene(&args.input, events) {
+        Ok(loaded) => loaded,
+        Err(code) => return code,
+    };
+    let warnings: Vec<Diagnostic> = loaded.warnings.clone();
+    if !warnings.is_empty() && !args.quiet {
+        events.doubt(&loaded.errors(warnings));
+    }
+    let file = input::file(&args.input);
+    let name = file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
+    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_safety")));
+    if let Err(error) = std::fs::create_dir_all(&out) {
+        complain(&format!("error: cannot make the folder {}: {error}", out.display()));
+        return exit::INPUT_OUTPUT;
+    }
+    let by = match args.by {
+        SafetyBy::Strength => Question::Strength,
+        SafetyBy::Load => Question::Load,
+        SafetyBy::Gravity => Question::Gravity { towards: args.towards },
+    };
+    let plan = Plan { by, error: args.error, ..Plan::default() };
+    let (stop, tell) = (interrupt::watch(), complain_unless(args.quiet));
+    let watch = Watch { out: Some(&out), stop: &stop, tell: &tell };
+    let folder = file.parent().unwrap_or(Path::new("."));
+    match safety::find(&loaded, (&name, folder), &plan, &watch) {
+        Ok(found) if args.json => {
+            say(&serde_json::to_string_pretty(&found).expect("an answer has no NaN"));
+            exit::DONE
+        }
+        Ok(found) => {
+            let next = if found.mechanism.is_some() && cfg!(feature = "report") {
+                format!("; how blocks fail: ndda view {}", safety::mechanism_folder(&out).display())
+            } else {
+                String::new()
+            };
+            say(&format!("{}results in {}{next}", safety::text(&found), safety::file(&out).display()));
+            exit::DONE
+        }
+        Err(SafetyError::Scene(errors)) => refuse(&errors, events),
+        Err(error) => {
+            complain(&format!("error: {error}"));
+            exit::of_safety(&error)
+        }
+    }
+}
+
+fn refuse(errors: &SceneErrors, events: Events) -> u8 {
+    events.refuse(errors)
+}

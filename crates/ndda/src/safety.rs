@@ -1,0 +1,186 @@
+//! Factor of safety: by how much the strength of joints may fall, loads grow or gravity tilt before blocks move.
+//!
+//! The scene is brought to rest once. From there each trial divides the strength by a factor F (tan φ, c and σ_t of every law), or
+//! multiplies loads, or turns gravity, and steps until its blocks rest or accelerate ([`trial`]). The largest factor at which they stand and the
+//! smallest at which they fail are the answer: a bracket from runs, and no limit equilibrium ([`search`]).
+
+mod changes;
+mod film;
+mod mechanism;
+mod report;
+mod search;
+mod trial;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use ndda_io::diagnostic::SceneErrors;
+use ndda_io::read::LoadedScene;
+use ndda_io::{WriteError, atomic};
+use ndda_solver::StepError;
+use serde::{Deserialize, Serialize};
+
+pub use changes::{By, Question};
+pub use mechanism::{Kind, Mechanism, MovingBlock, Plane};
+pub use report::text;
+pub use trial::{State, Trial};
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// What is changed from trial to trial.
+    pub by: Question,
+    /// Relative width of the bracket.
+    pub error: f64,
+    /// Largest factor that is tried; its inverse is the smallest.
+    pub most: f64,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        Self { by: Question::Strength, error: 0.01, most: 100.0 }
+    }
+}
+
+/// The largest factor at which blocks stand and the smallest at which they fail.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bracket {
+    /// Blocks stand. None if they fail at the smallest factor that was tried.
+    pub lower: Option<f64>,
+    /// Blocks fail. None if they stand at the largest factor that was tried.
+    pub upper: Option<f64>,
+}
+
+/// The answer, as `safety.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Safety {
+    /// `ndda.safety/1`.
+    pub schema: String,
+    /// Version of ndda.
+    pub version: String,
+    /// Name of the scene: its file without the ending.
+    pub scene: String,
+    /// The scene's own title.
+    pub title: String,
+    /// CRC-32 of the scene and its blocks, hexadecimal.
+    pub scene_crc32: String,
+    /// What was changed from trial to trial.
+    pub by: By,
+    /// Relative width of the bracket that was asked for.
+    pub error: f64,
+    /// The answer.
+    pub factor_of_safety: Bracket,
+    /// How blocks fail at the upper end. Left out where nothing fails.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mechanism: Option<Mechanism>,
+    /// Blocks that move then. Empty where nothing fails.
+    pub moving_blocks: Vec<MovingBlock>,
+    /// All trials by their factor.
+    pub trials: Vec<Trial>,
+    /// What a person should know before using the answer.
+    pub remarks: Vec<String>,
+    /// Wall-clock time, all calls together [s].
+    pub wall_s: f64,
+}
+
+/// Schema of [`Safety`].
+pub const SCHEMA: &str = "ndda.safety/1";
+
+/// Why there is no factor of safety.
+#[derive(Debug, thiserror::Error)]
+pub enum SafetyError {
+    /// A changed scene is none that can be built.
+    #[error("{}", .0.render(false))]
+    Scene(#[from] SceneErrors),
+    /// Nothing holds blocks that could be reduced.
+    #[error(
+        "the scene has no friction, cohesion or tensile strength to reduce: give contact.friction, or use --by load or --by gravity"
+    )]
+    NoStrength,
+    /// No loads.
+    #[error(
+        "the scene has no forces or tractions to multiply: give `forces` or `tractions`, or use --by strength"
+    )]
+    NoLoad,
+    /// No gravity, or none that could be tilted so.
+    #[error(
+        "gravity cannot be tilted towards {towards:?}: give gravity_m_s2, and a direction that is not along it"
+    )]
+    NoTilt {
+        /// The direction that was asked for.
+        towards: [f64; 3],
+    },
+    /// Blocks stand on level ground.
+    #[error(
+        "blocks stand on planes of {slope_deg:.2}°, so that there is no slope to make steeper: use --by strength or --by load, or tilt the scene"
+    )]
+    NoSlope {
+        /// Angle of the steepest plane [°].
+        slope_deg: f64,
+    },
+    /// Blocks do not feel each other.
+    #[error("the scene has no contact between blocks, so nothing can stand: give `contact`")]
+    NoContact,
+    /// Nothing can move.
+    #[error("every block of the scene is fixed, so nothing can fail")]
+    NothingFree,
+    /// The scene does not come to rest, however strong its joints are.
+    #[error(
+        "the scene does not come to rest even with {strength} times its strength ({source}): it fails whatever its joints hold, or settle.most_steps is too small"
+    )]
+    NotSettled {
+        /// The largest factor on the strength that was tried.
+        strength: f64,
+        /// What the solver says.
+        source: StepError,
+    },
+    /// Somebody asked to end.
+    #[error("interrupted: the same command goes on with the trials that are done")]
+    Interrupted,
+    /// The answer cannot be written, or an earlier one not be read.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
+
+/// Where the answer and its trials go, and who watches.
+pub struct Watch<'a> {
+    /// Folder of `safety.json`, which is written after each trial; none to write nothing.
+    pub out: Option<&'a Path>,
+    /// Raised when somebody asks to end.
+    pub stop: &'a Arc<AtomicBool>,
+    /// Told of each trial.
+    pub tell: &'a (dyn Fn(&str) + Sync),
+}
+
+/// Finds the factor of safety of a scene that has been read and checked; files that it names are in `folder`. Trials run side by side
+/// on the threads of the pool that this is called in, and the answer does not depend on their number.
+///
+/// # Errors
+/// [`SafetyError`].
+pub fn find(
+    loaded: &LoadedScene,
+    (name, folder): (&str, &Path),
+    plan: &Plan,
+    watch: &Watch,
+) -> Result<Safety, SafetyError> {
+    search::Search::new(loaded, (name, folder), plan, watch)?.answer()
+}
+
+/// Folder of the run that shows how blocks fail.
+pub fn mechanism_folder(out: &Path) -> PathBuf {
+    out.join("mechanism")
+}
+
+/// File of the answer in a folder.
+pub fn file(out: &Path) -> PathBuf {
+    out.join("safety.json")
+}
+
+fn write(out: &Path, safety: &Safety) -> Result<(), WriteError> {
+    let path = file(out);
+    let encode = |e: serde_json::Error| WriteError::Encode { path: path.clone(), reason: e.to_string() };
+    let mut text = serde_json::to_string_pretty(safety).map_err(encode)?;
+    text.push('\n');
+    atomic::write(&path, text.as_bytes())
+}

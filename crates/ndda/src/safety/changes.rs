@@ -1,0 +1,164 @@
+//! What a trial changes in the scene.
+
+use ndda_io::scene::{Contact, Friction, Scene};
+use ndda_mesh::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::SafetyError;
+
+/// What is to be changed.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Question {
+    /// The strength of all joints.
+    #[default]
+    Strength,
+    /// Forces and tractions.
+    Load,
+    /// The direction of gravity.
+    Gravity {
+        /// Where to; without it, down the steepest plane that blocks stand on.
+        towards: Option<[f64; 3]>,
+    },
+}
+
+/// What is changed by a factor F.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum By {
+    /// The strength of all joints is divided: tan φ/F, c/F, σ_t/F.
+    Strength,
+    /// Forces and tractions are multiplied.
+    Load,
+    /// Gravity is turned towards a direction by atan(F tan α) − α, where α is its angle to the normal of the plane that
+    /// blocks stand on: on that plane the ratio of shear to normal force is multiplied by F.
+    Gravity {
+        /// The direction, of any length; its part across gravity counts.
+        towards: [f64; 3],
+        /// α [°].
+        slope_deg: f64,
+    },
+}
+
+/// A scene at rest under its constant loads: nothing moves at the start, and gravity is there at once.
+pub fn at_rest(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    scene.gravity_ramp_s = 0.0;
+    scene.reference = None;
+    for block in &mut scene.blocks {
+        (block.velocity_m_s, block.spin_rad_s) = ([0.0; 3], [0.0; 3]);
+    }
+    scene
+}
+
+/// The scene with joints as strong as theirs over `factor`.
+pub fn weaken(scene: &mut Scene, factor: f64) {
+    for friction in frictions(scene) {
+        friction.friction_deg = (friction.friction_deg.to_radians().tan() / factor).atan().to_degrees();
+        friction.cohesion_pa /= factor;
+        friction.tension_pa /= factor;
+    }
+}
+
+fn frictions(scene: &mut Scene) -> Vec<&mut Friction> {
+    let Some(Contact::Potential { friction, joints, laws, .. }) = &mut scene.contact else {
+        return Vec::new();
+    };
+    let joints = joints.iter_mut().filter_map(|joint| joint.friction.as_mut());
+    let laws = laws.iter_mut().filter_map(|law| law.friction.as_mut());
+    friction.iter_mut().chain(joints).chain(laws).collect()
+}
+
+/// Smallest shear stiffness of the scene's joints [Pa/m].
+pub fn shear_stiffness_pa_m(scene: &mut Scene) -> Option<f64> {
+    frictions(scene).iter().filter_map(|friction| friction.shear_penalty_pa_m).reduce(f64::min)
+}
+
+/// Smallest slope that can be made steeper [°].
+const LEVEL_DEG: f64 = 0.1;
+
+impl Question {
+    /// Whether the scene has what is to be changed.
+    ///
+    /// # Errors
+    /// [`SafetyError`] that names what is missing.
+    pub fn check(&self, scene: &mut Scene) -> Result<(), SafetyError> {
+        match self {
+            Self::Strength => {
+                let holds =
+                    |f: &&mut Friction| f.friction_deg > 0.0 || f.cohesion_pa > 0.0 || f.tension_pa > 0.0;
+                let found = frictions(scene).iter().any(holds);
+                if found { Ok(()) } else { Err(SafetyError::NoStrength) }
+            }
+            Self::Load if scene.forces.is_empty() && scene.tractions.is_empty() => Err(SafetyError::NoLoad),
+            Self::Load => Ok(()),
+            Self::Gravity { towards } => {
+                let towards = towards.unwrap_or([0.0; 3]);
+                let tilts =
+                    towards == [0.0; 3] || across(scene, &towards).norm() > 1e-6 * Vec3::from(towards).norm();
+                let falls = scene.gravity_m_s2 != [0.0; 3];
+                if tilts && falls { Ok(()) } else { Err(SafetyError::NoTilt { towards }) }
+            }
+        }
+    }
+
+    /// The change, where blocks rest on planes of these normals into them.
+    ///
+    /// # Errors
+    /// [`SafetyError::NoSlope`] where gravity is to be tilted and all planes are level.
+    pub fn on(&self, scene: &Scene, normals: &[Vec3]) -> Result<By, SafetyError> {
+        let Self::Gravity { towards } = self else {
+            return Ok(if *self == Self::Load { By::Load } else { By::Strength });
+        };
+        let up = -Vec3::from(scene.gravity_m_s2).normalize();
+        let slope = |normal: &Vec3| normal.cross(&up).norm().atan2(normal.dot(&up));
+        let leans = |normal: &&Vec3| match towards {
+            Some(towards) => normal.dot(&across(scene, towards)) > 0.0,
+            None => true,
+        };
+        let steepest = normals.iter().filter(|normal| normal.dot(&up) > 0.0).filter(leans);
+        let steepest = steepest.max_by(|a, b| slope(a).total_cmp(&slope(b)));
+        let slope_deg = steepest.map_or(0.0, |normal| slope(normal).to_degrees());
+        match steepest {
+            Some(normal) if slope_deg > LEVEL_DEG => {
+                let down: [f64; 3] = across(scene, &(*normal).into()).into();
+                Ok(By::Gravity { towards: towards.unwrap_or(down), slope_deg })
+            }
+            _ => Err(SafetyError::NoSlope { slope_deg }),
+        }
+    }
+}
+
+impl By {
+    /// Whether each trial begins under loads of its own, and has to come to rest under them first.
+    pub fn changes_loads(&self) -> bool {
+        *self != Self::Strength
+    }
+
+    /// Changes the loads of a scene by a factor.
+    pub fn load(&self, scene: &mut Scene, factor: f64) {
+        match self {
+            Self::Strength => {}
+            Self::Load => {
+                scene.forces.iter_mut().for_each(|force| force.force_n.iter_mut().for_each(|f| *f *= factor));
+                let tractions = scene.tractions.iter_mut();
+                tractions.for_each(|traction| traction.traction_pa.iter_mut().for_each(|t| *t *= factor));
+            }
+            Self::Gravity { towards, slope_deg } => {
+                let tilt = (factor * slope_deg.to_radians().tan()).atan() - slope_deg.to_radians();
+                let gravity = Vec3::from(scene.gravity_m_s2);
+                let across = across(scene, towards).normalize() * gravity.norm();
+                scene.gravity_m_s2 = (gravity * tilt.cos() + across * tilt.sin()).into();
+            }
+        }
+    }
+}
+
+/// The part of a direction across gravity.
+fn across(scene: &Scene, towards: &[f64; 3]) -> Vec3 {
+    let (gravity, towards) = (Vec3::from(scene.gravity_m_s2), Vec3::from(*towards));
+    if gravity == Vec3::zeros() {
+        Vec3::zeros()
+    } else {
+        towards - gravity * (gravity.dot(&towards) / gravity.norm_squared())
+    }
+}

@@ -1,0 +1,74 @@
+//! The answer in words and columns.
+
+use std::fmt::Write as _;
+
+use super::{Bracket, By, Safety, State};
+use crate::columns::columns;
+
+/// Blocks that are named.
+const MOST_BLOCKS: usize = 12;
+
+/// What a person reads.
+pub fn text(safety: &Safety) -> String {
+    let mut text = format!("{}: {}\n", safety.scene, safety.title);
+    let by = match safety.by {
+        By::Strength => "tan φ, c and σ_t of all joints divided by it",
+        By::Load => "forces and tractions multiplied by it",
+        By::Gravity { .. } => "shear over normal force of the slope multiplied by it, by tilting gravity",
+    };
+    let answer = match safety.factor_of_safety {
+        Bracket { lower: Some(lower), upper: Some(upper) } => {
+            format!("factor of safety {lower:.4} to {upper:.4}")
+        }
+        Bracket { lower: Some(lower), upper: None } => format!("factor of safety above {lower:.4}"),
+        Bracket { lower: None, upper: Some(upper) } => format!("factor of safety below {upper:.4}"),
+        Bracket { lower: None, upper: None } => "factor of safety unknown: no trial was decided".into(),
+    };
+    let _ = writeln!(text, "{answer} ({by})");
+    if let Some(mechanism) = &safety.mechanism {
+        let _ = writeln!(text, "{}", mechanism.words);
+        let rows = safety.moving_blocks.iter().take(MOST_BLOCKS).map(|block| {
+            let [x, y, z] = block.direction;
+            vec![
+                block.name.clone(),
+                block.kind.to_string(),
+                format!("({x:.3}, {y:.3}, {z:.3})"),
+                format!("{:.2e}", block.gone_m),
+            ]
+        });
+        let header = ["moving block", "how", "direction", "gone [m]"].map(String::from).to_vec();
+        let _ = writeln!(text, "{}", columns(header, rows.collect()));
+        if safety.moving_blocks.len() > MOST_BLOCKS {
+            let _ = writeln!(
+                text,
+                "{} more blocks move, see safety.json",
+                safety.moving_blocks.len() - MOST_BLOCKS
+            );
+        }
+    }
+    let rows = safety.trials.iter().map(|trial| {
+        vec![
+            format!("{:.4}", trial.factor),
+            state(trial.state).to_string(),
+            trial.steps.to_string(),
+            format!("{:.1}", trial.wall_s),
+            trial.reason.clone(),
+        ]
+    });
+    let header = ["factor", "blocks", "steps", "time [s]", "why"].map(String::from).to_vec();
+    let _ = writeln!(text, "{}", columns(header, rows.collect()));
+    for remark in &safety.remarks {
+        let _ = writeln!(text, "note: {remark}");
+    }
+    let _ = writeln!(text, "time spent: {:.1} s in {} trials", safety.wall_s, safety.trials.len());
+    text
+}
+
+/// What became of the blocks, in a word.
+pub fn state(state: State) -> &'static str {
+    match state {
+        State::Stands => "stand",
+        State::Fails => "fail",
+        State::Undecided => "undecided",
+    }
+}

@@ -1,0 +1,308 @@
+//! The bracket: the largest factor at which blocks stand, and the smallest at which they fail.
+
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use ndda_io::read::LoadedScene;
+use ndda_io::scene::{Contact, Scene};
+use ndda_mesh::Vec3;
+use ndda_solver::{Settle, Simulation, StepError};
+use rayon::prelude::*;
+
+use super::trial::{Course, Start, State, Trial, free};
+use super::{
+    Bracket, By, Mechanism, MovingBlock, Plan, SCHEMA, Safety, SafetyError, Watch, changes, film, mechanism,
+    write,
+};
+use crate::Model;
+
+/// Factor between the trials that look for a bracket.
+const STRIDE: f64 = 1.5;
+/// Trials inside a bracket that run side by side.
+const INSIDE: usize = 3;
+/// Factors on the strength with which the scene is brought to rest, until it does.
+const STRENGTHS: [f64; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
+/// Steps that a trial may take to come to rest under loads of its own, over those that it lasts.
+const TO_REST: u64 = 20;
+
+/// A search for the factor of safety.
+pub struct Search<'a> {
+    loaded: LoadedScene,
+    folder: PathBuf,
+    plan: &'a Plan,
+    watch: &'a Watch<'a>,
+    by: By,
+    start: Start,
+    begun: Instant,
+    /// What is known so far.
+    answer: Mutex<Safety>,
+}
+
+impl<'a> Search<'a> {
+    /// Brings the scene to rest, and takes over trials of an earlier call that was interrupted.
+    pub fn new(
+        loaded: &LoadedScene,
+        (name, folder): (&str, &Path),
+        plan: &'a Plan,
+        watch: &'a Watch<'a>,
+    ) -> Result<Self, SafetyError> {
+        let begun = Instant::now();
+        let mut loaded = loaded.clone();
+        loaded.scene = changes::at_rest(&loaded.scene);
+        plan.by.check(&mut loaded.scene)?;
+        if !matches!(loaded.scene.contact, Some(Contact::Potential { .. })) {
+            return Err(SafetyError::NoContact);
+        }
+        let (start, strength) = settled(&loaded, folder, watch)?;
+        let by = plan.by.on(&loaded.scene, &start.normals)?;
+        let mut answer = Safety {
+            schema: SCHEMA.into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            scene: name.into(),
+            title: loaded.scene.title.clone(),
+            scene_crc32: format!(
+                "{:08x}",
+                ndda_io::checkpoint::fingerprint(&(&loaded.scene, start.blocks_crc32))
+            ),
+            by,
+            error: plan.error,
+            factor_of_safety: Bracket { lower: None, upper: None },
+            mechanism: None,
+            moving_blocks: Vec::new(),
+            trials: Vec::new(),
+            remarks: Vec::new(),
+            wall_s: 0.0,
+        };
+        if strength > 1.0 {
+            answer.remarks.push(format!(
+                "the scene comes to rest with {strength} times its strength only; trials begin from there"
+            ));
+        }
+        if let Some(earlier) = watch.out.and_then(|out| earlier(out, &answer)) {
+            (answer.trials, answer.wall_s) = (earlier.trials, earlier.wall_s);
+        }
+        let folder = folder.to_path_buf();
+        Ok(Self { loaded, folder, plan, watch, by, start, begun, answer: Mutex::new(answer) })
+    }
+
+    /// Runs trials until the bracket is as narrow as is asked for.
+    pub fn answer(self) -> Result<Safety, SafetyError> {
+        let before_s = self.answer.lock().expect("no trial panics").wall_s;
+        loop {
+            let wanted = self.wanted();
+            if wanted.is_empty() {
+                break;
+            }
+            let run = |&factor: &f64| self.try_factor(factor, before_s);
+            wanted.par_iter().map(run).collect::<Result<Vec<()>, SafetyError>>()?;
+        }
+        let (mechanism, moving) = self.mechanism()?;
+        let mut answer = self.answer.into_inner().expect("no trial panics");
+        (answer.mechanism, answer.moving_blocks) = (mechanism, moving);
+        answer.remarks.extend(remarks(&answer));
+        answer.wall_s = before_s + self.begun.elapsed().as_secs_f64();
+        if let Some(out) = self.watch.out {
+            write(out, &answer)?;
+        }
+        Ok(answer)
+    }
+
+    /// Factors that are to be tried next, side by side.
+    fn wanted(&self) -> Vec<f64> {
+        let answer = self.answer.lock().expect("no trial panics");
+        let known = |factor: &f64| answer.trials.iter().any(|trial| trial.factor == *factor);
+        let wanted = next(&answer, self.plan);
+        wanted.into_iter().filter(|factor| !known(factor)).collect()
+    }
+
+    /// Runs a trial and writes what is known then.
+    fn try_factor(&self, factor: f64, before_s: f64) -> Result<(), SafetyError> {
+        let (mut model, settle) = self.model(factor)?;
+        let course = self.course(settle);
+        let trial = course.run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
+        (self.watch.tell)(&format!(
+            "F = {factor:.4}: {}, {} ({} steps, {:.1} s)",
+            super::report::state(trial.state),
+            trial.reason,
+            trial.steps,
+            trial.wall_s
+        ));
+        let mut answer = self.answer.lock().expect("no trial panics");
+        answer.trials.push(trial);
+        answer.trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        answer.factor_of_safety = bracket(&answer.trials);
+        answer.wall_s = before_s + self.begun.elapsed().as_secs_f64();
+        self.watch.out.map_or(Ok(()), |out| Ok(write(out, &answer)?))
+    }
+
+    /// The scene at a factor, and how it comes to rest under loads of its own.
+    fn model(&self, factor: f64) -> Result<(Model, Option<Settle>), SafetyError> {
+        let mut loaded = self.loaded.clone();
+        self.by.load(&mut loaded.scene, factor);
+        if self.by == By::Strength {
+            changes::weaken(&mut loaded.scene, factor);
+        }
+        let mut model = Model::resuming(loaded, &self.folder)?;
+        model.simulation.restore(self.start.snapshot.clone()).expect("the blocks are the same");
+        if !self.by.changes_loads() {
+            return Ok((model, None));
+        }
+        let steps = self.course(None).steps(model.simulation.step_s());
+        let tolerance = self.loaded.scene.settle.unwrap_or_default().tolerance;
+        Ok((model, Some(Settle { tolerance, most_steps: TO_REST * steps })))
+    }
+
+    fn course(&self, settle: Option<Settle>) -> Course<'_> {
+        Course { start: &self.start, settle, error: self.plan.error, stop: self.watch.stop }
+    }
+
+    /// How blocks fail at the upper end of the bracket: that trial once more, with its contacts.
+    fn mechanism(&self) -> Result<(Option<Mechanism>, Vec<MovingBlock>), SafetyError> {
+        let upper = self.answer.lock().expect("no trial panics").factor_of_safety.upper;
+        let Some(factor) = upper else { return Ok((None, Vec::new())) };
+        let (mut model, settle) = self.model(factor)?;
+        model.simulation.watch_contacts(true);
+        let trial = self.course(settle).run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
+        let found = mechanism::of(&model.simulation, &self.start.position);
+        if let Some(out) = self.watch.out {
+            let (model, settle) = self.model(factor)?;
+            film::record(model, settle, &trial, out, self.watch.stop)?;
+        }
+        Ok(found)
+    }
+}
+
+/// The scene at rest, and with how many times its strength it came to rest.
+fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start, f64), SafetyError> {
+    let mut failed = None;
+    for strength in STRENGTHS {
+        let mut changed = loaded.clone();
+        changes::weaken(&mut changed.scene, 1.0 / strength);
+        let softest = changes::shear_stiffness_pa_m(&mut changed.scene);
+        let settle = changed.scene.settle.unwrap_or_default();
+        let gravity_m_s2 = Vec3::from(changed.scene.gravity_m_s2).norm();
+        let most_steps = if strength < STRENGTHS[STRENGTHS.len() - 1] {
+            settle.most_steps.min(most_steps(&changed.scene))
+        } else {
+            settle.most_steps
+        };
+        let mut simulation = Model::new(changed, folder)?.simulation;
+        if free(&simulation).next().is_none() {
+            return Err(SafetyError::NothingFree);
+        }
+        let settle = Settle { tolerance: settle.tolerance, most_steps };
+        match rest(&mut simulation, &settle, watch) {
+            Ok(true) => {
+                let start = Start::new(&mut simulation, gravity_m_s2, softest);
+                let start = start.map_err(|source| SafetyError::NotSettled { strength, source })?;
+                return Ok((start, strength));
+            }
+            Ok(false) => return Err(SafetyError::Interrupted),
+            Err(source) => failed = Some(SafetyError::NotSettled { strength, source }),
+        }
+    }
+    Err(failed.expect("there are strengths"))
+}
+
+/// Steps in which a scene that stands comes to rest: what a block needs to fall by a hundred metres, or to oscillate two thousand times.
+fn most_steps(scene: &Scene) -> u64 {
+    let fall_s = 5.0;
+    ((fall_s / scene.time.step_s) as u64).max(20_000)
+}
+
+/// Brings a simulation to rest; false if somebody asked to end.
+fn rest(simulation: &mut Simulation, settle: &Settle, watch: &Watch) -> Result<bool, StepError> {
+    let mut look = |_: &_| match watch.stop.load(Ordering::Relaxed) {
+        true => std::ops::ControlFlow::Break(()),
+        false => std::ops::ControlFlow::Continue(()),
+    };
+    simulation.settle_watched(settle, &mut look)?;
+    Ok(!watch.stop.load(Ordering::Relaxed))
+}
+
+/// Trials of an earlier call of the same question.
+fn earlier(out: &Path, asked: &Safety) -> Option<Safety> {
+    let text = std::fs::read_to_string(super::file(out)).ok()?;
+    let found: Safety = serde_json::from_str(&text).ok()?;
+    let same = (&found.schema, &found.version, &found.scene_crc32, &found.by, found.error)
+        == (&asked.schema, &asked.version, &asked.scene_crc32, &asked.by, asked.error);
+    same.then_some(found)
+}
+
+/// The smallest factor at which blocks fail, and the largest below it at which they stand.
+fn bracket(trials: &[Trial]) -> Bracket {
+    let of = |state: State| trials.iter().filter(move |trial| trial.state == state).map(|trial| trial.factor);
+    let upper = of(State::Fails).reduce(f64::min);
+    let lower = of(State::Stands).filter(|factor| upper.is_none_or(|upper| *factor < upper)).reduce(f64::max);
+    Bracket { lower, upper }
+}
+
+/// Factors to try next: outwards until there is a bracket, inwards until it is narrow; around what is undecided.
+fn next(answer: &Safety, plan: &Plan) -> Vec<f64> {
+    if answer.trials.is_empty() {
+        return vec![1.0, STRIDE];
+    }
+    let first = answer.trials[0].factor;
+    let last = answer.trials[answer.trials.len() - 1].factor;
+    match bracket(&answer.trials) {
+        Bracket { lower: Some(lower), upper: Some(upper) } => inside(answer, (lower, upper), plan.error),
+        Bracket { upper: None, .. } if last < plan.most => {
+            vec![(last * STRIDE).min(plan.most), (last * STRIDE * STRIDE).min(plan.most)]
+        }
+        Bracket { lower: None, upper: Some(_) } if first > 1.0 / plan.most => {
+            vec![(first / STRIDE).max(1.0 / plan.most), (first / (STRIDE * STRIDE)).max(1.0 / plan.most)]
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn inside(answer: &Safety, (lower, upper): (f64, f64), error: f64) -> Vec<f64> {
+    let is_wide = |a: f64, b: f64, error: f64| b / a > 1.0 + error;
+    let between = |a: f64, b: f64, part: f64| a * (b / a).powf(part);
+    let undecided = answer.trials.iter().filter(|t| t.factor > lower && t.factor < upper).map(|t| t.factor);
+    let undecided: Vec<f64> = undecided.collect();
+    match undecided.as_slice() {
+        [] if is_wide(lower, upper, error) => {
+            (1..=INSIDE).map(|k| between(lower, upper, k as f64 / (INSIDE + 1) as f64)).collect()
+        }
+        [] => Vec::new(),
+        [first, .., last] | [first @ last] => [(lower, *first), (*last, upper)]
+            .into_iter()
+            .filter(|(a, b)| is_wide(*a, *b, 0.5 * error))
+            .map(|(a, b)| between(a, b, 0.5))
+            .collect(),
+    }
+}
+
+/// What a person should know before using the answer.
+fn remarks(answer: &Safety) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let Bracket { lower, upper } = answer.factor_of_safety;
+    if let (Some(lower), Some(upper)) = (lower, upper) {
+        let width = upper / lower - 1.0;
+        if width > answer.error * (1.0 + 1e-9) {
+            remarks.push(format!(
+                "the bracket is {:.1} % wide, {:.1} % was asked for: between its ends blocks neither rest nor accelerate",
+                100.0 * width,
+                100.0 * answer.error
+            ));
+        }
+        if answer.trials.iter().any(|trial| trial.state == State::Stands && trial.factor > upper) {
+            remarks.push(
+                "blocks stand at some larger factors, too: the smallest factor at which they fail counts"
+                    .into(),
+            );
+        }
+    }
+    if let (None, Some(upper)) = (lower, upper) {
+        remarks.push(format!("blocks fail at every factor from {upper:.3} on that was tried"));
+    }
+    if let (Some(lower), None) = (lower, upper) {
+        remarks.push(format!(
+            "blocks stand at every factor up to {lower:.3}: what is changed does not make them fail"
+        ));
+    }
+    remarks
+}

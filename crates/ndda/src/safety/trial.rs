@@ -1,0 +1,310 @@
+//! One trial: whether blocks stand or fail at a factor.
+//!
+//! A block that is held moves elastically, by u; one that is not accelerates by a part of gravity that grows with how far the factor
+//! is beyond the limit. A trial lasts until an acceleration of 2 % of the wanted error times gravity would have moved a block by 10 u.
+//! It *fails* as soon as a block has gone 30 u and farther in each third of what it went since than in the one before; it *stands*
+//! if at its end no block has gone so far, and none is faster than that acceleration would have made it; else it is *undecided*.
+
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use ndda_mesh::{BlockId, Vec3};
+use ndda_solver::{BodyKind, Settle, Simulation, Snapshot, StepError};
+use serde::{Deserialize, Serialize};
+
+/// Part of the wanted error times gravity that counts as no acceleration.
+const NO_ACCELERATION: f64 = 0.02;
+/// Elastic displacements that it would bring within a trial, and that a block goes before it fails.
+const WITHIN: f64 = 10.0;
+const FAR: f64 = 30.0;
+/// Fewest steps of a trial.
+const FEWEST_STEPS: u64 = 400;
+/// Windows in which displacements are looked at.
+const WINDOWS: u64 = 24;
+/// Windows that are compared with each other.
+const SPAN: usize = 2;
+
+/// What became of the blocks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    /// All of them rest.
+    Stands,
+    /// Some accelerate.
+    Fails,
+    /// Some moved, and neither rest nor accelerate.
+    Undecided,
+}
+
+/// A trial.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Trial {
+    /// The factor F.
+    pub factor: f64,
+    /// What became of the blocks.
+    pub state: State,
+    /// Why, in words.
+    pub reason: String,
+    /// Block that went farthest.
+    pub block: String,
+    /// Times [s] and how far that block went [m].
+    pub history: Vec<[f64; 2]>,
+    /// Steps taken.
+    pub steps: u64,
+    /// Wall-clock time [s].
+    pub wall_s: f64,
+}
+
+/// The scene at rest, from which trials begin.
+pub struct Start {
+    /// Its state.
+    pub snapshot: Snapshot,
+    /// Places of its nodes [m].
+    pub position: Vec<Vec3>,
+    /// Elastic displacement u [m].
+    pub elastic_m: f64,
+    /// Gravity or, where there is none, contact forces over the mass that they hold [m/s²].
+    pub gravity_m_s2: f64,
+    /// Normals into free blocks of the faces of fixed ones that they rest on.
+    pub normals: Vec<Vec3>,
+    /// CRC-32 of the blocks at rest.
+    pub blocks_crc32: u32,
+}
+
+impl Start {
+    /// Measures a scene that has come to rest; `softest_pa_m` is the shear stiffness of its springs, and `cohesion_pa` what they may
+    /// hold.
+    ///
+    /// # Errors
+    /// [`StepError`].
+    pub fn new(
+        simulation: &mut Simulation,
+        gravity_m_s2: f64,
+        softest_pa_m: Option<f64>,
+    ) -> Result<Self, StepError> {
+        let snapshot = simulation.snapshot();
+        let position = simulation.state().position.clone();
+        simulation.watch_contacts(true);
+        simulation.step()?;
+        let sample = simulation.sample()?;
+        let contacts = simulation.contacts();
+        // Both sides of a contact are in the list.
+        let force_n = 0.5 * contacts.iter().map(|contact| contact.push_n.norm()).sum::<f64>();
+        let stored_j = sample.contact_j.abs() + sample.strain_j.abs();
+        let normal_m = if force_n > 0.0 { 2.0 * stored_j / force_n } else { 0.0 };
+        let shear_pa = contacts
+            .iter()
+            .filter(|contact| contact.area_m2 > 0.0)
+            .map(|contact| contact.friction_n.norm() / contact.area_m2)
+            .fold(0.0, f64::max);
+        let shear_m = softest_pa_m.map_or(0.0, |stiffness| shear_pa / stiffness);
+        let mass_kg: f64 = free(simulation).map(|block| simulation.shape(block).operator.mass_kg).sum();
+        let gravity_m_s2 = if gravity_m_s2 > 0.0 { gravity_m_s2 } else { force_n / mass_kg };
+        // Nothing is smaller than what rounding moves.
+        let size_m = position.iter().map(|x| x.amax()).fold(0.0, f64::max);
+        let elastic_m = normal_m.max(shear_m).max(1e-12 * size_m);
+        let normals = super::mechanism::normals(simulation);
+        let rest: Vec<[f64; 3]> = simulation.blocks().rest_position.iter().map(|x| (*x).into()).collect();
+        let blocks_crc32 = ndda_io::checkpoint::fingerprint(&rest);
+        Ok(Self { snapshot, position, elastic_m, gravity_m_s2, normals, blocks_crc32 })
+    }
+}
+
+/// Blocks that are not fixed.
+pub fn free(simulation: &Simulation) -> impl Iterator<Item = BlockId> {
+    simulation.blocks().ids().filter(|&block| simulation.shape(block).kind != BodyKind::Fixed)
+}
+
+/// How far the farthest node of each free block is from where it was at the start [m].
+pub fn gone_m(simulation: &Simulation, start: &[Vec3]) -> Vec<(BlockId, f64)> {
+    let position = &simulation.state().position;
+    let gone = |block: BlockId| {
+        let nodes = simulation.blocks().nodes_of(block);
+        nodes.map(|n| (position[n] - start[n]).norm()).fold(0.0, f64::max)
+    };
+    free(simulation).map(|block| (block, gone(block))).collect()
+}
+
+/// How a trial is run.
+pub struct Course<'a> {
+    /// Where it begins.
+    pub start: &'a Start,
+    /// Whether it has to come to rest under loads of its own first.
+    pub settle: Option<Settle>,
+    /// Relative width of the bracket that is asked for.
+    pub error: f64,
+    /// Raised when somebody asks to end.
+    pub stop: &'a AtomicBool,
+}
+
+impl Course<'_> {
+    /// Acceleration that counts as none [m/s²].
+    fn threshold_m_s2(&self) -> f64 {
+        NO_ACCELERATION * self.error * self.start.gravity_m_s2
+    }
+
+    /// Steps of a trial.
+    pub fn steps(&self, step_s: f64) -> u64 {
+        let time_s = (2.0 * WITHIN * self.start.elastic_m / self.threshold_m_s2()).sqrt();
+        ((time_s / step_s).ceil() as u64).max(FEWEST_STEPS)
+    }
+
+    /// Runs a trial at a factor; none if somebody asked to end.
+    pub fn run(&self, simulation: &mut Simulation, factor: f64) -> Option<Trial> {
+        let began = Instant::now();
+        let mut watched = Watched::new(simulation, self.start);
+        let verdict = self.judge(simulation, &mut watched, factor)?;
+        let (state, reason) = verdict.unwrap_or_else(|error| {
+            let far = watched.farthest_m() > FAR * self.start.elastic_m;
+            let state = if far { State::Fails } else { State::Undecided };
+            (state, format!("the run stopped: {error}"))
+        });
+        Some(Trial {
+            factor,
+            state,
+            reason,
+            block: watched.name(simulation),
+            history: watched.history(),
+            steps: simulation.state().step,
+            wall_s: began.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// What becomes of the blocks, or why the run stopped; none if somebody asked to end.
+    fn judge(
+        &self,
+        simulation: &mut Simulation,
+        watched: &mut Watched,
+        factor: f64,
+    ) -> Option<Result<(State, String), StepError>> {
+        if let Some(settle) = &self.settle {
+            let mut watch = |_: &_| match self.stop.load(Ordering::Relaxed) {
+                true => ControlFlow::Break(()),
+                false => ControlFlow::Continue(()),
+            };
+            let settled = simulation.settle_watched(settle, &mut watch);
+            watched.look(simulation);
+            if self.stop.load(Ordering::Relaxed) {
+                return None;
+            }
+            match settled {
+                Err(StepError::NotSettled { steps, .. }) if watched.farthest_m() > self.far_m(factor) => {
+                    let gone = watched.farthest_m();
+                    let reason = format!(
+                        "blocks do not come to rest under their loads: {gone:.2e} m in {steps} steps"
+                    );
+                    return Some(Ok((State::Fails, reason)));
+                }
+                Err(error) => return Some(Err(error)),
+                Ok(_) => {}
+            }
+        }
+        let steps = self.steps(simulation.step_s());
+        for window in 1..=WINDOWS {
+            while simulation.state().step < window * steps / WINDOWS {
+                if self.stop.load(Ordering::Relaxed) {
+                    return None;
+                }
+                if let Err(error) = simulation.step() {
+                    watched.look(simulation);
+                    return Some(Err(error));
+                }
+            }
+            watched.look(simulation);
+            if let Some((block, gone_m)) = watched.accelerating(self.far_m(factor)) {
+                let name = &simulation.blocks().names[block.index()];
+                let reason = format!("block `{name}` has gone {gone_m:.2e} m and accelerates");
+                return Some(Ok((State::Fails, reason)));
+            }
+        }
+        Some(Ok(self.at_the_end(simulation, watched, factor)))
+    }
+
+    /// Elastic displacements grow with loads.
+    fn far_m(&self, factor: f64) -> f64 {
+        FAR * self.start.elastic_m * if self.settle.is_some() { factor.max(1.0) } else { 1.0 }
+    }
+
+    fn at_the_end(&self, simulation: &Simulation, watched: &Watched, factor: f64) -> (State, String) {
+        let time_s = simulation.time_s();
+        let (speed_m_s, limit_m_s) = (watched.speed_m_s(), self.threshold_m_s2() * time_s);
+        let gone_m = watched.farthest_m();
+        let name = watched.name(simulation);
+        if gone_m > self.far_m(factor) {
+            let reason = format!("block `{name}` has gone {gone_m:.2e} m, and does not accelerate");
+            (State::Undecided, reason)
+        } else if speed_m_s > limit_m_s {
+            let reason = format!("blocks move at {speed_m_s:.2e} m/s after {time_s:.3} s, which is not rest");
+            (State::Undecided, reason)
+        } else {
+            let reason = format!("no block has gone farther than {gone_m:.2e} m after {time_s:.3} s");
+            (State::Stands, reason)
+        }
+    }
+}
+
+/// What is watched of a trial.
+struct Watched {
+    start: Vec<Vec3>,
+    blocks: Vec<BlockId>,
+    times_s: Vec<f64>,
+    /// How far each free block has gone, per look [m].
+    gone_m: Vec<Vec<f64>>,
+}
+
+impl Watched {
+    fn new(simulation: &Simulation, start: &Start) -> Self {
+        let blocks = free(simulation).collect();
+        let mut watched =
+            Self { start: start.position.clone(), blocks, times_s: Vec::new(), gone_m: Vec::new() };
+        watched.look(simulation);
+        watched
+    }
+
+    fn look(&mut self, simulation: &Simulation) {
+        self.times_s.push(simulation.time_s());
+        self.gone_m.push(gone_m(simulation, &self.start).into_iter().map(|(_, gone)| gone).collect());
+    }
+
+    /// Place of the block that has gone farthest.
+    fn farthest(&self) -> usize {
+        let last = self.gone_m.last().expect("the start is looked at");
+        (0..last.len()).max_by(|&a, &b| last[a].total_cmp(&last[b]).then(b.cmp(&a))).expect("a block is free")
+    }
+
+    fn farthest_m(&self) -> f64 {
+        self.gone_m.last().expect("the start is looked at")[self.farthest()]
+    }
+
+    fn name(&self, simulation: &Simulation) -> String {
+        simulation.blocks().names[self.blocks[self.farthest()].index()].clone()
+    }
+
+    fn history(&self) -> Vec<[f64; 2]> {
+        let farthest = self.farthest();
+        self.times_s.iter().zip(&self.gone_m).map(|(&time, gone)| [time, gone[farthest]]).collect()
+    }
+
+    /// A block that has gone far, and in each of the last three spans farther than in the one before.
+    fn accelerating(&self, far_m: f64) -> Option<(BlockId, f64)> {
+        let last = self.gone_m.len() - 1;
+        let first = last.checked_sub(3 * SPAN)?;
+        let accelerates = |&block: &usize| {
+            let at = |look: usize| self.gone_m[look][block];
+            let [a, b, c] = [0, 1, 2].map(|k| at(first + (k + 1) * SPAN) - at(first + k * SPAN));
+            at(last) > far_m && c > b && b > a && a >= 0.0
+        };
+        let block = (0..self.blocks.len()).find(accelerates)?;
+        Some((self.blocks[block], self.gone_m[last][block]))
+    }
+
+    /// Largest mean speed over the last quarter [m/s].
+    fn speed_m_s(&self) -> f64 {
+        let last = self.gone_m.len() - 1;
+        let first = last - last / 4;
+        let time_s = self.times_s[last] - self.times_s[first];
+        let speed = |block: usize| (self.gone_m[last][block] - self.gone_m[first][block]).abs() / time_s;
+        (0..self.blocks.len()).map(speed).fold(0.0, f64::max)
+    }
+}
