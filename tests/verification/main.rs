@@ -36,6 +36,7 @@ mod prescribed_motion;
 mod random_impacts;
 mod release_of_initial_stress;
 mod rocking_block;
+mod safety_factor;
 mod settling;
 mod shaken_base;
 mod sliding_over_element_borders;

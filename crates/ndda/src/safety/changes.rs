@@ -129,15 +129,15 @@ impl Question {
 }
 
 impl By {
-    /// Whether each trial begins under loads of its own, and has to come to rest under them first.
+    /// Whether loads change, and not joints.
     pub fn changes_loads(&self) -> bool {
         *self != Self::Strength
     }
 
-    /// Changes the loads of a scene by a factor.
-    pub fn load(&self, scene: &mut Scene, factor: f64) {
+    /// Changes a scene by a factor.
+    pub fn change(&self, scene: &mut Scene, factor: f64) {
         match self {
-            Self::Strength => {}
+            Self::Strength => weaken(scene, factor),
             Self::Load => {
                 scene.forces.iter_mut().for_each(|force| force.force_n.iter_mut().for_each(|f| *f *= factor));
                 let tractions = scene.tractions.iter_mut();

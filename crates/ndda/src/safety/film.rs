@@ -5,8 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use ndda_io::OutputFolder;
-use ndda_io::scene::{self, Output};
-use ndda_solver::Settle;
+use ndda_io::scene::Output;
 
 use super::trial::{Trial, free};
 use super::{SafetyError, mechanism_folder};
@@ -22,20 +21,19 @@ const FRAMES: u32 = 24;
 /// Records a failing trial in the folder `mechanism`; a film that stops early shows what there was.
 pub fn record(
     mut model: Model,
-    settle: Option<Settle>,
     trial: &Trial,
     out: &Path,
     stop: &Arc<AtomicBool>,
 ) -> Result<(), SafetyError> {
-    let [last_s, gone_m] = trial.history[trial.history.len() - 1];
+    let ([first_s, _], [last_s, gone_m]) = (trial.history[0], trial.history[trial.history.len() - 1]);
     let simulation = &model.simulation;
     let sizes = free(simulation).map(|block| radius_m(&simulation.shape(block).operator));
     let visible_m = VISIBLE * sizes.fold(f64::INFINITY, f64::min);
     // A constant acceleration goes as the square of time.
     let longer = if gone_m > 0.0 { (visible_m / gone_m).sqrt().clamp(1.0, LONGEST) } else { 1.0 };
     let scene = &mut model.loaded.scene;
-    scene.time.end_s = (last_s * longer / scene.time.step_s).ceil().max(1.0) * scene.time.step_s;
-    scene.settle = settle.map(|s| scene::Settle { tolerance: s.tolerance, most_steps: s.most_steps });
+    scene.time.end_s = ((last_s - first_s) * longer / scene.time.step_s).ceil().max(1.0) * scene.time.step_s;
+    scene.settle = None;
     let file = Path::new(&model.loaded.file).to_path_buf();
     model.loaded.scene.output = Output { frames: FRAMES, ..Output::default() };
     let folder = OutputFolder::create(&mechanism_folder(out), true)?;

@@ -8,7 +8,7 @@ use std::time::Instant;
 use ndda_io::read::LoadedScene;
 use ndda_io::scene::{Contact, Scene};
 use ndda_mesh::Vec3;
-use ndda_solver::{Settle, Simulation, StepError};
+use ndda_solver::{Settle, Simulation, Snapshot, StepError};
 use rayon::prelude::*;
 
 use super::trial::{Course, Start, State, Trial, free};
@@ -23,9 +23,12 @@ const STRIDE: f64 = 1.5;
 /// Trials inside a bracket that run side by side.
 const INSIDE: usize = 3;
 /// Factors on the strength with which the scene is brought to rest, until it does.
-const STRENGTHS: [f64; 6] = [1.0, 2.0, 4.0, 8.0, 16.0, 32.0];
-/// Steps that a trial may take to come to rest under loads of its own, over those that it lasts.
-const TO_REST: u64 = 20;
+const STRENGTHS: [f64; 8] = [1.0, 1.5, 2.25, 3.375, 5.0, 8.0, 16.0, 32.0];
+
+/// First stride under changed loads.
+const FIRST_STRIDE: f64 = 1.25;
+/// The last one over the wanted error.
+const LAST_STRIDE: f64 = 0.2;
 
 /// A search for the factor of safety.
 pub struct Search<'a> {
@@ -36,6 +39,8 @@ pub struct Search<'a> {
     by: By,
     start: Start,
     begun: Instant,
+    /// Trials of an earlier call that was interrupted.
+    earlier: Vec<Trial>,
     /// What is known so far.
     answer: Mutex<Safety>,
 }
@@ -80,25 +85,19 @@ impl<'a> Search<'a> {
                 "the scene comes to rest with {strength} times its strength only; trials begin from there"
             ));
         }
+        let mut known = Vec::new();
         if let Some(earlier) = watch.out.and_then(|out| earlier(out, &answer)) {
-            (answer.trials, answer.wall_s) = (earlier.trials, earlier.wall_s);
+            (known, answer.wall_s) = (earlier.trials, earlier.wall_s);
         }
         let folder = folder.to_path_buf();
-        Ok(Self { loaded, folder, plan, watch, by, start, begun, answer: Mutex::new(answer) })
+        Ok(Self { loaded, folder, plan, watch, by, start, begun, earlier: known, answer: Mutex::new(answer) })
     }
 
     /// Runs trials until the bracket is as narrow as is asked for.
     pub fn answer(self) -> Result<Safety, SafetyError> {
         let before_s = self.answer.lock().expect("no trial panics").wall_s;
-        loop {
-            let wanted = self.wanted();
-            if wanted.is_empty() {
-                break;
-            }
-            let run = |&factor: &f64| self.try_factor(factor, before_s);
-            wanted.par_iter().map(run).collect::<Result<Vec<()>, SafetyError>>()?;
-        }
-        let (mechanism, moving) = self.mechanism()?;
+        let last = if self.by.changes_loads() { self.march(before_s)? } else { self.bisect(before_s)? };
+        let (mechanism, moving) = self.mechanism(last)?;
         let mut answer = self.answer.into_inner().expect("no trial panics");
         (answer.mechanism, answer.moving_blocks) = (mechanism, moving);
         answer.remarks.extend(remarks(&answer));
@@ -109,6 +108,62 @@ impl<'a> Search<'a> {
         Ok(answer)
     }
 
+    /// Trials side by side, outwards until there is a bracket and inwards until it is narrow, all from the same start.
+    fn bisect(&self, before_s: f64) -> Result<Snapshot, SafetyError> {
+        loop {
+            let wanted = self.wanted();
+            if wanted.is_empty() {
+                return Ok(self.start.snapshot.clone());
+            }
+            let run = |&factor: &f64| match self.earlier.iter().find(|trial| trial.factor == factor) {
+                Some(known) => {
+                    self.keep(known.clone());
+                    Ok(())
+                }
+                None => self.try_factor(factor, &self.start.snapshot, before_s).map(drop),
+            };
+            wanted.par_iter().map(run).collect::<Result<Vec<()>, SafetyError>>()?;
+        }
+    }
+
+    /// Loads that grow by strides, each from where blocks rest under the last; strides shorten where blocks fail, since a
+    /// load that comes at once swings them beyond where they would rest. Gives the state before the last stride.
+    fn march(&self, before_s: f64) -> Result<Snapshot, SafetyError> {
+        let last = 1.0 + LAST_STRIDE * self.plan.error;
+        let (mut stride, mut factor, mut state) = (FIRST_STRIDE, 1.0, self.start.snapshot.clone());
+        let (first, stood) = self.try_factor(factor, &state, before_s)?;
+        if first != State::Stands {
+            return Ok(state);
+        }
+        state = stood;
+        while factor < self.plan.most {
+            let (found, reached) = self.try_factor(factor * stride, &state, before_s)?;
+            if found == State::Stands {
+                (factor, state) = (factor * stride, reached);
+            } else if stride > last {
+                self.forget(factor * stride);
+                stride = stride.sqrt().max(last);
+            } else {
+                return Ok(state);
+            }
+        }
+        Ok(state)
+    }
+
+    fn keep(&self, trial: Trial) {
+        let mut answer = self.answer.lock().expect("no trial panics");
+        answer.trials.push(trial);
+        answer.trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
+        answer.factor_of_safety = bracket(&answer.trials);
+    }
+
+    /// Takes out a trial that fails for its stride.
+    fn forget(&self, factor: f64) {
+        let mut answer = self.answer.lock().expect("no trial panics");
+        answer.trials.retain(|trial| trial.factor != factor);
+        answer.factor_of_safety = bracket(&answer.trials);
+    }
+
     /// Factors that are to be tried next, side by side.
     fn wanted(&self) -> Vec<f64> {
         let answer = self.answer.lock().expect("no trial panics");
@@ -117,11 +172,15 @@ impl<'a> Search<'a> {
         wanted.into_iter().filter(|factor| !known(factor)).collect()
     }
 
-    /// Runs a trial and writes what is known then.
-    fn try_factor(&self, factor: f64, before_s: f64) -> Result<(), SafetyError> {
-        let (mut model, settle) = self.model(factor)?;
-        let course = self.course(settle);
-        let trial = course.run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
+    /// Runs a trial from a state, and writes what is known then; gives the state that it ends in.
+    fn try_factor(
+        &self,
+        factor: f64,
+        from: &Snapshot,
+        before_s: f64,
+    ) -> Result<(State, Snapshot), SafetyError> {
+        let mut model = self.model(factor, from)?;
+        let trial = self.course().run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
         (self.watch.tell)(&format!(
             "F = {factor:.4}: {}, {} ({} steps, {:.1} s)",
             super::report::state(trial.state),
@@ -129,46 +188,48 @@ impl<'a> Search<'a> {
             trial.steps,
             trial.wall_s
         ));
-        let mut answer = self.answer.lock().expect("no trial panics");
-        answer.trials.push(trial);
-        answer.trials.sort_by(|a, b| a.factor.total_cmp(&b.factor));
-        answer.factor_of_safety = bracket(&answer.trials);
-        answer.wall_s = before_s + self.begun.elapsed().as_secs_f64();
-        self.watch.out.map_or(Ok(()), |out| Ok(write(out, &answer)?))
+        let ended = (trial.state, model.simulation.snapshot());
+        self.keep(trial);
+        if let Some(out) = self.watch.out {
+            // Trials that end at the same time write one after the other.
+            let kept = self.answer.lock().expect("no trial panics");
+            let mut answer = kept.clone();
+            answer.wall_s = before_s + self.begun.elapsed().as_secs_f64();
+            // Those that are not asked for again yet are kept, too.
+            let known = |factor: f64| answer.trials.iter().any(|trial| trial.factor == factor);
+            let others: Vec<Trial> = self.earlier.iter().filter(|t| !known(t.factor)).cloned().collect();
+            answer.trials.extend(others);
+            write(out, &answer)?;
+        }
+        Ok(ended)
     }
 
-    /// The scene at a factor, and how it comes to rest under loads of its own.
-    fn model(&self, factor: f64) -> Result<(Model, Option<Settle>), SafetyError> {
+    /// The scene at a factor, in a state.
+    fn model(&self, factor: f64, from: &Snapshot) -> Result<Model, SafetyError> {
         let mut loaded = self.loaded.clone();
-        self.by.load(&mut loaded.scene, factor);
-        if self.by == By::Strength {
-            changes::weaken(&mut loaded.scene, factor);
-        }
+        self.by.change(&mut loaded.scene, factor);
         let mut model = Model::resuming(loaded, &self.folder)?;
-        model.simulation.restore(self.start.snapshot.clone()).expect("the blocks are the same");
-        if !self.by.changes_loads() {
-            return Ok((model, None));
-        }
-        let steps = self.course(None).steps(model.simulation.step_s());
-        let tolerance = self.loaded.scene.settle.unwrap_or_default().tolerance;
-        Ok((model, Some(Settle { tolerance, most_steps: TO_REST * steps })))
+        model.simulation.restore(from.clone()).expect("the blocks are the same");
+        Ok(model)
     }
 
-    fn course(&self, settle: Option<Settle>) -> Course<'_> {
-        Course { start: &self.start, settle, error: self.plan.error, stop: self.watch.stop }
+    fn course(&self) -> Course<'_> {
+        let (start, error, stop) = (&self.start, self.plan.error, self.watch.stop);
+        let tolerance = self.loaded.scene.settle.unwrap_or_default().tolerance;
+        let settle_tolerance = self.by.changes_loads().then_some(tolerance);
+        Course { start, settle_tolerance, error, stop }
     }
 
     /// How blocks fail at the upper end of the bracket: that trial once more, with its contacts.
-    fn mechanism(&self) -> Result<(Option<Mechanism>, Vec<MovingBlock>), SafetyError> {
+    fn mechanism(&self, from: Snapshot) -> Result<(Option<Mechanism>, Vec<MovingBlock>), SafetyError> {
         let upper = self.answer.lock().expect("no trial panics").factor_of_safety.upper;
         let Some(factor) = upper else { return Ok((None, Vec::new())) };
-        let (mut model, settle) = self.model(factor)?;
+        let mut model = self.model(factor, &from)?;
         model.simulation.watch_contacts(true);
-        let trial = self.course(settle).run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
+        let trial = self.course().run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
         let found = mechanism::of(&model.simulation, &self.start.position);
         if let Some(out) = self.watch.out {
-            let (model, settle) = self.model(factor)?;
-            film::record(model, settle, &trial, out, self.watch.stop)?;
+            film::record(self.model(factor, &from)?, &trial, out, self.watch.stop)?;
         }
         Ok(found)
     }

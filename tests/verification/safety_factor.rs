@@ -1,0 +1,230 @@
+//! Factors of safety of planes, wedges and a column against limit equilibrium.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
+use ndda::safety::{self, Kind, Plan, Question, Safety, SafetyError, State, Watch};
+use ndda_io::read;
+use ndda_mesh::Vec3;
+
+use crate::evidence::Answer::{AtLeast, AtMost, Within};
+use crate::evidence::row;
+
+const ERROR: f64 = 0.01;
+
+fn scene(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/safety/{name}.ron"));
+    std::fs::read_to_string(path).unwrap()
+}
+
+fn find(text: &str, by: Question, watch: &Watch) -> Result<Safety, SafetyError> {
+    let loaded =
+        read::load_text("case.ron", text, &[], None).unwrap_or_else(|e| panic!("{}", e.render(false)));
+    let plan = Plan { by, error: ERROR, ..Plan::default() };
+    safety::find(&loaded, ("case", Path::new(".")), &plan, watch)
+}
+
+fn found(text: &str, by: Question) -> Safety {
+    let watch = Watch { out: None, stop: &Arc::default(), tell: &|_| {} };
+    find(text, by, &watch).unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn bracket(safety: &Safety) -> (f64, f64) {
+    let bracket = safety.factor_of_safety;
+    (bracket.lower.expect("blocks stand at some factor"), bracket.upper.expect("blocks fail at some factor"))
+}
+
+fn kind(safety: &Safety) -> Kind {
+    safety.mechanism.as_ref().expect("blocks fail").kind
+}
+
+/// The bracket contains a closed form and is as narrow as asked for.
+fn holds(what: &str, safety: &Safety, exact: f64) {
+    let (lower, upper) = bracket(safety);
+    row("safety", &format!("{what}: lower end [-]"), lower, AtMost(exact));
+    row("safety", &format!("{what}: upper end [-]"), upper, AtLeast(exact));
+    row("safety", &format!("{what}: middle [-]"), (lower * upper).sqrt(), Within(exact, ERROR));
+}
+
+#[test]
+fn a_cube_on_a_plane_has_the_factor_tan_phi_over_tan_alpha() {
+    let safety = found(&scene("plane_dry"), Question::Strength);
+    holds("cube on 30°, φ = 40°", &safety, 40f64.to_radians().tan() / 30f64.to_radians().tan());
+    assert_eq!(kind(&safety), Kind::Sliding);
+    assert_eq!(safety.moving_blocks.len(), 1);
+    assert!((Vec3::from(safety.moving_blocks[0].direction) - Vec3::x()).norm() < 1e-3);
+    let tilted = found(&scene("plane_dry"), Question::Gravity { towards: None });
+    let (lower, upper) = bracket(&tilted);
+    let exact = 40f64.to_radians().tan() / 30f64.to_radians().tan();
+    row("safety", "the same by tilting gravity: lower end [-]", lower, Within(exact, ERROR));
+    row("safety", "the same by tilting gravity: upper end [-]", upper, Within(exact, ERROR));
+}
+
+#[test]
+fn a_wedge_slides_along_the_line_of_its_joints() {
+    let safety = found(&scene("wedge"), Question::Strength);
+    let (lower, upper) = bracket(&safety);
+    row("safety", "wedge 40/130, 60/220, φ = 40°: lower end [-]", lower, AtLeast(1.268));
+    row("safety", "wedge 40/130, 60/220, φ = 40°: upper end [-]", upper, AtMost(1.281));
+    assert_eq!(kind(&safety), Kind::Wedge);
+    let mut joints: Vec<_> =
+        safety.moving_blocks[0].planes.iter().map(|plane| plane.joint.clone().unwrap()).collect();
+    joints.sort();
+    assert_eq!(joints, ["a", "b"]);
+}
+
+#[test]
+fn a_column_slides_where_joints_weaken_and_topples_where_gravity_tilts() {
+    let safety = found(&scene("toppling_column"), Question::Strength);
+    let tan = |angle: f64| angle.to_radians().tan();
+    holds("column on 15°, φ = 40°", &safety, tan(40.0) / tan(15.0));
+    assert_eq!(kind(&safety), Kind::Sliding);
+    let tilted = found(&scene("toppling_column"), Question::Gravity { towards: None });
+    let (lower, upper) = bracket(&tilted);
+    let rigid = 0.8 / (2.0 * tan(15.0));
+    row("safety", "column that topples: upper end, below that of a rigid edge [-]", upper, AtMost(rigid));
+    row("safety", "column that topples: lower end [-]", lower, AtLeast(1.38));
+    assert_eq!(kind(&tilted), Kind::Toppling);
+}
+
+/// Upward normal of a plane.
+fn normal(dip_deg: f64, direction_deg: f64) -> Vec3 {
+    let (dip, direction) = (dip_deg.to_radians(), direction_deg.to_radians());
+    Vec3::new(dip.sin() * direction.sin(), dip.sin() * direction.cos(), dip.cos())
+}
+
+/// Limit equilibrium of a dry wedge of equal friction (Hoek & Bray): along the line of intersection where both planes are pressed, else
+/// on the one that is.
+fn limit_equilibrium([a, b]: [(f64, f64); 2], friction_deg: f64) -> (f64, Kind) {
+    let (n_a, n_b) = (normal(a.0, a.1), normal(b.0, b.1));
+    let line = n_a.cross(&n_b).normalize();
+    let weight = -Vec3::z();
+    let across = weight - weight.dot(&line) * line;
+    // across + N_a n_a + N_b n_b = 0.
+    let cos = n_a.dot(&n_b);
+    let (p_a, p_b) = (-across.dot(&n_a), -across.dot(&n_b));
+    let pushes = [(p_a - cos * p_b) / (1.0 - cos * cos), (p_b - cos * p_a) / (1.0 - cos * cos)];
+    let friction = friction_deg.to_radians().tan();
+    match pushes {
+        [push_a, push_b] if push_a > 0.0 && push_b > 0.0 => {
+            (friction * (push_a + push_b) / weight.dot(&line).abs(), Kind::Wedge)
+        }
+        [push_a, _] => {
+            let dip_deg = if push_a > 0.0 { a.0 } else { b.0 };
+            (friction / dip_deg.to_radians().tan(), Kind::Sliding)
+        }
+    }
+}
+
+fn wedge(planes: [(f64, f64); 2], friction_deg: f64) -> String {
+    let [a, b] = planes;
+    let beyond = |plane: (f64, f64)| {
+        let n = -normal(plane.0, plane.1);
+        format!("Beyond(point_m: (10, 10, 6), normal: ({:e}, {:e}, {:e}))", n.x, n.y, n.z)
+    };
+    let joint = |name: &str, plane: (f64, f64)| {
+        format!(
+            "Plane(name: \"{name}\", dip_deg: {}, dip_direction_deg: {}, point_m: (10, 10, 6))",
+            plane.0, plane.1
+        )
+    };
+    format!(
+        "(title: \"wedge\", time: (step_s: 2e-4, end_s: 1), gravity_m_s2: (0, 0, -9.81),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+          rock: [(name: \"slope\", material: \"rock\", body: Rigid, domain: Box(min_m: (0, 0, 0), max_m: (20, 20, 12)),
+            joints: [{}, {}], fill: Centre, fixed: [{}, {}])],
+          contact: Potential(penalty_pa: 2e9, potential: Smooth(), friction: (friction_deg: {friction_deg})))",
+        joint("a", a),
+        joint("b", b),
+        beyond(a),
+        beyond(b),
+    )
+}
+
+/// Numbers from 0 to 1 (Knuth's constants, 64 bits).
+fn random(state: &mut u64) -> f64 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 11) as f64 / (1u64 << 53) as f64
+}
+
+#[test]
+fn random_wedges_have_the_factors_of_limit_equilibrium() {
+    let wanted: usize = std::env::var("NDDA_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(3);
+    let (mut state, mut done, mut worst) = (7, 0, 0.0f64);
+    while done < wanted {
+        let mut plane = || (30.0 + 40.0 * random(&mut state), 360.0 * random(&mut state));
+        let planes = [plane(), plane()];
+        let friction_deg = 25.0 + 20.0 * random(&mut state);
+        let line = normal(planes[0].0, planes[0].1).cross(&normal(planes[1].0, planes[1].1));
+        let plunge_deg = (line.z.abs() / line.norm()).asin().to_degrees();
+        let (exact, expected) = limit_equilibrium(planes, friction_deg);
+        // Limit equilibrium of a block on one plane knows nothing of toppling.
+        if line.norm() < 0.3 || plunge_deg < 15.0 || expected != Kind::Wedge || !(0.6..6.0).contains(&exact) {
+            continue;
+        }
+        done += 1;
+        let safety = found(&wedge(planes, friction_deg), Question::Strength);
+        let (lower, upper) = bracket(&safety);
+        let off = (lower / exact - 1.0).max(1.0 - upper / exact).max(0.0);
+        println!(
+            "{planes:.2?} φ = {friction_deg:.2}°: {lower:.4} to {upper:.4}, exact {exact:.4} {expected:?}, {:?}",
+            kind(&safety)
+        );
+        assert_eq!(kind(&safety), expected, "{planes:?} φ = {friction_deg}°");
+        worst = worst.max(off);
+    }
+    row(
+        "safety",
+        &format!("{wanted} random wedges: limit equilibrium outside of the bracket by [-]"),
+        worst,
+        AtMost(ERROR),
+    );
+}
+
+#[test]
+fn an_answer_does_not_depend_on_threads_and_goes_on_after_an_interruption() {
+    let text = scene("plane_dry");
+    let whole = found(&text, Question::Strength);
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let alone = one.install(|| found(&text, Question::Strength));
+    let place = tempfile::tempdir().unwrap();
+    let stop: Arc<AtomicBool> = Arc::default();
+    let trials = AtomicU32::new(0);
+    let tell = |_: &str| stop.store(trials.fetch_add(1, Ordering::Relaxed) >= 2, Ordering::Relaxed);
+    let watch = Watch { out: Some(place.path()), stop: &stop, tell: &tell };
+    assert!(matches!(find(&text, Question::Strength, &watch), Err(SafetyError::Interrupted)));
+    let told = AtomicU32::new(0);
+    let count = |_: &str| {
+        told.fetch_add(1, Ordering::Relaxed);
+    };
+    let watch = Watch { out: Some(place.path()), stop: &Arc::default(), tell: &count };
+    let resumed = find(&text, Question::Strength, &watch).unwrap();
+    assert!(
+        told.load(Ordering::Relaxed) < whole.trials.len() as u32,
+        "trials that are done are not run again"
+    );
+    let states = |safety: &Safety| -> Vec<(f64, State, u64)> {
+        safety.trials.iter().map(|trial| (trial.factor, trial.state, trial.steps)).collect()
+    };
+    for other in [&alone, &resumed] {
+        assert_eq!(other.factor_of_safety, whole.factor_of_safety);
+        assert_eq!(states(other), states(&whole));
+        assert_eq!(other.moving_blocks, whole.moving_blocks);
+    }
+    assert!(place.path().join("mechanism/summary.json").exists());
+}
+
+#[test]
+fn what_cannot_fail_is_refused_with_what_to_give() {
+    let text = scene("plane_dry");
+    let watch = Watch { out: None, stop: &Arc::default(), tell: &|_| {} };
+    let refused = |text: &str, by| find(text, by, &watch).unwrap_err().to_string();
+    let smooth = text.replace(", friction: (friction_deg: 40)", "");
+    assert!(refused(&smooth, Question::Strength).contains("give contact.friction"));
+    assert!(refused(&text, Question::Load).contains("give `forces`"));
+    let level = text.replace("gravity_m_s2: (4.905, 0, -8.495709211125344)", "gravity_m_s2: (0, 0, -9.81)");
+    assert!(refused(&level, Question::Gravity { towards: None }).contains("no slope"));
+    let fixed = text.replace("body: Rigid", "body: Fixed");
+    assert!(refused(&fixed, Question::Strength).contains("every block of the scene is fixed"));
+}
