@@ -14,6 +14,7 @@ pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 /// Rock blocks that slide, topple, collide and fall: 3D discontinuous deformation analysis with contact potential.
 #[derive(Debug, Parser)]
 #[command(
+    name = "ndda",
     version,
     after_help = "Examples:\n  ndda run --example sliding_45\n  ndda new slide\n  ndda run scenes/sliding_45.ron --set time.step_s=1e-3 \
                   --out out/coarse\n  ndda check scenes/sliding_45.ron\n  ndda mesh scenes/column_phi0.ron\n  ndda report out/sliding_45\n\nExit codes: 0 done · 1 ran, a criterion \

@@ -3,6 +3,7 @@
 pub mod admit;
 pub mod cost;
 pub mod creep;
+pub mod doubts;
 pub mod lumped;
 pub mod memory;
 pub mod rounding;

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::Path;
 
 use ndda::forecast::cost::{self, Guess};
+use ndda::forecast::doubts;
 use ndda::forecast::step::{self, Advice};
 use serde::Serialize;
 
@@ -41,6 +42,8 @@ pub fn check(args: &CheckArgs) -> u8 {
         events.doubt(&loaded.errors(loaded.warnings.clone()));
     }
     let advice = step::advise(&loaded.scene, &mut model.simulation);
+    let doubts = doubts::doubts(&loaded.scene, &model.simulation, advice.as_ref());
+    doubts.iter().for_each(|doubt| events.warn(doubt));
     let guess = cost::guess(&loaded.scene, &mut model.simulation);
     let file = input::file(&args.input);
     let stops = guess.as_ref().err().map(|error| format!("the first steps stop: {error}"));
@@ -51,7 +54,7 @@ pub fn check(args: &CheckArgs) -> u8 {
     let checked = Checked {
         exit_code: exit::DONE,
         scene: &file,
-        warnings: loaded.warnings.len() + usize::from(stops.is_some()),
+        warnings: loaded.warnings.len() + doubts.len() + usize::from(stops.is_some()),
         blocks: blocks.len(),
         nodes: blocks.rest_position.len(),
         tets: blocks.tets.len(),
@@ -63,10 +66,12 @@ pub fn check(args: &CheckArgs) -> u8 {
         guess: guess.ok(),
     };
     events.emit("finished", &checked);
+    let stable = advice.as_ref().filter(|advice| advice.worst().h <= advice.bound);
     if !args.json {
         say(&format!(
             "{checked}{}",
-            advice.as_ref().map_or_else(String::new, |advice| format!("\n{advice}"))
+            // One that is not stable has been warned of.
+            stable.map_or_else(String::new, |advice| format!("\n{advice}"))
         ));
     }
     checked.exit_code

@@ -194,7 +194,8 @@ fn conclude(summary: &Summary, options: &Options) -> u8 {
         Status::Done => exit::DONE,
         Status::Failed => exit::FAILED,
         Status::Interrupted => {
-            complain(&format!("interrupted at t = {} s: `ndda resume` goes on from here", summary.end_s));
+            let end_s = table::time(summary.end_s);
+            complain(&format!("interrupted at t = {end_s} s: `ndda resume` goes on from here"));
             exit::INTERRUPTED
         }
         Status::Stopped => {

@@ -41,7 +41,7 @@ pub fn ending(summary: &Summary) -> String {
 }
 
 /// A time of so many steps, without the digits of rounding.
-fn time(time_s: f64) -> f64 {
+pub fn time(time_s: f64) -> f64 {
     format!("{time_s:.12e}").parse().unwrap_or(time_s)
 }
 
@@ -103,7 +103,7 @@ pub fn text(summary: &Summary) -> String {
          {} factor(s)\n",
         summary.steps,
         summary.step_s,
-        summary.end_s,
+        time(summary.end_s),
         summary.wall_s,
         summary.threads,
         summary.counts.blocks,

@@ -1,0 +1,67 @@
+//! What in a scene is probably not meant: no error, and worth a question before a long run.
+
+use ndda_io::scene::{Contact, Friction, Material, Potential, Scene};
+use ndda_solver::Simulation;
+use ndda_solver::body::BodyKind;
+
+use super::step::Advice;
+
+/// Penalties over Young's modulus, for a potential of 1 m, outside of which contact is deep or asks for short steps.
+const SOFT: f64 = 1e-6;
+const HARD: f64 = 1.0;
+
+/// Doubts about a scene; `advice` is the forecast of its contact.
+pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>) -> Vec<String> {
+    let unstable = advice.filter(|advice| advice.worst().h > advice.bound).map(ToString::to_string);
+    let mut doubts: Vec<String> = unstable.into_iter().collect();
+    let falls = scene.gravity_m_s2 != [0.0; 3];
+    let blocks = simulation.blocks();
+    let free = || blocks.ids().filter(|&block| simulation.shape(block).is_free());
+    if falls && blocks.len() > 1 && free().count() == blocks.len() && scene.supports.is_empty() {
+        doubts.push(
+            "nothing is held, so all blocks fall together: give a block `body: Fixed`, or supports".into(),
+        );
+    }
+    let Some(Contact::Potential { penalty_pa, potential, friction, joints, laws, .. }) = &scene.contact
+    else {
+        return doubts;
+    };
+    let rubs = |friction: &Option<Friction>| friction.is_some();
+    let has_friction =
+        rubs(friction) || joints.iter().any(|j| rubs(&j.friction)) || laws.iter().any(|l| rubs(&l.friction));
+    if falls && !has_friction {
+        doubts.push(
+            "blocks slide on each other without friction: give contact.friction, if that is not meant".into(),
+        );
+    }
+    let touch = advice.is_some_and(|advice| advice.at_start.is_some());
+    if falls && scene.settle.is_some() && !touch {
+        doubts.push(
+            "no blocks touch at the start, so they fall while the scene settles: move them together".into(),
+        );
+    }
+    doubts.extend(penalty(scene, simulation, *penalty_pa, potential));
+    doubts
+}
+
+/// Whether contact is far too soft or too hard for the rock of blocks that move.
+fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &Potential) -> Option<String> {
+    let per_metre_pa = match potential {
+        Potential::Smooth { reference_m } => penalty_pa / reference_m,
+        // The stiffness of these depends on the mesh and on the overlap.
+        Potential::Element | Potential::Volume { .. } => return None,
+    };
+    let deforms = simulation.blocks().ids().any(|block| simulation.shape(block).kind != BodyKind::Fixed);
+    let stiffest_pa = scene.materials.iter().map(|material: &Material| material.young_pa).fold(0.0, f64::max);
+    let ratio = per_metre_pa / stiffest_pa;
+    let what = match ratio {
+        _ if !deforms => return None,
+        r if r < SOFT => "soft: blocks sink deep into each other",
+        r if r > HARD => "hard: steps have to be short, and nothing is gained",
+        _ => return None,
+    };
+    let (from, to) = (1e-4 * stiffest_pa, 1e-2 * stiffest_pa);
+    Some(format!(
+        "contact of {ratio:.0e} of Young's modulus for each metre of depth is {what}; penalty_pa from {from:.0e} to {to:.0e} suits most scenes"
+    ))
+}
