@@ -99,6 +99,7 @@ fn the_top_level_reads_as_the_readme_says() {
         "CONTRIBUTING.md",
         "LICENSE-MIT",
         "LICENSE-APACHE",
+        "rust-toolchain.toml",
         "rustfmt.toml",
         "target",
         "out",

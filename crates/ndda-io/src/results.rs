@@ -10,6 +10,9 @@ pub mod table;
 pub mod tables;
 pub mod vtu;
 
+#[cfg(test)]
+mod testing;
+
 pub use read::{
     Array, FieldFrame, ListedFrame, ResultsError, Table, frame, frame_list, history, history_file, summary,
 };

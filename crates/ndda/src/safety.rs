@@ -1,8 +1,8 @@
 //! Factor of safety: by how much the strength of joints may fall, loads grow or gravity tilt before blocks move.
 //!
 //! The scene is brought to rest once. From there each trial divides the strength by a factor F (tan φ, c and σ_t of every law), or
-//! multiplies loads, or turns gravity, and steps until its blocks rest or accelerate ([`trial`]). The largest factor at which they stand and the
-//! smallest at which they fail are the answer: a bracket from runs, and no limit equilibrium ([`search`]).
+//! multiplies loads, or turns gravity, and steps until its blocks rest or accelerate (`trial.rs`). The largest factor at which they stand and the
+//! smallest at which they fail are the answer: a bracket from runs, and no limit equilibrium (`search.rs`).
 
 mod changes;
 mod film;

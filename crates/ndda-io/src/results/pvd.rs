@@ -128,16 +128,9 @@ impl FieldSeries {
 
 #[cfg(test)]
 mod tests {
-    use ndda_mesh::{BlockMesh, BlockSet, Vec3};
-
     use super::*;
+    use crate::results::testing::one_tet;
     use crate::scene::FieldFormat;
-
-    fn one_tet() -> BlockSet {
-        let nodes = vec![Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
-        let mesh = BlockMesh { nodes, tets: vec![[0, 1, 2, 3]], ..BlockMesh::default() };
-        BlockSet::new(vec![("a".into(), mesh)]).unwrap()
-    }
 
     fn series_in(folder: &std::path::Path) -> (OutputFolder, FieldSeries) {
         let output = OutputFolder::create(folder, false).unwrap();

@@ -109,18 +109,11 @@ fn joined(
 
 #[cfg(test)]
 mod tests {
-    use ndda_mesh::{BlockMesh, BlockSet};
-
     use super::*;
+    use crate::results::testing::one_tet;
     use crate::results::vtu::{Topology, Values};
     use crate::scene::{FieldFormat, Precision};
     use crate::{FieldSeries, Frame, OutputFolder};
-
-    fn one_tet() -> BlockSet {
-        let nodes = vec![Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
-        let mesh = BlockMesh { nodes, tets: vec![[0, 1, 2, 3]], ..BlockMesh::default() };
-        BlockSet::new(vec![("a".into(), mesh)]).unwrap()
-    }
 
     #[test]
     fn frames_that_were_written_are_read_back() {
