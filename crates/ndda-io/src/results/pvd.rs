@@ -128,6 +128,8 @@ impl FieldSeries {
 
 #[cfg(test)]
 mod tests {
+    use ndda_mesh::Vec3;
+
     use super::*;
     use crate::results::testing::one_tet;
     use crate::scene::FieldFormat;
