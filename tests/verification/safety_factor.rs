@@ -61,6 +61,16 @@ fn a_cube_on_a_plane_has_the_factor_tan_phi_over_tan_alpha() {
     row("safety", "the same by tilting gravity: upper end [-]", upper, Within(exact, ERROR));
 }
 
+/// F = tan φ / tan α + c / (ρ g h sin α cos α).
+#[test]
+fn a_slab_with_cohesion_that_it_keeps_has_the_factor_of_its_plane() {
+    let safety = found(&scene("plane_slide"), Question::Strength);
+    let (alpha, weight_pa) = (35f64.to_radians(), 2600.0 * 9.81 * 5.0);
+    let exact = 30f64.to_radians().tan() / alpha.tan() + 20e3 / (weight_pa * alpha.sin() * alpha.cos());
+    holds("slab on 35°, φ = 30°, c = 20 kPa", &safety, exact);
+    assert_eq!(kind(&safety), Kind::Sliding);
+}
+
 #[test]
 fn a_wedge_slides_along_the_line_of_its_joints() {
     let safety = found(&scene("wedge"), Question::Strength);

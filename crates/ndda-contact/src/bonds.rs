@@ -152,8 +152,9 @@ fn hand_over(
         target,
         element,
         shear_n: [shear.dot(&basis[0]), shear.dot(&basis[1])],
+        plastic_slip_m: 0.0,
         area_m2: 2.0 * stretch.half_area,
-        broken: true,
+        broken: !law.survives_slip(),
     };
     let key = |known: &FacetMemory| (known.facet, known.target, known.element);
     match facets.binary_search_by_key(&(facet, target, element), key) {

@@ -131,8 +131,8 @@ impl FacetScene<'_> {
         let wanted = (facet.triangle, facet.target, self.element_of(facet));
         match self.history.facets.binary_search_by_key(&wanted, key) {
             Ok(place) => {
-                let FacetMemory { shear_n, broken, area_m2, .. } = self.history.facets[place];
-                (ShearMemory { shear_n, broken }, area_m2)
+                let FacetMemory { shear_n, plastic_slip_m, broken, area_m2, .. } = self.history.facets[place];
+                (ShearMemory { shear_n, plastic_slip_m, broken }, area_m2)
             }
             // What touches from the start has done so before.
             Err(_) => (ShearMemory::default(), if self.history.begun { 0.0 } else { sums.area }),

@@ -21,6 +21,8 @@ pub struct ShearMemory {
     /// Shear force on the contactor in the facet's own basis (first edge, normal × first edge) [N].
     /// The basis turns with the facet, so the force does too.
     pub shear_n: [f64; 2],
+    /// Slip beyond the stretch of the spring, for laws that soften [m].
+    pub plastic_slip_m: f64,
     /// Whether cohesion is gone; it never comes back.
     pub broken: bool,
 }
@@ -28,7 +30,7 @@ pub struct ShearMemory {
 impl Default for ShearMemory {
     /// A contact that begins during a run: no shear, and nothing that could hold it together.
     fn default() -> Self {
-        Self { shear_n: [0.0; 2], broken: true }
+        Self { shear_n: [0.0; 2], plastic_slip_m: 0.0, broken: true }
     }
 }
 
@@ -53,6 +55,11 @@ pub trait FrictionLaw: Send + Sync {
 
     /// Whether what touches when contact is first evaluated holds together until it breaks.
     fn holds_together(&self) -> bool {
+        false
+    }
+
+    /// Whether a facet whose bond breaks keeps the strength that it has, and softens from there.
+    fn survives_slip(&self) -> bool {
         false
     }
 

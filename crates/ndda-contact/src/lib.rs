@@ -81,6 +81,8 @@ pub mod sides;
 #[cfg(feature = "potential")]
 pub mod smooth_potential;
 #[cfg(feature = "potential")]
+pub mod softening_coulomb;
+#[cfg(feature = "potential")]
 pub mod tangent;
 #[cfg(feature = "potential")]
 pub mod tet_pair;
@@ -111,6 +113,7 @@ pub use {
     potential::{ContactPotential, Field, OverlapLaw, PieceTable, PotentialError},
     potential_contact::PotentialContact,
     smooth_potential::SmoothPotential,
+    softening_coulomb::SofteningCoulomb,
     velocity_friction::VelocityCoulomb,
     volume_potential::VolumePotential,
 };

@@ -194,6 +194,8 @@ pub struct FacetMemory {
     /// Shear force on the contactor in the facet's own basis (first edge, normal × first edge) [N].
     /// The basis turns with the facet, so the force does too.
     pub shear_n: [f64; 2],
+    /// Slip beyond the stretch of the spring, for laws that soften [m].
+    pub plastic_slip_m: f64,
     /// Area in contact [m²].
     pub area_m2: f64,
     /// Whether cohesion is gone.

@@ -177,6 +177,7 @@ impl PotentialContact {
                     target: facet.target,
                     element: scene.element_of(facet),
                     shear_n: memory.shear_n,
+                    plastic_slip_m: memory.plastic_slip_m,
                     area_m2: self.integrals.sums_of(touch).area,
                     broken: memory.broken,
                 });

@@ -582,6 +582,25 @@ pub struct Friction {
     /// Tensile strength σ_t [Pa], until it breaks for good; beyond c/tan φ it holds only without shear; needs `shear_penalty_pa_m`. Default: 0.
     #[serde(default)]
     pub tension_pa: f64,
+    /// What friction and cohesion fall to while the joint slips, instead of cohesion that breaks at once; with the same values as the peak
+    /// the joint is perfectly plastic. Needs `shear_penalty_pa_m`, and no tension. Default: none.
+    #[serde(default)]
+    pub residual: Option<Residual>,
+}
+
+/// Strength of a joint that has slipped.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Residual {
+    /// Residual friction angle φ_r [°].
+    pub friction_deg: f64,
+    /// Residual cohesion c_r [Pa]. Default: 0.
+    #[serde(default)]
+    pub cohesion_pa: f64,
+    /// Slip over which strength falls linearly [m]. Default: 0, at once.
+    #[serde(default)]
+    pub over_m: f64,
 }
 
 /// Friction between two materials.

@@ -13,7 +13,7 @@ use std::path::Path;
 
 use ndda_contact::{
     ContactModel, ContactPotential, Coulomb, ElementPotential, FrictionLaw, Joints, Memory, MohrCoulomb,
-    PotentialContact, SmoothPotential, VelocityCoulomb, VolumePotential,
+    PotentialContact, SmoothPotential, SofteningCoulomb, VelocityCoulomb, VolumePotential,
 };
 use ndda_fem::Table;
 use ndda_io::scene::{self, At, Contact, Integrator, Scene};
@@ -274,11 +274,17 @@ fn add_joint_laws(joints: &mut Joints, laws: &[scene::JointLaw], blocks: &BlockS
 
 /// The law that a scene's friction asks for; `None` where nothing rubs.
 fn friction_law(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> {
-    let scene::Friction { friction_deg, shear_penalty_pa_m, cohesion_pa, tension_pa } = *friction;
+    let scene::Friction { friction_deg, shear_penalty_pa_m, cohesion_pa, tension_pa, residual } = *friction;
     if friction_deg <= 0.0 && cohesion_pa <= 0.0 && tension_pa <= 0.0 {
         return None;
     }
     Some(match shear_penalty_pa_m {
+        Some(shear) if residual.is_some() => {
+            let peak = (friction_deg, cohesion_pa);
+            let (after, over_m) =
+                residual.map_or((peak, 0.0), |r| ((r.friction_deg, r.cohesion_pa), r.over_m));
+            Box::new(SofteningCoulomb::new(shear, peak, after, over_m))
+        }
         None => Box::new(VelocityCoulomb::new(friction_deg)),
         Some(shear) if cohesion_pa > 0.0 || tension_pa > 0.0 => {
             Box::new(MohrCoulomb::new(friction_deg, shear, cohesion_pa, tension_pa))

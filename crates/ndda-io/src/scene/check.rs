@@ -13,7 +13,7 @@ use crate::scene::diagnostic::{Diagnostic, Severity};
 use crate::scene::suggest::suggest;
 use crate::scene::{
     At, Body, By, Contact, ContactAt, Friction, Hold, Integrator, Joint, JointLaw, Potential, Reference,
-    Region, Scene, Solver, Step, matches,
+    Region, Residual, Scene, Solver, Step, matches,
 };
 
 /// More steps than this are a slip of the keyboard.
@@ -535,6 +535,37 @@ impl Check<'_> {
                 let help = "give shear_penalty_pa_m, the stiffness of the joint until it breaks";
                 self.misfit(field(name), "a joint that holds together needs a spring to hold with", help);
             }
+        }
+        if let Some(residual) = &friction.residual {
+            self.residual(&field("residual"), friction, residual);
+        }
+    }
+
+    fn residual(&mut self, path: &str, peak: &Friction, residual: &Residual) {
+        let field = |name: &str| format!("{path}.{name}");
+        let Residual { friction_deg, cohesion_pa, over_m } = *residual;
+        if !(0.0..=peak.friction_deg).contains(&friction_deg) {
+            let message = format!("{friction_deg}°: must be from 0 to the peak, {}°", peak.friction_deg);
+            self.error(field("friction_deg"), message, "joints weaken when they slip");
+        }
+        if !(0.0..=peak.cohesion_pa).contains(&cohesion_pa) {
+            let message = format!("{cohesion_pa} Pa: must be from 0 to the peak, {} Pa", peak.cohesion_pa);
+            self.error(field("cohesion_pa"), message, "joints weaken when they slip");
+        }
+        if !(over_m >= 0.0 && over_m.is_finite()) {
+            self.error(
+                field("over_m"),
+                format!("{over_m} m: must be zero or positive"),
+                "0 for a strength that falls at once",
+            );
+        }
+        if peak.shear_penalty_pa_m.is_none() {
+            let help = "give shear_penalty_pa_m, the stiffness of the joint before it slips";
+            self.misfit(path.to_string(), "a joint that softens needs a spring that measures its slip", help);
+        }
+        if peak.tension_pa > 0.0 {
+            let help = "leave out tension_pa, or residual";
+            self.misfit(path.to_string(), "a joint that softens has no tensile strength", help);
         }
     }
 

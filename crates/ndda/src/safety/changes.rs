@@ -56,7 +56,17 @@ pub fn weaken(scene: &mut Scene, factor: f64) {
         friction.friction_deg = (friction.friction_deg.to_radians().tan() / factor).atan().to_degrees();
         friction.cohesion_pa /= factor;
         friction.tension_pa /= factor;
+        if let Some(residual) = &mut friction.residual {
+            residual.friction_deg = (residual.friction_deg.to_radians().tan() / factor).atan().to_degrees();
+            residual.cohesion_pa /= factor;
+        }
     }
+}
+
+/// Whether all friction of a scene is by shear springs.
+pub fn has_springs_only(scene: &Scene) -> bool {
+    let frictions = &mut scene.clone();
+    self::frictions(frictions).iter().all(|friction| friction.shear_penalty_pa_m.is_some())
 }
 
 fn frictions(scene: &mut Scene) -> Vec<&mut Friction> {

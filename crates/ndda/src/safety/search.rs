@@ -216,8 +216,9 @@ impl<'a> Search<'a> {
     fn course(&self) -> Course<'_> {
         let (start, error, stop) = (&self.start, self.plan.error, self.watch.stop);
         let tolerance = self.loaded.scene.settle.unwrap_or_default().tolerance;
-        let settle_tolerance = self.by.changes_loads().then_some(tolerance);
-        Course { start, settle_tolerance, error, stop }
+        let leans = self.by.changes_loads();
+        let settle_tolerance = (leans || changes::has_springs_only(&self.loaded.scene)).then_some(tolerance);
+        Course { start, settle_tolerance, leans, error, stop }
     }
 
     /// How blocks fail at the upper end of the bracket: that trial once more, with its contacts.

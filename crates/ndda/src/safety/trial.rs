@@ -5,7 +5,7 @@
 //! It *fails* as soon as a block has gone 30 u and farther in each third of what it went since than in the one before; it *stands*
 //! if at its end no block has gone so far, and none is faster than that acceleration would have made it; else it is *undecided*.
 //! Changed loads act at once, and the scene is brought to rest under them first, with kinetic damping; a block that has gone 5 % of
-//! its radius then fails.
+//! its radius then fails. Scenes whose friction has springs are brought to rest first, too.
 
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -138,10 +138,12 @@ pub fn gone_m(simulation: &Simulation, start: &[Vec3]) -> Vec<(BlockId, f64)> {
 pub struct Course<'a> {
     /// Where it begins.
     pub start: &'a Start,
-    /// Speed over the largest at which it is at rest under loads of its own, before it moves freely. Weaker joints act at once: friction that is let go
-    /// slips the way that blocks would fail, where blocks that are damped on their way find other equilibria, too, which nothing
-    /// disturbs (a wedge of F = 1.27 stands up to 1.29 then).
+    /// Speed over the largest at which it is at rest, before it moves freely: where loads change, and where all friction has springs, which
+    /// creep while their contact vibrates. Friction on velocities is let go at once and slips the way that blocks would fail: brought
+    /// to rest on its way it finds other equilibria, too, which nothing disturbs (a wedge of F = 1.27 stands up to 1.29 then).
     pub settle_tolerance: Option<f64>,
+    /// Whether loads change, under which blocks lean before they fail.
+    pub leans: bool,
     /// Relative width of the bracket that is asked for.
     pub error: f64,
     /// Raised when somebody asks to end.
@@ -251,8 +253,7 @@ impl Course<'_> {
     fn far_m(&self, simulation: &Simulation) -> Vec<f64> {
         let elastic_m = FAR * self.start.elastic_m;
         let leans_m = |block| FAR_UNDER_LOADS * radius_m(&simulation.shape(block).operator);
-        let far =
-            |block| if self.settle_tolerance.is_some() { elastic_m.max(leans_m(block)) } else { elastic_m };
+        let far = |block| if self.leans { elastic_m.max(leans_m(block)) } else { elastic_m };
         free(simulation).map(far).collect()
     }
 
