@@ -63,7 +63,7 @@ fn what_is_wrong_with_a_scene_comes_with_its_place() {
 
 #[test]
 fn a_check_reckons_what_a_run_will_take_and_write() {
-    let (code, found) = events(&["check", &scene("sliding_45")], "ndda.check/1");
+    let (code, found) = events(&["check", &scene("sliding_45_phi35_velocity")], "ndda.check/1");
     assert_eq!((code, names(&found)), (0, vec!["finished"]));
     let guess = &found[0]["guess"];
     assert!(guess["run_s"].as_f64().unwrap() > 0.0, "{guess}");
