@@ -2,8 +2,8 @@
 
 use std::hint::black_box;
 
-use ndda_contact::kernel::{GROUP, GroupMoments, RegionGroup, region_moments};
-use ndda_contact::region::{Region, element_regions};
+use ndda_contact::integration::{GROUP, GroupMoments, RegionGroup, region_moments};
+use ndda_contact::integration::{Region, element_regions};
 use pulp::Arch;
 
 use crate::machine::{Clock, Rates};

@@ -4,10 +4,10 @@ use std::hint::black_box;
 
 use ndda::machine;
 use ndda_contact::ContactInput;
-use ndda_contact::batch::Batches;
-use ndda_contact::candidates::Candidates;
-use ndda_contact::hulls::Hulls;
-use ndda_contact::pair::TetFrame;
+use ndda_contact::affine::ConvexBlocks;
+use ndda_contact::broad_phase::Candidates;
+use ndda_contact::integration::RegionQueue;
+use ndda_contact::integration::TetFrame;
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_solver::Simulation;
@@ -96,7 +96,7 @@ impl Looks {
         let mut candidates = Candidates::default();
         candidates.update(
             &ContactInput::new(blocks, &state.position, &state.velocity, simulation.step_s()),
-            &Hulls::default(),
+            &ConvexBlocks::default(),
         );
         let frame = |(tet, order): (&_, &[u8; 4])| {
             TetFrame::in_order(&blocks.tet_corners(*tet, &state.position), order)
@@ -123,7 +123,7 @@ impl Looks {
 
     /// Integrals of hits, per hit [ns].
     fn hit_ns(&self, clock: &Clock) -> f64 {
-        let (arch, mut batches, hits) = (Arch::new(), Batches::default(), sample(&self.hits));
+        let (arch, mut batches, hits) = (Arch::new(), RegionQueue::default(), sample(&self.hits));
         let ns = clock.least_ns(|| {
             for (pair, (lambda, slopes, area)) in (0..).zip(black_box(&hits)) {
                 batches.push_element(arch, pair, *area, lambda, slopes);

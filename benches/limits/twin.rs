@@ -1,10 +1,10 @@
-//! The kernel of `ndda_contact::kernel` for one region, operation by operation, on numbers that count what is done with
+//! The kernel of `ndda_contact::integration::kernel` for one region, operation by operation, on numbers that count what is done with
 //! them: sums, differences, products and quotients, not comparisons and choices.
 
 use std::cell::Cell;
 use std::ops::{Add, Div, Mul, Sub};
 
-use ndda_contact::region::Region;
+use ndda_contact::integration::Region;
 
 thread_local!(static OPERATIONS: Cell<u64> = const { Cell::new(0) });
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use ndda_contact::candidates::Candidates;
+use ndda_contact::broad_phase::Candidates;
 use ndda_contact::testing::{Answer, evaluate};
 use ndda_contact::{ContactHistory, ContactInput, ContactModel, Coulomb, PotentialContact, SmoothPotential};
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};

@@ -16,8 +16,8 @@ mod traffic;
 
 use known::Known;
 use ndda_contact::ContactInput;
-use ndda_contact::candidates::Candidates;
-use ndda_contact::hulls::Hulls;
+use ndda_contact::affine::ConvexBlocks;
+use ndda_contact::broad_phase::Candidates;
 use split::Owners;
 use traffic::Traffic;
 
@@ -29,7 +29,7 @@ fn main() {
     let (blocks, state) = (simulation.blocks(), simulation.state());
     let input = ContactInput::new(blocks, &state.position, &state.velocity, simulation.step_s());
     let mut candidates = Candidates::default();
-    candidates.update(&input, &Hulls::default());
+    candidates.update(&input, &ConvexBlocks::default());
     println!("ranks\t{}", Traffic::HEADER.join("\t"));
     for ranks in [2, 4, 8] {
         let owners = Owners::new(&simulation, ranks);

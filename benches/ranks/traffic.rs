@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use ndda_contact::ContactInput;
-use ndda_contact::candidates::{Candidates, Facet};
-use ndda_contact::pair::TetFrame;
+use ndda_contact::broad_phase::{Candidates, Facet};
+use ndda_contact::integration::TetFrame;
 use ndda_mesh::{BlockId, NodeId, TetId, Vec3};
 
 use crate::split::Owners;

@@ -2,7 +2,7 @@
 
 use ndda_contact::testing::{evaluate, test_box, test_set};
 use ndda_contact::{
-    ContactHistory, ContactInput, ContactPotential, Coulomb, ElementPotential, Joints, Memory,
+    ContactHistory, ContactInput, ContactPotential, Coulomb, ElementPotential, FrictionLawTable, Memory,
     PotentialContact, SmoothPotential, VolumePotential,
 };
 use ndda_mesh::{BlockId, Vec3};
@@ -74,12 +74,14 @@ fn friction_kept(memory: Memory, mobilised_m: f64) -> f64 {
     let moving = blocks.nodes_of(BlockId(1));
     velocity[moving.clone()].fill(step);
     let friction = friction_deg.to_radians().tan();
-    let mut joints =
-        Joints::everywhere(Box::new(Coulomb::new(friction_deg, friction * PRESSURE_PA / mobilised_m)));
+    let mut joints = FrictionLawTable::everywhere(Box::new(Coulomb::new(
+        friction_deg,
+        friction * PRESSURE_PA / mobilised_m,
+    )));
     joints.memory = memory;
     let mut model = PotentialContact::new(penalty_pa)
         .with_potential(Box::new(SmoothPotential { reference_m: 1.0 }))
-        .with_joints(joints);
+        .with_law_table(joints);
     let (mut history, mut sum) = (ContactHistory::default(), 0.0);
     for k in 0..steps {
         let mut position = blocks.rest_position.clone();

@@ -7,8 +7,8 @@
 mod twins;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use ndda_contact::candidates::Candidates;
-use ndda_contact::hulls::Hulls;
+use ndda_contact::affine::ConvexBlocks;
+use ndda_contact::broad_phase::Candidates;
 use ndda_contact::testing::{Random, test_set};
 use ndda_contact::{ContactHistory, ContactInput, ContactModel, ContactOutput, PotentialContact};
 use ndda_mesh::generate::{BoxPattern, box_block};
@@ -41,7 +41,7 @@ fn update(c: &mut Criterion) {
             let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
             let mut position = blocks.rest_position.clone();
             let count = n * n * n;
-            let (mut kept, none) = (Candidates::default(), Hulls::default());
+            let (mut kept, none) = (Candidates::default(), ConvexBlocks::default());
             kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4), &none);
             kept.forget();
             kept.update(&ContactInput::new(&blocks, &position, &velocity, 1e-4), &none);

@@ -7,7 +7,7 @@ use std::hint::black_box;
 
 use cases::{Evaluation, Hits, Rejects, random_pairs};
 use gungraun::{Callgrind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main};
-use ndda_contact::tet_pair::NodalForces;
+use ndda_contact::reference::tet_pair::NodalForces;
 use ndda_mesh::Vec3;
 
 /// Everything on the thread that is counted.

@@ -7,8 +7,9 @@ use std::hint::black_box;
 
 use cases::{Hits, Rejects, random_pairs, shared_volume};
 use criterion::{Criterion, criterion_group, criterion_main};
-use ndda_contact::pair::{TetFrame, pair_moments};
-use ndda_contact::tet_pair::{NodalForces, pair_forces};
+use ndda_contact::integration::TetFrame;
+use ndda_contact::integration::pair_moments;
+use ndda_contact::reference::tet_pair::{NodalForces, pair_forces};
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::triangle_area_vector;
 

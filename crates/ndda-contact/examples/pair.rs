@@ -19,7 +19,7 @@
 
 use std::io::{self, BufRead, Write};
 
-use ndda_contact::tet_pair::{PairForces, pair_forces};
+use ndda_contact::reference::tet_pair::{PairForces, pair_forces};
 use ndda_mesh::Vec3;
 use serde::Deserialize;
 use serde_json::{Value, json};

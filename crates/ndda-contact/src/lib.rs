@@ -1,97 +1,46 @@
-//! Contact between blocks.
+//! Contact between blocks: forces, energy and stiffness of nodes from where the blocks are.
 //!
-//! [`model`] is the seam: the solver knows contact only through [`ContactModel`]. The default model (feature
-//! `potential`) is the contact potential of the paper, integrated exactly over boundary triangles.
+//! The solver knows contact only through [`ContactModel`]. [`PotentialContact`], the default model (feature `potential`), is the
+//! contact potential of the paper, integrated exactly over boundary triangles, with friction on top of it.
+//!
+//! Two cubes of 1 m, one of which has sunk 1 mm into the other (`Element` potential: φ = 4 λ below a face, k_n = 1e9 Pa):
+//!
+#![cfg_attr(feature = "potential", doc = "```")]
+#![cfg_attr(not(feature = "potential"), doc = "```ignore")]
+//! use ndda_contact::testing::{evaluate, test_box, test_set};
+//! use ndda_contact::{ContactHistory, ContactInput, PotentialContact};
+//!
+//! let lower = test_box([0.0, 0.0, 0.0], [1.0; 3], [1, 1, 1]);
+//! let upper = test_box([0.0, 0.0, 0.999], [1.0; 3], [1, 1, 1]);
+//! let blocks = test_set(vec![lower, upper]);
+//! let velocity = vec![ndda_mesh::Vec3::zeros(); blocks.rest_position.len()];
+//! let input = ContactInput::new(&blocks, &blocks.rest_position, &velocity, 1e-3);
+//! let mut model = PotentialContact::new(1e9);
+//! let answer = evaluate(&mut model, &input, &mut ContactHistory::default());
+//! let total: ndda_mesh::Vec3 = answer.force.iter().sum();
+//! let on_upper: f64 = answer.force[blocks.nodes_of(ndda_mesh::BlockId(1))].iter().map(|f| f.z).sum();
+//! assert!(total.norm() < 1e-6 * on_upper);
+//! ```
+//!
+//! | chapter | |
+//! |---|---|
+//! | `broad_phase` | which triangles of one block may meet which elements of another |
+//! | `potential` | φ within a block, and the pressure that follows from it |
+//! | `integration` | exact integrals over the part of a triangle that lies in a target |
+//! | `affine` | convex blocks that move by affine maps: one target each, and faces as contactors |
+//! | `friction` | laws of friction, cohesion and tension, and the forces that they limit |
+//! | `assembly` | from integrals to forces on nodes, energies, stiffnesses and the report |
+//! | `reference` | one pair of tetrahedra, step by step |
+//! | [`testing`], and `testing` of the chapters | contract suites for models and laws of other people |
+
+#![warn(unreachable_pub)]
 
 pub mod element_pairs;
-pub mod model;
-pub mod pair_stiffness;
-pub mod plan;
-pub mod resultants;
+mod model;
+mod pair_stiffness;
+mod plan;
+mod resultants;
 pub mod testing;
-
-#[cfg(feature = "potential")]
-pub mod batch;
-#[cfg(feature = "potential")]
-pub mod block_faces;
-#[cfg(feature = "potential")]
-pub mod bonds;
-#[cfg(feature = "potential")]
-mod both;
-#[cfg(feature = "potential")]
-pub mod broad_phase;
-#[cfg(feature = "potential")]
-mod broad_scenes;
-#[cfg(feature = "potential")]
-pub mod bvh;
-#[cfg(feature = "potential")]
-pub mod by_block;
-#[cfg(feature = "potential")]
-pub mod candidates;
-#[cfg(feature = "potential")]
-pub mod clip;
-#[cfg(feature = "potential")]
-mod closing;
-#[cfg(feature = "potential")]
-pub mod contactors;
-#[cfg(feature = "potential")]
-pub mod coulomb;
-#[cfg(feature = "potential")]
-mod couples;
-#[cfg(feature = "potential")]
-pub mod element_potential;
-#[cfg(feature = "potential")]
-pub mod energy;
-#[cfg(feature = "potential")]
-pub mod facets;
-#[cfg(feature = "potential")]
-pub mod friction;
-#[cfg(feature = "potential")]
-pub mod friction_patches;
-#[cfg(feature = "potential")]
-pub mod hulls;
-#[cfg(feature = "potential")]
-pub mod integrals;
-#[cfg(feature = "potential")]
-pub mod joints;
-#[cfg(feature = "potential")]
-pub mod kernel;
-#[cfg(feature = "potential")]
-pub mod listed;
-#[cfg(feature = "potential")]
-pub mod mohr_coulomb;
-#[cfg(feature = "potential")]
-pub mod overlap;
-#[cfg(feature = "potential")]
-pub mod own_trees;
-#[cfg(feature = "potential")]
-pub mod pair;
-#[cfg(feature = "potential")]
-pub mod potential;
-#[cfg(feature = "potential")]
-pub mod potential_contact;
-#[cfg(feature = "potential")]
-pub mod region;
-#[cfg(feature = "potential")]
-pub mod report;
-#[cfg(feature = "potential")]
-pub mod scatter;
-#[cfg(feature = "potential")]
-pub mod sides;
-#[cfg(feature = "potential")]
-pub mod smooth_potential;
-#[cfg(feature = "potential")]
-pub mod softening_coulomb;
-#[cfg(feature = "potential")]
-pub mod tangent;
-#[cfg(feature = "potential")]
-pub mod tet_pair;
-#[cfg(feature = "potential")]
-mod twofold;
-#[cfg(feature = "potential")]
-pub mod velocity_friction;
-#[cfg(feature = "potential")]
-pub mod volume_potential;
 
 pub use plan::Part;
 
@@ -104,16 +53,6 @@ pub use pair_stiffness::PairStiffness;
 pub use resultants::{PairResultant, resultants};
 
 #[cfg(feature = "potential")]
-pub use {
-    coulomb::Coulomb,
-    element_potential::ElementPotential,
-    friction::{FacetSlip, FrictionLaw, ShearMemory},
-    joints::{Joints, Memory},
-    mohr_coulomb::MohrCoulomb,
-    potential::{ContactPotential, Field, OverlapLaw, PieceTable, PotentialError},
-    potential_contact::PotentialContact,
-    smooth_potential::SmoothPotential,
-    softening_coulomb::SofteningCoulomb,
-    velocity_friction::VelocityCoulomb,
-    volume_potential::VolumePotential,
-};
+mod potential_contact;
+#[cfg(feature = "potential")]
+pub use potential_contact::*;

@@ -355,7 +355,7 @@ pub trait ContactModel: Send + Sync {
     fn add_facets(&self, _input: &ContactInput, _history: &ContactHistory, _facets: &mut Vec<FacetContact>) {}
 
     /// Whether forces on a block go to a few of its nodes wherever they press, because it moves by an affine map.
-    fn gathers(&self, _block: BlockId) -> bool {
+    fn uses_host_forces(&self, _block: BlockId) -> bool {
         false
     }
 
@@ -375,7 +375,7 @@ pub trait ContactModel: Send + Sync {
     }
 
     /// Friction over normal force that bears at least between any two blocks.
-    fn least_friction(&self) -> f64 {
+    fn min_friction_coefficient(&self) -> f64 {
         0.0
     }
 }

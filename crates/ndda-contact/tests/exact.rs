@@ -11,7 +11,7 @@
 
 use std::array::from_fn;
 
-use ndda_contact::tet_pair::{NodalForces, PairError, pair_forces};
+use ndda_contact::reference::tet_pair::{NodalForces, PairError, pair_forces};
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::{TET_FACES, tet_heights, tet_volume};
 use num_bigint::{BigInt, Sign};

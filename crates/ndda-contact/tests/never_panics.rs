@@ -3,9 +3,10 @@
 //! `NDDA_CASES` sets the number of pairs and of lines (default 100 000); the same is done under a fuzzer in `fuzz/`.
 #![cfg(feature = "potential")]
 
-use ndda_contact::overlap::tet_overlap;
-use ndda_contact::pair::{TetFrame, pair_moments};
-use ndda_contact::tet_pair::pair_forces;
+use ndda_contact::integration::TetFrame;
+use ndda_contact::integration::pair_moments;
+use ndda_contact::integration::tet_overlap;
+use ndda_contact::reference::tet_pair::pair_forces;
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::{TET_FACES, tet_volume, triangle_area_vector};
 use serde_json::Value;

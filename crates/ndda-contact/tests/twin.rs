@@ -2,8 +2,8 @@
 #![cfg(feature = "potential")]
 
 use ndda_contact::element_pairs;
+use ndda_contact::reference::tet_pair::NodalForces;
 use ndda_contact::testing::{evaluate, test_set};
-use ndda_contact::tet_pair::NodalForces;
 use ndda_contact::{ContactHistory, ContactInput, ContactModel, PotentialContact};
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockMesh, BlockSet, Mat3, Vec3};

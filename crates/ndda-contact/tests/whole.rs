@@ -252,7 +252,7 @@ fn glue_holds_a_whole_block_where_it_holds_its_tetrahedra() {
 
 #[test]
 fn memory_per_element_keeps_the_elements() {
-    use ndda_contact::{Joints, Memory};
+    use ndda_contact::{FrictionLawTable, Memory};
 
     let mut random = Random(3);
     let blocks = test_set(vec![
@@ -261,9 +261,9 @@ fn memory_per_element_keeps_the_elements() {
     ]);
     let still = vec![Vec3::zeros(); blocks.rest_position.len()];
     let answer = |affine: &[bool]| {
-        let mut joints = Joints::everywhere(Box::new(Coulomb::new(30.0, 1e9)));
+        let mut joints = FrictionLawTable::everywhere(Box::new(Coulomb::new(30.0, 1e9)));
         joints.memory = Memory::Element;
-        let mut model = model().with_joints(joints);
+        let mut model = model().with_law_table(joints);
         evaluate(
             &mut model,
             &input(&blocks, &blocks.rest_position, &still, affine),

@@ -18,7 +18,7 @@ impl Simulation {
         let mut forces: Vec<Vec3> =
             self.force.iter().zip(self.loads.total()).map(|(f, load)| f - load).collect();
         let (Some(model), Some(contacts)) = (&self.contact, &self.contacts) else { return forces };
-        let gathered: Vec<bool> = self.blocks.ids().map(|block| model.gathers(block)).collect();
+        let gathered: Vec<bool> = self.blocks.ids().map(|block| model.uses_host_forces(block)).collect();
         for block in self.blocks.ids().filter(|block| gathered[block.index()]) {
             forces[self.blocks.nodes_of(block)].fill(Vec3::zeros());
         }
@@ -40,8 +40,8 @@ impl Simulation {
     /// The triangle of the contactor that presses: where a contact acts on a block as a whole, its facet may stand for more than itself.
     pub fn pressing_triangle(&self, contact: &FacetContact) -> [NodeId; 3] {
         let own = self.blocks.triangle_block[contact.facet.index()];
-        let gathers = self.contact.as_ref().is_some_and(|model| model.gathers(own));
-        if gathers {
+        let uses_host_forces = self.contact.as_ref().is_some_and(|model| model.uses_host_forces(own));
+        if uses_host_forces {
             self.nearest_triangle(own, contact)
         } else {
             self.blocks.triangles[contact.facet.index()]

@@ -109,7 +109,7 @@ impl Simulation {
             seen_position: Vec::new(),
             has_impulses: shapes.iter().any(Shape::has_impulses),
             loose: 0.0,
-            least_friction: contact.as_ref().map_or(0.0, |model| model.least_friction()),
+            min_friction_coefficient: contact.as_ref().map_or(0.0, |model| model.min_friction_coefficient()),
             moved: vec![Vec3::zeros(); contact_nodes],
             affine: Vec::new(),
             contact_bodies: Vec::new(),

@@ -114,7 +114,7 @@ pub struct Simulation {
     pub(crate) has_impulses: bool,
     /// Part of contact forces whose direction is not known in this step, and that no friction bears.
     pub(crate) loose: f64,
-    pub(crate) least_friction: f64,
+    pub(crate) min_friction_coefficient: f64,
     /// Where nodes were before the step, later how far it moved them [m]; empty without contact.
     pub(crate) moved: Vec<Vec3>,
     /// Which blocks move by an affine map; empty without contact.
@@ -147,7 +147,7 @@ impl Simulation {
         }
         let (contact, iterations) = self.gather_contact()?;
         let depth = contact.max_penetration_ratio;
-        self.loose = if depth > self.least_friction { depth } else { 0.0 };
+        self.loose = if depth > self.min_friction_coefficient { depth } else { 0.0 };
         self.note_contacts();
         if self.contact_does_work(&contact) {
             self.moved.copy_from_slice(&self.state.position);

@@ -12,8 +12,8 @@ mod solid;
 use std::path::Path;
 
 use ndda_contact::{
-    ContactModel, ContactPotential, Coulomb, ElementPotential, FrictionLaw, Joints, Memory, MohrCoulomb,
-    PotentialContact, SmoothPotential, SofteningCoulomb, VelocityCoulomb, VolumePotential,
+    ContactModel, ContactPotential, Coulomb, ElementPotential, FrictionLaw, FrictionLawTable, Memory,
+    MohrCoulomb, PotentialContact, SmoothPotential, SofteningCoulomb, VelocityCoulomb, VolumePotential,
 };
 use ndda_fem::Table;
 use ndda_io::scene::{self, At, Contact, Integrator, Scene};
@@ -215,7 +215,7 @@ pub fn contact_model(scene: &Scene, blocks: &BlockSet) -> Result<Option<Box<dyn 
             };
             // Where nothing rubs, no shear spring and no memory is made.
             if table.have_laws() {
-                model = model.with_joints(table);
+                model = model.with_law_table(table);
             }
             Ok(Some(Box::new(model)))
         }
@@ -249,9 +249,9 @@ fn between_materials(
     blocks: &BlockSet,
     everywhere: Option<&scene::Friction>,
     special: &[scene::Joint],
-) -> Joints {
+) -> FrictionLawTable {
     let index = |name: &str| material_index(scene, name);
-    let mut joints = Joints::between(materials_of(scene, blocks), scene.materials.len());
+    let mut joints = FrictionLawTable::between(materials_of(scene, blocks), scene.materials.len());
     let all = || 0..scene.materials.len() as u32;
     let pairs: Vec<(u32, u32)> = all().flat_map(|a| all().map(move |b| (a, b))).collect();
     joints.set(&pairs, everywhere.and_then(friction_law));
@@ -263,7 +263,7 @@ fn between_materials(
 }
 
 /// Laws on the faces that joints made.
-fn add_joint_laws(joints: &mut Joints, laws: &[scene::JointLaw], blocks: &BlockSet) {
+fn add_joint_laws(joints: &mut FrictionLawTable, laws: &[scene::JointLaw], blocks: &BlockSet) {
     for law in laws {
         let named = |(_, name): &(u32, &String)| scene::matches(&law.joint, name);
         let surfaces: Vec<u32> =

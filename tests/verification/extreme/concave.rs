@@ -1,5 +1,5 @@
 //! X20: a cube on the ledge of an L. The arch is tests/verification/masonry_arch.rs; that a concave block pushes as its convex
-//! parts do, and not itself, is tested in crates/ndda-contact/src/potential_contact.rs.
+//! parts do, and not itself, is tested in crates/ndda-contact/src/potential_contact/contact.rs.
 
 use ndda_solver::Settle;
 

@@ -1,7 +1,7 @@
 //! X5: elements a thousand to a million times as wide as high. Random ones against exact arithmetic are the families
 //! `sliver`, `two slivers` and `sliver along a face` of crates/ndda-contact/tests/exact.rs.
 
-use ndda_contact::overlap::tet_overlap;
+use ndda_contact::integration::tet_overlap;
 use ndda_mesh::Vec3;
 use ndda_solver::Settle;
 

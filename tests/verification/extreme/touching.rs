@@ -1,9 +1,10 @@
 //! Faces that coincide (X10), corners and edges that only just meet (X11). Zero overlap that gives exactly nothing, and the
-//! forces of concave blocks, are tested in crates/ndda-contact/src/potential_contact.rs; any bits in tests/never_panics.rs there.
+//! forces of concave blocks, are tested in crates/ndda-contact/src/potential_contact/contact.rs; any bits in tests/never_panics.rs there.
 
 use nalgebra::Rotation3;
+use ndda_contact::reference::tet_pair;
 use ndda_contact::testing::{Random, evaluate, test_box, test_set};
-use ndda_contact::{ContactHistory, ContactInput, PotentialContact, tet_pair};
+use ndda_contact::{ContactHistory, ContactInput, PotentialContact};
 use ndda_mesh::{BlockId, BlockMesh, Mat3, Vec3};
 
 use super::{advance, extreme, farthest};

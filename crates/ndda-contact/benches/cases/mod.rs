@@ -4,8 +4,8 @@
 #[path = "../../tests/frictionless/mod.rs"]
 pub mod frictionless;
 
-use ndda_contact::batch::Batches;
-use ndda_contact::pair::TetFrame;
+use ndda_contact::integration::RegionQueue;
+use ndda_contact::integration::TetFrame;
 use ndda_contact::testing::{Random, test_box, test_set};
 use ndda_contact::{
     ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, Coulomb, ElementPotential,
@@ -36,14 +36,14 @@ pub fn random_pairs() -> Vec<[[Vec3; 4]; 2]> {
 
 /// Their common volume.
 pub fn shared_volume(a: &[Vec3; 4], b: &[Vec3; 4]) -> f64 {
-    ndda_contact::overlap::overlap_of(a, &TetFrame::new(b), &a[0]).volume_and_moment().0
+    ndda_contact::integration::overlap_of(a, &TetFrame::new(b), &a[0]).volume_and_moment().0
 }
 
 /// Pairs that overlap, waiting for their integrals.
 pub struct Hits {
     pairs: Vec<([[f64; 3]; 4], [f64; 4], f64)>,
     arch: Arch,
-    batches: Batches,
+    batches: RegionQueue,
 }
 
 impl Hits {
@@ -59,7 +59,7 @@ impl Hits {
 
     fn moved_out(part: f64) -> Self {
         let pairs = random_pairs().iter().filter_map(|[a, b]| hit(a, b, part)).collect();
-        let mut hits = Self { pairs, arch: Arch::new(), batches: Batches::default() };
+        let mut hits = Self { pairs, arch: Arch::new(), batches: RegionQueue::default() };
         hits.integrate();
         hits
     }
@@ -224,7 +224,7 @@ pub struct Cubes {
     evaluation: Evaluation,
     pairs: Vec<[[Vec3; 4]; 2]>,
     forces: Vec<[[Vec3; 4]; 2]>,
-    kernel: ndda_contact::tet_pair::NodalForces,
+    kernel: ndda_contact::reference::tet_pair::NodalForces,
 }
 
 impl Cubes {

@@ -2,9 +2,10 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ndda_contact::overlap::tet_overlap;
-use ndda_contact::pair::{TetFrame, pair_moments};
-use ndda_contact::tet_pair::pair_forces;
+use ndda_contact::integration::tet_overlap;
+use ndda_contact::integration::TetFrame;
+use ndda_contact::integration::pair_moments;
+use ndda_contact::reference::tet_pair::pair_forces;
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::{TET_FACES, triangle_area_vector};
 

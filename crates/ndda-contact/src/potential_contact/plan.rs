@@ -1,9 +1,9 @@
 //! What this model consists of.
 
 use super::PotentialContact;
-use crate::joints::{Joints, Memory};
+use crate::friction::law_table::{FrictionLawTable, Memory};
 use crate::plan::Part;
-use crate::potential::OverlapLaw;
+use crate::potential::contact_potential::OverlapLaw;
 
 const FRICTION: &str = "friction";
 const MEMORY: &str = "memory of friction";
@@ -48,7 +48,7 @@ fn whole_blocks(model: &PotentialContact) -> Part {
     Part::of("whole blocks", count > 0, what, why_not)
 }
 
-fn friction(joints: &Joints) -> [Part; 3] {
+fn friction(joints: &FrictionLawTable) -> [Part; 3] {
     let faces = joints.act_on_faces();
     let memory = match joints.memory {
         _ if faces => "one force per face and block that it touches",

@@ -1,15 +1,16 @@
 //! The contact model built without a line of friction: what switching friction off must be equal to.
 
-use ndda_contact::block_faces::BlockFaces;
-use ndda_contact::by_block::ByBlock;
-use ndda_contact::candidates::Candidates;
-use ndda_contact::facets::FacetForce;
-use ndda_contact::hulls::Hulls;
-use ndda_contact::integrals::{Integrals, Scene};
-use ndda_contact::pair::TetFrame;
-use ndda_contact::report::Reporter;
-use ndda_contact::scatter::{self, ScatterScene};
-use ndda_contact::{ContactInput, ContactOutput, ContactReport, Field};
+use ndda_contact::affine::BlockFaces;
+use ndda_contact::affine::ConvexBlocks;
+use ndda_contact::assembly::BlockContactIndex;
+use ndda_contact::assembly::Reporter;
+use ndda_contact::assembly::{ScatterScene, add_nodal_forces};
+use ndda_contact::broad_phase::Candidates;
+use ndda_contact::friction::FacetForce;
+use ndda_contact::integration::Integrals;
+use ndda_contact::integration::Scene;
+use ndda_contact::integration::TetFrame;
+use ndda_contact::{ContactInput, ContactOutput, ContactReport, PotentialField};
 use ndda_mesh::geometry::triangle_area_vector;
 use rayon::prelude::*;
 
@@ -18,9 +19,9 @@ use rayon::prelude::*;
 pub struct Frictionless {
     candidates: Candidates,
     frames: Vec<TetFrame>,
-    hulls: Hulls,
+    hulls: ConvexBlocks,
     integrals: Integrals,
-    by_block: ByBlock,
+    by_block: BlockContactIndex,
     reporter: Reporter,
     forces: Vec<FacetForce>,
     stiffness_pa: Vec<f64>,
@@ -48,7 +49,7 @@ impl Frictionless {
             assert!(frame.volume_m3 > 0.0);
             frame
         }));
-        let (candidates, frames, field) = (&self.candidates, &self.frames[..], &Field::Element);
+        let (candidates, frames, field) = (&self.candidates, &self.frames[..], &PotentialField::Element);
         let hulls = &self.hulls;
         self.integrals.update(&Scene { blocks, position: input.position, candidates, frames, field, hulls });
         let (integrals, facets) = (&self.integrals, &candidates.facets);
@@ -84,7 +85,7 @@ impl Frictionless {
             stiffness_pa: &self.stiffness_pa,
             curvature_pa_m: &[],
         };
-        scatter::add(&scene, output);
+        add_nodal_forces(&scene, output);
         report
     }
 }

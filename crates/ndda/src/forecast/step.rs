@@ -7,7 +7,7 @@
 
 use std::fmt;
 
-use ndda_contact::block_faces::BlockFaces;
+use ndda_contact::affine::BlockFaces;
 use ndda_contact::{ContactHistory, ContactInput, ContactOutput};
 use ndda_io::scene::{Body, Contact, ContactAt, Scene};
 use ndda_mesh::geometry::{tet_volume, triangle_area_vector};

@@ -1,0 +1,264 @@
+//! Potential energy: U = ∫_{A∩B} (φ_A + φ_B) dV of each pair of blocks.
+//!
+//! The element potential needs the surface pieces only (see [`pair`](crate::integration::tet_frame)), a volume is a sum over the
+//! surface of the overlap, and any other potential is integrated over the overlaps of tetrahedra. Forces never need
+//! U, except where its law is not linear; energies are asked for when results are written.
+
+use ndda_mesh::geometry::{Aabb, triangle_area_vector};
+use ndda_mesh::{BlockId, TetId, Vec3};
+use pulp::Arch;
+use rayon::prelude::*;
+
+use crate::affine::convex_target::ConvexBlocks;
+use crate::broad_phase::candidates::{Candidates, Pair};
+use crate::integration::integrals::Integrals;
+use crate::integration::pair_moments::{has_centroid, pair_energy};
+use crate::integration::polyhedron::{Carried, Linear, Polyhedron, faces_of};
+use crate::integration::tet_frame::TetFrame;
+use crate::model::ContactInput;
+use crate::potential::contact_potential::{OverlapLaw, PieceTable, PotentialField};
+
+/// Pairs below which a second thread costs more than it brings.
+const GRAIN_PAIRS: usize = 512;
+/// The same for pairs of blocks.
+const GRAIN_BLOCK_PAIRS: usize = 4;
+
+/// What U is integrated from.
+#[derive(Clone, Copy)]
+pub(crate) struct OverlapParts<'a> {
+    /// Pairs and facets.
+    pub candidates: &'a Candidates,
+    /// What touches.
+    pub integrals: &'a Integrals,
+    /// A frame for each of [`Candidates::tets`].
+    pub frames: &'a [TetFrame],
+    /// φ.
+    pub field: &'a PotentialField,
+    /// Blocks that are taken whole.
+    pub hulls: &'a ConvexBlocks,
+}
+
+/// U for each pair of blocks that may touch.
+#[derive(Default)]
+pub(crate) struct BlockOverlaps {
+    /// (smaller, larger), ascending.
+    pairs: Vec<(BlockId, BlockId)>,
+    overlap_m3: Vec<f64>,
+    /// ∫ φ dA over the pieces of both surfaces [m²].
+    pressure_m2: Vec<f64>,
+    origin: Vec<Option<Vec3>>,
+    per_pair: Vec<f64>,
+    per_tet: Vec<f64>,
+}
+
+impl BlockOverlaps {
+    /// U of a pair of blocks [m³]; zero for those that cannot touch.
+    pub(crate) fn of(&self, a: BlockId, b: BlockId) -> f64 {
+        self.place(a, b).map_or(0.0, |k| self.overlap_m3[k])
+    }
+
+    /// ∫ φ dA over both surfaces, as [`add_surfaces`](Self::add_surfaces) found it [m²].
+    pub(crate) fn pressure_of(&self, a: BlockId, b: BlockId) -> f64 {
+        self.place(a, b).map_or(0.0, |k| self.pressure_m2[k])
+    }
+
+    /// Σ w(U) [m³].
+    pub(crate) fn energy_m3(&self, law: OverlapLaw) -> f64 {
+        self.overlap_m3.iter().map(|&overlap| law.energy_m3(overlap)).sum()
+    }
+
+    /// Pairs of blocks and their w(U) [m³].
+    pub(crate) fn each_energy_m3(&self, law: OverlapLaw) -> impl Iterator<Item = (BlockId, BlockId, f64)> {
+        self.pairs.iter().zip(&self.overlap_m3).map(move |(&(a, b), &u)| (a, b, law.energy_m3(u)))
+    }
+
+    fn place(&self, a: BlockId, b: BlockId) -> Option<usize> {
+        self.pairs.binary_search(&(a.min(b), a.max(b))).ok()
+    }
+
+    /// Makes room for these pairs of [`Candidates::neighbours`].
+    fn list(&mut self, candidates: &Candidates, pairs: impl Iterator<Item = u32>) {
+        self.pairs.clear();
+        self.pairs.extend(pairs.map(|k| candidates.neighbours[k as usize]));
+        self.pairs.sort_unstable();
+        self.pairs.dedup();
+        self.overlap_m3.clear();
+        self.overlap_m3.resize(self.pairs.len(), 0.0);
+    }
+
+    /// U of any potential.
+    pub(crate) fn integrate(&mut self, input: &ContactInput, parts: &OverlapParts, law: OverlapLaw) {
+        let OverlapParts { candidates, integrals, frames, field, hulls } = *parts;
+        match (field, law) {
+            (_, OverlapLaw::Power { .. }) => self.add_surfaces(input, candidates, integrals),
+            (PotentialField::Element, _) => self.add_pieces(input, candidates, frames),
+            (PotentialField::Pieces(table), _) => {
+                let all = 0..candidates.neighbours.len() as u32;
+                self.list(candidates, all.filter(|&k| !hulls.are_apart(k)));
+                self.add_cells(&Cells { input, table, hulls });
+            }
+        }
+    }
+
+    /// The volume of overlaps, V = ⅓ ∮ (x − o)·n dS over the pieces of both surfaces.
+    pub(crate) fn add_surfaces(
+        &mut self,
+        input: &ContactInput,
+        candidates: &Candidates,
+        integrals: &Integrals,
+    ) {
+        let facets = integrals.touching().iter().map(|touch| &candidates.facets[touch.facet as usize]);
+        self.list(candidates, facets.map(|facet| facet.neighbours));
+        self.pressure_m2.clear();
+        self.pressure_m2.resize(self.pairs.len(), 0.0);
+        self.origin.clear();
+        self.origin.resize(self.pairs.len(), None);
+        for touch in integrals.touching() {
+            let k = self.place(touch.owner, touch.target).expect("listed above");
+            let sums = integrals.sums_of(touch);
+            let corners = input.blocks.triangle_corners(touch.triangle, input.position);
+            let origin = *self.origin[k].get_or_insert(corners[0]);
+            let normal = triangle_area_vector(&corners).normalize();
+            self.pressure_m2[k] += sums.pressure;
+            self.overlap_m3[k] += sums.area * (corners[0] - origin).dot(&normal) / 3.0;
+        }
+    }
+
+    /// The element potential, from the flux through surface pieces.
+    fn add_pieces(&mut self, input: &ContactInput, candidates: &Candidates, frames: &[TetFrame]) {
+        let blocks = input.blocks;
+        self.list(candidates, 0..candidates.neighbours.len() as u32);
+        self.per_pair.clear();
+        self.per_pair.resize(candidates.pairs.len(), 0.0);
+        let place = |(pair, integral): (&Pair, &mut f64)| {
+            let corners = blocks.triangle_corners(pair.triangle, input.position);
+            let frame = &frames[pair.tet as usize];
+            if frame.lambda_inside(&corners).is_some() {
+                *integral = pair_energy(&corners, &triangle_area_vector(&corners), frame);
+            }
+        };
+        let pairs = candidates.pairs.par_iter().with_min_len(GRAIN_PAIRS);
+        pairs.zip(&mut self.per_pair).for_each(place);
+        self.per_tet.clear();
+        self.per_tet.resize(candidates.overlaps.len(), 0.0);
+        for (pair, integral) in candidates.pairs.iter().zip(&self.per_pair) {
+            self.per_tet[pair.overlap as usize] += integral;
+        }
+        for (&(tet, block), &integral) in candidates.overlaps.iter().zip(&self.per_tet) {
+            let slot = candidates.tets.binary_search(&tet).expect("every overlap has its tet");
+            let volume_m3 = frames[slot].volume_m3;
+            // ∫ φ over the whole tetrahedron is V/4: that is what a contained centroid leaves out.
+            let missing = if has_centroid(integral, volume_m3) { 0.25 * volume_m3 } else { 0.0 };
+            let k = self.place(blocks.tet_block[tet.index()], block).expect("listed above");
+            self.overlap_m3[k] += integral + missing;
+        }
+    }
+
+    /// Any potential, over the overlaps of the cells of blocks that no face keeps apart.
+    fn add_cells(&mut self, cells: &Cells) {
+        let room = || Box::new([Polyhedron::default(), Polyhedron::default()]);
+        let pairs = self.overlap_m3.par_iter_mut().zip(&self.pairs).with_min_len(GRAIN_BLOCK_PAIRS);
+        pairs.for_each_init(room, |room, (overlap, &(a, b))| *overlap = cells.overlap_of(a, b, room));
+    }
+}
+
+/// What blocks consist of: a block that is taken whole is one cell, others are their tetrahedra.
+struct Cells<'a> {
+    input: &'a ContactInput<'a>,
+    table: &'a PieceTable,
+    hulls: &'a ConvexBlocks,
+}
+
+impl Cells<'_> {
+    /// U of two blocks: every pair of their cells whose boxes touch.
+    fn overlap_of(&self, a: BlockId, b: BlockId, room: &mut [Polyhedron; 2]) -> f64 {
+        let block_box = |block| Aabb::around(&self.input.position[self.input.blocks.nodes_of(block)]);
+        let (box_a, box_b) = (block_box(a), block_box(b));
+        // Near the overlap, so that map coordinates lose no digits.
+        let origin = box_a.min.sup(&box_b.min);
+        let (of_a, of_b) =
+            (self.near((a, &box_a), (b, &box_b), &origin), self.near((b, &box_b), (a, &box_a), &origin));
+        let mut sum = 0.0;
+        for (k, c) in of_a.iter().enumerate() {
+            let within = of_b.iter().take_while(|t| t.bounds.min.x <= c.bounds.max.x);
+            let is_new = |at: usize| a != b || at > k;
+            for (_, t) in within.enumerate().filter(|(at, t)| is_new(*at) && t.bounds.touches(&c.bounds)) {
+                sum += c.overlap_with(t, room);
+            }
+        }
+        sum
+    }
+
+    /// The cells of a block that may reach into another, from left to right, seen from `origin`; blocks come with their boxes.
+    fn near(
+        &self,
+        (block, own): (BlockId, &Aabb),
+        (other, around): (BlockId, &Aabb),
+        origin: &Vec3,
+    ) -> Vec<Cell<'_>> {
+        let (blocks, position) = (self.input.blocks, self.input.position);
+        if let Some(whole) = self.hulls.whole(block) {
+            let phi = self.hulls.faces_of(block).iter().map(|face| face.linear(origin)).collect();
+            let host = blocks.tet_corners(whole.host, position).map(|x| x - origin);
+            return vec![Cell { bounds: *own, shape: Shape::ConvexTarget(&whole.shape, host), phi }];
+        }
+        let arch = Arch::new();
+        let near = |tet: usize| {
+            let corners = blocks.tet_corners(TetId(tet as u32), position);
+            let bounds = Aabb::around(&corners);
+            let values = || self.table.of(TetId(tet as u32));
+            let reaches = bounds.touches(around) && !self.hulls.keep_apart(arch, other, &corners);
+            reaches.then(|| Cell::of_tet(&corners, values(), bounds, origin))
+        };
+        let mut near: Vec<_> = blocks.tets_of(block).filter_map(near).collect();
+        near.sort_by(|x, y| x.bounds.min.x.total_cmp(&y.bounds.min.x));
+        near
+    }
+}
+
+/// A convex part of a block, in which φ is the smallest of linear functions.
+struct Cell<'a> {
+    bounds: Aabb,
+    shape: Shape<'a>,
+    phi: Vec<Linear>,
+}
+
+/// What a cell is, seen from an origin.
+enum Shape<'a> {
+    /// A tetrahedron with these corners, in which these functions are not negative.
+    Tet([Vec3; 4], [Linear; 4]),
+    /// A block that is taken whole, and the corners of its host; φ itself is not negative in it.
+    ConvexTarget(&'a Carried, [Vec3; 4]),
+}
+
+impl Cell<'_> {
+    fn of_tet(corners: &[Vec3; 4], values: &[[f64; 4]], bounds: Aabb, origin: &Vec3) -> Self {
+        let frame = TetFrame::new(corners);
+        let phi = values.iter().map(|values| Linear::of_corners(&frame, values, origin)).collect();
+        let shape = Shape::Tet(corners.map(|x| x - origin), faces_of(&frame, origin));
+        Self { bounds, shape, phi }
+    }
+
+    /// What is not negative in it.
+    fn sides(&self) -> &[Linear] {
+        match &self.shape {
+            Shape::Tet(_, sides) => sides,
+            Shape::ConvexTarget(..) => &self.phi,
+        }
+    }
+
+    /// ∫ (φ + φ_t) dV over the overlap with t.
+    fn overlap_with(&self, t: &Self, [overlap, part]: &mut [Polyhedron; 2]) -> f64 {
+        match &self.shape {
+            Shape::Tet(corners, _) => overlap.set_tet(corners),
+            Shape::ConvexTarget(body, host) => overlap.set_carried(body, host),
+        }
+        for side in t.sides() {
+            overlap.cut(side);
+            if overlap.is_empty() {
+                return 0.0;
+            }
+        }
+        overlap.integral_of_smallest(&self.phi, part) + overlap.integral_of_smallest(&t.phi, part)
+    }
+}

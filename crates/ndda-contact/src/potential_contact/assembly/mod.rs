@@ -1,0 +1,13 @@
+//! From integrals to forces on nodes, energies, stiffnesses and the report of a step.
+
+pub(crate) mod adjacency;
+pub(crate) mod couples;
+pub(crate) mod energy;
+pub(crate) mod join_if;
+pub(crate) mod nodal_forces;
+pub(crate) mod report;
+pub(crate) mod tangent;
+
+pub use adjacency::BlockContactIndex;
+pub use nodal_forces::{ScatterScene, add as add_nodal_forces};
+pub use report::Reporter;

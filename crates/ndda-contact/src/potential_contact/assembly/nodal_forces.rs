@@ -1,0 +1,224 @@
+//! Facet forces to nodal forces, block by block: each block sums what it gives and takes, in one order.
+
+use std::ops::Range;
+
+use nalgebra::{Matrix4, Vector4};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
+
+use crate::affine::convex_target::{ConvexBlocks, ConvexTarget};
+use crate::assembly::adjacency::BlockContactIndex;
+use crate::assembly::couples::CoupleScene;
+use crate::assembly::join_if::join_if;
+use crate::friction::facet::FacetForce;
+use crate::integration::integrals::Integrals;
+use crate::integration::overlap_pair::{FacetMoments, Hit};
+use crate::integration::pair_moments::OnTarget;
+use crate::model::ContactOutput;
+
+/// Facets per half below which a second thread costs more than it brings.
+const GRAIN_FACETS: usize = 200;
+
+/// What the sums read.
+#[derive(Clone, Copy)]
+pub struct ScatterScene<'a> {
+    /// Topology.
+    pub blocks: &'a BlockSet,
+    /// Where the nodes are [m], if facets have couples.
+    pub position: Option<&'a [Vec3]>,
+    /// Integrals of the pairs.
+    pub integrals: &'a Integrals,
+    /// The facets that touch, block by block.
+    pub by_block: &'a BlockContactIndex,
+    /// Blocks that are taken whole.
+    pub hulls: &'a ConvexBlocks,
+    /// One entry per touching facet.
+    pub forces: &'a [FacetForce],
+    /// What the host of its target feels of each, where that is taken whole.
+    pub on_host: &'a [OnTarget],
+    /// Stiffness per slope, one entry per touching facet [Pa].
+    pub stiffness_pa: &'a [f64],
+    /// Stiffness per pressure, one entry per touching facet, or none [Pa/m].
+    pub curvature_pa_m: &'a [f64],
+}
+
+impl ScatterScene<'_> {
+    fn stiffness(&self, touch: usize, slope: f64, pressure: f64) -> f64 {
+        let curvature = self.curvature_pa_m.get(touch).copied().unwrap_or(0.0);
+        let normal = self.stiffness_pa[touch] * slope + curvature * pressure.abs();
+        normal + self.forces[touch].shear_slope * pressure.abs()
+    }
+
+    /// k λ λᵀ of a facet on a block that is taken whole, λ those of the host where the slope has its mean.
+    fn spring(&self, touch: usize, OnTarget { pressure, slope }: &OnTarget) -> Matrix4<f64> {
+        let (total, rise) = (pressure.iter().sum::<f64>(), slope.iter().sum::<f64>());
+        let (weights, sum) = if rise > 0.0 { (slope, rise) } else { (pressure, total) };
+        if sum <= 0.0 {
+            return Matrix4::zeros();
+        }
+        let lambda = Vector4::from(*weights) / sum;
+        self.stiffness(touch, rise, total) * lambda * lambda.transpose()
+    }
+}
+
+/// Adds all forces to the nodes.
+pub fn add(scene: &ScatterScene, output: &mut ContactOutput) {
+    let all = ContactOutput {
+        force: output.force,
+        friction_force: output.friction_force,
+        stiffness: output.stiffness,
+    };
+    add_blocks(scene, 0..scene.blocks.len(), all);
+}
+
+fn add_blocks(scene: &ScatterScene, blocks: Range<usize>, output: ContactOutput) {
+    match scene.by_block.count(&blocks) {
+        0 => {}
+        _ if blocks.len() == 1 => add_block(scene, BlockId(blocks.start as u32), output),
+        _ => {
+            let middle = blocks.start + blocks.len() / 2;
+            let (head, tail) = (blocks.start..middle, middle..blocks.end);
+            let starts = scene.blocks.node_starts();
+            let (first, second) = split(output, (starts[middle] - starts[blocks.start]) as usize);
+            let parallel = scene.by_block.count(&head).min(scene.by_block.count(&tail)) > GRAIN_FACETS;
+            join_if(parallel, || add_blocks(scene, head, first), || add_blocks(scene, tail, second));
+        }
+    }
+}
+
+fn add_block(scene: &ScatterScene, block: BlockId, output: ContactOutput) {
+    let mut nodes = BlockNodes { first: scene.blocks.nodes_of(block).start, output };
+    let (own, on_block) = (scene.by_block.of(block), scene.by_block.on(block));
+    match scene.hulls.whole(block) {
+        None => {
+            own.for_each(|t| nodes.add_contactor(scene, t as usize));
+            ask_for(scene, on_block);
+            on_block.iter().for_each(|&t| nodes.add_target(scene, t as usize));
+        }
+        Some(whole) => nodes.add_whole(scene, whole, own, on_block),
+    }
+    if let Some(position) = scene.position {
+        nodes.add_couples(scene, block, position);
+    }
+}
+
+/// What other blocks found is far away in memory: asked for all at once it comes sooner than one after the other.
+fn ask_for(scene: &ScatterScene, on_block: &[u32]) {
+    let mut last = 0;
+    for &t in on_block {
+        for hit in scene.integrals.hits_of(&scene.integrals.touching()[t as usize]) {
+            last |= hit.tet.0 | u32::from(hit.on_target.slope[3] != 0.0);
+        }
+        last |= u32::from(scene.forces[t as usize].touches);
+    }
+    std::hint::black_box(last);
+}
+
+fn split(output: ContactOutput, node: usize) -> (ContactOutput, ContactOutput) {
+    let (f0, f1) = output.force.split_at_mut(node);
+    let (s0, s1) = output.stiffness.split_at_mut(node);
+    let (t0, t1) = output.friction_force.split_at_mut(node.min(output.friction_force.len()));
+    let head = ContactOutput { force: f0, friction_force: t0, stiffness: s0 };
+    (head, ContactOutput { force: f1, friction_force: t1, stiffness: s1 })
+}
+
+/// Nodes of one block.
+struct BlockNodes<'a> {
+    first: usize,
+    output: ContactOutput<'a>,
+}
+
+impl BlockNodes<'_> {
+    /// Nodal forces ∫ N dF of a facet of this block.
+    fn add_contactor(&mut self, scene: &ScatterScene, t: usize) {
+        let (touch, force) = (&scene.integrals.touching()[t], &scene.forces[t]);
+        if !force.touches {
+            return;
+        }
+        let FacetMoments { weights: pressure, slope, .. } = scene.integrals.sums_of(touch);
+        let nodes = scene.blocks.triangles[touch.triangle.index()];
+        for a in 0..3 {
+            self.add(nodes[a].index(), pressure[a], force, scene.stiffness(t, slope[a], pressure[a]));
+        }
+    }
+
+    /// The opposite of a facet of another block. Its weights are the contactor's seen from this block's shape
+    /// functions, so force and moment balance to round-off.
+    fn add_target(&mut self, scene: &ScatterScene, t: usize) {
+        let force = &scene.forces[t];
+        if !force.touches {
+            return;
+        }
+        for Hit { tet, on_target, .. } in scene.integrals.hits_of(&scene.integrals.touching()[t]) {
+            let weights = on_target.pressure.iter().zip(on_target.slope);
+            for (node, (pressure, slope)) in scene.blocks.tets[tet.index()].iter().zip(weights) {
+                self.add(node.index(), -pressure, force, scene.stiffness(t, slope.max(0.0), *pressure));
+            }
+        }
+    }
+
+    /// What presses on a block that is taken whole goes to its host. That and its faces on others make all its nodes as stiff as its fastest
+    /// affine motion; each hit counts as a spring at the mean of its slopes.
+    fn add_whole(&mut self, scene: &ScatterScene, whole: &ConvexTarget, own: Range<u32>, on_block: &[u32]) {
+        let mut springs = Matrix4::zeros();
+        for (t, force) in
+            own.map(|t| (t as usize, &scene.forces[t as usize])).filter(|(_, force)| force.touches)
+        {
+            let touch = &scene.integrals.touching()[t];
+            let Some(face) = scene.hulls.contactor(touch.triangle, touch.target) else {
+                self.add_contactor(scene, t);
+                continue;
+            };
+            let FacetMoments { weights, slope, .. } = scene.integrals.sums_of(touch);
+            face.shares(weights).iter().for_each(|(node, share)| self.add(node.index(), *share, force, 0.0));
+            springs += scene.spring(t, &OnTarget::of(&face.on_host, weights, slope));
+        }
+        let host = scene.blocks.tets[whole.host.index()];
+        for (t, force) in on_block.iter().map(|&t| (t as usize, &scene.forces[t as usize])) {
+            if force.touches {
+                let on_host = &scene.on_host[t];
+                for (node, pressure) in host.iter().zip(on_host.pressure) {
+                    // The corners of a host may be far from where it is pressed: its springs know better.
+                    self.add(node.index(), -pressure, force, 0.0);
+                }
+                springs += scene.spring(t, on_host);
+            }
+        }
+        let rate = whole.rate(&springs);
+        for (sum, share) in self.output.stiffness.iter_mut().zip(&whole.share) {
+            *sum += 2.0 * share * rate;
+        }
+    }
+
+    /// The couples of facets of this block, and the opposite of those on it.
+    #[inline(never)]
+    fn add_couples(&mut self, scene: &ScatterScene, block: BlockId, position: &[Vec3]) {
+        let own = scene.by_block.of(block).map(|t| (t, true));
+        let on_block = scene.by_block.on(block).iter().map(|&t| (t, false));
+        let ScatterScene { blocks, integrals, hulls, .. } = *scene;
+        let couples = CoupleScene { blocks, position, integrals, hulls };
+        for (t, is_owner) in own.chain(on_block) {
+            let couple_n_m = scene.forces[t as usize].couple_n_m;
+            if couple_n_m == Vec3::zeros() {
+                continue;
+            }
+            let couple_n_m = if is_owner { couple_n_m } else { -couple_n_m };
+            couples.each_force(&integrals.touching()[t as usize], is_owner, &couple_n_m, |node, force| {
+                let i = node - self.first;
+                self.output.force[i] += force;
+                if let Some(sum) = self.output.friction_force.get_mut(i) {
+                    *sum += force;
+                }
+            });
+        }
+    }
+
+    fn add(&mut self, node: usize, weight: f64, force: &FacetForce, stiffness: f64) {
+        let i = node - self.first;
+        let friction = weight * force.shear;
+        self.output.force[i] += weight * force.push + friction;
+        self.output.stiffness[i] += 2.0 * stiffness;
+        if let Some(sum) = self.output.friction_force.get_mut(i) {
+            *sum += friction;
+        }
+    }
+}

@@ -1,0 +1,402 @@
+//! Two levels of trees: blocks in space, and the elements of each block in its own frame.
+//!
+//! A block that has not moved on keeps its pairs with all others that have not; one that has takes its leaf of the
+//! tree along. What is inside a block is placed when another comes near. The tree is rebuilt, in its own memory, when
+//! as many leaves have moved as there are. Cells of a uniform grid find all pairs of boxes a few times quicker, but
+//! have to be filled anew when one box has moved.
+
+use ndda_mesh::geometry::Aabb;
+use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
+use rayon::prelude::*;
+
+use crate::affine::face_contactor::FaceContactor;
+use crate::affine::surface::BlockFaces;
+use crate::broad_phase::block_bvh::{BlockBvh, node_touches, to_parry};
+use crate::broad_phase::finder::{BroadPhase, BroadScene, FEW_NODES, Side, TriangleAt, shape_of};
+use crate::integration::capacity::MOST_CORNERS;
+
+/// Blocks below which a second thread costs more than it brings.
+const GRAIN_BLOCKS: usize = 16;
+/// The same for boxes.
+const GRAIN_BOXES: usize = 2048;
+/// Part of the nodes, 1 / this, beyond which placing all blocks at once is quicker than one by one.
+const MANY: usize = 4;
+
+/// The default broad phase.
+#[derive(Default)]
+pub struct TreeBroadPhase {
+    own: Vec<Option<Box<BlockBvh>>>,
+    is_convex: Vec<bool>,
+    boxes: Boxes,
+    tree: Bvh,
+    workspace: BvhWorkspace,
+    /// Leaves moved since the tree was rebuilt.
+    displaced: usize,
+    is_renewed: Vec<bool>,
+    /// Blocks that touched a renewed one before, or do now.
+    is_near: Vec<bool>,
+    /// Blocks whose elements are placed where they were renewed last; one that is far from all others waits.
+    is_placed: Vec<bool>,
+    /// Blocks whose elements are to be placed now.
+    is_due: Vec<bool>,
+    found: Vec<Found>,
+    /// Of the set that all this is about.
+    shape: [usize; 4],
+}
+
+/// Room for so many more; where there is too little, for four times as many in all, so that blocks that come a bit nearer
+/// do not ask again.
+pub(crate) fn make_room<T>(list: &mut Vec<T>, more: usize) {
+    if list.capacity() < list.len() + more {
+        list.reserve_exact(3 * list.len() + 4 * more);
+    }
+}
+
+/// The pairs of the triangles of one block, sorted.
+#[derive(Default)]
+struct Found {
+    pairs: Vec<(TriangleId, TetId)>,
+    /// Those of them with a renewed block, on either side.
+    fresh: Vec<(TriangleId, TetId)>,
+    changed: bool,
+}
+
+impl Found {
+    /// Puts the fresh pairs in the place of those that `is_stale`.
+    fn merge(&mut self, is_stale: impl Fn(&(TriangleId, TetId)) -> bool) {
+        self.fresh.sort_unstable();
+        self.changed = !self.pairs.iter().filter(|pair| is_stale(pair)).eq(&self.fresh);
+        if self.changed {
+            self.pairs.retain(|pair| !is_stale(pair));
+            make_room(&mut self.pairs, self.fresh.len());
+            self.pairs.extend_from_slice(&self.fresh);
+            self.pairs.sort_unstable();
+        }
+    }
+}
+
+/// Boxes of everything, with the margin.
+#[derive(Default)]
+struct Boxes {
+    blocks: Vec<Aabb>,
+    triangles: Vec<Aabb>,
+    tets: Vec<Aabb>,
+    /// One for each of [`ConvexBlocks::faces`](crate::affine::convex_target::ConvexBlocks::faces), without a margin.
+    sides: Vec<Side>,
+}
+
+/// Sets the entries that are due, on all threads.
+fn place_due<T: Send>(
+    entries: &mut [T],
+    is_due: impl Fn(usize) -> bool + Sync,
+    of: impl Fn(usize) -> T + Sync,
+) {
+    let place = |(i, entry): (usize, &mut T)| {
+        if is_due(i) {
+            *entry = of(i);
+        }
+    };
+    entries.par_iter_mut().enumerate().with_min_len(GRAIN_BOXES).for_each(place);
+}
+
+impl Boxes {
+    fn new(blocks: &BlockSet) -> Self {
+        let boxes = |count: usize| vec![Aabb::empty(); count];
+        Self {
+            blocks: boxes(blocks.len()),
+            triangles: boxes(blocks.triangles.len()),
+            tets: boxes(blocks.tets.len()),
+            sides: Vec::new(),
+        }
+    }
+
+    /// Elements and sides of all blocks that are due.
+    fn place_all(&mut self, scene: &BroadScene, is_due: &[bool]) {
+        let (blocks, faces) = (scene.blocks, scene.hulls.faces());
+        let is_due = |block: BlockId| is_due[block.index()];
+        self.sides.resize(faces.len(), Side::default());
+        place_due(&mut self.triangles, |i| is_due(blocks.triangle_block[i]), |i| scene.triangle_box(i));
+        place_due(&mut self.tets, |i| is_due(blocks.tet_block[i]), |i| scene.tet_box(i));
+        place_due(&mut self.sides, |i| is_due(faces[i].block), |i| Side::new(scene, &faces[i]));
+    }
+
+    /// Elements and sides of one block.
+    fn place(&mut self, scene: &BroadScene, block: BlockId) {
+        scene.blocks.triangles_of(block).for_each(|i| self.triangles[i] = scene.triangle_box(i));
+        scene.blocks.tets_of(block).for_each(|i| self.tets[i] = scene.tet_box(i));
+        let sides = self.sides[scene.hulls.places_of(block)].iter_mut();
+        sides.zip(scene.hulls.faces_of(block)).for_each(|(side, face)| *side = Side::new(scene, face));
+    }
+}
+
+impl BroadPhase for TreeBroadPhase {
+    fn find_pairs(
+        &mut self,
+        scene: &BroadScene,
+        renewed: &[BlockId],
+        pairs: &mut Vec<(TriangleId, TetId)>,
+    ) -> bool {
+        let begins = self.shape != shape_of(scene.blocks);
+        if begins {
+            assert_eq!(renewed.len(), scene.blocks.len(), "at first all blocks are new");
+            self.begin(scene.blocks);
+        }
+        self.is_renewed.fill(false);
+        for block in renewed {
+            self.is_renewed[block.index()] = true;
+            self.is_placed[block.index()] = false;
+        }
+        let nodes: usize = renewed.iter().map(|block| scene.blocks.nodes_of(*block).len()).sum();
+        let many = MANY * nodes > scene.position.len();
+        self.is_near.fill(many);
+        if many {
+            self.place_blocks(scene, renewed);
+            self.mark_due();
+            self.place_all(scene);
+        } else {
+            self.mark_near(renewed);
+            self.place_blocks(scene, renewed);
+            self.mark_near(renewed);
+            self.mark_due();
+            self.place(scene);
+        }
+        let changed = self.search(scene);
+        if changed || begins {
+            pairs.clear();
+            make_room(pairs, self.found.iter().map(|found| found.pairs.len()).sum());
+            self.found.iter().for_each(|found| pairs.extend_from_slice(&found.pairs));
+        }
+        changed || begins
+    }
+}
+
+impl TreeBroadPhase {
+    fn begin(&mut self, blocks: &BlockSet) {
+        self.shape = shape_of(blocks);
+        self.own = blocks.ids().map(|block| BlockBvh::new(blocks, block)).collect();
+        self.is_convex = blocks.ids().map(|id| BlockFaces::new(blocks, id).convex).collect();
+        self.is_renewed = vec![true; blocks.len()];
+        self.is_near = vec![true; blocks.len()];
+        self.is_placed = vec![false; blocks.len()];
+        self.is_due = vec![false; blocks.len()];
+        self.found.clear();
+        self.found.resize_with(blocks.len(), Found::default);
+        self.boxes = Boxes::new(blocks);
+        let everywhere = to_parry(&Aabb::around(&blocks.rest_position));
+        let leaves = blocks.ids().map(|id| (id.index(), everywhere));
+        self.tree = Bvh::from_iter(BvhBuildStrategy::Binned, leaves);
+        self.displaced = 0;
+    }
+
+    /// Boxes around renewed blocks, and their leaves.
+    fn place_blocks(&mut self, scene: &BroadScene, renewed: &[BlockId]) {
+        let is_renewed = &self.is_renewed;
+        place_due(&mut self.boxes.blocks, |i| is_renewed[i], |i| scene.block_box(BlockId(i as u32)));
+        self.place_leaves(renewed);
+    }
+
+    /// Marks what another block has come near to, or a far part of its own may, and is not placed.
+    fn mark_due(&mut self) {
+        let (is_near, is_convex, tree, boxes) =
+            (&self.is_near, &self.is_convex, &self.tree, &self.boxes.blocks);
+        let has_company = |index: usize| {
+            tree.leaves(|node| node_touches(node, &boxes[index])).any(|other| other as usize != index)
+        };
+        let mark = |(index, (due, placed)): (usize, (&mut bool, &mut bool))| {
+            *due = is_near[index] && !*placed && (!is_convex[index] || has_company(index));
+            *placed |= *due;
+        };
+        let marks = self.is_due.par_iter_mut().zip(&mut self.is_placed);
+        marks.enumerate().with_min_len(GRAIN_BLOCKS).for_each(mark);
+    }
+
+    fn place_all(&mut self, scene: &BroadScene) {
+        self.boxes.place_all(scene, &self.is_due);
+        let is_due = &self.is_due;
+        let place = |(index, own): (usize, &mut Option<Box<BlockBvh>>)| {
+            if let Some(own) = own.as_mut().filter(|_| is_due[index]) {
+                own.place(scene, BlockId(index as u32));
+            }
+        };
+        self.own.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(place);
+    }
+
+    fn place(&mut self, scene: &BroadScene) {
+        for block in scene.blocks.ids().filter(|block| self.is_due[block.index()]) {
+            self.boxes.place(scene, block);
+            if let Some(own) = &mut self.own[block.index()] {
+                own.place(scene, block);
+            }
+        }
+    }
+
+    fn place_leaves(&mut self, renewed: &[BlockId]) {
+        let leaf = |block: &BlockId| (to_parry(&self.boxes.blocks[block.index()]), block.0);
+        self.displaced += renewed.len();
+        if self.displaced < self.boxes.blocks.len() {
+            renewed.iter().map(leaf).for_each(|(bounds, index)| self.tree.insert(bounds, index));
+        } else {
+            for (bounds, index) in renewed.iter().map(leaf) {
+                self.tree.insert_or_update_partially(bounds, index, 0.0);
+            }
+            self.tree.rebuild(&mut self.workspace, BvhBuildStrategy::Binned);
+            self.displaced = 0;
+        }
+    }
+
+    /// Marks what touches a renewed block.
+    fn mark_near(&mut self, renewed: &[BlockId]) {
+        for block in renewed {
+            self.is_near[block.index()] = true;
+            let bounds = &self.boxes.blocks[block.index()];
+            let leaves = self.tree.leaves(|node| node_touches(node, bounds));
+            leaves.for_each(|other| self.is_near[other as usize] = true);
+        }
+    }
+
+    /// Brings the pairs of all blocks near renewed ones up to date, and says whether any changed.
+    fn search(&mut self, scene: &BroadScene) -> bool {
+        let (is_renewed, is_near, tree) = (&self.is_renewed, &self.is_near, &self.tree);
+        let near = Near { scene, own: &self.own, boxes: &self.boxes };
+        let is_convex = &self.is_convex;
+        let search = |(index, found): (usize, &mut Found)| {
+            if !is_near[index] {
+                return;
+            }
+            found.fresh.clear();
+            for other in tree.leaves(|node| node_touches(node, &near.boxes.blocks[index])) {
+                let stale = is_renewed[index] || is_renewed[other as usize];
+                if stale && (other as usize != index || !is_convex[index]) {
+                    near.find(BlockId(index as u32), BlockId(other), &mut found.fresh);
+                }
+            }
+            found.merge(|pair| {
+                is_renewed[index] || is_renewed[scene.blocks.tet_block[pair.1.index()].index()]
+            });
+        };
+        self.found.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(search);
+        self.found.iter().zip(is_near).any(|(found, &near)| near && found.changed)
+    }
+
+    /// Memory on the heap [B], but for the workspace of the tree.
+    pub(crate) fn heap_bytes(&self) -> usize {
+        let own =
+            self.own.iter().flatten().map(|own| size_of::<BlockBvh>() + own.heap_bytes()).sum::<usize>();
+        let boxes = &self.boxes;
+        let sides = boxes.sides.capacity() * size_of::<Side>();
+        let boxes = boxes.blocks.capacity() + boxes.triangles.capacity() + boxes.tets.capacity();
+        let of_found = |found: &Found| found.pairs.capacity() + found.fresh.capacity();
+        let found = self.found.iter().map(of_found).sum::<usize>() * size_of::<(TriangleId, TetId)>();
+        let per_block = size_of::<Option<Box<BlockBvh>>>() + size_of::<Found>() + 5 * size_of::<bool>();
+        let tree = self.tree.heap_memory_size();
+        own + boxes * size_of::<Aabb>() + sides + found + per_block * self.found.capacity() + tree
+    }
+}
+
+/// What the search between two blocks reads.
+struct Near<'a> {
+    scene: &'a BroadScene<'a>,
+    own: &'a [Option<Box<BlockBvh>>],
+    boxes: &'a Boxes,
+}
+
+impl Near<'_> {
+    /// Adds the pairs of triangles of `block` that reach into the box of `other` and its tetrahedra.
+    fn find(&self, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
+        if block != other && (self.is_apart(block, other) || self.is_apart(other, block)) {
+            return;
+        }
+        let there = &self.boxes.blocks[other.index()];
+        let faces = self.scene.hulls.contactors(block, other);
+        if !faces.is_empty() {
+            let mut room = [Vec3::zeros(); MOST_CORNERS];
+            let reaches = |face: &&FaceContactor| self.scene.face_box(face).touches(there);
+            for face in faces.iter().filter(reaches) {
+                let (id, corners) = (face.triangle, face.place(self.scene.position, &mut room));
+                let plane = self.scene.triangle_at(id.index(), other);
+                self.find_whole(id, &plane, corners, (block, other), found);
+            }
+            return;
+        }
+        let triangles = self.scene.blocks.triangles_of(block);
+        let reaches = |i: &usize| self.boxes.triangles[*i].touches(there);
+        match &self.own[block.index()] {
+            None => triangles.filter(reaches).for_each(|i| self.find_tets(i, block, other, found)),
+            Some(own) => own
+                .triangles_near(there, self.scene.margin_m[block.index()])
+                .map(|leaf| triangles.start + leaf)
+                .filter(reaches)
+                .for_each(|i| self.find_tets(i, block, other, found)),
+        }
+    }
+
+    /// Whether a side of a block keeps all of another from it; not asked of one of many nodes.
+    fn is_apart(&self, block: BlockId, other: BlockId) -> bool {
+        let nodes = self.scene.blocks.nodes_of(other);
+        nodes.len() <= FEW_NODES && self.has_before(block, other, &self.scene.position[nodes])
+    }
+
+    fn has_before(&self, block: BlockId, other: BlockId, points: &[Vec3]) -> bool {
+        let reach_m = self.scene.margin_m[block.index()] + self.scene.margin_m[other.index()];
+        let sides = &self.boxes.sides[self.scene.hulls.places_of(block)];
+        sides.iter().any(|side| side.is_before(points, reach_m))
+    }
+
+    /// Adds a contactor, a triangle or the face with these corners that it stands for, that may reach into another block, taken whole.
+    fn find_whole(
+        &self,
+        id: TriangleId,
+        triangle: &TriangleAt,
+        corners: &[Vec3],
+        (block, other): (BlockId, BlockId),
+        found: &mut Vec<(TriangleId, TetId)>,
+    ) {
+        let scene = self.scene;
+        let Some(whole) = scene.hulls.whole(other) else { return };
+        let others = &scene.position[scene.blocks.nodes_of(other)];
+        if !self.has_before(other, block, corners) && !triangle.are_on_one_side(others) {
+            found.push((id, whole.host));
+        }
+    }
+
+    fn find_tets(&self, i: usize, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
+        let (scene, bounds) = (self.scene, &self.boxes.triangles[i]);
+        let triangle = scene.triangle_at(i, other);
+        if scene.hulls.whole(other).is_some() {
+            let id = TriangleId(i as u32);
+            return self.find_whole(id, &triangle, &triangle.corners, (block, other), found);
+        }
+        if block != other && self.has_before(other, block, &triangle.corners) {
+            return;
+        }
+        let tets = scene.blocks.tets_of(other);
+        let mut add = |j: usize| {
+            let others = || scene.blocks.tet_corners(TetId(j as u32), scene.position);
+            let near = bounds.touches(&self.boxes.tets[j]) && !triangle.is_apart_from(&others());
+            if near && !(block == other && scene.are_neighbours(i, j)) {
+                found.push((TriangleId(i as u32), TetId(j as u32)));
+            }
+        };
+        match &self.own[other.index()] {
+            None => tets.for_each(&mut add),
+            Some(own) => {
+                let near = own.tets_near_triangle(&triangle.corners, triangle.reach_m);
+                near.for_each(|leaf| add(tets.start + leaf));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::broad_phase::testing::check_broad_phase;
+
+    #[test]
+    fn it_finds_what_all_pairs_finds() {
+        let counts = check_broad_phase(TreeBroadPhase::default);
+        println!("{counts:?}");
+        assert!(counts.overlapping > 100_000 && counts.in_one_block > 1000, "the scenes hardly touch");
+    }
+}

@@ -1,0 +1,12 @@
+//! The broad phase: which triangles of one block may meet which elements of another.
+
+pub(crate) mod block_bvh;
+pub(crate) mod bvh;
+pub(crate) mod candidates;
+pub(crate) mod finder;
+pub(crate) mod neighbour_list;
+pub mod testing;
+
+pub use bvh::TreeBroadPhase;
+pub use candidates::{Candidates, Facet, Pair};
+pub use finder::{AllPairs, BroadPhase, BroadScene};

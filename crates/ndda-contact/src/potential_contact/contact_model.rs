@@ -1,0 +1,406 @@
+//! The contact potential as a contact model.
+
+use ndda_mesh::{BlockId, BlockSet, Vec3};
+
+use crate::affine::closing::closing_m_s;
+use crate::affine::surface::BlockFaces;
+use crate::assembly::energy::OverlapParts;
+use crate::assembly::join_if::join_if;
+use crate::assembly::nodal_forces::{self, ScatterScene};
+use crate::friction::bond;
+use crate::friction::facet::{FacetScene, relative_motion};
+use crate::friction::law_table::FrictionLawTable;
+use crate::friction::patches::PatchScene;
+use crate::integration::overlap_pair::ActiveFacet;
+use crate::model::{
+    ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
+    SpringSlip,
+};
+use crate::pair_stiffness::PairStiffness;
+use crate::plan::Part;
+
+use crate::potential::contact_potential::{OverlapLaw, PotentialField};
+
+use super::evaluation::{GRAIN_FACETS, for_each_facet, place_forces};
+use super::{PotentialContact, plan};
+
+impl ContactModel for PotentialContact {
+    fn add_forces(
+        &mut self,
+        input: &ContactInput,
+        history: &mut ContactHistory,
+        output: &mut ContactOutput,
+    ) -> Result<ContactReport, ContactError> {
+        self.integrate(input)?;
+        if let Some(joints) = self.joints.as_ref().filter(|joints| joints.hold_together() && !history.begun) {
+            bond::form(joints, (&self.candidates, &self.hulls), input, &mut history.bonds);
+        }
+        let Some((_, field)) = &self.field else { return Ok(ContactReport::default()) };
+        let (candidates, integrals) = (&self.candidates, &self.integrals);
+        let mut report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
+        let blocks_of = |touch: &ActiveFacet| (touch.owner, touch.target);
+        self.place_penalties(input);
+        if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
+            let found = (&self.candidates, &self.integrals);
+            report.bond_overload =
+                bond::break_overloaded(joints, found, &self.penalty_of_facet, input, history);
+        }
+        let rubs = self.needs_bodies() && !input.bodies.is_empty();
+        let Self { by_block, faces, integrals, .. } = self;
+        let sort = || {
+            by_block.arrange(input.blocks.len(), integrals.touching().iter().map(blocks_of));
+            if rubs {
+                faces.arrange(integrals);
+            }
+        };
+        let (forces, on_host) = (&mut self.forces, &mut self.on_host);
+        let facets =
+            FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
+        let place = || place_forces(forces, on_host, &facets, integrals, &self.penalty_of_facet, &self.hulls);
+        join_if(integrals.touching().len() > GRAIN_FACETS, place, sort);
+        if let Some(joints) = self.joints.as_ref().filter(|_| rubs) {
+            let scene = PatchScene { input, integrals: &self.integrals, joints, hulls: &self.hulls };
+            self.faces.add(&scene, &mut self.forces, history);
+        }
+        let scene = ScatterScene {
+            blocks: input.blocks,
+            position: rubs.then_some(input.position),
+            integrals: &self.integrals,
+            by_block: &self.by_block,
+            hulls: &self.hulls,
+            forces: &self.forces,
+            on_host: &self.on_host,
+            stiffness_pa: &self.penalty_of_facet,
+            curvature_pa_m: &self.curvature_of_facet,
+        };
+        nodal_forces::add(&scene, output);
+        if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
+            bond::add_forces(joints, input, &history.bonds, output);
+        }
+        if self.joints.is_some() {
+            self.remember(input, history);
+        }
+        Ok(report)
+    }
+
+    fn has_acted(&self) -> bool {
+        !self.forces.is_empty() || self.joints.as_ref().is_some_and(FrictionLawTable::hold_together)
+    }
+
+    fn energy_j(&mut self, input: &ContactInput, _history: &ContactHistory) -> Result<f64, ContactError> {
+        let law = self.potential.law();
+        match law {
+            OverlapLaw::Linear => self.find_pairs(input)?,
+            // The law is of what touches.
+            OverlapLaw::Power { .. } => self.integrate(input)?,
+        }
+        let Some((_, field)) = &self.field else { return Ok(0.0) };
+        let parts = OverlapParts {
+            candidates: &self.candidates,
+            integrals: &self.integrals,
+            frames: &self.frames,
+            field,
+            hulls: &self.hulls,
+        };
+        self.overlaps.integrate(input, &parts, law);
+        Ok(self.penalty_pa * self.overlaps.energy_m3(law))
+    }
+
+    /// The turning and stretching of triangles under their own pressure is left out, and so is what friction owes to
+    /// changes of pressure; where the law of the overlap is not linear, the rank-one part of its curvature, too.
+    fn add_stiffness(
+        &mut self,
+        input: &ContactInput,
+        history: &ContactHistory,
+        stiffness: &mut Vec<PairStiffness>,
+    ) -> Result<(), ContactError> {
+        self.integrate(input)?;
+        self.place_penalties(input);
+        for t in 0..self.integrals.touching().len() {
+            self.add_facet_stiffness(t, input, stiffness);
+        }
+        if let Some(joints) = &self.joints {
+            bond::add_stiffness(joints, input, &history.bonds, stiffness);
+        }
+        Ok(())
+    }
+
+    fn each_work(&mut self, blocks: &BlockSet, moved: &[Vec3], add: &mut dyn FnMut(BlockId, BlockId, f64)) {
+        let (integrals, forces) = (&self.integrals, &self.forces);
+        let touching = integrals.touching();
+        let work_of = |(t, work_j): (usize, &mut f64)| {
+            let touch = &touching[t];
+            let found = (integrals.hits_of(touch), integrals.sums_of(touch));
+            *work_j = forces[t].push.dot(&relative_motion(touch, found, (blocks, moved)));
+        };
+        self.work_of_facet.resize(touching.len(), 0.0);
+        for_each_facet(&mut self.work_of_facet, work_of);
+        for (touch, &work_j) in touching.iter().zip(&self.work_of_facet) {
+            add(touch.owner, touch.target, work_j);
+        }
+    }
+
+    fn each_coulomb_gap(
+        &mut self,
+        blocks: &BlockSet,
+        moved: &[Vec3],
+        add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+        if self.needs_bodies() {
+            self.faces.each_coulomb_gap((blocks, &self.integrals, &self.forces), moved, add);
+        }
+    }
+
+    fn each_spring_slip(&self, add: &mut dyn FnMut(BlockId, BlockId, &SpringSlip)) {
+        if self.joints.is_none() {
+            return;
+        }
+        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
+            if let Some(spring) = &force.spring {
+                add(touch.owner, touch.target, spring);
+            }
+        }
+    }
+
+    fn each_energy(&self, add: &mut dyn FnMut(BlockId, BlockId, f64)) {
+        let energies = self.overlaps.each_energy_m3(self.potential.law());
+        energies.for_each(|(a, b, energy_m3)| add(a, b, self.penalty_pa * energy_m3));
+    }
+
+    /// A convex block is as wide as it reaches below the nearest of its faces, where φ does not depend on tetrahedra.
+    fn width_m(&self, blocks: &BlockSet, block: BlockId) -> Option<f64> {
+        let Some((_, PotentialField::Pieces(_))) = &self.field else { return None };
+        BlockFaces::new(blocks, block).width_m(blocks, block)
+    }
+
+    fn closing_m_s(&self, input: &ContactInput, pair: (BlockId, BlockId)) -> Option<f64> {
+        closing_m_s(&self.hulls, input, pair)
+    }
+
+    fn uses_host_forces(&self, block: BlockId) -> bool {
+        self.hulls.whole(block).is_some()
+    }
+
+    fn plan(&self) -> Vec<Part> {
+        plan::parts(self)
+    }
+
+    fn add_facets(&self, input: &ContactInput, history: &ContactHistory, facets: &mut Vec<FacetContact>) {
+        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
+            if !force.touches {
+                continue;
+            }
+            let sums = self.integrals.sums_of(touch);
+            facets.push(FacetContact {
+                facet: touch.triangle,
+                target: touch.target,
+                area_m2: sums.area,
+                normal: -force.push.normalize(),
+                center: force.center,
+                push_n: sums.pressure * force.push,
+                friction_n: sums.pressure * force.shear,
+                sticks: force.sticks,
+            });
+        }
+        if let Some(joints) = &self.joints {
+            bond::add_facets(joints, input, &history.bonds, facets);
+        }
+    }
+
+    fn needs_bodies(&self) -> bool {
+        self.joints.as_ref().is_some_and(FrictionLawTable::act_on_faces)
+    }
+
+    fn has_friction(&self) -> bool {
+        self.joints.is_some()
+    }
+
+    fn min_friction_coefficient(&self) -> f64 {
+        self.joints.as_ref().map_or(0.0, FrictionLawTable::min_friction_coefficient)
+    }
+}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::friction::coulomb::Coulomb;
+    use crate::testing::{check_model, evaluate, test_box, test_set};
+    use ndda_mesh::geometry::tet_heights;
+
+    #[test]
+    fn it_keeps_the_contract_of_a_contact_model_with_and_without_friction() {
+        check_model(&mut PotentialContact::new(1e9));
+        check_model(&mut PotentialContact::new(1e9).with_friction(Box::new(Coulomb::new(30.0, 1e9))));
+    }
+
+    #[test]
+    fn blocks_that_only_touch_feel_exactly_nothing() {
+        let sides = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.5, 0.25, 1.0], [1.0, 1.0, 1.0]];
+        for corner in sides {
+            let blocks = test_set(vec![
+                test_box([0.0; 3], [1.0; 3], [2, 2, 2]),
+                test_box(corner, [1.0; 3], [2, 2, 2]),
+            ]);
+            let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
+            let position = &blocks.rest_position;
+            let input = ContactInput::new(&blocks, position, &velocity, 1.0);
+            let mut model = PotentialContact::new(1e9);
+            let answer = evaluate(&mut model, &input, &mut ContactHistory::default());
+            assert!(answer.force.iter().all(|f| *f == Vec3::zeros()), "{corner:?}");
+            assert_eq!(model.energy_j(&input, &ContactHistory::default()), Ok(0.0));
+        }
+    }
+
+    #[test]
+    fn flat_on_flat_the_pressure_is_that_of_both_heights() {
+        // p = 4 k_n h (1/H_c + 1/H_t) as h → 0, the heights being those over the faces in touch.
+        let depth = 1e-6;
+        let lower = test_box([0.0; 3], [3.0, 3.0, 1.0], [1, 1, 1]);
+        let upper = test_box([1.0, 1.0, 1.0 - depth], [1.0, 1.0, 0.5], [1, 1, 1]);
+        let blocks = test_set(vec![lower, upper]);
+        let height = |block: BlockId, z: f64| {
+            let faces = blocks.triangles_of(block).filter(|&t| {
+                blocks.triangles[t].iter().all(|n| (blocks.rest_position[n.index()].z - z).abs() < 1e-9)
+            });
+            let tet = blocks.triangle_tet[faces.into_iter().next().expect("a face there")];
+            let corners = blocks.tet_corners(tet, &blocks.rest_position);
+            let over = |i: usize| (corners[i].z - z).abs() > 1e-9;
+            let apex = (0..4).find(|&i| over(i)).expect("an apex");
+            tet_heights(&corners)[apex]
+        };
+        let (below, above) = (height(BlockId(0), 1.0), height(BlockId(1), 1.0 - depth));
+        let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
+        let position = &blocks.rest_position;
+        let input = ContactInput::new(&blocks, position, &velocity, 1.0);
+        let answer = evaluate(&mut PotentialContact::new(1e9), &input, &mut ContactHistory::default());
+        let force: Vec3 = answer.force[blocks.nodes_of(BlockId(1))].iter().sum();
+        let expected = 4.0 * 1e9 * depth * (1.0 / below + 1.0 / above);
+        assert!((force.z / expected - 1.0).abs() < 1e-4, "{} against {expected}", force.z);
+    }
+
+    #[test]
+    fn friction_holds_until_its_cap_and_is_forgotten_on_release() {
+        let lower = test_box([0.0; 3], [3.0, 3.0, 1.0], [2, 2, 1]);
+        let upper = test_box([1.0, 1.0, 0.999], [1.0, 1.0, 0.5], [1, 1, 1]);
+        let blocks = test_set(vec![lower, upper]);
+        let mut velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
+        velocity[blocks.nodes_of(BlockId(1))].fill(Vec3::x());
+        let (penalty, shear_penalty, friction_deg) = (1e9, 1e10, 30.0);
+        let law = Coulomb::new(friction_deg, shear_penalty);
+        let mut model = PotentialContact::new(penalty).with_friction(Box::new(law));
+        let mut history = ContactHistory::default();
+        let slip_m = 1e-7;
+        let mut input = ContactInput::new(&blocks, &blocks.rest_position, &velocity, slip_m);
+        let stuck = evaluate(&mut model, &input, &mut history);
+        let upper = blocks.nodes_of(BlockId(1));
+        let total = |force: &[Vec3]| force[upper.clone()].iter().sum::<Vec3>();
+        // k_s S u over the square metre of the patch; the thin walls in the other block add their share.
+        let held = total(&stuck.friction_force).x;
+        assert!((held / (-shear_penalty * slip_m) - 1.0).abs() < 5e-3, "{held}");
+
+        input.dt_s = 1.0;
+        let slid = evaluate(&mut model, &input, &mut history);
+        let normal = total(&slid.force) - total(&slid.friction_force);
+        let ratio = -total(&slid.friction_force).x / normal.z / f64::to_radians(friction_deg).tan();
+        assert!((ratio - 1.0).abs() < 5e-3, "{ratio}");
+
+        let apart: Vec<Vec3> = blocks.rest_position.iter().map(|x| Vec3::new(x.x, x.y, 2.0 * x.z)).collect();
+        input.position = &apart;
+        let mut lifted = apart.clone();
+        lifted[upper.clone()].iter_mut().for_each(|x| x.z += 1.0);
+        input.position = &lifted;
+        assert!(model.has_acted());
+        evaluate(&mut model, &input, &mut history);
+        assert!(history.facets.is_empty() && !model.has_acted());
+    }
+
+    #[test]
+    fn a_centroid_inside_another_block_is_noticed_and_its_energy_counted() {
+        // A whole small block inside a large tetrahedron's neighbourhood: its tets lie inside the large block.
+        let blocks = test_set(vec![
+            test_box([0.0; 3], [1.0; 3], [1, 1, 1]),
+            test_box([0.3, 0.3, 0.8], [0.4, 0.4, 0.3], [1, 1, 1]),
+        ]);
+        let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
+        let position = &blocks.rest_position;
+        let input = ContactInput::new(&blocks, position, &velocity, 1.0);
+        let mut model = PotentialContact::new(1e9);
+        let answer = evaluate(&mut model, &input, &mut ContactHistory::default());
+        assert!(answer.report.past_centroid.is_some());
+        assert!(model.energy_j(&input, &ContactHistory::default()).expect("an energy") > 0.0);
+    }
+
+    /// An L of four cells, out of a box of 2 × 1 × 2 cells without the one at the top right.
+    fn l_block() -> ndda_mesh::BlockMesh {
+        let mut mesh = test_box([0.0; 3], [2.0, 1.0, 2.0], [2, 1, 2]);
+        let nodes = mesh.nodes.clone();
+        let cut_out = |tet: &[u32; 4]| {
+            let middle = tet.iter().map(|&n| nodes[n as usize]).sum::<Vec3>() / 4.0;
+            middle.x > 1.0 && middle.z > 1.0
+        };
+        mesh.tets.retain(|tet| !cut_out(tet));
+        let used: Vec<u32> =
+            (0..nodes.len() as u32).filter(|n| mesh.tets.iter().flatten().any(|m| m == n)).collect();
+        let place = |n: u32| used.binary_search(&n).expect("a used node") as u32;
+        mesh.tets.iter_mut().flatten().for_each(|n| *n = place(*n));
+        mesh.nodes = used.iter().map(|&n| nodes[n as usize]).collect();
+        mesh.node_sets.clear();
+        mesh
+    }
+
+    #[test]
+    fn a_concave_block_pushes_as_its_convex_parts_do_and_not_itself() {
+        let third = || test_box([0.8, 0.1, 0.95], [1.5, 0.7, 0.9], [2, 1, 1]);
+        let force_on_third = |meshes: Vec<ndda_mesh::BlockMesh>| -> Vec3 {
+            let blocks = test_set(meshes);
+            let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
+            let input = ContactInput::new(&blocks, &blocks.rest_position, &velocity, 1.0);
+            let answer = evaluate(&mut PotentialContact::new(1e9), &input, &mut ContactHistory::default());
+            answer.force[blocks.nodes_of(BlockId(0))].iter().sum()
+        };
+        let part = |corner: [f64; 3], size, cells| test_box(corner, size, cells);
+        let whole = force_on_third(vec![third(), l_block()]);
+        let lower = force_on_third(vec![third(), part([0.0; 3], [2.0, 1.0, 1.0], [2, 1, 1])]);
+        let upper = force_on_third(vec![third(), part([0.0, 0.0, 1.0], [1.0, 1.0, 1.0], [1, 1, 1])]);
+        assert!(whole.norm() > 0.0);
+        assert!((whole - lower - upper).norm() < 1e-12 * 1e9, "{whole:?} instead of {:?}", lower + upper);
+
+        let alone = test_set(vec![l_block(), test_box([10.0, 0.0, 0.0], [1.0; 3], [1, 1, 1])]);
+        let velocity = vec![Vec3::zeros(); alone.rest_position.len()];
+        let input = ContactInput::new(&alone, &alone.rest_position, &velocity, 1.0);
+        let answer = evaluate(&mut PotentialContact::new(1e9), &input, &mut ContactHistory::default());
+        assert!(answer.force.iter().all(|f| *f == Vec3::zeros()), "a concave block at rest pushes itself");
+    }
+
+    #[test]
+    fn a_bond_holds_its_tension_and_breaks_for_good() {
+        let (stiffness, tension) = (1e9, 1e3);
+        let law = crate::MohrCoulomb::new(30.0, stiffness, 0.0, tension);
+        let mut model = PotentialContact::new(1e9).with_friction(Box::new(law));
+        let lower = test_box([0.0; 3], [3.0, 3.0, 1.0], [3, 3, 1]);
+        let upper = test_box([1.0, 1.0, 1.0], [1.0, 1.0, 0.5], [1, 1, 1]);
+        let blocks = test_set(vec![lower, upper]);
+        let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
+        let mut history = ContactHistory::default();
+        let upper = blocks.nodes_of(BlockId(1));
+        let mut lifted = |gap_m: f64, history: &mut ContactHistory| -> (Vec3, f64) {
+            let mut position = blocks.rest_position.clone();
+            position[upper.clone()].iter_mut().for_each(|x| x.z += gap_m);
+            let input = ContactInput::new(&blocks, &position, &velocity, 1e-3);
+            let answer = evaluate(&mut model, &input, history);
+            // What a bond stores is work of friction: from rest, −½ f·u.
+            let moved = position.iter().zip(&blocks.rest_position).map(|(x, rest)| x - rest);
+            let stored: f64 = answer.friction_force.iter().zip(moved).map(|(f, u)| -0.5 * f.dot(&u)).sum();
+            assert!(answer.force.iter().sum::<Vec3>().norm() < 1e-9);
+            (answer.force[upper.clone()].iter().sum(), stored)
+        };
+        lifted(0.0, &mut history);
+        assert!(!history.bonds.is_empty());
+        // A square metre of glue, seen by the facets of both sides.
+        let gap = 0.9 * tension / stiffness;
+        let (force, energy) = lifted(gap, &mut history);
+        assert!((force.z / (-stiffness * gap) - 1.0).abs() < 1e-6, "{force:?}");
+        assert!((energy / (0.5 * stiffness * gap * gap) - 1.0).abs() < 1e-6, "{energy}");
+        assert_eq!(lifted(1.1 * tension / stiffness, &mut history), (Vec3::zeros(), 0.0));
+        assert_eq!(lifted(gap, &mut history), (Vec3::zeros(), 0.0));
+    }
+}

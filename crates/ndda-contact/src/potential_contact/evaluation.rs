@@ -1,0 +1,295 @@
+//! What an evaluation consists of: candidate pairs, frames, penalties, forces of facets, and their stiffness.
+
+use ndda_mesh::Mat3;
+use rayon::prelude::*;
+
+use crate::affine::convex_target::ConvexBlocks;
+use crate::affine::surface::BlockFaces;
+use crate::assembly::join_if::join_if;
+use crate::assembly::tangent::{self, Target};
+use crate::broad_phase::candidates::Candidates;
+use crate::friction::facet::{FacetForce, FacetScene};
+use crate::integration::integrals::Integrals;
+use crate::integration::pair_moments::OnTarget;
+use crate::integration::scene::Scene;
+use crate::integration::tet_frame::TetFrame;
+use crate::model::{ContactError, ContactHistory, ContactInput, ContactModel, FacetMemory};
+use crate::pair_stiffness::PairStiffness;
+
+use crate::potential::contact_potential::{OverlapLaw, PotentialField};
+
+use super::PotentialContact;
+
+/// Facets below which a second thread costs more than it brings.
+pub(super) const GRAIN_FACETS: usize = 128;
+/// The same for frames.
+const GRAIN_FRAMES: usize = 512;
+impl PotentialContact {
+    /// Integrals of all candidate pairs at `input.position`.
+    pub(super) fn integrate(&mut self, input: &ContactInput) -> Result<(), ContactError> {
+        self.find_pairs(input)?;
+        let Some((_, field)) = &self.field else { return Ok(()) };
+        let (blocks, position) = (input.blocks, input.position);
+        let (candidates, frames, hulls) = (&self.candidates, &self.frames[..], &self.hulls);
+        self.integrals.update(&Scene { blocks, position, candidates, frames, field, hulls });
+        Ok(())
+    }
+
+    /// Candidate pairs at `input.position`, and frames of their tetrahedra.
+    pub(super) fn find_pairs(&mut self, input: &ContactInput) -> Result<(), ContactError> {
+        let tets = input.blocks.tets.len();
+        if self.field.as_ref().is_none_or(|(known, _)| *known != tets) {
+            let field = self.potential.field(input.blocks);
+            let surfaces = BlockFaces::of_all(input.blocks);
+            // Memory per element needs the elements.
+            let phi_per_m = self.potential.phi_per_m().filter(|_| !self.candidates.split_by_element);
+            // What a facet remembers is its own.
+            let by_triangle = self.joints.as_ref().is_some_and(|joints| !joints.act_on_faces_only());
+            self.hulls.fit(input.blocks, &surfaces, phi_per_m, input.affine, by_triangle);
+            self.candidates.numbers_overlaps = matches!(field, Ok(PotentialField::Element));
+            if self.needs_bodies() {
+                self.faces.fit(input.blocks, &surfaces);
+            }
+            self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
+        }
+        self.candidates.update(input, &self.hulls);
+        let Self { candidates, hulls, frames, .. } = self;
+        let place_hulls = || {
+            if !candidates.pairs.is_empty() {
+                hulls.place(input.blocks, input.position);
+                hulls.separate(input.blocks, input.position, &candidates.neighbours);
+            }
+        };
+        let many = candidates.tets.len() > GRAIN_FRAMES;
+        join_if(many, place_hulls, || place_frames(frames, candidates, input)).1
+    }
+
+    /// k_n dw/dU of each touching facet's pair of blocks [Pa].
+    pub(super) fn place_penalties(&mut self, input: &ContactInput) {
+        let touching = self.integrals.touching();
+        self.penalty_of_facet.clear();
+        self.curvature_of_facet.clear();
+        if self.potential.law() == OverlapLaw::Linear {
+            self.penalty_of_facet.resize(touching.len(), self.penalty_pa);
+            return;
+        }
+        self.overlaps.add_surfaces(input, &self.candidates, &self.integrals);
+        let law = self.potential.law();
+        for touch in touching {
+            let (a, b) = (touch.owner, touch.target);
+            let overlap = self.overlaps.of(a, b);
+            self.penalty_of_facet.push(self.penalty_pa * law.slope(overlap));
+            let curvature = self.penalty_pa * law.curvature(overlap) * self.overlaps.pressure_of(a, b);
+            self.curvature_of_facet.push(curvature);
+        }
+    }
+
+    /// Takes over what facets remember; what did not touch is forgotten.
+    pub(super) fn remember(&mut self, input: &ContactInput, history: &mut ContactHistory) {
+        self.new_facets.clear();
+        let scene = FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
+        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
+            let facet = &self.candidates.facets[force.facet as usize];
+            if let Some(memory) = force.memory {
+                self.new_facets.push(FacetMemory {
+                    facet: facet.triangle,
+                    target: facet.target,
+                    element: scene.element_of(facet),
+                    shear_n: memory.shear_n,
+                    plastic_slip_m: memory.plastic_slip_m,
+                    area_m2: self.integrals.sums_of(touch).area,
+                    broken: memory.broken,
+                });
+            }
+        }
+        std::mem::swap(&mut history.facets, &mut self.new_facets);
+        history.begun = true;
+    }
+
+    /// Stiffness of one facet's hits: normal contact, and the shear spring of a facet that sticks.
+    pub(super) fn add_facet_stiffness(
+        &self,
+        t: usize,
+        input: &ContactInput,
+        stiffness: &mut Vec<PairStiffness>,
+    ) {
+        let touch = &self.integrals.touching()[t];
+        let force = self.forces.binary_search_by_key(&touch.facet, |force| force.facet);
+        let held = force.ok().map(|place| &self.forces[place]);
+        let held = held.filter(|force| force.shear_slope > 0.0 && force.sticks);
+        let corners = input.blocks.triangle_corners(touch.triangle, input.position);
+        let outline = self.hulls.outline(touch.triangle, touch.target);
+        for hit in self.integrals.hits_of(touch) {
+            let tet = hit.tet;
+            let target = match (&self.field, self.hulls.whole(touch.target)) {
+                (_, Some(_)) => Target::Convex(self.hulls.planes_of(touch.target), outline),
+                (Some((_, PotentialField::Pieces(table))), None) => Target::Pieces(table.of(tet)),
+                _ => Target::Element,
+            };
+            let frame = &self.frames[self.candidates.pairs[hit.pair as usize].tet as usize];
+            let triangle = &input.blocks.triangles[touch.triangle.index()];
+            let mut pair = PairStiffness::new(triangle, &input.blocks.tets[tet.index()]);
+            tangent::add_pair(&mut pair, &corners, frame, target, self.penalty_of_facet[t]);
+            if let Some(force) = held {
+                let normal = force.push.normalize();
+                let across = Mat3::identity() - normal * normal.transpose();
+                // The spring of a facet, shared among its hits by their pressure.
+                let [a, b, c] = hit.pressure;
+                let [d, e, g, h] = hit.on_target.pressure;
+                let total = a + b + c;
+                let weights = [a, b, c, -d, -e, -g, -h].map(|w| w / total);
+                pair.add_spring(&weights, &(force.shear_slope * total * across));
+            }
+            stiffness.push(pair);
+        }
+    }
+}
+fn place_frames(
+    frames: &mut Vec<TetFrame>,
+    candidates: &Candidates,
+    input: &ContactInput,
+) -> Result<(), ContactError> {
+    let (blocks, Candidates { tets, order, .. }) = (input.blocks, candidates);
+    frames.resize(tets.len(), TetFrame::default());
+    let place = |(slot, frame): (usize, &mut TetFrame)| {
+        *frame = TetFrame::in_order(&blocks.tet_corners(tets[slot], input.position), &order[slot]);
+        let is_sound = frame.volume_m3 > 0.0 && frame.has_heights();
+        (!is_sound).then_some(slot)
+    };
+    let unsound = frames.par_iter_mut().enumerate().with_min_len(GRAIN_FRAMES).filter_map(place);
+    let Some(slot) = unsound.min() else { return Ok(()) };
+    let (tet, volume_m3) = (tets[slot], frames[slot].volume_m3);
+    Err(ContactError::CollapsedTet { tet, block: blocks.tet_block[tet.index()], volume_m3 })
+}
+
+/// The forces of all facets, and what hosts feel of them.
+pub(super) fn place_forces(
+    forces: &mut Vec<FacetForce>,
+    on_host: &mut Vec<OnTarget>,
+    scene: &FacetScene,
+    integrals: &Integrals,
+    penalty_of_facet: &[f64],
+    hulls: &ConvexBlocks,
+) {
+    let touching = integrals.touching();
+    forces.resize(touching.len(), FacetForce::default());
+    on_host.resize(touching.len(), OnTarget::default());
+    let place = |((force, on_host), t): ((&mut FacetForce, &mut OnTarget), usize)| {
+        let (hits, sums) = (integrals.hits_of(&touching[t]), integrals.sums_of(&touching[t]));
+        *force = scene.force(&touching[t], hits, sums, penalty_of_facet[t]);
+        if hulls.whole(touching[t].target).is_some() {
+            *on_host = hits[0].on_target;
+        }
+    };
+    if touching.len() > GRAIN_FACETS {
+        let entries = forces.par_iter_mut().zip(on_host).zip(0..touching.len());
+        entries.with_min_len(GRAIN_FACETS / 2).for_each(place);
+    } else {
+        forces.iter_mut().zip(on_host).zip(0..).for_each(place);
+    }
+}
+
+/// Fills a list with one entry per facet, on all threads if it is long.
+pub(super) fn for_each_facet<T: Send>(entries: &mut [T], fill: impl Fn((usize, &mut T)) + Send + Sync) {
+    if entries.len() > GRAIN_FACETS {
+        entries.par_iter_mut().enumerate().with_min_len(GRAIN_FACETS / 2).for_each(fill);
+    } else {
+        entries.iter_mut().enumerate().for_each(fill);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndda_mesh::{BlockId, Vec3};
+
+    use crate::potential::contact_potential::ContactPotential;
+    use crate::potential::element::ElementPotential;
+    use crate::testing::{evaluate, test_box, test_set};
+
+    /// Relative difference of the tangent and of differences of the force, for a rigid shift and for a field that
+    /// bends the upper block.
+    fn tangent_error(potential: Box<dyn ContactPotential>, bends: bool) -> f64 {
+        let lower = test_box([0.0; 3], [3.0, 3.0, 1.0], [3, 2, 2]);
+        let upper = test_box([0.83, 0.71, 0.99], [1.1, 0.9, 0.7], [2, 2, 1]);
+        let blocks = test_set(vec![lower, upper]);
+        let upper = blocks.nodes_of(BlockId(1));
+        let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
+        let mut model = PotentialContact::new(1e9).with_potential(potential);
+        let mut shift = vec![Vec3::zeros(); velocity.len()];
+        for i in upper {
+            let x = blocks.rest_position[i];
+            let bent = Vec3::new(0.1 * x.y, -0.2 * x.x * x.y, (3.0 * x.x).sin() * (2.0 * x.y).cos());
+            shift[i] = if bends { bent } else { Vec3::new(0.2, -0.1, 0.9) };
+        }
+        let step = 1e-7;
+        let mut force_at = |factor: f64| {
+            let position: Vec<Vec3> =
+                blocks.rest_position.iter().zip(&shift).map(|(x, u)| x + factor * step * u).collect();
+            let input = ContactInput::new(&blocks, &position, &velocity, 1.0);
+            evaluate(&mut model, &input, &mut ContactHistory::default()).force
+        };
+        let (ahead, behind) = (force_at(1.0), force_at(-1.0));
+        let mut pairs = Vec::new();
+        let input = ContactInput::new(&blocks, &blocks.rest_position, &velocity, 1.0);
+        let history = ContactHistory::default();
+        model.add_stiffness(&input, &history, &mut pairs).expect("sound blocks");
+        let mut change = vec![Vec3::zeros(); shift.len()];
+        for pair in &pairs {
+            pair.add_times(&shift, &mut change);
+            let largest = pair.block.iter().flatten().map(|k| k.norm()).fold(0.0, f64::max);
+            for (p, row) in pair.block.iter().enumerate() {
+                for (q, k) in row.iter().enumerate() {
+                    assert!((k - pair.block[q][p].transpose()).norm() <= 1e-12 * largest);
+                }
+            }
+        }
+        let expected: Vec<Vec3> = ahead.iter().zip(&behind).map(|(a, b)| (a - b) / (2.0 * step)).collect();
+        let size: f64 = expected.iter().map(|f| f.norm_squared()).sum();
+        let error: f64 = expected.iter().zip(&change).map(|(e, c)| (e - c).norm_squared()).sum();
+        (error / size).sqrt()
+    }
+
+    #[test]
+    fn the_tangent_is_symmetric_and_the_slope_of_the_force() {
+        let potentials: [fn() -> Box<dyn ContactPotential>; 2] =
+            [|| Box::new(ElementPotential), || Box::new(crate::SmoothPotential { reference_m: 1.0 })];
+        for potential in potentials {
+            let (shifted, bent) = (tangent_error(potential(), false), tangent_error(potential(), true));
+            // One per cent deep in its smallest element: what turns and stretches is left out to that order.
+            println!("{}: shift {shifted:.1e}, bending {bent:.1e}", potential().name());
+            assert!(shifted < 0.05 && bent < 0.1, "shift {shifted}, bending {bent}");
+        }
+    }
+
+    #[test]
+    fn the_stiffness_bounds_the_slope_of_the_force_for_every_potential() {
+        let potentials: [fn() -> Box<dyn ContactPotential>; 3] = [
+            || Box::new(ElementPotential),
+            || Box::new(crate::SmoothPotential { reference_m: 1.0 }),
+            || Box::new(crate::VolumePotential { exponent: 2.0, reference_m3: 1.0 }),
+        ];
+        let blocks = test_set(vec![
+            test_box([0.0; 3], [3.0, 3.0, 1.0], [3, 2, 2]),
+            test_box([0.83, 0.71, 0.99], [1.1, 0.9, 0.7], [2, 2, 1]),
+        ]);
+        let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
+        let upper = blocks.nodes_of(BlockId(1));
+        for potential in potentials {
+            let mut model = PotentialContact::new(1e9).with_potential(potential());
+            let mut force_at = |lift: f64| {
+                let mut position = blocks.rest_position.clone();
+                position[upper.clone()].iter_mut().for_each(|x| x.z += lift);
+                let input = ContactInput::new(&blocks, &position, &velocity, 1.0);
+                let answer = evaluate(&mut model, &input, &mut ContactHistory::default());
+                (
+                    answer.force[upper.clone()].iter().sum::<Vec3>().z,
+                    answer.stiffness[upper.clone()].iter().sum::<f64>(),
+                )
+            };
+            let slope = (force_at(-1e-6).0 - force_at(1e-6).0) / 2e-6;
+            let bound = force_at(0.0).1;
+            assert!(slope > 0.0 && slope <= bound && bound < 10.0 * slope, "{slope:e} and {bound:e}");
+        }
+    }
+}

@@ -1,0 +1,319 @@
+//! Bonds: facets that hold to a point of another block by cohesion and tensile strength until they break.
+//!
+//! A bond forms where a facet touches another block when contact is first evaluated, over the area S that touches. It
+//! is a spring from the centre of that area to the point of the other block that was there: along the facet's normal n
+//! while it is open, across it always; compression is the potential's. With the opening δ and the offset s across n,
+//!
+//! ```text
+//! f = ½ S (k_b max(δ, 0) n + k_s s)        σ = (f_n − ½ S k_b max(δ, 0)) / ½ S
+//! ```
+//!
+//! the half because facets of both sides carry bonds; f_n is the facet's contact force. The bond breaks for good when
+//! k_b δ > σ_t or |k_s s| > max(0, c + σ tan φ). Its shear is then handed to the friction law of the facet. As shear is
+//! measured from where the bond formed, it does not depend on whether the joint was open or closed on the way. Both
+//! blocks feel f at the same place, so its torques balance, and its work is booked as that of friction.
+
+use ndda_mesh::geometry::triangle_area_vector;
+use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
+
+use crate::affine::convex_target::ConvexBlocks;
+use crate::broad_phase::candidates::{Candidates, Facet};
+use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, facet_basis};
+use crate::friction::law_table::{FrictionLawTable, Memory};
+use crate::integration::clip::{Form, Outline, Polygon};
+use crate::integration::integrals::Integrals;
+use crate::integration::tet_frame::TetFrame;
+use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput, FacetContact, FacetMemory};
+use crate::pair_stiffness::PairStiffness;
+
+/// A facet touches a block when it is no further outside than this part of the size of the target's tetrahedron, and a
+/// bond has at least this part of the facet's area.
+const TOUCHING: f64 = 1e-6;
+
+/// Offsets below this part of the coordinates are rounding.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Identifies a facet's contact: the triangle, the other block and, with memory per element, the element.
+type Key = (TriangleId, BlockId, Option<TetId>);
+
+/// Forms the bonds of a scene whose contact is evaluated for the first time.
+pub(crate) fn form(
+    joints: &FrictionLawTable,
+    (candidates, hulls): (&Candidates, &ConvexBlocks),
+    input: &ContactInput,
+    bonds: &mut Vec<Bond>,
+) {
+    let holds = |facet: &&Facet| {
+        joints.law(input.blocks, facet.triangle, facet.target).is_some_and(|law| law.holds_together())
+    };
+    let facets = candidates.facets.iter().filter(holds);
+    bonds.extend(facets.filter_map(|facet| bond_of(facet, (candidates, hulls), input)));
+}
+
+/// The bond of a facet over the area where it touches its target; none where that is nothing.
+fn bond_of(
+    facet: &Facet,
+    (candidates, hulls): (&Candidates, &ConvexBlocks),
+    input: &ContactInput,
+) -> Option<Bond> {
+    let blocks = input.blocks;
+    let corners = blocks.triangle_corners(facet.triangle, input.position);
+    let normal = triangle_area_vector(&corners).normalize();
+    let (mut share, mut moment) = (0.0, [0.0; 2]);
+    for pair in facet.pairs.clone() {
+        let frame = frame_of(candidates.tet_of(pair as u32), input);
+        let into = TOUCHING * frame.volume_m3.cbrt() * normal;
+        let shifted = corners.map(|x| x + into);
+        let mut polygon = Polygon::all_of(&Outline::TRIANGLE);
+        let mut cut = |at: [f64; 3]| polygon.cut(&Form::through(&at), f64::MIN_POSITIVE);
+        match hulls.whole(facet.target) {
+            Some(_) => {
+                hulls.faces_of(facet.target).iter().for_each(|face| cut(shifted.map(|x| face.phi(&x))))
+            }
+            None => frame.lambda(&shifted).into_iter().for_each(&mut cut),
+        }
+        if polygon.corners().len() < 3 {
+            continue;
+        }
+        for ([a, b, c], twice) in polygon.fan() {
+            share += twice;
+            [0, 1].into_iter().for_each(|k| moment[k] += twice * (a[k] + b[k] + c[k]) / 3.0);
+        }
+    }
+    if share <= TOUCHING {
+        return None;
+    }
+    let [second, third] = moment.map(|m| m / share);
+    let weights = [1.0 - second - third, second, third];
+    let center = mean(&corners, &weights);
+    let lambda_in = |pair: usize| {
+        let tet = candidates.tet_of(pair as u32);
+        (tet, frame_of(tet, input).lambda_at(&center))
+    };
+    let least = |lambda: &[f64; 4]| lambda.iter().copied().fold(f64::INFINITY, f64::min);
+    let deepest = facet.pairs.clone().map(lambda_in).max_by(|a, b| least(&a.1).total_cmp(&least(&b.1)));
+    deepest.map(|(tet, lambda)| Bond { facet: facet.triangle, tet, weights, lambda, share })
+}
+
+/// Whether a bond holds a facet to its target.
+pub(crate) fn holds(bonds: &[Bond], blocks: &BlockSet, memory: Memory, wanted: Key) -> bool {
+    bonds.binary_search_by_key(&wanted, |bond| key(blocks, memory, bond)).is_ok()
+}
+
+fn key(blocks: &BlockSet, memory: Memory, bond: &Bond) -> Key {
+    let element = (memory == Memory::Element).then_some(bond.tet);
+    (bond.facet, blocks.tet_block[bond.tet.index()], element)
+}
+
+/// Drops the bonds that break, and hands their shear to the friction law of their facet. Gives the largest overload of those that
+/// break.
+pub(crate) fn break_overloaded(
+    joints: &FrictionLawTable,
+    (candidates, integrals): (&Candidates, &Integrals),
+    penalty_of_facet: &[f64],
+    input: &ContactInput,
+    history: &mut ContactHistory,
+) -> f64 {
+    let mut largest = 0.0f64;
+    let (blocks, touching) = (input.blocks, integrals.touching());
+    let ContactHistory { bonds, facets, .. } = history;
+    bonds.retain(|bond| {
+        let Some(law) = law(joints, blocks, bond) else { return false };
+        let wanted = key(blocks, joints.memory, bond);
+        let place = touching.binary_search_by_key(&wanted, |touch| {
+            let first = candidates.facets[touch.facet as usize].pairs.start as u32;
+            (touch.triangle, touch.target, wanted.2.map(|_| candidates.tet_of(first)))
+        });
+        let pressed_n =
+            place.map_or(0.0, |t| penalty_of_facet[t] * integrals.sums_of(&touching[t]).pressure.max(0.0));
+        let stretch = Stretch::of(input, bond);
+        let overload = stretch.overload(law, pressed_n);
+        if overload <= 0.0 {
+            return true;
+        }
+        largest = largest.max(overload);
+        if place.is_ok() {
+            hand_over(wanted, &stretch, law, input, facets);
+        }
+        false
+    });
+    largest
+}
+
+/// Makes the shear of a bond that breaks the friction that its facet remembers; the law then limits it.
+fn hand_over(
+    (facet, target, element): Key,
+    stretch: &Stretch,
+    law: &dyn FrictionLaw,
+    input: &ContactInput,
+    facets: &mut Vec<FacetMemory>,
+) {
+    let basis = facet_basis(&input.blocks.triangle_corners(facet, input.position), &stretch.normal);
+    let shear = stretch.shear_n(law);
+    let memory = FacetMemory {
+        facet,
+        target,
+        element,
+        shear_n: [shear.dot(&basis[0]), shear.dot(&basis[1])],
+        plastic_slip_m: 0.0,
+        area_m2: 2.0 * stretch.half_area,
+        broken: !law.survives_slip(),
+    };
+    let key = |known: &FacetMemory| (known.facet, known.target, known.element);
+    match facets.binary_search_by_key(&(facet, target, element), key) {
+        Ok(place) => facets[place] = memory,
+        Err(place) => facets.insert(place, memory),
+    }
+}
+
+/// Adds the forces of bonds that hold.
+pub(crate) fn add_forces(
+    joints: &FrictionLawTable,
+    input: &ContactInput,
+    bonds: &[Bond],
+    output: &mut ContactOutput,
+) {
+    let blocks = input.blocks;
+    for bond in bonds {
+        let Some(law) = law(joints, blocks, bond) else { continue };
+        let stretch = Stretch::of(input, bond);
+        let force = stretch.tension_n(law) * stretch.normal + stretch.shear_n(law);
+        let stiffness = law.shear_stiffness_pa_m().max(law.bond_stiffness_pa_m()) * stretch.half_area;
+        let rows = 1.0 + stretch.lambda.iter().map(|l| l.abs()).sum::<f64>();
+        let mut add = |node: usize, weight: f64| {
+            output.force[node] += weight * force;
+            output.friction_force[node] += weight * force;
+            output.stiffness[node] += rows * stiffness * weight.abs();
+        };
+        let triangle = blocks.triangles[bond.facet.index()];
+        triangle.iter().zip(bond.weights).for_each(|(node, weight)| add(node.index(), weight));
+        let tet = blocks.tets[bond.tet.index()];
+        tet.iter().zip(stretch.lambda).for_each(|(node, lambda)| add(node.index(), -lambda));
+    }
+}
+
+/// The law of the joint that a bond is in.
+fn law<'a>(joints: &'a FrictionLawTable, blocks: &BlockSet, bond: &Bond) -> Option<&'a dyn FrictionLaw> {
+    joints.law(blocks, bond.facet, blocks.tet_block[bond.tet.index()])
+}
+
+/// How a bond is deformed.
+struct Stretch {
+    /// The bonded point of the facet [m].
+    center: Vec3,
+    /// λ of that point in the target's tetrahedron.
+    lambda: [f64; 4],
+    /// Outward unit normal of the facet.
+    normal: Vec3,
+    /// Distance along it to the point that it is bonded to [m]; negative while pressed.
+    opening_m: f64,
+    /// Offset of that point across the normal [m].
+    offset_m: Vec3,
+    /// Half of the bonded area [m²].
+    half_area: f64,
+    /// What of lengths is rounding [m].
+    rounding_m: f64,
+}
+
+impl Stretch {
+    fn of(input: &ContactInput, bond: &Bond) -> Self {
+        let corners = input.blocks.triangle_corners(bond.facet, input.position);
+        let tet = input.blocks.tet_corners(bond.tet, input.position);
+        let anchor: Vec3 = tet.iter().zip(bond.lambda).map(|(x, l)| l * x).sum();
+        let center = mean(&corners, &bond.weights);
+        let area_vector = triangle_area_vector(&corners);
+        let normal = area_vector.normalize();
+        let stretch = anchor - center;
+        let opening_m = stretch.dot(&normal);
+        let largest = corners.iter().chain(&tet).map(Vec3::amax).fold(0.0, f64::max);
+        Self {
+            center,
+            lambda: TetFrame::new(&tet).lambda_at(&center),
+            normal,
+            opening_m,
+            offset_m: stretch - opening_m * normal,
+            half_area: 0.5 * bond.share * area_vector.norm(),
+            rounding_m: ROUNDING * largest,
+        }
+    }
+
+    /// Tension ½ S k_b max(δ, 0) [N].
+    fn tension_n(&self, law: &dyn FrictionLaw) -> f64 {
+        law.bond_stiffness_pa_m() * self.half_area * self.opening_m.max(0.0)
+    }
+
+    /// Shear ½ S k_s s on the facet [N].
+    fn shear_n(&self, law: &dyn FrictionLaw) -> Vec3 {
+        law.shear_stiffness_pa_m() * self.half_area * self.offset_m
+    }
+
+    /// By how much the joint's strength is exceeded, over its strength without normal stress; not above zero while it holds:
+    /// k_b δ ≤ σ_t and |k_s s| ≤ max(0, c + σ tan φ), to rounding.
+    fn overload(&self, law: &dyn FrictionLaw, pressed_n: f64) -> f64 {
+        let whole = ShearMemory { broken: false, ..ShearMemory::default() };
+        let capacity_n = |normal_n: f64| {
+            let slip = FacetSlip { normal_n, area_m2: 2.0 * self.half_area, ..FacetSlip::default() };
+            law.capacity_n(&slip, &whole)
+        };
+        let tensile_pa = law.bond_stiffness_pa_m() * (self.opening_m - self.rounding_m);
+        let rounding_n = law.shear_stiffness_pa_m() * self.half_area * self.rounding_m;
+        let strength_n = capacity_n(pressed_n - self.tension_n(law)) + rounding_n;
+        let tensile_n = (tensile_pa - law.tension_pa()) * self.half_area;
+        let excess_n = tensile_n.max(self.shear_n(law).norm() - strength_n);
+        let unstressed_n = capacity_n(0.0).max(law.tension_pa() * self.half_area);
+        if unstressed_n > 0.0 { excess_n / unstressed_n } else { excess_n }
+    }
+}
+
+/// Adds what each bond does.
+pub(crate) fn add_facets(
+    joints: &FrictionLawTable,
+    input: &ContactInput,
+    bonds: &[Bond],
+    facets: &mut Vec<FacetContact>,
+) {
+    let blocks = input.blocks;
+    facets.extend(bonds.iter().filter_map(|bond| {
+        let (law, stretch) = (law(joints, blocks, bond)?, Stretch::of(input, bond));
+        Some(FacetContact {
+            facet: bond.facet,
+            target: blocks.tet_block[bond.tet.index()],
+            area_m2: 0.0,
+            normal: stretch.normal,
+            center: stretch.center,
+            push_n: stretch.tension_n(law) * stretch.normal,
+            friction_n: stretch.shear_n(law),
+            sticks: true,
+        })
+    }));
+}
+
+/// Adds the stiffness of bonds.
+pub(crate) fn add_stiffness(
+    joints: &FrictionLawTable,
+    input: &ContactInput,
+    bonds: &[Bond],
+    stiffness: &mut Vec<PairStiffness>,
+) {
+    let blocks = input.blocks;
+    for bond in bonds {
+        let (triangle, tet) = (&blocks.triangles[bond.facet.index()], &blocks.tets[bond.tet.index()]);
+        let Some(law) = law(joints, blocks, bond) else { continue };
+        let Stretch { normal, opening_m, half_area, lambda, .. } = Stretch::of(input, bond);
+        let along = normal * normal.transpose();
+        let normal_pa_m = if opening_m > 0.0 { law.bond_stiffness_pa_m() } else { 0.0 };
+        let spring = normal_pa_m * along + law.shear_stiffness_pa_m() * (Mat3::identity() - along);
+        let ([u, v, w], [a, b, c, d]) = (bond.weights, lambda);
+        let mut pair = PairStiffness::new(triangle, tet);
+        pair.add_spring(&[u, v, w, -a, -b, -c, -d], &(half_area * spring));
+        stiffness.push(pair);
+    }
+}
+
+fn frame_of(tet: TetId, input: &ContactInput) -> TetFrame {
+    TetFrame::new(&input.blocks.tet_corners(tet, input.position))
+}
+
+fn mean(corners: &[Vec3; 3], weights: &[f64; 3]) -> Vec3 {
+    corners.iter().zip(weights).map(|(x, weight)| *weight * x).sum()
+}

@@ -1,0 +1,179 @@
+//! What one facet does: normal force, slip and friction.
+
+use ndda_mesh::geometry::triangle_area_vector;
+use ndda_mesh::{BlockSet, TetId, Vec3};
+
+use crate::broad_phase::candidates::{Candidates, Facet};
+use crate::friction::bond;
+use crate::friction::law::{FacetSlip, ShearMemory, facet_basis, length};
+use crate::friction::law_table::{FrictionLawTable, Memory};
+use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, Hit};
+use crate::model::{ContactHistory, ContactInput, FacetMemory, SpringSlip};
+
+/// Friction below this part of what it may be holds like a spring.
+const STICKS: f64 = 1.0 - 1e-9;
+
+/// The forces of one facet per unit of ∫ φ N dA, and what it remembers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FacetForce {
+    /// −k n: what the facet's normal force is made of [Pa].
+    pub push: Vec3,
+    /// The same for friction [Pa].
+    pub shear: Vec3,
+    /// Torque of friction about the centre of pressure, which `shear` does not have [N m].
+    pub couple_n_m: Vec3,
+    /// ½ k_s S / ∫ φ dA: what a shift of the facet adds to `shear` [Pa/m].
+    pub shear_slope: f64,
+    /// Whether its friction is below what it may be.
+    pub sticks: bool,
+    /// What a shear spring did in the step, where there is one.
+    pub spring: Option<SpringSlip>,
+    /// Memory to keep, where there is friction and contact.
+    pub memory: Option<ShearMemory>,
+    /// Whether there is a force at all.
+    pub touches: bool,
+    /// Centre of pressure [m].
+    pub center: Vec3,
+    /// In [`Candidates::facets`].
+    pub facet: u32,
+}
+
+/// What the evaluation of a facet reads.
+#[derive(Clone, Copy)]
+pub(crate) struct FacetScene<'a> {
+    /// Blocks and their motion.
+    pub input: &'a ContactInput<'a>,
+    /// Pairs and facets.
+    pub candidates: &'a Candidates,
+    /// Friction, if there is any.
+    pub joints: Option<&'a FrictionLawTable>,
+    /// Memory of the last step.
+    pub history: &'a ContactHistory,
+}
+
+impl FacetScene<'_> {
+    /// Normal force −k n ∫ φ dA and friction of one facet.
+    #[inline]
+    pub(crate) fn force(
+        &self,
+        touch: &ActiveFacet,
+        hits: &[Hit],
+        sums: &FacetMoments,
+        penalty_pa: f64,
+    ) -> FacetForce {
+        let mut force = FacetForce { facet: touch.facet, ..FacetForce::default() };
+        if sums.pressure <= 0.0 {
+            return force;
+        }
+        let corners = self.input.blocks.triangle_corners(touch.triangle, self.input.position);
+        let normal = triangle_area_vector(&corners).normalize();
+        (force.push, force.touches) = (-penalty_pa * normal, true);
+        force.center = sums.center(&corners);
+        if let Some(joints) = self.joints {
+            self.add_friction(joints, touch, (hits, sums), (penalty_pa, &normal), &mut force);
+        }
+        force
+    }
+
+    /// Friction by the law of the facet, if it acts on facets; apart, so that it is no weight on scenes without.
+    #[inline(never)]
+    fn add_friction(
+        &self,
+        joints: &FrictionLawTable,
+        touch: &ActiveFacet,
+        (hits, sums): (&[Hit], &FacetMoments),
+        (penalty_pa, normal): (f64, &Vec3),
+        force: &mut FacetForce,
+    ) {
+        let law = joints.law(self.input.blocks, touch.triangle, touch.target);
+        let Some(law) = law.filter(|law| !law.acts_on_faces()) else { return };
+        let facet = &self.candidates.facets[touch.facet as usize];
+        let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
+        let basis = facet_basis(&corners, normal);
+        let (mut memory, last_area_m2) = self.remembered(facet, sums);
+        let bonds = &self.history.bonds;
+        let key = (facet.triangle, facet.target, self.element_of(facet));
+        if !bonds.is_empty() && bond::holds(bonds, self.input.blocks, joints.memory, key) {
+            // The bond carries the shear.
+            (force.sticks, force.memory) = (true, Some(ShearMemory { broken: false, ..memory }));
+            return;
+        }
+        let mut slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
+        slip.mean_area_m2 = 0.5 * (last_area_m2 + sums.area);
+        law.advance(&slip, &mut memory);
+        let [x, y] = memory.shear_n;
+        force.sticks = length([x, y]) < STICKS * law.capacity_n(&slip, &memory);
+        force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / sums.pressure;
+        force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / sums.pressure;
+        if force.shear_slope > 0.0 {
+            let slip_m = basis[0] * slip.slip_m[0] + basis[1] * slip.slip_m[1];
+            let (capacity_n, shear_n) = (law.capacity_n(&slip, &memory), length([x, y]));
+            force.spring = Some(SpringSlip { capacity_n, shear_n, slip_m, slides: !force.sticks });
+        }
+        force.memory = Some(memory);
+    }
+
+    fn slip(
+        &self,
+        touch: &ActiveFacet,
+        (hits, sums): (&[Hit], &FacetMoments),
+        basis: &[Vec3; 2],
+        penalty_pa: f64,
+    ) -> FacetSlip {
+        let in_basis = |v: &Vec3| [v.dot(&basis[0]), v.dot(&basis[1])];
+        let velocity = relative_velocity(touch, (hits, sums), self.input) / sums.pressure;
+        FacetSlip {
+            normal_n: penalty_pa * sums.pressure,
+            area_m2: sums.area,
+            mean_area_m2: sums.area,
+            slip_m: in_basis(&(self.input.dt_s * velocity)),
+            stopping_n: [0.0; 2],
+        }
+    }
+
+    /// What the facet remembers of its target, and the area of the last step; nothing when they did not touch before.
+    fn remembered(&self, facet: &Facet, sums: &FacetMoments) -> (ShearMemory, f64) {
+        let key = |memory: &FacetMemory| (memory.facet, memory.target, memory.element);
+        let wanted = (facet.triangle, facet.target, self.element_of(facet));
+        match self.history.facets.binary_search_by_key(&wanted, key) {
+            Ok(place) => {
+                let FacetMemory { shear_n, plastic_slip_m, broken, area_m2, .. } = self.history.facets[place];
+                (ShearMemory { shear_n, plastic_slip_m, broken }, area_m2)
+            }
+            // What touches from the start has done so before.
+            Err(_) => (ShearMemory::default(), if self.history.begun { 0.0 } else { sums.area }),
+        }
+    }
+
+    /// The element that memory belongs to, if it belongs to one.
+    pub(crate) fn element_of(&self, facet: &Facet) -> Option<TetId> {
+        let per_element = self.joints.is_some_and(|joints| joints.memory == Memory::Element);
+        per_element.then(|| self.candidates.tet_of(facet.pairs.start as u32))
+    }
+}
+
+/// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.
+pub(crate) fn relative_velocity(
+    touch: &ActiveFacet,
+    found: (&[Hit], &FacetMoments),
+    input: &ContactInput,
+) -> Vec3 {
+    relative_motion(touch, found, (input.blocks, input.velocity))
+}
+
+/// The same of any vectors per node.
+pub(crate) fn relative_motion(
+    touch: &ActiveFacet,
+    (hits, sums): (&[Hit], &FacetMoments),
+    (blocks, velocity): (&BlockSet, &[Vec3]),
+) -> Vec3 {
+    let triangle = &blocks.triangles[touch.triangle.index()];
+    let mut sum: Vec3 = triangle.iter().zip(sums.weights).map(|(node, w)| w * velocity[node.index()]).sum();
+    for hit in hits {
+        let tet = &blocks.tets[hit.tet.index()];
+        for (node, w) in tet.iter().zip(hit.on_target.pressure) {
+            sum -= w * velocity[node.index()];
+        }
+    }
+    sum
+}

@@ -1,0 +1,109 @@
+//! The seam for friction laws, and the memory that they keep.
+
+use ndda_mesh::Vec3;
+
+/// What a facet, or a whole face, does against its target in this step; vectors are in the facet's own basis.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FacetSlip {
+    /// Normal force f_n on the facet [N]; negative for tension, which only an unbroken contact carries.
+    pub normal_n: f64,
+    /// Area in contact S [m²].
+    pub area_m2: f64,
+    /// Mean of that and of the area in the last step, of which the shear spring is that the slip stretches [m²].
+    pub mean_area_m2: f64,
+    /// Slip of this step, contactor minus target, predicted from the velocities [m].
+    pub slip_m: [f64; 2],
+    /// Change of the shear force on the contactor that would leave no slip velocity at the end of the step [N].
+    pub stopping_n: [f64; 2],
+}
+
+/// What a facet remembers of its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShearMemory {
+    /// Shear force on the contactor in the facet's own basis (first edge, normal × first edge) [N].
+    /// The basis turns with the facet, so the force does too.
+    pub shear_n: [f64; 2],
+    /// Slip beyond the stretch of the spring, for laws that soften [m].
+    pub plastic_slip_m: f64,
+    /// Whether cohesion is gone; it never comes back.
+    pub broken: bool,
+}
+
+impl Default for ShearMemory {
+    /// A contact that begins during a run: no shear, and nothing that could hold it together.
+    fn default() -> Self {
+        Self { shear_n: [0.0; 2], plastic_slip_m: 0.0, broken: true }
+    }
+}
+
+/// A law for the shear force of one contactor facet, or one face, on one target.
+///
+/// Contract (checked by [`check_friction`](crate::friction::testing::check_friction)): the force never exceeds what the law
+/// says it can carry, opposes the slip, and is zero without contact.
+pub trait FrictionLaw: Send + Sync {
+    /// Its name, for a person who asks.
+    fn name(&self) -> &'static str;
+
+    /// Advances the shear force by one step.
+    fn advance(&self, slip: &FacetSlip, memory: &mut ShearMemory);
+
+    /// Most that the law carries [N].
+    fn capacity_n(&self, slip: &FacetSlip, memory: &ShearMemory) -> f64;
+
+    /// Stiffness of the law against slip, of both sides together [Pa/m]: with it a step has to be short enough.
+    fn shear_stiffness_pa_m(&self) -> f64 {
+        0.0
+    }
+
+    /// Whether what touches when contact is first evaluated holds together until it breaks.
+    fn holds_together(&self) -> bool {
+        false
+    }
+
+    /// Whether a facet whose bond breaks keeps the strength that it has, and softens from there.
+    fn survives_slip(&self) -> bool {
+        false
+    }
+
+    /// Tension that an unbroken contact carries [Pa].
+    fn tension_pa(&self) -> f64 {
+        0.0
+    }
+
+    /// Stiffness of a bond that carries tension [Pa/m].
+    fn bond_stiffness_pa_m(&self) -> f64 {
+        0.0
+    }
+
+    /// Whether the law acts on whole faces through [`FacetSlip::stopping_n`], not on each facet by its slip.
+    fn acts_on_faces(&self) -> bool {
+        false
+    }
+}
+
+/// √(x² + y²).
+pub(crate) fn length([x, y]: [f64; 2]) -> f64 {
+    (x * x + y * y).sqrt()
+}
+
+/// The vector no longer than `most`, along its own direction; whether it was.
+pub(crate) fn capped(trial: [f64; 2], most: f64) -> ([f64; 2], bool) {
+    let size = length(trial);
+    if size > most {
+        let scale = most / size;
+        ([trial[0] * scale, trial[1] * scale], true)
+    } else {
+        (trial, false)
+    }
+}
+
+/// Two unit vectors in the facet that turn with it as a whole, whichever corner is the first: along
+/// a = x₀ + R(−120°) x₁ + R(120°) x₂, R being turns about the normal, and across. Other first corners turn a by 120°; it does not
+/// vanish where the facet has an area.
+pub(crate) fn facet_basis(corners: &[Vec3; 3], normal: &Vec3) -> [Vec3; 2] {
+    let [x0, x1, x2] = corners;
+    let half_root_of_3 = 0.5 * 3f64.sqrt();
+    let along = 0.5 * ((x0 - x1) + (x0 - x2)) + half_root_of_3 * normal.cross(&(x2 - x1));
+    let along = (along - normal * normal.dot(&along)).normalize();
+    [along, normal.cross(&along)]
+}

@@ -1,0 +1,14 @@
+//! Friction, cohesion and tension: their laws, and the forces on facets and patches that they limit.
+
+pub(crate) mod bond;
+pub(crate) mod coulomb;
+pub(crate) mod facet;
+pub(crate) mod law;
+pub(crate) mod law_table;
+pub(crate) mod mohr_coulomb;
+pub(crate) mod patches;
+pub(crate) mod softening_coulomb;
+pub mod testing;
+pub(crate) mod velocity_coulomb;
+
+pub use facet::FacetForce;

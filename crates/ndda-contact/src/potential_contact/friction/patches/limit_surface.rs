@@ -1,0 +1,207 @@
+//! Coulomb friction of a whole patch: the law holds point by point, the patch answers with a force and a torque.
+//!
+//! The pressure of a patch is spread evenly over the rectangle that has the same force, centre and second moments. Its cells q slide at
+//! v_q = V + Ω n × r_q, and friction dissipates
+//!
+//! ```text
+//! D(V, Ω) = μN/n Σ_q √(|v_q|² + Ω² ρ²),      ρ² = (h₁² + h₂²)/24
+//! ```
+//!
+//! ρ is the mean that |v| gains over a cell of h₁ × h₂ when it slides across its arm (half of the second moment about the cell's centre).
+//! D is convex and homogeneous, so it is the support function of a convex limit surface (Goyal, Ruina & Papadopoulos 1991), and
+//! friction is its slope: force F = −∂D/∂V, torque T = −∂D/∂Ω.
+
+use ndda_mesh::{Mat3, Vec3};
+
+/// Cells along and across a patch whose spin matters, by its aspect ratio: force and torque are then right to 3 % of μN, the torque
+/// of a pure twist to 0.5 %.
+const CELLS: [(f64, [u32; 2]); 3] = [(1.5, [4, 4]), (4.5, [8, 2]), (f64::INFINITY, [16, 2])];
+/// Ω r / |V| below which one cell will do.
+const TRANSLATES: f64 = 0.1;
+/// Slip that counts as none, as parts of the slip without friction: first coarse, then fine.
+const SMOOTHING: [f64; 2] = [1e-3, 1e-8];
+/// Newton steps for each, and halvings of one.
+const MOST_STEPS: usize = 30;
+const MOST_HALVINGS: usize = 30;
+/// What is left of D where Newton's method ends.
+const TOLERANCE: f64 = 1e-11;
+
+/// What friction of a patch can carry. Slips are (V₁, V₂, Ω r) along the axes of the rectangle, forces (F₁, F₂, T/r), r the radius of gyration.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct LimitSurface {
+    /// μN [N].
+    pub most_n: f64,
+    /// r, the root of the mean square distance of the pressure from its centre [m].
+    pub radius_m: f64,
+    /// Half the sides of the rectangle over r, the longer first.
+    half: [f64; 2],
+    cells: [u32; 2],
+    /// ρ²/r².
+    cell_radius2: f64,
+    /// Most T/r.
+    most_twist_n: f64,
+}
+
+impl LimitSurface {
+    /// From μN and the mean squares of the distance along the principal axes [m²], the larger first.
+    pub(super) fn new(most_n: f64, second_moment_m2: [f64; 2]) -> Self {
+        let [along, across] = second_moment_m2;
+        let radius_m = (along + across).sqrt();
+        let half = [(3.0 * along).sqrt() / radius_m, (3.0 * across).sqrt() / radius_m];
+        let aspect = (along / across).sqrt();
+        let cells = CELLS.iter().find(|(most, _)| aspect.is_nan() || aspect <= *most).unwrap_or(&CELLS[2]).1;
+        let side = |k: usize| 2.0 * half[k] / f64::from(cells[k]);
+        let cell_radius2 = (side(0).powi(2) + side(1).powi(2)) / 24.0;
+        let mut surface = Self { most_n, radius_m, half, cells, cell_radius2, most_twist_n: 0.0 };
+        surface.most_twist_n = surface.dissipation(&Vec3::z(), 0.0).1.z;
+        surface
+    }
+
+    /// The same for slips like this one: where a patch hardly turns, one cell has the same friction to second order in Ω r/|V|.
+    fn for_slip(mut self, slip: &Vec3) -> Self {
+        let speed2 = slip.x * slip.x + slip.y * slip.y;
+        if slip.z * slip.z < TRANSLATES * TRANSLATES * speed2 {
+            let share = slip.x * slip.x / speed2;
+            let [a, b] = self.half.map(|half| half * half / 3.0);
+            (self.cells, self.cell_radius2) = ([1, 1], a * share + b * (1.0 - share));
+        }
+        self
+    }
+
+    /// D of a displacement (u₁, u₂, θ r) [J].
+    pub(super) fn work_j(&self, slip: &Vec3) -> f64 {
+        self.for_slip(slip).dissipation(slip, 0.0).0
+    }
+
+    /// D, its gradient and its second derivatives, |v| being √(|v|² + ε²).
+    fn dissipation(&self, slip: &Vec3, smoothing2: f64) -> (f64, Vec3, Mat3) {
+        let ([n, m], [a, b]) = (self.cells, self.half);
+        let place = |i: u32, n: u32, half: f64| (f64::from(2 * i + 1) / f64::from(n) - 1.0) * half;
+        let (mut value, mut slope, mut curvature) = (0.0, Vec3::zeros(), Mat3::zeros());
+        for i in 0..n {
+            let x = place(i, n, a);
+            for j in 0..m {
+                let y = place(j, m, b);
+                let (u, v) = (slip.x - slip.z * y, slip.y + slip.z * x);
+                let twist = self.cell_radius2 * slip.z;
+                let speed = (u * u + v * v + twist * slip.z + smoothing2).sqrt();
+                if speed == 0.0 {
+                    continue;
+                }
+                let (e, f) = (u / speed, v / speed);
+                let t = x * f - y * e + twist / speed;
+                value += speed;
+                slope += Vec3::new(e, f, t);
+                let per_speed = 1.0 / speed;
+                let turn = x * x + y * y + self.cell_radius2;
+                curvature[(0, 0)] += (1.0 - e * e) * per_speed;
+                curvature[(1, 1)] += (1.0 - f * f) * per_speed;
+                curvature[(2, 2)] += (turn - t * t) * per_speed;
+                curvature[(0, 1)] -= e * f * per_speed;
+                curvature[(0, 2)] -= (y + e * t) * per_speed;
+                curvature[(1, 2)] += (x - f * t) * per_speed;
+            }
+        }
+        curvature[(1, 0)] = curvature[(0, 1)];
+        curvature[(2, 0)] = curvature[(0, 2)];
+        curvature[(2, 1)] = curvature[(1, 2)];
+        let share = self.most_n / f64::from(n * m);
+        (share * value, share * slope, share * curvature)
+    }
+
+    /// Whether a force is within the limit for sure: within the hull of all forces without torque and all torques without force.
+    fn holds(&self, force: &Vec3) -> bool {
+        let along = (force.x * force.x + force.y * force.y).sqrt();
+        along * self.most_twist_n + force.z.abs() * self.most_n <= self.most_n * self.most_twist_n
+    }
+
+    /// Friction on a patch that would slip at s without, and slips at σ = s + A⁻¹ F with it: the σ of least ½ (σ − s)·A (σ − s) + D(σ).
+    /// Sought from `start`, which is near σ unless it `is_first`; gives F, to `tolerance_n`: D alone is too coarse a measure of it where the slip of a
+    /// step is far from what friction changes.
+    pub(super) fn friction(
+        &self,
+        stiffness: &Mat3,
+        (free_slip, start): (&Vec3, &Vec3),
+        tolerance_n: f64,
+        is_first: bool,
+    ) -> Vec3 {
+        let stopping = -(stiffness * free_slip);
+        if self.holds(&stopping) {
+            return stopping;
+        }
+        let surface = self.for_slip(free_slip);
+        let mut slip = *start;
+        for &smoothing in &SMOOTHING[usize::from(!is_first)..] {
+            slip = surface.least(stiffness, (free_slip, slip), smoothing * free_slip.norm(), tolerance_n);
+        }
+        let force = stiffness * (slip - free_slip);
+        self.shortened(force)
+    }
+
+    /// Newton's method with a line search.
+    fn least(
+        &self,
+        stiffness: &Mat3,
+        (free_slip, start): (&Vec3, Vec3),
+        smoothing: f64,
+        tolerance_n: f64,
+    ) -> Vec3 {
+        let smoothing2 = smoothing * smoothing;
+        let value = |slip: &Vec3| {
+            let gap = slip - free_slip;
+            let force = stiffness * gap;
+            let (dissipation, slope, curvature) = self.dissipation(slip, smoothing2);
+            (0.5 * gap.dot(&force) + dissipation, force + slope, stiffness + curvature)
+        };
+        let mut slip = start;
+        let (mut least, mut slope, mut curvature) = value(&slip);
+        for _ in 0..MOST_STEPS {
+            let Some(step) = solved(&curvature, &slope) else { break };
+            let gain = slope.dot(&step);
+            let is_found = gain <= TOLERANCE * least && slope.amax() <= tolerance_n;
+            if gain.is_nan() || is_found {
+                break;
+            }
+            let mut part = 1.0;
+            let mut next = value(&(slip - step));
+            for _ in 0..MOST_HALVINGS {
+                if next.0 <= least - 1e-4 * part * gain {
+                    break;
+                }
+                part *= 0.5;
+                next = value(&(slip - part * step));
+            }
+            if next.0 >= least {
+                break;
+            }
+            slip -= part * step;
+            (least, slope, curvature) = next;
+        }
+        slip
+    }
+
+    /// A force no longer than μN: Newton's method ends a rounding beyond.
+    fn shortened(&self, force: Vec3) -> Vec3 {
+        let along = (force.x * force.x + force.y * force.y).sqrt();
+        let part = if along > self.most_n { self.most_n / along } else { 1.0 };
+        Vec3::new(part * force.x, part * force.y, force.z.clamp(-self.most_twist_n, self.most_twist_n))
+    }
+}
+
+/// A⁻¹ b for a positive definite A.
+#[inline]
+fn solved(a: &Mat3, b: &Vec3) -> Option<Vec3> {
+    let d0 = a[(0, 0)];
+    let (l1, l2) = (a[(1, 0)] / d0, a[(2, 0)] / d0);
+    let d1 = a[(1, 1)] - l1 * a[(1, 0)];
+    let w = a[(2, 1)] - l2 * a[(1, 0)];
+    let l3 = w / d1;
+    let d2 = a[(2, 2)] - l2 * a[(2, 0)] - l3 * w;
+    if !(d0 > 0.0 && d1 > 0.0 && d2 > 0.0) {
+        return None;
+    }
+    let y1 = b.y - l1 * b.x;
+    let z = (b.z - l2 * b.x - l3 * y1) / d2;
+    let y = y1 / d1 - l3 * z;
+    Some(Vec3::new(b.x / d0 - l1 * y - l2 * z, y, z))
+}

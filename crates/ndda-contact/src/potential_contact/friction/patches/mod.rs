@@ -1,0 +1,325 @@
+//! Friction of whole faces, for laws that act on velocities.
+//!
+//! A face is a set of boundary triangles in one plane and of one surface. Its contact with another block is a patch, together with a
+//! face of the other block that lies on it (`opposite.rs`): its friction is one force F and one torque T about the normal, spread in
+//! proportion to the pressure, and obeys Coulomb's law point by point (`limit_surface.rs`). The friction of all patches is found
+//! together (`solve.rs`); blocks that deform answer to it at their nodes, as the solver says (`nodal.rs`).
+
+mod limit_surface;
+mod moments;
+mod nodal;
+mod opposite;
+mod patch;
+mod solve;
+
+use std::ops::Range;
+
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
+use rayon::prelude::*;
+
+use crate::affine::convex_target::ConvexBlocks;
+use crate::affine::surface::BlockFaces;
+use crate::assembly::adjacency::BlockContactIndex;
+use crate::assembly::couples::CoupleScene;
+use crate::assembly::join_if::join_if;
+use crate::friction::facet::FacetForce;
+use crate::friction::law::FrictionLaw;
+use crate::friction::law_table::FrictionLawTable;
+use crate::friction::patches::nodal::{Nodal, NodalSide};
+use crate::friction::patches::opposite::Opposite;
+use crate::friction::patches::patch::{ContactPatch, Moved, PatchSummary, Remembered};
+use crate::friction::patches::solve::{CoupledPatch, Motion};
+use crate::integration::integrals::Integrals;
+use crate::integration::overlap_pair::{ActiveFacet, FacetMoments};
+use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
+
+/// Faces below which a second thread costs more than it brings.
+const GRAIN_PATCHES: usize = 64;
+
+/// The same for blocks.
+const GRAIN_BODIES: usize = 16;
+
+/// What all faces read.
+#[derive(Clone, Copy)]
+pub(crate) struct PatchScene<'a> {
+    /// Blocks and their motion.
+    pub input: &'a ContactInput<'a>,
+    /// Integrals of the pairs.
+    pub integrals: &'a Integrals,
+    /// Laws.
+    pub joints: &'a FrictionLawTable,
+    /// Blocks that are taken whole.
+    pub hulls: &'a ConvexBlocks,
+}
+
+impl PatchScene<'_> {
+    fn touch(&self, t: u32) -> &ActiveFacet {
+        &self.integrals.touching()[t as usize]
+    }
+
+    fn sums(&self, t: u32) -> &FacetMoments {
+        self.integrals.sums_of(self.touch(t))
+    }
+
+    fn owner(&self, t: u32) -> BlockId {
+        self.touch(t).owner
+    }
+
+    /// What couples of facets read.
+    fn couples(&self) -> CoupleScene<'_> {
+        let ContactInput { blocks, position, .. } = *self.input;
+        CoupleScene { blocks, position, integrals: self.integrals, hulls: self.hulls }
+    }
+
+    /// The law of the facets of a run, if it acts on faces.
+    fn law(&self, run: &[Place]) -> Option<&dyn FrictionLaw> {
+        let (_, target, first) = run[0];
+        let law = self.joints.law(self.input.blocks, self.touch(first).triangle, target);
+        law.filter(|law| law.acts_on_faces())
+    }
+}
+
+/// (face, target, number of the touching facet).
+type Place = (u32, BlockId, u32);
+
+/// Facets by face and target, and room for what a step finds.
+#[derive(Default)]
+pub(crate) struct FrictionPatches {
+    /// Face of each boundary triangle, numbered over all blocks.
+    face_of: Vec<u32>,
+    /// Touching facets by face and target.
+    by_face: Vec<Place>,
+    /// Touching facets by patch, those of each patch among them, and the patch of each facet.
+    order: Vec<Place>,
+    runs: Vec<Range<usize>>,
+    run_of: Vec<u32>,
+    opposite: Opposite,
+    /// Patches by block.
+    by_block: BlockContactIndex,
+    /// Blocks with the velocities at the end of the step.
+    bodies: Vec<Body>,
+    /// Whether a block has patches with friction.
+    is_asked: Vec<bool>,
+    /// Nodes of those that deform.
+    nodal: Nodal,
+    /// One per run.
+    patches: Vec<ContactPatch>,
+    summaries: Vec<PatchSummary>,
+    coupled: Vec<CoupledPatch>,
+    /// Sides of each patch on blocks that deform.
+    sides: Vec<[Option<NodalSide>; 2]>,
+    /// Room for their solution, by block.
+    most_n: Vec<f64>,
+    pushed: Vec<u32>,
+    new_faces: Vec<FaceMemory>,
+    gaps_j: Vec<f64>,
+    /// Second moments of each facet about its own centre of pressure [m²].
+    own_m2: Vec<Mat3>,
+}
+
+impl FrictionPatches {
+    /// Takes the faces of all blocks; once per set of blocks.
+    pub(crate) fn fit(&mut self, blocks: &BlockSet, surfaces: &[BlockFaces]) {
+        self.face_of.clear();
+        let mut next = 0;
+        for (block, BlockFaces { of_triangle, .. }) in blocks.ids().zip(surfaces) {
+            let named = &blocks.triangle_surface[blocks.triangles_of(block)];
+            let parts: Vec<_> = of_triangle.iter().zip(named).collect();
+            let mut distinct = parts.clone();
+            distinct.sort_unstable();
+            distinct.dedup();
+            self.face_of.extend(
+                parts.iter().map(|part| next + distinct.partition_point(|other| other < part) as u32),
+            );
+            next += distinct.len() as u32;
+        }
+    }
+
+    /// Sorts touching facets by face and target; those of a block are together already, and its faces follow each other.
+    pub(crate) fn arrange(&mut self, integrals: &Integrals) {
+        self.by_face.clear();
+        let place = |(t, touch): (u32, &ActiveFacet)| (self.face_of[touch.triangle.index()], touch.target, t);
+        let touching = integrals.touching();
+        self.by_face.extend((0..).zip(touching).map(place));
+        let of_one_block =
+            |a: &Place, b: &Place| touching[a.2 as usize].owner == touching[b.2 as usize].owner;
+        self.by_face.par_chunk_by_mut(of_one_block).for_each(<[Place]>::sort_unstable);
+    }
+
+    /// Which facets each patch has.
+    fn join_faces(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
+        let Self { opposite, by_face, order, runs, run_of, .. } = self;
+        opposite.join(scene, forces, (by_face, order), runs);
+        run_of.resize(forces.len(), 0);
+        for (number, run) in (0..).zip(&*runs) {
+            order[run.clone()].iter().for_each(|&(_, _, t)| run_of[t as usize] = number);
+        }
+    }
+
+    /// Adds the friction of faces whose law acts on faces to the facets' forces, and takes over what they remember; the facets are
+    /// [arranged](Self::arrange).
+    pub(crate) fn add(
+        &mut self,
+        scene: &PatchScene,
+        forces: &mut [FacetForce],
+        history: &mut ContactHistory,
+    ) {
+        self.join_faces(scene, forces);
+        self.find_patches(scene, forces, history);
+        let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
+        self.by_block.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
+        self.advance_bodies(scene);
+        self.solve(scene, forces);
+        let Self { patches, runs, run_of, order, new_faces, own_m2, .. } = self;
+        let spread = |((t, force), run): ((usize, &mut FacetForce), &u32)| {
+            let FacetMoments { pressure, .. } = *scene.sums(t as u32);
+            if pressure > 0.0 {
+                let patch = &patches[*run as usize];
+                patch.spread_to(force, (pressure, &own_m2[t]), patch.sign_of(scene.touch(t as u32)));
+            }
+        };
+        let memory_of = |(patch, run): (&ContactPatch, &Range<usize>)| {
+            let (face, target, _) = order[run.start];
+            patch.has_friction().then_some(FaceMemory { face, target, ..patch.memory })
+        };
+        join_if(
+            patches.len() > GRAIN_PATCHES,
+            || {
+                forces
+                    .par_iter_mut()
+                    .enumerate()
+                    .zip(&run_of[..])
+                    .with_min_len(GRAIN_PATCHES)
+                    .for_each(spread)
+            },
+            || {
+                new_faces.clear();
+                new_faces.extend(patches.iter().zip(runs.iter()).filter_map(memory_of));
+            },
+        );
+        std::mem::swap(&mut history.faces, &mut self.new_faces);
+    }
+
+    /// Where each face presses, how hard, and how it slips.
+    fn find_patches(&mut self, scene: &PatchScene, forces: &[FacetForce], history: &ContactHistory) {
+        self.own_m2.resize(forces.len(), Mat3::zeros());
+        let own = |(t, (own, force)): (u32, (&mut Mat3, &FacetForce))| {
+            let FacetMoments { pressure, area, .. } = *scene.sums(t);
+            let touch = scene.touch(t);
+            if pressure > 0.0 {
+                *own = moments::second_moment_m2(scene, touch, area, &force.center);
+            }
+        };
+        let each = self.own_m2.par_iter_mut().zip(forces).enumerate();
+        each.with_min_len(GRAIN_PATCHES).for_each(|(t, each)| own((t as u32, each)));
+        let (order, runs, own) = (&self.order, &self.runs, &self.own_m2);
+        self.patches.resize(runs.len(), ContactPatch::default());
+        self.summaries.resize(runs.len(), PatchSummary::default());
+        let patches = self.patches.par_chunks_mut(GRAIN_PATCHES);
+        let found = patches.zip(self.summaries.par_chunks_mut(GRAIN_PATCHES));
+        found.zip(runs.par_chunks(GRAIN_PATCHES)).for_each(|((patches, summaries), runs)| {
+            let mut remembered = Remembered::since(history, &order[runs[0].start]);
+            for ((patch, summary), run) in patches.iter_mut().zip(summaries).zip(runs) {
+                patch.find(&order[run.clone()], scene, (forces, own), &mut remembered);
+                *summary = patch.summary();
+            }
+        });
+    }
+
+    /// Takes the blocks that do not deform to the end of the step under all loads, normal forces and the friction of the last step.
+    fn advance_bodies(&mut self, scene: &PatchScene) {
+        self.bodies.clear();
+        self.bodies.extend_from_slice(scene.input.bodies);
+        self.is_asked.clear();
+        self.is_asked.resize(scene.input.bodies.len(), false);
+        for summary in self.summaries.iter().filter(|summary| summary.has_friction) {
+            for block in [summary.owner.index(), summary.target.index()] {
+                self.is_asked[block] = true;
+            }
+        }
+        let (is_asked, by_block, patches) = (&self.is_asked, &self.by_block, &self.patches);
+        let is_nodal = |body: &Body| scene.input.deformation.is_some() && body.deforms;
+        let advance = |(block, body): (usize, &mut Body)| {
+            if is_asked[block] && body.mass_kg.is_finite() && !is_nodal(body) {
+                body.add_gyroscopic_torque();
+                for (k, sign) in by_block.at(BlockId(block as u32)) {
+                    patches[k as usize].apply_loads(body, sign);
+                    patches[k as usize].apply_previous_friction(body, sign);
+                }
+                body.advance_velocity(scene.input.dt_s);
+            }
+        };
+        self.bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(advance);
+    }
+
+    /// How blocks that deform answer to the loads, and to the friction of patches, whose sides on them are found.
+    fn ask_blocks(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
+        let Self { nodal, is_asked, by_block, runs, order, patches, sides, own_m2, .. } = self;
+        sides.clear();
+        sides.resize(patches.len(), [None; 2]);
+        nodal.begin(scene.input.blocks, scene.input.velocity.len());
+        let Some(deformation) = scene.input.deformation else { return };
+        let bodies = scene.input.bodies;
+        for (block, body) in scene.input.blocks.ids().zip(bodies) {
+            if is_asked[block.index()] && body.deforms {
+                let at = by_block.at(block).map(|(k, _)| &order[runs[k as usize].clone()]);
+                nodal.add_block(block, scene, forces, at);
+            }
+        }
+        for ((patch, run), sides) in patches.iter().zip(&*runs).zip(sides) {
+            if patch.has_friction() {
+                let side = |block: BlockId| {
+                    let found = (patch, &order[run.clone()]);
+                    let deforms = bodies[block.index()].deforms;
+                    deforms.then(|| nodal.add_side(block, scene, found, (forces, own_m2)))
+                };
+                *sides = [patch.owner, patch.target].map(side);
+            }
+        }
+        nodal.answer(deformation);
+    }
+
+    /// Friction of the patches.
+    fn solve(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
+        self.ask_blocks(scene, forces);
+        let Self { patches, bodies, coupled, nodal, sides, most_n, pushed, .. } = self;
+        let ContactInput { blocks, velocity, bodies: start, dt_s, is_iterated, .. } = *scene.input;
+        coupled.clear();
+        for ((number, patch), sides) in (0..).zip(&*patches).zip(&*sides) {
+            if patch.has_friction() {
+                coupled.extend(CoupledPatch::new((number, patch), (start, nodal), *sides, dt_s));
+            }
+        }
+        coupled.iter().for_each(|patch| patch.push_nodes(nodal));
+        let mut motion = Motion { blocks, start: velocity, bodies, nodal, dt_s, is_iterated, most_n, pushed };
+        solve::solve(coupled, start, &mut motion);
+        for found in coupled.iter() {
+            let patch = &mut patches[found.patch as usize];
+            let (force_n, torque_n_m, slides) = found.friction();
+            (patch.force_n, patch.torque_n_m) = (force_n, torque_n_m);
+            patch.turn_rad = Some(found.turn_rad(start, bodies, dt_s));
+            patch.memory =
+                FaceMemory { force_n, torque_n_m, slides, normal: patch.normal, ..FaceMemory::default() };
+        }
+    }
+
+    /// How far friction of the last [`add`](Self::add) was from Coulomb's law over displacements of the nodes [m]: blocks and energy [J], one call for
+    /// each patch.
+    pub(crate) fn each_coulomb_gap(
+        &mut self,
+        (blocks, integrals, forces): (&BlockSet, &Integrals, &[FacetForce]),
+        moved: &[Vec3],
+        add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+        let scene = Moved { blocks, integrals, moved };
+        let Self { patches, runs, order, gaps_j, .. } = self;
+        gaps_j.resize(patches.len(), 0.0);
+        let gap = |((gap_j, patch), run): ((&mut f64, &ContactPatch), &Range<usize>)| {
+            *gap_j = patch.coulomb_gap_j(&order[run.clone()], &scene, forces);
+        };
+        gaps_j.par_iter_mut().zip(&*patches).zip(&*runs).with_min_len(GRAIN_PATCHES).for_each(gap);
+        for (patch, &gap_j) in patches.iter().zip(&*gaps_j) {
+            add(patch.owner, patch.target, gap_j);
+        }
+    }
+}

@@ -1,0 +1,305 @@
+//! A face of a block on another block, and the face that lies on it: where they press, how hard, and how they slip.
+
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
+
+use crate::friction::facet::{FacetForce, relative_motion};
+use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory};
+use crate::friction::patches::limit_surface::LimitSurface;
+use crate::friction::patches::{PatchScene, Place};
+use crate::integration::integrals::Integrals;
+use crate::integration::overlap_pair::{ActiveFacet, FacetMoments};
+use crate::model::{Body, ContactHistory, FaceMemory};
+
+/// Second moments that differ by less than this part are the same.
+const TIE: f64 = 1e-6;
+
+/// What a patch is, in short.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PatchSummary {
+    pub owner: BlockId,
+    pub target: BlockId,
+    /// Whether there is friction on it.
+    pub has_friction: bool,
+}
+
+/// How far a step moved the nodes, and what touched meanwhile.
+#[derive(Clone, Copy)]
+pub(super) struct Moved<'a> {
+    pub blocks: &'a BlockSet,
+    pub integrals: &'a Integrals,
+    pub moved: &'a [Vec3],
+}
+
+/// The contact of one face with one block; facets of the block's own face that lies on it count with the opposite sign.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ContactPatch {
+    pub owner: BlockId,
+    pub target: BlockId,
+    has_law: bool,
+    /// ∫ φ dA and its centre; nothing else counts where there is no pressure.
+    pub pressure: f64,
+    pub center: Vec3,
+    pub normal: Vec3,
+    pub normal_n: f64,
+    pub area_m2: f64,
+    /// Most friction [N].
+    pub most_n: f64,
+    /// The axes of the pressure, and the normal; what friction can carry along them.
+    pub axes: [Vec3; 3],
+    pub surface: LimitSurface,
+    /// Force [N] on it, and torque [N m] about the centre, but for its own friction.
+    load_n: Vec3,
+    load_torque_n_m: Vec3,
+    /// Mean of r rᵀ about the centre, weighted by pressure [m²].
+    pub second_moment_m2: Mat3,
+    /// Whether one of both blocks deforms.
+    pub deforms: bool,
+    /// Friction of the last step, turned with the face; none at first touch.
+    pub previous: Option<FaceMemory>,
+    /// Slip that loads other than contact bring within a step from rest: less is not resolved [m].
+    least_slip_m: f64,
+    /// Turn about the normal in this step, where it is found from the motion of the blocks.
+    pub turn_rad: Option<f64>,
+    /// Friction of this step [N, N m], and what is kept of it.
+    pub force_n: Vec3,
+    pub torque_n_m: f64,
+    pub memory: FaceMemory,
+}
+
+impl ContactPatch {
+    /// The patch of the facets of a run.
+    pub(super) fn find(
+        &mut self,
+        run: &[Place],
+        scene: &PatchScene,
+        (forces, own): (&[FacetForce], &[Mat3]),
+        remembered: &mut Remembered,
+    ) {
+        let (_, target, first) = run[0];
+        let (owner, law) = (scene.owner(first), scene.law(run));
+        let deforms = |block: BlockId| scene.input.bodies[block.index()].deforms;
+        let (has_law, deforms) = (law.is_some(), deforms(owner) || deforms(target));
+        *self = Self { owner, target, has_law, deforms, ..Self::default() };
+        self.sum(run, scene, forces);
+        self.measure(run, scene, forces, own);
+        if !self.has_friction() {
+            return;
+        }
+        let load_m_s2 = |block: BlockId| {
+            let body = &scene.input.bodies[block.index()];
+            body.load_n.norm() / body.mass_kg
+        };
+        self.least_slip_m = scene.input.dt_s.powi(2) * load_m_s2(owner).max(load_m_s2(target));
+        self.most_n = law.map_or(0.0, |law| self.capacity_n(law));
+        let (axes, second_moment_m2) = self.principal_axes(run, scene, forces);
+        (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
+        let old = remembered.of(&run[0]).filter(|old| old.normal.dot(&self.normal) > 0.0);
+        self.previous = old.map(|old| old.turned_to(&self.normal));
+    }
+
+    pub(super) fn summary(&self) -> PatchSummary {
+        PatchSummary { owner: self.owner, target: self.target, has_friction: self.has_friction() }
+    }
+
+    /// Whether there is friction on it.
+    pub(super) fn has_friction(&self) -> bool {
+        self.has_law && self.pressure > 0.0 && self.area_m2 > 0.0
+    }
+
+    /// Mean square distance of the pressure from its centre [m²].
+    pub(super) fn radius2(&self) -> f64 {
+        self.second_moment_m2.trace()
+    }
+
+    /// 1 for a facet of the owner, −1 for one of the target.
+    pub(super) fn sign_of(&self, touch: &ActiveFacet) -> f64 {
+        if touch.owner == self.owner { 1.0 } else { -1.0 }
+    }
+
+    /// What it does to one of its facets, of the owner or, with the opposite sign, of the target.
+    pub(super) fn spread_to(&self, force: &mut FacetForce, (pressure, own): (f64, &Mat3), sign: f64) {
+        if self.has_friction() {
+            let twist = sign * self.torque_n_m / self.pressure / self.radius2();
+            let arm = force.center - self.center;
+            force.shear = sign * self.force_n / self.pressure + twist * self.normal.cross(&arm);
+            force.couple_n_m = pressure * twist * own.trace() * self.normal;
+            force.sticks = !self.memory.slides;
+        }
+    }
+
+    /// Pushes its owner or, with the opposite sign, its target by the normal force, and by friction of facets.
+    pub(super) fn apply_loads(&self, body: &mut Body, sign: f64) {
+        body.push(&self.center, &(sign * self.load_n));
+        body.torque_n_m += sign * self.load_torque_n_m;
+    }
+
+    /// The same by its friction of the last step.
+    pub(super) fn apply_previous_friction(&self, body: &mut Body, sign: f64) {
+        if let Some(old) = &self.previous {
+            body.push(&self.center, &(sign * old.force_n));
+            body.torque_n_m += sign * old.torque_n_m * self.normal;
+        }
+    }
+
+    /// Two unit vectors in the face along which the pressure has its principal second moments, the normal, and these moments [m²].
+    fn principal_axes(
+        &self,
+        run: &[Place],
+        scene: &PatchScene,
+        forces: &[FacetForce],
+    ) -> ([Vec3; 3], [f64; 2]) {
+        let [s, t] = tangents(&self.normal);
+        let moment = |a: &Vec3, b: &Vec3| a.dot(&(self.second_moment_m2 * b));
+        let (xx, xy, yy) = (moment(&s, &s), moment(&s, &t), moment(&t, &t));
+        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+        let spread = half.hypot(xy);
+        let angle = if spread > TIE * mean {
+            0.5 * xy.atan2(half)
+        } else {
+            self.fourfold_angle(run, scene, forces, &[s, t])
+        };
+        let (sin, cos) = angle.sin_cos();
+        let along = s * cos + t * sin;
+        // The lesser one is positive but for rounding.
+        let least = (mean - spread).max(1e-6 * mean);
+        ([along, self.normal.cross(&along), self.normal], [mean + spread, least])
+    }
+
+    /// Angle of the axes where both second moments are the same, as those of a square: it follows the facets, Σ p (x + iy)⁴ being real and
+    /// negative along the axes of facets that lie in the corners, so that it turns with the blocks.
+    fn fourfold_angle(
+        &self,
+        run: &[Place],
+        scene: &PatchScene,
+        forces: &[FacetForce],
+        [s, t]: &[Vec3; 2],
+    ) -> f64 {
+        let (mut real, mut imaginary) = (0.0, 0.0);
+        for &(_, _, facet) in run {
+            let arm = forces[facet as usize].center - self.center;
+            let (x, y) = (s.dot(&arm), t.dot(&arm));
+            let pressure = scene.sums(facet).pressure.max(0.0);
+            real += pressure * (x * x * (x * x - 6.0 * y * y) + y.powi(4));
+            imaginary += pressure * 4.0 * x * y * (x * x - y * y);
+        }
+        0.25 * (-imaginary).atan2(-real)
+    }
+
+    /// Energy [J] by which friction did less than Coulomb's law takes from a displacement of the surfaces, D(u, θ) + F·u + T θ ≥ 0: none where the
+    /// patch sticks without slip or slides against its friction. `moved` are the displacements of the nodes [m]. Zero where a block deforms: its
+    /// vibrations leave gaps in quiet contacts that are as large as those of impacts which the step does not resolve.
+    pub(super) fn coulomb_gap_j(&self, run: &[Place], scene: &Moved, forces: &[FacetForce]) -> f64 {
+        if !self.has_friction() || self.deforms {
+            return 0.0;
+        }
+        let (mut shift, mut twist) = (Vec3::zeros(), 0.0);
+        for &(_, _, t) in run {
+            let touch = &scene.integrals.touching()[t as usize];
+            let sums = scene.integrals.sums_of(touch);
+            if sums.pressure > 0.0 {
+                let found = (scene.integrals.hits_of(touch), sums);
+                let moved = relative_motion(touch, found, (scene.blocks, scene.moved));
+                let slip = self.sign_of(touch) * moved / self.pressure;
+                shift += slip;
+                let arm = forces[t as usize].center - self.center;
+                twist += arm.cross(&slip).dot(&self.normal);
+            }
+        }
+        let radius_m = self.surface.radius_m;
+        // Facets do not see their own spin, the motion of the blocks does.
+        let spin = self.turn_rad.map_or(twist / radius_m, |turn_rad| turn_rad * radius_m);
+        let slip = Vec3::new(self.axes[0].dot(&shift), self.axes[1].dot(&shift), spin);
+        if slip.norm() <= self.least_slip_m {
+            return 0.0;
+        }
+        let work_j = self.force_n.dot(&shift) + self.torque_n_m / radius_m * spin;
+        (self.surface.work_j(&slip) + work_j).max(0.0)
+    }
+
+    /// Most friction that a law allows [N].
+    fn capacity_n(&self, law: &dyn FrictionLaw) -> f64 {
+        let slip = FacetSlip { normal_n: self.normal_n, area_m2: self.area_m2, ..FacetSlip::default() };
+        law.capacity_n(&slip, &ShearMemory::default())
+    }
+
+    fn sum(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce]) {
+        let mut push = Vec3::zeros();
+        for &(_, _, t) in run {
+            let FacetMoments { pressure, area, .. } = *scene.sums(t);
+            if pressure > 0.0 {
+                self.pressure += pressure;
+                self.center += pressure * forces[t as usize].center;
+                self.area_m2 += area;
+                push += self.sign_of(scene.touch(t)) * pressure * forces[t as usize].push;
+            }
+        }
+        if push == Vec3::zeros() {
+            // Where blocks only just touch, an overlap may be too small for a force: without one there is no friction.
+            self.pressure = 0.0;
+            return;
+        }
+        self.center /= self.pressure;
+        // Per unit of pressure: that of blocks which only just touch is too small a number to be squared.
+        let push = push / self.pressure;
+        self.normal_n = push.norm() * self.pressure;
+        self.normal = -push.normalize();
+    }
+
+    /// Loads, and second moments about the centre; a facet counts with its own size, so that one facet has some, too.
+    fn measure(&mut self, run: &[Place], scene: &PatchScene, forces: &[FacetForce], own: &[Mat3]) {
+        for &(_, _, t) in run {
+            let FacetMoments { pressure, .. } = *scene.sums(t);
+            if pressure > 0.0 {
+                let FacetForce { push, shear, center, .. } = &forces[t as usize];
+                let sign = self.sign_of(scene.touch(t));
+                let (arm, load) = (center - self.center, sign * pressure * (push + shear));
+                self.load_n += load;
+                self.load_torque_n_m += arm.cross(&load);
+                let share = pressure / self.pressure;
+                self.second_moment_m2 += share * (arm * arm.transpose() + own[t as usize]);
+            }
+        }
+    }
+}
+
+impl FaceMemory {
+    /// The memory turned with the normal, by the least rotation: c = a × b, v + c × v + c × (c × v)/(1 + a·b).
+    fn turned_to(self, normal: &Vec3) -> Self {
+        let (c, d) = (self.normal.cross(normal), 1.0 + self.normal.dot(normal));
+        let in_plane = |v: Vec3| {
+            let turned = v + c.cross(&v) + c.cross(&c.cross(&v)) / d;
+            turned - normal * normal.dot(&turned)
+        };
+        Self { force_n: in_plane(self.force_n), ..self }
+    }
+}
+
+/// What faces remember, in their order: asked for one after the other, it is at hand.
+pub(super) struct Remembered<'a> {
+    rest: &'a [FaceMemory],
+}
+
+impl<'a> Remembered<'a> {
+    pub(super) fn since(history: &'a ContactHistory, first: &Place) -> Self {
+        let start = history.faces.partition_point(|memory| Self::is_before(memory, first));
+        Self { rest: &history.faces[start..] }
+    }
+
+    fn is_before(memory: &FaceMemory, &(face, target, _): &Place) -> bool {
+        (memory.face, memory.target) < (face, target)
+    }
+
+    /// That of a face on a block, none before the last one asked for.
+    fn of(&mut self, place: &Place) -> Option<FaceMemory> {
+        let passed = self.rest.iter().take_while(|memory| Self::is_before(memory, place)).count();
+        self.rest = &self.rest[passed..];
+        self.rest.first().filter(|memory| (memory.face, memory.target) == (place.0, place.1)).copied()
+    }
+}
+
+/// Two unit vectors across a normal.
+fn tangents(normal: &Vec3) -> [Vec3; 2] {
+    let axis = [Vec3::x(), Vec3::y(), Vec3::z()][normal.iamin()];
+    let first = normal.cross(&axis).normalize();
+    [first, normal.cross(&first)]
+}

@@ -1,0 +1,285 @@
+//! Friction of all patches, found together, as forces that stop their slip or oppose it.
+//!
+//! Normal forces are known, so friction is a problem of Tresca: with the velocities u of rigid blocks and of the nodes of others, their inertia
+//! M and the forces f_i ∈ −∂D_i(slip_i) of the patches, M u′ = F + Σ f_i. It is convex, and each step of
+//!
+//! ```text
+//! u_a = u₀ + γ Δt M⁻¹ (F + Σ f_a)                        f_a ∈ −∂D(slip of u_a)
+//! u₁  = u₀ +   Δt M⁻¹ (F + (1 − γ) Σ f_a + γ Σ f₁)       f₁ ∈ −∂D(slip of u₁)         γ = 1 − 1/√2
+//! ```
+//!
+//! (Alexander 1977: of second order, and a patch that sticks has no slip at the end) is a minimum of ½ u·M u − … + γ Δt Σ D_i, found
+//! patch by patch (Gauss–Seidel), from the friction of the last step. For blocks that deform Δt M⁻¹ is how their nodes answer within the whole
+//! step, elasticity included (`nodal.rs`).
+
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
+
+use crate::friction::patches::limit_surface::LimitSurface;
+use crate::friction::patches::nodal::{Nodal, NodalSide};
+use crate::friction::patches::patch::ContactPatch;
+use crate::model::Body;
+
+/// γ of Alexander's method.
+const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
+/// Friction is found when no patch changes its own by more than this part of μN, or of the largest on both of its blocks.
+const TOLERANCE: f64 = 1e-7;
+/// The same, and sweeps, where the solver compares forces of one evaluation with the next.
+const ITERATED_TOLERANCE: f64 = 1e-8;
+const ITERATED_SWEEPS: usize = 300;
+/// What is left of the friction of one patch when it is found, as a part of the change that does not matter.
+const LOCAL_TOLERANCE: f64 = 0.1;
+/// Least flexibility of a patch in any direction over the largest.
+const REGULAR: f64 = 1e-9;
+/// Sweeps over all patches, and patches looked at in them where these are few.
+const MOST_SWEEPS: usize = 100;
+const MOST_VISITS: usize = 20_000;
+
+/// One patch among others.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct CoupledPatch {
+    /// Its number.
+    pub patch: u32,
+    owner: BlockId,
+    target: BlockId,
+    /// Axes of the patch, and its normal.
+    axes: [Vec3; 3],
+    /// From the mass centres to the patch [m], and what acts on nodes instead, where a block deforms.
+    arms: [Vec3; 2],
+    sides: [Option<NodalSide>; 2],
+    surface: LimitSurface,
+    /// Change of friction that does not matter to the blocks [N].
+    tolerance_n: f64,
+    /// When this patch was advanced last.
+    seen: u32,
+    /// What a force changes the slip by in a whole step, and the inverse.
+    flexibility: Mat3,
+    stiffness: Mat3,
+    /// Slip without its own friction where that was found last.
+    free_slip: Vec3,
+    /// Friction of this stage, and of the first.
+    force: Vec3,
+    first: Vec3,
+}
+
+impl CoupledPatch {
+    /// A patch with its friction of the last step; none where nothing it touches can move.
+    pub(super) fn new(
+        (number, patch): (u32, &ContactPatch),
+        (bodies, nodal): (&[Body], &Nodal),
+        sides: [Option<NodalSide>; 2],
+        dt_s: f64,
+    ) -> Option<Self> {
+        let (axes, surface) = (patch.axes, patch.surface);
+        let [own, other] = [patch.owner, patch.target].map(|block| &bodies[block.index()]);
+        let arms = [patch.center - own.center, patch.center - other.center];
+        let mut found = Self {
+            patch: number,
+            owner: patch.owner,
+            target: patch.target,
+            axes,
+            arms,
+            sides,
+            surface,
+            ..Self::default()
+        };
+        for ((body, arm), side) in [own, other].into_iter().zip(arms).zip(&sides) {
+            found.flexibility += match side {
+                Some(side) => nodal.flexibility(side, &axes),
+                None => dt_s * found.flexibility_of(body, &arm),
+            };
+        }
+        if patch.deforms {
+            // Supports may leave some motions only, a single facet feels no torque.
+            found.flexibility += Mat3::from_diagonal_element(REGULAR * found.flexibility.trace());
+        }
+        found.stiffness = found.flexibility.try_inverse().filter(|a| a.iter().all(|x| x.is_finite()))?;
+        if let Some(old) = &patch.previous {
+            let twist = old.torque_n_m / surface.radius_m;
+            found.force = Vec3::new(axes[0].dot(&old.force_n), axes[1].dot(&old.force_n), twist);
+        }
+        Some(found)
+    }
+
+    /// Changes of the slip rate with the force, for one of both blocks.
+    fn flexibility_of(&self, body: &Body, arm: &Vec3) -> Mat3 {
+        if body.mass_kg.is_infinite() {
+            return Mat3::zeros();
+        }
+        let radius = self.surface.radius_m;
+        let turn = |k: usize| if k < 2 { arm.cross(&self.axes[k]) } else { radius * self.axes[2] };
+        let turns = Mat3::from_columns(&[turn(0), turn(1), turn(2)]);
+        let shift = Mat3::from_diagonal(&Vec3::new(1.0, 1.0, 0.0)) / body.mass_kg;
+        turns.transpose() * body.inverse_inertia * turns + shift
+    }
+
+    /// (V₁, V₂, Ω r).
+    fn slip(&self, motion: &Motion) -> Vec3 {
+        let of = |block: BlockId, k: usize| match &self.sides[k] {
+            Some(side) => motion.nodal.slip(side, &self.axes),
+            None => self.slip_of(&motion.bodies[block.index()], &self.arms[k]),
+        };
+        of(self.owner, 0) - of(self.target, 1)
+    }
+
+    /// The same of one block that does not deform.
+    fn slip_of(&self, body: &Body, arm: &Vec3) -> Vec3 {
+        let velocity = body.velocity_m_s + body.spin_rad_s.cross(arm);
+        let spin = self.surface.radius_m * body.spin_rad_s;
+        Vec3::new(self.axes[0].dot(&velocity), self.axes[1].dot(&velocity), self.axes[2].dot(&spin))
+    }
+
+    /// Adds what a force of this patch changes velocities by in some time.
+    fn push(&self, motion: &mut Motion, force: &Vec3, time_s: f64) {
+        let along = self.axes[0] * force.x + self.axes[1] * force.y;
+        let torque = self.axes[2] * (force.z * self.surface.radius_m);
+        for (k, block, sign) in [(0, self.owner, 1.0), (1, self.target, -1.0)] {
+            if let Some(side) = &self.sides[k] {
+                motion.nodal.push(side, force, sign * time_s / motion.dt_s);
+                continue;
+            }
+            let (body, arm) = (&mut motion.bodies[block.index()], &self.arms[k]);
+            if body.mass_kg.is_finite() {
+                body.velocity_m_s += sign * time_s / body.mass_kg * along;
+                body.spin_rad_s += body.inverse_inertia * (sign * time_s * (arm.cross(&along) + torque));
+            }
+        }
+    }
+
+    /// Adds its friction of the last step to the nodes of blocks that deform.
+    pub(super) fn push_nodes(&self, nodal: &mut Nodal) {
+        for (side, sign) in self.sides.iter().zip([1.0, -1.0]) {
+            if let Some(side) = side {
+                nodal.push(side, &self.force, sign);
+            }
+        }
+    }
+
+    /// Turn of the owner against the target about the normal in the step, at the mean of the spins at both ends.
+    pub(super) fn turn_rad(&self, start: &[Body], end: &[Body], dt_s: f64) -> f64 {
+        let spin = |block: BlockId| start[block.index()].spin_rad_s + end[block.index()].spin_rad_s;
+        0.5 * dt_s * self.axes[2].dot(&(spin(self.owner) - spin(self.target)))
+    }
+
+    /// Friction of both stages: force [N] and torque about the normal [N m], and whether it is all that there may be.
+    pub(super) fn friction(&self) -> (Vec3, f64, bool) {
+        let force = (1.0 - GAMMA) * self.first + GAMMA * self.force;
+        let along = self.axes[0] * force.x + self.axes[1] * force.y;
+        let slides = along.norm() >= (1.0 - 1e-6) * self.surface.most_n;
+        (along, force.z * self.surface.radius_m, slides)
+    }
+}
+
+/// All that moves.
+pub(super) struct Motion<'a> {
+    pub blocks: &'a BlockSet,
+    /// Of the nodes, at the start of the step [m/s].
+    pub start: &'a [Vec3],
+    pub bodies: &'a mut [Body],
+    pub nodal: &'a mut Nodal,
+    pub dt_s: f64,
+    /// Whether the solver compares forces of one evaluation with the next.
+    pub is_iterated: bool,
+    /// Largest friction that a patch of each block can carry [N].
+    pub most_n: &'a mut Vec<f64>,
+    /// When each block was pushed last by more than a tolerance.
+    pub pushed: &'a mut Vec<u32>,
+}
+
+/// Finds the friction of all patches; `motion` comes with the velocities at the end of the step under all loads, normal forces and the patches'
+/// friction of the last step, `start` with those at its start. Gives the sweeps.
+pub(super) fn solve(patches: &mut [CoupledPatch], start: &[Body], motion: &mut Motion) -> usize {
+    motion.set_tolerances(patches);
+    motion.change(start, |from, to| from + GAMMA * (to - from));
+    let first = solve_stage(patches, motion);
+    motion.change(start, |from, to| from + (to - from) / GAMMA);
+    patches.iter_mut().for_each(|patch| patch.first = patch.force);
+    first + solve_stage(patches, motion)
+}
+
+impl Motion<'_> {
+    /// A change of friction matters by what else acts on both blocks: the lesser of both largest.
+    fn set_tolerances(&mut self, patches: &mut [CoupledPatch]) {
+        self.most_n.clear();
+        self.most_n.resize(self.bodies.len(), 0.0);
+        for patch in &*patches {
+            for block in [patch.owner.index(), patch.target.index()] {
+                self.most_n[block] = self.most_n[block].max(patch.surface.most_n);
+            }
+        }
+        let tolerance = if self.is_iterated { ITERATED_TOLERANCE } else { TOLERANCE };
+        for patch in patches {
+            let of = |block: BlockId| {
+                let is_held = self.bodies[block.index()].mass_kg.is_infinite();
+                if is_held { f64::INFINITY } else { self.most_n[block.index()] }
+            };
+            patch.tolerance_n = tolerance * of(patch.owner).min(of(patch.target));
+        }
+    }
+
+    fn change(&mut self, start: &[Body], change: impl Fn(Vec3, Vec3) -> Vec3) {
+        for (from, to) in start.iter().zip(&mut *self.bodies) {
+            to.velocity_m_s = change(from.velocity_m_s, to.velocity_m_s);
+            to.spin_rad_s = change(from.spin_rad_s, to.spin_rad_s);
+        }
+        self.nodal.change(self.blocks, self.start, change);
+    }
+}
+
+/// One of both minima.
+fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
+    let time_s = GAMMA * motion.dt_s;
+    motion.pushed.clear();
+    motion.pushed.resize(motion.bodies.len(), 0);
+    let mut now = 0;
+    let most_sweeps = if motion.is_iterated {
+        ITERATED_SWEEPS
+    } else {
+        MOST_SWEEPS.max(MOST_VISITS / patches.len().max(1))
+    };
+    for sweep in 0..most_sweeps {
+        let mut changes = false;
+        let mut advance = |patch: &mut CoupledPatch| {
+            now += 1;
+            changes |= patch.advance(motion, time_s, (now, sweep == 0));
+        };
+        if sweep % 2 == 0 {
+            patches.iter_mut().for_each(&mut advance);
+        } else {
+            patches.iter_mut().rev().for_each(&mut advance);
+        }
+        if !changes {
+            return sweep;
+        }
+    }
+    most_sweeps
+}
+
+impl CoupledPatch {
+    /// Friction of this patch while that of the others stays; whether it had to change.
+    fn advance(&mut self, motion: &mut Motion, time_s: f64, (now, is_first): (u32, bool)) -> bool {
+        let pushed = motion.pushed[self.owner.index()].max(motion.pushed[self.target.index()]);
+        if !is_first && pushed <= self.seen {
+            return false;
+        }
+        self.seen = now;
+        let slip = self.slip(motion);
+        let free_slip = slip - GAMMA * (self.flexibility * self.force);
+        if !is_first && (self.stiffness * (free_slip - self.free_slip)).amax() <= GAMMA * self.tolerance_n {
+            return false;
+        }
+        self.free_slip = free_slip;
+        let tolerance_n = LOCAL_TOLERANCE * self.tolerance_n;
+        let slips = (&free_slip, &slip);
+        let force = self.surface.friction(&(self.stiffness / GAMMA), slips, tolerance_n, is_first);
+        let change = force - self.force;
+        self.force = force;
+        self.push(motion, &change, time_s);
+        if change.amax() <= self.tolerance_n {
+            return false;
+        }
+        for block in [self.owner, self.target] {
+            motion.pushed[block.index()] = now;
+        }
+        true
+    }
+}

@@ -1,0 +1,392 @@
+//! The integrals of all candidate pairs, in parallel, many regions at a time.
+
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+use ndda_mesh::geometry::triangle_area_vector;
+use ndda_mesh::{TetId, TriangleId, Vec3};
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+use crate::affine::half_spaces::{HalfSpaces, Planes};
+use crate::broad_phase::candidates::{Facet, Pair};
+use crate::broad_phase::finder::FEW_NODES;
+use crate::integration::clip::Outline;
+use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, Hit};
+use crate::integration::pair_moments::{PairMoments, PsiRange};
+use crate::integration::pair_report::{HitReport, list_past_centroid};
+use crate::integration::queue::RegionQueue;
+use crate::integration::region::{Pieces, Region};
+use crate::integration::scene::{Scene, are_on_one_side};
+use crate::integration::tet_frame::TetFrame;
+use crate::potential::contact_potential::PotentialField;
+
+/// Pairs of a chunk: one task for a thread.
+const CHUNK_PAIRS: usize = 512;
+
+/// Most chunks that a thread takes at a time: with more, one waits for the other at the end.
+const MOST_CHUNKS: usize = 8;
+
+/// A run of facets and the hits among their pairs.
+#[derive(Default)]
+pub(crate) struct Chunk {
+    /// Facets of this chunk, in [`Candidates::facets`].
+    facets: Range<usize>,
+    /// Hits in the order of pairs.
+    pub hits: Vec<Hit>,
+    /// Its number.
+    number: u32,
+    /// Facets that have some, ascending, and what theirs come to.
+    touching: Vec<ActiveFacet>,
+    sums: Vec<FacetMoments>,
+    /// What the hits tell of themselves.
+    pub report: HitReport,
+    /// Pairs of hits whose triangle has passed the tetrahedron's centroid, in their order, where φ is largest there.
+    pub past: Vec<u32>,
+}
+
+/// A contactor's triangle.
+#[derive(Clone, Copy, Default)]
+struct Triangle {
+    corners: [Vec3; 3],
+    /// Outward unit normal.
+    normal: Vec3,
+    area: f64,
+}
+
+impl Triangle {
+    fn new(scene: &Scene, triangle: TriangleId) -> Self {
+        let corners = scene.blocks.triangle_corners(triangle, scene.position);
+        let area_vector = triangle_area_vector(&corners);
+        let area = area_vector.norm();
+        Self { corners, normal: area_vector / area, area }
+    }
+}
+
+/// A pair that may overlap.
+struct PendingPair {
+    /// In [`Candidates::pairs`], and its tetrahedron.
+    pair: u32,
+    tet: TetId,
+    /// λ_b of the target at the corners of the contactor's triangle, as `[b][a]`.
+    lambda: [[f64; 3]; 4],
+    /// Where the contactor is a face.
+    range: Option<PsiRange>,
+    moments: PairMoments,
+}
+
+/// What a thread needs while it is at a chunk.
+#[derive(Default)]
+struct Scratch {
+    seen: Vec<PendingPair>,
+    region: Region,
+    pieces: Pieces,
+    sides: HalfSpaces,
+    batches: RegionQueue,
+}
+
+impl Chunk {
+    fn integrate(&mut self, arch: Arch, scene: &Scene, scratch: &mut Scratch) {
+        let facets = &scene.candidates.facets[self.facets.clone()];
+        let pairs = facets[facets.len() - 1].pairs.end - facets[0].pairs.start;
+        self.hits.clear();
+        // A contact that closes further rarely asks for more than a quarter.
+        self.hits.reserve(pairs / 4);
+        self.touching.clear();
+        self.touching.reserve(facets.len());
+        self.sums.reserve(facets.len());
+        scratch.make_room(pairs);
+        let (mut last, mut triangle) = (None, Triangle::default());
+        for (k, facet) in facets.iter().enumerate() {
+            if scene.hulls.are_apart(facet.neighbours) {
+                continue;
+            }
+            // Facets of one triangle follow each other.
+            if last != Some(facet.triangle) {
+                (last, triangle) = (Some(facet.triangle), Triangle::new(scene, facet.triangle));
+            }
+            let first = scratch.seen.len() as u32;
+            scratch.add_facet(arch, scene, facet, &triangle);
+            let hits = [first, scratch.seen.len() as u32];
+            if hits[0] < hits[1] {
+                let (chunk, place) = (self.number, self.touching.len() as u32);
+                let Facet { triangle, target, .. } = *facet;
+                let owner = scene.blocks.triangle_block[triangle.index()];
+                let facet = (self.facets.start + k) as u32;
+                self.touching.push(ActiveFacet { facet, triangle, owner, target, chunk, hits, place });
+            }
+        }
+        let Scratch { batches, seen, .. } = scratch;
+        batches.finish(arch, |part| seen[part.pair as usize].moments.add_region(part));
+        self.take(scene, seen);
+        if *scene.field == PotentialField::Element {
+            list_past_centroid(&self.hits, scene, &mut self.past);
+        }
+    }
+
+    /// Keeps what has an area, and the facets that have such hits; what is not a number stays to be reported.
+    fn take(&mut self, scene: &Scene, seen: &mut [PendingPair]) {
+        let Self { hits, sums, report, .. } = self;
+        sums.clear();
+        *report = HitReport::default();
+        self.touching.retain_mut(|touch| {
+            let (first, mut sum) = (hits.len() as u32, FacetMoments::default());
+            for seen in &mut seen[touch.hits[0] as usize..touch.hits[1] as usize] {
+                seen.drop_rounding();
+                let PendingPair { pair, tet, lambda, moments, .. } = seen;
+                if moments.area != 0.0 {
+                    let on_target = moments.on_target(lambda);
+                    let hit = Hit { pair: *pair, tet: *tet, pressure: moments.pressure, on_target };
+                    report.add(&hit, moments.depth, scene);
+                    sum.add(moments);
+                    hits.push(hit);
+                }
+            }
+            (touch.hits, touch.place) = ([first, hits.len() as u32], sums.len() as u32);
+            let touches = touch.hits[0] < touch.hits[1];
+            if touches {
+                sums.push(sum);
+            }
+            touches
+        });
+    }
+}
+
+impl PendingPair {
+    fn drop_rounding(&mut self) {
+        match &self.range {
+            None => self.moments.drop_rounding(),
+            Some(range) => self.moments.drop_rounding_within(range),
+        }
+    }
+}
+
+impl Scratch {
+    fn add_facet(&mut self, arch: Arch, scene: &Scene, facet: &Facet, triangle: &Triangle) {
+        let Triangle { corners, normal, area } = triangle;
+        if *area == 0.0 {
+            return;
+        }
+        if scene.hulls.whole(facet.target).is_some() {
+            return self.add_whole(arch, scene, facet, triangle);
+        }
+        if scene.hulls.keep_apart(arch, facet.target, corners)
+            || scene.is_on_one_side(facet, &corners[0], normal)
+        {
+            return;
+        }
+        let pieces = matches!(scene.field, PotentialField::Pieces(_));
+        for index in facet.pairs.clone() {
+            let pair: &Pair = &scene.candidates.pairs[index];
+            let frame = &scene.frames[pair.tet as usize];
+            let in_plane = || Some(frame.lambda(corners)).filter(|l| lies_in_a_plane_of(frame, l, normal));
+            let inside = frame.lambda_inside(corners);
+            let Some(lambda) = inside.or_else(|| if pieces { in_plane() } else { None }) else { continue };
+            let tet = scene.candidates.tets[pair.tet as usize];
+            if scene.tet_is_on_one_side(tet, &corners[0], normal) {
+                continue;
+            }
+            let hit = self.seen.len() as u32;
+            let moments = PairMoments::default();
+            self.seen.push(PendingPair { pair: index as u32, tet, lambda, range: None, moments });
+            self.add_regions(arch, scene, hit, &Placed { tet, frame, lambda: &lambda, normal, area: *area });
+        }
+    }
+
+    /// A facet on a block that is taken whole.
+    fn add_whole(
+        &mut self,
+        arch: Arch,
+        scene: &Scene,
+        facet: &Facet,
+        Triangle { corners, normal, area }: &Triangle,
+    ) {
+        let nodes = scene.blocks.nodes_of(facet.target);
+        let contactor = scene.hulls.contactor(facet.triangle, facet.target);
+        let outline = contactor.map_or(&Outline::TRIANGLE, |face| &face.outline);
+        let planes = scene.hulls.planes_of(facet.target);
+        if !arch.dispatch(Look { sides: &mut self.sides, planes, corners, normal, outline })
+            || (nodes.len() <= FEW_NODES
+                && are_on_one_side(scene.position[nodes].iter(), &corners[0], normal))
+        {
+            return;
+        }
+        let (hit, index) = (self.seen.len() as u32, facet.pairs.start);
+        let slot = scene.candidates.pairs[index].tet as usize;
+        let (pair, tet) = (index as u32, scene.candidates.tets[slot]);
+        let (lambda, range) = (scene.frames[slot].lambda(corners), contactor.map(|face| face.range));
+        self.seen.push(PendingPair { pair, tet, lambda, range, moments: PairMoments::default() });
+        let Self { sides, region, batches, .. } = self;
+        arch.dispatch(PushSides { sides, region, batches, outline, arch, hit, area_m2: *area });
+    }
+
+    fn make_room(&mut self, pairs: usize) {
+        let pairs = pairs.max(CHUNK_PAIRS);
+        self.seen.clear();
+        self.seen.reserve(pairs);
+        self.batches.make_room(pairs);
+    }
+
+    fn add_regions(&mut self, arch: Arch, scene: &Scene, hit: u32, placed: &Placed) {
+        let Placed { tet, frame, lambda, normal, area } = *placed;
+        match scene.field {
+            PotentialField::Element => {
+                self.batches.push_element(arch, hit, area, lambda, &frame.slopes(normal));
+            }
+            PotentialField::Pieces(table) => {
+                if self.pieces.set(lambda, table.of(tet), frame, normal) {
+                    self.batches.push_pieces(arch, hit, area, &self.pieces);
+                }
+            }
+        }
+    }
+}
+
+/// A look at a block that is taken whole.
+struct Look<'a> {
+    sides: &'a mut HalfSpaces,
+    planes: &'a [Planes],
+    corners: &'a [Vec3; 3],
+    normal: &'a Vec3,
+    outline: &'a Outline,
+}
+
+impl WithSimd for Look<'_> {
+    type Output = bool;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        self.sides.look(simd, self.planes, self.corners, self.normal, self.outline)
+    }
+}
+
+/// The regions that are seen then.
+struct PushSides<'a> {
+    sides: &'a mut HalfSpaces,
+    region: &'a mut Region,
+    batches: &'a mut RegionQueue,
+    outline: &'a Outline,
+    arch: Arch,
+    hit: u32,
+    area_m2: f64,
+}
+
+impl WithSimd for PushSides<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { sides, region, batches, outline, arch, hit, area_m2 } = self;
+        for k in 0..sides.len() {
+            if sides.set_region(simd, k, outline, region) {
+                batches.push(arch, hit, area_m2, region, outline);
+            }
+        }
+    }
+}
+
+/// A triangle in a tetrahedron.
+#[derive(Clone, Copy)]
+struct Placed<'a> {
+    tet: TetId,
+    frame: &'a TetFrame,
+    lambda: &'a [[f64; 3]; 4],
+    normal: &'a Vec3,
+    area: f64,
+}
+
+/// Whether the triangle lies exactly in a face's plane and the tetrahedron owns it: other potentials than the
+/// paper's are not zero on the faces inside a block.
+fn lies_in_a_plane_of(frame: &TetFrame, lambda: &[[f64; 3]; 4], normal: &Vec3) -> bool {
+    let beyond = |at: &[f64; 3]| at.iter().all(|&l| l < 0.0);
+    let off = |b: usize| lambda[b].iter().all(|&l| l <= 0.0) && !frame.owns_plane(b, normal);
+    !lambda.iter().any(beyond) && !(0..4).any(off)
+}
+
+/// All chunks of a scene; their memory is kept from step to step.
+pub struct Integrals {
+    arch: Arch,
+    chunks: Vec<Chunk>,
+    /// One for each thread.
+    scratch: Vec<Mutex<Scratch>>,
+    used: usize,
+    touching: Vec<ActiveFacet>,
+    /// The list that the chunks are of.
+    list: Option<u64>,
+}
+
+impl Default for Integrals {
+    fn default() -> Self {
+        Self {
+            arch: Arch::new(),
+            chunks: Vec::new(),
+            scratch: Vec::new(),
+            used: 0,
+            touching: Vec::new(),
+            list: None,
+        }
+    }
+}
+
+impl Integrals {
+    /// Integrates all pairs. The division into chunks depends on the list of pairs alone.
+    pub fn update(&mut self, scene: &Scene) {
+        let list = Some(scene.candidates.version);
+        if self.list != list {
+            self.divide(&scene.candidates.facets);
+            self.list = list;
+        }
+        let (arch, used) = (self.arch, self.used);
+        let threads = rayon::current_num_threads().max(self.scratch.len());
+        self.scratch.resize_with(threads, Mutex::default);
+        let (chunks, scratch) = (&mut self.chunks[..used], &self.scratch);
+        let integrate = |chunk: &mut Chunk| {
+            let own = &scratch[rayon::current_thread_index().unwrap_or(0)];
+            chunk.integrate(arch, scene, &mut own.lock().unwrap_or_else(PoisonError::into_inner));
+        };
+        match chunks {
+            [only] => integrate(only),
+            many => many.par_iter_mut().with_max_len(MOST_CHUNKS).for_each(integrate),
+        }
+        self.touching.clear();
+        let used = &self.chunks[..used];
+        used.iter().for_each(|chunk| self.touching.extend_from_slice(&chunk.touching));
+    }
+
+    fn divide(&mut self, facets: &[Facet]) {
+        let (mut used, mut start) = (0, 0);
+        while start < facets.len() {
+            let first_pair = facets[start].pairs.start;
+            let more = facets[start..].iter().take_while(|f| f.pairs.end - first_pair <= CHUNK_PAIRS).count();
+            let end = start + more.max(1);
+            if used == self.chunks.len() {
+                self.chunks.push(Chunk::default());
+            }
+            (self.chunks[used].facets, self.chunks[used].number) = (start..end, used as u32);
+            used += 1;
+            start = end;
+        }
+        self.used = used;
+    }
+
+    /// The chunks in use, in the order of facets.
+    pub(crate) fn chunks(&self) -> &[Chunk] {
+        &self.chunks[..self.used]
+    }
+
+    /// The facets that touch, ascending.
+    pub fn touching(&self) -> &[ActiveFacet] {
+        &self.touching
+    }
+
+    /// The hits of a facet that touches, in the order of pairs.
+    pub fn hits_of(&self, touch: &ActiveFacet) -> &[Hit] {
+        let [start, end] = touch.hits.map(|k| k as usize);
+        &self.chunks[touch.chunk as usize].hits[start..end]
+    }
+
+    /// What the hits of a facet that touches come to.
+    pub(crate) fn sums_of(&self, touch: &ActiveFacet) -> &FacetMoments {
+        &self.chunks[touch.chunk as usize].sums[touch.place as usize]
+    }
+}

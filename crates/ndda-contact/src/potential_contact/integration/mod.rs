@@ -1,0 +1,24 @@
+//! Exact integrals of the potential over the part of a triangle that lies in a target.
+
+pub(crate) mod capacity;
+pub(crate) mod clip;
+pub(crate) mod double_double;
+pub(crate) mod integrals;
+pub(crate) mod kernel;
+pub(crate) mod overlap_pair;
+pub(crate) mod pair_moments;
+pub(crate) mod pair_report;
+pub(crate) mod polyhedron;
+pub(crate) mod queue;
+pub(crate) mod region;
+pub(crate) mod scene;
+pub(crate) mod tet_frame;
+
+pub use integrals::Integrals;
+pub use kernel::{GROUP, GroupMoments, RegionGroup, region_moments};
+pub use pair_moments::{PairMoments, pair_moments};
+pub use polyhedron::{PairError, TetOverlap, overlap_of, tet_overlap};
+pub use queue::RegionQueue;
+pub use region::{Region, element_regions};
+pub use scene::Scene;
+pub use tet_frame::TetFrame;

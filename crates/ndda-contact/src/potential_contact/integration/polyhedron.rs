@@ -1,0 +1,553 @@
+//! The overlap of two tetrahedra as a polyhedron, and integrals over it.
+//!
+//! A convex polyhedron is a graph: each corner has three neighbours in turning order. A plane classifies each corner
+//! once, by the sign of its field there, and the graph is mended along the cut; so the surface is closed whatever
+//! rounding does (Powell & Abel 2015, r3d). A corner put on the wrong side by rounding moves the volume by rounding.
+
+use ndda_mesh::Vec3;
+use ndda_mesh::geometry::{Aabb, tet_volume};
+
+use crate::integration::capacity::MOST_CUTS;
+use crate::integration::double_double::Barycentric;
+use crate::integration::tet_frame::TetFrame;
+
+/// Three faces meet in each corner, so F faces have 2 F − 4 corners: 18 for two tetrahedra and three rivals of a
+/// potential, 148 for two blocks of [`MOST_CUTS`](crate::integration::capacity::MOST_CUTS) faces in a box, and their rivals.
+const MOST_CORNERS: usize = 152;
+
+/// Part of the product of three edges below which a volume is rounding.
+const FLAT: f64 = 8.0 * f64::EPSILON / 6.0;
+
+/// Why a pair of tetrahedra has no answer.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PairError {
+    /// A coordinate or the penalty is infinite or not a number, or too large to compute with.
+    #[error("{0} is not finite, or too large to compute with")]
+    NotFinite(&'static str),
+    /// A tetrahedron without volume has no barycentric coordinates.
+    #[error("the {0} is flat: its volume is zero to rounding")]
+    Flat(&'static str),
+    /// The penalty must push.
+    #[error("penalty_pa = {0}: must be positive")]
+    Penalty(f64),
+}
+
+/// What two tetrahedra share.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TetOverlap {
+    /// Volume of c ∩ t [m³].
+    pub volume_m3: f64,
+    /// Its centroid [m]; none if the volume is zero.
+    pub centroid: Option<Vec3>,
+    /// ∫ φ_c dV over c ∩ t [m³], φ = 4 min λᵢ.
+    pub phi_contactor_m3: f64,
+    /// ∫ φ_t dV over c ∩ t [m³].
+    pub phi_target_m3: f64,
+}
+
+/// Volume, centroid and potentials of c ∩ t, corners [m] in either order.
+///
+/// # Errors
+/// [`PairError`] for corners that are not finite, for a flat tetrahedron, and for a result beyond the range of f64.
+pub fn tet_overlap(contactor: &[Vec3; 4], target: &[Vec3; 4]) -> Result<TetOverlap, PairError> {
+    ScaledPair::new(contactor, target)?.overlap()
+}
+
+/// Two tetrahedra of positive volume, divided by a power of two that makes the largest coordinate about one: nothing
+/// is lost, and products of lengths stay in the range of f64.
+pub(crate) struct ScaledPair {
+    /// Contactor and target [`unit_m`](Self::unit_m).
+    pub corners: [[Vec3; 4]; 2],
+    /// Whether the first two corners are swapped.
+    pub swapped: [bool; 2],
+    /// What the caller's coordinates were divided by [m].
+    pub unit_m: f64,
+}
+
+impl ScaledPair {
+    pub(crate) fn new(contactor: &[Vec3; 4], target: &[Vec3; 4]) -> Result<Self, PairError> {
+        let mut largest = 0.0f64;
+        for (which, tet) in [("contactor", contactor), ("target", target)] {
+            for v in tet.iter().flat_map(|x| x.iter()) {
+                if !v.is_finite() {
+                    return Err(PairError::NotFinite(which));
+                }
+                largest = largest.max(v.abs());
+            }
+        }
+        let exponent = (largest.to_bits() >> 52) as i32 - 1023;
+        let unit_m = 2f64.powi(exponent.clamp(-1000, 1000));
+        let (c, c_swapped) = oriented(contactor.map(|x| x / unit_m), "contactor")?;
+        let (t, t_swapped) = oriented(target.map(|x| x / unit_m), "target")?;
+        Ok(Self { corners: [c, t], swapped: [c_swapped, t_swapped], unit_m })
+    }
+
+    /// Whether the boxes around the two share more than their rims; without that there is no overlap.
+    pub(crate) fn may_overlap(&self) -> bool {
+        let [c, t] = self.corners.each_ref().map(Aabb::around);
+        (0..3).all(|i| c.min[i] < t.max[i] && t.min[i] < c.max[i])
+    }
+
+    /// The overlap in the caller's units.
+    pub(crate) fn overlap(&self) -> Result<TetOverlap, PairError> {
+        if !self.may_overlap() {
+            return Ok(TetOverlap::default());
+        }
+        let smaller = usize::from(tet_volume(&self.corners[1]) < tet_volume(&self.corners[0]));
+        // From here on coordinates are local to the smaller tetrahedron, which the larger one cuts: what is rounded is of its size.
+        let (body, other) = (&self.corners[smaller], &self.corners[1 - smaller]);
+        let origin = body[0];
+        let own = faces_of(&TetFrame::new(body), &origin);
+        let exact = Barycentric::new(other);
+        let cutting =
+            [0, 1, 2, 3].map(|b| Linear { value: exact.at(b, &origin), gradient: exact.gradient(b) });
+        let mut overlap = Polyhedron::tet(&body.map(|x| x - origin));
+        cutting.iter().for_each(|face| overlap.cut(face));
+        let (volume, moment) = overlap.volume_and_moment();
+        let cubed = |v: f64| v * self.unit_m * self.unit_m * self.unit_m;
+        let mut part = Polyhedron::default();
+        let fields = if smaller == 0 { [own, cutting] } else { [cutting, own] };
+        let phi = fields.map(|lambda| {
+            let of_region = lambda.map(|lambda| lambda.times(4.0));
+            cubed(overlap.integral_of_smallest(&of_region, &mut part))
+        });
+        let volume_m3 = cubed(volume);
+        // The quotient of two small numbers may be anywhere.
+        let within = |x: Vec3| x.sup(&overlap.bounds().min).inf(&overlap.bounds().max);
+        let centroid = (volume_m3 > 0.0).then(|| (within(moment / volume) + origin) * self.unit_m);
+        let numbers = [volume_m3, phi[0], phi[1]];
+        if !numbers.iter().chain(centroid.iter().flat_map(|x| x.iter())).all(|v| v.is_finite()) {
+            return Err(PairError::NotFinite("a result"));
+        }
+        // Less than nothing is rounding.
+        let [volume_m3, phi_contactor_m3, phi_target_m3] = numbers.map(|v| v.max(0.0));
+        Ok(TetOverlap { volume_m3, centroid, phi_contactor_m3, phi_target_m3 })
+    }
+}
+
+/// The corners with positive volume, and whether the first two had to be swapped.
+fn oriented(corners: [Vec3; 4], which: &'static str) -> Result<([Vec3; 4], bool), PairError> {
+    let edges = [1, 2, 3].map(|i| (corners[i] - corners[0]).norm());
+    let volume = tet_volume(&corners);
+    if volume.abs() <= FLAT * edges[0] * edges[1] * edges[2] || !volume.is_normal() {
+        return Err(PairError::Flat(which));
+    }
+    let [a, b, c, d] = corners;
+    Ok(if volume > 0.0 { (corners, false) } else { ([b, a, c, d], true) })
+}
+
+/// A linear function of place, value + gradient · x.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Linear {
+    /// Value at the origin.
+    pub value: f64,
+    /// Gradient [1/m].
+    pub gradient: Vec3,
+}
+
+impl Linear {
+    /// The function with these values at the corners of a tetrahedron, seen from `origin`.
+    pub(crate) fn of_corners(frame: &TetFrame, values: &[f64; 4], origin: &Vec3) -> Self {
+        let gradient: Vec3 = (0..4).map(|b| values[b] * frame.gradient(b)).sum();
+        // λ₀ is 1 at the frame's own corner, the others 0.
+        Self { value: values[0] + gradient.dot(&(origin - frame.origin())), gradient }
+    }
+
+    /// Its value at x.
+    pub(crate) fn at(&self, x: &Vec3) -> f64 {
+        self.value + self.gradient.dot(x)
+    }
+
+    /// The function times a factor.
+    pub(crate) fn times(&self, factor: f64) -> Self {
+        Self { value: factor * self.value, gradient: factor * self.gradient }
+    }
+
+    /// The difference of two functions.
+    pub(crate) fn minus(&self, other: &Self) -> Self {
+        Self { value: self.value - other.value, gradient: self.gradient - other.gradient }
+    }
+}
+
+/// A convex polyhedron that moves along with a tetrahedron: its corners by their λ, and its graph.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Carried {
+    lambda: Vec<[f64; 4]>,
+    neighbours: Vec<[u8; 3]>,
+}
+
+impl Carried {
+    /// A convex body in a box, given by functions that are not negative in it, at rest where the tetrahedron is.
+    pub(crate) fn new(bounds: &Aabb, sides: impl Iterator<Item = Linear>, tet: &TetFrame) -> Self {
+        let mut body = Polyhedron::default();
+        // Sides that lie in those of the box would cut by rounding.
+        body.set_cuboid(&bounds.inflated(0.125 * bounds.diagonal()));
+        sides.for_each(|side| body.cut(&side));
+        let lambda = body.position[..body.len].iter().map(|x| tet.lambda_at(x)).collect();
+        Self { lambda, neighbours: body.neighbours[..body.len].to_vec() }
+    }
+}
+
+/// A convex polyhedron; lives on the stack, and is large: room for one is used again and again.
+#[derive(Clone, Debug)]
+pub struct Polyhedron {
+    position: [Vec3; MOST_CORNERS],
+    neighbours: [[u8; 3]; MOST_CORNERS],
+    len: usize,
+    /// Whether a cut would have needed more corners than there is room for; integrals are then not numbers.
+    outgrown: bool,
+    /// Room for what a cut finds at the corners.
+    sides: [f64; MOST_CORNERS],
+    new_place: [u8; MOST_CORNERS],
+}
+
+impl Default for Polyhedron {
+    /// Nothing.
+    fn default() -> Self {
+        let (position, neighbours) = ([Vec3::zeros(); MOST_CORNERS], [[0; 3]; MOST_CORNERS]);
+        let (sides, new_place) = ([0.0; MOST_CORNERS], [0; MOST_CORNERS]);
+        Self { position, neighbours, len: 0, outgrown: false, sides, new_place }
+    }
+}
+
+impl Polyhedron {
+    /// A tetrahedron with these corners [m], of positive volume.
+    pub(crate) fn tet(corners: &[Vec3; 4]) -> Self {
+        let mut all = Self::default();
+        all.set_tet(corners);
+        all
+    }
+
+    /// Becomes a tetrahedron with these corners [m], of positive volume.
+    pub(crate) fn set_tet(&mut self, corners: &[Vec3; 4]) {
+        (self.len, self.outgrown) = (4, false);
+        self.position[..4].copy_from_slice(corners);
+        self.neighbours[..4].copy_from_slice(&[[1, 3, 2], [2, 3, 0], [0, 3, 1], [1, 2, 0]]);
+    }
+
+    /// Becomes what another is.
+    fn set(&mut self, other: &Self) {
+        (self.len, self.outgrown) = (other.len, other.outgrown);
+        self.position[..self.len].copy_from_slice(&other.position[..other.len]);
+        self.neighbours[..self.len].copy_from_slice(&other.neighbours[..other.len]);
+    }
+
+    /// Becomes a body that moves along with a tetrahedron, which has these corners [m] now.
+    pub(crate) fn set_carried(&mut self, body: &Carried, [a, b, c, d]: &[Vec3; 4]) {
+        (self.len, self.outgrown) = (body.lambda.len(), false);
+        for (x, l) in self.position.iter_mut().zip(&body.lambda) {
+            *x = a * l[0] + b * l[1] + c * l[2] + d * l[3];
+        }
+        self.neighbours[..self.len].copy_from_slice(&body.neighbours);
+    }
+
+    /// Becomes a box along the axes.
+    pub(crate) fn set_cuboid(&mut self, bounds: &Aabb) {
+        (self.len, self.outgrown) = (8, false);
+        for corner in 0..8 {
+            let upper = |axis: usize| corner >> axis & 1 == 1;
+            let at = |axis: usize| if upper(axis) { bounds.max[axis] } else { bounds.min[axis] };
+            self.position[corner] = Vec3::from_fn(|axis, _| at(axis));
+            let along = [0, 1, 2].map(|axis| (corner ^ 1 << axis) as u8);
+            // Seen from inside out, neighbours turn the other way round where an odd number of axes is turned.
+            let [x, y, z] = along;
+            self.neighbours[corner] = if corner.count_ones() % 2 == 0 { [x, z, y] } else { along };
+        }
+    }
+
+    /// Whether nothing is left.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.len == 0 && !self.outgrown
+    }
+
+    /// The box around its corners.
+    pub(crate) fn bounds(&self) -> Aabb {
+        Aabb::around(&self.position[..self.len])
+    }
+
+    /// Keeps the part where the function is not negative.
+    pub(crate) fn cut(&mut self, side: &Linear) {
+        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (value, x) in self.sides.iter_mut().zip(&self.position[..self.len]) {
+            *value = side.at(x);
+            (least, most) = (least.min(*value), most.max(*value));
+        }
+        // A polyhedron that only touches the plane has no volume in front of it.
+        if most <= 0.0 {
+            self.len = 0;
+        } else if least < 0.0 {
+            let old = self.len;
+            self.add_crossings();
+            if self.outgrown {
+                self.len = 0;
+                return;
+            }
+            self.close_cut(old);
+            self.drop_behind(old);
+        }
+    }
+
+    /// The least and the largest value of a function; at corners, for it is linear.
+    fn range_of(&self, function: &Linear) -> (f64, f64) {
+        let wider = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
+        let values = self.position[..self.len].iter().map(|x| function.at(x));
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), wider)
+    }
+
+    /// A new corner on each edge that crosses the plane, between its kept end and nothing yet.
+    fn add_crossings(&mut self) {
+        let old = self.len;
+        for i in 0..old {
+            let is_kept = self.sides[i] >= 0.0;
+            if !is_kept {
+                continue;
+            }
+            for k in 0..3 {
+                let j = self.neighbours[i][k] as usize;
+                if j >= old || self.sides[j] >= 0.0 {
+                    continue;
+                }
+                if self.len == MOST_CORNERS {
+                    self.outgrown = true;
+                    return;
+                }
+                let t = self.sides[i] / (self.sides[i] - self.sides[j]);
+                self.position[self.len] = self.position[i] + t * (self.position[j] - self.position[i]);
+                self.neighbours[self.len] = [i as u8, 0, 0];
+                self.neighbours[i][k] = self.len as u8;
+                self.len += 1;
+            }
+        }
+    }
+
+    /// Joins the new corners to a rim: from each, along the face on its side, to the next new corner.
+    fn close_cut(&mut self, old: usize) {
+        for start in old..self.len {
+            let (mut here, mut next) = (start, self.neighbours[start][0] as usize);
+            loop {
+                let turned = self.turn(next, here);
+                (here, next) = (next, turned);
+                if here >= old {
+                    break;
+                }
+            }
+            self.neighbours[start][2] = here as u8;
+            self.neighbours[here][1] = start as u8;
+        }
+    }
+
+    /// The neighbour of `at` that follows the one it was reached from, around the face.
+    fn turn(&self, at: usize, from: usize) -> usize {
+        let around = &self.neighbours[at];
+        let k = around.iter().position(|&n| n as usize == from).expect("neighbours know each other");
+        around[(k + 1) % 3] as usize
+    }
+
+    fn drop_behind(&mut self, old: usize) {
+        let mut kept = 0;
+        for i in 0..self.len {
+            if i >= old || self.sides[i] >= 0.0 {
+                self.new_place[i] = kept as u8;
+                self.position[kept] = self.position[i];
+                self.neighbours[kept] = self.neighbours[i];
+                kept += 1;
+            }
+        }
+        self.len = kept;
+        let new_place = &self.new_place;
+        for around in &mut self.neighbours[..kept] {
+            *around = around.map(|n| new_place[n as usize]);
+        }
+    }
+
+    /// Volume [m³] and ∫ x dV [m⁴], from a fan of triangles over each face and a corner of the polyhedron.
+    ///
+    /// Not numbers if the polyhedron outgrew its room.
+    pub fn volume_and_moment(&self) -> (f64, Vec3) {
+        if self.outgrown {
+            return (f64::NAN, Vec3::repeat(f64::NAN));
+        }
+        if self.len == 0 {
+            return (0.0, Vec3::zeros());
+        }
+        let base = self.position[0];
+        let (mut six_volumes, mut moment) = (0.0, Vec3::zeros());
+        self.for_each_triangle(|corners| {
+            let [a, b, c] = corners.map(|x| x - base);
+            let six = a.dot(&b.cross(&c));
+            six_volumes += six;
+            moment += six * (a + b + c);
+        });
+        let volume = six_volumes / 6.0;
+        (volume, moment / 24.0 + volume * base)
+    }
+
+    fn for_each_triangle(&self, mut triangle: impl FnMut([Vec3; 3])) {
+        // A bit for each of the three ways from a corner.
+        let mut seen = [0u8; MOST_CORNERS];
+        for start in 0..self.len {
+            for first in 0..3 {
+                if seen[start] >> first & 1 == 1 {
+                    continue;
+                }
+                seen[start] |= 1 << first;
+                let (mut here, mut next) = (start, self.neighbours[start][first] as usize);
+                loop {
+                    let turned = self.turn(next, here);
+                    let k = self.neighbours[next].iter().position(|&n| n as usize == turned).unwrap_or(0);
+                    (here, next) = (next, turned);
+                    seen[here] |= 1 << k;
+                    if next == start {
+                        break;
+                    }
+                    triangle([self.position[start], self.position[next], self.position[here]]);
+                }
+            }
+        }
+    }
+
+    /// ∫ f dV [m³ of f's unit].
+    pub(crate) fn integral(&self, f: &Linear) -> f64 {
+        let (volume, moment) = self.volume_and_moment();
+        f.value * volume + f.gradient.dot(&moment)
+    }
+
+    /// ∫ min f dV over linear functions: each over the part where it is the smallest, for which `part` is room.
+    pub(crate) fn integral_of_smallest(&self, functions: &[Linear], part: &mut Self) -> f64 {
+        // What is everywhere above another's largest value is nowhere the smallest.
+        let mut least = [0.0; MOST_CUTS];
+        let mut enough = f64::INFINITY;
+        for (least, f) in least.iter_mut().zip(functions) {
+            let range = self.range_of(f);
+            *least = range.0;
+            enough = enough.min(range.1);
+        }
+        // One that is not a number has no range, and counts.
+        let counts = |k: &usize| least[*k] <= enough || !least[*k].is_finite();
+        let over_part = |k: usize| {
+            let f = &functions[k];
+            let mut rivals = (0..functions.len()).filter(|j| *j != k).filter(counts).peekable();
+            if rivals.peek().is_none() {
+                return self.integral(f);
+            }
+            part.set(self);
+            for rival in rivals {
+                if part.is_empty() {
+                    return 0.0;
+                }
+                part.cut(&functions[rival].minus(f));
+            }
+            part.integral(f)
+        };
+        (0..functions.len()).filter(counts).map(over_part).sum()
+    }
+}
+
+/// c ∩ t, in coordinates with the origin at `origin`, a point nearby.
+pub fn overlap_of(c: &[Vec3; 4], t: &TetFrame, origin: &Vec3) -> Polyhedron {
+    let mut overlap = Polyhedron::tet(&c.map(|x| x - origin));
+    for face in faces_of(t, origin) {
+        overlap.cut(&face);
+        if overlap.is_empty() {
+            break;
+        }
+    }
+    overlap
+}
+
+/// λ₀ … λ₃ as functions of place.
+pub(crate) fn faces_of(t: &TetFrame, origin: &Vec3) -> [Linear; 4] {
+    [0, 1, 2, 3].map(|b| {
+        let mut values = [0.0; 4];
+        values[b] = 1.0;
+        Linear::of_corners(t, &values, origin)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::element_pairs;
+
+    fn unit(shift: [f64; 3], scale: f64) -> [Vec3; 4] {
+        let corners = [Vec3::zeros(), Vec3::x(), Vec3::y(), Vec3::z()];
+        corners.map(|x| scale * x + Vec3::from(shift))
+    }
+
+    #[test]
+    fn a_tetrahedron_has_its_volume_and_centroid() {
+        let (volume, moment) = Polyhedron::tet(&unit([1.0, 2.0, 3.0], 1.0)).volume_and_moment();
+        assert!((volume - 1.0 / 6.0).abs() < 1e-15, "{volume}");
+        assert!((moment / volume - Vec3::new(1.25, 2.25, 3.25)).norm() < 1e-13);
+    }
+
+    #[test]
+    fn a_box_has_its_volume_and_centroid_whole_and_cut() {
+        let mut cuboid = Polyhedron::default();
+        cuboid.set_cuboid(&Aabb { min: Vec3::new(1.0, 2.0, 3.0), max: Vec3::new(2.0, 4.0, 6.0) });
+        let (volume, moment) = cuboid.volume_and_moment();
+        assert!((volume - 6.0).abs() < 1e-14, "{volume}");
+        assert!((moment / volume - Vec3::new(1.5, 3.0, 4.5)).norm() < 1e-14);
+        // A corner is left: x + y + z ≤ 7.
+        cuboid.cut(&Linear { value: 7.0, gradient: Vec3::repeat(-1.0) });
+        assert!((cuboid.volume_and_moment().0 - 1.0 / 6.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_tetrahedron_overlaps_itself_wholly_and_its_neighbour_not_at_all() {
+        let c = unit([0.0; 3], 1.0);
+        let same = overlap_of(&c, &TetFrame::new(&c), &c[0]);
+        assert!((same.volume_and_moment().0 - 1.0 / 6.0).abs() < 1e-15);
+        let mirrored = [c[0], c[2], c[1], -c[3]];
+        assert_eq!(overlap_of(&c, &TetFrame::new(&mirrored), &c[0]).volume_and_moment().0, 0.0);
+    }
+
+    #[test]
+    fn an_overlap_has_its_centroid_and_potentials_in_either_order_of_corners() {
+        let c = unit([4.5e6, 0.0, 0.0], 1.0);
+        let inverted = [c[1], c[0], c[2], c[3]];
+        let overlap = tet_overlap(&inverted, &c).unwrap();
+        assert!((overlap.centroid.unwrap() - c.iter().sum::<Vec3>() / 4.0).norm() < 1e-9);
+        // φ has the mean ¼.
+        assert!((overlap.phi_contactor_m3 - 1.0 / 24.0).abs() < 1e-15);
+        assert!((overlap.phi_target_m3 - 1.0 / 24.0).abs() < 1e-15);
+        assert_eq!(tet_overlap(&c, &unit([0.0; 3], 1.0)), Ok(TetOverlap::default()));
+    }
+
+    #[test]
+    fn a_pair_without_an_answer_is_refused() {
+        let c = unit([0.0; 3], 1.0);
+        let mut bad = c;
+        bad[3] = (c[1] + c[2]) / 2.0;
+        assert_eq!(tet_overlap(&c, &bad), Err(PairError::Flat("target")));
+        bad[3].y = f64::INFINITY;
+        assert_eq!(tet_overlap(&bad, &c), Err(PairError::NotFinite("contactor")));
+        let huge = unit([0.0; 3], 1e200);
+        assert_eq!(tet_overlap(&huge, &huge), Err(PairError::NotFinite("a result")));
+    }
+
+    #[test]
+    fn a_polyhedron_that_outgrows_its_room_has_no_volume_rather_than_a_wrong_one() {
+        let mut ball = Polyhedron::tet(&unit([0.0; 3], 1.0));
+        let middle = Vec3::repeat(0.25);
+        for k in 0..200 {
+            let (turn, height) = (2.4 * f64::from(k), (f64::from(k) + 0.5) / 100.0 - 1.0);
+            let round = (1.0 - height * height).sqrt();
+            let gradient = -Vec3::new(round * turn.cos(), round * turn.sin(), height);
+            ball.cut(&Linear { value: 0.01 - gradient.dot(&middle), gradient });
+        }
+        assert!(!ball.is_empty() && ball.volume_and_moment().0.is_nan());
+    }
+
+    #[test]
+    fn volumes_and_potentials_are_those_of_the_slow_twin() {
+        for k in 0..60 {
+            let at = |i: f64| (f64::from(k) * i).sin() * 0.4;
+            let (c, t) = (unit([0.0; 3], 1.0), unit([at(1.3), at(2.1), at(0.7)], 0.9 + at(3.0)));
+            let frame = TetFrame::new(&t);
+            let overlap = overlap_of(&c, &frame, &c[0]);
+            let expected = element_pairs::overlap_volume_m3(&c, &t);
+            assert!((overlap.volume_and_moment().0 - expected).abs() < 1e-14);
+        }
+    }
+}

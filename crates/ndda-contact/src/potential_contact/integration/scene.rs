@@ -1,0 +1,56 @@
+//! Input of the integration.
+
+use ndda_mesh::{BlockSet, TetId, Vec3};
+
+use crate::affine::convex_target::ConvexBlocks;
+use crate::broad_phase::candidates::{Candidates, Facet};
+use crate::integration::tet_frame::TetFrame;
+use crate::potential::contact_potential::PotentialField;
+
+/// What all chunks read.
+#[derive(Clone, Copy)]
+pub struct Scene<'a> {
+    /// Topology.
+    pub blocks: &'a BlockSet,
+    /// Positions [m].
+    pub position: &'a [Vec3],
+    /// Pairs and facets.
+    pub candidates: &'a Candidates,
+    /// A frame for each of [`Candidates::tets`].
+    pub frames: &'a [TetFrame],
+    /// φ.
+    pub field: &'a PotentialField,
+    /// What keeps facets out of whole blocks.
+    pub hulls: &'a ConvexBlocks,
+}
+
+impl Scene<'_> {
+    /// Whether all of the target is strictly before or behind the plane of a facet; not asked where it has more nodes than
+    /// the facet has pairs to ask.
+    #[inline]
+    pub(super) fn is_on_one_side(&self, facet: &Facet, point: &Vec3, normal: &Vec3) -> bool {
+        let nodes = self.blocks.nodes_of(facet.target);
+        nodes.len() <= 4 * facet.pairs.len() && are_on_one_side(self.position[nodes].iter(), point, normal)
+    }
+
+    #[inline]
+    pub(super) fn tet_is_on_one_side(&self, tet: TetId, point: &Vec3, normal: &Vec3) -> bool {
+        let corners = self.blocks.tets[tet.index()].iter().map(|n| &self.position[n.index()]);
+        are_on_one_side(corners, point, normal)
+    }
+}
+
+#[inline]
+pub(super) fn are_on_one_side<'a>(
+    points: impl Iterator<Item = &'a Vec3>,
+    point: &Vec3,
+    normal: &Vec3,
+) -> bool {
+    let range = |(least, most): (f64, f64), x: &Vec3| {
+        let above = normal.dot(&(x - point));
+        // As `f64::min` and `f64::max` leave out what is not a number, but in one instruction.
+        (if above < least { above } else { least }, if above > most { above } else { most })
+    };
+    let (least, most) = points.fold((f64::INFINITY, f64::NEG_INFINITY), range);
+    least > 0.0 || most < 0.0
+}

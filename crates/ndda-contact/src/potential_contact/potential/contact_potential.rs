@@ -1,0 +1,165 @@
+//! The seam for contact potentials: what φ is in a block, and what its integral costs.
+//!
+//! Blocks A and B that overlap have U = ∫_{A∩B} (φ_A + φ_B) dV and the energy W = k_n w(U). A potential is continuous,
+//! and zero on the surface of its block unless it says so by a law w of its own. Inside a tetrahedron it is the
+//! smallest of a few linear functions: then every integral over a flat triangle is exact.
+
+use std::ops::Range;
+
+use ndda_mesh::{BlockSet, TetId};
+
+use crate::integration::capacity::MOST_CUTS;
+
+/// Most linear functions of a tetrahedron: each is cut by four faces and by its rivals.
+pub(crate) const MOST_PIECES: usize = 13;
+const _: () = assert!(MOST_PIECES + 3 <= MOST_CUTS);
+
+/// A contact potential.
+///
+/// Contract (checked by [`check_potential`](crate::potential::testing::check_potential)): forces are −∂W/∂x in every rigid
+/// motion, they balance, and they vanish where blocks do not overlap.
+pub trait ContactPotential: Send + Sync {
+    /// Its name, as scenes spell it.
+    fn name(&self) -> &'static str;
+
+    /// φ of all blocks, from their rest shape.
+    ///
+    /// # Errors
+    /// [`PotentialError`] naming the block that it cannot serve.
+    fn field(&self, blocks: &BlockSet) -> Result<PotentialField, PotentialError>;
+
+    /// φ per depth below the nearest face of a convex block [1/m], if it is that: such a block is taken whole where it moves by an
+    /// affine map, see [`ConvexBlocks`](crate::affine::ConvexBlocks).
+    fn phi_per_m(&self) -> Option<f64> {
+        None
+    }
+
+    /// What W is of U.
+    fn law(&self) -> OverlapLaw {
+        OverlapLaw::Linear
+    }
+}
+
+/// W/k_n as a function of U = ∫ (φ_A + φ_B) dV for one pair of blocks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OverlapLaw {
+    /// w = U: pressure is k_n φ, each point for itself.
+    Linear,
+    /// w = U₀/m (U/U₀)^m: the pressure k_n φ (U/U₀)^(m − 1) knows of the whole overlap.
+    Power {
+        /// m, above 1.
+        exponent: f64,
+        /// U₀ [m³].
+        reference_m3: f64,
+    },
+}
+
+impl OverlapLaw {
+    /// w(U) [m³].
+    pub fn energy_m3(&self, overlap_m3: f64) -> f64 {
+        match *self {
+            Self::Linear => overlap_m3,
+            Self::Power { exponent, reference_m3 } => {
+                reference_m3 / exponent * (overlap_m3.max(0.0) / reference_m3).powf(exponent)
+            }
+        }
+    }
+
+    /// dw/dU.
+    pub fn slope(&self, overlap_m3: f64) -> f64 {
+        match *self {
+            Self::Linear => 1.0,
+            Self::Power { exponent, reference_m3 } => {
+                (overlap_m3.max(0.0) / reference_m3).powf(exponent - 1.0)
+            }
+        }
+    }
+}
+
+impl OverlapLaw {
+    /// d²w/dU² [1/m³].
+    pub fn curvature(&self, overlap_m3: f64) -> f64 {
+        match *self {
+            Self::Power { exponent, reference_m3 } if overlap_m3 > 0.0 => {
+                (exponent - 1.0) / reference_m3 * (overlap_m3 / reference_m3).powf(exponent - 2.0)
+            }
+            _ => 0.0,
+        }
+    }
+}
+
+/// φ of all blocks of a scene.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PotentialField {
+    /// 4 min λᵢ in every tetrahedron.
+    Element,
+    /// The smallest of linear functions.
+    Pieces(PieceTable),
+}
+
+/// For each tetrahedron the nodal values of linear functions; φ is the smallest of them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PieceTable {
+    starts: Vec<u32>,
+    values: Vec<[f64; 4]>,
+    most: Vec<f64>,
+}
+
+impl PieceTable {
+    /// A table without tetrahedra.
+    pub fn new() -> Self {
+        Self { starts: vec![0], ..Self::default() }
+    }
+
+    /// Adds the next tetrahedron, with at least one and at most 13 functions.
+    pub fn push(&mut self, pieces: &[[f64; 4]]) {
+        assert!((1..=MOST_PIECES).contains(&pieces.len()), "{} pieces in a tetrahedron", pieces.len());
+        self.values.extend_from_slice(pieces);
+        // φ is the smallest of them, so it is nowhere more than the largest value of any.
+        let largest = |piece: &[f64; 4]| piece.iter().copied().fold(0.0, f64::max);
+        self.most.push(pieces.iter().map(largest).fold(f64::INFINITY, f64::min));
+        self.starts.push(self.values.len() as u32);
+    }
+
+    /// What φ does not exceed in the tetrahedron: the largest value of a function at a corner, least over the functions.
+    #[inline]
+    pub fn most_in(&self, tet: TetId) -> f64 {
+        self.most[tet.index()]
+    }
+
+    /// The functions of a tetrahedron.
+    pub fn of(&self, tet: TetId) -> &[[f64; 4]] {
+        let range: Range<usize> = self.starts[tet.index()] as usize..self.starts[tet.index() + 1] as usize;
+        &self.values[range]
+    }
+}
+
+/// Why a potential cannot serve a block.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PotentialError {
+    /// All nodes of a tetrahedron of a concave block are on its surface, where interpolated depth is zero.
+    #[error(
+        "tet {} of the concave block `{block}` has all its nodes on the surface, where depth is zero: give it an \
+         interior node (pattern TwentyFour, a finer mesh) or use the element potential", tet.0
+    )]
+    NoInteriorNode {
+        /// Name of the block.
+        block: String,
+        /// The tetrahedron.
+        tet: TetId,
+    },
+    /// Too many faces of a block are nearest to points of one tetrahedron.
+    #[error(
+        "tet {} of block `{block}` is near {faces} faces of the block at once, more than {MOST_PIECES}: take \
+         `potential: Element` or `Volume`, or give the block fewer faces; a finer surface has more",
+        tet.0
+    )]
+    TooManyFaces {
+        /// Name of the block.
+        block: String,
+        /// The tetrahedron.
+        tet: TetId,
+        /// Number of faces.
+        faces: usize,
+    },
+}

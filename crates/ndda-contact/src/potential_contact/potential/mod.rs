@@ -1,0 +1,7 @@
+//! The potential φ within a block, and the pressure that follows from it.
+
+pub(crate) mod contact_potential;
+pub(crate) mod element;
+pub(crate) mod smooth;
+pub mod testing;
+pub(crate) mod volume;
