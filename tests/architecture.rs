@@ -1,6 +1,6 @@
 //! The layout: which crate may use which, and what lies at the top.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
@@ -112,5 +112,119 @@ fn the_top_level_reads_as_the_readme_says() {
     }
     for name in allowed {
         assert!(root().join(name).exists(), "{name} is missing");
+    }
+}
+
+/// Modules of a crate by their paths (`friction::bond`), with their code: comments and unit tests are left out.
+fn modules(src: &Path, prefix: &str, found: &mut BTreeMap<String, String>) {
+    for entry in fs::read_dir(src).unwrap().map(|entry| entry.unwrap().path()) {
+        let name = entry.file_stem().unwrap().to_string_lossy().into_owned();
+        if entry.is_dir() {
+            modules(&entry, &format!("{prefix}{name}::"), found);
+        } else if entry.extension().is_some_and(|ending| ending == "rs") {
+            let text = fs::read_to_string(&entry).unwrap();
+            let code = text.split("#[cfg(test)]\nmod tests").next().unwrap().lines();
+            let code: String = code.map(|line| line.split("//").next().unwrap().to_string() + "\n").collect();
+            let own = if ["mod", "lib", "main"].contains(&name.as_str()) { "" } else { &name };
+            let path = format!("{prefix}{own}");
+            found.insert(path.trim_end_matches("::").to_string(), code);
+        }
+    }
+}
+
+/// Paths that begin with `crate::` or `super::` in a module, with lists in braces taken apart.
+fn paths(module: &str, code: &str) -> Vec<String> {
+    let parent = module.rsplit_once("::").map_or("", |(parent, _)| parent);
+    let mut found = Vec::new();
+    for (root, base) in [("crate::", ""), ("super::", parent)] {
+        for (start, _) in code.match_indices(root) {
+            let base = if base.is_empty() { String::new() } else { format!("{base}::") };
+            spread(&base, &code[start + root.len()..], &mut found);
+        }
+    }
+    found
+}
+
+/// `a::{b, c::d}` as `a::b` and `a::c::d`.
+fn spread(base: &str, text: &str, found: &mut Vec<String>) {
+    let text = text.trim_start();
+    if let Some(list) = text.strip_prefix('{') {
+        let (mut depth, mut start) = (0, 0);
+        for (place, letter) in list.char_indices() {
+            match letter {
+                '{' => depth += 1,
+                '}' if depth == 0 => return spread(base, &list[start..place], found),
+                '}' => depth -= 1,
+                ',' if depth == 0 => {
+                    spread(base, &list[start..place], found);
+                    start = place + 1;
+                }
+                _ => {}
+            }
+        }
+        return;
+    }
+    let end = text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len());
+    match (&text[..end], text[end..].strip_prefix("::")) {
+        ("", _) => {}
+        (name, Some(rest)) => spread(&format!("{base}{name}::"), rest, found),
+        (name, None) => found.push(format!("{base}{name}")),
+    }
+}
+
+/// The module that a path leads into: the longest part of it that is one, also behind the folders of `re_exported`.
+fn leads_to(path: &str, modules: &BTreeMap<String, String>, re_exported: &str) -> Option<String> {
+    let whole = [path.to_string(), format!("{re_exported}::{path}")];
+    whole.iter().find_map(|path| {
+        let ends = path.match_indices("::").map(|(end, _)| end).chain([path.len()]);
+        let parts: Vec<&str> = ends.map(|end| &path[..end]).collect();
+        let fits = |part: &&&str| modules.contains_key(**part) && **part != re_exported;
+        parts.iter().rev().find(fits).map(|part| part.to_string())
+    })
+}
+
+/// A circle among modules that import each other, if there is one.
+fn circle(arrows: &BTreeMap<String, BTreeSet<String>>) -> Option<Vec<String>> {
+    fn visit<'a>(
+        at: &'a str,
+        arrows: &'a BTreeMap<String, BTreeSet<String>>,
+        way: &mut Vec<&'a str>,
+        done: &mut BTreeSet<&'a str>,
+    ) -> Option<Vec<String>> {
+        if let Some(start) = way.iter().position(|on| *on == at) {
+            return Some(way[start..].iter().chain([&at]).map(|name| name.to_string()).collect());
+        }
+        if !done.insert(at) {
+            return None;
+        }
+        way.push(at);
+        let found = arrows[at].iter().find_map(|next| visit(next, arrows, way, done));
+        way.pop();
+        found
+    }
+    let mut done = BTreeSet::new();
+    arrows.keys().find_map(|start| visit(start, arrows, &mut Vec::new(), &mut done))
+}
+
+/// Imports of a parent from its own modules do not count, nor do those of its re-exports.
+#[test]
+fn modules_do_not_import_each_other_in_circles() {
+    for (folder, _) in ARROWS {
+        let mut found = BTreeMap::new();
+        modules(&root().join(folder).join("src"), "", &mut found);
+        let arrows: BTreeMap<String, BTreeSet<String>> = found
+            .iter()
+            .map(|(module, code)| {
+                let leads = paths(module, code);
+                let to = leads.iter().filter_map(|path| leads_to(path, &found, "potential_contact"));
+                let holds =
+                    |other: &String, inner: &str| inner == other || inner.starts_with(&format!("{other}::"));
+                let to =
+                    to.filter(|other| !other.is_empty() && !holds(other, module) && !holds(module, other));
+                (module.clone(), to.collect())
+            })
+            .collect();
+        let circle = circle(&arrows);
+        assert!(circle.is_none(), "{folder}: {}", circle.unwrap().join(" → "));
     }
 }
