@@ -15,7 +15,7 @@ fn every_code_has_its_section_and_every_section_a_code() {
     let page = read("docs/troubleshooting.md");
     let sections: BTreeSet<String> =
         page.lines().filter_map(|line| line.strip_prefix("### ")).map(String::from).collect();
-    let stops = read("crates/ndda-solver/src/step_error.rs");
+    let stops = read("crates/ndda-solver/src/error.rs");
     let stops = stops.lines().filter(|line| line.trim_start().starts_with("Self::"));
     let mut codes: BTreeSet<String> =
         stops.filter_map(|line| line.split('"').nth(1)).map(String::from).collect();

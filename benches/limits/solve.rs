@@ -63,9 +63,9 @@ fn one_ns(clock: &Clock, factor: &dyn Factor) -> f64 {
 
 fn eight_ns(clock: &Clock, factor: &dyn Factor) -> f64 {
     let load: Vec<[f64; 8]> = load(factor.unknowns()).into_iter().map(|b| [b; 8]).collect();
-    let (mut x, mut scratch) = (load.clone(), factor.new_scratch_of_eight());
+    let (mut x, mut scratch) = (load.clone(), factor.new_multi_scratch());
     clock.least_ns(|| {
         x.copy_from_slice(&load);
-        factor.solve_eight_in_place(&mut x, &mut scratch).expect("a solution");
+        factor.solve_multi_in_place(&mut x, &mut scratch).expect("a solution");
     })
 }

@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use ndda::Model;
 use ndda::build;
-use ndda::run::recorder::is_due;
+use ndda::run::schedule::is_due;
 use ndda_mesh::Vec3;
 use ndda_solver::{Simulation, Sink, SinkError, View};
 

@@ -16,7 +16,7 @@ use simulation::{Simulation, Snapshot};
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
-    module.add("CONTACT_COLUMNS", ndda::run::contacts::COLUMNS.to_vec())?;
+    module.add("CONTACT_COLUMNS", ndda::run::contact_rows::COLUMNS.to_vec())?;
     module.add("SceneError", module.py().get_type::<SceneError>())?;
     module.add("StopError", module.py().get_type::<StopError>())?;
     module.add_class::<Scene>()?;

@@ -38,7 +38,7 @@ impl Motion {
 
     /// How far the velocity at rows between two times is from anything between those at both ends [m/s]: what comes and goes in
     /// between.
-    pub fn unseen_m_s(&self, from_s: f64, to_s: f64) -> f64 {
+    pub fn unresolved_m_s(&self, from_s: f64, to_s: f64) -> f64 {
         match self {
             Self::Rows(rows) => {
                 let inside = within(rows, |row| row.0, from_s, to_s);
@@ -152,16 +152,16 @@ mod tests {
     fn a_velocity_that_comes_and_goes_between_two_times_is_found() {
         let rows = vec![(1.0, Vec3::zeros()), (2.0, Vec3::x()), (3.0, Vec3::zeros()), (9.0, Vec3::zeros())];
         let there_and_back = Motion::Rows(rows);
-        assert_eq!(there_and_back.unseen_m_s(0.5, 4.0), 1.0);
+        assert_eq!(there_and_back.unresolved_m_s(0.5, 4.0), 1.0);
         // A start, a turn and a stop are seen from both ends.
         for (from, to) in [(0.5, 1.5), (1.5, 2.5), (2.5, 4.0), (4.0, 99.0)] {
-            assert_eq!(there_and_back.unseen_m_s(from, to), 0.0, "{from} to {to}");
+            assert_eq!(there_and_back.unresolved_m_s(from, to), 0.0, "{from} to {to}");
         }
         // Up to 1 m/s in a second, and down again in another.
         let rows = [(0.0, 1.0), (1.0, 1.0), (1.0 + 1e-9, -1.0), (2.0, -1.0)];
         let record = Motion::Record(Record::new(Vec3::y(), &rows));
-        assert!((record.unseen_m_s(-1.0, 2.0) - 1.0).abs() < 1e-8);
-        assert!(record.unseen_m_s(0.2, 0.9) < 1e-15);
+        assert!((record.unresolved_m_s(-1.0, 2.0) - 1.0).abs() < 1e-8);
+        assert!(record.unresolved_m_s(0.2, 0.9) < 1e-15);
     }
 
     #[test]

@@ -7,11 +7,11 @@ use std::hint::black_box;
 
 use cases::{cubes, load, matrix};
 use gungraun::{Callgrind, LibraryBenchmarkConfig, library_benchmark, library_benchmark_group, main};
-use ndda_solver::linear_solver::{EIGHT, Scratch};
 use ndda_solver::{
     BodyKind, Factor, GeneralizedAlpha, LinearSolver, Midpoint, Newmark, Simulation, Supernodal,
     SymmetricMatrix, TimeIntegrator,
 };
+use ndda_solver::{MULTI, Scratch};
 
 /// A factor, and room for a solve.
 struct Solve<T> {
@@ -25,7 +25,7 @@ impl<T> Solve<T> {
     fn new(n: u32, of_load: impl Fn(f64) -> T) -> Self {
         let factor = Supernodal.factor(&matrix(n)).expect("positive definite");
         let x = load(factor.unknowns()).into_iter().map(of_load).collect();
-        Self { scratch: factor.new_scratch_of_eight(), factor, x }
+        Self { scratch: factor.new_multi_scratch(), factor, x }
     }
 }
 
@@ -33,8 +33,8 @@ fn of_one(n: u32) -> Solve<f64> {
     Solve::new(n, |load| load)
 }
 
-fn of_eight(n: u32) -> Solve<[f64; EIGHT]> {
-    Solve::new(n, |load| [load; EIGHT])
+fn of_eight(n: u32) -> Solve<[f64; MULTI]> {
+    Solve::new(n, |load| [load; MULTI])
 }
 
 #[library_benchmark]
@@ -49,9 +49,9 @@ fn solve(mut case: Solve<f64>) -> f64 {
 #[library_benchmark]
 #[bench::unknowns_375(args = (4), setup = of_eight)]
 #[bench::unknowns_3000(args = (9), setup = of_eight)]
-fn solve_eight(mut case: Solve<[f64; EIGHT]>) -> f64 {
+fn solve_eight(mut case: Solve<[f64; MULTI]>) -> f64 {
     let Solve { factor, scratch, x } = black_box(&mut case);
-    factor.solve_eight_in_place(x, scratch).expect("a solution");
+    factor.solve_multi_in_place(x, scratch).expect("a solution");
     x[0][0]
 }
 

@@ -27,7 +27,7 @@ fn solve(c: &mut Criterion) {
         }
         for (name, solver) in solvers {
             let factor = solver.factor(&matrix).expect("positive definite");
-            let mut scratch = factor.new_scratch_of_eight();
+            let mut scratch = factor.new_multi_scratch();
             let load = load(matrix.n);
             let mut x = load.clone();
             c.bench_function(&format!("{} unknowns/{name}", matrix.n), |b| {
@@ -44,7 +44,7 @@ fn solve(c: &mut Criterion) {
             c.bench_function(&format!("{} unknowns/{name}, eight at once", matrix.n), |b| {
                 b.iter(|| {
                     x.copy_from_slice(&load);
-                    factor.solve_eight_in_place(&mut x, &mut scratch).expect("a solution");
+                    factor.solve_multi_in_place(&mut x, &mut scratch).expect("a solution");
                 })
             });
         }
@@ -64,7 +64,7 @@ fn least_us(mut run: impl FnMut()) -> f64 {
 
 /// Times of one solve and of eight at once, per block [µs].
 fn times(factor: &dyn Factor) -> [f64; 2] {
-    let mut scratch = factor.new_scratch_of_eight();
+    let mut scratch = factor.new_multi_scratch();
     let load = load(factor.unknowns());
     let mut x = load.clone();
     let one = least_us(|| {
@@ -75,7 +75,7 @@ fn times(factor: &dyn Factor) -> [f64; 2] {
     let mut x = load.clone();
     let eight = least_us(|| {
         x.copy_from_slice(&load);
-        factor.solve_eight_in_place(&mut x, &mut scratch).expect("a solution");
+        factor.solve_multi_in_place(&mut x, &mut scratch).expect("a solution");
     });
     [one, eight / 8.0]
 }

@@ -2,9 +2,10 @@
 
 use std::ops::ControlFlow;
 
-use crate::ledger::Sample;
-use crate::simulation::{Simulation, StepReport};
-use crate::step_error::StepError;
+use crate::diagnostics::energies::Sample;
+use crate::error::StepError;
+use crate::step::Simulation;
+use crate::step::report::StepReport;
 
 /// What a sink is shown.
 pub struct View<'a> {

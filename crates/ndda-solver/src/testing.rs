@@ -2,8 +2,8 @@
 
 use ndda_mesh::{Mat3, Vec3};
 
-use crate::linear_solver::{EIGHT, Factor, LinearSolver, SymmetricMatrix};
-use crate::time_integrator::TimeIntegrator;
+use crate::integrators::time_integrator::TimeIntegrator;
+use crate::linear::linear_solver::{Factor, LinearSolver, MULTI, SymmetricMatrix};
 
 /// Panics unless `integrator` keeps the contract of [`TimeIntegrator`].
 pub fn check_integrator(integrator: &dyn TimeIntegrator) {
@@ -70,7 +70,7 @@ pub fn check_linear_solver(solver: &dyn LinearSolver) {
         factor.solve_in_place(&mut x, &mut scratch).expect("a solution");
         let error = x.iter().zip(&exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         assert!(error < 1e-13, "n = {n}: error {error}");
-        check_eight(factor.as_ref());
+        check_multi(factor.as_ref());
     }
     let indefinite = SymmetricMatrix::from_lower(2, |j, out| {
         out.extend([(j, if j == 0 { 1.0 } else { -1.0 })]);
@@ -79,15 +79,15 @@ pub fn check_linear_solver(solver: &dyn LinearSolver) {
 }
 
 /// Panics unless eight right-hand sides get the bits that each gets alone, with a scratch that was used before too.
-pub(crate) fn check_eight(factor: &dyn Factor) {
+pub(crate) fn check_multi(factor: &dyn Factor) {
     let n = factor.unknowns();
-    let mut scratch = factor.new_scratch_of_eight();
+    let mut scratch = factor.new_multi_scratch();
     for round in 0..2 {
         let load = |i: usize, lane: usize| ((i * (lane + 1)) as f64 * 0.3 + f64::from(round)).sin();
-        let mut eight: Vec<[f64; EIGHT]> =
+        let mut eight: Vec<[f64; MULTI]> =
             (0..n).map(|i| std::array::from_fn(|lane| load(i, lane))).collect();
-        factor.solve_eight_in_place(&mut eight, &mut scratch).expect("a solution");
-        for lane in 0..EIGHT {
+        factor.solve_multi_in_place(&mut eight, &mut scratch).expect("a solution");
+        for lane in 0..MULTI {
             let mut one: Vec<f64> = (0..n).map(|i| load(i, lane)).collect();
             factor.solve_in_place(&mut one, &mut scratch).expect("a solution");
             let same = one.iter().zip(&eight).all(|(x, lanes)| x.to_bits() == lanes[lane].to_bits());

@@ -19,7 +19,7 @@ use ndda_fem::Table;
 use ndda_io::scene::{self, At, Contact, Integrator, Scene};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{
-    AutoStep, ConjugateGradients, Direct, EndContact, GeneralizedAlpha, LinearSolver, Mass, Midpoint,
+    AutoStep, ConjugateGradients, Direct, GeneralizedAlpha, ImplicitContact, LinearSolver, Mass, Midpoint,
     Newmark, Setup, SetupError, Simulation, TimeIntegrator,
 };
 
@@ -176,7 +176,7 @@ pub fn simulation_with(
         end_contact: match scene.time.contact_at {
             scene::ContactAt::Predicted => None,
             scene::ContactAt::End { tolerance, most_iterations } => {
-                Some(EndContact { tolerance, most_iterations })
+                Some(ImplicitContact { tolerance, most_iterations })
             }
         },
         solver: linear_solver(scene.time.solver),

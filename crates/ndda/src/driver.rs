@@ -1,14 +1,14 @@
 //! A simulation that somebody else steps: a script, a notebook, another program.
 
-use ndda_contact::{FacetContact, resultants};
+use ndda_contact::FacetContact;
 use ndda_io::checkpoint;
 use ndda_io::summary::Label;
 use ndda_solver::{RestoreError, Sample, Settle, Simulation, Snapshot, StepError};
 
 use crate::Model;
 use crate::judge::verdict;
-use crate::run::contacts::COLUMNS;
-use crate::run::recorder::is_due;
+use crate::run::contact_rows::{COLUMNS, contact_rows};
+use crate::run::schedule::is_due;
 
 /// A simulation that is stepped from outside and judged as [`Run`](crate::Run) judges it.
 ///
@@ -188,41 +188,6 @@ impl Driver {
     pub fn steps(&self) -> u64 {
         self.steps
     }
-}
-
-/// The pairs that touched in the last step, a row of [`COLUMNS`] each; `facets` is room for them.
-pub fn contact_rows(simulation: &Simulation, facets: &mut Vec<FacetContact>) -> Vec<[f64; COLUMNS.len()]> {
-    let (time_s, blocks) = (simulation.time_s(), simulation.blocks());
-    facets.clear();
-    facets.extend_from_slice(simulation.contacts());
-    let pairs = resultants(blocks, facets).into_iter();
-    pairs
-        .map(|pair| {
-            let center = pair.center + blocks.origin_m;
-            let (f, t, m) = (pair.force_n, pair.friction_n, pair.moment_n_m);
-            let (first, second) = (f64::from(pair.first.0), f64::from(pair.second.0));
-            [
-                time_s,
-                first,
-                second,
-                f.x,
-                f.y,
-                f.z,
-                t.x,
-                t.y,
-                t.z,
-                center.x,
-                center.y,
-                center.z,
-                m.x,
-                m.y,
-                m.z,
-                pair.area_m2,
-                pair.depth_m,
-                pair.sliding,
-            ]
-        })
-        .collect()
 }
 
 #[cfg(test)]

@@ -1,5 +1,6 @@
 //! A run: a scene stepped to its end, shown to observers, recorded if asked to, and judged.
 
+pub mod contact_rows;
 pub mod contacts;
 mod error;
 pub mod fields;
@@ -10,6 +11,7 @@ mod outputs;
 pub mod recorder;
 mod resume;
 pub mod run_log;
+pub mod schedule;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};

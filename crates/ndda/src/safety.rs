@@ -6,6 +6,7 @@
 
 mod changes;
 mod film;
+mod free_blocks;
 mod mechanism;
 mod report;
 mod search;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use ndda_fem::{BlockOperator, BlockSupports, LinearElastic};
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockSet, Mat3, Vec3};
-use ndda_solver::unknowns::Unknowns;
+use ndda_solver::Unknowns;
 use ndda_solver::{
     BodyKind, BodySetup, Direct, Mass, Midpoint, Setup, Simulation, SymmetricMatrix, TimeIntegrator,
 };

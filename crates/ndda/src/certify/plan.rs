@@ -2,8 +2,8 @@
 
 use ndda_io::scene::{At, Body, Contact, ContactAt, Fill, Integrator, Monitor, Scene, Shape};
 use ndda_mesh::BlockId;
+use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
-use ndda_solver::body::BodyKind;
 
 use super::chaos::DISTURBANCE;
 use super::quantities::BLOCK;

@@ -10,8 +10,9 @@ use serde::Serialize;
 
 use super::memory::readable;
 use crate::run::fields::FieldWriter;
-use crate::run::recorder::{columns, events, held_blocks};
-use crate::run::{contacts, motion};
+use crate::run::recorder::{columns, held_blocks};
+use crate::run::schedule::events;
+use crate::run::{contact_rows, motion};
 use crate::{build, machine};
 
 /// Steps are timed this long, but at least a few of them: a check of a small scene is to be felt as instant.
@@ -105,7 +106,7 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
     }
     if output.contacts {
         let pairs = ndda_contact::resultants(simulation.blocks(), &mut simulation.contacts().to_vec()).len();
-        let numbers = (pairs * contacts::COLUMNS.len()) as u64;
+        let numbers = (pairs * contact_rows::COLUMNS.len()) as u64;
         files.push(file(folder::CONTACTS, 1, rows * numbers * NUMBER_BYTES));
     }
     files

@@ -1,8 +1,8 @@
 //! What in a scene is probably not meant: no error, and worth a question before a long run.
 
 use ndda_io::scene::{Contact, Friction, Material, Potential, Scene};
+use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
-use ndda_solver::body::BodyKind;
 
 use super::step::Advice;
 

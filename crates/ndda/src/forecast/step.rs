@@ -13,8 +13,8 @@ use ndda_io::scene::{Body, Contact, ContactAt, Scene};
 use ndda_mesh::geometry::{tet_volume, triangle_area_vector};
 use ndda_mesh::stats::stats;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
+use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
-use ndda_solver::body::BodyKind;
 use serde::Serialize;
 
 use crate::build;

@@ -7,30 +7,8 @@ use ndda_contact::FacetContact;
 use ndda_io::{History, OutputFolder, WriteError};
 use ndda_solver::{Sink, SinkError, View};
 
-use crate::driver::contact_rows;
-use crate::run::recorder::is_due;
-
-/// Columns of the table; blocks are numbered from 0 in the order of `block_id` and of the summary.
-pub const COLUMNS: [&str; 18] = [
-    "time_s",
-    "first_block",
-    "second_block",
-    "force_x_n",
-    "force_y_n",
-    "force_z_n",
-    "friction_x_n",
-    "friction_y_n",
-    "friction_z_n",
-    "center_x_m",
-    "center_y_m",
-    "center_z_m",
-    "moment_x_n_m",
-    "moment_y_n_m",
-    "moment_z_n_m",
-    "area_m2",
-    "depth_m",
-    "sliding",
-];
+use crate::run::contact_rows::{COLUMNS, contact_rows};
+use crate::run::schedule::is_due;
 
 /// Writes `contacts.csv`.
 pub struct ContactTable {

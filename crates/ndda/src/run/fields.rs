@@ -12,7 +12,7 @@ use ndda_solver::{Simulation, Sink, SinkError, StepError, View};
 use serde::{Deserialize, Serialize};
 
 use crate::build;
-use crate::run::recorder::is_due;
+use crate::run::schedule::is_due;
 
 /// Friction state of a node that a facet holds, and of one where a facet slides.
 const STICKS: u8 = 1;

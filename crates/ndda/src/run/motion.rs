@@ -10,7 +10,7 @@ use ndda_mesh::{BlockId, Mat3, Vec3};
 use ndda_solver::{BodyKind, Simulation, Sink, SinkError, View};
 use serde::{Deserialize, Serialize};
 
-use super::recorder::is_due;
+use super::schedule::is_due;
 
 /// A block has moved if a point of it has gone farther than this part of the distance from its mass centre to its farthest node.
 const MOVED: f64 = 0.01;

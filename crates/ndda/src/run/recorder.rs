@@ -12,18 +12,8 @@ use serde::{Deserialize, Serialize};
 
 use super::monitor::Monitor;
 use super::motion::LargestMotions;
+use super::schedule::is_due;
 use crate::judge::reference::{Comparison, Errors};
-
-/// Whether one of `count` evenly spaced events falls on `step` of `steps`; the first and last steps always count.
-pub fn is_due(step: u64, steps: u64, count: u64) -> bool {
-    let passed = |s: u64| u128::from(s) * u128::from(count.min(steps)) / u128::from(steps.max(1));
-    step == 0 || step >= steps || passed(step) != passed(step - 1)
-}
-
-/// How many times [`is_due`] says yes in a run of `steps`.
-pub fn events(steps: u64, count: u64) -> u64 {
-    count.clamp(1, steps.max(1)) + 1
-}
 
 /// Keeps the history, as `history.csv` or in memory, and follows the errors against the closed form.
 pub struct Recorder {
@@ -284,6 +274,7 @@ impl Sink for Recorder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::schedule::events;
 
     #[test]
     fn events_are_evenly_spaced_and_never_more_than_asked_for() {

@@ -7,7 +7,8 @@ use std::sync::atomic::AtomicBool;
 use ndda_io::OutputFolder;
 use ndda_io::scene::Output;
 
-use super::trial::{Trial, free};
+use super::free_blocks::free;
+use super::trial::Trial;
 use super::{SafetyError, mechanism_folder};
 use crate::run::motion::radius_m;
 use crate::{Model, Run, RunError};

@@ -7,7 +7,7 @@ use ndda_mesh::{BlockId, NodeId, Vec3};
 use ndda_solver::Simulation;
 use serde::{Deserialize, Serialize};
 
-use super::trial::gone_m;
+use super::free_blocks::{free, gone_m};
 use crate::run::motion;
 
 /// A block moves if it has gone farther than this part of the farthest.
@@ -173,7 +173,7 @@ fn supports<'a>(
 
 /// Normals into free blocks of the faces that they rest on.
 pub fn normals(simulation: &Simulation) -> Vec<Vec3> {
-    let free: Vec<BlockId> = super::trial::free(simulation).collect();
+    let free: Vec<BlockId> = free(simulation).collect();
     let normals = |&block: &BlockId| {
         let planes = planes(simulation, &free, block);
         planes.into_iter().map(|plane| Vec3::from(plane.normal)).collect::<Vec<_>>()

@@ -11,7 +11,8 @@ use ndda_mesh::Vec3;
 use ndda_solver::{Settle, Simulation, Snapshot, StepError};
 use rayon::prelude::*;
 
-use super::trial::{Course, Start, State, Trial, free};
+use super::free_blocks::free;
+use super::trial::{Course, Start, State, Trial};
 use super::{
     Bracket, By, Mechanism, MovingBlock, Plan, SCHEMA, Safety, SafetyError, Watch, changes, film, mechanism,
     write,

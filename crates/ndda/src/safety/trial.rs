@@ -11,8 +11,9 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use super::free_blocks::{free, gone_m};
 use ndda_mesh::{BlockId, Vec3};
-use ndda_solver::{BodyKind, Settle, Simulation, Snapshot, StepError};
+use ndda_solver::{Settle, Simulation, Snapshot, StepError};
 use serde::{Deserialize, Serialize};
 
 use crate::run::motion::radius_m;
@@ -117,21 +118,6 @@ impl Start {
         let blocks_crc32 = ndda_io::checkpoint::fingerprint(&rest);
         Ok(Self { snapshot, position, elastic_m, gravity_m_s2, normals, blocks_crc32 })
     }
-}
-
-/// Blocks that are not fixed.
-pub fn free(simulation: &Simulation) -> impl Iterator<Item = BlockId> {
-    simulation.blocks().ids().filter(|&block| simulation.shape(block).kind != BodyKind::Fixed)
-}
-
-/// How far the farthest node of each free block is from where it was at the start [m].
-pub fn gone_m(simulation: &Simulation, start: &[Vec3]) -> Vec<(BlockId, f64)> {
-    let position = &simulation.state().position;
-    let gone = |block: BlockId| {
-        let nodes = simulation.blocks().nodes_of(block);
-        nodes.map(|n| (position[n] - start[n]).norm()).fold(0.0, f64::max)
-    };
-    free(simulation).map(|block| (block, gone(block))).collect()
 }
 
 /// How a trial is run.

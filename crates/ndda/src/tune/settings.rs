@@ -1,8 +1,8 @@
 //! The settings of a scene that are tried, as values for `--set`.
 
 use ndda_io::scene::{Block, Body, Contact, ContactAt, Integrator, Potential, Scene, Shape};
+use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
-use ndda_solver::body::BodyKind;
 
 use super::search::{Axis, Setting, Space};
 use crate::build;

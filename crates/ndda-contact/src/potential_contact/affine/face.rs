@@ -4,7 +4,7 @@ use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, NodeId, Vec3};
 
 use crate::affine::surface::BlockFaces;
-use crate::integration::polyhedron::Linear;
+use crate::integration::linear::Linear;
 
 /// Units in the last place of coordinates that are no overlap: blocks that move side by side drift by some.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;

@@ -387,16 +387,3 @@ impl Near<'_> {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::broad_phase::testing::check_broad_phase;
-
-    #[test]
-    fn it_finds_what_all_pairs_finds() {
-        let counts = check_broad_phase(TreeBroadPhase::default);
-        println!("{counts:?}");
-        assert!(counts.overlapping > 100_000 && counts.in_one_block > 1000, "the scenes hardly touch");
-    }
-}

@@ -201,3 +201,16 @@ impl Random {
         chosen.extend(blocks.ids().filter(|_| self.unit() < share));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::broad_phase::TreeBroadPhase;
+
+    #[test]
+    fn it_finds_what_all_pairs_finds() {
+        let counts = check_broad_phase(TreeBroadPhase::default);
+        println!("{counts:?}");
+        assert!(counts.overlapping > 100_000 && counts.in_one_block > 1000, "the scenes hardly touch");
+    }
+}

@@ -227,3 +227,61 @@ impl Batch {
         (part.area, part.depth) = (moments.area, moments.depth);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integration::pair_moments::element_moments;
+    use crate::integration::region::element_regions;
+    use crate::integration::tet_frame::{TetFrame, is_outside};
+    use ndda_mesh::Vec3;
+    use ndda_mesh::geometry::triangle_area_vector;
+    use proptest::prelude::*;
+
+    /// Coordinates on a coarse grid, so that corners, edges and planes often meet, some off it by a few ulps.
+    fn coordinate() -> impl Strategy<Value = f64> {
+        (-3i32..4, 0i32..12).prop_map(|(i, off)| {
+            let on_grid = f64::from(i) * 0.25;
+            if off < 8 { on_grid } else { on_grid + f64::from(off - 9) * f64::EPSILON }
+        })
+    }
+
+    fn point() -> impl Strategy<Value = Vec3> {
+        [coordinate(), coordinate(), coordinate()].prop_map(Vec3::from)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { max_global_rejects: 1_000_000, failure_persistence: None, ..ProptestConfig::with_cases(20_000) })]
+
+        #[test]
+        fn a_lane_gives_what_the_ordered_clipper_gives(
+            triangle in [point(), point(), point()], corners in [point(), point(), point(), point()]
+        ) {
+            let mut corners = corners;
+            if TetFrame::new(&corners).volume_m3 < 0.0 {
+                corners.swap(0, 1);
+            }
+            let frame = TetFrame::new(&corners);
+            let area_vector = triangle_area_vector(&triangle);
+            prop_assume!(frame.volume_m3 > 1e-4 && area_vector.norm() > 1e-3);
+            let lambda = frame.lambda(&triangle);
+            prop_assume!(!is_outside(&lambda));
+            let area = area_vector.norm();
+            let slopes = frame.slopes(&(area_vector / area));
+            let expected = element_moments(&lambda, &slopes, area);
+            let mut batches = RegionQueue::default();
+            element_regions(&lambda, &slopes, |_, region| {
+                batches.push(Arch::new(), 0, area, region, &Outline::TRIANGLE);
+            });
+            let mut found = crate::integration::pair_moments::PairMoments::default();
+            batches.finish(Arch::new(), |part| found.add_region(part));
+            let close = |x: f64, y: f64, scale: f64| (x - y).abs() <= 1e-13 * scale;
+            for a in 0..3 {
+                prop_assert!(close(found.pressure[a], expected.pressure[a], area), "{found:?}\n{expected:?}");
+                let most = expected.slope.iter().fold(area, |most, s| most.max(*s));
+                prop_assert!(close(found.slope[a], expected.slope[a], 10.0 * most), "{found:?}\n{expected:?}");
+            }
+            prop_assert!(close(found.area, expected.area, area));
+        }
+    }
+}

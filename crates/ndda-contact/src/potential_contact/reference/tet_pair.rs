@@ -10,11 +10,11 @@ use pulp::Arch;
 use crate::integration::clip::Outline;
 use crate::integration::double_double::Barycentric;
 use crate::integration::pair_moments;
-pub use crate::integration::polyhedron::PairError;
-use crate::integration::polyhedron::ScaledPair;
 use crate::integration::queue::RegionQueue;
 use crate::integration::region::element_regions;
 use crate::integration::tet_frame::{TetFrame, by_face, is_outside, some_face_separates};
+pub use crate::integration::tet_overlap::PairError;
+use crate::integration::tet_overlap::ScaledPair;
 
 /// Pairs at a time, so that all about them stays in the cache.
 const CHUNK: usize = 64;

@@ -1,0 +1,91 @@
+//! Work, impulses and rates of a step of one block.
+
+use ndda_mesh::{Mat3, Vec3};
+
+use crate::bodies::context::StepContext;
+use crate::bodies::prototype::Prototype;
+use crate::bodies::report::{BlockReport, Drive, LateralDrift};
+use crate::error::BlockError;
+
+impl BlockReport {
+    /// Work, impulse and error of damping in proportion to mass, which acts on the block as a whole, too. Its moment is that of its forces
+    /// at x*; a free block has noted that about its mass centre already, and all of it where contact is not taken in the middle of a step.
+    pub(crate) fn book_drag(
+        &mut self,
+        shape: &Prototype,
+        context: &StepContext,
+        (increment, old, new): (&[Vec3], &[Vec3], &[Vec3]),
+    ) {
+        let Some(drag) = &context.drag else { return };
+        let (operator, dt_s) = (&shape.operator, context.dt_s);
+        let mut square = 0.0;
+        for (i, u) in increment.iter().enumerate() {
+            let momentum = |v: &[Vec3]| operator.mass_row_times(i, v);
+            let force = drag.drag(&momentum(old), &momentum(new));
+            self.damping_work_j += u.dot(&force);
+            self.impulse += dt_s * force;
+            if !shape.is_free() {
+                self.impulse_moment += dt_s * context.contact_position[i].cross(&force);
+            }
+            square += operator.node_mass[i] * (new[i] - old[i]).norm_squared();
+        }
+        if shape.is_free() && context.weights.contact_in_the_middle() {
+            self.impulse_moment += operator.center(context.contact_position).cross(&self.impulse);
+        }
+        self.damping_error_m_s += drag.mean_velocity_error() * (square / operator.mass_kg).sqrt();
+    }
+
+    /// Torque of loads, work of friction and of changing loads, the contact rate of a step u [m], and what squeezes a block turned by R.
+    pub(crate) fn book(
+        &mut self,
+        shape: &Prototype,
+        context: &StepContext,
+        (rotation, increment): (&Mat3, &[Vec3]),
+    ) {
+        let point = context.moment_point(shape) - context.ahead;
+        for (x, f) in context.contact_position.iter().zip(context.external) {
+            self.outside_torque += (x - point).cross(f);
+        }
+        self.outside_torque += context.ahead.cross(&self.reaction);
+        self.impulse_moment += context.ahead.cross(&self.impulse);
+        for (load, u) in context.changing.iter().zip(increment) {
+            self.load_work_j += load.dot(u);
+        }
+        for (friction, u) in context.friction_force.iter().zip(increment) {
+            self.friction_work_j += friction.dot(u);
+        }
+        for (stiffness, mass) in context.contact_stiffness.iter().zip(&shape.operator.node_mass) {
+            self.contact_rate2 = self.contact_rate2.max(stiffness / mass);
+        }
+        self.drive = Drive::of(shape, context, rotation, self);
+        if self.contact_rate2 > 0.0 && context.direction_uncertainty > 0.0 {
+            self.sideways = LateralDrift::of(shape, context, self);
+        }
+    }
+}
+
+/// The fastest of a block's velocities [m/s], which must be finite and slower than ten waves.
+///
+/// # Errors
+/// [`BlockError::TooFast`] naming the node.
+pub(crate) fn checked_speed(shape: &Prototype, velocity: &[Vec3]) -> Result<f64, BlockError> {
+    let mut fastest = (0.0, 0);
+    for (i, v) in velocity.iter().enumerate() {
+        let speed = v.norm_squared();
+        // A NaN speed must win, too.
+        if speed > fastest.0 || speed.is_nan() {
+            fastest = (speed, i);
+        }
+    }
+    let (speed_m_s, node) = (fastest.0.sqrt(), fastest.1);
+    let wave_speed_m_s = shape.material.wave_speed_m_s();
+    if speed_m_s.is_nan() || speed_m_s >= 10.0 * wave_speed_m_s {
+        return Err(BlockError::TooFast { node, speed_m_s, wave_speed_m_s });
+    }
+    Ok(speed_m_s)
+}
+
+/// Displacement of a prescribed motion, zero where there is none [m].
+pub(crate) fn displacement_at(shape: &Prototype, motion: Option<usize>, time_s: f64) -> Vec3 {
+    motion.map_or(Vec3::zeros(), |m| shape.supports.motions[m].displacement(time_s))
+}

@@ -1,0 +1,227 @@
+//! What a block is solved for: components of its nodes, or the few motions that it may make.
+
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use ndda_fem::{BlockOperator, BlockSupports};
+use ndda_mesh::{Mat3, Vec3};
+
+use crate::integrators::time_integrator::StepWeights;
+use crate::linear::linear_solver::SymmetricMatrix;
+
+/// Motions held with less than this part of the stiffness of the best held one are free.
+const HELD: f64 = 1e-12;
+
+/// The unknowns of a block, and how its nodes move with them.
+#[derive(Clone, Debug)]
+pub enum Unknowns {
+    /// Free components of nodes; a held direction has no unknown.
+    Nodal {
+        /// First unknown of each node (`nodes + 1` values).
+        start: Vec<u32>,
+        /// Directions of the unknowns.
+        direction: Vec<Vec3>,
+    },
+    /// Amplitudes of motions.
+    Modes {
+        /// How many.
+        modes: usize,
+        /// Displacement of each node by each motion, node by node [m].
+        shape: Vec<Vec3>,
+    },
+}
+
+impl Unknowns {
+    /// The free components of a block.
+    pub fn nodal(nodes: usize, supports: &BlockSupports) -> Self {
+        let (mut start, mut direction) = (vec![0], Vec::with_capacity(3 * nodes));
+        let mut held = supports.held.iter().peekable();
+        for node in 0..nodes as u32 {
+            match held.next_if(|h| h.node == node) {
+                Some(h) => direction.extend(&h.free),
+                None => direction.extend([Vec3::x(), Vec3::y(), Vec3::z()]),
+            }
+            start.push(direction.len() as u32);
+        }
+        Self::Nodal { start, direction }
+    }
+
+    /// Affine motions, u = a + A X (Shi 1988): those of twelve that the supports leave.
+    pub(crate) fn affine(operator: &BlockOperator, supports: &BlockSupports) -> Self {
+        let size = operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
+        // Motion 4 i + j moves along axis i, by 1 or in proportion to the j-th coordinate.
+        let factors = |node: usize| {
+            let x = operator.rest[node] / size;
+            [1.0, x.x, x.y, x.z]
+        };
+        let mut stiffness = DMatrix::<f64>::zeros(12, 12);
+        for held in &supports.held {
+            let f = factors(held.node as usize);
+            for n in &held.held {
+                let row = DVector::from_fn(12, |k, _| n[k / 4] * f[k % 4]);
+                stiffness += &row * row.transpose();
+            }
+        }
+        let eigen = SymmetricEigen::new(stiffness);
+        let most = eigen.eigenvalues.max();
+        let free: Vec<usize> = (0..12).filter(|&k| eigen.eigenvalues[k] <= HELD * most).collect();
+        let mut shape = Vec::with_capacity(operator.nodes() * free.len());
+        for node in 0..operator.nodes() {
+            let f = factors(node);
+            for &k in &free {
+                let q = eigen.eigenvectors.column(k);
+                shape.push(Vec3::from_fn(|i, _| (0..4).map(|j| q[4 * i + j] * f[j]).sum()));
+            }
+        }
+        Self::Modes { modes: free.len(), shape }
+    }
+
+    /// Nothing to solve for.
+    pub(crate) fn none() -> Self {
+        Self::Modes { modes: 0, shape: Vec::new() }
+    }
+
+    /// Number of unknowns.
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Nodal { direction, .. } => direction.len(),
+            Self::Modes { modes, .. } => *modes,
+        }
+    }
+
+    /// Whether nothing is left to solve for.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// What nodal forces do along the unknowns.
+    pub(crate) fn gather(&self, nodal: &[Vec3], out: &mut [f64]) {
+        match self {
+            Self::Nodal { .. } if out.len() == 3 * nodal.len() => {
+                for (three, v) in out.chunks_exact_mut(3).zip(nodal) {
+                    three.copy_from_slice(v.as_slice());
+                }
+            }
+            Self::Nodal { start, direction } => {
+                for (v, ends) in nodal.iter().zip(start.windows(2)) {
+                    for k in ends[0] as usize..ends[1] as usize {
+                        out[k] = v.dot(&direction[k]);
+                    }
+                }
+            }
+            Self::Modes { modes, shape } if *modes > 0 => {
+                out.fill(0.0);
+                for (v, moves) in nodal.iter().zip(shape.chunks_exact(*modes)) {
+                    out.iter_mut().zip(moves).for_each(|(q, u)| *q += u.dot(v));
+                }
+            }
+            Self::Modes { .. } => {}
+        }
+    }
+
+    /// Adds the motion of the unknowns to nodal vectors.
+    pub(crate) fn scatter(&self, unknowns: &[f64], nodal: &mut [Vec3]) {
+        match self {
+            Self::Nodal { .. } if unknowns.len() == 3 * nodal.len() => {
+                for (three, v) in unknowns.chunks_exact(3).zip(nodal) {
+                    *v += Vec3::new(three[0], three[1], three[2]);
+                }
+            }
+            Self::Nodal { start, direction } => {
+                for (v, ends) in nodal.iter_mut().zip(start.windows(2)) {
+                    for k in ends[0] as usize..ends[1] as usize {
+                        *v += unknowns[k] * direction[k];
+                    }
+                }
+            }
+            Self::Modes { modes, shape } if *modes > 0 => {
+                for (v, moves) in nodal.iter_mut().zip(shape.chunks_exact(*modes)) {
+                    *v += unknowns.iter().zip(moves).map(|(q, u)| *q * u).sum::<Vec3>();
+                }
+            }
+            Self::Modes { .. } => {}
+        }
+    }
+
+    /// The nearest field that the unknowns can make, by node masses.
+    pub(crate) fn restrict(&self, node_mass: &[f64], field: &mut [Vec3]) {
+        let Self::Modes { modes, shape } = self else { return };
+        let rows = || node_mass.iter().zip(shape.chunks_exact((*modes).max(1)));
+        let gram = DMatrix::from_fn(*modes, *modes, |i, j| {
+            rows().map(|(&m, moves)| m * moves[i].dot(&moves[j])).sum::<f64>()
+        });
+        let side = DVector::from_fn(*modes, |i, _| {
+            rows().zip(&*field).map(|((&m, moves), v)| m * moves[i].dot(v)).sum::<f64>()
+        });
+        field.fill(Vec3::zeros());
+        if let Some(amplitudes) = gram.cholesky().map(|g| g.solve(&side)) {
+            self.scatter(amplitudes.as_slice(), field);
+        }
+    }
+
+    /// K̃ = θ (K + S) + c M + d K over the unknowns (eq 12), S being the springs and d = b/Δt damping in proportion to stiffness.
+    pub fn matrix(
+        &self,
+        operator: &BlockOperator,
+        supports: &BlockSupports,
+        weights: &StepWeights,
+        damping: f64,
+    ) -> SymmetricMatrix {
+        let (on_stiffness, on_mass) = (weights.stiffness + damping, weights.mass_per_s2);
+        let mut springs = vec![Mat3::zeros(); operator.nodes()];
+        for spring in &supports.springs {
+            let projector = spring.along.map_or(Mat3::identity(), |n| n * n.transpose());
+            springs[spring.node as usize] += weights.stiffness * spring.stiffness_n_m * projector;
+        }
+        let row = |node: usize| {
+            let springs = &springs;
+            operator.row(node).map(move |(other, stiffness, mass)| {
+                let mut block = on_stiffness * stiffness + Mat3::from_diagonal_element(on_mass * mass);
+                if other == node {
+                    block += springs[node];
+                }
+                (other, block)
+            })
+        };
+        match self {
+            Self::Nodal { start, direction } => nodal_matrix(start, direction, row),
+            Self::Modes { modes, shape } => modal_matrix(*modes, shape, row),
+        }
+    }
+}
+
+/// The matrix between free components; `row` gives the blocks of a node.
+fn nodal_matrix<I: Iterator<Item = (usize, Mat3)>>(
+    start: &[u32],
+    direction: &[Vec3],
+    row: impl Fn(usize) -> I,
+) -> SymmetricMatrix {
+    let of = |node: usize| start[node] as usize..start[node + 1] as usize;
+    let node_of: Vec<u32> = (0..start.len() - 1).flat_map(|n| of(n).map(move |_| n as u32)).collect();
+    SymmetricMatrix::from_lower(direction.len(), |j, out| {
+        for (other, block) in row(node_of[j] as usize) {
+            // Row `node` of K gives column j of the lower triangle by symmetry.
+            let along_other = block.transpose() * direction[j];
+            out.extend(of(other).filter(|&i| i >= j).map(|i| (i, direction[i].dot(&along_other))));
+        }
+    })
+}
+
+/// The matrix between motions, PᵀK̃P.
+fn modal_matrix<I: Iterator<Item = (usize, Mat3)>>(
+    modes: usize,
+    shape: &[Vec3],
+    row: impl Fn(usize) -> I,
+) -> SymmetricMatrix {
+    let nodes = shape.len() / modes.max(1);
+    SymmetricMatrix::from_lower(modes, |j, out| {
+        let mut column = vec![0.0; modes];
+        for node in 0..nodes {
+            let mut force = Vec3::zeros();
+            for (other, block) in row(node) {
+                force += block * shape[other * modes + j];
+            }
+            let moves = &shape[node * modes..(node + 1) * modes];
+            column.iter_mut().zip(moves).for_each(|(sum, u)| *sum += u.dot(&force));
+        }
+        out.extend((j..modes).map(|i| (i, column[i])));
+    })
+}

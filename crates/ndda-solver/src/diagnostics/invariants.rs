@@ -1,0 +1,81 @@
+//! The worst values of a run, which verdicts judge.
+
+use serde::{Deserialize, Serialize};
+
+use crate::diagnostics::worst::Worst;
+use crate::step::report::StepCounts;
+
+/// The worst values of a run so far; the limits are those of the summary.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Invariants {
+    /// |momentum − impulses| / max Σ m |v|.
+    pub linear_momentum: f64,
+    /// |angular momentum − angular impulses| / max Σ m |x| |v|.
+    pub angular_momentum: f64,
+    /// largest energy gain over the peak energy.
+    pub energy_gain: f64,
+    /// largest energy loss over the peak energy.
+    pub energy_loss: f64,
+    /// largest gain that does not come back when contact parts, over the peak energy.
+    pub lasting_gain: f64,
+    /// largest loss that does not come back when contact parts, over the peak energy.
+    pub lasting_loss: f64,
+    /// largest lasting gain of the lighter block of a pair, over ½ m v V for the speed v at which contact met it and the largest
+    /// speed V, or its largest energy of contact.
+    pub block_gain: Worst,
+    /// largest lasting loss of it, over the same.
+    pub block_loss: Worst,
+    /// largest energy by which friction of the lighter block of a pair was off Coulomb's law, summed over all steps, over ½ m V².
+    pub unresolved_friction: Worst,
+    /// penetration over tet height.
+    pub max_penetration_ratio: f64,
+    /// by how much the strength of a bond was exceeded where one broke, over its strength without normal stress.
+    pub bond_overload: f64,
+    /// largest velocity that a block owes to the unknown direction of the forces that squeeze it, over the largest speed.
+    pub squeezed_speed: Worst,
+    /// where that took it, over the smallest tet height of its block.
+    pub squeezed_place: Worst,
+    /// mean speed at which a block creeps on shear springs that contact makes slip by ringing, over the largest speed.
+    pub creep_speed: Worst,
+    /// where that took it, over the smallest tet height of its block.
+    pub creep_place: Worst,
+    /// |action + reaction| / |force| over the pairs.
+    pub action_reaction: f64,
+    /// smallest det F.
+    pub smallest_volume_ratio: f64,
+    /// largest principal strain of an element at a sample, in the frame of its block; none below 0.01.
+    pub largest_strain: Worst,
+    /// h = ω_c Δt, ω_c² bounded by the row sums of the contact stiffness over nodal masses.
+    pub max_h: f64,
+    /// relative travel of two blocks that may meet in a step over the width of the thinner one.
+    pub max_travel: Worst,
+    /// error of a place over the smallest tet height of its block, for turns that are behind.
+    pub turn_place: Worst,
+    /// error of a velocity over the largest speed, for turns that are behind.
+    pub turn_speed: f64,
+    /// Error of a velocity over the largest speed, for blocks that turn with the inertia of lumped masses.
+    pub lumped_speed: Worst,
+    /// Error of a place over the smallest tet height of its block, for the same.
+    pub lumped_place: Worst,
+    /// error of a velocity over the largest speed, for the ringing of contact and supports.
+    pub ringing: Worst,
+    /// speed of elastic vibrations that turns over in a step, over the largest speed and what the block bears; none below 0.001,
+    /// and that of the last sample where the integrator lets them die out.
+    pub vibration: f64,
+    /// speed that loads and motions bring and take back within a step, over the largest speed.
+    pub unseen_speed: f64,
+    /// largest error of velocities that damping leaves in a step, over the largest speed.
+    pub damping_speed: f64,
+    /// Most pairs looked at in a step.
+    pub candidate_pairs_max: usize,
+    /// Most pairs in contact in a step.
+    pub contact_pairs_max: usize,
+    /// Pairs looked at, over all steps.
+    pub candidate_pairs_total: u64,
+    /// Pairs in contact, over all steps.
+    pub contact_pairs_total: u64,
+    /// Most evaluations of contact that a step was solved with.
+    pub iterations_max: u32,
+    /// What controlling the step took.
+    pub control: StepCounts,
+}

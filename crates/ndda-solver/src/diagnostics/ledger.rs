@@ -1,0 +1,369 @@
+//! The books of a run: energy, momentum, and the worst of everything that has a limit.
+
+use crate::diagnostics::energies::Sample;
+use crate::diagnostics::energies::Vibration;
+use crate::diagnostics::invariants::Invariants;
+use ndda_mesh::{BlockId, Vec3};
+use serde::{Deserialize, Serialize};
+
+use crate::diagnostics::block_diagnostics::BlockDiagnostics;
+use crate::diagnostics::worst::Worst;
+use crate::integrators::time_integrator::StepWeights;
+use crate::step::report::StepCounts;
+use crate::step::report::StepReport;
+
+/// Strain below which none is looked for: a tenth of what a linear law may bear.
+const LITTLE_STRAIN: f64 = 1e-2;
+
+/// Part of the largest speed of which it does not matter how much turns over in a step.
+const LITTLE: f64 = 1e-3;
+
+/// Sums over steps and extremes over samples.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Ledger {
+    start: Option<Sample>,
+    impulse: Vec3,
+    angular_impulse: Vec3,
+    last_force: (Vec3, Vec3),
+    load_n: f64,
+    load_impulse: f64,
+    friction_work_j: f64,
+    motion_work_j: f64,
+    load_work_j: f64,
+    damping_work_j: f64,
+    peak_energy_j: f64,
+    peak_momentum: f64,
+    peak_angular: f64,
+    largest_gain_j: f64,
+    largest_loss_j: f64,
+    lasting_gain_j: f64,
+    lasting_loss_j: f64,
+    momentum_error: f64,
+    angular_error: f64,
+    largest_speed_m_s: f64,
+    vibration: Vibration,
+    unresolved_m_s: f64,
+    damping_m_s: f64,
+    rounding_j: f64,
+    last_sample_s: f64,
+    blocks: BlockDiagnostics,
+    worst: Invariants,
+}
+
+impl Ledger {
+    /// Empty books of some blocks; `start` is the force and torque from outside before the first step, zero unless the integrator remembers
+    /// accelerations [N, N m].
+    pub(crate) fn new(start: (Vec3, Vec3), blocks: BlockDiagnostics) -> Self {
+        let worst = Invariants {
+            linear_momentum: 0.0,
+            angular_momentum: 0.0,
+            energy_gain: 0.0,
+            energy_loss: 0.0,
+            lasting_gain: 0.0,
+            lasting_loss: 0.0,
+            block_gain: Worst::default(),
+            block_loss: Worst::default(),
+            unresolved_friction: Worst::default(),
+            max_penetration_ratio: 0.0,
+            bond_overload: 0.0,
+            squeezed_speed: Worst::default(),
+            squeezed_place: Worst::default(),
+            creep_speed: Worst::default(),
+            creep_place: Worst::default(),
+            action_reaction: 0.0,
+            smallest_volume_ratio: 1.0,
+            largest_strain: Worst::default(),
+            max_h: 0.0,
+            max_travel: Worst::default(),
+            turn_place: Worst::default(),
+            turn_speed: 0.0,
+            lumped_speed: Worst::default(),
+            lumped_place: Worst::default(),
+            ringing: Worst::default(),
+            vibration: 0.0,
+            unseen_speed: 0.0,
+            damping_speed: 0.0,
+            candidate_pairs_max: 0,
+            contact_pairs_max: 0,
+            candidate_pairs_total: 0,
+            contact_pairs_total: 0,
+            iterations_max: 0,
+            control: StepCounts::default(),
+        };
+        Self {
+            start: None,
+            impulse: Vec3::zeros(),
+            angular_impulse: Vec3::zeros(),
+            last_force: start,
+            load_n: 0.0,
+            load_impulse: 0.0,
+            friction_work_j: 0.0,
+            motion_work_j: 0.0,
+            load_work_j: 0.0,
+            damping_work_j: 0.0,
+            peak_energy_j: 0.0,
+            peak_momentum: 0.0,
+            peak_angular: 0.0,
+            largest_gain_j: 0.0,
+            largest_loss_j: 0.0,
+            lasting_gain_j: 0.0,
+            lasting_loss_j: 0.0,
+            momentum_error: 0.0,
+            angular_error: 0.0,
+            largest_speed_m_s: 0.0,
+            vibration: Vibration::default(),
+            unresolved_m_s: 0.0,
+            damping_m_s: 0.0,
+            rounding_j: 0.0,
+            last_sample_s: 0.0,
+            blocks,
+            worst,
+        }
+    }
+
+    /// Books an impulse and a moment of impulses about the origin as they are [kg m/s, kg m²/s].
+    pub(crate) fn add_whole_impulse(&mut self, linear: Vec3, angular: Vec3) {
+        self.impulse += linear;
+        self.angular_impulse += angular;
+    }
+
+    /// Books force and torque from outside over a step, as the integrator weights them.
+    pub(crate) fn add_impulse(&mut self, dt_s: f64, weights: &StepWeights, force: Vec3, torque: Vec3) {
+        let (old_force, old_torque) = self.last_force;
+        let (force, torque) = (weights.inertia(&force, &old_force), weights.inertia(&torque, &old_torque));
+        self.impulse += dt_s * weights.mean_inertia(&old_force, &force);
+        self.angular_impulse += dt_s * weights.mean_inertia(&old_torque, &torque);
+        self.last_force = (force, torque);
+        self.load_impulse += dt_s * self.load_n;
+    }
+
+    /// Books impulse and angular impulse on a block beside the forces, and the error of velocities that damping leaves in the step
+    /// [m/s].
+    pub(crate) fn add_impulses(&mut self, impulse: Vec3, angular_impulse: Vec3, error_m_s: f64) {
+        self.impulse += impulse;
+        self.angular_impulse += angular_impulse;
+        self.damping_m_s = self.damping_m_s.max(error_m_s);
+    }
+
+    /// Counts a step that is taken back.
+    pub(crate) fn note_rejected(&mut self) {
+        self.worst.control.rejected += 1;
+    }
+
+    /// Keeps the most halvings of a step.
+    pub(crate) fn note_halvings(&mut self, halvings: u32) {
+        let control = &mut self.worst.control;
+        control.most_halvings = control.most_halvings.max(halvings);
+    }
+
+    /// Whether a first sample has opened the books.
+    pub(crate) fn is_open(&self) -> bool {
+        self.start.is_some()
+    }
+
+    /// The largest energy so far [J].
+    pub(crate) fn peak_energy_j(&self) -> f64 {
+        self.peak_energy_j
+    }
+
+    /// The size of all loads now [N].
+    pub(crate) fn watch_load(&mut self, load_n: f64) {
+        self.load_n = load_n;
+    }
+
+    /// Books the work of friction, of prescribed motions, of changing loads and of damping in a step [J].
+    pub(crate) fn add_work(&mut self, friction_j: f64, motion_j: f64, load_j: f64, damping_j: f64) {
+        self.friction_work_j += friction_j;
+        self.motion_work_j += motion_j;
+        self.load_work_j += load_j;
+        self.damping_work_j += damping_j;
+    }
+
+    /// The books of single blocks.
+    pub(crate) fn blocks(&mut self) -> &mut BlockDiagnostics {
+        &mut self.blocks
+    }
+
+    /// Number of blocks.
+    pub(crate) fn block_count(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// Time since the last sample [s].
+    pub(crate) fn since_sample_s(&self, time_s: f64) -> f64 {
+        time_s - self.last_sample_s
+    }
+
+    /// A part of what vibrations are held against that would be nothing new.
+    pub(crate) fn known_vibration(&self, die_out: bool) -> f64 {
+        if die_out { LITTLE } else { self.vibration.over(self.largest_speed_m_s).max(LITTLE) }
+    }
+
+    /// Largest speed of a node so far [m/s].
+    pub(crate) fn largest_speed_m_s(&self) -> f64 {
+        self.largest_speed_m_s
+    }
+
+    /// Keeps vibrations that a step turns over: the worst, or the last where they die out.
+    pub(crate) fn watch_vibration(&mut self, found: Vibration, die_out: bool) {
+        let speed_m_s = self.largest_speed_m_s;
+        if die_out || found.over(speed_m_s) > self.vibration.over(speed_m_s) {
+            self.vibration = found;
+        }
+    }
+
+    /// The largest strain so far, or one that does not matter.
+    pub(crate) fn largest_strain(&self) -> f64 {
+        self.worst.largest_strain.value.max(LITTLE_STRAIN)
+    }
+
+    /// Keeps the largest strain, if it matters.
+    pub(crate) fn watch_strain(&mut self, strain: f64, block: BlockId) {
+        if strain > LITTLE_STRAIN {
+            self.worst.largest_strain.take(strain, block.index());
+        }
+    }
+
+    /// Energy that rounding alone may have brought [J].
+    pub(crate) fn rounding_j(&self) -> f64 {
+        self.rounding_j
+    }
+
+    /// Keeps the largest energy that rounding alone may have brought by now [J].
+    pub(crate) fn watch_rounding(&mut self, energy_j: f64) {
+        self.rounding_j = self.rounding_j.max(energy_j);
+    }
+
+    /// Keeps the largest of all speeds, and of those that came and went within a step [m/s].
+    pub(crate) fn watch_speeds(&mut self, speed_m_s: f64, unresolved_m_s: f64) {
+        self.largest_speed_m_s = self.largest_speed_m_s.max(speed_m_s);
+        self.unresolved_m_s = self.unresolved_m_s.max(unresolved_m_s);
+    }
+
+    /// Keeps the extremes of a step.
+    pub(crate) fn watch(&mut self, report: &StepReport) {
+        let (worst, contact) = (&mut self.worst, &report.contact);
+        worst.max_penetration_ratio = worst.max_penetration_ratio.max(contact.max_penetration_ratio);
+        worst.bond_overload = worst.bond_overload.max(contact.bond_overload);
+        worst.action_reaction = worst.action_reaction.max(contact.action_reaction_error);
+        worst.candidate_pairs_max = worst.candidate_pairs_max.max(contact.candidate_pairs);
+        worst.contact_pairs_max = worst.contact_pairs_max.max(contact.contact_pairs);
+        worst.candidate_pairs_total += contact.candidate_pairs as u64;
+        worst.contact_pairs_total += contact.contact_pairs as u64;
+        worst.max_h = worst.max_h.max(report.h);
+        worst.max_travel.take(report.travel.value, report.travel.block as usize);
+        worst.iterations_max = worst.iterations_max.max(report.iterations.newton);
+    }
+
+    /// Balances a sample against the books and keeps the extremes; the first sample opens the books.
+    ///
+    /// Where contact is explicit and stable, what it keeps is v² (1 − h²/4)/2 + ω² x²/2: up to h²/4 of its own energy is
+    /// missing while blocks are pressed, and comes back when they part. `explicit_contact` says that it is.
+    pub(crate) fn balance(&mut self, mut sample: Sample, explicit_contact: bool) -> Sample {
+        let start = *self.start.get_or_insert(sample);
+        sample.friction_work_j = self.friction_work_j;
+        sample.motion_work_j = self.motion_work_j;
+        sample.load_work_j = self.load_work_j;
+        sample.damping_work_j = self.damping_work_j;
+        let work_j =
+            sample.friction_work_j + sample.motion_work_j + sample.load_work_j + sample.damping_work_j;
+        sample.balance_j = sample.total_j() - start.total_j() - work_j;
+        let stored = sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j;
+        self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());
+        self.largest_gain_j = self.largest_gain_j.max(sample.balance_j);
+        self.largest_loss_j = self.largest_loss_j.max(-sample.balance_j);
+        let h = if explicit_contact { self.worst.max_h } else { 0.0 };
+        let comes_back_j = 0.25 * h * h * sample.contact_j;
+        self.blocks.balance(0.25 * h * h);
+        self.last_sample_s = sample.time_s;
+        self.lasting_gain_j = self.lasting_gain_j.max(sample.balance_j - comes_back_j);
+        self.lasting_loss_j = self.lasting_loss_j.max(-sample.balance_j - comes_back_j);
+        // What supports and loads exchange rounds as they do, however little it leaves to move.
+        self.peak_momentum = self.peak_momentum.max(sample.momentum_scale).max(self.load_impulse);
+        self.peak_angular = self.peak_angular.max(sample.angular_scale);
+        let momentum_error = (sample.momentum - start.momentum - self.impulse).norm();
+        let turn_error = (sample.angular_momentum - start.angular_momentum - self.angular_impulse).norm();
+        self.momentum_error = self.momentum_error.max(momentum_error);
+        self.angular_error = self.angular_error.max(turn_error);
+        let ratio = sample.smallest_volume_ratio.0;
+        self.worst.smallest_volume_ratio = self.worst.smallest_volume_ratio.min(ratio);
+        sample
+    }
+
+    /// The worst of the run so far.
+    pub(crate) fn invariants(&self) -> Invariants {
+        let over = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
+        let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
+        let (block_gain, block_loss) = self.blocks.lasting(self.largest_speed_m_s, self.rounding_j);
+        let (squeezed_speed, squeezed_place) = self.blocks.squeezed(self.largest_speed_m_s, self.rounding_j);
+        let (creep_speed, creep_place) = self.blocks.creep(self.largest_speed_m_s);
+        let (lumped_speed, lumped_place) = self.blocks.lumped(self.largest_speed_m_s, self.rounding_j);
+        let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
+        Invariants {
+            linear_momentum: over(self.momentum_error, self.peak_momentum),
+            angular_momentum: over(self.angular_error, self.peak_angular),
+            energy_gain: energy(self.largest_gain_j),
+            energy_loss: energy(self.largest_loss_j),
+            lasting_gain: energy(self.lasting_gain_j),
+            lasting_loss: energy(self.lasting_loss_j),
+            block_gain,
+            block_loss,
+            unresolved_friction: self.blocks.unresolved_friction(self.largest_speed_m_s, self.rounding_j),
+            squeezed_speed,
+            squeezed_place,
+            creep_speed,
+            creep_place,
+            lumped_speed,
+            lumped_place,
+            turn_place: self.blocks.turned_over_height(),
+            turn_speed: speed(self.blocks.turned_m_s()),
+            ringing: self.blocks.ringing(self.largest_speed_m_s, self.rounding_j),
+            vibration: self.vibration.over(self.largest_speed_m_s),
+            unseen_speed: speed(self.unresolved_m_s),
+            damping_speed: speed(self.damping_m_s),
+            ..self.worst
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::integrators::midpoint::Midpoint;
+    use crate::integrators::time_integrator::TimeIntegrator;
+
+    #[test]
+    fn energy_that_friction_took_is_not_a_loss() {
+        let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default());
+        ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
+        ledger.add_work(-4.0, 0.0, 0.0, 0.0);
+        let sample = ledger.balance(Sample { kinetic_j: 5.0, ..Sample::default() }, true);
+        assert_eq!(sample.balance_j, -1.0);
+        assert_eq!(ledger.invariants().energy_loss, 0.1);
+        assert_eq!(ledger.invariants().energy_gain, 0.0);
+    }
+
+    #[test]
+    fn what_explicit_contact_holds_back_is_not_lost_but_what_is_gone_after_it_is() {
+        let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default());
+        ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
+        ledger.watch(&StepReport { h: 1.0, ..StepReport::default() });
+        ledger.balance(Sample { contact_j: 8.0, ..Sample::default() }, true);
+        assert_eq!((ledger.invariants().energy_loss, ledger.invariants().lasting_loss), (0.2, 0.0));
+        ledger.balance(Sample { kinetic_j: 9.0, ..Sample::default() }, true);
+        assert_eq!((ledger.invariants().lasting_loss, ledger.invariants().lasting_gain), (0.1, 0.0));
+        ledger.balance(Sample { contact_j: 8.0, ..Sample::default() }, false);
+        assert_eq!(ledger.invariants().lasting_loss, 0.2);
+    }
+
+    #[test]
+    fn an_impulse_from_outside_explains_momentum() {
+        let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default());
+        ledger.balance(Sample::default(), true);
+        let weights = Midpoint { theta: 0.5 }.weights(0.5);
+        ledger.add_impulse(0.5, &weights, Vec3::x(), Vec3::zeros());
+        let momentum = Vec3::new(0.5, 0.0, 0.1);
+        ledger.balance(Sample { momentum, momentum_scale: 0.5, ..Sample::default() }, true);
+        assert!((ledger.invariants().linear_momentum - 0.2).abs() < 1e-15);
+    }
+}

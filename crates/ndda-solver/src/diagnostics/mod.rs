@@ -1,0 +1,10 @@
+//! Balances of energy and momentum, and diagnoses of what a step does not resolve.
+
+pub(crate) mod block_diagnostics;
+pub(crate) mod creep;
+pub(crate) mod energies;
+pub(crate) mod invariants;
+pub(crate) mod lateral_drift;
+pub(crate) mod ledger;
+pub(crate) mod ringing;
+pub(crate) mod worst;

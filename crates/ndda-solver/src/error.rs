@@ -1,0 +1,204 @@
+//! Why a run stops.
+
+use crate::linear::linear_solver::SolveError;
+use ndda_contact::ContactError;
+use ndda_fem::{FrameError, SupportError};
+use ndda_mesh::{TetId, TriangleId};
+
+use crate::linear::linear_solver::FactorError;
+
+/// Why a run stops.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum StepError {
+    /// Contact could not be computed.
+    #[error("at t = {time_s} s: {source}")]
+    Contact {
+        /// Time [s].
+        time_s: f64,
+        /// The cause.
+        source: ContactError,
+    },
+    /// However short a step, it asks for more than it may.
+    #[error(
+        "at t = {time_s} s: contact is too stiff or too fast even for steps of {step_s:e} s: reduce the penalty, refine \
+         the mesh less, or allow more halvings"
+    )]
+    NoStepIsShortEnough {
+        /// Time [s].
+        time_s: f64,
+        /// Δt [s].
+        step_s: f64,
+    },
+    /// The equations of a shorter step cannot be factored.
+    #[error("for steps of {step_s:e} s: {source}")]
+    Factor {
+        /// Δt [s].
+        step_s: f64,
+        /// What is wrong with them.
+        source: FactorError,
+    },
+    /// Newton's method did not find the contact forces at the end of a step.
+    #[error(
+        "at t = {time_s} s: contact at the end of the step is not solved for after {iterations} evaluations \
+         (residual {residual:e}): reduce step_s, or raise the tolerance"
+    )]
+    ContactNotSolved {
+        /// Time [s].
+        time_s: f64,
+        /// Evaluations of contact.
+        iterations: u32,
+        /// Misfit of contact forces over the largest of contact forces and loads.
+        residual: f64,
+    },
+    /// A block is past the depth at which contact pushes it out.
+    #[error(
+        "at t = {time_s} s: triangle {} of block `{contactor}` is past the centroid of tet {} of block `{target}`, \
+         where the contact potential no longer pushes it out: raise penalty_pa or reduce step_s", triangle.0, tet.0
+    )]
+    PastCentroid {
+        /// Time [s].
+        time_s: f64,
+        /// Name of the block that went in.
+        contactor: String,
+        /// Its boundary triangle.
+        triangle: TriangleId,
+        /// Name of the block that it went into.
+        target: String,
+        /// The tetrahedron.
+        tet: TetId,
+    },
+    /// A block could not take the step.
+    #[error("at t = {time_s} s: block `{block}`: {source}")]
+    Block {
+        /// Time [s].
+        time_s: f64,
+        /// Name of the block.
+        block: String,
+        /// The cause.
+        source: BlockError,
+    },
+    /// A scene that was to settle first does not.
+    #[error(
+        "the scene has not settled in {steps} steps (speed {speed_ratio:e} of the largest): raise settle.most_steps or \
+         settle.tolerance, or see whether anything holds it"
+    )]
+    NotSettled {
+        /// Steps done.
+        steps: u64,
+        /// Speed left over the largest speed.
+        speed_ratio: f64,
+    },
+    /// An element is inside out.
+    #[error(
+        "at t = {time_s} s: tet {} of block `{block}` is inverted (det F = {volume_ratio:e}): reduce step_s or the load",
+        tet.0
+    )]
+    Inverted {
+        /// Time [s].
+        time_s: f64,
+        /// Name of the block.
+        block: String,
+        /// The tetrahedron.
+        tet: TetId,
+        /// det F.
+        volume_ratio: f64,
+    },
+}
+
+impl StepError {
+    /// Its section in `docs/troubleshooting.md`.
+    pub fn code(&self) -> &'static str {
+        match self {
+            Self::Contact { .. } => "contact-failed",
+            Self::NoStepIsShortEnough { .. } => "no-step-short-enough",
+            Self::Factor { .. } => "factor-failed",
+            Self::ContactNotSolved { .. } => "contact-not-solved",
+            Self::PastCentroid { .. } => "past-centroid",
+            Self::Block { .. } => "block-failed",
+            Self::NotSettled { .. } => "not-settled",
+            Self::Inverted { .. } => "element-inverted",
+        }
+    }
+}
+
+/// Why a block could not take a step.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum BlockError {
+    /// The shape has no rotation any more.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+    /// Its equations were not solved.
+    #[error(transparent)]
+    Solve(#[from] SolveError),
+    /// The rotation of a rigid block in a step cannot be solved for; half a turn at most has a solution.
+    #[error(
+        "its rotation in this step, about {angle_rad:.3} rad, is too large to be solved for: a torque of {torque_n_m:.3e} N m turns it by \
+         {torque_angle_rad:.3} rad, from {spin_rad_s:.3e} rad/s at the start: reduce step_s, or penalty_pa if contact exerts the torque"
+    )]
+    TurnsTooFar {
+        /// |Δt ω₀ + ½ Δt² J⁻¹ T| [rad].
+        angle_rad: f64,
+        /// |ω₀|, its spin at the start of the step [rad/s].
+        spin_rad_s: f64,
+        /// |T|, the torque of loads and contact about its mass centre [N m].
+        torque_n_m: f64,
+        /// |½ Δt² J⁻¹ T| [rad].
+        torque_angle_rad: f64,
+    },
+    /// The loads and contact forces on a rigid block are infinite or not a number.
+    #[error("the forces on it are not finite: reduce step_s or penalty_pa, or check the units of its loads")]
+    ForceNotFinite,
+    /// A velocity is beyond what the material can carry, or not a number.
+    #[error(
+        "node {node} moves at {speed_m_s:e} m/s, more than ten times its wave speed {wave_speed_m_s:e} m/s: \
+         reduce step_s, or the penalty if contact is stiff"
+    )]
+    TooFast {
+        /// The node, counted from the block's first.
+        node: usize,
+        /// Its speed [m/s].
+        speed_m_s: f64,
+        /// Wave speed of the material [m/s].
+        wave_speed_m_s: f64,
+    },
+}
+
+/// Why a simulation could not be set up.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SetupError {
+    /// Supports of a block cannot be imposed.
+    #[error("block `{block}`: {source}")]
+    Support {
+        /// Name of the block.
+        block: String,
+        /// What is wrong with them.
+        source: SupportError,
+    },
+    /// The equations of a block cannot be factored.
+    #[error("block `{block}`: {source}")]
+    Factor {
+        /// Name of the block.
+        block: String,
+        /// What is wrong with them.
+        source: FactorError,
+    },
+    /// Supports that a body of this kind cannot have.
+    #[error("block `{block}`: {reason}")]
+    Kind {
+        /// Name of the block.
+        block: String,
+        /// What does not go together, and what to do.
+        reason: &'static str,
+    },
+    /// Contact at the start cannot be computed.
+    #[error(transparent)]
+    Contact(#[from] Box<StepError>),
+    /// The accelerations at the start of a block cannot be solved for.
+    #[error("block `{block}`: {source}")]
+    Solve {
+        /// Name of the block.
+        block: String,
+        /// How far the solver came.
+        source: SolveError,
+    },
+}

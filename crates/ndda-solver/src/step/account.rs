@@ -1,0 +1,157 @@
+//! What watches a step: impulses, work, energies of pairs, and extremes.
+
+use crate::step::report::StepReport;
+use std::time::Instant;
+
+use ndda_contact::ContactReport;
+use ndda_mesh::Vec3;
+
+use crate::diagnostics::ringing::Quadrature;
+use crate::step::Simulation;
+use crate::step::report::Iterations;
+
+/// Seconds of the stages of a step.
+pub(super) struct StageWatch(Instant);
+
+impl StageWatch {
+    pub(super) fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    /// Adds the time since the last stop.
+    pub(super) fn stop(&mut self, stage_s: &mut f64) {
+        let now = Instant::now();
+        *stage_s += (now - self.0).as_secs_f64();
+        self.0 = now;
+    }
+}
+
+impl Simulation {
+    /// Notes contacts, places before the step, and how well the direction of contact forces is known.
+    pub(super) fn watch_contact(&mut self, contact: &ContactReport) {
+        let depth = contact.max_penetration_ratio;
+        self.audit.direction_uncertainty =
+            if depth > self.problem.min_friction_coefficient { depth } else { 0.0 };
+        self.note_contacts();
+        if self.contact_does_work(contact) {
+            self.scratch.moved.copy_from_slice(&self.state.position);
+        }
+    }
+
+    /// Impulses, work and extremes of the step.
+    pub(super) fn account_for_step(&mut self, contact: ContactReport, iterations: Iterations) -> StepReport {
+        let (mut force, mut torque) = (self.loads.force(), Vec3::zeros());
+        self.audit.ledger.watch_load(force.norm());
+        let (mut impulse, mut orbital) = (Vec3::zeros(), Vec3::zeros());
+        let (mut rate2, mut speed_m_s) = (0.0f64, 0.0f64);
+        let quadrature = self.quadrature();
+        let (mut friction_j, mut motion_j, mut load_j, mut damping_j) = (0.0, 0.0, 0.0, 0.0);
+        for (k, body) in self.bodies.iter().enumerate() {
+            let report = &body.report;
+            self.audit.ledger.blocks().add_ringing(k, &quadrature, &report.drive);
+            force += report.reaction - report.motion_impulse / self.part_s;
+            torque += report.outside_torque;
+            impulse += report.motion_impulse;
+            orbital += report.orbital_impulse;
+            friction_j += report.friction_work_j;
+            motion_j += report.motion_work_j;
+            load_j += report.load_work_j;
+            damping_j += report.damping_work_j;
+            rate2 = rate2.max(report.contact_rate2);
+            speed_m_s = speed_m_s.max(report.speed_m_s);
+        }
+        let travel = self.travel_of_step(speed_m_s);
+        let h = self.part_s * rate2.sqrt();
+        self.audit.ledger.add_impulse(self.part_s, &self.weights, force, torque);
+        self.audit.ledger.add_whole_impulse(impulse, orbital);
+        self.audit.ledger.add_work(friction_j, motion_j, load_j, damping_j);
+        if self.problem.has_impulses {
+            self.book_impulses();
+        }
+        let contact_work_j = self.book_work_of_contact(&contact);
+        if self.audit.direction_uncertainty > 0.0 {
+            self.book_squeezing();
+        }
+        self.book_springs(&contact);
+        self.audit.ledger.watch_speeds(speed_m_s, self.unresolved_m_s());
+        let report = StepReport { contact, h, travel, contact_work_j, iterations };
+        self.audit.ledger.watch(&report);
+        report
+    }
+
+    /// How this step takes forces.
+    pub(super) fn quadrature(&self) -> Quadrature {
+        Quadrature {
+            dt_s: self.part_s,
+            is_one_sided: self.newton.is_some() || self.problem.integrator.contact_bound().is_none(),
+            elastic_lag: self.weights.elastic_lag(),
+            judges_pairs: self.weights.forces_do_their_work(),
+            is_first: self.steps_done(0.0) == 0.0,
+        }
+    }
+
+    /// Whether anything touches, and the work of its forces is what changes the energy of blocks.
+    pub(super) fn contact_does_work(&self, contact: &ContactReport) -> bool {
+        contact.contact_pairs > 0 && self.weights.forces_do_their_work()
+    }
+
+    /// Books what normal contact did in the step on both blocks of each pair; returns the sum of what single facets did, without
+    /// sign, where steps are controlled [J].
+    pub(super) fn book_work_of_contact(&mut self, contact: &ContactReport) -> f64 {
+        let works = self.contact_does_work(contact);
+        let mut contact_work_j = 0.0;
+        self.audit.travel.touching.clear();
+        let Some(model) = self.contact.as_mut().filter(|_| works) else { return contact_work_j };
+        for (moved, x) in self.scratch.moved.iter_mut().zip(&self.state.position) {
+            *moved = x - *moved;
+        }
+        let (books, travel) = (self.audit.ledger.blocks(), &mut self.audit.travel);
+        model.each_work(&self.problem.blocks, &self.scratch.moved, &mut |a, b, work_j| {
+            books.add_work(a, b, work_j);
+            if travel.notes_touching {
+                travel.note_touching(a, b);
+                contact_work_j += work_j.abs();
+            }
+        });
+        model.each_coulomb_gap(&self.problem.blocks, &self.scratch.moved, &mut |a, b, gap_j| {
+            books.add_coulomb_gap(a, b, gap_j);
+        });
+        books.close_step();
+        contact_work_j
+    }
+
+    /// Books the slip that shear springs lost in the step.
+    pub(super) fn book_springs(&mut self, contact: &ContactReport) {
+        let Some(model) = self.contact.as_ref() else { return };
+        let books = self.audit.ledger.blocks();
+        if contact.contact_pairs > 0 {
+            model.each_spring_slip(&mut |owner, target, spring| {
+                books.add_spring_slip(owner, target, spring);
+            });
+        }
+        books.close_springs(self.part_s);
+    }
+
+    /// Books the impulses of damping and of prescribed velocities, and how well the step resolves damping.
+    pub(super) fn book_impulses(&mut self) {
+        for report in self.bodies.iter().map(|body| &body.report) {
+            self.audit.ledger.add_impulses(report.impulse, report.impulse_moment, report.damping_error_m_s);
+        }
+    }
+
+    /// Books what the step gave blocks that are squeezed.
+    pub(super) fn book_squeezing(&mut self) {
+        let books = self.audit.ledger.blocks();
+        for (block, body) in self.problem.blocks.ids().zip(&self.bodies) {
+            books.add_lateral_drift(block, self.part_s, &body.report.sideways);
+        }
+    }
+
+    /// Speed that loads and motions bring and take back within the step, where nobody sees it [m/s].
+    pub(super) fn unresolved_m_s(&self) -> f64 {
+        let (now_s, end_s) = (self.clock_s(0.0), self.clock_s(1.0));
+        let motions = self.problem.shapes.iter().flat_map(|shape| &shape.supports.motions);
+        let fastest = motions.map(|motion| motion.unresolved_m_s(now_s, end_s)).fold(0.0, f64::max);
+        self.loads.unresolved_m_s().max(fastest)
+    }
+}

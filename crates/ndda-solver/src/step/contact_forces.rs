@@ -1,0 +1,158 @@
+//! Contact forces at the places that the integrator asks for.
+
+use std::mem::take;
+
+use ndda_contact::{ContactInput, ContactOutput, ContactReport, Deformation};
+use ndda_mesh::{BlockId, Vec3};
+
+use crate::bodies::kind::BodyKind;
+use crate::error::StepError;
+use crate::step::Simulation;
+use crate::step::deformation::StepDeformation;
+use crate::step::first_step::seen;
+use crate::step::report::Iterations;
+
+impl Simulation {
+    /// f ← loads and contact, at predicted positions or at the end of the step.
+    pub(super) fn gather_contact(&mut self) -> Result<(ContactReport, Iterations), StepError> {
+        let Some(mut newton) = self.newton.take() else {
+            self.place_contact();
+            let report = self.add_contact_forces(None)?;
+            self.carry_contact_forces();
+            self.stop_past_centroid(&report)?;
+            return Ok((report, Iterations::default()));
+        };
+        let report = self.solve_contact(&mut newton);
+        let iterations = newton.iterations;
+        self.newton = Some(newton);
+        Ok((report?, iterations))
+    }
+
+    /// x* = x + lead · Δt v + lead₂ · Δt² a.
+    pub(super) fn place_contact(&mut self) {
+        let lead = self.weights.contact_lead * self.part_s;
+        let moving = self.state.position.iter().zip(&self.state.velocity);
+        for (place, (x, v)) in self.scratch.contact_position.iter_mut().zip(moving) {
+            *place = x + lead * v;
+        }
+        let lead = self.weights.contact_lead_acceleration * self.part_s * self.part_s;
+        if lead != 0.0 {
+            let accelerations = self.scratch.contact_position.iter_mut().zip(&self.state.acceleration);
+            accelerations.for_each(|(place, a)| *place += lead * a);
+        }
+        self.place_moved_bases();
+    }
+
+    /// x* of blocks that go where they are told to: where they are at that time.
+    pub(super) fn place_moved_bases(&mut self) {
+        let (now_s, then_s) = (self.clock_s(0.0), self.clock_s(self.weights.contact_lead));
+        for (block, body) in self.problem.blocks.ids().zip(&self.bodies) {
+            let shape = &self.problem.shapes[body.shape];
+            if shape.kind != BodyKind::Fixed || shape.supports.motions.is_empty() {
+                continue;
+            }
+            let gone = shape.displacement_as_a_whole(then_s) - shape.displacement_as_a_whole(now_s);
+            let nodes = self.problem.blocks.nodes_of(block);
+            let (places, start) =
+                (&mut self.scratch.contact_position[nodes.clone()], &self.state.position[nodes]);
+            places.iter_mut().zip(start).for_each(|(place, x)| *place = x + gone);
+        }
+    }
+
+    /// Rigid motion and loads of the blocks, where contact asks for them.
+    pub(super) fn place_bodies(&mut self) {
+        let (now_s, end_s) = (self.clock_s(0.0), self.clock_s(1.0));
+        for (index, body) in self.scratch.contact_bodies.iter_mut().enumerate() {
+            let (held, shape) = (body.mass_kg.is_infinite(), &self.problem.shapes[self.bodies[index].shape]);
+            if held && shape.supports.motions.is_empty() {
+                continue;
+            }
+            let range = self.problem.blocks.nodes_of(BlockId(index as u32));
+            let (position, velocity) =
+                (&self.scratch.contact_position[range.clone()], &self.state.velocity[range.clone()]);
+            let motion = shape.operator.rigid_motion(position, velocity);
+            let ahead = self.state.ahead_of(BlockId(index as u32));
+            body.center = motion.center + ahead;
+            body.velocity_m_s = motion.velocity_m_s;
+            body.spin_rad_s = motion.spin_rad_s;
+            if held {
+                if shape.kind == BodyKind::Fixed {
+                    // Where it goes in this step is known already.
+                    let increment =
+                        shape.displacement_as_a_whole(end_s) - shape.displacement_as_a_whole(now_s);
+                    body.velocity_m_s = increment / self.part_s;
+                }
+                continue;
+            }
+            body.inverse_inertia =
+                shape.rigid_inverse_inertia(position, &motion).unwrap_or(motion.inverse_inertia);
+            (body.load_n, body.torque_n_m) = (Vec3::zeros(), Vec3::zeros());
+            for (x, load) in position.iter().zip(&self.loads.total()[range]) {
+                body.push(&(x + ahead), load);
+            }
+        }
+    }
+
+    /// force ← force + contact at x*; slip is by the velocities of the nodes, or by others where laws of facets ask.
+    pub(crate) fn add_contact_forces(
+        &mut self,
+        facet_velocity: Option<&[Vec3]>,
+    ) -> Result<ContactReport, StepError> {
+        self.place_bodies();
+        let time_s = self.time_s();
+        let Some(mut model) = self.contact.take() else { return Ok(ContactReport::default()) };
+        if std::mem::replace(&mut self.scratch.contact_has_acted, true) {
+            self.scratch.friction_force.fill(Vec3::zeros());
+            self.scratch.contact_stiffness.fill(0.0);
+        }
+        // What contact writes is taken out, so that it may ask how the blocks answer.
+        let (mut force, mut history) = (take(&mut self.scratch.force), take(&mut self.state.contact));
+        let mut friction_force = take(&mut self.scratch.friction_force);
+        let mut stiffness = take(&mut self.scratch.contact_stiffness);
+        let (mut bodies, mut seen_position) = (take(&mut self.bodies), take(&mut self.scratch.seen_position));
+        let deformation = StepDeformation::new(self, &mut bodies);
+        let velocity = facet_velocity.filter(|_| !model.needs_bodies()).unwrap_or(&self.state.velocity);
+        let input = ContactInput {
+            blocks: &self.problem.blocks,
+            position: seen(
+                &self.problem.blocks,
+                &self.state.ahead,
+                &self.scratch.contact_position,
+                &mut seen_position,
+            ),
+            velocity,
+            dt_s: self.part_s,
+            affine: &self.problem.affine,
+            bodies: &self.scratch.contact_bodies,
+            // While the end of the step is being found, how blocks answer to that is part of what is looked for.
+            deformation: facet_velocity.is_none().then_some(&deformation as &dyn Deformation),
+            is_iterated: facet_velocity.is_some(),
+        };
+        let mut output = ContactOutput {
+            force: &mut force,
+            friction_force: &mut friction_force,
+            stiffness: &mut stiffness,
+        };
+        let report = model.add_forces(&input, &mut history, &mut output);
+        self.scratch.contact_has_acted = report.is_err() || model.has_acted();
+        (self.scratch.force, self.state.contact, self.scratch.friction_force) =
+            (force, history, friction_force);
+        (self.scratch.contact_stiffness, self.bodies, self.scratch.seen_position) =
+            (stiffness, bodies, seen_position);
+        self.contact = Some(model);
+        report.map_err(|source| StepError::Contact { time_s, source })
+    }
+
+    /// Stops where contact has lost its grip.
+    pub(crate) fn stop_past_centroid(&self, report: &ContactReport) -> Result<(), StepError> {
+        let Some((triangle, tet)) = report.past_centroid else { return Ok(()) };
+        let name = |block: BlockId| self.problem.blocks.names[block.index()].clone();
+        Err(StepError::PastCentroid {
+            time_s: self.time_s(),
+            contactor: name(self.problem.blocks.triangle_block[triangle.index()]),
+            triangle,
+            target: name(self.problem.blocks.tet_block[tet.index()]),
+            tet,
+        })
+    }
+}

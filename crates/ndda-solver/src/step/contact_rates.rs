@@ -1,0 +1,41 @@
+//! How stiff contact is beside the masses that it moves, without a step.
+
+use ndda_mesh::BlockId;
+
+use crate::bodies::kind::BodyKind;
+use crate::error::StepError;
+use crate::step::Simulation;
+
+impl Simulation {
+    /// Upper bounds of ω_c² for each block [1/s²] where all blocks are swollen about their mass centres until their farthest nodes
+    /// have moved by `depth_over_height` of their smallest tetrahedron: then neighbours that touch overlap as little as that. A bound is
+    /// the largest Σ|k|/m of a node, as steps report it in h = ω_c Δt; it is zero for a block that touches none, and for fixed ones.
+    ///
+    /// # Errors
+    /// [`StepError::Contact`] when contact cannot be computed.
+    pub fn contact_rates2(&mut self, depth_over_height: f64) -> Result<Vec<f64>, StepError> {
+        let (untouched, force) = (self.state.contact.clone(), self.scratch.force.clone());
+        for block in self.problem.blocks.ids() {
+            let (nodes, shape) =
+                (self.problem.blocks.nodes_of(block), &self.problem.shapes[self.bodies[block.index()].shape]);
+            let center = shape.operator.center(&self.state.position[nodes.clone()]);
+            let swelling = depth_over_height * shape.smallest_height_m / shape.scale().radius_m;
+            for node in nodes {
+                let x = self.state.position[node];
+                self.scratch.contact_position[node] = x + swelling * (x - center);
+            }
+        }
+        let found = self.add_contact_forces(None);
+        (self.state.contact, self.scratch.force) = (untouched, force);
+        found.map(|_| self.problem.blocks.ids().map(|block| self.contact_rate2(block)).collect())
+    }
+
+    fn contact_rate2(&self, block: BlockId) -> f64 {
+        let shape = self.shape(block);
+        if shape.kind == BodyKind::Fixed {
+            return 0.0;
+        }
+        let stiffness = self.scratch.contact_stiffness[self.problem.blocks.nodes_of(block)].iter();
+        stiffness.zip(&shape.operator.node_mass).map(|(k, m)| k / m).fold(0.0, f64::max)
+    }
+}

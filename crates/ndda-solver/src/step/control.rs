@@ -1,0 +1,267 @@
+//! Steps as short as they have to be.
+//!
+//! A step of the scene is done in 2ⁿ parts of Δt/2ⁿ. When a part asks for more than it may, the whole step is taken back
+//! (history of contact and books included) and done again in twice as many; when half as many would do for some steps in a
+//! row, half as many are tried. Time stays a count of steps, outputs fall where they fall, and a change of n costs one
+//! factorisation per distinct block, once per n.
+//!
+//! The balance of energy costs more than a step, so it is evaluated only after steps that may have gained more than they are
+//! allowed. Explicit contact takes its force f at x*, halfway between two places; where f is linear, the work f·Δx differs from what
+//! contact stores by ¼ (ω_c Δt)² f·Δx, and a first contact stores at most ⅛ (ω_c Δt)² m v² before its force has acted
+//! (`Simulation::may_meet_with`). h bounds ω_c Δt, and the work of contact is known from the books.
+
+use crate::bodies::step_damping::StepDamping;
+use crate::diagnostics::ledger::Ledger;
+use crate::error::StepError;
+use crate::linear::linear_solver::{Factor, LinearSolver};
+use crate::step::Simulation;
+use crate::step::report::StepReport;
+use crate::step::state::State;
+
+/// When a step is too long.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AutoStep {
+    /// Part of the integrator's bound on h = ω_c Δt that a step may use.
+    pub safety: f64,
+    /// Energy that a step may gain over the largest energy so far.
+    pub energy: f64,
+    /// Halvings beyond which a run stops.
+    pub most_halvings: u32,
+}
+
+/// Relative travel of two blocks that may meet in a part over the width of the thinner one.
+const MOST_TRAVEL: f64 = 0.5;
+/// Steps in a row that half as many parts would have done for, before half as many are tried.
+const RELAX_STEPS: u32 = 4;
+/// A halving that leaves more than this part of an energy error does not help against it: by chance, when a block comes
+/// into contact early or late in a part, or because the error is none of the step.
+const HELPS: f64 = 0.7;
+/// Halvings in a row that do not help, before it is none of the step.
+const ENOUGH_TRIES: u32 = 3;
+/// Steps for which energy is not asked for after halving did not help.
+const COOLDOWN_STEPS: u32 = 100;
+/// Steps after which the balance of energy is evaluated in any case, for errors that are not of contact: at 1e-4 a step, as steps may
+/// gain by default, these make less than the 2 % of energy that an accurate run may be off.
+const BALANCED_STEPS: u64 = 128;
+/// How far ¼ h² f·Δx, the error of a linear force, may fall short of that of any other.
+const NONLINEAR: f64 = 2.0;
+
+/// Memory of the control.
+pub(crate) struct Control {
+    settings: AutoStep,
+    solver: Box<dyn LinearSolver>,
+    state: State,
+    ledger: Ledger,
+    /// Factors of the shapes that are not in use, by halvings.
+    spare: Vec<Vec<Option<Factors>>>,
+    /// Halvings that the factors in use are for.
+    halvings: u32,
+    /// The balance of energy after a step \[J\], and after which: it is that before the next.
+    balance: Option<(u64, f64)>,
+    /// Room for a ledger that is evaluated and dropped.
+    spare_ledger: Ledger,
+}
+
+/// Factors of a shape for one length of step: that of the step, and that of the filter of velocities.
+type Factors = (Box<dyn Factor>, Option<Box<dyn Factor>>);
+
+/// Why a step has to be done again.
+enum Rejection {
+    /// It asks for more than this many times too much.
+    TooLong(f64),
+    /// It gained this much energy over the largest so far.
+    Energy(f64),
+    /// It failed.
+    Failed(StepError),
+}
+
+impl Control {
+    pub(crate) fn new(
+        settings: AutoStep,
+        solver: Box<dyn LinearSolver>,
+        state: &State,
+        ledger: &Ledger,
+    ) -> Self {
+        Self {
+            settings,
+            solver,
+            state: state.clone(),
+            ledger: ledger.clone(),
+            spare_ledger: ledger.clone(),
+            spare: Vec::new(),
+            halvings: 0,
+            balance: None,
+        }
+    }
+
+    /// The balance of energy after a step \[J\], and after which.
+    pub(crate) fn balance(&self) -> Option<(u64, f64)> {
+        self.balance
+    }
+
+    /// Takes over the balance that belongs to a restored state.
+    pub(crate) fn restore_balance(&mut self, balance: Option<(u64, f64)>) {
+        self.balance = balance;
+    }
+}
+
+impl Simulation {
+    /// One step of the scene in as many parts as it needs.
+    pub(crate) fn controlled_step(&mut self, control: &mut Control) -> Result<StepReport, StepError> {
+        self.use_halvings(control, self.state.control.halvings)?;
+        if !self.audit.ledger.is_open() {
+            control.balance = Some((self.state.step, self.sample()?.balance_j));
+        }
+        control.state.clone_from(&self.state);
+        control.ledger.clone_from(&self.audit.ledger);
+        let (mut last_gain, mut unhelpful) = (f64::INFINITY, 0);
+        loop {
+            let rejection = match self.try_parts(control) {
+                Ok(report) => {
+                    self.relax(&control.settings, &report);
+                    return Ok(report);
+                }
+                Err(rejection) => rejection,
+            };
+            let halvings = self.state.control.halvings;
+            let mut energy_check_cooldown = self.state.control.energy_check_cooldown;
+            if let Rejection::Energy(gain) = rejection {
+                unhelpful = if gain > HELPS * last_gain { unhelpful + 1 } else { 0 };
+                last_gain = gain;
+                // Not an error of the step: take it as it is, and do not ask for a while.
+                if unhelpful == ENOUGH_TRIES {
+                    energy_check_cooldown = COOLDOWN_STEPS;
+                }
+            }
+            self.state.clone_from(&control.state);
+            control.ledger.note_rejected();
+            self.audit.ledger.clone_from(&control.ledger);
+            if halvings >= control.settings.most_halvings && energy_check_cooldown == 0 {
+                return Err(match rejection {
+                    Rejection::Failed(error) => error,
+                    Rejection::TooLong(_) | Rejection::Energy(_) => {
+                        StepError::NoStepIsShortEnough { time_s: self.time_s(), step_s: self.part_s }
+                    }
+                });
+            }
+            let more = match rejection {
+                Rejection::Energy(_) if energy_check_cooldown > 0 => 0,
+                // As many halvings as h asks for, at once.
+                Rejection::TooLong(times) if times.is_finite() => (times.log2().ceil() as u32).max(1),
+                _ => 1,
+            };
+            self.state.control.energy_check_cooldown = energy_check_cooldown;
+            let halvings = (halvings + more).min(control.settings.most_halvings);
+            self.use_halvings(control, halvings)?;
+        }
+    }
+
+    /// All parts of a step; stops at the first that asks for too much.
+    fn try_parts(&mut self, control: &mut Control) -> Result<StepReport, Rejection> {
+        let bound = self.contact_bound().map(|bound| control.settings.safety * bound);
+        let mut worst = StepReport::default();
+        for _ in 0..1u64 << self.state.control.halvings {
+            let report = self.part_step().map_err(Rejection::Failed)?;
+            worst = worst.joined(report);
+            let times = bound.map_or(0.0, |bound| worst.h / bound).max(worst.travel.value / MOST_TRAVEL);
+            if times > 1.0 {
+                return Err(Rejection::TooLong(times));
+            }
+        }
+        if self.state.control.energy_check_cooldown > 0 || !self.may_have_gained(&control.settings, &worst) {
+            return Ok(worst);
+        }
+        let gain = self.gain_of_step(control).map_err(Rejection::Failed)?;
+        if gain > control.settings.energy { Err(Rejection::Energy(gain)) } else { Ok(worst) }
+    }
+
+    /// Whether the step just done may have gained more energy than it is allowed, by what is known without an evaluation of it.
+    fn may_have_gained(&mut self, settings: &AutoStep, report: &StepReport) -> bool {
+        let limit_j = settings.energy * self.audit.ledger.peak_energy_j();
+        let Some(bound) = self.contact_bound().filter(|_| self.weights.forces_do_their_work()) else {
+            return true;
+        };
+        let is_due = self.state.step.is_multiple_of(BALANCED_STEPS) || self.state.control.halvings > 0;
+        if is_due || !self.state.contact.bonds.is_empty() {
+            return true;
+        }
+        let gained_j = 0.25 * report.h * report.h * report.contact_work_j;
+        NONLINEAR * gained_j > limit_j || self.may_meet_with(settings.safety * bound, limit_j)
+    }
+
+    /// Energy that the step just done gained, over the largest so far.
+    fn gain_of_step(&mut self, control: &mut Control) -> Result<f64, StepError> {
+        let before_j = match control.balance {
+            Some((step, balance_j)) if step == control.state.step => balance_j,
+            _ => self.balance_before(control)?,
+        };
+        let after_j = self.sample()?.balance_j;
+        let gain = (after_j - before_j) / self.audit.ledger.peak_energy_j();
+        // A step that is taken back begins where it began.
+        let is_taken_back = gain > control.settings.energy;
+        let known = if is_taken_back { (control.state.step, before_j) } else { (self.state.step, after_j) };
+        control.balance = Some(known);
+        Ok(gain)
+    }
+
+    /// The balance of energy before the step just done \[J\]; nothing of its evaluation is kept.
+    fn balance_before(&mut self, control: &mut Control) -> Result<f64, StepError> {
+        control.spare_ledger.clone_from(&control.ledger);
+        std::mem::swap(&mut self.state, &mut control.state);
+        std::mem::swap(&mut self.audit.ledger, &mut control.spare_ledger);
+        let found = self.sample();
+        std::mem::swap(&mut self.state, &mut control.state);
+        std::mem::swap(&mut self.audit.ledger, &mut control.spare_ledger);
+        found.map(|sample| sample.balance_j)
+    }
+
+    /// Half as many parts next time, when they would have done for a while.
+    fn relax(&mut self, settings: &AutoStep, report: &StepReport) {
+        self.audit.ledger.note_halvings(self.state.control.halvings);
+        let bound = self.contact_bound().map_or(f64::INFINITY, |bound| settings.safety * bound);
+        let control = &mut self.state.control;
+        control.energy_check_cooldown = control.energy_check_cooldown.saturating_sub(1);
+        let would_do = 2.0 * report.h <= 0.9 * bound && 2.0 * report.travel.value <= MOST_TRAVEL;
+        control.relax_streak = if would_do && control.halvings > 0 { control.relax_streak + 1 } else { 0 };
+        if control.relax_streak >= RELAX_STEPS {
+            control.relax_streak = 0;
+            control.halvings -= 1;
+        }
+    }
+
+    /// Makes weights and factors those of Δt/2ⁿ.
+    fn use_halvings(&mut self, control: &mut Control, halvings: u32) -> Result<(), StepError> {
+        self.state.control.halvings = halvings;
+        if control.halvings == halvings {
+            return Ok(());
+        }
+        self.part_s = self.problem.base_step_s * 0.5f64.powi(halvings as i32);
+        self.weights = self.weights_of(self.part_s);
+        let most = control.settings.most_halvings as usize + 1;
+        control.spare.resize_with(self.problem.shapes.len(), || (0..most).map(|_| None).collect());
+        for (index, spare) in control.spare.iter_mut().enumerate() {
+            let shape = &mut self.problem.shapes[index];
+            shape.damping = StepDamping::new(&shape.material.damping(), self.part_s, &self.weights);
+            spare[control.halvings as usize] = shape.factor.take().map(|step| (step, shape.filter.take()));
+            if let Some((step, filter)) = spare[halvings as usize].take() {
+                (shape.factor, shape.filter) = (Some(step), filter);
+                continue;
+            }
+            let failed = |source| StepError::Factor { step_s: self.part_s, source };
+            shape.factor = shape.factored(&self.weights, control.solver.as_ref()).map_err(failed)?;
+            shape.filter = shape.factored_filter(&self.weights, control.solver.as_ref()).map_err(failed)?;
+        }
+        control.halvings = halvings;
+        self.renew_scratches();
+        Ok(())
+    }
+
+    /// Memory of solves for the factors in use.
+    fn renew_scratches(&mut self) {
+        for body in &mut self.bodies {
+            let shape = &self.problem.shapes[body.shape];
+            let Some(factor) = shape.factor.as_deref() else { continue };
+            body.renew_scratch(factor, shape.filter.as_deref());
+        }
+    }
+}

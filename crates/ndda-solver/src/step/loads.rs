@@ -1,0 +1,97 @@
+//! What acts on the nodes from outside, at any time of a run.
+
+use ndda_fem::{Between, Table};
+use ndda_mesh::Vec3;
+
+/// Nodal forces that grow and shrink together.
+#[derive(Clone, Debug)]
+pub(crate) struct VaryingLoad {
+    /// Node, and force at a factor of one [N].
+    pub forces: Vec<(u32, Vec3)>,
+    /// The factor over time.
+    pub factor: Table,
+    /// How fast the block that feels it most is made by a factor of one [m/s²].
+    pub pace_m_s2: f64,
+}
+
+impl VaryingLoad {
+    /// Forces on a run of nodes from `first` on; those that are zero are left out.
+    pub(crate) fn new(first: usize, forces: &[Vec3], factor: Table, pace_m_s2: f64) -> Self {
+        let some = forces.iter().enumerate().filter(|(_, force)| **force != Vec3::zeros());
+        Self { forces: some.map(|(i, force)| ((first + i) as u32, *force)).collect(), factor, pace_m_s2 }
+    }
+}
+
+/// All loads but contact.
+#[derive(Clone, Debug)]
+pub(crate) struct Loads {
+    constant: Vec<Vec3>,
+    varying: Vec<VaryingLoad>,
+    /// Sum of the varying ones now; empty if there are none, and so is `total`.
+    changing: Vec<Vec3>,
+    total: Vec<Vec3>,
+    /// Sum over the nodes of all of them [N].
+    force: Vec3,
+    /// Speed that the varying ones bring and take back unseen within the step [m/s].
+    unresolved_m_s: f64,
+}
+
+impl Loads {
+    /// Constant forces per node, and those that vary.
+    pub(crate) fn new(constant: Vec<Vec3>, varying: Vec<VaryingLoad>) -> Self {
+        let force = constant.iter().sum();
+        let nodes = if varying.is_empty() { 0 } else { constant.len() };
+        let mut loads = Self {
+            constant,
+            varying,
+            changing: vec![Vec3::zeros(); nodes],
+            total: vec![Vec3::zeros(); nodes],
+            force,
+            unresolved_m_s: 0.0,
+        };
+        loads.place(0.0, 0.0);
+        loads
+    }
+
+    /// Makes the varying ones their means between two times [s].
+    pub(crate) fn place(&mut self, from_s: f64, to_s: f64) {
+        if self.varying.is_empty() {
+            return;
+        }
+        self.changing.fill(Vec3::zeros());
+        self.unresolved_m_s = 0.0;
+        for load in &self.varying {
+            let Between { mean: factor, beyond_s } = load.factor.between(from_s, to_s);
+            self.unresolved_m_s += load.pace_m_s2 * beyond_s;
+            load.forces.iter().for_each(|(node, force)| self.changing[*node as usize] += factor * force);
+        }
+        let sums = self.constant.iter().zip(&self.changing);
+        self.total.iter_mut().zip(sums).for_each(|(total, (a, b))| *total = a + b);
+        self.force = self.total.iter().sum();
+    }
+
+    /// What never changes, per node [N].
+    pub(crate) fn constant(&self) -> &[Vec3] {
+        &self.constant
+    }
+
+    /// What varies, as last placed [N]; empty if nothing does.
+    pub(crate) fn changing(&self) -> &[Vec3] {
+        &self.changing
+    }
+
+    /// Both [N].
+    pub(crate) fn total(&self) -> &[Vec3] {
+        if self.varying.is_empty() { &self.constant } else { &self.total }
+    }
+
+    /// Speed that they bring and take back within the step, where nobody sees it [m/s].
+    pub(crate) fn unresolved_m_s(&self) -> f64 {
+        self.unresolved_m_s
+    }
+
+    /// Their sum over all nodes [N].
+    pub(crate) fn force(&self) -> Vec3 {
+        self.force
+    }
+}

@@ -1,0 +1,111 @@
+//! What a simulation tells of itself.
+
+use crate::step::report::StageTimes;
+
+use ndda_mesh::{BlockId, BlockSet, Vec3};
+
+use crate::bodies::kind::BodyKind;
+use crate::bodies::prototype::Prototype;
+use crate::diagnostics::invariants::Invariants;
+use crate::step::Simulation;
+use crate::step::state::State;
+
+impl Simulation {
+    /// Where each node was when time began [m].
+    pub fn start_position(&self) -> &[Vec3] {
+        if self.state.start.is_empty() { &self.problem.blocks.rest_position } else { &self.state.start }
+    }
+
+    /// Topology and rest shape.
+    pub fn blocks(&self) -> &BlockSet {
+        &self.problem.blocks
+    }
+
+    /// The changing state.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Force of the supports on a block in the last step [N]; that of what holds it, for a fixed block.
+    pub fn reaction_n(&self, block: BlockId) -> Vec3 {
+        self.bodies[block.index()].report.reaction
+    }
+
+    /// The shape of a block: operator, supports, factor.
+    pub fn shape(&self, block: BlockId) -> &Prototype {
+        &self.problem.shapes[self.bodies[block.index()].shape]
+    }
+
+    /// Number of factored matrices: distinct blocks with unknowns.
+    pub fn factors(&self) -> usize {
+        self.problem.shapes.iter().filter(|shape| shape.factor.is_some()).count()
+    }
+
+    /// Number of unknowns over all blocks.
+    pub fn unknowns(&self) -> usize {
+        self.problem.blocks.ids().map(|block| self.shape(block).unknowns.len()).sum()
+    }
+
+    /// Whether no block is supported, so that momentum can only come from loads.
+    pub fn is_closed(&self) -> bool {
+        self.problem.shapes.iter().all(Prototype::is_free)
+    }
+
+    /// The block of each distinct shape whose rotation is inexact because masses are lumped, with the largest part by which its inertia is
+    /// too large.
+    pub fn lumped_inertia_errors(&self) -> Vec<(BlockId, f64)> {
+        let mut seen = vec![false; self.problem.shapes.len()];
+        let firsts = self.problem.blocks.ids().zip(&self.bodies);
+        let firsts = firsts.filter(|(_, body)| !std::mem::replace(&mut seen[body.shape], true));
+        let errors = firsts.map(|(block, body)| (block, self.problem.shapes[body.shape].rotation_error()));
+        errors.filter(|(_, error)| *error > 0.0).collect()
+    }
+
+    /// Whether any block turns with the inexact inertia of lumped masses.
+    pub fn has_lumped_rotation(&self) -> bool {
+        self.problem.shapes.iter().any(|shape| shape.rotation_error() > 0.0)
+    }
+
+    /// Whether blocks feel each other.
+    pub fn has_contact(&self) -> bool {
+        self.contact.is_some()
+    }
+
+    /// Largest stable h = ω_c Δt; none where contact is solved for, or never stable.
+    pub fn contact_bound(&self) -> Option<f64> {
+        if self.newton.is_some() { None } else { self.problem.integrator.contact_bound() }
+    }
+
+    /// Largest h at which steps resolve contact at predicted positions: the bound, or a third of a contact's half period where
+    /// no step is stable; none where contact is solved for.
+    pub fn resolved_h(&self) -> Option<f64> {
+        if self.newton.is_some() {
+            None
+        } else {
+            Some(self.problem.integrator.contact_bound().unwrap_or(1.0))
+        }
+    }
+
+    /// Whether a loss of energy is wrong: not where an integrator is asked to damp what elastic blocks do, unless contact at
+    /// the end of steps takes energy, too.
+    pub fn should_keep_energy(&self) -> bool {
+        let asked = self.problem.integrator.damps_elasticity();
+        let rigid = |shape: &Prototype| matches!(shape.kind, BodyKind::Rigid | BodyKind::Fixed);
+        self.newton.is_some() || !asked || self.problem.shapes.iter().all(rigid)
+    }
+
+    /// Largest speed of the run so far [m/s].
+    pub fn largest_speed_m_s(&self) -> f64 {
+        self.audit.ledger.largest_speed_m_s()
+    }
+
+    /// The worst of the run so far.
+    pub fn invariants(&self) -> Invariants {
+        self.audit.ledger.invariants()
+    }
+
+    /// Seconds per stage so far.
+    pub fn stages(&self) -> StageTimes {
+        self.audit.stages
+    }
+}

@@ -1,0 +1,257 @@
+//! What a simulation is asked for when results are written: energies, momenta, stresses.
+
+use std::time::Instant;
+
+use ndda_contact::{ContactInput, ContactReport, FacetContact};
+use ndda_fem::stress::{cauchy_stress, largest_strain, smallest_volume_ratio};
+use ndda_mesh::{BlockId, Mat3, TetId, Vec3};
+
+use crate::bodies::kind::BodyKind;
+use crate::bodies::prototype::Prototype;
+use crate::diagnostics::energies::{Sample, Vibration};
+use crate::error::StepError;
+use crate::integrators::time_integrator::StepWeights;
+use crate::step::Simulation;
+use crate::step::first_step::seen;
+use crate::step::state::State;
+
+impl Simulation {
+    /// Energies and momenta now, balanced against the books.
+    ///
+    /// # Errors
+    /// [`StepError::Inverted`] when an element is inside out, or as [`step`](Self::step).
+    pub fn sample(&mut self) -> Result<Sample, StepError> {
+        let started = Instant::now();
+        let time_s = self.time_s();
+        let rounding_j = self.rounding_j();
+        self.audit.ledger.watch_rounding(rounding_j);
+        let mut sample = Sample { step: self.state.step, time_s, ..Sample::default() };
+        sample.smallest_volume_ratio = (f64::INFINITY, 0);
+        let mut vibration = Vibration::default();
+        for block in self.problem.blocks.ids() {
+            self.add_block_to(&mut sample, block)?;
+            vibration = self.worse_vibration(block, vibration)?;
+        }
+        self.audit.ledger.watch_vibration(vibration, self.problem.integrator.damps_vibrations());
+        let loads = self.loads.constant().iter().zip(&self.state.position).zip(self.start_position());
+        sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
+        if let Some(model) = &mut self.contact {
+            let State { position, velocity, ahead, .. } = &self.state;
+            let position = seen(&self.problem.blocks, ahead, position, &mut self.scratch.seen_position);
+            let input = ContactInput {
+                affine: &self.problem.affine,
+                ..ContactInput::new(&self.problem.blocks, position, velocity, self.part_s)
+            };
+            let energy_j = model.energy_j(&input, &self.state.contact);
+            // A sum of nothing is −0 in Rust; adding 0 makes it 0, whether pairs that do not touch are listed or not.
+            sample.contact_j = energy_j.map_err(|source| StepError::Contact { time_s, source })? + 0.0;
+            let books = self.audit.ledger.blocks();
+            books.clear_energies();
+            if self.weights.forces_do_their_work() {
+                model.each_energy(&mut |a, b, energy_j| books.add_energy(a, b, energy_j));
+            }
+        }
+        let sample = self.audit.ledger.balance(sample, self.contact_bound().is_some());
+        self.audit.stages.ledger_s += started.elapsed().as_secs_f64();
+        Ok(sample)
+    }
+
+    fn add_block_to(&mut self, sample: &mut Sample, block: BlockId) -> Result<(), StepError> {
+        let (range, time_s, ahead) =
+            (self.problem.blocks.nodes_of(block), sample.time_s, self.state.ahead_of(block));
+        let body = &mut self.bodies[block.index()];
+        let shape = &self.problem.shapes[body.shape];
+        let (position, velocity) = (&self.state.position[range.clone()], &self.state.velocity[range]);
+        sample.kinetic_j += shape.operator.kinetic_energy_j(velocity);
+        let momentum = shape.operator.momentum(velocity);
+        sample.momentum += momentum;
+        sample.angular_momentum += shape.operator.angular_momentum(&Vec3::zeros(), position, velocity);
+        // Where contact sees the block: there its forces have no torque on all blocks together.
+        sample.angular_momentum += ahead.cross(&momentum);
+        for ((x, v), &m) in position.iter().zip(velocity).zip(&shape.operator.node_mass) {
+            sample.momentum_scale += m * v.norm();
+            sample.angular_scale += m * x.norm() * v.norm();
+        }
+        let since_s = self.audit.ledger.since_sample_s(time_s);
+        let (spin_rad_s, rate_rad_s) = lag_rate(shape, &self.weights, self.part_s, position, velocity);
+        self.audit.ledger.blocks().add_lag(block, since_s, spin_rad_s, rate_rad_s);
+        let error = shape.rotation_error();
+        if error > 0.0 {
+            let spin = shape.operator.rigid_motion(position, velocity).spin_rad_s;
+            self.audit.ledger.blocks().add_lumped_turn(block, since_s, spin, error);
+        }
+        let Some(elastic) = body.elastic() else { return Ok(()) };
+        let name = || self.problem.blocks.names[block.index()].clone();
+        let (volume_ratio, tet) = smallest_volume_ratio(&shape.operator, position);
+        let tet = self.problem.blocks.tets_of(block).start + tet;
+        if volume_ratio.is_nan() || volume_ratio <= 0.0 {
+            let tet = TetId(tet as u32);
+            return Err(StepError::Inverted { time_s, block: name(), tet, volume_ratio });
+        }
+        if volume_ratio < sample.smallest_volume_ratio.0 {
+            sample.smallest_volume_ratio = (volume_ratio, tet);
+        }
+        let failed = |source| StepError::Block { time_s, block: name(), source };
+        let strain = elastic.strain_energy_j(shape, position);
+        let strain_j = strain.map_err(|source| failed(source.into()))?;
+        sample.strain_j += strain_j;
+        self.audit.ledger.blocks().note_strain(block, strain_j);
+        let displacement = elastic.displacement_in_frame();
+        if strain_bound(shape, displacement) > self.audit.ledger.largest_strain() {
+            self.audit.ledger.watch_strain(largest_strain(&shape.operator, displacement), block);
+        }
+        sample.spring_j += elastic.spring_energy_j(shape, position, time_s);
+        Ok(())
+    }
+
+    /// Vibrations of a block that a step turns over, if they are worse than those found so far, those of before, and rounding.
+    fn worse_vibration(&mut self, block: BlockId, found: Vibration) -> Result<Vibration, StepError> {
+        let die_out = self.problem.integrator.damps_vibrations();
+        let largest_m_s = self.audit.ledger.largest_speed_m_s();
+        let known = self.audit.ledger.known_vibration(die_out).max(found.over(largest_m_s));
+        let borne_m2_s2 = self.audit.ledger.blocks().strain_speed2(block, die_out);
+        let known_m_s = known * (largest_m_s * largest_m_s + borne_m2_s2).sqrt();
+        let (range, body) = (self.problem.blocks.nodes_of(block), &mut self.bodies[block.index()]);
+        let shape = &self.problem.shapes[body.shape];
+        let Some(elastic) = body.elastic() else { return Ok(found) };
+        let motion = (&self.state.position[range.clone()], &self.state.velocity[range]);
+        let weights = shape.weights(&self.weights);
+        let speed_m_s = match elastic.vibration_m_s(shape, (&weights, self.part_s), motion, known_m_s) {
+            Ok(speed_m_s) => speed_m_s,
+            Err(source) => {
+                let block = self.problem.blocks.names[block.index()].clone();
+                return Err(StepError::Block { time_s: self.time_s(), block, source });
+            }
+        };
+        let energy_j = 0.5 * shape.operator.mass_kg * speed_m_s * speed_m_s;
+        let worse = speed_m_s > known_m_s && energy_j > self.audit.ledger.rounding_j();
+        Ok(if worse { Vibration { speed_m_s, borne_m2_s2 } } else { found })
+    }
+
+    /// Energy that rounding alone may have brought by now [J]: what it takes to move every node by the last digit of its place
+    /// against elasticity and contact, once in each step.
+    fn rounding_j(&self) -> f64 {
+        let last_digit = |x: &Vec3| f64::EPSILON * x.amax();
+        let elastic = self.problem.blocks.ids().map(|block| {
+            let position = &self.state.position[self.problem.blocks.nodes_of(block)];
+            let digit_m = position.iter().map(last_digit).fold(0.0, f64::max);
+            self.shape(block).stiffness_n_m * digit_m * digit_m
+        });
+        let contact = self.scratch.contact_stiffness.iter().zip(&self.state.position);
+        let contact = contact.map(|(stiffness, x)| stiffness * last_digit(x).powi(2));
+        0.5 * (elastic.sum::<f64>() + contact.sum::<f64>()) * self.state.step as f64
+    }
+
+    /// Whether the next steps note what each facet does.
+    pub fn watch_contacts(&mut self, wanted: bool) {
+        if wanted != self.audit.contacts.is_some() {
+            self.audit.contacts = wanted.then(Vec::new);
+        }
+    }
+
+    /// What facets did in the last step, where contact was evaluated in it; none unless it was
+    /// [watched](Self::watch_contacts), nor before the first step.
+    pub fn contacts(&self) -> &[FacetContact] {
+        self.audit.contacts.as_deref().unwrap_or(&[])
+    }
+
+    /// What facets do to each other where the blocks are now; nothing of it is remembered.
+    ///
+    /// # Errors
+    /// [`StepError::Contact`] when contact cannot be computed.
+    pub fn contacts_at_start(&mut self) -> Result<(ContactReport, Vec<FacetContact>), StepError> {
+        let (remembered, force) = (self.state.contact.clone(), self.scratch.force.clone());
+        self.scratch.contact_position.copy_from_slice(&self.state.position);
+        let found = self.add_contact_forces(None);
+        let mut facets = Vec::new();
+        self.add_facets(&mut facets);
+        (self.state.contact, self.scratch.force) = (remembered, force);
+        found.map(|report| (report, facets))
+    }
+
+    /// Asks contact what it just did, before anything else asks it for something.
+    pub(crate) fn note_contacts(&mut self) {
+        let Some(mut contacts) = self.audit.contacts.take() else { return };
+        contacts.clear();
+        self.add_facets(&mut contacts);
+        self.audit.contacts = Some(contacts);
+    }
+
+    fn add_facets(&mut self, facets: &mut Vec<FacetContact>) {
+        let Some(model) = &self.contact else { return };
+        let State { velocity, ahead, contact, .. } = &self.state;
+        let position = seen(
+            &self.problem.blocks,
+            ahead,
+            &self.scratch.contact_position,
+            &mut self.scratch.seen_position,
+        );
+        model.add_facets(
+            &ContactInput::new(&self.problem.blocks, position, velocity, self.part_s),
+            contact,
+            facets,
+        );
+    }
+
+    /// Cauchy stress per tetrahedron, global axes, (xx, yy, zz, xy, yz, zx) [Pa].
+    ///
+    /// # Errors
+    /// [`StepError::Block`] when a block has no rotation any more.
+    pub fn recover_stress(&mut self, out: &mut [[f64; 6]]) -> Result<(), StepError> {
+        let time_s = self.time_s();
+        for block in self.problem.blocks.ids() {
+            let body = &mut self.bodies[block.index()];
+            let shape = &self.problem.shapes[body.shape];
+            let position = &self.state.position[self.problem.blocks.nodes_of(block)];
+            let out = &mut out[self.problem.blocks.tets_of(block)];
+            let Some(body) = body.elastic() else {
+                out.fill([0.0; 6]);
+                continue;
+            };
+            let rotation = body.recover_displacement(shape, position).map_err(|source| StepError::Block {
+                time_s,
+                block: self.problem.blocks.names[block.index()].clone(),
+                source: source.into(),
+            })?;
+            let (material, initial) = (shape.material.as_ref(), &body.initial_stress_pa);
+            let displacement = body.displacement_in_frame();
+            cauchy_stress(&shape.operator, material, initial, &rotation, displacement, out);
+        }
+        Ok(())
+    }
+}
+
+/// A bound of all strains: |∇w| ≤ Σₐ |wₐ − w|/hₐ over the four nodes of an element with heights hₐ.
+fn strain_bound(shape: &Prototype, displacement: &[Vec3]) -> f64 {
+    let farthest = displacement.iter().map(|w| w.norm_squared()).fold(0.0, f64::max).sqrt();
+    8.0 * farthest / shape.smallest_height_m
+}
+
+/// Rate of rotation of a block [rad/s], and how fast its turn falls behind it [rad/s].
+///
+/// Nodes that deform go along chords: in a steady turn by φ per step the integrator has ω Δt = 2 tan ½φ (1 + (β − ½ γ) φ²), so φ is
+/// less by (1/12 + β − ½ γ) φ³. Rigid blocks turn by ω Δt exactly as long as their spin keeps its axis; where it does not, a
+/// step takes its mean for its course, which leaves up to ¼ Δt³ |ω| |dω/dt|: Δt³/12 of the second derivative of the spin,
+/// about 2 |ω| |dω/dt|, and of the commutator ω × dω/dt.
+fn lag_rate(
+    shape: &Prototype,
+    weights: &StepWeights,
+    dt_s: f64,
+    position: &[Vec3],
+    velocity: &[Vec3],
+) -> (f64, f64) {
+    if shape.kind == BodyKind::Fixed {
+        return (0.0, 0.0);
+    }
+    let motion = shape.operator.rigid_motion(position, velocity);
+    let spin = motion.spin_rad_s;
+    let rate = if let Some(inertia) = &shape.rigid {
+        let rotation = shape.supports.frame.rotation(&shape.operator, position, &motion.center);
+        let rotation = rotation.unwrap_or_else(|_| Mat3::identity());
+        0.25 * spin.norm() * inertia.change_of_spin(&rotation.tr_mul(&spin)).norm()
+    } else {
+        let chord = weights.new_force * (1.0 / (weights.velocity_per_m * dt_s) - 0.5);
+        (1.0 / 12.0 + chord).abs() * spin.norm().powi(3)
+    };
+    (spin.norm(), rate * dt_s * dt_s)
+}

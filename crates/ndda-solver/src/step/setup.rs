@@ -1,0 +1,390 @@
+//! From what a scene brings to a simulation at t = 0.
+
+use std::collections::HashMap;
+
+use ndda_contact::ContactModel;
+use ndda_fem::Table;
+use ndda_fem::loads::{add_gravity, add_traction};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
+
+use crate::bodies::batch::{Batch, ENOUGH_TOGETHER};
+use crate::bodies::body::{Body, Motion};
+use crate::bodies::congruent_groups::CongruentGroups;
+use crate::bodies::elastic_body::ElasticBody;
+use crate::bodies::fixed_body::FixedBody;
+use crate::bodies::kind::BodyKind;
+use crate::bodies::prototype::{BodySetup, Mass, Prototype};
+use crate::bodies::report::BlockReport;
+use crate::bodies::rigid_body::RigidBody;
+use crate::diagnostics::block_diagnostics::BlockDiagnostics;
+use crate::diagnostics::ledger::Ledger;
+use crate::error::SetupError;
+use crate::integrators::time_integrator::{Inertia, StepWeights, TimeIntegrator};
+use crate::linear::linear_solver::{LinearSolver, MULTI};
+use crate::step::clock::step_weights;
+use crate::step::contact_moments::ContactMoments;
+use crate::step::control::{AutoStep, Control};
+use crate::step::implicit_contact::{ImplicitContact, Newton};
+use crate::step::loads::{Loads, VaryingLoad};
+use crate::step::report::StageTimes;
+use crate::step::state::State;
+use crate::step::state::StepState;
+use crate::step::travel::Travel;
+use crate::step::{Audit, Problem, Scratch, Simulation};
+
+/// Everything a simulation is made of.
+pub struct Setup {
+    /// Topology and rest shape.
+    pub blocks: BlockSet,
+    /// One entry per block.
+    pub bodies: Vec<BodySetup>,
+    /// g [m/s²].
+    pub gravity_m_s2: Vec3,
+    /// Factor of gravity over time; constant without.
+    pub gravity_factor: Option<Table>,
+    /// How mass is shared among nodes.
+    pub mass: Mass,
+    /// Δt [s].
+    pub step_s: f64,
+    /// Time integrator.
+    pub integrator: Box<dyn TimeIntegrator>,
+    /// Contact; `None` where blocks do not feel each other.
+    pub contact: Option<Box<dyn ContactModel>>,
+    /// Contact at the end of the step, solved for; at predicted positions without.
+    pub end_contact: Option<ImplicitContact>,
+    /// Linear solver.
+    pub solver: Box<dyn LinearSolver>,
+    /// Steps as short as they have to be, `step_s` being the longest; always `step_s` without.
+    pub auto_step: Option<AutoStep>,
+}
+
+impl Simulation {
+    /// Assembles, factors each distinct block once, and sets the state at t = 0.
+    ///
+    /// # Errors
+    /// [`SetupError`] naming the block whose supports or equations are at fault.
+    pub fn new(setup: Setup) -> Result<Self, SetupError> {
+        let Setup {
+            blocks,
+            bodies,
+            gravity_m_s2,
+            gravity_factor,
+            mass,
+            step_s,
+            integrator,
+            contact,
+            end_contact,
+            solver,
+            auto_step,
+        } = setup;
+        let weights = step_weights(integrator.as_ref(), step_s, end_contact.is_some());
+        let (shapes, shape_of) =
+            distinct_shapes(&blocks, &bodies, mass, (step_s, &weights), solver.as_ref())?;
+        let nodes = blocks.rest_position.len();
+        let heights = shapes.iter().map(|shape| shape.smallest_height_m);
+        let smallest_height_m = heights.fold(f64::INFINITY, f64::min);
+        // Contact between fewer than two blocks is left out altogether.
+        let contact = contact.filter(|_| blocks.len() > 1);
+        let friction_nodes = if contact.as_ref().is_some_and(|c| c.has_friction()) { nodes } else { 0 };
+        let end_contact = end_contact.filter(|_| contact.is_some());
+        let newton_nodes = if end_contact.is_some() { nodes } else { 0 };
+        let contact_nodes = if contact.is_some() { nodes } else { 0 };
+        let mut simulation = Self {
+            state: State {
+                step: 0,
+                control: StepState::default(),
+                start: Vec::new(),
+                position: blocks.rest_position.clone(),
+                velocity: vec![Vec3::zeros(); nodes],
+                acceleration: vec![Vec3::zeros(); nodes],
+                internal_force: vec![Vec3::zeros(); if weights.stiffness < 1.0 { nodes } else { 0 }],
+                inertia: vec![Inertia::default(); if weights.needs_acceleration { blocks.len() } else { 0 }],
+                contact_force: vec![Vec3::zeros(); newton_nodes],
+                ahead: Vec::new(),
+                contact: Default::default(),
+            },
+            bodies: Vec::with_capacity(blocks.len()),
+            loads: Loads::new(Vec::new(), Vec::new()),
+            newton: end_contact.map(|settings| Box::new(Newton::new(settings, nodes, blocks.len()))),
+            contact_moments: None,
+            part_s: step_s,
+            weights,
+            control: None,
+            settling: false,
+            scratch: Scratch {
+                force: vec![Vec3::zeros(); nodes],
+                friction_force: vec![Vec3::zeros(); friction_nodes],
+                contact_stiffness: vec![0.0; contact_nodes],
+                contact_position: blocks.rest_position.clone(),
+                moved: vec![Vec3::zeros(); contact_nodes],
+                ..Scratch::default()
+            },
+            audit: Audit {
+                ledger: Ledger::new(Default::default(), BlockDiagnostics::default()),
+                stages: StageTimes::default(),
+                travel: Travel::new(smallest_height_m),
+                contacts: None,
+                direction_uncertainty: 0.0,
+            },
+            problem: Problem {
+                has_impulses: shapes.iter().any(Prototype::has_impulses),
+                min_friction_coefficient: contact
+                    .as_ref()
+                    .map_or(0.0, |model| model.min_friction_coefficient()),
+                affine: Vec::new(),
+                runs: CongruentGroups::single(0),
+                blocks,
+                shapes,
+                base_step_s: step_s,
+                integrator,
+            },
+            contact,
+        };
+        for (block, body) in simulation.problem.blocks.ids().zip(&bodies) {
+            simulation.add_body(block, shape_of[block.index()], body);
+        }
+        simulation.group_congruent(&shape_of);
+        simulation.add_loads(&bodies, &gravity_m_s2, gravity_factor);
+        if simulation.contact.is_some() {
+            let kinds = simulation.problem.blocks.ids().map(|block| simulation.shape(block).kind);
+            simulation.problem.affine = kinds.map(BodyKind::is_affine).collect();
+        }
+        if simulation.contact.as_ref().is_some_and(|c| c.needs_bodies()) {
+            let bodies = simulation.problem.blocks.ids().map(|block| simulation.shape(block).contact_body());
+            simulation.scratch.contact_bodies = bodies.collect();
+        }
+        if simulation.contact.is_some() && !simulation.weights.contact_in_the_middle() {
+            let shapes = simulation.problem.blocks.ids().map(|block| simulation.shape(block));
+            simulation.contact_moments = Some(Box::new(ContactMoments::new(shapes)));
+        }
+        simulation.open_ledger(solver.as_ref())?;
+        if let Some(settings) = auto_step {
+            let control = Control::new(settings, solver, &simulation.state, &simulation.audit.ledger);
+            simulation.control = Some(Box::new(control));
+            simulation.audit.travel.notes_touching = true;
+        }
+        Ok(simulation)
+    }
+
+    /// Runs of congruent neighbours, solved for together.
+    fn group_congruent(&mut self, shape_of: &[usize]) {
+        let shapes = &self.problem.shapes;
+        let alike = |a: usize, b: usize| shape_of[a] == shape_of[b] && shapes[shape_of[a]].factor.is_some();
+        self.problem.runs = CongruentGroups::group(shape_of.len(), MULTI, alike);
+        for run in self.problem.runs.ranges().filter(|run| run.len() >= ENOUGH_TOGETHER) {
+            let factor = shapes[shape_of[run.start]].factor.as_deref();
+            self.bodies[run.start].batch = factor.map(|factor| Box::new(Batch::new(factor)));
+        }
+    }
+
+    /// A block at its start.
+    fn add_body(&mut self, block: BlockId, shape_index: usize, setup: &BodySetup) {
+        let range = self.problem.blocks.nodes_of(block);
+        let rest = &self.problem.blocks.rest_position[range.clone()];
+        let shape = &self.problem.shapes[shape_index];
+        let center = shape.operator.center(rest);
+        for (v, x) in self.state.velocity[range.clone()].iter_mut().zip(rest) {
+            *v = setup.velocity_m_s + setup.spin_rad_s.cross(&(x - center));
+        }
+        let motion = match shape.kind {
+            BodyKind::Elastic | BodyKind::Affine => {
+                let body = ElasticBody::new(shape, setup.initial_stress.as_ref(), rest);
+                let internal = self.state.internal_force.get_mut(range.clone()).unwrap_or_default();
+                if let Some(initial) = &body.initial_force {
+                    internal.iter_mut().zip(initial).for_each(|(f, initial)| *f = *initial);
+                }
+                Motion::Elastic(Box::new(body))
+            }
+            BodyKind::Rigid => Motion::Rigid(RigidBody::new(shape)),
+            BodyKind::Fixed => Motion::Fixed(FixedBody::new(shape, rest)),
+        };
+        let report = BlockReport::default();
+        self.bodies.push(Body { shape: shape_index, motion, report, error: None, batch: None });
+        if shape.kind == BodyKind::Fixed {
+            // It moves as prescribed from the start: contact sees it ahead of where it is, and facets slip by its velocity.
+            let nodes = self.problem.blocks.nodes_of(block);
+            self.state.velocity[nodes].fill(shape.velocity_as_a_whole(0.0));
+            return;
+        }
+        if shape.kind == BodyKind::Affine && !shape.is_free() {
+            let velocity = &mut self.state.velocity[self.problem.blocks.nodes_of(block)];
+            shape.unknowns.restrict(&shape.operator.node_mass, velocity);
+            return;
+        }
+        for held in &shape.supports.held {
+            let v = &mut self.state.velocity[self.problem.blocks.nodes_of(block).start + held.node as usize];
+            for n in &held.held {
+                *v -= n * n.dot(v);
+            }
+        }
+    }
+
+    /// Gathers gravity, tractions and forces: those that vary each by itself, the others in one sum.
+    fn add_loads(&mut self, bodies: &[BodySetup], gravity_m_s2: &Vec3, gravity_factor: Option<Table>) {
+        let mut constant = vec![Vec3::zeros(); self.problem.blocks.rest_position.len()];
+        let mut weight = constant.clone();
+        let mut varying = Vec::new();
+        for (block, setup) in self.problem.blocks.ids().zip(bodies) {
+            let range = self.problem.blocks.nodes_of(block);
+            let rest = &self.problem.blocks.rest_position[range.clone()];
+            let movable = self.shape(block).kind != BodyKind::Fixed;
+            let mass_kg = if movable { self.shape(block).operator.mass_kg } else { f64::INFINITY };
+            add_gravity(&self.shape(block).operator, gravity_m_s2, &mut weight[range.clone()]);
+            let mut add = |forces: Vec<Vec3>, factor: &Option<Table>| match factor {
+                None => constant[range.clone()].iter_mut().zip(forces).for_each(|(sum, f)| *sum += f),
+                Some(factor) => {
+                    let pace_m_s2 = forces.iter().map(|f| f.norm()).sum::<f64>() / mass_kg;
+                    varying.push(VaryingLoad::new(range.start, &forces, factor.clone(), pace_m_s2));
+                }
+            };
+            for traction in &setup.tractions {
+                let mut forces = vec![Vec3::zeros(); rest.len()];
+                add_traction(&traction.triangles, rest, &traction.traction_pa, &mut forces);
+                add(forces, &traction.factor);
+            }
+            for force in &setup.forces {
+                let mut forces = vec![Vec3::zeros(); rest.len()];
+                forces[force.node as usize] = force.force_n;
+                add(forces, &force.factor);
+            }
+        }
+        match gravity_factor {
+            None => constant.iter_mut().zip(weight).for_each(|(sum, f)| *sum += f),
+            Some(factor) => varying.push(VaryingLoad::new(0, &weight, factor, gravity_m_s2.norm())),
+        }
+        self.loads = Loads::new(constant, varying);
+    }
+
+    /// Opens the books, with the accelerations at the start for integrators that need them.
+    fn open_ledger(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
+        if self.weights.needs_acceleration {
+            self.place_accelerations(solver)?;
+        }
+        self.audit.ledger = self.new_ledger(self.outside_at_start());
+        Ok(())
+    }
+
+    /// Empty books; `start` is the force and torque from outside before the first step.
+    pub(crate) fn new_ledger(&self, start: (Vec3, Vec3)) -> Ledger {
+        let scales = self.problem.blocks.ids().map(|block| self.shape(block).scale()).collect();
+        Ledger::new(start, BlockDiagnostics::new(scales, self.newton.is_some()))
+    }
+
+    /// Force and torque from outside at the start, as blocks report them: torques of loads about the mass centre of free blocks, all
+    /// torques about the origin of others.
+    fn outside_at_start(&self) -> (Vec3, Vec3) {
+        let (mut force, mut torque) = (Vec3::zeros(), Vec3::zeros());
+        for (block, inertia) in self.problem.blocks.ids().zip(&self.state.inertia) {
+            let (shape, nodes) = (self.shape(block), self.problem.blocks.nodes_of(block));
+            force += inertia.force - inertia.contact;
+            if shape.is_free() {
+                let position = &self.state.position[nodes.clone()];
+                let center = shape.operator.center(position);
+                let loads = position.iter().zip(&self.loads.total()[nodes]);
+                torque += loads.map(|(x, load)| (x - center).cross(load)).sum::<Vec3>();
+            } else {
+                torque += inertia.torque;
+            }
+        }
+        (force, torque)
+    }
+
+    /// M a = f − ∫Bᵀσ₀ at the start, contact being part of f.
+    fn place_accelerations(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
+        let force = self.force_at_start().map_err(Box::new)?;
+        self.carry_contact_forces();
+        for block in self.problem.blocks.ids() {
+            let range = self.problem.blocks.nodes_of(block);
+            let force = &force[range.clone()];
+            let shape = self.shape(block);
+            if shape.kind == BodyKind::Rigid {
+                let total: Vec3 = force.iter().sum();
+                let acceleration = total / shape.operator.mass_kg;
+                let torque = force.iter().zip(&self.state.position[range.clone()]);
+                let torque = torque.map(|(f, x)| x.cross(f)).sum();
+                self.state.acceleration[range].fill(acceleration);
+                self.place_inertia(block, force, total, torque);
+            } else if !shape.unknowns.is_empty() {
+                self.solve_acceleration(block, force, solver)?;
+                let (position, acceleration) =
+                    (&self.state.position[range.clone()], &self.state.acceleration[range]);
+                let operator = &self.shape(block).operator;
+                let total = operator.momentum(acceleration);
+                let torque = operator.angular_momentum(&Vec3::zeros(), position, acceleration);
+                self.place_inertia(block, force, total, torque);
+            } else {
+                // It stays at rest: what holds it bears loads and contact.
+                self.place_inertia(block, force, Vec3::zeros(), Vec3::zeros());
+            }
+        }
+        Ok(())
+    }
+
+    /// M a of a block at the start from nodal forces, their sum and torque about the origin, supports included.
+    fn place_inertia(&mut self, block: BlockId, force: &[Vec3], total: Vec3, torque: Vec3) {
+        let nodes = self.problem.blocks.nodes_of(block);
+        let position = &self.state.position[nodes.clone()];
+        let loads = &self.loads.total()[nodes];
+        let pressing = || force.iter().zip(loads).map(|(f, load)| f - load);
+        let contact: Vec3 = pressing().sum();
+        let shape = self.shape(block);
+        let torque = if shape.is_free() {
+            torque - shape.operator.center(position).cross(&total)
+        } else {
+            torque - position.iter().zip(pressing()).map(|(x, f)| x.cross(&f)).sum::<Vec3>()
+        };
+        let moments = self.contact_moments.as_ref();
+        let carried = moments.map_or(Vec3::zeros(), |moments| moments.carried[block.index()]);
+        self.state.inertia[block.index()] =
+            Inertia { force: total, torque, contact, carried, lag: Vec3::zeros() };
+    }
+
+    /// a of the nodes of a block that deforms, at the start [m/s²].
+    fn solve_acceleration(
+        &mut self,
+        block: BlockId,
+        force: &[Vec3],
+        solver: &dyn LinearSolver,
+    ) -> Result<(), SetupError> {
+        let name = || self.problem.blocks.names[block.index()].clone();
+        let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
+        let body = &mut self.bodies[block.index()];
+        let shape = &self.problem.shapes[body.shape];
+        let mut load = force.to_vec();
+        if let Some(initial) = body.elastic().and_then(|elastic| elastic.initial_force.as_ref()) {
+            load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
+        }
+        let matrix = shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, 0.0);
+        let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor { block: name(), source })?;
+        let mut rhs = vec![0.0; factor.unknowns()];
+        shape.unknowns.gather(&load, &mut rhs);
+        let solved = factor.solve_in_place(&mut rhs, &mut factor.new_scratch());
+        solved.map_err(|source| SetupError::Solve { block: name(), source })?;
+        shape.unknowns.scatter(&rhs, &mut self.state.acceleration[self.problem.blocks.nodes_of(block)]);
+        Ok(())
+    }
+}
+
+/// The distinct blocks, and which of them each block is.
+fn distinct_shapes(
+    blocks: &BlockSet,
+    bodies: &[BodySetup],
+    mass: Mass,
+    step: (f64, &StepWeights),
+    solver: &dyn LinearSolver,
+) -> Result<(Vec<Prototype>, Vec<usize>), SetupError> {
+    let (mut shapes, mut shape_of): (Vec<Prototype>, Vec<usize>) = (Vec::new(), Vec::new());
+    // Blocks can only be congruent if they have the same number of nodes and elements.
+    let mut by_size: HashMap<(usize, usize), Vec<usize>> = HashMap::new();
+    for (block, body) in blocks.ids().zip(bodies) {
+        let size = (blocks.nodes_of(block).len(), blocks.tets_of(block).len());
+        let known = by_size.entry(size).or_default();
+        let found = known.iter().copied().find(|&index| shapes[index].fits(blocks, block, body));
+        shape_of.push(found.unwrap_or(shapes.len()));
+        if found.is_none() {
+            known.push(shapes.len());
+            shapes.push(Prototype::new(blocks, block, body, mass, step, solver)?);
+        }
+    }
+    Ok((shapes, shape_of))
+}

@@ -1,0 +1,54 @@
+//! What changes from step to step, and nothing else.
+
+use ndda_contact::ContactHistory;
+use ndda_mesh::{BlockId, Vec3};
+use serde::{Deserialize, Serialize};
+
+use crate::integrators::time_integrator::Inertia;
+
+/// The changing state of all blocks; a checkpoint, a rollback and a determinism test all work on it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Steps done; the time is `step · Δt`, never summed.
+    pub step: u64,
+    /// How steps are divided.
+    pub control: StepState,
+    /// Where each node was when time began [m]; empty while that is its place at rest.
+    pub start: Vec<Vec3>,
+    /// Position x per node [m], relative to the origin of the block set.
+    pub position: Vec<Vec3>,
+    /// Velocity v per node [m/s].
+    pub velocity: Vec<Vec3>,
+    /// Acceleration a per node [m/s²].
+    pub acceleration: Vec<Vec3>,
+    /// Internal force R (K w + ∫Bᵀσ₀) per node [N]; empty for integrators that take elasticity at the end only.
+    pub internal_force: Vec<Vec3>,
+    /// M a of each block as a whole; empty for integrators to which the start's acceleration does not matter.
+    pub inertia: Vec<Inertia>,
+    /// Contact force per node at the end of the last step [N]; empty where contact is taken at predicted positions.
+    pub contact_force: Vec<Vec3>,
+    /// How far ahead of each block contact looks [m]; empty where it does not look ahead of any (`first_step.rs`).
+    pub ahead: Vec<Vec3>,
+    /// What contact remembers.
+    pub contact: ContactHistory,
+}
+
+impl State {
+    /// How far ahead of a block contact looks [m].
+    pub(crate) fn ahead_of(&self, block: BlockId) -> Vec3 {
+        self.ahead.get(block.index()).copied().unwrap_or_default()
+    }
+}
+
+/// Where the control of the step is; part of the state.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StepState {
+    /// n: a step is done in 2ⁿ parts.
+    pub halvings: u32,
+    /// Parts done of the present step.
+    pub part: u32,
+    /// Steps in a row that could have done with fewer parts.
+    pub(super) relax_streak: u32,
+    /// Steps for which energy is not asked for.
+    pub(super) energy_check_cooldown: u32,
+}
