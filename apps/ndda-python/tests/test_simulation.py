@@ -201,6 +201,8 @@ def test_what_a_callback_raises_ends_the_run(fall: ndda.Simulation) -> None:
 
 
 def test_ctrl_c_ends_a_run_after_a_whole_step() -> None:
+    # A shell that starts a job in the background has it ignore the signal.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     endless = {"time.end_s": 1e7, "output.history_rows": 1, "gravity_m_s2": (0, 0, 0)}
     simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE, **endless))
     threading.Timer(0.2, lambda: signal.raise_signal(signal.SIGINT)).start()
