@@ -70,6 +70,8 @@ fn parts_that_are_in_but_have_nothing_to_do_change_no_bit() {
     assert_same_bits(with("", "", ""), with("", "", "in_situ: (stress_pa: ())"), "initial stress");
     let load = "tractions: [(block: \"a\", on: Set(\"x_min\"), traction_pa: (1e3, 0, 0), factor: [(time_s: 0, factor: 0)])]";
     assert_same_bits(with("", "", ""), with("", "", load), "loads over time");
+    let water = "water: [(on: Part(block: \"a\", region: Set(\"x_min\")), pressure: Level(at_m: (0, 0, 1)), factor: [(time_s: 0, factor: 0)])]";
+    assert_same_bits(with("", "", ""), with("", "", water), "water");
     assert_same_bits(
         with("", "", ""),
         with("step: Auto(safety: 1, energy: 1e9)", "", ""),

@@ -63,6 +63,7 @@ fn a_warm_step_with_contact_friction_and_supports_allocates_nothing() {
         ("collision_equal", 2500, 200),
         ("spinning_block", 5, 1000),
         ("sticking_30_phi35", 50, 1000),
+        ("safety/plane_water", 50, 1000),
     ] {
         for threads in [1, 2] {
             assert_eq!(requests(scene, threads, warm_up, steps), 0, "{scene} on {threads} thread(s)");

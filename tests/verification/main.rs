@@ -48,6 +48,7 @@ mod sudden_load;
 mod tall_stack;
 mod toppling_slope;
 mod travel;
+mod water;
 
 use ndda::build;
 use ndda_mesh::Vec3;

@@ -13,7 +13,7 @@ use crate::evidence::row;
 
 const ERROR: f64 = 0.01;
 
-fn scene(name: &str) -> String {
+pub(crate) fn scene(name: &str) -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/safety/{name}.ron"));
     std::fs::read_to_string(path).unwrap()
 }
@@ -25,22 +25,22 @@ fn find(text: &str, by: Question, watch: &Watch) -> Result<Safety, SafetyError> 
     safety::find(&loaded, ("case", Path::new(".")), &plan, watch)
 }
 
-fn found(text: &str, by: Question) -> Safety {
+pub(crate) fn found(text: &str, by: Question) -> Safety {
     let watch = Watch { out: None, stop: &Arc::default(), tell: &|_| {} };
     find(text, by, &watch).unwrap_or_else(|e| panic!("{e}"))
 }
 
-fn bracket(safety: &Safety) -> (f64, f64) {
+pub(crate) fn bracket(safety: &Safety) -> (f64, f64) {
     let bracket = safety.factor_of_safety;
     (bracket.lower.expect("blocks stand at some factor"), bracket.upper.expect("blocks fail at some factor"))
 }
 
-fn kind(safety: &Safety) -> Kind {
+pub(crate) fn kind(safety: &Safety) -> Kind {
     safety.mechanism.as_ref().expect("blocks fail").kind
 }
 
 /// The bracket contains a closed form and is as narrow as asked for.
-fn holds(what: &str, safety: &Safety, exact: f64) {
+pub(crate) fn holds(what: &str, safety: &Safety, exact: f64) {
     let (lower, upper) = bracket(safety);
     row("safety", &format!("{what}: lower end [-]"), lower, AtMost(exact));
     row("safety", &format!("{what}: upper end [-]"), upper, AtLeast(exact));
@@ -99,7 +99,7 @@ fn a_column_slides_where_joints_weaken_and_topples_where_gravity_tilts() {
 }
 
 /// Upward normal of a plane.
-fn normal(dip_deg: f64, direction_deg: f64) -> Vec3 {
+pub(crate) fn normal(dip_deg: f64, direction_deg: f64) -> Vec3 {
     let (dip, direction) = (dip_deg.to_radians(), direction_deg.to_radians());
     Vec3::new(dip.sin() * direction.sin(), dip.sin() * direction.cos(), dip.cos())
 }

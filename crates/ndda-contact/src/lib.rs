@@ -35,6 +35,8 @@
 
 #![warn(unreachable_pub)]
 
+mod audit;
+mod contact_model;
 pub mod element_pairs;
 mod model;
 mod pair_stiffness;
@@ -42,11 +44,13 @@ mod plan;
 mod resultants;
 pub mod testing;
 
+pub use audit::ContactAudit;
+pub use contact_model::ContactModel;
 pub use plan::Part;
 
 pub use model::{
-    Body, Bond, ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport,
-    Deformation, FaceMemory, FacetContact, FacetMemory, SpringSlip,
+    Body, Bond, ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport, Deformation,
+    FaceMemory, FacetContact, FacetMemory, SpringSlip,
 };
 
 pub use pair_stiffness::PairStiffness;

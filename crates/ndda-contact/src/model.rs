@@ -1,10 +1,7 @@
-//! The seam between solver and contact: what a contact model is given, what it returns, what it may remember.
+//! What a contact model is given, what it returns, what it may remember.
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 use serde::{Deserialize, Serialize};
-
-use crate::pair_stiffness::PairStiffness;
-use crate::plan::Part;
 
 /// What a contact model sees of the blocks: positions and velocities, nothing of materials or integrators.
 #[derive(Clone, Copy, Debug)]
@@ -143,8 +140,9 @@ pub struct ContactReport {
     pub deepest: Option<(TriangleId, TetId)>,
     /// A tetrahedron whose centroid is inside another block: the potential no longer pushes out.
     pub past_centroid: Option<(TriangleId, TetId)>,
-    /// Largest |force on contactor + force on target| / |force| over all pairs.
-    pub action_reaction_error: f64,
+    /// Largest |force on contactor + force on target| / |force| over all pairs. Where a model does not say, the solver takes the sum of all its
+    /// forces over the sum of their sizes.
+    pub action_reaction_error: Option<f64>,
     /// By how much the strength of a bond was exceeded that broke in this evaluation, over its strength without normal stress.
     pub bond_overload: f64,
 }
@@ -167,6 +165,17 @@ pub enum ContactError {
     /// The potential cannot serve a block.
     #[error("{0}")]
     Potential(String),
+    /// What is remembered is of other friction laws.
+    #[error(
+        "the remembered contact is of friction laws that keep {kept} numbers a facet, these keep {expected}: resume with \
+         the laws that wrote it"
+    )]
+    OtherLaws {
+        /// Numbers kept.
+        kept: usize,
+        /// Numbers that the laws expect.
+        expected: usize,
+    },
     /// The model cannot say how its forces change.
     #[error("this contact model has no stiffness to solve with: take contact at predicted positions")]
     NoTangent,
@@ -194,8 +203,6 @@ pub struct FacetMemory {
     /// Shear force on the contactor in the facet's own basis (first edge, normal × first edge) [N].
     /// The basis turns with the facet, so the force does too.
     pub shear_n: [f64; 2],
-    /// Slip beyond the stretch of the spring, for laws that soften [m].
-    pub plastic_slip_m: f64,
     /// Area in contact [m²].
     pub area_m2: f64,
     /// Whether cohesion is gone.
@@ -245,6 +252,12 @@ pub struct ContactHistory {
     pub bonds: Vec<Bond>,
     /// Whether contact has been evaluated before: what touches then, and only that, may hold together.
     pub begun: bool,
+    /// How many numbers friction laws keep of each facet.
+    pub law_state_len: u32,
+    /// Those numbers, facet by facet.
+    pub law_state: Vec<f64>,
+    /// For contact models of other people: whatever they remember.
+    pub own: Vec<f64>,
 }
 
 /// What a boundary triangle and a block that it is pressed into do to each other.
@@ -266,116 +279,4 @@ pub struct FacetContact {
     pub friction_n: Vec3,
     /// Whether friction holds it.
     pub sticks: bool,
-}
-
-/// A law of contact between blocks. `&mut self` is scratch only; memory that matters is in [`ContactHistory`].
-pub trait ContactModel: Send + Sync {
-    /// Adds the contact forces at `input.position` to `output` and advances `history` by one step.
-    ///
-    /// Forces sum to zero and exert no net torque.
-    ///
-    /// # Errors
-    /// [`ContactError`] when a force cannot be computed; `output` is then not to be used.
-    fn add_forces(
-        &mut self,
-        input: &ContactInput,
-        history: &mut ContactHistory,
-        output: &mut ContactOutput,
-    ) -> Result<ContactReport, ContactError>;
-
-    /// Potential energy of contact at `input.position` [J]; what shear springs and bonds store is work of friction.
-    ///
-    /// # Errors
-    /// As [`add_forces`](Self::add_forces).
-    fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError>;
-
-    /// Work of the normal forces of the last [`add_forces`](Self::add_forces) over displacements of the nodes [m]: blocks and
-    /// work [J], one call for each facet, always in the same order. A model that does not say is not judged pair by pair.
-    fn each_work(
-        &mut self,
-        _blocks: &BlockSet,
-        _moved: &[Vec3],
-        _add: &mut dyn FnMut(BlockId, BlockId, f64),
-    ) {
-    }
-
-    /// How far friction of the last [`add_forces`](Self::add_forces) was from Coulomb's law over displacements of the nodes [m]: two blocks, and the
-    /// energy [J] that Coulomb friction takes from such a slip less what this friction took, which is never negative. A model whose friction is not
-    /// judged by it makes no call.
-    fn each_coulomb_gap(
-        &mut self,
-        _blocks: &BlockSet,
-        _moved: &[Vec3],
-        _add: &mut dyn FnMut(BlockId, BlockId, f64),
-    ) {
-    }
-
-    /// What shear springs did in the last [`add_forces`](Self::add_forces): the block of a facet, its target, and the slip of the first on
-    /// the second, one call for each facet that has a spring, always in the same order.
-    fn each_spring_slip(&self, _add: &mut dyn FnMut(BlockId, BlockId, &SpringSlip)) {}
-
-    /// Energies of normal contact as [`energy_j`](Self::energy_j) found them in the call before: two blocks and their
-    /// energy [J], at most one call for each pair.
-    fn each_energy(&self, _add: &mut dyn FnMut(BlockId, BlockId, f64)) {}
-
-    /// ∂f/∂x where forces were added last, for steps that solve for contact: symmetric blocks of seven nodes, some of
-    /// which may be in several. It need not be exact; the closer it is, the fewer iterations a step takes.
-    ///
-    /// # Errors
-    /// [`ContactError::NoTangent`] unless a model has one, or as [`add_forces`](Self::add_forces).
-    fn add_stiffness(
-        &mut self,
-        _input: &ContactInput,
-        _history: &ContactHistory,
-        _stiffness: &mut Vec<PairStiffness>,
-    ) -> Result<(), ContactError> {
-        Err(ContactError::NoTangent)
-    }
-
-    /// Width of a block as its contact resolves it [m]: what may pass through the block unnoticed has to approach it by more than
-    /// that from one evaluation to the next. Asked for after the first evaluation; where a model does not say, the smallest height
-    /// of the tetrahedra at the surface counts.
-    fn width_m(&self, _blocks: &BlockSet, _block: BlockId) -> Option<f64> {
-        None
-    }
-
-    /// Upper bound of the speed at which two blocks that do not touch at `input.position` close the gap between them within a step
-    /// [m/s]; zero if it stays open. `None` where the model does not know, and any relative velocity counts.
-    fn closing_m_s(&self, _input: &ContactInput, _pair: (BlockId, BlockId)) -> Option<f64> {
-        None
-    }
-
-    /// What the model consists of, for a person who asks.
-    fn plan(&self) -> Vec<Part> {
-        Vec::new()
-    }
-
-    /// Adds what each facet does, as [`add_forces`](Self::add_forces) found it in the call before, with the same input.
-    /// A model of other things than facets adds none.
-    fn add_facets(&self, _input: &ContactInput, _history: &ContactHistory, _facets: &mut Vec<FacetContact>) {}
-
-    /// Whether forces on a block go to a few of its nodes wherever they press, because it moves by an affine map.
-    fn uses_host_forces(&self, _block: BlockId) -> bool {
-        false
-    }
-
-    /// Whether the last [`add_forces`](Self::add_forces) may have added anything; `false` lets the solver leave out its bookkeeping.
-    fn has_acted(&self) -> bool {
-        true
-    }
-
-    /// Whether [`ContactInput::bodies`] is read; `false` lets the solver leave them out.
-    fn needs_bodies(&self) -> bool {
-        false
-    }
-
-    /// Whether `friction_force` is ever written; `false` lets the solver leave out its bookkeeping.
-    fn has_friction(&self) -> bool {
-        false
-    }
-
-    /// Friction over normal force that bears at least between any two blocks.
-    fn min_friction_coefficient(&self) -> f64 {
-        0.0
-    }
 }

@@ -76,7 +76,7 @@ fn resultant(
 mod tests {
     use super::*;
     use crate::testing::{evaluate, test_box, test_set};
-    use crate::{ContactHistory, ContactInput, ContactModel, Coulomb, MohrCoulomb, PotentialContact};
+    use crate::{ContactAudit, ContactHistory, ContactInput, Coulomb, MohrCoulomb, PotentialContact};
 
     /// Blocks, a model and what it found, with the upper block moving along x.
     fn found(meshes: Vec<ndda_mesh::BlockMesh>, slip_m: f64) -> (BlockSet, Vec<FacetContact>, Vec<Vec3>) {

@@ -31,6 +31,10 @@ impl Material for Damped {
         self.material.energy_density(strain)
     }
 
+    fn is_linear(&self) -> bool {
+        self.material.is_linear()
+    }
+
     fn is_isotropic(&self) -> bool {
         self.material.is_isotropic()
     }

@@ -17,12 +17,13 @@ pub struct Damping {
 /// A hyperelastic law for small strains in the block's frame.
 ///
 /// Contract (checked by [`check_material`](crate::testing::check_material)): stress is the derivative of the
-/// energy density, moduli are the derivative of the stress, symmetric and positive definite.
+/// energy density, moduli are the derivative of the stress of the undeformed material, symmetric and positive definite; a law that says that
+/// it is linear has σ = D ε at any strain. Others are iterated on in each step, which converges while no tangent modulus is above twice `moduli`.
 pub trait Material: Send + Sync {
     /// Density ρ [kg/m³].
     fn density_kg_m3(&self) -> f64;
 
-    /// Tangent moduli D, σ = D ε [Pa].
+    /// Tangent moduli D of the undeformed material [Pa].
     fn moduli(&self) -> Matrix6<f64>;
 
     /// Stress at a strain [Pa].
@@ -33,6 +34,11 @@ pub trait Material: Send + Sync {
     /// Elastic energy per volume at a strain [J/m³].
     fn energy_density(&self, strain: &Voigt) -> f64 {
         0.5 * strain.dot(&self.stress(strain))
+    }
+
+    /// Whether σ = D ε at any strain.
+    fn is_linear(&self) -> bool {
+        true
     }
 
     /// Whether the moduli are the same in all directions; where they are not, a block that is turned is another block.

@@ -28,6 +28,35 @@ pub fn cauchy_stress(
     }
 }
 
+/// Adds ∫Bᵀ σ dV of a stress that is a function of the strain, w being in the block's frame [m].
+pub fn add_stress_force(
+    operator: &BlockOperator,
+    stress_pa: impl Fn(&Voigt) -> Voigt,
+    displacement: &[Vec3],
+    force: &mut [Vec3],
+) {
+    for tet in &operator.tets {
+        let element = Tet4::new(&tet.map(|n| operator.rest[n as usize]));
+        let stress_pa = stress_pa(&element.strain(&tet.map(|n| displacement[n as usize])));
+        for (a, &n) in tet.iter().enumerate() {
+            force[n as usize] += element.stress_force(&stress_pa, a);
+        }
+    }
+}
+
+/// ∫ ψ dV of an energy density that is a function of the strain [J].
+pub fn energy_of_strain(
+    operator: &BlockOperator,
+    density_j_m3: impl Fn(&Voigt) -> f64,
+    displacement: &[Vec3],
+) -> f64 {
+    let energy = |tet: &[u32; 4]| {
+        let element = Tet4::new(&tet.map(|n| operator.rest[n as usize]));
+        element.volume_m3 * density_j_m3(&element.strain(&tet.map(|n| displacement[n as usize])))
+    };
+    operator.tets.iter().map(energy).sum()
+}
+
 /// R σ Rᵀ in Voigt order.
 fn rotated(stress: &Voigt, rotation: &Mat3) -> [f64; 6] {
     let [xx, yy, zz, xy, yz, zx] = *stress.as_ref();

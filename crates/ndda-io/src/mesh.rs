@@ -62,9 +62,10 @@ pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
     }
 }
 
-/// Writes bodies in the format that the ending of `path` says: what [`read`] reads, but `.vtk`.
+/// Writes bodies in the format that the ending of `path` says: what [`read`] reads.
 ///
-/// Reading the file gives the same bodies again, but for empty node sets and nodes of no tetrahedron.
+/// Reading the file gives the same bodies again, but for empty node sets and nodes of no tetrahedron, and for names of bodies in `.vtk`,
+/// where they are numbers.
 ///
 /// # Errors
 /// [`WriteError`] for an unknown ending, a number that is not finite, a name that the format cannot keep, and what
@@ -75,9 +76,11 @@ pub fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteErr
         "node" | "ele" | "face" => tetgen::write(path, bodies),
         "inp" => abaqus::write(path, bodies),
         "vtu" => vtk_file::write(path, bodies),
+        "vtk" => vtk_file::write_legacy(path, bodies),
         found => {
-            let reason =
-                format!("`.{found}` is no format that is written here: give .msh, .node, .ele, .vtu or .inp");
+            let reason = format!(
+                "`.{found}` is no format that is written here: give .msh, .node, .ele, .vtu, .vtk or .inp"
+            );
             Err(WriteError::Encode { path: path.to_path_buf(), reason })
         }
     }

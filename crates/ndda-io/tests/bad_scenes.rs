@@ -53,6 +53,26 @@ fn the_unbroken_scene_is_clean() {
 }
 
 #[test]
+fn water_that_cannot_be_is_pointed_at() {
+    let part = "on: Part(block: \"slider\", region: Set(\"z_min\"))";
+    let water =
+        |on: &str, pressure: &str| format!("water: [({on}, pressure: {pressure})],\n    contact: Potential(");
+    let cases = [
+        water("on: @Joint(\"bedding\")", "Level(at_m: (0, 0, 1))"),
+        water("on: Part(block: @\"slidr\", region: All)", "Level(at_m: (0, 0, 1))"),
+        water(part, "Level(at_m: (0, 0, 1), density_kg_m3: @0)"),
+        water(part, "Points(along: @(0, 0, 0), rows: [(0, 0)])"),
+        water(part, "Points(along: (1, 0, 0), rows: @[])"),
+        water(part, "Points(along: (1, 0, 0), rows: [(1, 0), @(1, 2)])"),
+        water(part, "Points(along: (1, 0, 0), rows: [@(1, -5)])"),
+        water(part, "@Least([])"),
+        water(part, "Linear(pressure_pa: 1, gradient_pa_m: @(1e308, inf, 0))"),
+    ];
+    let cases: Vec<(&str, &str)> = cases.iter().map(|new| ("contact: Potential(", new.as_str())).collect();
+    assert_refused(&cases);
+}
+
+#[test]
 fn names_that_do_not_exist_are_pointed_at() {
     assert_refused(&[
         ("    title:", "    @titel:"),

@@ -47,6 +47,18 @@ fn what_is_written_is_read_back_bit_by_bit_in_every_format() {
     }
 }
 
+#[test]
+fn legacy_files_keep_all_but_the_names_of_bodies() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.vtk");
+    write(&path, &two_boxes()).unwrap();
+    let found = read(&path).unwrap().bodies;
+    assert_eq!(found.iter().map(|b| b.0.as_str()).collect::<Vec<_>>(), ["body_0", "body_1"]);
+    for ((_, read), (_, written)) in found.iter().zip(&two_boxes()) {
+        assert_eq!(read, written);
+    }
+}
+
 const LEGACY: &str = "# vtk DataFile Version 3.0\ntwo\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 5 double\n\
     0 0 0 1 0 0 0 1 0 0 0 1 0 0 -1\nCELLS 3 14\n4 0 1 2 3\n4 0 2 1 4\n3 0 1 2\nCELL_TYPES 3\n10 10 5\n\
     CELL_DATA 3\nVECTORS v float\n0 0 0 0 0 0 0 0 0\nSCALARS Material int 1\nLOOKUP_TABLE default\n1 1 1\n\

@@ -148,6 +148,15 @@ pub enum BlockError {
     /// The loads and contact forces on a rigid block are infinite or not a number.
     #[error("the forces on it are not finite: reduce step_s or penalty_pa, or check the units of its loads")]
     ForceNotFinite,
+    /// The stress of a nonlinear material was not found.
+    #[error(
+        "the stress of its material is not found after {iterations} iterations: reduce step_s or the load; a tangent modulus must \
+         stay below twice that of the undeformed material"
+    )]
+    Material {
+        /// Iterations done.
+        iterations: u32,
+    },
     /// A velocity is beyond what the material can carry, or not a number.
     #[error(
         "node {node} moves at {speed_m_s:e} m/s, more than ten times its wave speed {wave_speed_m_s:e} m/s: \

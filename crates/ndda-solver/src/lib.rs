@@ -25,7 +25,7 @@ mod step;
 pub mod testing;
 
 pub use bodies::kind::BodyKind;
-pub use bodies::prototype::{BodySetup, ForceSetup, Mass, Prototype, TractionSetup};
+pub use bodies::prototype::{BodySetup, ForceSetup, Mass, PressureSetup, Prototype, TractionSetup};
 pub use bodies::step_damping::StepDamping;
 pub use bodies::unknowns::Unknowns;
 pub use diagnostics::energies::Sample;

@@ -13,6 +13,9 @@ pub fn check_integrator(integrator: &dyn TimeIntegrator) {
     assert!(weights.mass_per_s2 > 0.0 && weights.mass_per_s2.is_finite());
     assert!((0.0..=1.0).contains(&weights.contact_lead));
 
+    check_correction(integrator, dt_s);
+    check_oscillator(integrator);
+
     // Constant acceleration: c M (u − û) = M g in every step, exact for a start with a = g.
     let (mut x, mut v, mut a) = (Vec3::zeros(), Vec3::new(1.0, 0.0, 2.0), gravity);
     let (start, steps) = (v, 1000);
@@ -29,7 +32,73 @@ pub fn check_integrator(integrator: &dyn TimeIntegrator) {
     let (mut v, mut a) = (Vec3::x(), Vec3::zeros());
     let predicted = integrator.predict(dt_s, &v, &a);
     integrator.correct(dt_s, &predicted.clone(), &predicted, &mut v, &mut a);
-    assert_eq!((v, a), (Vec3::x(), Vec3::zeros()), "a step without force changes the velocity");
+    let change = (v - Vec3::x()).norm() + dt_s * a.norm();
+    assert!(change <= 1e-12, "a step without force changes the velocity by {change} of 1 m/s");
+}
+
+/// The weights say what `correct` does: ∂v₁/∂u, the mean velocity, and Newmark's β and γ.
+fn check_correction(integrator: &dyn TimeIntegrator, dt_s: f64) {
+    let weights = integrator.weights(dt_s);
+    let (v0, a0) = (Vec3::new(1.0, -2.0, 0.5), Vec3::new(3.0, 0.1, -7.0));
+    let predicted = integrator.predict(dt_s, &v0, &a0);
+    let end = |u: &Vec3| {
+        let (mut v, mut a) = (v0, a0);
+        integrator.correct(dt_s, u, &predicted, &mut v, &mut a);
+        (v, a)
+    };
+    let (u, by) = (predicted + Vec3::new(2e-6, -1e-6, 3e-6), Vec3::new(1e-3, 2e-3, -1e-3));
+    let ((v, a), (moved, _)) = (end(&u), end(&(u + by)));
+    let expected = weights.velocity_per_m * by;
+    let off = (moved - v - expected).norm() / expected.norm();
+    assert!(off < 1e-9, "velocity_per_m is off by {off:e} of what `correct` does");
+    if weights.mean_velocity {
+        let off = (u - 0.5 * dt_s * (v0 + v)).norm() / u.norm();
+        assert!(off < 1e-12, "u is not Δt (v₀ + v₁)/2: off by {off:e}");
+    }
+    if weights.needs_acceleration {
+        let beta = weights.beta(dt_s);
+        let by_beta = dt_s * v0 + dt_s * dt_s * ((0.5 - beta) * a0 + beta * a);
+        let off = (u - by_beta).norm() / u.norm();
+        assert!(off < 1e-9, "u is not Δt v₀ + Δt² [(½ − β) a₀ + β a₁]: off by {off:e}");
+    }
+}
+
+/// An elastic oscillator of frequency 1, x = cos t: the error shrinks at least in proportion to the step, and no step makes it grow.
+fn check_oscillator(integrator: &dyn TimeIntegrator) {
+    let error = |steps: u32| {
+        let dt_s = std::f64::consts::TAU / f64::from(steps);
+        let (mut x, mut v, mut a) = (Vec3::x(), Vec3::zeros(), -Vec3::x());
+        (0..steps).for_each(|_| elastic_step(integrator, dt_s, (&mut x, &mut v, &mut a)));
+        (x - Vec3::x()).norm().hypot(v.norm())
+    };
+    let (coarse, fine) = (error(200), error(400));
+    assert!(fine < 0.1, "an oscillation of 400 steps is off by {fine} of its amplitude");
+    assert!(fine <= 0.6 * coarse + 1e-9, "half the step does not halve the error: {coarse:e}, {fine:e}");
+    for dt_s in [0.1, 1.0, 10.0, 1e3] {
+        let (mut x, mut v, mut a) = (Vec3::x(), Vec3::zeros(), -Vec3::x());
+        // Long steps may overshoot at first.
+        let [early, late] = [0, 1].map(|_| {
+            (0..1000).fold(0.0f64, |most, _| {
+                elastic_step(integrator, dt_s, (&mut x, &mut v, &mut a));
+                most.max(x.norm().hypot(v.norm()))
+            })
+        });
+        assert!(
+            late <= (1.0 + 1e-6) * early,
+            "an elastic oscillation grows from {early:e} to {late:e} at ω Δt = {dt_s}"
+        );
+    }
+}
+
+/// (θ K + c M)(u − û) = −α_m M a − (1 − θ) K d − θ K (d + û) with K = M = 1.
+fn elastic_step(integrator: &dyn TimeIntegrator, dt_s: f64, (x, v, a): (&mut Vec3, &mut Vec3, &mut Vec3)) {
+    let weights = integrator.weights(dt_s);
+    let theta = weights.stiffness;
+    let predicted = integrator.predict(dt_s, v, a);
+    let load = -weights.old_inertia * *a - (1.0 - theta) * *x - theta * (*x + predicted);
+    let u = predicted + load / (theta + weights.mass_per_s2);
+    integrator.correct(dt_s, &u, &predicted, v, a);
+    *x += u;
 }
 
 /// Spectral radius of a step of a mass that contact holds as a spring of frequency ω_c, by h = ω_c Δt.
@@ -76,6 +145,23 @@ pub fn check_linear_solver(solver: &dyn LinearSolver) {
         out.extend([(j, if j == 0 { 1.0 } else { -1.0 })]);
     });
     assert!(solver.factor(&indefinite).is_err(), "an indefinite matrix must be refused");
+}
+
+/// Panics if a solve allocates; `allocations` counts those of the thread so far, as a global allocator of the caller's test can.
+pub fn check_solves_allocate_nothing(solver: &dyn LinearSolver, allocations: &dyn Fn() -> usize) {
+    for n in [3, 400] {
+        let matrix = SymmetricMatrix::from_lower(n, |j, out| {
+            out.extend((j..n.min(j + 2)).map(|i| (i, if i == j { 4.0 } else { -1.0 })));
+        });
+        let factor = solver.factor(&matrix).expect("the matrix is positive definite");
+        let (mut scratch, mut multi) = (factor.new_scratch(), factor.new_multi_scratch());
+        let (mut one, mut many) = (vec![1.0; n], vec![[1.0; MULTI]; n]);
+        let before = allocations();
+        factor.solve_in_place(&mut one, &mut scratch).expect("a solution");
+        factor.solve_multi_in_place(&mut many, &mut multi).expect("a solution");
+        let made = allocations() - before;
+        assert_eq!(made, 0, "solves of {n} unknowns made {made} allocations");
+    }
 }
 
 /// Panics unless eight right-hand sides get the bits that each gets alone, with a scratch that was used before too.

@@ -1,13 +1,13 @@
 //! Scene → simulation: the only place where names become objects.
-//!
-//! A fork that brings its own contact model changes [`contact_model`], one match arm.
 
 mod bodies;
+mod choices;
 pub mod overlaps;
 mod regions;
 mod rock;
 mod shapes;
 mod solid;
+mod water;
 
 use std::path::Path;
 
@@ -24,6 +24,7 @@ use ndda_solver::{
 };
 
 use crate::run::monitor::Monitor;
+pub use choices::Choices;
 use regions::{find, find_all};
 pub use rock::{CutRock, Meshes, RockReport};
 
@@ -134,16 +135,21 @@ fn vec3(v: [f64; 3]) -> Vec3 {
     Vec3::from(v)
 }
 
-/// The simulation of a scene on its blocks, with the contact model that the scene names.
+/// No table is a constant load.
+fn table(rows: &[scene::FactorRow]) -> Option<Table> {
+    let rows: Vec<_> = rows.iter().map(|row| (row.time_s, row.factor)).collect();
+    (!rows.is_empty()).then_some(Table { rows })
+}
+
+/// The simulation of a scene on its blocks.
 ///
 /// # Errors
 /// All supports, tractions and materials that cannot be built.
 pub fn simulation(scene: &Scene, blocks: BlockSet, folder: &Path) -> Result<Simulation, Vec<Fault>> {
-    let contact = contact_model(scene, &blocks).map_err(|fault| vec![fault])?;
-    simulation_with(scene, blocks, folder, contact)
+    simulation_with(scene, blocks, folder, Choices::default())
 }
 
-/// The simulation of a scene with a contact model of one's own.
+/// The same with parts of one's own in the place of what the scene names.
 ///
 /// # Errors
 /// As [`simulation`].
@@ -151,9 +157,10 @@ pub fn simulation_with(
     scene: &Scene,
     blocks: BlockSet,
     folder: &Path,
-    contact: Option<Box<dyn ContactModel>>,
+    mut choices: Choices,
 ) -> Result<Simulation, Vec<Fault>> {
-    let bodies = bodies::bodies(scene, &blocks, folder)?;
+    let contact = contact_model(scene, &blocks, &mut choices).map_err(|fault| vec![fault])?;
+    let bodies = bodies::bodies(scene, &blocks, folder, &choices.materials)?;
     let setup = Setup {
         blocks,
         bodies,
@@ -165,7 +172,7 @@ pub fn simulation_with(
             scene::Mass::Lumped => Mass::Lumped,
         },
         step_s: scene.time.step_s,
-        integrator: integrator(&scene.time.integrator),
+        integrator: choices.integrator.unwrap_or_else(|| integrator(&scene.time.integrator)),
         contact,
         auto_step: match scene.time.step {
             scene::Step::Fixed => None,
@@ -179,7 +186,7 @@ pub fn simulation_with(
                 Some(ImplicitContact { tolerance, most_iterations })
             }
         },
-        solver: linear_solver(scene.time.solver),
+        solver: choices.solver.unwrap_or_else(|| linear_solver(scene.time.solver)),
     };
     Simulation::new(setup).map_err(|error| vec![setup_fault(scene, error)])
 }
@@ -196,18 +203,26 @@ fn setup_fault(scene: &Scene, error: SetupError) -> Fault {
     Fault::new(path, error)
 }
 
-/// The contact model that a scene names: a fork adds its own arm here.
-///
-/// # Errors
-/// A potential that cannot serve the blocks.
-pub fn contact_model(scene: &Scene, blocks: &BlockSet) -> Result<Option<Box<dyn ContactModel>>, Fault> {
+/// The contact model that a scene names, with the choices about contact in it.
+pub(crate) fn contact_model(
+    scene: &Scene,
+    blocks: &BlockSet,
+    choices: &mut Choices,
+) -> Result<Option<Box<dyn ContactModel>>, Fault> {
+    if let Some(own) = choices.contact.take() {
+        return Ok(Some(own));
+    }
     match &scene.contact {
         None | Some(Contact::Off) => Ok(None),
         Some(Contact::Potential { penalty_pa, potential, friction, joints, laws, memory }) => {
-            let potential = contact_potential(potential);
+            let potential = choices.potential.take().unwrap_or_else(|| contact_potential(potential));
             potential.field(blocks).map_err(|e| Fault::new("contact.potential", e))?;
             let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);
-            let mut table = between_materials(scene, blocks, friction.as_ref(), joints);
+            if let Some(broad_phase) = choices.broad_phase.take() {
+                model = model.with_broad_phase(broad_phase);
+            }
+            let everywhere = choices.friction.take().or_else(|| friction.as_ref().and_then(friction_law));
+            let mut table = between_materials(scene, blocks, everywhere, joints);
             add_joint_laws(&mut table, laws, blocks);
             table.memory = match memory {
                 scene::Memory::Body => Memory::Body,
@@ -247,14 +262,14 @@ pub fn materials_of(scene: &Scene, blocks: &BlockSet) -> Vec<u32> {
 fn between_materials(
     scene: &Scene,
     blocks: &BlockSet,
-    everywhere: Option<&scene::Friction>,
+    everywhere: Option<Box<dyn FrictionLaw>>,
     special: &[scene::Joint],
 ) -> FrictionLawTable {
     let index = |name: &str| material_index(scene, name);
     let mut joints = FrictionLawTable::between(materials_of(scene, blocks), scene.materials.len());
     let all = || 0..scene.materials.len() as u32;
     let pairs: Vec<(u32, u32)> = all().flat_map(|a| all().map(move |b| (a, b))).collect();
-    joints.set(&pairs, everywhere.and_then(friction_law));
+    joints.set(&pairs, everywhere);
     for joint in special {
         let pair = (index(&joint.between.0), index(&joint.between.1));
         joints.set(&[pair], joint.friction.as_ref().and_then(friction_law));

@@ -6,7 +6,7 @@ use ndda_io::diagnostic::{Diagnostic, SceneErrors};
 use ndda_io::read::{self, LoadedScene};
 use ndda_solver::Simulation;
 
-use crate::build::{self, Fault, overlaps};
+use crate::build::{self, Choices, Fault, overlaps};
 use crate::forecast::{admit, creep, lumped, rounding};
 use crate::judge::reference::Comparison;
 use crate::run::monitor::Monitor;
@@ -44,7 +44,15 @@ impl Model {
     /// # Errors
     /// As [`open`](Self::open).
     pub fn new(loaded: LoadedScene, folder: &Path) -> Result<Self, SceneErrors> {
-        let mut model = Self::resuming(loaded, folder)?;
+        Self::with(loaded, folder, Choices::default())
+    }
+
+    /// The same with parts of one's own in the place of what the scene names.
+    ///
+    /// # Errors
+    /// As [`open`](Self::open).
+    pub fn with(loaded: LoadedScene, folder: &Path, choices: Choices) -> Result<Self, SceneErrors> {
+        let mut model = Self::resuming_with(loaded, folder, choices)?;
         // What contact cannot compute at the start stops the run with its own cause.
         match overlaps::refusal(&model.loaded, &mut model.simulation) {
             Ok(Some(refused)) => Err(model.loaded.errors(vec![refused])),
@@ -56,7 +64,19 @@ impl Model {
     ///
     /// # Errors
     /// As [`open`](Self::open), but for blocks that overlap.
-    pub fn resuming(mut loaded: LoadedScene, folder: &Path) -> Result<Self, SceneErrors> {
+    pub fn resuming(loaded: LoadedScene, folder: &Path) -> Result<Self, SceneErrors> {
+        Self::resuming_with(loaded, folder, Choices::default())
+    }
+
+    /// The same with parts of one's own.
+    ///
+    /// # Errors
+    /// As [`resuming`](Self::resuming).
+    pub fn resuming_with(
+        mut loaded: LoadedScene,
+        folder: &Path,
+        choices: Choices,
+    ) -> Result<Self, SceneErrors> {
         let located = |faults: Vec<Fault>| {
             let diagnostics: Vec<Diagnostic> =
                 faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();
@@ -65,7 +85,7 @@ impl Model {
         admit::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
         let blocks = build::blocks(&loaded.scene, folder).map_err(located)?;
         let far = rounding::warning(&loaded, &blocks);
-        let simulation = build::simulation(&loaded.scene, blocks, folder).map_err(located)?;
+        let simulation = build::simulation_with(&loaded.scene, blocks, folder, choices).map_err(located)?;
         let monitors = build::monitors(&loaded.scene, &simulation).map_err(located)?;
         loaded.warnings.extend(far);
         loaded.warnings.extend(lumped::warning(&loaded, &simulation));

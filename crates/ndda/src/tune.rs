@@ -4,6 +4,7 @@ pub mod metric;
 pub mod report;
 pub mod search;
 pub mod settings;
+pub mod space;
 
 use ndda_io::summary::LabelWord;
 use ndda_io::table::Table;
@@ -19,8 +20,9 @@ use crate::study::launch::Launch;
 use crate::study::record::{Cause, RunOutcome};
 use metric::{Metric, compared, error_of_last};
 use report::{SCHEMA, TrialPoint, Tuned};
-use search::{Best, Outcome, Search, Setting, Space, Trials, Tried};
+use search::{Best, Search};
 use settings::Settings;
+use space::{Outcome, Setting, Space, Trials, Tried};
 
 /// The run that others are compared with is this much more exact than the error that is asked for.
 const MORE_EXACT: f64 = 4.0;

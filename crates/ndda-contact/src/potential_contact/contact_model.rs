@@ -1,28 +1,23 @@
 //! The contact potential as a contact model.
 
-use ndda_mesh::{BlockId, BlockSet, Vec3};
+use ndda_mesh::BlockId;
 
-use crate::affine::closing::closing_m_s;
-use crate::affine::surface::BlockFaces;
 use crate::assembly::energy::OverlapParts;
 use crate::assembly::join_if::join_if;
 use crate::assembly::nodal_forces::{self, ScatterScene};
+use crate::contact_model::ContactModel;
 use crate::friction::bond;
-use crate::friction::facet::{FacetScene, relative_motion};
+use crate::friction::facet::FacetScene;
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::patches::PatchScene;
 use crate::integration::overlap_pair::ActiveFacet;
-use crate::model::{
-    ContactError, ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport, FacetContact,
-    SpringSlip,
-};
+use crate::model::{ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport};
 use crate::pair_stiffness::PairStiffness;
-use crate::plan::Part;
 
-use crate::potential::contact_potential::{OverlapLaw, PotentialField};
+use crate::potential::contact_potential::OverlapLaw;
 
-use super::evaluation::{GRAIN_FACETS, for_each_facet, place_forces};
-use super::{PotentialContact, plan};
+use super::PotentialContact;
+use super::evaluation::{FacetRows, GRAIN_FACETS, place_forces};
 
 impl ContactModel for PotentialContact {
     fn add_forces(
@@ -31,6 +26,8 @@ impl ContactModel for PotentialContact {
         history: &mut ContactHistory,
         output: &mut ContactOutput,
     ) -> Result<ContactReport, ContactError> {
+        let state_len = self.joints.as_ref().map_or(0, FrictionLawTable::state_len);
+        history.expect_state(state_len)?;
         self.integrate(input)?;
         if let Some(joints) = self.joints.as_ref().filter(|joints| joints.hold_together() && !history.begun) {
             bond::form(joints, (&self.candidates, &self.hulls), input, &mut history.bonds);
@@ -42,8 +39,13 @@ impl ContactModel for PotentialContact {
         self.place_penalties(input);
         if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
             let found = (&self.candidates, &self.integrals);
-            report.bond_overload =
-                bond::break_overloaded(joints, found, &self.penalty_of_facet, input, history);
+            report.bond_overload = bond::break_overloaded(
+                joints,
+                found,
+                &self.penalty_of_facet,
+                input,
+                (history, &mut self.new_state),
+            );
         }
         let rubs = self.needs_bodies() && !input.bodies.is_empty();
         let Self { by_block, faces, integrals, .. } = self;
@@ -53,10 +55,14 @@ impl ContactModel for PotentialContact {
                 faces.arrange(integrals);
             }
         };
-        let (forces, on_host) = (&mut self.forces, &mut self.on_host);
+        let rows = FacetRows {
+            forces: &mut self.forces,
+            on_host: &mut self.on_host,
+            state: &mut self.state_of_facet,
+        };
         let facets =
             FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
-        let place = || place_forces(forces, on_host, &facets, integrals, &self.penalty_of_facet, &self.hulls);
+        let place = || place_forces(rows, &facets, integrals, &self.penalty_of_facet, &self.hulls);
         join_if(integrals.touching().len() > GRAIN_FACETS, place, sort);
         if let Some(joints) = self.joints.as_ref().filter(|_| rubs) {
             let scene = PatchScene { input, integrals: &self.integrals, joints, hulls: &self.hulls };
@@ -125,86 +131,8 @@ impl ContactModel for PotentialContact {
         Ok(())
     }
 
-    fn each_work(&mut self, blocks: &BlockSet, moved: &[Vec3], add: &mut dyn FnMut(BlockId, BlockId, f64)) {
-        let (integrals, forces) = (&self.integrals, &self.forces);
-        let touching = integrals.touching();
-        let work_of = |(t, work_j): (usize, &mut f64)| {
-            let touch = &touching[t];
-            let found = (integrals.hits_of(touch), integrals.sums_of(touch));
-            *work_j = forces[t].push.dot(&relative_motion(touch, found, (blocks, moved)));
-        };
-        self.work_of_facet.resize(touching.len(), 0.0);
-        for_each_facet(&mut self.work_of_facet, work_of);
-        for (touch, &work_j) in touching.iter().zip(&self.work_of_facet) {
-            add(touch.owner, touch.target, work_j);
-        }
-    }
-
-    fn each_coulomb_gap(
-        &mut self,
-        blocks: &BlockSet,
-        moved: &[Vec3],
-        add: &mut dyn FnMut(BlockId, BlockId, f64),
-    ) {
-        if self.needs_bodies() {
-            self.faces.each_coulomb_gap((blocks, &self.integrals, &self.forces), moved, add);
-        }
-    }
-
-    fn each_spring_slip(&self, add: &mut dyn FnMut(BlockId, BlockId, &SpringSlip)) {
-        if self.joints.is_none() {
-            return;
-        }
-        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
-            if let Some(spring) = &force.spring {
-                add(touch.owner, touch.target, spring);
-            }
-        }
-    }
-
-    fn each_energy(&self, add: &mut dyn FnMut(BlockId, BlockId, f64)) {
-        let energies = self.overlaps.each_energy_m3(self.potential.law());
-        energies.for_each(|(a, b, energy_m3)| add(a, b, self.penalty_pa * energy_m3));
-    }
-
-    /// A convex block is as wide as it reaches below the nearest of its faces, where φ does not depend on tetrahedra.
-    fn width_m(&self, blocks: &BlockSet, block: BlockId) -> Option<f64> {
-        let Some((_, PotentialField::Pieces(_))) = &self.field else { return None };
-        BlockFaces::new(blocks, block).width_m(blocks, block)
-    }
-
-    fn closing_m_s(&self, input: &ContactInput, pair: (BlockId, BlockId)) -> Option<f64> {
-        closing_m_s(&self.hulls, input, pair)
-    }
-
     fn uses_host_forces(&self, block: BlockId) -> bool {
         self.hulls.whole(block).is_some()
-    }
-
-    fn plan(&self) -> Vec<Part> {
-        plan::parts(self)
-    }
-
-    fn add_facets(&self, input: &ContactInput, history: &ContactHistory, facets: &mut Vec<FacetContact>) {
-        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
-            if !force.touches {
-                continue;
-            }
-            let sums = self.integrals.sums_of(touch);
-            facets.push(FacetContact {
-                facet: touch.triangle,
-                target: touch.target,
-                area_m2: sums.area,
-                normal: -force.push.normalize(),
-                center: force.center,
-                push_n: sums.pressure * force.push,
-                friction_n: sums.pressure * force.shear,
-                sticks: force.sticks,
-            });
-        }
-        if let Some(joints) = &self.joints {
-            bond::add_facets(joints, input, &history.bonds, facets);
-        }
     }
 
     fn needs_bodies(&self) -> bool {
@@ -219,12 +147,14 @@ impl ContactModel for PotentialContact {
         self.joints.as_ref().map_or(0.0, FrictionLawTable::min_friction_coefficient)
     }
 }
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::friction::coulomb::Coulomb;
     use crate::testing::{check_model, evaluate, test_box, test_set};
     use ndda_mesh::geometry::tet_heights;
+    use ndda_mesh::{BlockId, Vec3};
 
     #[test]
     fn it_keeps_the_contract_of_a_contact_model_with_and_without_friction() {

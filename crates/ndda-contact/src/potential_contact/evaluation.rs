@@ -5,15 +5,17 @@ use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::affine::surface::BlockFaces;
+use crate::assembly::energy::OverlapParts;
 use crate::assembly::join_if::join_if;
 use crate::assembly::tangent::{self, Target};
 use crate::broad_phase::candidates::Candidates;
+use crate::contact_model::ContactModel;
 use crate::friction::facet::{FacetForce, FacetScene};
 use crate::integration::integrals::Integrals;
 use crate::integration::pair_moments::OnTarget;
 use crate::integration::scene::Scene;
 use crate::integration::tet_frame::TetFrame;
-use crate::model::{ContactError, ContactHistory, ContactInput, ContactModel, FacetMemory};
+use crate::model::{ContactError, ContactHistory, ContactInput, FacetMemory};
 use crate::pair_stiffness::PairStiffness;
 
 use crate::potential::contact_potential::{OverlapLaw, PotentialField};
@@ -46,7 +48,7 @@ impl PotentialContact {
             // What a facet remembers is its own.
             let by_triangle = self.joints.as_ref().is_some_and(|joints| !joints.act_on_faces_only());
             self.hulls.fit(input.blocks, &surfaces, phi_per_m, input.affine, by_triangle);
-            self.candidates.numbers_overlaps = matches!(field, Ok(PotentialField::Element));
+            self.candidates.numbers_overlaps = field.as_ref().is_ok_and(PotentialField::is_element);
             if self.needs_bodies() {
                 self.faces.fit(input.blocks, &surfaces);
             }
@@ -73,7 +75,15 @@ impl PotentialContact {
             self.penalty_of_facet.resize(touching.len(), self.penalty_pa);
             return;
         }
-        self.overlaps.add_surfaces(input, &self.candidates, &self.integrals);
+        let Some((_, field)) = &self.field else { return };
+        let parts = OverlapParts {
+            candidates: &self.candidates,
+            integrals: &self.integrals,
+            frames: &self.frames,
+            field,
+            hulls: &self.hulls,
+        };
+        self.overlaps.add_touching(input, &parts);
         let law = self.potential.law();
         for touch in touching {
             let (a, b) = (touch.owner, touch.target);
@@ -87,22 +97,25 @@ impl PotentialContact {
     /// Takes over what facets remember; what did not touch is forgotten.
     pub(super) fn remember(&mut self, input: &ContactInput, history: &mut ContactHistory) {
         self.new_facets.clear();
+        self.new_state.clear();
         let scene = FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
-        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
+        let len = history.law_state_len as usize;
+        for (t, (touch, force)) in self.integrals.touching().iter().zip(&self.forces).enumerate() {
             let facet = &self.candidates.facets[force.facet as usize];
-            if let Some(memory) = force.memory {
+            if let Some((shear_n, broken)) = force.memory {
+                self.new_state.extend_from_slice(&self.state_of_facet[t * len..(t + 1) * len]);
                 self.new_facets.push(FacetMemory {
                     facet: facet.triangle,
                     target: facet.target,
                     element: scene.element_of(facet),
-                    shear_n: memory.shear_n,
-                    plastic_slip_m: memory.plastic_slip_m,
+                    shear_n,
                     area_m2: self.integrals.sums_of(touch).area,
-                    broken: memory.broken,
+                    broken,
                 });
             }
         }
         std::mem::swap(&mut history.facets, &mut self.new_facets);
+        std::mem::swap(&mut history.law_state, &mut self.new_state);
         history.begun = true;
     }
 
@@ -124,6 +137,7 @@ impl PotentialContact {
             let target = match (&self.field, self.hulls.whole(touch.target)) {
                 (_, Some(_)) => Target::Convex(self.hulls.planes_of(touch.target), outline),
                 (Some((_, PotentialField::Pieces(table))), None) => Target::Pieces(table.of(tet)),
+                (Some((_, PotentialField::Function(field))), None) => Target::Function(field, tet),
                 _ => Target::Element,
             };
             let frame = &self.frames[self.candidates.pairs[hit.pair as usize].tet as usize];
@@ -162,30 +176,44 @@ fn place_frames(
     Err(ContactError::CollapsedTet { tet, block: blocks.tet_block[tet.index()], volume_m3 })
 }
 
+/// What [`place_forces`] fills: forces of facets, what hosts feel of them, and what the laws keep.
+pub(super) struct FacetRows<'a> {
+    pub(super) forces: &'a mut Vec<FacetForce>,
+    pub(super) on_host: &'a mut Vec<OnTarget>,
+    pub(super) state: &'a mut Vec<f64>,
+}
+
 /// The forces of all facets, and what hosts feel of them.
 pub(super) fn place_forces(
-    forces: &mut Vec<FacetForce>,
-    on_host: &mut Vec<OnTarget>,
+    FacetRows { forces, on_host, state }: FacetRows,
     scene: &FacetScene,
     integrals: &Integrals,
     penalty_of_facet: &[f64],
     hulls: &ConvexBlocks,
 ) {
     let touching = integrals.touching();
+    let state_len = scene.history.law_state_len as usize;
     forces.resize(touching.len(), FacetForce::default());
     on_host.resize(touching.len(), OnTarget::default());
-    let place = |((force, on_host), t): ((&mut FacetForce, &mut OnTarget), usize)| {
+    state.resize(touching.len() * state_len, 0.0);
+    let place = |force: &mut FacetForce, on_host: &mut OnTarget, t: usize, state: &mut [f64]| {
         let (hits, sums) = (integrals.hits_of(&touching[t]), integrals.sums_of(&touching[t]));
-        *force = scene.force(&touching[t], hits, sums, penalty_of_facet[t]);
+        *force = scene.force(&touching[t], hits, sums, penalty_of_facet[t], state);
         if hulls.whole(touching[t].target).is_some() {
             *on_host = hits[0].on_target;
         }
     };
-    if touching.len() > GRAIN_FACETS {
+    if state_len > 0 {
         let entries = forces.par_iter_mut().zip(on_host).zip(0..touching.len());
-        entries.with_min_len(GRAIN_FACETS / 2).for_each(place);
+        let entries = entries.zip(state.par_chunks_mut(state_len)).with_min_len(GRAIN_FACETS / 2);
+        entries.for_each(|(((force, on_host), t), state)| place(force, on_host, t, state));
+    } else if touching.len() > GRAIN_FACETS {
+        let entries = forces.par_iter_mut().zip(on_host).zip(0..touching.len());
+        let entries = entries.with_min_len(GRAIN_FACETS / 2);
+        entries.for_each(|((force, on_host), t)| place(force, on_host, t, &mut []));
     } else {
-        forces.iter_mut().zip(on_host).zip(0..).for_each(place);
+        let entries = forces.iter_mut().zip(on_host).zip(0..);
+        entries.for_each(|((force, on_host), t)| place(force, on_host, t, &mut []));
     }
 }
 

@@ -2,6 +2,7 @@
 
 pub mod affine;
 pub mod assembly;
+mod audit;
 pub mod broad_phase;
 mod contact_model;
 mod evaluation;
@@ -18,10 +19,10 @@ pub use {
     friction::mohr_coulomb::MohrCoulomb,
     friction::softening_coulomb::SofteningCoulomb,
     friction::velocity_coulomb::VelocityCoulomb,
-    potential::contact_potential::{
-        ContactPotential, OverlapLaw, PieceTable, PotentialError, PotentialField,
-    },
+    potential::contact_potential::{ContactPotential, OverlapLaw, PotentialError, PotentialField},
     potential::element::ElementPotential,
+    potential::function::{FunctionField, PotentialFunction},
+    potential::piece_table::PieceTable,
     potential::smooth::SmoothPotential,
     potential::volume::VolumePotential,
 };
@@ -31,6 +32,7 @@ use crate::assembly::adjacency::BlockContactIndex;
 use crate::assembly::energy;
 use crate::assembly::report::Reporter;
 use crate::broad_phase::candidates::Candidates;
+use crate::broad_phase::finder::BroadPhase;
 use crate::friction::facet::FacetForce;
 use crate::friction::patches::FrictionPatches;
 use crate::integration::integrals::Integrals;
@@ -62,6 +64,9 @@ pub struct PotentialContact {
     overlaps: energy::BlockOverlaps,
     reporter: Reporter,
     new_facets: Vec<FacetMemory>,
+    new_state: Vec<f64>,
+    /// What the laws keep of each touching facet.
+    state_of_facet: Vec<f64>,
     work_of_facet: Vec<f64>,
 }
 
@@ -86,6 +91,8 @@ impl PotentialContact {
             overlaps: Default::default(),
             reporter: Reporter::default(),
             new_facets: Vec::new(),
+            new_state: Vec::new(),
+            state_of_facet: Vec::new(),
             work_of_facet: Vec::new(),
         }
     }
@@ -93,6 +100,14 @@ impl PotentialContact {
     /// With another potential.
     pub fn with_potential(mut self, potential: Box<dyn ContactPotential>) -> Self {
         self.potential = potential;
+        self
+    }
+
+    /// With another broad phase.
+    pub fn with_broad_phase(mut self, broad_phase: Box<dyn BroadPhase>) -> Self {
+        let split_by_element = self.candidates.split_by_element;
+        self.candidates = Candidates::found_by(broad_phase);
+        self.candidates.split_by_element = split_by_element;
         self
     }
 

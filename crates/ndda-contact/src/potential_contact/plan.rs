@@ -3,7 +3,7 @@
 use super::PotentialContact;
 use crate::friction::law_table::{FrictionLawTable, Memory};
 use crate::plan::Part;
-use crate::potential::contact_potential::OverlapLaw;
+use crate::potential::contact_potential::{OverlapLaw, PotentialField};
 
 const FRICTION: &str = "friction";
 const MEMORY: &str = "memory of friction";
@@ -11,13 +11,18 @@ const MEMORY: &str = "memory of friction";
 /// Parts of the model, by what it holds.
 pub(super) fn parts(model: &PotentialContact) -> Vec<Part> {
     let (name, penalty_pa) = (model.potential.name(), model.penalty_pa);
+    let by_quadrature = matches!(&model.field, Some((_, PotentialField::Function(_))));
+    let how = if by_quadrature { "by quadrature" } else { "exactly" };
     let curved = model.potential.law() != OverlapLaw::Linear;
     let mut parts = vec![
         Part::included(
             "broad phase",
-            "trees of boxes; pairs of blocks are listed anew once one has moved beyond its margin",
+            format!(
+                "{}; pairs of blocks are listed anew once one has moved beyond its margin",
+                model.candidates.finder()
+            ),
         ),
-        Part::included("contact potential", format!("{name}, k_n = {penalty_pa:e} Pa, integrated exactly")),
+        Part::included("contact potential", format!("{name}, k_n = {penalty_pa:e} Pa, integrated {how}")),
         whole_blocks(model),
         Part::of(
             "volume of overlaps",

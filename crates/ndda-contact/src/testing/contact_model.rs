@@ -2,7 +2,8 @@
 
 use ndda_mesh::{BlockId, Mat3, Vec3};
 
-use crate::model::{ContactHistory, ContactInput, ContactModel, ContactOutput, ContactReport};
+use crate::contact_model::ContactModel;
+use crate::model::{ContactHistory, ContactInput, ContactOutput, ContactReport};
 use crate::testing::shapes::{test_box, test_set};
 
 /// What a model gave for one input.

@@ -1,7 +1,7 @@
 //! VTK's files: meshes from `.vtu` and legacy `.vtk`, and what a mesh and blocks are written to.
 //!
-//! Format: VTK user's guide, "VTK File Formats". Read here and not through `vtkio`, which knows no compression without
-//! a crate with an advisory, and no line numbers for what it refuses.
+//! Format: VTK user's guide, "VTK File Formats". Legacy files are written by `vtkio`. XML is read and written here: `vtkio` keeps no field
+//! data, where the names of bodies are, and no faces of polyhedra, unpacks only with a crate that has an advisory, and gives no line for what it refuses.
 
 mod base64;
 mod binary;
@@ -11,6 +11,7 @@ mod legacy;
 mod polyhedra;
 mod sections;
 mod write;
+mod write_legacy;
 mod xml;
 
 use std::path::Path;
@@ -22,6 +23,7 @@ pub use data::Array;
 pub(crate) use data::{Data, TETRA};
 pub use polyhedra::write as write_polyhedra;
 pub use write::write;
+pub use write_legacy::write as write_legacy;
 
 /// Reads a mesh: `.vtu` (ASCII, binary, appended; plain or zlib) or legacy `.vtk` (ASCII or binary).
 ///

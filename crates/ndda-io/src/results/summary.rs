@@ -1,56 +1,18 @@
 //! The summary: what a run did, what it cost and whether it can be trusted, as `summary.json`.
 
-use std::fmt;
-use std::marker::PhantomData;
+mod motion;
+mod named;
+
 use std::path::Path;
 
-use serde::de::{MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::atomic;
 use crate::write_error::WriteError;
 
-/// Entries by name, in the order of the scene rather than of the alphabet.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Named<T>(pub Vec<(String, T)>);
-
-impl<T> FromIterator<(String, T)> for Named<T> {
-    fn from_iter<I: IntoIterator<Item = (String, T)>>(entries: I) -> Self {
-        Self(entries.into_iter().collect())
-    }
-}
-
-impl<T: Serialize> Serialize for Named<T> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(self.0.iter().map(|(name, entry)| (name, entry)))
-    }
-}
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Named<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(Entries(PhantomData))
-    }
-}
-
-/// Takes the entries of a map in their order.
-struct Entries<T>(PhantomData<T>);
-
-impl<'de, T: Deserialize<'de>> Visitor<'de> for Entries<T> {
-    type Value = Named<T>;
-
-    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        f.write_str("a map")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Named<T>, A::Error> {
-        let mut entries = Vec::new();
-        while let Some(entry) = map.next_entry()? {
-            entries.push(entry);
-        }
-        Ok(Named(entries))
-    }
-}
+pub use motion::{BlockEnd, BlockMotion, Course, MonitorEnd, Motion};
+pub use named::Named;
 
 /// Everything that `summary.json` says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -235,75 +197,6 @@ pub enum Judgement {
     /// This version does not compute it.
     #[serde(rename = "not yet")]
     NotYet,
-}
-
-/// State of a monitor at the end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct MonitorEnd {
-    /// Displacement since the start \[m\].
-    pub displacement: [f64; 3],
-    /// Velocity [m/s].
-    pub velocity: [f64; 3],
-}
-
-/// What moved in a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Motion {
-    /// Blocks that are not fixed.
-    pub can_move: usize,
-    /// Those of which a point has gone, by the end, farther than 1 % of the distance from their mass centre to their farthest node.
-    pub moved: usize,
-    /// The block of which a point has gone farthest.
-    pub farthest: String,
-    /// How far that was at the end \[m\].
-    pub farthest_m: f64,
-    /// Speed of its mass centre at the end [m/s].
-    pub speed_m_s: f64,
-    /// Whether it moves at the end.
-    pub course: Course,
-}
-
-/// How a block moves at the end of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Course {
-    /// At less than 1 % of its largest speed.
-    AtRest,
-    /// More slowly than it did.
-    Moving,
-    /// At its largest speed.
-    Accelerating,
-}
-
-/// How far a block has gone at the end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct BlockMotion {
-    /// Displacement of its mass centre since the start \[m\].
-    pub displacement_m: [f64; 3],
-    /// How far its farthest node has gone \[m\].
-    pub farthest_m: f64,
-    /// The largest of that in the rows of the history \[m\].
-    pub largest_m: f64,
-    /// Angle by which it has turned, from 0 to 180 \[°\].
-    pub rotation_deg: f64,
-}
-
-/// State of a block at the end.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct BlockEnd {
-    /// How far it has gone.
-    #[serde(flatten)]
-    pub motion: BlockMotion,
-    /// Mass \[kg\].
-    pub mass: f64,
-    /// Mass-mean velocity [m/s].
-    pub velocity: [f64; 3],
-    /// Linear momentum [kg m/s].
-    pub momentum: [f64; 3],
-    /// Angular momentum about the origin of the scene's coordinates [kg m²/s].
-    pub angular_momentum: [f64; 3],
-    /// Volume over volume at rest.
-    pub volume_ratio: f64,
 }
 
 /// Error against a closed form, relative to its magnitude.

@@ -4,7 +4,9 @@ use crate::error::SetupError;
 use std::sync::Arc;
 
 use ndda_fem::frame::polar_rotation;
-use ndda_fem::{BlockOperator, BlockSupports, Frame, Hold, InitialStress, Material, NodeSupport, Table};
+use ndda_fem::{
+    BlockOperator, BlockSupports, Frame, Hold, InitialStress, Material, NodeSupport, PressureField, Table,
+};
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::bodies::kind::BodyKind;
@@ -33,6 +35,8 @@ pub struct BodySetup {
     pub tractions: Vec<TractionSetup>,
     /// Forces on its nodes.
     pub forces: Vec<ForceSetup>,
+    /// Pressures of water on its surface, which follow it.
+    pub pressures: Vec<PressureSetup>,
     /// Velocity of the mass centre [m/s].
     pub velocity_m_s: Vec3,
     /// Rate of rotation about the mass centre [rad/s].
@@ -46,6 +50,17 @@ pub struct TractionSetup {
     pub triangles: Vec<[u32; 3]>,
     /// Traction [Pa].
     pub traction_pa: Vec3,
+    /// Factor over time; constant without.
+    pub factor: Option<Table>,
+}
+
+/// Pressure on part of a block, along the inward normal of where its surface is now.
+#[derive(Clone, Debug)]
+pub struct PressureSetup {
+    /// Triangles by nodes counted from the block's first, counter-clockwise seen from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// The pressure in space, places relative to the origin of the block set.
+    pub field: Arc<PressureField>,
     /// Factor over time; constant without.
     pub factor: Option<Table>,
 }

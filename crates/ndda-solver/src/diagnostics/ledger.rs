@@ -245,7 +245,7 @@ impl Ledger {
         let (worst, contact) = (&mut self.worst, &report.contact);
         worst.max_penetration_ratio = worst.max_penetration_ratio.max(contact.max_penetration_ratio);
         worst.bond_overload = worst.bond_overload.max(contact.bond_overload);
-        worst.action_reaction = worst.action_reaction.max(contact.action_reaction_error);
+        worst.action_reaction = worst.action_reaction.max(contact.action_reaction_error.unwrap_or(0.0));
         worst.candidate_pairs_max = worst.candidate_pairs_max.max(contact.candidate_pairs);
         worst.contact_pairs_max = worst.contact_pairs_max.max(contact.contact_pairs);
         worst.candidate_pairs_total += contact.candidate_pairs as u64;

@@ -82,11 +82,13 @@ pub struct Inertia {
     pub lag: Vec3,
 }
 
-/// A one-step integrator for M a + K d = f, solved per block as
+/// An integrator of one step and one stage for M a + K d = f, with no memory but velocities and accelerations (multi-stage ones, as Bathe's, take a
+/// solver of their own), solved per block as
 /// (θ K + c M)(u − û) = f − α_m M a − (1 − θ) K d − θ K (d + û).
 ///
 /// Contract (checked by [`check_integrator`](crate::testing::check_integrator)): exact for constant acceleration,
-/// keeps constant velocity, `correct` undoes `predict` when the step brings no acceleration.
+/// keeps constant velocity, `correct` undoes `predict` when the step brings no acceleration, the weights say what `correct` does, and an
+/// elastic oscillator converges and never grows.
 pub trait TimeIntegrator: Send + Sync {
     /// Name in reports.
     fn name(&self) -> &'static str;

@@ -1,5 +1,7 @@
 //! What a linear solver must do, and the matrix that it is given.
 
+use std::any::Any;
+
 /// A symmetric matrix by its lower triangle in compressed columns, rows ascending, diagonal first.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SymmetricMatrix {
@@ -71,20 +73,32 @@ pub const MULTI: usize = 8;
 /// Eight numbers in one line of the cache.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(64))]
-pub struct Eight(pub [f64; MULTI]);
+pub(crate) struct Eight(pub(crate) [f64; MULTI]);
 
 /// Memory that a solve may write over; made once, for one factor.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub struct Scratch {
     /// Numbers one by one.
-    pub numbers: Vec<f64>,
+    pub(crate) numbers: Vec<f64>,
     /// Numbers by eights.
-    pub lines: Vec<Eight>,
+    pub(crate) lines: Vec<Eight>,
     /// One of eight right-hand sides, for solvers that take them one by one.
-    pub lane: Vec<f64>,
+    pub(crate) lane: Vec<f64>,
+    /// That of a solver of other people.
+    pub(crate) own: Option<Box<dyn Any + Send + Sync>>,
 }
 
 impl Scratch {
+    /// Memory of any kind, which [`own`](Self::own) gives back in each solve.
+    pub fn of<T: Any + Send + Sync>(own: T) -> Self {
+        Self { own: Some(Box::new(own)), ..Self::default() }
+    }
+
+    /// What it was made of; `None` if it was made of another type.
+    pub fn own<T: Any>(&mut self) -> Option<&mut T> {
+        self.own.as_mut().and_then(|own| own.downcast_mut())
+    }
+
     /// At least so many lines; allocates only if there were fewer.
     pub(crate) fn make_room(&mut self, lines: usize) {
         if self.lines.len() < lines {

@@ -133,7 +133,11 @@ impl Simulation {
             friction_force: &mut friction_force,
             stiffness: &mut stiffness,
         };
-        let report = model.add_forces(&input, &mut history, &mut output);
+        let mut report = model.add_forces(&input, &mut history, &mut output);
+        if let Ok(ContactReport { action_reaction_error: error @ None, .. }) = &mut report {
+            let before = if facet_velocity.is_none() { self.loads.total() } else { &[] };
+            *error = Some(imbalance(&force, before));
+        }
         self.scratch.contact_has_acted = report.is_err() || model.has_acted();
         (self.scratch.force, self.state.contact, self.scratch.friction_force) =
             (force, history, friction_force);
@@ -155,4 +159,18 @@ impl Simulation {
             tet,
         })
     }
+}
+
+/// |Σ f| / Σ |f| of the forces that contact added to what was there before, or to nothing; zero to the rounding of the sums.
+fn imbalance(force: &[Vec3], before: &[Vec3]) -> f64 {
+    let (mut sum, mut size, mut rounding) = (Vec3::zeros(), 0.0, 0.0);
+    for (i, total) in force.iter().enumerate() {
+        let old = before.get(i).copied().unwrap_or_default();
+        let added = total - old;
+        sum += added;
+        size += added.norm();
+        rounding += f64::EPSILON * (total.norm() + old.norm());
+    }
+    let unequal = (sum.norm() - 8.0 * rounding).max(0.0);
+    if size > 0.0 { unequal / size } else { 0.0 }
 }

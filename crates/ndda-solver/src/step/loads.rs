@@ -3,6 +3,8 @@
 use ndda_fem::{Between, Table};
 use ndda_mesh::Vec3;
 
+use crate::step::follower::{FollowerPressure, Places};
+
 /// Nodal forces that grow and shrink together.
 #[derive(Clone, Debug)]
 pub(crate) struct VaryingLoad {
@@ -27,6 +29,8 @@ impl VaryingLoad {
 pub(crate) struct Loads {
     constant: Vec<Vec3>,
     varying: Vec<VaryingLoad>,
+    /// Pressure of water.
+    pressures: Vec<FollowerPressure>,
     /// Sum of the varying ones now; empty if there are none, and so is `total`.
     changing: Vec<Vec3>,
     total: Vec<Vec3>,
@@ -37,25 +41,37 @@ pub(crate) struct Loads {
 }
 
 impl Loads {
-    /// Constant forces per node, and those that vary.
-    pub(crate) fn new(constant: Vec<Vec3>, varying: Vec<VaryingLoad>) -> Self {
+    /// Constant forces per node, those that vary, and pressures, on nodes that are at rest somewhere.
+    pub(crate) fn new(
+        constant: Vec<Vec3>,
+        varying: Vec<VaryingLoad>,
+        pressures: Vec<FollowerPressure>,
+        rest: Places,
+    ) -> Self {
         let force = constant.iter().sum();
-        let nodes = if varying.is_empty() { 0 } else { constant.len() };
+        let nodes = if varying.is_empty() && pressures.is_empty() { 0 } else { constant.len() };
         let mut loads = Self {
             constant,
             varying,
+            pressures,
             changing: vec![Vec3::zeros(); nodes],
             total: vec![Vec3::zeros(); nodes],
             force,
             unresolved_m_s: 0.0,
         };
-        loads.place(0.0, 0.0);
+        loads.place(0.0, 0.0, rest);
         loads
     }
 
-    /// Makes the varying ones their means between two times [s].
-    pub(crate) fn place(&mut self, from_s: f64, to_s: f64) {
-        if self.varying.is_empty() {
+    /// None at all.
+    pub(crate) fn none() -> Self {
+        let nowhere = Places { position: &[], velocity: &[], lead_s: 0.0 };
+        Self::new(Vec::new(), Vec::new(), Vec::new(), nowhere)
+    }
+
+    /// Makes the varying ones their means between two times [s], pressures on nodes where they are then.
+    pub(crate) fn place(&mut self, from_s: f64, to_s: f64, places: Places) {
+        if self.changing.is_empty() {
             return;
         }
         self.changing.fill(Vec3::zeros());
@@ -64,6 +80,9 @@ impl Loads {
             let Between { mean: factor, beyond_s } = load.factor.between(from_s, to_s);
             self.unresolved_m_s += load.pace_m_s2 * beyond_s;
             load.forces.iter().for_each(|(node, force)| self.changing[*node as usize] += factor * force);
+        }
+        for pressure in &mut self.pressures {
+            self.unresolved_m_s += pressure.add((from_s, to_s), places, &mut self.changing);
         }
         let sums = self.constant.iter().zip(&self.changing);
         self.total.iter_mut().zip(sums).for_each(|(total, (a, b))| *total = a + b);
@@ -82,7 +101,7 @@ impl Loads {
 
     /// Both [N].
     pub(crate) fn total(&self) -> &[Vec3] {
-        if self.varying.is_empty() { &self.constant } else { &self.total }
+        if self.changing.is_empty() { &self.constant } else { &self.total }
     }
 
     /// Speed that they bring and take back within the step, where nobody sees it [m/s].

@@ -10,6 +10,7 @@ pub(crate) mod contact_rates;
 pub(crate) mod control;
 pub(crate) mod deformation;
 pub(crate) mod first_step;
+pub(crate) mod follower;
 pub(crate) mod implicit_contact;
 pub(crate) mod loads;
 pub(crate) mod plan;
@@ -37,6 +38,7 @@ use crate::error::StepError;
 use crate::integrators::time_integrator::{StepWeights, TimeIntegrator};
 use crate::step::contact_moments::ContactMoments;
 use crate::step::control::Control;
+use crate::step::follower::Places;
 use crate::step::implicit_contact::Newton;
 use crate::step::loads::Loads;
 use crate::step::state::State;
@@ -140,7 +142,9 @@ impl Simulation {
     /// f ← gravity, tractions and forces, as their mean over a step about the time at which the integrator takes them.
     fn gather_loads(&mut self) {
         let lead = self.weights.load_lead;
-        self.loads.place(self.clock_s(lead - 0.5), self.clock_s(lead + 0.5));
+        let (from_s, to_s) = (self.clock_s(lead - 0.5), self.clock_s(lead + 0.5));
+        let State { position, velocity, .. } = &self.state;
+        self.loads.place(from_s, to_s, Places { position, velocity, lead_s: lead * self.part_s });
         self.scratch.force.copy_from_slice(self.loads.total());
     }
 }

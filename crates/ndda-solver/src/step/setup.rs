@@ -1,5 +1,7 @@
 //! From what a scene brings to a simulation at t = 0.
 
+mod accelerations;
+
 use std::collections::HashMap;
 
 use ndda_contact::ContactModel;
@@ -24,6 +26,7 @@ use crate::linear::linear_solver::{LinearSolver, MULTI};
 use crate::step::clock::step_weights;
 use crate::step::contact_moments::ContactMoments;
 use crate::step::control::{AutoStep, Control};
+use crate::step::follower::{FollowerPressure, Places};
 use crate::step::implicit_contact::{ImplicitContact, Newton};
 use crate::step::loads::{Loads, VaryingLoad};
 use crate::step::report::StageTimes;
@@ -104,7 +107,7 @@ impl Simulation {
                 contact: Default::default(),
             },
             bodies: Vec::with_capacity(blocks.len()),
-            loads: Loads::new(Vec::new(), Vec::new()),
+            loads: Loads::none(),
             newton: end_contact.map(|settings| Box::new(Newton::new(settings, nodes, blocks.len()))),
             contact_moments: None,
             part_s: step_s,
@@ -219,11 +222,11 @@ impl Simulation {
         }
     }
 
-    /// Gathers gravity, tractions and forces: those that vary each by itself, the others in one sum.
+    /// Gathers gravity, tractions, forces and pressures: those that vary each by itself, the others in one sum.
     fn add_loads(&mut self, bodies: &[BodySetup], gravity_m_s2: &Vec3, gravity_factor: Option<Table>) {
         let mut constant = vec![Vec3::zeros(); self.problem.blocks.rest_position.len()];
         let mut weight = constant.clone();
-        let mut varying = Vec::new();
+        let (mut varying, mut pressures) = (Vec::new(), Vec::new());
         for (block, setup) in self.problem.blocks.ids().zip(bodies) {
             let range = self.problem.blocks.nodes_of(block);
             let rest = &self.problem.blocks.rest_position[range.clone()];
@@ -247,12 +250,25 @@ impl Simulation {
                 forces[force.node as usize] = force.force_n;
                 add(forces, &force.factor);
             }
+            for pressure in &setup.pressures {
+                let first = range.start as u32;
+                let triangles = pressure.triangles.iter().map(|t| t.map(|n| first + n)).collect();
+                let load = (pressure.field.clone(), pressure.factor.clone());
+                pressures.push(FollowerPressure::new(
+                    triangles,
+                    load,
+                    &self.problem.blocks.rest_position,
+                    mass_kg,
+                ));
+            }
         }
         match gravity_factor {
             None => constant.iter_mut().zip(weight).for_each(|(sum, f)| *sum += f),
             Some(factor) => varying.push(VaryingLoad::new(0, &weight, factor, gravity_m_s2.norm())),
         }
-        self.loads = Loads::new(constant, varying);
+        let State { position, velocity, .. } = &self.state;
+        let rest = Places { position, velocity, lead_s: 0.0 };
+        self.loads = Loads::new(constant, varying, pressures, rest);
     }
 
     /// Opens the books, with the accelerations at the start for integrators that need them.
@@ -287,81 +303,6 @@ impl Simulation {
             }
         }
         (force, torque)
-    }
-
-    /// M a = f − ∫Bᵀσ₀ at the start, contact being part of f.
-    fn place_accelerations(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
-        let force = self.force_at_start().map_err(Box::new)?;
-        self.carry_contact_forces();
-        for block in self.problem.blocks.ids() {
-            let range = self.problem.blocks.nodes_of(block);
-            let force = &force[range.clone()];
-            let shape = self.shape(block);
-            if shape.kind == BodyKind::Rigid {
-                let total: Vec3 = force.iter().sum();
-                let acceleration = total / shape.operator.mass_kg;
-                let torque = force.iter().zip(&self.state.position[range.clone()]);
-                let torque = torque.map(|(f, x)| x.cross(f)).sum();
-                self.state.acceleration[range].fill(acceleration);
-                self.place_inertia(block, force, total, torque);
-            } else if !shape.unknowns.is_empty() {
-                self.solve_acceleration(block, force, solver)?;
-                let (position, acceleration) =
-                    (&self.state.position[range.clone()], &self.state.acceleration[range]);
-                let operator = &self.shape(block).operator;
-                let total = operator.momentum(acceleration);
-                let torque = operator.angular_momentum(&Vec3::zeros(), position, acceleration);
-                self.place_inertia(block, force, total, torque);
-            } else {
-                // It stays at rest: what holds it bears loads and contact.
-                self.place_inertia(block, force, Vec3::zeros(), Vec3::zeros());
-            }
-        }
-        Ok(())
-    }
-
-    /// M a of a block at the start from nodal forces, their sum and torque about the origin, supports included.
-    fn place_inertia(&mut self, block: BlockId, force: &[Vec3], total: Vec3, torque: Vec3) {
-        let nodes = self.problem.blocks.nodes_of(block);
-        let position = &self.state.position[nodes.clone()];
-        let loads = &self.loads.total()[nodes];
-        let pressing = || force.iter().zip(loads).map(|(f, load)| f - load);
-        let contact: Vec3 = pressing().sum();
-        let shape = self.shape(block);
-        let torque = if shape.is_free() {
-            torque - shape.operator.center(position).cross(&total)
-        } else {
-            torque - position.iter().zip(pressing()).map(|(x, f)| x.cross(&f)).sum::<Vec3>()
-        };
-        let moments = self.contact_moments.as_ref();
-        let carried = moments.map_or(Vec3::zeros(), |moments| moments.carried[block.index()]);
-        self.state.inertia[block.index()] =
-            Inertia { force: total, torque, contact, carried, lag: Vec3::zeros() };
-    }
-
-    /// a of the nodes of a block that deforms, at the start [m/s²].
-    fn solve_acceleration(
-        &mut self,
-        block: BlockId,
-        force: &[Vec3],
-        solver: &dyn LinearSolver,
-    ) -> Result<(), SetupError> {
-        let name = || self.problem.blocks.names[block.index()].clone();
-        let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
-        let body = &mut self.bodies[block.index()];
-        let shape = &self.problem.shapes[body.shape];
-        let mut load = force.to_vec();
-        if let Some(initial) = body.elastic().and_then(|elastic| elastic.initial_force.as_ref()) {
-            load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
-        }
-        let matrix = shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, 0.0);
-        let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor { block: name(), source })?;
-        let mut rhs = vec![0.0; factor.unknowns()];
-        shape.unknowns.gather(&load, &mut rhs);
-        let solved = factor.solve_in_place(&mut rhs, &mut factor.new_scratch());
-        solved.map_err(|source| SetupError::Solve { block: name(), source })?;
-        shape.unknowns.scatter(&rhs, &mut self.state.acceleration[self.problem.blocks.nodes_of(block)]);
-        Ok(())
     }
 }
 

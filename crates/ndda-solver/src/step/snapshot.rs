@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::diagnostics::ledger::Ledger;
 use crate::integrators::time_integrator::Inertia;
 use crate::step::Simulation;
+use crate::step::follower::Places;
 use crate::step::state::State;
 
 /// All that a run has become: what a checkpoint keeps, and a simulation of the same problem can go on from.
@@ -94,7 +95,8 @@ impl Simulation {
         self.state.inertia.fill(Inertia::default());
         self.state.step = 0;
         self.settling = false;
-        self.loads.place(0.0, 0.0);
+        let State { position, velocity, .. } = &self.state;
+        self.loads.place(0.0, 0.0, Places { position, velocity, lead_s: 0.0 });
         self.audit.ledger = self.new_ledger((Vec3::zeros(), Vec3::zeros()));
     }
 }

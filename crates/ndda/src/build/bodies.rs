@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ndda_fem::{
     Bedding, Damped, Damping, Hold as FemHold, InitialStress, LinearElastic, Material, MaterialError, Motion,
-    NodeSupport, Record, Table, TransverselyIsotropic, Voigt,
+    NodeSupport, Record, TransverselyIsotropic, Voigt,
 };
 use ndda_io::record;
 use ndda_io::scene::{self, By, Hold, Region, Scene};
@@ -14,15 +14,28 @@ use ndda_mesh::{BlockId, BlockSet};
 use ndda_solver::{BodyKind, BodySetup, ForceSetup, TractionSetup};
 
 use super::regions::{in_region, loaded_triangles, region_nodes};
-use super::{Fault, Source, rock, sources, vec3};
+use super::water::add_water;
+use super::{Fault, Source, rock, sources, table, vec3};
 
 /// The paper's support springs: 10⁶ E per metre of reference length.
 const SPRING_PER_YOUNG_M: f64 = 1e6;
 
 /// The bodies of a scene on its blocks.
-pub(super) fn bodies(scene: &Scene, blocks: &BlockSet, folder: &Path) -> Result<Vec<BodySetup>, Vec<Fault>> {
+pub(super) fn bodies(
+    scene: &Scene,
+    blocks: &BlockSet,
+    folder: &Path,
+    own: &[(String, Arc<dyn Material>)],
+) -> Result<Vec<BodySetup>, Vec<Fault>> {
     let mut faults = Vec::new();
-    let materials = materials(scene, &mut faults);
+    let mut materials = materials(scene, &mut faults);
+    for (name, material) in own {
+        match scene.materials.iter().position(|m| m.name == *name) {
+            Some(index) => materials[index] = Some(material.clone()),
+            None => faults
+                .push(Fault::new("materials", format!("no material `{name}`, which the program brings"))),
+        }
+    }
     let mut bodies = Vec::new();
     let sources = sources(scene, blocks);
     for (id, source) in blocks.ids().zip(&sources) {
@@ -65,6 +78,7 @@ pub(super) fn bodies(scene: &Scene, blocks: &BlockSet, folder: &Path) -> Result<
             Err(message) => faults.push(Fault::new(format!("forces[{i}].at_m"), message)),
         }
     }
+    add_water(scene, blocks, &mut bodies, &mut faults);
     if faults.is_empty() { Ok(bodies) } else { Err(faults) }
 }
 
@@ -91,6 +105,7 @@ fn body(
         supports: Vec::new(),
         initial_stress: initial_stress(scene, body, own_stress, blocks),
         tractions: Vec::new(),
+        pressures: Vec::new(),
         forces: Vec::new(),
         velocity_m_s: vec3(velocity),
         spin_rad_s: vec3(spin),
@@ -122,12 +137,6 @@ fn initial_stress(
 
 fn voigt(s: &scene::Stress) -> Voigt {
     Voigt::new(s.xx, s.yy, s.zz, s.xy, s.yz, s.zx)
-}
-
-/// No table is a constant load.
-fn table(rows: &[scene::FactorRow]) -> Option<Table> {
-    let rows: Vec<_> = rows.iter().map(|row| (row.time_s, row.factor)).collect();
-    (!rows.is_empty()).then_some(Table { rows })
 }
 
 /// The nodes that a force acts on, and their shares of it.

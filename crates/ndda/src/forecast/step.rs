@@ -17,7 +17,7 @@ use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
 use serde::Serialize;
 
-use crate::build;
+use crate::build::{self, Choices};
 
 /// Distinct blocks that are tried, those of the smallest elements first.
 const MOST_SHAPES: usize = 32;
@@ -276,7 +276,7 @@ fn contact_rate2(scene: &Scene, trial: &Trial) -> Option<f64> {
         let Ok(blocks) = BlockSet::new(vec![("it".into(), mesh.clone()), ("like".into(), like)]) else {
             continue;
         };
-        let mut model = build::contact_model(&pair, &blocks).ok()??;
+        let mut model = build::contact_model(&pair, &blocks, &mut Choices::default()).ok()??;
         let zeros = vec![Vec3::zeros(); blocks.rest_position.len()];
         let (mut force, mut friction) = (zeros.clone(), zeros.clone());
         let mut stiffness = vec![0.0; zeros.len()];

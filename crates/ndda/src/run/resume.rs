@@ -9,6 +9,7 @@ use super::outputs::SavedRun;
 use super::run_log;
 use super::{Run, stem};
 use crate::Model;
+use crate::build::Choices;
 
 /// A run that goes on.
 pub struct Resumed {
@@ -44,6 +45,14 @@ impl Run {
     /// # Errors
     /// [`ResumeError`].
     pub fn resume(folder: &Path) -> Result<Resumed, ResumeError> {
+        Self::resume_with(folder, Choices::default())
+    }
+
+    /// The same for a run that was begun with parts of one's own: the same choices as then.
+    ///
+    /// # Errors
+    /// [`ResumeError`].
+    pub fn resume_with(folder: &Path, choices: Choices) -> Result<Resumed, ResumeError> {
         let folder = OutputFolder::open(folder)?;
         let mut warnings = Vec::new();
         let saved = last_checkpoint(&folder, &mut warnings)?;
@@ -52,7 +61,7 @@ impl Run {
             .map_err(|error| ResumeError::Unusable(error.to_string()))?;
         let name = saved.identity.file.display().to_string();
         let loaded = read::load_text(&name, &saved.identity.text, &[], Some(meshes))?;
-        let mut run = Self::new(Model::resuming(loaded, meshes)?);
+        let mut run = Self::new(Model::resuming_with(loaded, meshes, choices)?);
         // Killed between its last step and its summary, a run still owes the summary.
         if saved.snapshot.state.step >= run.model.steps() && folder.summary().exists() {
             return Err(ResumeError::HasEnded(folder.path().to_path_buf()));

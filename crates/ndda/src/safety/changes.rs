@@ -156,6 +156,10 @@ impl By {
             Self::Gravity { towards, slope_deg } => {
                 let tilt = (factor * slope_deg.to_radians().tan()).atan() - slope_deg.to_radians();
                 let gravity = Vec3::from(scene.gravity_m_s2);
+                // Water stays as it is: a slope that is made steeper in this way has no other water table.
+                for water in &mut scene.water {
+                    water.pressure = water.pressure.held(scene.gravity_m_s2);
+                }
                 let across = across(scene, towards).normalize() * gravity.norm();
                 scene.gravity_m_s2 = (gravity * tilt.cos() + across * tilt.sin()).into();
             }

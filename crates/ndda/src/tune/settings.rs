@@ -4,7 +4,7 @@ use ndda_io::scene::{Block, Body, Contact, ContactAt, Integrator, Potential, Sce
 use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
 
-use super::search::{Axis, Setting, Space};
+use super::space::{Axis, Setting, Space};
 use crate::build;
 use crate::certify::plan::{STIFFER, finer};
 

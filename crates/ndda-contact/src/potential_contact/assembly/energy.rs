@@ -17,7 +17,9 @@ use crate::integration::pair_moments::{has_centroid, pair_energy};
 use crate::integration::polyhedron::{Carried, Polyhedron, faces_of};
 use crate::integration::tet_frame::TetFrame;
 use crate::model::ContactInput;
-use crate::potential::contact_potential::{OverlapLaw, PieceTable, PotentialField};
+use crate::potential::contact_potential::{OverlapLaw, PotentialField};
+use crate::potential::function::FunctionField;
+use crate::potential::piece_table::PieceTable;
 
 /// Pairs below which a second thread costs more than it brings.
 const GRAIN_PAIRS: usize = 512;
@@ -89,29 +91,57 @@ impl BlockOverlaps {
 
     /// U of any potential.
     pub(crate) fn integrate(&mut self, input: &ContactInput, parts: &OverlapParts, law: OverlapLaw) {
-        let OverlapParts { candidates, integrals, frames, field, hulls } = *parts;
+        let OverlapParts { candidates, frames, field, hulls, .. } = *parts;
         match (field, law) {
-            (_, OverlapLaw::Power { .. }) => self.add_surfaces(input, candidates, integrals),
+            (_, OverlapLaw::Power { .. }) => self.add_touching(input, parts),
             (PotentialField::Element, _) => self.add_pieces(input, candidates, frames),
             (PotentialField::Pieces(table), _) => {
                 let all = 0..candidates.neighbours.len() as u32;
                 self.list(candidates, all.filter(|&k| !hulls.are_apart(k)));
-                self.add_cells(&Cells { input, table, hulls });
+                self.add_cells(&Cells { input, table, function: None, hulls });
+            }
+            (PotentialField::Function(field), _) => {
+                self.list(candidates, 0..candidates.neighbours.len() as u32);
+                self.add_cells(&Cells { input, table: &field.regions, function: Some(field), hulls });
             }
         }
     }
 
-    /// The volume of overlaps, V = ⅓ ∮ (x − o)·n dS over the pieces of both surfaces.
-    pub(crate) fn add_surfaces(
-        &mut self,
-        input: &ContactInput,
-        candidates: &Candidates,
-        integrals: &Integrals,
-    ) {
+    /// U and ∫ φ dA of the pairs of blocks that touch.
+    pub(crate) fn add_touching(&mut self, input: &ContactInput, parts: &OverlapParts) {
+        let OverlapParts { candidates, integrals, field, hulls, .. } = *parts;
+        self.list_touching(candidates, integrals);
+        match field {
+            _ if field.uniform().is_some() => {
+                let twice_phi = 2.0 * field.uniform().unwrap_or(0.0);
+                self.add_surfaces(input, integrals);
+                self.overlap_m3.iter_mut().for_each(|overlap| *overlap *= twice_phi);
+            }
+            PotentialField::Element => {
+                let own = element_pieces(input.blocks.tets.len());
+                self.add_cells(&Cells { input, table: &own, function: None, hulls });
+            }
+            PotentialField::Pieces(table) => self.add_cells(&Cells { input, table, function: None, hulls }),
+            PotentialField::Function(field) => {
+                self.add_cells(&Cells { input, table: &field.regions, function: Some(field), hulls });
+            }
+        }
+    }
+
+    /// Makes room for the pairs that touch, and adds up ∫ φ dA of both surfaces.
+    fn list_touching(&mut self, candidates: &Candidates, integrals: &Integrals) {
         let facets = integrals.touching().iter().map(|touch| &candidates.facets[touch.facet as usize]);
         self.list(candidates, facets.map(|facet| facet.neighbours));
         self.pressure_m2.clear();
         self.pressure_m2.resize(self.pairs.len(), 0.0);
+        for touch in integrals.touching() {
+            let k = self.place(touch.owner, touch.target).expect("listed above");
+            self.pressure_m2[k] += integrals.sums_of(touch).pressure;
+        }
+    }
+
+    /// The volume of overlaps, V = ⅓ ∮ (x − o)·n dS over the pieces of both surfaces.
+    fn add_surfaces(&mut self, input: &ContactInput, integrals: &Integrals) {
         self.origin.clear();
         self.origin.resize(self.pairs.len(), None);
         for touch in integrals.touching() {
@@ -120,7 +150,6 @@ impl BlockOverlaps {
             let corners = input.blocks.triangle_corners(touch.triangle, input.position);
             let origin = *self.origin[k].get_or_insert(corners[0]);
             let normal = triangle_area_vector(&corners).normalize();
-            self.pressure_m2[k] += sums.pressure;
             self.overlap_m3[k] += sums.area * (corners[0] - origin).dot(&normal) / 3.0;
         }
     }
@@ -163,10 +192,20 @@ impl BlockOverlaps {
     }
 }
 
+/// The four functions of the element potential in each tetrahedron.
+fn element_pieces(tets: usize) -> PieceTable {
+    let mut table = PieceTable::new();
+    let own = [0, 1, 2, 3].map(|b| [0, 1, 2, 3].map(|c| if b == c { 4.0 } else { 0.0 }));
+    (0..tets).for_each(|_| table.push(&own));
+    table
+}
+
 /// What blocks consist of: a block that is taken whole is one cell, others are their tetrahedra.
 struct Cells<'a> {
     input: &'a ContactInput<'a>,
     table: &'a PieceTable,
+    /// φ where it is not the smallest of the table's functions.
+    function: Option<&'a FunctionField>,
     hulls: &'a ConvexBlocks,
 }
 
@@ -184,7 +223,7 @@ impl Cells<'_> {
             let within = of_b.iter().take_while(|t| t.bounds.min.x <= c.bounds.max.x);
             let is_new = |at: usize| a != b || at > k;
             for (_, t) in within.enumerate().filter(|(at, t)| is_new(*at) && t.bounds.touches(&c.bounds)) {
-                sum += c.overlap_with(t, room);
+                sum += c.overlap_with(t, self.function, room);
             }
         }
         sum
@@ -209,7 +248,7 @@ impl Cells<'_> {
             let bounds = Aabb::around(&corners);
             let values = || self.table.of(TetId(tet as u32));
             let reaches = bounds.touches(around) && !self.hulls.keep_apart(arch, other, &corners);
-            reaches.then(|| Cell::of_tet(&corners, values(), bounds, origin))
+            reaches.then(|| Cell::of_tet((TetId(tet as u32), &corners), values(), bounds, origin))
         };
         let mut near: Vec<_> = blocks.tets_of(block).filter_map(near).collect();
         near.sort_by(|x, y| x.bounds.min.x.total_cmp(&y.bounds.min.x));
@@ -227,31 +266,36 @@ struct Cell<'a> {
 /// What a cell is, seen from an origin.
 enum Shape<'a> {
     /// A tetrahedron with these corners, in which these functions are not negative.
-    Tet([Vec3; 4], [Linear; 4]),
+    Tet(TetId, [Vec3; 4], [Linear; 4]),
     /// A block that is taken whole, and the corners of its host; φ itself is not negative in it.
     ConvexTarget(&'a Carried, [Vec3; 4]),
 }
 
 impl Cell<'_> {
-    fn of_tet(corners: &[Vec3; 4], values: &[[f64; 4]], bounds: Aabb, origin: &Vec3) -> Self {
+    fn of_tet((tet, corners): (TetId, &[Vec3; 4]), values: &[[f64; 4]], bounds: Aabb, origin: &Vec3) -> Self {
         let frame = TetFrame::new(corners);
         let phi = values.iter().map(|values| Linear::of_corners(&frame, values, origin)).collect();
-        let shape = Shape::Tet(corners.map(|x| x - origin), faces_of(&frame, origin));
+        let shape = Shape::Tet(tet, corners.map(|x| x - origin), faces_of(&frame, origin));
         Self { bounds, shape, phi }
     }
 
     /// What is not negative in it.
     fn sides(&self) -> &[Linear] {
         match &self.shape {
-            Shape::Tet(_, sides) => sides,
+            Shape::Tet(_, _, sides) => sides,
             Shape::ConvexTarget(..) => &self.phi,
         }
     }
 
     /// ∫ (φ + φ_t) dV over the overlap with t.
-    fn overlap_with(&self, t: &Self, [overlap, part]: &mut [Polyhedron; 2]) -> f64 {
+    fn overlap_with(
+        &self,
+        t: &Self,
+        function: Option<&FunctionField>,
+        [overlap, part]: &mut [Polyhedron; 2],
+    ) -> f64 {
         match &self.shape {
-            Shape::Tet(corners, _) => overlap.set_tet(corners),
+            Shape::Tet(_, corners, _) => overlap.set_tet(corners),
             Shape::ConvexTarget(body, host) => overlap.set_carried(body, host),
         }
         for side in t.sides() {
@@ -260,6 +304,23 @@ impl Cell<'_> {
                 return 0.0;
             }
         }
-        overlap.integral_of_smallest(&self.phi, part) + overlap.integral_of_smallest(&t.phi, part)
+        self.integral_over(overlap, function, part) + t.integral_over(overlap, function, part)
+    }
+
+    /// ∫ φ dV over a part of it.
+    fn integral_over(
+        &self,
+        overlap: &Polyhedron,
+        function: Option<&FunctionField>,
+        part: &mut Polyhedron,
+    ) -> f64 {
+        match (&self.shape, function) {
+            (Shape::Tet(tet, _, lambda), Some(field)) => {
+                let phi = |x: &Vec3| field.function.phi(*tet, &lambda.map(|l| l.at(x)));
+                let over = |_, part: &Polyhedron| part.integral_of(&field.rule, &phi);
+                overlap.sum_where_smallest(&self.phi, part, over)
+            }
+            _ => overlap.integral_of_smallest(&self.phi, part),
+        }
     }
 }

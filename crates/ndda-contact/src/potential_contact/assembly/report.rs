@@ -46,21 +46,22 @@ impl Reporter {
         let mut report =
             ContactReport { candidate_pairs: candidates.pairs.len(), ..ContactReport::default() };
         let place = |pair: u32| (candidates.pairs[pair as usize].triangle, candidates.tet_of(pair));
-        let mut all = HitReport::default();
+        let (mut all, mut action_reaction_error) = (HitReport::default(), 0.0f64);
         for chunk in integrals.chunks() {
             let part = &chunk.report;
             if let Some((triangle, tet)) = part.lost.map(place) {
                 return Err(ContactError::NotFinite { triangle, tet });
             }
             report.contact_pairs += chunk.hits.len();
-            report.action_reaction_error = report.action_reaction_error.max(part.action_reaction_error);
+            action_reaction_error = action_reaction_error.max(part.action_reaction_error);
             if let Some(deepest) = part.deepest {
                 all.look_at(deepest, part.max_penetration_ratio);
             }
         }
+        report.action_reaction_error = Some(action_reaction_error);
         report.max_penetration_ratio = all.max_penetration_ratio;
         report.deepest = all.deepest.map(place);
-        if *field == PotentialField::Element {
+        if field.is_element() {
             report.past_centroid = self.past_centroid(input, candidates, integrals, frames);
         }
         Ok(report)

@@ -13,14 +13,16 @@
 //! order of the depth over the size of the triangle.
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{Mat3, Vec3};
+use ndda_mesh::{Mat3, TetId, Vec3};
 use pulp::Scalar;
 
 use crate::affine::half_spaces::{HalfSpaces, Planes, SIDES};
 use crate::integration::clip::{Outline, Polygon};
+use crate::integration::quadrature::Quadrature;
 use crate::integration::region::{Pieces, Region, element_outside};
 use crate::integration::tet_frame::TetFrame;
 use crate::pair_stiffness::PairStiffness;
+use crate::potential::function::FunctionField;
 
 /// Adds the part of the pair where φ is one linear function with this gradient.
 fn add_part(
@@ -56,6 +58,38 @@ fn second_moments(part: &Polygon, area_m2: f64) -> [[f64; 3]; 3] {
     h
 }
 
+/// The same where the gradient of φ differs from point to point.
+fn add_function(
+    stiffness: &mut PairStiffness,
+    part: &Polygon,
+    shapes: &[[f64; 3]; 7],
+    (rule, area_m2): (&Quadrature, f64),
+    tensor_at: impl Fn(&[f64; 3]) -> Mat3,
+) {
+    for (psi, weight) in part.points(rule) {
+        let tensor = area_m2 * weight * tensor_at(&psi);
+        let at = shapes.map(|s| s[0] * psi[0] + s[1] * psi[1] + s[2] * psi[2]);
+        for (s_p, row) in at.iter().zip(&mut stiffness.block) {
+            for (s_q, block) in at.iter().zip(row) {
+                *block += s_p * s_q * tensor;
+            }
+        }
+    }
+}
+
+/// ∇φ at a point of a triangle in a tetrahedron [1/m].
+fn gradient_at(
+    field: &FunctionField,
+    tet: TetId,
+    frame: &TetFrame,
+    lambda: &[[f64; 3]; 4],
+    psi: &[f64; 3],
+) -> Vec3 {
+    let at = lambda.map(|l| l[0] * psi[0] + l[1] * psi[1] + l[2] * psi[2]);
+    let slope = field.function.gradient(tet, &at);
+    (0..4).map(|b| slope[b] * frame.gradient(b)).sum()
+}
+
 /// What φ is in the target of a pair.
 #[derive(Clone, Copy)]
 pub(crate) enum Target<'a> {
@@ -63,6 +97,8 @@ pub(crate) enum Target<'a> {
     Element,
     /// The smallest of linear functions with these nodal values.
     Pieces(&'a [[f64; 4]]),
+    /// A function of the tetrahedron.
+    Function(&'a FunctionField, TetId),
     /// The smallest of the functions of these sides of a block that is taken whole, on a contactor with this outline; λ are those of
     /// its host.
     Convex(&'a [Planes], &'a Outline),
@@ -95,6 +131,9 @@ pub(crate) fn add_pair(
     let outside = element_outside(&lambda);
     let pieces = match target {
         Target::Element => 4,
+        Target::Function(field, tet) if seen.set(&lambda, field.regions.of(tet), frame, &normal) => {
+            seen.len()
+        }
         Target::Pieces(values) if seen.set(&lambda, values, frame, &normal) => seen.len(),
         Target::Convex(planes, outline) if sides.look(one_lane, planes, corners, &normal, outline) => {
             sides.len()
@@ -105,16 +144,26 @@ pub(crate) fn add_pair(
     for k in 0..pieces {
         let somewhere = match target {
             Target::Element => region.set_element(&lambda, &outside, k, 0.0),
-            Target::Pieces(_) => region.set_piece(&seen, k),
+            Target::Pieces(_) | Target::Function(..) => region.set_piece(&seen, k),
             Target::Convex(..) => sides.set_region(one_lane, k, outline, &mut region),
         };
+        let part = || region.polygon(outline);
         let gradient: Vec3 = match target {
+            Target::Function(field, tet) => {
+                if somewhere {
+                    let gradient = |psi: &[f64; 3]| gradient_at(field, tet, frame, &lambda, psi);
+                    add_function(stiffness, &part(), &shapes, (&field.rule, area), |psi| {
+                        tensor(&gradient(psi))
+                    });
+                }
+                continue;
+            }
             Target::Element => 4.0 * frame.gradient(k),
             Target::Pieces(values) => (0..4).map(|b| values[k][b] * frame.gradient(b)).sum(),
             Target::Convex(planes, _) => planes[sides.which(k) / SIDES].gradient(sides.which(k) % SIDES),
         };
         if somewhere {
-            add_part(stiffness, &region.polygon(outline), &shapes, &tensor(&gradient), area);
+            add_part(stiffness, &part(), &shapes, &tensor(&gradient), area);
         }
     }
 }

@@ -131,6 +131,23 @@ impl Boxes {
 }
 
 impl BroadPhase for TreeBroadPhase {
+    fn name(&self) -> &'static str {
+        "trees of boxes"
+    }
+
+    fn heap_bytes(&self) -> usize {
+        let own =
+            self.own.iter().flatten().map(|own| size_of::<BlockBvh>() + own.heap_bytes()).sum::<usize>();
+        let boxes = &self.boxes;
+        let sides = boxes.sides.capacity() * size_of::<Side>();
+        let boxes = boxes.blocks.capacity() + boxes.triangles.capacity() + boxes.tets.capacity();
+        let of_found = |found: &Found| found.pairs.capacity() + found.fresh.capacity();
+        let found = self.found.iter().map(of_found).sum::<usize>() * size_of::<(TriangleId, TetId)>();
+        let per_block = size_of::<Option<Box<BlockBvh>>>() + size_of::<Found>() + 5 * size_of::<bool>();
+        let tree = self.tree.heap_memory_size();
+        own + boxes * size_of::<Aabb>() + sides + found + per_block * self.found.capacity() + tree
+    }
+
     fn find_pairs(
         &mut self,
         scene: &BroadScene,
@@ -277,20 +294,6 @@ impl TreeBroadPhase {
         };
         self.found.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(search);
         self.found.iter().zip(is_near).any(|(found, &near)| near && found.changed)
-    }
-
-    /// Memory on the heap [B], but for the workspace of the tree.
-    pub(crate) fn heap_bytes(&self) -> usize {
-        let own =
-            self.own.iter().flatten().map(|own| size_of::<BlockBvh>() + own.heap_bytes()).sum::<usize>();
-        let boxes = &self.boxes;
-        let sides = boxes.sides.capacity() * size_of::<Side>();
-        let boxes = boxes.blocks.capacity() + boxes.triangles.capacity() + boxes.tets.capacity();
-        let of_found = |found: &Found| found.pairs.capacity() + found.fresh.capacity();
-        let found = self.found.iter().map(of_found).sum::<usize>() * size_of::<(TriangleId, TetId)>();
-        let per_block = size_of::<Option<Box<BlockBvh>>>() + size_of::<Found>() + 5 * size_of::<bool>();
-        let tree = self.tree.heap_memory_size();
-        own + boxes * size_of::<Aabb>() + sides + found + per_block * self.found.capacity() + tree
     }
 }
 

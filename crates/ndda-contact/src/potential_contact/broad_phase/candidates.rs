@@ -40,7 +40,6 @@ pub struct Pair {
 }
 
 /// Pairs near contact, sorted by (triangle, target block, tetrahedron) so that sums have one order.
-#[derive(Default)]
 pub struct Candidates {
     /// All pairs.
     pub pairs: Vec<Pair>,
@@ -67,14 +66,47 @@ pub struct Candidates {
     sorted: Vec<TetId>,
     /// First overlap of each contactor block.
     overlap_start: Vec<u32>,
-    broad_phase: TreeBroadPhase,
+    broad_phase: Box<dyn BroadPhase>,
     listed: Listed,
 }
 
+impl Default for Candidates {
+    fn default() -> Self {
+        Self::found_by(Box::new(TreeBroadPhase::default()))
+    }
+}
+
 impl Candidates {
+    /// Pairs that this broad phase finds.
+    pub fn found_by(broad_phase: Box<dyn BroadPhase>) -> Self {
+        Self {
+            pairs: Vec::new(),
+            facets: Vec::new(),
+            neighbours: Vec::new(),
+            tets: Vec::new(),
+            order: Vec::new(),
+            overlaps: Vec::new(),
+            version: 0,
+            numbers_overlaps: false,
+            split_by_element: false,
+            found: Vec::new(),
+            slot_of: Vec::new(),
+            place_of: Vec::new(),
+            sorted: Vec::new(),
+            overlap_start: Vec::new(),
+            broad_phase,
+            listed: Listed::default(),
+        }
+    }
+
     /// The target tetrahedron of a pair.
     pub fn tet_of(&self, pair: u32) -> TetId {
         self.tets[self.pairs[pair as usize].tet as usize]
+    }
+
+    /// Name of what finds the pairs.
+    pub(crate) fn finder(&self) -> &'static str {
+        self.broad_phase.name()
     }
 
     /// Makes the next update start anew.

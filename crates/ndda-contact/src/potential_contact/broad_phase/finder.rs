@@ -30,8 +30,18 @@ impl BroadScene<'_> {
         self.around(&self.blocks.triangles[triangle]).inflated(self.margin_m[block.index()])
     }
 
+    /// Box around a boundary triangle as a contactor in another block, or around the face that it stands for there; none where another
+    /// triangle stands for that face.
+    pub fn contactor_box(&self, triangle: usize, target: BlockId) -> Option<Aabb> {
+        let id = TriangleId(triangle as u32);
+        match self.hulls.contactors(self.blocks.triangle_block[triangle], target) {
+            [] => Some(self.triangle_box(triangle)),
+            _ => self.hulls.contactor(id, target).map(|face| self.face_box(face)),
+        }
+    }
+
     /// Box around a tetrahedron, or around the block that it stands for, with the margin of its block.
-    pub(crate) fn tet_box(&self, tet: usize) -> Aabb {
+    pub fn tet_box(&self, tet: usize) -> Aabb {
         let block = self.blocks.tet_block[tet];
         match self.hulls.whole(block) {
             Some(whole) if whole.host.index() == tet => self.block_box(block),
@@ -41,7 +51,7 @@ impl BroadScene<'_> {
     }
 
     /// Box around a block, with its margin.
-    pub(crate) fn block_box(&self, block: BlockId) -> Aabb {
+    pub fn block_box(&self, block: BlockId) -> Aabb {
         Aabb::around(&self.position[self.blocks.nodes_of(block)]).inflated(self.margin_m[block.index()])
     }
 
@@ -65,7 +75,7 @@ impl BroadScene<'_> {
 
     /// Whether a triangle and a tetrahedron of one block are too near each other at rest to be contact later: they
     /// share a node, or are no further apart than they are large, or the block is taken whole.
-    pub(crate) fn are_neighbours(&self, triangle: usize, tet: usize) -> bool {
+    pub fn are_neighbours(&self, triangle: usize, tet: usize) -> bool {
         if self.hulls.whole(self.blocks.tet_block[tet]).is_some() {
             return true;
         }
@@ -159,7 +169,10 @@ pub(crate) fn shape_of(blocks: &BlockSet) -> [usize; 4] {
 ///
 /// Contract (checked by [`check_broad_phase`](crate::broad_phase::testing::check_broad_phase)): no such pair of two blocks is
 /// missed, nor one of two far parts of a concave block; each pair comes once, and neighbours in one block never.
-pub trait BroadPhase: Send {
+pub trait BroadPhase: Send + Sync {
+    /// Its name, for a person who asks.
+    fn name(&self) -> &'static str;
+
     /// Brings `pairs`, the answer to the last call, up to date after the blocks `renewed` (ascending; in the first
     /// call all of them) were given other positions or margins, and says whether they changed. Sorted.
     fn find_pairs(
@@ -168,6 +181,11 @@ pub trait BroadPhase: Send {
         renewed: &[BlockId],
         pairs: &mut Vec<(TriangleId, TetId)>,
     ) -> bool;
+
+    /// Memory on the heap [B].
+    fn heap_bytes(&self) -> usize {
+        0
+    }
 }
 
 /// The definition, in O(triangles × tetrahedra); oracle of tests and baseline of benches.
@@ -175,6 +193,10 @@ pub trait BroadPhase: Send {
 pub struct AllPairs;
 
 impl BroadPhase for AllPairs {
+    fn name(&self) -> &'static str {
+        "all pairs"
+    }
+
     fn find_pairs(
         &mut self,
         scene: &BroadScene,
@@ -185,18 +207,10 @@ impl BroadPhase for AllPairs {
         let blocks = scene.blocks;
         let tet_boxes: Vec<Aabb> = (0..blocks.tets.len()).map(|tet| scene.tet_box(tet)).collect();
         for i in 0..blocks.triangles.len() {
-            let (id, triangle_box) = (TriangleId(i as u32), scene.triangle_box(i));
             for (j, tet) in tet_boxes.iter().enumerate() {
                 let (own, target) = (blocks.triangle_block[i], blocks.tet_block[j]);
-                // One triangle stands for all of its face.
-                let triangle = match scene.hulls.contactors(own, target) {
-                    [] => triangle_box,
-                    _ => match scene.hulls.contactor(id, target) {
-                        Some(face) => scene.face_box(face),
-                        None => continue,
-                    },
-                };
-                if triangle.touches(tet) && !(own == target && scene.are_neighbours(i, j)) {
+                let Some(contactor) = scene.contactor_box(i, target) else { continue };
+                if contactor.touches(tet) && !(own == target && scene.are_neighbours(i, j)) {
                     pairs.push((TriangleId(i as u32), TetId(j as u32)));
                 }
             }

@@ -112,11 +112,11 @@ pub(crate) fn break_overloaded(
     (candidates, integrals): (&Candidates, &Integrals),
     penalty_of_facet: &[f64],
     input: &ContactInput,
-    history: &mut ContactHistory,
+    (history, scratch): (&mut ContactHistory, &mut Vec<f64>),
 ) -> f64 {
     let mut largest = 0.0f64;
     let (blocks, touching) = (input.blocks, integrals.touching());
-    let ContactHistory { bonds, facets, .. } = history;
+    let mut bonds = std::mem::take(&mut history.bonds);
     bonds.retain(|bond| {
         let Some(law) = law(joints, blocks, bond) else { return false };
         let wanted = key(blocks, joints.memory, bond);
@@ -127,16 +127,17 @@ pub(crate) fn break_overloaded(
         let pressed_n =
             place.map_or(0.0, |t| penalty_of_facet[t] * integrals.sums_of(&touching[t]).pressure.max(0.0));
         let stretch = Stretch::of(input, bond);
-        let overload = stretch.overload(law, pressed_n);
+        let overload = stretch.overload(law, pressed_n, scratch);
         if overload <= 0.0 {
             return true;
         }
         largest = largest.max(overload);
         if place.is_ok() {
-            hand_over(wanted, &stretch, law, input, facets);
+            hand_over(wanted, &stretch, law, input, history);
         }
         false
     });
+    history.bonds = bonds;
     largest
 }
 
@@ -146,7 +147,7 @@ fn hand_over(
     stretch: &Stretch,
     law: &dyn FrictionLaw,
     input: &ContactInput,
-    facets: &mut Vec<FacetMemory>,
+    history: &mut ContactHistory,
 ) {
     let basis = facet_basis(&input.blocks.triangle_corners(facet, input.position), &stretch.normal);
     let shear = stretch.shear_n(law);
@@ -155,15 +156,18 @@ fn hand_over(
         target,
         element,
         shear_n: [shear.dot(&basis[0]), shear.dot(&basis[1])],
-        plastic_slip_m: 0.0,
         area_m2: 2.0 * stretch.half_area,
         broken: !law.survives_slip(),
     };
     let key = |known: &FacetMemory| (known.facet, known.target, known.element);
-    match facets.binary_search_by_key(&(facet, target, element), key) {
-        Ok(place) => facets[place] = memory,
-        Err(place) => facets.insert(place, memory),
-    }
+    let found = history.facets.binary_search_by_key(&(facet, target, element), key);
+    let place = found.unwrap_or_else(|place| place);
+    match found {
+        Ok(place) => history.facets[place] = memory,
+        Err(place) => history.insert(place, memory),
+    };
+    let state = history.state_of_mut(place);
+    law.begin(&mut state[..law.state_len()]);
 }
 
 /// Adds the forces of bonds that hold.
@@ -249,8 +253,10 @@ impl Stretch {
 
     /// By how much the joint's strength is exceeded, over its strength without normal stress; not above zero while it holds:
     /// k_b δ ≤ σ_t and |k_s s| ≤ max(0, c + σ tan φ), to rounding.
-    fn overload(&self, law: &dyn FrictionLaw, pressed_n: f64) -> f64 {
-        let whole = ShearMemory { broken: false, ..ShearMemory::default() };
+    fn overload(&self, law: &dyn FrictionLaw, pressed_n: f64, state: &mut Vec<f64>) -> f64 {
+        state.resize(law.state_len(), 0.0);
+        law.begin(state);
+        let whole = ShearMemory { broken: false, state, ..ShearMemory::default() };
         let capacity_n = |normal_n: f64| {
             let slip = FacetSlip { normal_n, area_m2: 2.0 * self.half_area, ..FacetSlip::default() };
             law.capacity_n(&slip, &whole)

@@ -5,7 +5,7 @@ use ndda_mesh::{BlockSet, TetId, Vec3};
 
 use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::friction::bond;
-use crate::friction::law::{FacetSlip, ShearMemory, facet_basis, length};
+use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, facet_basis, length};
 use crate::friction::law_table::{FrictionLawTable, Memory};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, Hit};
 use crate::model::{ContactHistory, ContactInput, FacetMemory, SpringSlip};
@@ -28,8 +28,8 @@ pub struct FacetForce {
     pub sticks: bool,
     /// What a shear spring did in the step, where there is one.
     pub spring: Option<SpringSlip>,
-    /// Memory to keep, where there is friction and contact.
-    pub memory: Option<ShearMemory>,
+    /// Shear force in the facet's basis [N], and whether cohesion is gone: what is kept where there is friction and contact.
+    pub memory: Option<([f64; 2], bool)>,
     /// Whether there is a force at all.
     pub touches: bool,
     /// Centre of pressure [m].
@@ -60,6 +60,7 @@ impl FacetScene<'_> {
         hits: &[Hit],
         sums: &FacetMoments,
         penalty_pa: f64,
+        state: &mut [f64],
     ) -> FacetForce {
         let mut force = FacetForce { facet: touch.facet, ..FacetForce::default() };
         if sums.pressure <= 0.0 {
@@ -70,7 +71,7 @@ impl FacetScene<'_> {
         (force.push, force.touches) = (-penalty_pa * normal, true);
         force.center = sums.center(&corners);
         if let Some(joints) = self.joints {
-            self.add_friction(joints, touch, (hits, sums), (penalty_pa, &normal), &mut force);
+            self.add_friction(joints, touch, (hits, sums), (penalty_pa, &normal), (&mut force, state));
         }
         force
     }
@@ -83,19 +84,20 @@ impl FacetScene<'_> {
         touch: &ActiveFacet,
         (hits, sums): (&[Hit], &FacetMoments),
         (penalty_pa, normal): (f64, &Vec3),
-        force: &mut FacetForce,
+        (force, state): (&mut FacetForce, &mut [f64]),
     ) {
         let law = joints.law(self.input.blocks, touch.triangle, touch.target);
         let Some(law) = law.filter(|law| !law.acts_on_faces()) else { return };
         let facet = &self.candidates.facets[touch.facet as usize];
         let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
         let basis = facet_basis(&corners, normal);
-        let (mut memory, last_area_m2) = self.remembered(facet, sums);
+        let state = &mut state[..law.state_len()];
+        let (mut memory, last_area_m2) = self.remembered(facet, sums, (law, state));
         let bonds = &self.history.bonds;
         let key = (facet.triangle, facet.target, self.element_of(facet));
         if !bonds.is_empty() && bond::holds(bonds, self.input.blocks, joints.memory, key) {
             // The bond carries the shear.
-            (force.sticks, force.memory) = (true, Some(ShearMemory { broken: false, ..memory }));
+            (force.sticks, force.memory) = (true, Some((memory.shear_n, false)));
             return;
         }
         let mut slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
@@ -110,7 +112,7 @@ impl FacetScene<'_> {
             let (capacity_n, shear_n) = (law.capacity_n(&slip, &memory), length([x, y]));
             force.spring = Some(SpringSlip { capacity_n, shear_n, slip_m, slides: !force.sticks });
         }
-        force.memory = Some(memory);
+        force.memory = Some((memory.shear_n, memory.broken));
     }
 
     fn slip(
@@ -126,22 +128,33 @@ impl FacetScene<'_> {
             normal_n: penalty_pa * sums.pressure,
             area_m2: sums.area,
             mean_area_m2: sums.area,
+            dt_s: self.input.dt_s,
             slip_m: in_basis(&(self.input.dt_s * velocity)),
             stopping_n: [0.0; 2],
         }
     }
 
     /// What the facet remembers of its target, and the area of the last step; nothing when they did not touch before.
-    fn remembered(&self, facet: &Facet, sums: &FacetMoments) -> (ShearMemory, f64) {
+    fn remembered<'a>(
+        &self,
+        facet: &Facet,
+        sums: &FacetMoments,
+        (law, state): (&dyn FrictionLaw, &'a mut [f64]),
+    ) -> (ShearMemory<'a>, f64) {
         let key = |memory: &FacetMemory| (memory.facet, memory.target, memory.element);
         let wanted = (facet.triangle, facet.target, self.element_of(facet));
         match self.history.facets.binary_search_by_key(&wanted, key) {
             Ok(place) => {
-                let FacetMemory { shear_n, plastic_slip_m, broken, area_m2, .. } = self.history.facets[place];
-                (ShearMemory { shear_n, plastic_slip_m, broken }, area_m2)
+                let FacetMemory { shear_n, broken, area_m2, .. } = self.history.facets[place];
+                state.copy_from_slice(&self.history.state_of(place)[..state.len()]);
+                (ShearMemory { shear_n, broken, state }, area_m2)
             }
             // What touches from the start has done so before.
-            Err(_) => (ShearMemory::default(), if self.history.begun { 0.0 } else { sums.area }),
+            Err(_) => {
+                law.begin(state);
+                let area_m2 = if self.history.begun { 0.0 } else { sums.area };
+                (ShearMemory { state, ..ShearMemory::default() }, area_m2)
+            }
         }
     }
 

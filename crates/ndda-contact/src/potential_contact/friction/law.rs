@@ -11,6 +11,8 @@ pub struct FacetSlip {
     pub area_m2: f64,
     /// Mean of that and of the area in the last step, of which the shear spring is that the slip stretches [m²].
     pub mean_area_m2: f64,
+    /// Step Δt [s].
+    pub dt_s: f64,
     /// Slip of this step, contactor minus target, predicted from the velocities [m].
     pub slip_m: [f64; 2],
     /// Change of the shear force on the contactor that would leave no slip velocity at the end of the step [N].
@@ -18,31 +20,49 @@ pub struct FacetSlip {
 }
 
 /// What a facet remembers of its target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ShearMemory {
+#[derive(Debug, PartialEq)]
+pub struct ShearMemory<'a> {
     /// Shear force on the contactor in the facet's own basis (first edge, normal × first edge) [N].
     /// The basis turns with the facet, so the force does too.
     pub shear_n: [f64; 2],
-    /// Slip beyond the stretch of the spring, for laws that soften [m].
-    pub plastic_slip_m: f64,
     /// Whether cohesion is gone; it never comes back.
     pub broken: bool,
+    /// What the law keeps beside them: as many numbers as its [`state_len`](FrictionLaw::state_len) says, kept from step to step and in
+    /// checkpoints.
+    pub state: &'a mut [f64],
 }
 
-impl Default for ShearMemory {
+impl Default for ShearMemory<'_> {
     /// A contact that begins during a run: no shear, and nothing that could hold it together.
     fn default() -> Self {
-        Self { shear_n: [0.0; 2], plastic_slip_m: 0.0, broken: true }
+        Self { shear_n: [0.0; 2], broken: true, state: &mut [] }
     }
 }
 
 /// A law for the shear force of one contactor facet, or one face, on one target.
 ///
 /// Contract (checked by [`check_friction`](crate::friction::testing::check_friction)): the force never exceeds what the law
-/// says it can carry, opposes the slip, and is zero without contact.
+/// says it can carry, takes energy from the slip, turns with it, and is zero without contact; a law whose strength is constant holds what
+/// it held, and its force grows with a steady slip until it slides.
 pub trait FrictionLaw: Send + Sync {
     /// Its name, for a person who asks.
     fn name(&self) -> &'static str;
+
+    /// How many numbers the law keeps of each facet and target beside the shear force. A law that acts on whole faces keeps none.
+    fn state_len(&self) -> usize {
+        0
+    }
+
+    /// Those numbers where a contact begins; zeros unless a law says otherwise.
+    fn begin(&self, state: &mut [f64]) {
+        state.fill(0.0);
+    }
+
+    /// Whether the strength depends on nothing but the normal force, the area, and whether the contact is broken; not so where it changes with slip, its
+    /// rate, or time.
+    fn has_constant_strength(&self) -> bool {
+        self.state_len() == 0
+    }
 
     /// Advances the shear force by one step.
     fn advance(&self, slip: &FacetSlip, memory: &mut ShearMemory);

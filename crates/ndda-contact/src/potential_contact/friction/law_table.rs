@@ -45,14 +45,9 @@ pub struct FrictionLawTable {
 impl FrictionLawTable {
     /// One law between all blocks.
     pub fn everywhere(law: Box<dyn FrictionLaw>) -> Self {
-        Self {
-            laws: vec![law],
-            material: Vec::new(),
-            materials: 1,
-            law_of: vec![Some(0)],
-            on_surface: Vec::new(),
-            memory: Memory::Body,
-        }
+        let mut table = Self::between(Vec::new(), 1);
+        table.set(&[(0, 0)], Some(law));
+        table
     }
 
     /// No law yet, for blocks of so many materials (one index per block).
@@ -86,7 +81,9 @@ impl FrictionLawTable {
     }
 
     fn add(&mut self, law: Option<Box<dyn FrictionLaw>>) -> Option<u32> {
-        self.laws.push(law?);
+        let law = law?;
+        assert!(law.state_len() == 0 || !law.acts_on_faces(), "{}: a law of faces has no state", law.name());
+        self.laws.push(law);
         Some(self.laws.len() as u32 - 1)
     }
 
@@ -140,13 +137,23 @@ impl FrictionLawTable {
     /// Friction over normal force that bears at least, whatever touches.
     pub fn min_friction_coefficient(&self) -> f64 {
         let unit = FacetSlip { normal_n: 1.0, ..FacetSlip::default() };
-        let bears = |law: &u32| self.laws[*law as usize].capacity_n(&unit, &ShearMemory::default());
+        let bears = |law: &u32| {
+            let law = &self.laws[*law as usize];
+            let mut state = vec![0.0; law.state_len()];
+            law.begin(&mut state);
+            law.capacity_n(&unit, &ShearMemory { state: &mut state, ..ShearMemory::default() })
+        };
         let on_surfaces = self.on_surface.iter().filter_map(|rule| match rule {
             OnSurface::Own(law) => Some(law),
             OnSurface::Materials => None,
         });
         let laws = self.law_of.iter().chain(on_surfaces);
         laws.map(|law| law.as_ref().map_or(0.0, bears)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Most numbers that a law keeps of a facet.
+    pub(crate) fn state_len(&self) -> usize {
+        self.laws.iter().map(|law| law.state_len()).max().unwrap_or(0)
     }
 
     /// Whether a law makes bonds.

@@ -5,6 +5,7 @@ pub(crate) mod coulomb;
 pub(crate) mod facet;
 pub(crate) mod law;
 pub(crate) mod law_table;
+pub(crate) mod memory;
 pub(crate) mod mohr_coulomb;
 pub(crate) mod patches;
 pub(crate) mod softening_coulomb;

@@ -46,11 +46,7 @@ impl SofteningCoulomb {
 
     /// Part of the way from peak to residual.
     fn softened(&self, memory: &ShearMemory) -> f64 {
-        if memory.broken || memory.plastic_slip_m >= self.over_m {
-            1.0
-        } else {
-            memory.plastic_slip_m / self.over_m
-        }
+        if memory.broken || memory.state[0] >= self.over_m { 1.0 } else { memory.state[0] / self.over_m }
     }
 
     /// Plastic slip in a step whose spring would bear `trial_n`: |f| − k Δp = τ(p + Δp) S, where k = ½ k_s S̄.
@@ -75,11 +71,16 @@ impl FrictionLaw for SofteningCoulomb {
         "Coulomb with a shear spring that softens"
     }
 
+    /// Plastic slip [m].
+    fn state_len(&self) -> usize {
+        1
+    }
+
     fn advance(&self, slip: &FacetSlip, memory: &mut ShearMemory) {
         let spring_n_m = 0.5 * self.shear_penalty_pa_m * slip.mean_area_m2;
         let trial = [0, 1].map(|i| memory.shear_n[i] - spring_n_m * slip.slip_m[i]);
         if length(trial) > self.capacity_n(slip, memory) && spring_n_m > 0.0 {
-            memory.plastic_slip_m += self.plastic_slip_m(length(trial), slip, memory, spring_n_m);
+            memory.state[0] += self.plastic_slip_m(length(trial), slip, memory, spring_n_m);
         }
         memory.shear_n = capped(trial, self.capacity_n(slip, memory)).0;
     }
@@ -112,7 +113,10 @@ mod tests {
     use super::*;
     use crate::friction::testing::check_friction;
 
-    const INTACT: ShearMemory = ShearMemory { shear_n: [0.0; 2], plastic_slip_m: 0.0, broken: false };
+    fn intact(state: &mut [f64]) -> ShearMemory<'_> {
+        state.fill(0.0);
+        ShearMemory { shear_n: [0.0; 2], broken: false, state }
+    }
 
     fn pressed(slip_m: f64) -> FacetSlip {
         FacetSlip {
@@ -133,7 +137,8 @@ mod tests {
     #[test]
     fn softening_takes_half_the_fall_times_the_slip() {
         let law = SofteningCoulomb::new(2e12, (40.0, 0.0), (25.0, 0.0), 5e-3);
-        let (mut memory, mut work_j, step_m) = (INTACT, 0.0, 1e-7);
+        let (mut state, mut work_j, step_m) = ([0.0], 0.0, 1e-7);
+        let mut memory = intact(&mut state);
         for _ in 0..100_000 {
             law.advance(&pressed(step_m), &mut memory);
             work_j -= memory.shear_n[0] * step_m;
@@ -143,7 +148,7 @@ mod tests {
         assert!((expected_j - 931.98).abs() < 0.01);
         // The spring stretches by 0.8 µm before.
         assert!(((work_j - residual_j) / expected_j - 1.0).abs() < 2e-3, "{}", work_j - residual_j);
-        assert!((memory.plastic_slip_m - 1e5 * step_m).abs() < 1e-6);
+        assert!((memory.state[0] - 1e5 * step_m).abs() < 1e-6);
     }
 
     /// Whatever the step, strength is that of the plastic slip.
@@ -151,27 +156,29 @@ mod tests {
     fn one_long_step_ends_where_many_short_ones_do() {
         let law = SofteningCoulomb::new(1e10, (40.0, 2e5), (25.0, 0.0), 5e-3);
         let ends = [1, 10, 1000].map(|steps| {
-            let mut memory = INTACT;
+            let mut state = [0.0];
+            let mut memory = intact(&mut state);
             for _ in 0..steps {
                 law.advance(&pressed(2e-3 / f64::from(steps)), &mut memory);
             }
-            memory
+            [memory.shear_n[0], memory.state[0]]
         });
         for end in ends {
-            assert!((end.shear_n[0] / ends[2].shear_n[0] - 1.0).abs() < 1e-12, "{ends:?}");
-            assert!((end.plastic_slip_m / ends[2].plastic_slip_m - 1.0).abs() < 1e-12, "{ends:?}");
+            assert!((end[0] / ends[2][0] - 1.0).abs() < 1e-12, "{ends:?}");
+            assert!((end[1] / ends[2][1] - 1.0).abs() < 1e-12, "{ends:?}");
         }
     }
 
     #[test]
     fn a_spring_softer_than_the_joint_snaps_and_a_broken_contact_is_residual() {
         let law = SofteningCoulomb::new(1e6, (40.0, 0.0), (25.0, 0.0), 1e-6);
-        let mut memory = INTACT;
+        let mut state = [0.0];
+        let mut memory = intact(&mut state);
         law.advance(&pressed(2.0), &mut memory);
         let residual_n = 1e6 * 25f64.to_radians().tan();
         assert!((memory.shear_n[0] + residual_n).abs() < 1e-6, "{memory:?}");
         let stiff = SofteningCoulomb::new(1e12, (40.0, 1e5), (25.0, 0.0), 1.0);
-        let mut memory = ShearMemory { broken: true, ..INTACT };
+        let mut memory = ShearMemory { broken: true, ..intact(&mut state) };
         stiff.advance(&pressed(1e-3), &mut memory);
         assert!((memory.shear_n[0] + residual_n).abs() < 1e-6, "{memory:?}");
     }

@@ -5,6 +5,7 @@
 //! the same for many pairs at a time and hands the few that it doubts to this one.
 
 use crate::integration::capacity::{MOST_CORNERS, MOST_CUTS};
+use crate::integration::quadrature::Quadrature;
 
 /// Each cut adds at most one corner.
 const MOST: usize = MOST_CORNERS + MOST_CUTS;
@@ -123,6 +124,16 @@ impl Polygon {
             self.corners[self.len] = corner;
             self.len += 1;
         }
+    }
+
+    /// Points of a rule over the polygon as (ψ₀, ψ₁, ψ₂), with weights that add up to its area, over that of the triangle.
+    pub(crate) fn points(&self, rule: &Quadrature) -> impl Iterator<Item = ([f64; 3], f64)> {
+        self.fan().flat_map(|([a, b, c], twice)| {
+            rule.triangle().iter().map(move |(l, weight)| {
+                let [x, y] = [0, 1].map(|k| l[0] * a[k] + l[1] * b[k] + l[2] * c[k]);
+                ([1.0 - x - y, x, y], twice * weight)
+            })
+        })
     }
 
     /// Triangles about the first corner that fill the polygon, each with twice its signed area.

@@ -12,6 +12,7 @@ use crate::affine::half_spaces::{HalfSpaces, Planes};
 use crate::broad_phase::candidates::{Facet, Pair};
 use crate::broad_phase::finder::FEW_NODES;
 use crate::integration::clip::Outline;
+use crate::integration::function_moments::{Placed, add_function};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, Hit};
 use crate::integration::pair_moments::{PairMoments, PsiRange};
 use crate::integration::pair_report::{HitReport, list_past_centroid};
@@ -119,7 +120,7 @@ impl Chunk {
         let Scratch { batches, seen, .. } = scratch;
         batches.finish(arch, |part| seen[part.pair as usize].moments.add_region(part));
         self.take(scene, seen);
-        if *scene.field == PotentialField::Element {
+        if scene.field.is_element() {
             list_past_centroid(&self.hits, scene, &mut self.past);
         }
     }
@@ -175,7 +176,7 @@ impl Scratch {
         {
             return;
         }
-        let pieces = matches!(scene.field, PotentialField::Pieces(_));
+        let pieces = !scene.field.is_element();
         for index in facet.pairs.clone() {
             let pair: &Pair = &scene.candidates.pairs[index];
             let frame = &scene.frames[pair.tet as usize];
@@ -238,6 +239,12 @@ impl Scratch {
                     self.batches.push_pieces(arch, hit, area, &self.pieces);
                 }
             }
+            PotentialField::Function(field) => {
+                if self.pieces.set(lambda, field.regions.of(tet), frame, normal) {
+                    let moments = &mut self.seen[hit as usize].moments;
+                    add_function(moments, field, &self.pieces, &mut self.region, placed);
+                }
+            }
         }
     }
 }
@@ -283,16 +290,6 @@ impl WithSimd for PushSides<'_> {
             }
         }
     }
-}
-
-/// A triangle in a tetrahedron.
-#[derive(Clone, Copy)]
-struct Placed<'a> {
-    tet: TetId,
-    frame: &'a TetFrame,
-    lambda: &'a [[f64; 3]; 4],
-    normal: &'a Vec3,
-    area: f64,
 }
 
 /// Whether the triangle lies exactly in a face's plane and the tetrahedron owns it: other potentials than the

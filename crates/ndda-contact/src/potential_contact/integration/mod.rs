@@ -3,6 +3,7 @@
 pub(crate) mod capacity;
 pub(crate) mod clip;
 pub(crate) mod double_double;
+pub(crate) mod function_moments;
 pub(crate) mod integrals;
 pub(crate) mod kernel;
 pub(crate) mod linear;
@@ -10,6 +11,8 @@ pub(crate) mod overlap_pair;
 pub(crate) mod pair_moments;
 pub(crate) mod pair_report;
 pub(crate) mod polyhedron;
+mod polyhedron_integrals;
+pub(crate) mod quadrature;
 pub(crate) mod queue;
 pub(crate) mod region;
 pub(crate) mod scene;

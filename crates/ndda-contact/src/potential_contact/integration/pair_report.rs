@@ -63,6 +63,7 @@ fn penetration_ratio(scene: &Scene, tet: TetId, depth: f64) -> f64 {
     let most = match (scene.hulls.whole(scene.blocks.tet_block[tet.index()]), scene.field) {
         (Some(whole), _) => whole.most_phi,
         (None, PotentialField::Pieces(table)) => table.most_in(tet),
+        (None, PotentialField::Function(field)) => field.function.most_in(tet),
         (None, PotentialField::Element) => 4.0,
     };
     if most > 0.0 { depth / most } else { 0.0 }

@@ -8,12 +8,11 @@ use crate::integration::linear::Linear;
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::Aabb;
 
-use crate::integration::capacity::MOST_CUTS;
 use crate::integration::tet_frame::TetFrame;
 
 /// Three faces meet in each corner, so F faces have 2 F − 4 corners: 18 for two tetrahedra and three rivals of a
 /// potential, 148 for two blocks of [`MOST_CUTS`](crate::integration::capacity::MOST_CUTS) faces in a box, and their rivals.
-const MOST_CORNERS: usize = 152;
+pub(super) const MOST_CORNERS: usize = 152;
 
 /// A convex polyhedron that moves along with a tetrahedron: its corners by their λ, and its graph.
 #[derive(Clone, Debug, Default)]
@@ -37,11 +36,11 @@ impl Carried {
 /// A convex polyhedron; lives on the stack, and is large: room for one is used again and again.
 #[derive(Clone, Debug)]
 pub struct Polyhedron {
-    position: [Vec3; MOST_CORNERS],
-    neighbours: [[u8; 3]; MOST_CORNERS],
-    len: usize,
+    pub(super) position: [Vec3; MOST_CORNERS],
+    pub(super) neighbours: [[u8; 3]; MOST_CORNERS],
+    pub(super) len: usize,
     /// Whether a cut would have needed more corners than there is room for; integrals are then not numbers.
-    outgrown: bool,
+    pub(super) outgrown: bool,
     /// Room for what a cut finds at the corners.
     sides: [f64; MOST_CORNERS],
     new_place: [u8; MOST_CORNERS],
@@ -72,7 +71,7 @@ impl Polyhedron {
     }
 
     /// Becomes what another is.
-    fn set(&mut self, other: &Self) {
+    pub(super) fn set(&mut self, other: &Self) {
         (self.len, self.outgrown) = (other.len, other.outgrown);
         self.position[..self.len].copy_from_slice(&other.position[..other.len]);
         self.neighbours[..self.len].copy_from_slice(&other.neighbours[..other.len]);
@@ -134,7 +133,7 @@ impl Polyhedron {
     }
 
     /// The least and the largest value of a function; at corners, for it is linear.
-    fn range_of(&self, function: &Linear) -> (f64, f64) {
+    pub(super) fn range_of(&self, function: &Linear) -> (f64, f64) {
         let wider = |(least, most): (f64, f64), value: f64| (least.min(value), most.max(value));
         let values = self.position[..self.len].iter().map(|x| function.at(x));
         values.fold((f64::INFINITY, f64::NEG_INFINITY), wider)
@@ -183,7 +182,7 @@ impl Polyhedron {
     }
 
     /// The neighbour of `at` that follows the one it was reached from, around the face.
-    fn turn(&self, at: usize, from: usize) -> usize {
+    pub(super) fn turn(&self, at: usize, from: usize) -> usize {
         let around = &self.neighbours[at];
         let k = around.iter().position(|&n| n as usize == from).expect("neighbours know each other");
         around[(k + 1) % 3] as usize
@@ -204,88 +203,6 @@ impl Polyhedron {
         for around in &mut self.neighbours[..kept] {
             *around = around.map(|n| new_place[n as usize]);
         }
-    }
-
-    /// Volume [m³] and ∫ x dV [m⁴], from a fan of triangles over each face and a corner of the polyhedron.
-    ///
-    /// Not numbers if the polyhedron outgrew its room.
-    pub fn volume_and_moment(&self) -> (f64, Vec3) {
-        if self.outgrown {
-            return (f64::NAN, Vec3::repeat(f64::NAN));
-        }
-        if self.len == 0 {
-            return (0.0, Vec3::zeros());
-        }
-        let base = self.position[0];
-        let (mut six_volumes, mut moment) = (0.0, Vec3::zeros());
-        self.for_each_triangle(|corners| {
-            let [a, b, c] = corners.map(|x| x - base);
-            let six = a.dot(&b.cross(&c));
-            six_volumes += six;
-            moment += six * (a + b + c);
-        });
-        let volume = six_volumes / 6.0;
-        (volume, moment / 24.0 + volume * base)
-    }
-
-    fn for_each_triangle(&self, mut triangle: impl FnMut([Vec3; 3])) {
-        // A bit for each of the three ways from a corner.
-        let mut seen = [0u8; MOST_CORNERS];
-        for start in 0..self.len {
-            for first in 0..3 {
-                if seen[start] >> first & 1 == 1 {
-                    continue;
-                }
-                seen[start] |= 1 << first;
-                let (mut here, mut next) = (start, self.neighbours[start][first] as usize);
-                loop {
-                    let turned = self.turn(next, here);
-                    let k = self.neighbours[next].iter().position(|&n| n as usize == turned).unwrap_or(0);
-                    (here, next) = (next, turned);
-                    seen[here] |= 1 << k;
-                    if next == start {
-                        break;
-                    }
-                    triangle([self.position[start], self.position[next], self.position[here]]);
-                }
-            }
-        }
-    }
-
-    /// ∫ f dV [m³ of f's unit].
-    pub(crate) fn integral(&self, f: &Linear) -> f64 {
-        let (volume, moment) = self.volume_and_moment();
-        f.value * volume + f.gradient.dot(&moment)
-    }
-
-    /// ∫ min f dV over linear functions: each over the part where it is the smallest, for which `part` is room.
-    pub(crate) fn integral_of_smallest(&self, functions: &[Linear], part: &mut Self) -> f64 {
-        // What is everywhere above another's largest value is nowhere the smallest.
-        let mut least = [0.0; MOST_CUTS];
-        let mut enough = f64::INFINITY;
-        for (least, f) in least.iter_mut().zip(functions) {
-            let range = self.range_of(f);
-            *least = range.0;
-            enough = enough.min(range.1);
-        }
-        // One that is not a number has no range, and counts.
-        let counts = |k: &usize| least[*k] <= enough || !least[*k].is_finite();
-        let over_part = |k: usize| {
-            let f = &functions[k];
-            let mut rivals = (0..functions.len()).filter(|j| *j != k).filter(counts).peekable();
-            if rivals.peek().is_none() {
-                return self.integral(f);
-            }
-            part.set(self);
-            for rival in rivals {
-                if part.is_empty() {
-                    return 0.0;
-                }
-                part.cut(&functions[rival].minus(f));
-            }
-            part.integral(f)
-        };
-        (0..functions.len()).filter(counts).map(over_part).sum()
     }
 }
 

@@ -9,7 +9,7 @@
 use crate::integration::capacity::MOST_CUTS;
 use crate::integration::clip::{Form, Outline, Polygon};
 use crate::integration::tet_frame::TetFrame;
-use crate::potential::contact_potential::MOST_PIECES;
+use crate::potential::piece_table::MOST_PIECES;
 use ndda_mesh::Vec3;
 
 /// A field by its values at the triangle's corners, that is positive in the region.

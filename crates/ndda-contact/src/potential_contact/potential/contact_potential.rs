@@ -2,17 +2,12 @@
 //!
 //! Blocks A and B that overlap have U = ∫_{A∩B} (φ_A + φ_B) dV and the energy W = k_n w(U). A potential is continuous,
 //! and zero on the surface of its block unless it says so by a law w of its own. Inside a tetrahedron it is the
-//! smallest of a few linear functions: then every integral over a flat triangle is exact.
-
-use std::ops::Range;
+//! smallest of a few linear functions, and every integral over a flat triangle is exact; or any other function, integrated by quadrature.
 
 use ndda_mesh::{BlockSet, TetId};
 
-use crate::integration::capacity::MOST_CUTS;
-
-/// Most linear functions of a tetrahedron: each is cut by four faces and by its rivals.
-pub(crate) const MOST_PIECES: usize = 13;
-const _: () = assert!(MOST_PIECES + 3 <= MOST_CUTS);
+use crate::potential::function::FunctionField;
+use crate::potential::piece_table::{MOST_PIECES, PieceTable};
 
 /// A contact potential.
 ///
@@ -89,48 +84,28 @@ impl OverlapLaw {
 }
 
 /// φ of all blocks of a scene.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum PotentialField {
     /// 4 min λᵢ in every tetrahedron.
     Element,
     /// The smallest of linear functions.
     Pieces(PieceTable),
+    /// Any function, by quadrature.
+    Function(FunctionField),
 }
 
-/// For each tetrahedron the nodal values of linear functions; φ is the smallest of them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct PieceTable {
-    starts: Vec<u32>,
-    values: Vec<[f64; 4]>,
-    most: Vec<f64>,
-}
-
-impl PieceTable {
-    /// A table without tetrahedra.
-    pub fn new() -> Self {
-        Self { starts: vec![0], ..Self::default() }
+impl PotentialField {
+    /// Whether it is the paper's.
+    pub(crate) fn is_element(&self) -> bool {
+        matches!(self, Self::Element)
     }
 
-    /// Adds the next tetrahedron, with at least one and at most 13 functions.
-    pub fn push(&mut self, pieces: &[[f64; 4]]) {
-        assert!((1..=MOST_PIECES).contains(&pieces.len()), "{} pieces in a tetrahedron", pieces.len());
-        self.values.extend_from_slice(pieces);
-        // φ is the smallest of them, so it is nowhere more than the largest value of any.
-        let largest = |piece: &[f64; 4]| piece.iter().copied().fold(0.0, f64::max);
-        self.most.push(pieces.iter().map(largest).fold(f64::INFINITY, f64::min));
-        self.starts.push(self.values.len() as u32);
-    }
-
-    /// What φ does not exceed in the tetrahedron: the largest value of a function at a corner, least over the functions.
-    #[inline]
-    pub fn most_in(&self, tet: TetId) -> f64 {
-        self.most[tet.index()]
-    }
-
-    /// The functions of a tetrahedron.
-    pub fn of(&self, tet: TetId) -> &[[f64; 4]] {
-        let range: Range<usize> = self.starts[tet.index()] as usize..self.starts[tet.index() + 1] as usize;
-        &self.values[range]
+    /// φ where it is the same everywhere.
+    pub(crate) fn uniform(&self) -> Option<f64> {
+        match self {
+            Self::Pieces(table) => table.uniform(),
+            _ => None,
+        }
     }
 }
 

@@ -4,9 +4,8 @@ use ndda_mesh::geometry::distance_to_triangle;
 use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, Vec3};
 
 use crate::affine::surface::{BlockFaces, Plane};
-use crate::potential::contact_potential::{
-    ContactPotential, MOST_PIECES, PieceTable, PotentialError, PotentialField,
-};
+use crate::potential::contact_potential::{ContactPotential, PotentialError, PotentialField};
+use crate::potential::piece_table::{MOST_PIECES, PieceTable};
 
 /// Depths closer than this fraction of the block's largest are the same: by rounding, they differ with how it is turned.
 const SAME_DEPTH: f64 = 1e-11;

@@ -2,9 +2,8 @@
 
 use ndda_mesh::BlockSet;
 
-use crate::potential::contact_potential::{
-    ContactPotential, OverlapLaw, PieceTable, PotentialError, PotentialField,
-};
+use crate::potential::contact_potential::{ContactPotential, OverlapLaw, PotentialError, PotentialField};
+use crate::potential::piece_table::PieceTable;
 
 /// W = k_n V₀/m (V/V₀)^m, V the volume that two blocks share (Feng 2021, contact volume based model).
 ///

@@ -9,7 +9,7 @@ use crate::error::BlockError;
 use crate::integrators::time_integrator::StepWeights;
 
 impl ElasticBody {
-    /// Elastic energy at `position`, ½ wᵀ K w + wᵀ ∫Bᵀσ₀ [J].
+    /// Elastic energy at `position`, ½ wᵀ K w + wᵀ ∫Bᵀσ₀, and what a nonlinear material adds [J].
     ///
     /// # Errors
     /// [`FrameError`] when the block has no rotation any more.
@@ -22,7 +22,9 @@ impl ElasticBody {
         shape.operator.stiffness_times(&self.displacement, &mut self.elastic);
         let initial = |i: usize| self.initial_force.as_ref().map_or(Vec3::zeros(), |f| f[i]);
         let terms = self.displacement.iter().zip(&self.elastic).enumerate();
-        Ok(terms.map(|(i, (w, kw))| w.dot(&(0.5 * kw + initial(i)))).sum())
+        let energy_j: f64 = terms.map(|(i, (w, kw))| w.dot(&(0.5 * kw + initial(i)))).sum();
+        let excess = self.nonlinear.as_ref().map(|n| n.excess_energy_j(shape, &self.displacement));
+        Ok(energy_j + excess.unwrap_or(0.0))
     }
 
     /// The part of the velocity that elasticity turns over in a step, as the integrator has it, c Δt² K̃⁻¹ K v, mean square over

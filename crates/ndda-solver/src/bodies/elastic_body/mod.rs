@@ -2,6 +2,7 @@
 
 mod energy;
 mod momentum;
+mod nonlinear;
 mod reactions;
 
 use ndda_fem::Voigt;
@@ -17,6 +18,7 @@ use crate::bodies::report::BlockReport;
 use crate::bodies::stiffness_damping::StiffnessDamping;
 use crate::error::BlockError;
 use crate::linear::linear_solver::{Scratch, SolveError};
+use nonlinear::Nonlinear;
 
 /// Memory of one block that deforms: sized once, written every step.
 pub(crate) struct ElasticBody {
@@ -44,6 +46,8 @@ pub(crate) struct ElasticBody {
     pub(crate) scratch: Scratch,
     /// Memory for damping in proportion to stiffness.
     pub(crate) damping: Option<Box<StiffnessDamping>>,
+    /// Memory for a material whose stress is not linear in the strain.
+    nonlinear: Option<Box<Nonlinear>>,
     report: BlockReport,
 }
 
@@ -69,6 +73,7 @@ impl ElasticBody {
             unknowns: vec![0.0; shape.unknowns.len()],
             scratch: shape.factor.as_ref().map_or_else(Scratch::default, |f| f.new_scratch()),
             damping: StiffnessDamping::new(shape),
+            nonlinear: Nonlinear::new(shape),
             report: BlockReport::default(),
         }
     }
@@ -107,6 +112,7 @@ impl ElasticBody {
         mut nodes: NodeSlices,
     ) -> Result<BlockReport, BlockError> {
         self.report = BlockReport::default();
+        self.converge(shape, context.weights.stiffness)?;
         self.place_correction(shape, context, &nodes.view());
         let rotation = self.rotation;
         if let Some(damping) = &mut self.damping {
@@ -137,6 +143,7 @@ impl ElasticBody {
     ) -> Result<(), BlockError> {
         self.prepare(shape, context, nodes)?;
         self.solve(shape)?;
+        self.converge(shape, context.weights.stiffness)?;
         self.place_correction(shape, context, nodes);
         self.turn_back(&self.rotation.clone());
         Ok(())
@@ -198,6 +205,9 @@ impl ElasticBody {
         }
         self.gather_residual(shape, context);
         self.prescribe(shape, context, &rotation, nodes.position);
+        if let Some(nonlinear) = &mut self.nonlinear {
+            nonlinear.begin(&self.correction);
+        }
         shape.unknowns.gather(&self.correction, &mut self.unknowns);
         Ok(())
     }
@@ -266,11 +276,15 @@ impl ElasticBody {
         }
     }
 
-    /// elastic ← K w + ∫Bᵀσ₀ for w in `displacement`.
+    /// elastic ← K w + ∫Bᵀσ₀ for w in `displacement`, and what a nonlinear material adds.
     fn apply_stiffness(&mut self, shape: &Prototype) {
         shape.operator.stiffness_times(&self.displacement, &mut self.elastic);
         if let Some(initial) = &self.initial_force {
             self.elastic.iter_mut().zip(initial).for_each(|(e, f)| *e += f);
+        }
+        if let Some(nonlinear) = &mut self.nonlinear {
+            nonlinear.find_excess(shape, &self.displacement);
+            self.elastic.iter_mut().zip(&nonlinear.excess).for_each(|(e, f)| *e += f);
         }
     }
 

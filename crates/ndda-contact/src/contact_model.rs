@@ -1,0 +1,71 @@
+//! The seam between solver and contact.
+
+use ndda_mesh::BlockId;
+
+use crate::audit::ContactAudit;
+use crate::model::{ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport};
+use crate::pair_stiffness::PairStiffness;
+
+/// A law of contact between blocks. `&mut self` is scratch only; memory that matters is in [`ContactHistory`].
+///
+/// Forces and their energy are required. What the solver and reports may ask beyond that is in [`ContactAudit`], whose empty implementation
+/// tells nothing.
+pub trait ContactModel: ContactAudit + Send + Sync {
+    /// Adds the contact forces at `input.position` to `output` and advances `history` by one step.
+    ///
+    /// Forces sum to zero and exert no net torque.
+    ///
+    /// # Errors
+    /// [`ContactError`] when a force cannot be computed; `output` is then not to be used.
+    fn add_forces(
+        &mut self,
+        input: &ContactInput,
+        history: &mut ContactHistory,
+        output: &mut ContactOutput,
+    ) -> Result<ContactReport, ContactError>;
+
+    /// Potential energy of contact at `input.position` [J]; what shear springs and bonds store is work of friction.
+    ///
+    /// # Errors
+    /// As [`add_forces`](Self::add_forces).
+    fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError>;
+
+    /// ∂f/∂x where forces were added last, for steps that solve for contact: symmetric blocks of seven nodes, some of
+    /// which may be in several. It need not be exact; the closer it is, the fewer iterations a step takes.
+    ///
+    /// # Errors
+    /// [`ContactError::NoTangent`] unless a model has one, or as [`add_forces`](Self::add_forces).
+    fn add_stiffness(
+        &mut self,
+        _input: &ContactInput,
+        _history: &ContactHistory,
+        _stiffness: &mut Vec<PairStiffness>,
+    ) -> Result<(), ContactError> {
+        Err(ContactError::NoTangent)
+    }
+
+    /// Whether forces on a block go to a few of its nodes wherever they press, because it moves by an affine map.
+    fn uses_host_forces(&self, _block: BlockId) -> bool {
+        false
+    }
+
+    /// Whether the last [`add_forces`](Self::add_forces) may have added anything; `false` lets the solver leave out its bookkeeping.
+    fn has_acted(&self) -> bool {
+        true
+    }
+
+    /// Whether [`ContactInput::bodies`] is read; `false` lets the solver leave them out.
+    fn needs_bodies(&self) -> bool {
+        false
+    }
+
+    /// Whether `friction_force` is ever written; `false` lets the solver leave out its bookkeeping.
+    fn has_friction(&self) -> bool {
+        false
+    }
+
+    /// Friction over normal force that bears at least between any two blocks.
+    fn min_friction_coefficient(&self) -> f64 {
+        0.0
+    }
+}

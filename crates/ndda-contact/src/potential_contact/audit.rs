@@ -1,0 +1,96 @@
+//! What the contact potential tells of its last evaluation.
+
+use ndda_mesh::{BlockId, BlockSet, Vec3};
+
+use crate::affine::closing::closing_m_s;
+use crate::affine::surface::BlockFaces;
+use crate::audit::ContactAudit;
+use crate::contact_model::ContactModel;
+use crate::friction::bond;
+use crate::friction::facet::relative_motion;
+use crate::model::{ContactHistory, ContactInput, FacetContact, SpringSlip};
+use crate::plan::Part;
+use crate::potential::contact_potential::PotentialField;
+
+use super::evaluation::for_each_facet;
+use super::{PotentialContact, plan};
+
+impl ContactAudit for PotentialContact {
+    fn each_work(&mut self, blocks: &BlockSet, moved: &[Vec3], add: &mut dyn FnMut(BlockId, BlockId, f64)) {
+        let (integrals, forces) = (&self.integrals, &self.forces);
+        let touching = integrals.touching();
+        let work_of = |(t, work_j): (usize, &mut f64)| {
+            let touch = &touching[t];
+            let found = (integrals.hits_of(touch), integrals.sums_of(touch));
+            *work_j = forces[t].push.dot(&relative_motion(touch, found, (blocks, moved)));
+        };
+        self.work_of_facet.resize(touching.len(), 0.0);
+        for_each_facet(&mut self.work_of_facet, work_of);
+        for (touch, &work_j) in touching.iter().zip(&self.work_of_facet) {
+            add(touch.owner, touch.target, work_j);
+        }
+    }
+
+    fn each_coulomb_gap(
+        &mut self,
+        blocks: &BlockSet,
+        moved: &[Vec3],
+        add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+        if self.needs_bodies() {
+            self.faces.each_coulomb_gap((blocks, &self.integrals, &self.forces), moved, add);
+        }
+    }
+
+    fn each_spring_slip(&self, add: &mut dyn FnMut(BlockId, BlockId, &SpringSlip)) {
+        if self.joints.is_none() {
+            return;
+        }
+        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
+            if let Some(spring) = &force.spring {
+                add(touch.owner, touch.target, spring);
+            }
+        }
+    }
+
+    fn each_energy(&self, add: &mut dyn FnMut(BlockId, BlockId, f64)) {
+        let energies = self.overlaps.each_energy_m3(self.potential.law());
+        energies.for_each(|(a, b, energy_m3)| add(a, b, self.penalty_pa * energy_m3));
+    }
+
+    /// A convex block is as wide as it reaches below the nearest of its faces, where φ does not depend on tetrahedra.
+    fn width_m(&self, blocks: &BlockSet, block: BlockId) -> Option<f64> {
+        let Some((_, PotentialField::Pieces(_))) = &self.field else { return None };
+        BlockFaces::new(blocks, block).width_m(blocks, block)
+    }
+
+    fn closing_m_s(&self, input: &ContactInput, pair: (BlockId, BlockId)) -> Option<f64> {
+        closing_m_s(&self.hulls, input, pair)
+    }
+
+    fn plan(&self) -> Vec<Part> {
+        plan::parts(self)
+    }
+
+    fn add_facets(&self, input: &ContactInput, history: &ContactHistory, facets: &mut Vec<FacetContact>) {
+        for (touch, force) in self.integrals.touching().iter().zip(&self.forces) {
+            if !force.touches {
+                continue;
+            }
+            let sums = self.integrals.sums_of(touch);
+            facets.push(FacetContact {
+                facet: touch.triangle,
+                target: touch.target,
+                area_m2: sums.area,
+                normal: -force.push.normalize(),
+                center: force.center,
+                push_n: sums.pressure * force.push,
+                friction_n: sums.pressure * force.shear,
+                sticks: force.sticks,
+            });
+        }
+        if let Some(joints) = &self.joints {
+            bond::add_facets(joints, input, &history.bonds, facets);
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! What friction laws keep of each facet, beside what every law remembers.
+
+use crate::model::{ContactError, ContactHistory, FacetMemory};
+
+impl ContactHistory {
+    /// Takes up a number of values per facet when contact begins.
+    ///
+    /// # Errors
+    /// [`ContactError::OtherLaws`] when facets were remembered by laws that keep another number.
+    pub(crate) fn expect_state(&mut self, len: usize) -> Result<(), ContactError> {
+        if self.law_state_len as usize == len {
+            return Ok(());
+        }
+        if !self.facets.is_empty() {
+            return Err(ContactError::OtherLaws { kept: self.law_state_len as usize, expected: len });
+        }
+        self.law_state_len = len as u32;
+        self.law_state.clear();
+        Ok(())
+    }
+
+    /// What laws keep of a facet.
+    pub(crate) fn state_of(&self, place: usize) -> &[f64] {
+        let len = self.law_state_len as usize;
+        &self.law_state[place * len..(place + 1) * len]
+    }
+
+    /// The same, to change it.
+    pub(crate) fn state_of_mut(&mut self, place: usize) -> &mut [f64] {
+        let len = self.law_state_len as usize;
+        &mut self.law_state[place * len..(place + 1) * len]
+    }
+
+    /// Adds a facet.
+    pub(crate) fn insert(&mut self, place: usize, memory: FacetMemory) {
+        let len = self.law_state_len as usize;
+        self.facets.insert(place, memory);
+        self.law_state.splice(place * len..place * len, std::iter::repeat_n(0.0, len));
+    }
+}

@@ -1,0 +1,60 @@
+//! Checks of tractions and forces.
+
+use super::Check;
+use crate::scene::FactorRow;
+use crate::scene::Reference;
+
+impl Check<'_> {
+    pub(super) fn loads(&mut self) {
+        let scene = self.scene;
+        if let Some(in_situ) = &scene.in_situ {
+            self.numbers("in_situ.at_m", &in_situ.at_m);
+            for (i, gradient) in in_situ.gradients.iter().enumerate() {
+                self.direction(format!("in_situ.gradients[{i}].along"), &gradient.along);
+            }
+        }
+        if !(scene.gravity_ramp_s >= 0.0 && scene.gravity_ramp_s.is_finite()) {
+            let message = format!("{} s: must not be negative", scene.gravity_ramp_s);
+            self.error("gravity_ramp_s", message, "0 applies gravity suddenly");
+        }
+        if scene.gravity_ramp_s > 0.0
+            && matches!(scene.reference, Some(Reference::SlidingBlock { .. } | Reference::FreeFall { .. }))
+        {
+            let help = "leave out the ramp or the reference";
+            self.misfit("gravity_ramp_s", "the closed form of `reference` has gravity act at once", help);
+        }
+        if let Some(settle) = scene.settle {
+            if !(0.0 < settle.tolerance && settle.tolerance < 1.0) {
+                let message = format!("{}: must be between 0 and 1", settle.tolerance);
+                self.error("settle.tolerance", message, "1e-4 leaves a ten-thousandth of the largest speed");
+            }
+            if scene.gravity_ramp_s > 0.0 {
+                let help = "leave out one of the two";
+                self.misfit("gravity_ramp_s", "a scene settles under its full weight", help);
+            }
+        }
+        for (i, force) in scene.forces.iter().enumerate() {
+            self.known_blocks(format!("forces[{i}].block"), &force.block);
+            self.numbers(&format!("forces[{i}].at_m"), force.at_m.as_slice().as_flattened());
+            self.numbers(&format!("forces[{i}].force_n"), &force.force_n);
+            self.factor(&format!("forces[{i}].factor"), &force.factor);
+        }
+        for (i, traction) in scene.tractions.iter().enumerate() {
+            self.known_blocks(format!("tractions[{i}].block"), &traction.block);
+            self.region(&format!("tractions[{i}].on"), &traction.on);
+            self.numbers(&format!("tractions[{i}].traction_pa"), &traction.traction_pa);
+            self.factor(&format!("tractions[{i}].factor"), &traction.factor);
+        }
+        self.water();
+    }
+
+    pub(super) fn factor(&mut self, path: &str, rows: &[FactorRow]) {
+        if let Some(i) = (1..rows.len()).find(|&i| rows[i].time_s <= rows[i - 1].time_s) {
+            let message = format!("{} s does not come after {} s", rows[i].time_s, rows[i - 1].time_s);
+            self.error(format!("{path}[{i}].time_s"), message, "sort the rows by time_s");
+        }
+        let times: Vec<f64> = rows.iter().map(|row| row.time_s).collect();
+        let rises = |i: usize| rows[i + 1].factor - rows[i].factor;
+        self.turns(path, &times, |i| rises(i - 1) * rises(i) < 0.0);
+    }
+}

@@ -1,0 +1,86 @@
+//! Checks of water.
+
+use super::{CELLS, Check};
+use crate::scene::code::Code;
+use crate::scene::{Pressure, Wet, matches};
+
+impl Check<'_> {
+    pub(super) fn water(&mut self) {
+        let scene = self.scene;
+        for (i, water) in scene.water.iter().enumerate() {
+            let path = format!("water[{i}]");
+            match &water.on {
+                Wet::Joint(name) => self.wet_joint(format!("{path}.on"), name),
+                Wet::Part { block, region } => {
+                    self.known_blocks(format!("{path}.on.block"), block);
+                    self.region(&format!("{path}.on.region"), region);
+                }
+            }
+            self.pressure(&format!("{path}.pressure"), &water.pressure);
+            self.factor(&format!("{path}.factor"), &water.factor);
+        }
+    }
+
+    fn wet_joint(&mut self, path: String, name: &str) {
+        let scene = self.scene;
+        let mut names: Vec<&str> =
+            scene.rock.iter().flat_map(|rock| &rock.joints).map(|joint| joint.name()).collect();
+        names.extend(scene.rock.iter().filter(|rock| rock.voronoi.is_some()).map(|_| CELLS));
+        if !names.iter().any(|known| matches(name, known)) {
+            self.known(path, "joint", name, &names);
+        }
+    }
+
+    fn pressure(&mut self, path: &str, pressure: &Pressure) {
+        match pressure {
+            Pressure::Level { at_m, density_kg_m3 } => {
+                self.numbers(&format!("{path}.at_m"), at_m);
+                self.positive(format!("{path}.density_kg_m3"), *density_kg_m3, "kg/m³");
+                if self.scene.gravity_m_s2 == [0.0; 3] {
+                    let help = "give gravity_m_s2, or the pressure as `Linear` or `Points`";
+                    self.report(Code::NoDirection, path, "there is no level without gravity", help);
+                }
+            }
+            Pressure::Linear { pressure_pa, at_m, gradient_pa_m } => {
+                self.numbers(&format!("{path}.pressure_pa"), &[*pressure_pa]);
+                self.numbers(&format!("{path}.at_m"), at_m);
+                self.numbers(&format!("{path}.gradient_pa_m"), gradient_pa_m);
+            }
+            Pressure::Points { along, at_m, rows } => {
+                self.direction(format!("{path}.along"), along);
+                self.numbers(&format!("{path}.at_m"), at_m);
+                self.points(&format!("{path}.rows"), rows);
+            }
+            Pressure::Least(fields) => {
+                if fields.is_empty() {
+                    self.error(path, "is the least of nothing", "give one linear pressure at least");
+                }
+                for (i, field) in fields.iter().enumerate() {
+                    self.numbers(&format!("{path}[{i}].pressure_pa"), &[field.pressure_pa]);
+                    self.numbers(&format!("{path}[{i}].at_m"), &field.at_m);
+                    self.numbers(&format!("{path}[{i}].gradient_pa_m"), &field.gradient_pa_m);
+                }
+            }
+        }
+    }
+
+    fn points(&mut self, path: &str, rows: &[(f64, f64)]) {
+        if rows.is_empty() {
+            self.error(path, "has no points", "give one row at least: (distance, pressure)");
+        }
+        for (i, row) in rows.iter().enumerate() {
+            self.numbers(&format!("{path}[{i}]"), &[row.0, row.1]);
+            if row.1 < 0.0 {
+                self.error(
+                    format!("{path}[{i}]"),
+                    format!("{} Pa: must not be negative", row.1),
+                    "joints open under suction",
+                );
+            }
+        }
+        if let Some(i) = (1..rows.len()).find(|&i| rows[i].0 <= rows[i - 1].0) {
+            let message = format!("{} m does not come after {} m", rows[i].0, rows[i - 1].0);
+            self.error(format!("{path}[{i}]"), message, "sort the rows by distance");
+        }
+    }
+}

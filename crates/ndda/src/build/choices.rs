@@ -1,0 +1,35 @@
+//! What a program puts in the place of what a scene names.
+
+use std::sync::Arc;
+
+use ndda_contact::broad_phase::BroadPhase;
+use ndda_contact::{ContactModel, ContactPotential, FrictionLaw};
+use ndda_fem::Material;
+use ndda_solver::{LinearSolver, TimeIntegrator};
+
+/// Parts of a program's own; whatever is left out is as the scene says.
+///
+/// ```
+/// use ndda::build::Choices;
+/// use ndda_contact::Coulomb;
+///
+/// let slippery = Choices { friction: Some(Box::new(Coulomb::new(5.0, 1e10))), ..Choices::default() };
+/// # let _ = slippery;
+/// ```
+#[derive(Default)]
+pub struct Choices {
+    /// A contact model instead of all that the scene says of contact.
+    pub contact: Option<Box<dyn ContactModel>>,
+    /// A potential instead of `contact.potential`.
+    pub potential: Option<Box<dyn ContactPotential>>,
+    /// A friction law instead of `contact.friction`; those of single joints and pairs of materials stay.
+    pub friction: Option<Box<dyn FrictionLaw>>,
+    /// What finds the pairs that may touch.
+    pub broad_phase: Option<Box<dyn BroadPhase>>,
+    /// A time integrator instead of `time.integrator`.
+    pub integrator: Option<Box<dyn TimeIntegrator>>,
+    /// A linear solver instead of `time.solver`.
+    pub solver: Option<Box<dyn LinearSolver>>,
+    /// Materials by their name in the scene.
+    pub materials: Vec<(String, Arc<dyn Material>)>,
+}
