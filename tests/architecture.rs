@@ -1,8 +1,8 @@
-//! The layout: which crate may use which, and what lies at the top.
+//! The layout: which crate may use which, what lies at the top, how long a file is, and what documents name.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Every crate of the workspace with the crates of the workspace that it may depend on.
 const ARROWS: [(&str, &[&str]); 8] = [
@@ -226,5 +226,49 @@ fn modules_do_not_import_each_other_in_circles() {
             .collect();
         let circle = circle(&arrows);
         assert!(circle.is_none(), "{folder}: {}", circle.unwrap().join(" → "));
+    }
+}
+
+/// Every file with the given ending under a folder, but for what the build leaves.
+fn files(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+        let name = entry.file_name().unwrap().to_string_lossy().into_owned();
+        if entry.is_dir() && !["target", "out"].contains(&name.as_str()) && !name.starts_with('.') {
+            files(&entry, ending, found);
+        } else if entry.extension().is_some_and(|own| own == ending) {
+            found.push(entry);
+        }
+    }
+}
+
+#[test]
+fn no_source_file_is_longer_than_400_lines() {
+    let mut found = Vec::new();
+    files(&root().join("crates"), "rs", &mut found);
+    files(&root().join("apps"), "rs", &mut found);
+    for file in found {
+        let lines = fs::read_to_string(&file).unwrap().lines().count();
+        assert!(lines <= 400, "{}: {lines} lines; split it by what its parts are about", file.display());
+    }
+}
+
+/// Paths in backticks; those with a placeholder in capitals (`scenes/NAME.ron`) or a pattern are left out.
+#[test]
+fn every_path_that_a_document_names_exists() {
+    let mut documents = Vec::new();
+    files(root(), "md", &mut documents);
+    for document in documents.iter().filter(|document| !document.ends_with("CHANGELOG.md")) {
+        let text = fs::read_to_string(document).unwrap();
+        for name in text.split('`').skip(1).step_by(2) {
+            let top = name.split('/').next().unwrap();
+            let in_the_tree = ["crates", "apps", "tests", "benches", "scenes", "docs"].contains(&top)
+                && name.contains('/')
+                && name.chars().all(|c| c.is_ascii_alphanumeric() || "/_-.".contains(c))
+                && !name
+                    .split(['/', '.'])
+                    .any(|part| part.len() > 1 && part.chars().all(|c| c.is_ascii_uppercase()));
+            let known = !in_the_tree || root().join(name).exists();
+            assert!(known, "{} names {name}, which is not there", document.display());
+        }
     }
 }

@@ -1,5 +1,5 @@
 //! X5: elements a thousand to a million times as wide as high. Random ones against exact arithmetic are the families
-//! `sliver`, `two slivers` and `sliver along a face` of crates/ndda-contact/tests/exact.rs.
+//! `sliver`, `two slivers` and `sliver along a face` of crates/ndda-contact/tests/exact/main.rs.
 
 use ndda_contact::integration::tet_overlap;
 use ndda_mesh::Vec3;
