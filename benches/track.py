@@ -296,7 +296,7 @@ def change(old, new):
 
 def draw(records):
     """A panel per crate: each figure over that of its first record."""
-    sys.path.insert(0, str(ROOT / "docs"))
+    sys.path.insert(0, str(ROOT / "docs" / "evidence"))
     import plots
 
     plots.need_matplotlib()

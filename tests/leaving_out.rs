@@ -121,7 +121,7 @@ fn fixed_and_rigid_blocks_have_no_unknowns_of_elements_and_no_factor() {
     assert_eq!(simulation.factors(), 2, "one of the elastic and one of the affine block");
 }
 
-/// Packages of others that the command line needs with these features, as docs/features.md counts them.
+/// Packages of others that the command line needs with these features, as docs/reference/features.md counts them.
 fn packages(features: &str) -> usize {
     let arguments =
         ["tree", "--locked", "--offline", "-p", "ndda-cli", "-e", "normal", "--no-default-features"];
@@ -144,7 +144,7 @@ fn packages(features: &str) -> usize {
 #[cfg(all(target_os = "linux", target_arch = "x86_64"))]
 #[test]
 fn features_that_are_not_enabled_leave_their_packages_out() {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/features.md");
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/reference/features.md");
     let text = std::fs::read_to_string(path).unwrap();
     let mut rows = 0;
     for line in text.lines() {
@@ -155,8 +155,8 @@ fn features_that_are_not_enabled_leave_their_packages_out() {
             "none" => "",
             name => name.trim_start_matches('`').split('`').next().unwrap(),
         };
-        assert_eq!(packages(features), count, "packages with `{features}`: docs/features.md says {count}");
+        assert_eq!(packages(features), count, "packages with `{features}`: docs/reference/features.md says {count}");
         rows += 1;
     }
-    assert_eq!(rows, 12, "rows of docs/features.md");
+    assert_eq!(rows, 12, "rows of docs/reference/features.md");
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Checks docs/recipes.md: what it quotes is what the files say, and every recipe runs on the results of a run.
+"""Checks docs/guide/recipes.md: what it quotes is what the files say, and every recipe runs on the results of a run.
 
 Usage: recipes.py OUTDIR [BOTH]     (BOTH: a run with tables as CSV and Parquet; exit 0: all well, 1: not, 3: packages are missing, only quotes and syntax were checked)
 """
@@ -35,7 +35,7 @@ def require(condition, message):
 
 def check_quotes():
     """Every file is quoted, word for word, after the line that links to it."""
-    page = (DOCS / "recipes.md").read_text(encoding="utf-8")
+    page = (DOCS / "guide" / "recipes.md").read_text(encoding="utf-8")
     quoted = dict(re.findall(r"\]\(recipes/(\w+\.py)\)[^\n]*\n\n```python\n(.*?)```", page, re.DOTALL))
     files = {path.name: path.read_text(encoding="utf-8") for path in RECIPES.glob("*.py")}
     require(quoted.keys() == files.keys(), f"recipes.md quotes {sorted(quoted)}, there are {sorted(files)}")

@@ -1,4 +1,4 @@
-//! docs/troubleshooting.md has a section for every code that is printed, and no other.
+//! docs/guide/troubleshooting.md has a section for every code that is printed, and no other.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -12,7 +12,7 @@ fn read(path: &str) -> String {
 
 #[test]
 fn every_code_has_its_section_and_every_section_a_code() {
-    let page = read("docs/troubleshooting.md");
+    let page = read("docs/guide/troubleshooting.md");
     let sections: BTreeSet<String> =
         page.lines().filter_map(|line| line.strip_prefix("### ")).map(String::from).collect();
     let stops = read("crates/ndda-solver/src/error.rs");

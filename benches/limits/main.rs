@@ -3,7 +3,7 @@
 //! the step of a pile against the sum of both.
 //!
 //! Prints tables as lines of tab-separated cells, the name of the table first and its header before its rows;
-//! `docs/performance.py --measure limits` puts them into docs/performance.md. Without `--bench`, as `cargo test` runs
+//! `docs/evidence/performance.py --measure limits` puts them into docs/verification/performance.md. Without `--bench`, as `cargo test` runs
 //! it, everything is done once and on the smallest of its problems.
 
 mod kernel;

@@ -7,7 +7,7 @@
 Problems: ramp, ramp_phi35, collision, pile_125, pile_512; programs: ndda, mujoco, rapier, yade, calculix. Each case is
 run up to five times, one thread, and the fastest counts. A case prints one line of JSON; all go into
 docs/evidence/peers/results.csv, where they replace those of the same problem and program, and from there into the
-tables of docs/performance.md. ndda and Rapier are built by cargo, MuJoCo is installed under target/; YADE and CalculiX
+tables of docs/verification/performance.md. ndda and Rapier are built by cargo, MuJoCo is installed under target/; YADE and CalculiX
 must be there (Debian: apt install yade calculix-ccx) or are left out.
 """
 
@@ -82,7 +82,7 @@ def main():
             for program, command in commands.items():
                 if program in CASES[name]:
                     keep(name, program, [run_case(name, program, command, *case) for case in cases(name, program)])
-    table.write(ROOT / "docs" / "performance.md", load(), MODELS, NAMES)
+    table.write(ROOT / "docs" / "verification" / "performance.md", load(), MODELS, NAMES)
 
 
 def cases(name, program):

@@ -1,11 +1,11 @@
-"""The tables of docs/performance.md that come from the results of run.py."""
+"""The tables of docs/verification/performance.md that come from the results of run.py."""
 
 import math
 import re
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs"))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "docs" / "evidence"))
 from error_and_time import between, table
 
 TITLES = {

@@ -5,7 +5,7 @@
 //! every step; a pair across a border is evaluated on both sides. That each rank then finds the forces on its own blocks
 //! to the bit is checked here, by evaluating contact on what the rank knows.
 //!
-//! Prints a table as lines of tab-separated cells; `docs/performance.py --measure ranks` puts it into docs/performance.md.
+//! Prints a table as lines of tab-separated cells; `docs/evidence/performance.py --measure ranks` puts it into docs/verification/performance.md.
 //! Without `--bench`, as `cargo test` runs it, the pile is small and at its start.
 
 mod known;

@@ -4,7 +4,7 @@
   docs/evidence/leaving_out.py [NDDA]     (default: target/release/ndda; needs valgrind)
 
 Each case runs a scene with the part absent and with it present but idle, for two numbers of steps: the difference of the two is
-what steps cost, without reading and setting up. Writes docs/evidence/leaving_out/cost.csv and the table in docs/leaving-out.md, and
+what steps cost, without reading and setting up. Writes docs/evidence/leaving_out/cost.csv and the table in docs/verification/leaving-out.md, and
 fails if an idle part costs more than 1 % of the steps.
 """
 import csv
@@ -15,7 +15,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = ROOT / "docs" / "leaving-out.md"
+PAGE = ROOT / "docs" / "verification" / "leaving-out.md"
 TABLE = ROOT / "docs" / "evidence" / "leaving_out" / "cost.csv"
 MOST = 0.01
 MARKS = ("<!-- table -->\n", "<!-- end of table -->\n")

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Time and memory over size (X21): 1 to 1e5 blocks, and one block of up to 1e6 tetrahedra.
+"""Time and memory over size: 1 to 1e5 blocks, and one block of up to 1e6 tetrahedra.
 
   docs/evidence/sizes.py [--largest TETS] [NDDA]     (default: 1e6 tetrahedra, target/release/ndda)
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws docs/pictures/contact_*.png, the drawings of docs/contact.md, in the plane: triangles for tetrahedra.
+"""Draws docs/pictures/contact_*.png, the drawings of docs/theory/contact.md, in the plane: triangles for tetrahedra.
 
 Needs numpy and matplotlib. Usage: python3 docs/pictures/contact.py
 """

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""The paper's figures: runs the studies of this folder, keeps their data in docs/evidence/paper, fills the tables of docs/paper.md
+"""The paper's figures: runs the studies of this folder, keeps their data in docs/evidence/paper, fills the tables of docs/verification/paper.md
 and draws the pictures.
 
 Usage: python3 scenes/paper/run.py            all of it, with `cargo run --release`; goes on where it was interrupted
        python3 scenes/paper/run.py --thin     short runs of every case and nothing kept: does it all still run?
-       python3 scenes/paper/run.py --check    are the tables of docs/paper.md those of the data?
+       python3 scenes/paper/run.py --check    are the tables of docs/verification/paper.md those of the data?
        python3 scenes/paper/run.py --times    the times alone: on a machine that does nothing else
        python3 scenes/paper/run.py --draw     pictures and tables from the data, without a run
 
@@ -24,7 +24,7 @@ import times
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 DATA = ROOT / "docs" / "evidence" / "paper"
-TEXT = ROOT / "docs" / "paper.md"
+TEXT = ROOT / "docs" / "verification" / "paper.md"
 # What makes a study short: the first moments, and for the collision a longer step.
 SHORT = {"fig3": ["time.step_s=1e-5"]}
 SHORT_OTHERS = ["time.end_s=0.024", "output.history_rows=6"]
@@ -77,7 +77,7 @@ def thin(program):
 
 
 def text():
-    """docs/paper.md as it is, and as the data says."""
+    """docs/verification/paper.md as it is, and as the data says."""
     now = TEXT.read_text(encoding="utf-8")
     return now, tables.fill(now, results.read_rows(DATA / "cases.csv"), results.read_rows(DATA / "times.csv"))
 
@@ -96,7 +96,7 @@ def main():
         time(program)
     now, made = text()
     if asked.check:
-        return None if now == made else "docs/paper.md: its tables are not those of docs/evidence/paper: run scenes/paper/run.py --draw"
+        return None if now == made else "docs/verification/paper.md: its tables are not those of docs/evidence/paper: run scenes/paper/run.py --draw"
     TEXT.write_text(made, encoding="utf-8")
     import draw
 

@@ -1,4 +1,4 @@
-"""Tables of docs/paper.md between their markers, from the CSV of docs/evidence/paper."""
+"""Tables of docs/verification/paper.md between their markers, from the CSV of docs/evidence/paper."""
 
 import re
 

@@ -23,7 +23,7 @@ fn a_pulled_bar_reaches_uniform_strain_and_stress() {
     let off = |s: &[f64; 6]| s.iter().zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let worst = stress.iter().map(off).fold(0.0, f64::max);
     row(
-        "V9a",
+        "uniform stress",
         "stress off that of the traction in a pulled bar, relative",
         worst / traction_pa,
         AtMost(1e-8),

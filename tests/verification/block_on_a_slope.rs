@@ -1,4 +1,4 @@
-//! V10: a block on a slope stands, slides, topples or does both, by its slenderness and friction (Wyllie & Mah 2004),
+//! A block on a slope stands, slides, topples or does both, by its slenderness and friction (Wyllie & Mah 2004),
 //! and as quickly as a rigid block does.
 
 use ndda_mesh::{BlockId, Vec3};
@@ -62,25 +62,25 @@ fn a_block_on_a_slope_stands_slides_or_topples_as_statics_says() {
     let (sin, cos) = DIP_DEG.to_radians().sin_cos();
     let time_s = 0.5;
     let (slid, turned) = fate((10.0, 40.1), 2e9, time_s, true);
-    row("V10", "slide of 10 m at 40.1°, which stands [m]", slid.abs(), AtMost(1e-6));
-    row("V10", "turn of 10 m at 40.1°, which stands [rad]", turned.abs(), AtMost(1e-6));
+    row("block on a slope", "slide of 10 m at 40.1°, which stands [m]", slid.abs(), AtMost(1e-6));
+    row("block on a slope", "turn of 10 m at 40.1°, which stands [rad]", turned.abs(), AtMost(1e-6));
 
     let (slid, turned) = fate((5.0, 20.0), 1e11, time_s, false);
     let free = 0.5 * GRAVITY * (sin - 20f64.to_radians().tan() * cos) * time_s * time_s;
-    row("V10", "slide of 5 m at 20° [m]", slid, Within(free, 2e-2));
-    row("V10", "turn of 5 m at 20°, which slides [rad]", turned, Near(0.0, 2e-3));
+    row("block on a slope", "slide of 5 m at 20° [m]", slid, Within(free, 2e-2));
+    row("block on a slope", "turn of 5 m at 20°, which slides [rad]", turned, Near(0.0, 2e-3));
 
     let (slid, turned) = fate((25.0, 60.0), 1e11, time_s, false);
     // Contact is stiff here: a soft edge sinks, and the block turns about a line further up.
     let falls = turn_about_the_foot(25.0, time_s);
-    row("V10", "turn of 25 m at 60° [rad]", turned, Within(falls, 5e-2));
-    row("V10", "slide of 25 m at 60°, which topples [m]", slid, Near(0.0, 0.02));
+    row("block on a slope", "turn of 25 m at 60° [rad]", turned, Within(falls, 5e-2));
+    row("block on a slope", "slide of 25 m at 60°, which topples [m]", slid, Near(0.0, 0.02));
 
     let (slid, turned) = fate((25.0, 24.0), 1e11, time_s, false);
     let (slides, turns) = slide_and_turn(25.0, 24.0, time_s);
     // The lever μ h/2 − b/2 is 0.56 m, of which the edge that sinks takes its part.
-    row("V10", "slide of 25 m at 24°, which does both [m]", slid, Within(slides, 0.2));
-    row("V10", "turn of 25 m at 24°, which does both [rad]", turned, Within(turns, 0.35));
+    row("block on a slope", "slide of 25 m at 24°, which does both [m]", slid, Within(slides, 0.2));
+    row("block on a slope", "turn of 25 m at 24°, which does both [rad]", turned, Within(turns, 0.35));
 }
 
 /// Slide of the foot and turn of a block that does both, as long as it has hardly turned: with friction μ N at the foot,

@@ -42,10 +42,10 @@ fn a_tumbling_block_of_any_kind_keeps_angular_momentum_energy_and_size() {
         let worst = simulation.invariants();
         let energy = (end.total_j() / start.total_j() - 1.0).abs();
         let named = |what: &str| format!("{body} brick that tumbles for {} steps: {what}", steps());
-        row("V20", &named("momentum"), worst.linear_momentum, AtMost(1e-9));
-        row("V20", &named("angular momentum"), worst.angular_momentum, AtMost(1e-9));
-        row("V20", &named("change of energy"), energy, AtMost(1e-6));
-        row("V20", &named("largest stress over E"), largest / 20e9, AtMost(1e-6));
+        row("spin of all kinds of body", &named("momentum"), worst.linear_momentum, AtMost(1e-9));
+        row("spin of all kinds of body", &named("angular momentum"), worst.angular_momentum, AtMost(1e-9));
+        row("spin of all kinds of body", &named("change of energy"), energy, AtMost(1e-6));
+        row("spin of all kinds of body", &named("largest stress over E"), largest / 20e9, AtMost(1e-6));
     }
 }
 
@@ -66,13 +66,13 @@ fn a_rigid_block_keeps_the_energy_of_its_spin_to_rounding_and_turns_over_about_i
         }
         let end = simulation.sample().unwrap();
         let named = |what: &str| format!("rigid brick that turns over, {integrator}: {what}");
-        row("V20", &named("kinetic energy [J]"), end.kinetic_j, Within(start.kinetic_j, 1e-12));
-        row("V20", &named("angular momentum"), simulation.invariants().angular_momentum, AtMost(1e-12));
+        row("spin of all kinds of body", &named("kinetic energy [J]"), end.kinetic_j, Within(start.kinetic_j, 1e-12));
+        row("spin of all kinds of body", &named("angular momentum"), simulation.invariants().angular_momentum, AtMost(1e-12));
         assert!(lowest < -0.5, "{integrator}: it never turned over ({lowest})");
         let rest = &simulation.blocks().rest_position;
         let x = &simulation.state().position;
         let stretch = ((x[7] - x[0]).norm() / (rest[7] - rest[0]).norm() - 1.0).abs();
-        row("V20", &named("stretch of its diagonal"), stretch, AtMost(1e-14));
+        row("spin of all kinds of body", &named("stretch of its diagonal"), stretch, AtMost(1e-14));
     }
 }
 
@@ -192,7 +192,7 @@ fn a_block_of_any_kind_slides_down_a_fixed_ramp_as_the_closed_form_says() {
         let mean = block.iter().sum::<Vec3>() / block.len() as f64;
         let exact = 0.5 * 6.929646455628166 * 0.25;
         let gain = simulation.invariants().energy_gain;
-        row("V2", &format!("slide of a block on a fixed ramp, {body} [m]"), mean.x, Within(exact, 1e-6));
-        row("V2", &format!("energy gained by it, {body}"), gain, AtMost(1e-4));
+        row("the paper's ramps", &format!("slide of a block on a fixed ramp, {body} [m]"), mean.x, Within(exact, 1e-6));
+        row("the paper's ramps", &format!("energy gained by it, {body}"), gain, AtMost(1e-4));
     }
 }

@@ -1,4 +1,4 @@
-//! V18: a block that bounces on a held one, by integrator and step. Speeds before and after tell how contact treats
+//! A block that bounces on a held one, by integrator and step. Speeds before and after tell how contact treats
 //! energy; the theory is that of a mass on a spring, ω_c Δt = h.
 
 use ndda_mesh::Vec3;
@@ -58,7 +58,7 @@ fn the_papers_scheme_throws_back_faster_and_by_as_much_as_theory_says() {
         let (restitution, ..) = bounce("Newmark(alpha: 0.5, delta: 1)", step_s);
         let theory = (std::f64::consts::FRAC_PI_4 * contact_rate() * step_s).exp();
         let what = format!("restitution − 1, the paper's scheme, Δt = {step_s:e} s");
-        row("V18", &what, restitution - 1.0, Within(theory - 1.0, 0.2));
+        row("bounce and contact stability", &what, restitution - 1.0, Within(theory - 1.0, 0.2));
     }
 }
 
@@ -69,8 +69,8 @@ fn midpoint_and_generalised_alpha_give_back_what_they_get() {
         for step_s in [2e-3, 1e-3, 5e-4] {
             let (restitution, gain, h) = bounce(integrator, step_s);
             let what = |what: &str| format!("{what}, {integrator}, Δt = {step_s:e} s");
-            row("V18", &what("restitution"), restitution, Near(1.0, 0.5 * h * h));
-            row("V18", &what("energy gained"), gain, AtMost(1e-2));
+            row("bounce and contact stability", &what("restitution"), restitution, Near(1.0, 0.5 * h * h));
+            row("bounce and contact stability", &what("energy gained"), gain, AtMost(1e-2));
         }
     }
 }
@@ -91,12 +91,12 @@ fn restitution_over_the_step_follows_theory_for_every_scheme() {
             println!("restitution;{integrator};{contact_at};{h};{restitution}");
             let theory = (sign * std::f64::consts::FRAC_PI_4 * h).exp();
             let what = format!("restitution, {integrator}, contact_at {contact_at}, h = {h}");
-            row("V18", &what, restitution, Near(theory, 0.35 * h));
+            row("bounce and contact stability", &what, restitution, Near(theory, 0.35 * h));
         }
     }
 }
 
-/// Two cubes that meet in space: V3, the paper's §4.1 without its plate.
+/// Two cubes that meet in space: the paper's §4.1 without its plate.
 const COLLISION: &str = "materials: [(name: \"rock\", young_pa: 1e8, poisson: 0.2, density_kg_m3: 2650)],
     blocks: [
       (name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), velocity_m_s: (1, 0, 0)),
@@ -146,7 +146,7 @@ fn midpoint_and_generalised_alpha_are_of_second_order_in_contact_and_the_papers_
         // The paper's comes to its order from below.
         let tolerance = if expected == 1.0 { 0.12 } else { 0.1 };
         let of = if scene == PRESSED { "a block pressed on a base" } else { "two cubes that meet" };
-        row("V18", &format!("order of {of}, {integrator}"), order, Near(expected, tolerance));
+        row("bounce and contact stability", &format!("order of {of}, {integrator}"), order, Near(expected, tolerance));
     }
 }
 
@@ -169,6 +169,6 @@ fn momentum_on_supports_is_accounted_for_from_the_first_step() {
         }
         simulation.sample().unwrap();
         let error = simulation.invariants().linear_momentum;
-        row("V18", &format!("momentum on supports, {integrator}"), error, AtMost(1e-12));
+        row("bounce and contact stability", &format!("momentum on supports, {integrator}"), error, AtMost(1e-12));
     }
 }

@@ -1,4 +1,4 @@
-//! V18: how stiff contact may be for a step, on a plate that rests on a held one. With K̃ = 2 M/Δt² + ½ K a step of `Midpoint` takes
+//! How stiff contact may be for a step, on a plate that rests on a held one. With K̃ = 2 M/Δt² + ½ K a step of `Midpoint` takes
 //! y = x + ½ Δt v to y₁ − 2 y₀ + y₋₁ = −2 K̃⁻¹ (K + D) y₀, D being the stiffness of contact. That is stable where 4 K̃ − 2 (K + D) =
 //! 8 M/Δt² − 2 D is positive: K drops out, and the bound is h = Δt √λ < 2, λ the largest of M⁻¹ D, however stiff the rock. Beyond it
 //! vibrations grow by √(D/K) per step or so.
@@ -82,7 +82,7 @@ fn elasticity_does_not_let_a_step_be_longer_than_contact_alone_would() {
                 "travel of a plate at rest in a step of {part} 2/√λ(M⁻¹D), E = {young_pa:e} Pa, over its depth in contact: most of {STEPS}"
             )
         };
-        row("V18", &what("0.95"), swing(young_pa, 0.95 * longest_s), AtMost(1.0));
-        row("V18", &what("1.05"), swing(young_pa, 1.05 * longest_s), AtLeast(3.0));
+        row("bounce and contact stability", &what("0.95"), swing(young_pa, 0.95 * longest_s), AtMost(1.0));
+        row("bounce and contact stability", &what("1.05"), swing(young_pa, 1.05 * longest_s), AtLeast(3.0));
     }
 }

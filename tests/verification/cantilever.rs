@@ -1,4 +1,4 @@
-//! V9b: a cantilever under its own weight against Timoshenko's beam, by refinement; and what ν → ½ does to linear
+//! A cantilever under its own weight against Timoshenko's beam, by refinement; and what ν → ½ does to linear
 //! tetrahedra.
 
 use crate::evidence::Answer::{AtMost, Near};
@@ -49,14 +49,14 @@ fn a_cantilever_converges_to_the_beam_with_second_order() {
     for ((n, error), most) in errors.into_iter().zip([0.5, 0.2, 0.06]) {
         assert!(error > 0.0, "linear tetrahedra are too stiff: {errors:?}");
         row(
-            "V9b",
+            "bending",
             &format!("deflection that {n} cells over the height lack of the beam's"),
             error,
             AtMost(most),
         );
     }
     let order = (errors[1].1 / errors[2].1).log2();
-    row("V9b", "order of convergence, 4 to 8 cells", order, Near(2.0, 0.3));
+    row("bending", "order of convergence, 4 to 8 cells", order, Near(2.0, 0.3));
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn near_incompressible_rock_locks_and_says_so() {
     for poisson in [0.49, 0.499, 0.4999] {
         let locked = deflection(4, poisson) / beam(poisson);
         row(
-            "X15",
+            "extreme: locking",
             &format!("deflection over the beam's at ν = {poisson}; {soft:.3} at 0.25"),
             locked,
             AtMost(soft),

@@ -1,4 +1,4 @@
-//! Contact patch test (V9c): a uniform pressure through a flat interface between unlike meshes.
+//! Contact patch test: a uniform pressure through a flat interface between unlike meshes.
 //!
 //! A block of 2 × 2 × 1 cells is pressed by a depth h into one of 5 × 3 × 2; both are 1 m wide. The pressure is the
 //! nodal force that a facet gets over what its part of a uniform one would be.
@@ -53,8 +53,8 @@ fn a_smooth_potential_passes_the_contact_patch_test_and_the_element_potential_fa
     let element = deviation(Box::new(ElementPotential));
     let smooth = deviation(Box::new(SmoothPotential { reference_m: 1.0 }));
     let volume = deviation(Box::new(VolumePotential { exponent: 2.0, reference_m3: 1.0 }));
-    row("V9c", "deviation from a uniform pressure, Smooth", smooth, AtMost(0.01));
-    row("V9c", "deviation from a uniform pressure, Volume", volume, AtMost(0.01));
+    row("contact patch test", "deviation from a uniform pressure, Smooth", smooth, AtMost(0.01));
+    row("contact patch test", "deviation from a uniform pressure, Volume", volume, AtMost(0.01));
     // The nature of the element potential, which is said wherever it is chosen.
-    row("V9c", "deviation from a uniform pressure, Element", element, AtLeast(0.05));
+    row("contact patch test", "deviation from a uniform pressure, Element", element, AtLeast(0.05));
 }

@@ -1,5 +1,5 @@
-//! Waves along bars without lateral strain (ν = 0): their speed (V6), what a joint lets through (V7), and a bar that hits
-//! a wall (V5; Doyen, Ern & Piperno 2011).
+//! Waves along bars without lateral strain (ν = 0): their speed, what a joint lets through, and a bar that hits
+//! a wall (Doyen, Ern & Piperno 2011).
 
 use std::f64::consts::PI;
 
@@ -89,10 +89,10 @@ fn a_wave_runs_along_a_bar_at_its_speed() {
     }
     let [first, second] = passed.map(|(sum, moment)| moment / sum);
     let measured = 1.0 / (second - first);
-    row("V6", "speed of a P-wave along a bar [m/s]", measured, Within(speed(), 2e-3));
+    row("elastic waves", "speed of a P-wave along a bar [m/s]", measured, Within(speed(), 2e-3));
     // v = p/(ρ c), so its integral over time is that of the pressure.
     let impulse = 0.5 * length_s * pressure / impedance();
-    row("V6", "∫ v dt of the pulse [m]", passed[1].0 * step_s, Within(impulse, 5e-3));
+    row("elastic waves", "∫ v dt of the pulse [m]", passed[1].0 * step_s, Within(impulse, 5e-3));
 }
 
 /// What a joint of stiffness k [Pa/m] lets through of an incident wave of velocity v(t): v_T′ = (2 k/ρ c)(v − v_T), so that
@@ -142,12 +142,12 @@ fn a_joint_lets_through_what_its_stiffness_allows() {
         }
         let named = |what: &str| format!("{what}, over the incident wave, ωρc/2k = {part}");
         row(
-            "V7",
+            "joint between bars",
             &named("peak of what a joint lets through"),
             peak / amplitude,
             Within(largest / amplitude, 5e-3),
         );
-        row("V7", &named("largest difference from the joint's equation"), error / amplitude, AtMost(0.02));
+        row("joint between bars", &named("largest difference from the joint's equation"), error / amplitude, AtMost(0.02));
     }
 }
 
@@ -186,7 +186,7 @@ fn a_bar_leaves_a_wall_after_its_wave_has_run_there_and_back() {
         }
     }
     let (pressure, rebound) = (pressure / f64::from(count), before / (DENSITY * area * length));
-    row("V5", "time that a bar presses on a wall [s]", pressed_s, Within(there_and_back, 0.02));
-    row("V5", "pressure of a bar on a wall [Pa]", pressure, Within(plateau, 5e-3));
-    row("V5", "rebound of a bar from a wall over its speed", rebound, Within(1.0, 0.02));
+    row("bar on a wall", "time that a bar presses on a wall [s]", pressed_s, Within(there_and_back, 0.02));
+    row("bar on a wall", "pressure of a bar on a wall [Pa]", pressure, Within(plateau, 5e-3));
+    row("bar on a wall", "rebound of a bar from a wall over its speed", rebound, Within(1.0, 0.02));
 }

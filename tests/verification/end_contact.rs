@@ -97,7 +97,7 @@ fn a_bounce_gives_back_what_theory_says() {
         let h = (2.0 * 4e6 / 2500.0f64).sqrt() * step_s;
         let theory = (-std::f64::consts::FRAC_PI_4 * h).exp();
         let what = format!("1 − restitution, contact at the end, h = {h:.3}");
-        row("V18", &what, 1.0 - restitution, Within(1.0 - theory, 0.2));
+        row("bounce and contact stability", &what, 1.0 - restitution, Within(1.0 - theory, 0.2));
     }
 }
 

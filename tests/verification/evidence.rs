@@ -1,5 +1,5 @@
 //! Rows of the verification manual: what was measured beside its answer, asserted and printed in one line, so that
-//! `docs/verification.py` finds every figure of docs/verification.md in the output of the tests.
+//! `docs/evidence/figures.py` finds every figure of docs/verification/verification.md in the output of the tests.
 
 use std::fmt::{Display, Formatter, Result};
 use std::fs::OpenOptions;
@@ -51,7 +51,7 @@ impl Display for Answer {
     }
 }
 
-/// Prints the row `id` (as V5 or X12), `what` was measured with its unit; panics unless the answer holds.
+/// Prints the row `id`, the case in a few words, `what` was measured with its unit; panics unless the answer holds.
 #[track_caller]
 pub fn row(id: &str, what: &str, measured: f64, answer: Answer) {
     let place = Location::caller();

@@ -1,4 +1,4 @@
-//! V9d: a rigid sphere pressed on an elastic flat, against Hertz (Johnson, Contact Mechanics, 1985, §4.2):
+//! A rigid sphere pressed on an elastic flat, against Hertz (Johnson, Contact Mechanics, 1985, §4.2):
 //! F = 4/3 E* √R d^1.5, a² = R d, p = p₀ √(1 − r²/a²). `NDDA_LARGE=1` adds a third mesh.
 //!
 //! A quarter of the flat is meshed, on rollers in its planes of symmetry, in cells that are uniform around the contact
@@ -134,14 +134,14 @@ fn a_sphere_pressed_on_a_flat_follows_hertz() {
     let cells: Vec<String> = meshes.iter().map(|&t| format!("{:.1}", 4.0 * f64::from(t) / 3.0)).collect();
     for ((forces, _), cells) in found.iter().zip(&cells) {
         let what = format!("force over Hertz's, {cells} cells on the contact radius");
-        row("V9d", &what, forces[2], Within(1.0, 0.1));
+        row("Hertz contact", &what, forces[2], Within(1.0, 0.1));
     }
     let last = found.len() - 1;
     let exponent = |forces: &[f64; 3]| 1.5 + (forces[2] / forces[0]).ln() / (DEPTHS[2] / DEPTHS[0]).ln();
     let (finest, spread) = &found[last];
     let on_finest = |what: &str| format!("{what}, {} cells", cells[last]);
-    row("V9d", &on_finest("exponent of the depth"), exponent(finest), Within(1.5, 0.02));
-    row("V9d", &on_finest("∫ p r² dA / F over 2/5 a²"), *spread, Within(1.0, 0.03));
+    row("Hertz contact", &on_finest("exponent of the depth"), exponent(finest), Within(1.5, 0.02));
+    row("Hertz contact", &on_finest("∫ p r² dA / F over 2/5 a²"), *spread, Within(1.0, 0.03));
     // Linear tetrahedra and plane facets: errors of second order.
     let ratio2 = (f64::from(meshes[last]) / f64::from(meshes[last - 1])).powi(2);
     let coarser = found[last - 1].0;
@@ -149,7 +149,7 @@ fn a_sphere_pressed_on_a_flat_follows_hertz() {
     let named =
         |what: &str| format!("{what}, extrapolated from {} and {} cells", cells[last - 1], cells[last]);
     for (part, force) in DEPTHS.iter().zip(limit) {
-        row("V9d", &named(&format!("force over Hertz's at {part} of the depth")), force, Within(1.0, 0.03));
+        row("Hertz contact", &named(&format!("force over Hertz's at {part} of the depth")), force, Within(1.0, 0.03));
     }
-    row("V9d", &named("exponent of the depth"), exponent(&limit), Within(1.5, 0.02));
+    row("Hertz contact", &named("exponent of the depth"), exponent(&limit), Within(1.5, 0.02));
 }

@@ -1,4 +1,4 @@
-//! V22: the paper's §4.3: the more friction, the less a jointed column spreads. `NDDA_LARGE=1` runs all 0.7 s, for which the paper
+//! The paper's §4.3: the more friction, the less a jointed column spreads. `NDDA_LARGE=1` runs all 0.7 s, for which the paper
 //! has 1.983, 1.970 and 1.886 m; its joints are not printed, so that the order is what is asked for.
 
 use std::path::Path;
@@ -24,13 +24,13 @@ fn a_jointed_column_spreads_less_the_more_friction_it_has() {
     let end_s = if std::env::var_os("NDDA_LARGE").is_some() { 0.7 } else { 0.03 };
     let spread = [0, 5, 10].map(|friction_deg| spreads(friction_deg, end_s));
     row(
-        "V22",
+        "jointed column",
         &format!("spread at φ = 5° over that at 0°, t = {end_s} s"),
         spread[1] / spread[0],
         AtMost(1.0),
     );
     row(
-        "V22",
+        "jointed column",
         &format!("spread at φ = 10° over that at 5°, t = {end_s} s"),
         spread[2] / spread[1],
         AtMost(1.0),

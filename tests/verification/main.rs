@@ -113,5 +113,5 @@ fn assert_uniform_strain(simulation: &Simulation, strain: Vec3, tolerance: f64) 
         .zip(&simulation.blocks().rest_position)
         .map(|(u, rest)| (u - strain.component_mul(&(rest + origin))).norm());
     let worst = off.fold(0.0, f64::max) / largest;
-    row("V9a", "largest error of displacements under a uniform strain, relative", worst, AtMost(tolerance));
+    row("uniform stress", "largest error of displacements under a uniform strain, relative", worst, AtMost(tolerance));
 }

@@ -1,4 +1,4 @@
-//! V15: a semicircular arch of rigid stones that cannot slide stands when its thickness over its mean radius exceeds
+//! A semicircular arch of rigid stones that cannot slide stands when its thickness over its mean radius exceeds
 //! 0.1075, and falls by hinges below (Milankovitch 1907; Heyman 1969).
 
 use std::fmt::Write;
@@ -55,6 +55,6 @@ fn a_semicircular_arch_stands_above_milankovitchs_thickness_and_falls_below_it()
     for (thickness, stands) in [(0.12, true), (0.1, false)] {
         let sunk = sinks(thickness);
         let answer = if stands { AtMost(1e-2) } else { AtLeast(0.1) };
-        row("V15", &format!("sinking of an arch of t/R = {thickness} within a second [m]"), sunk, answer);
+        row("masonry arch", &format!("sinking of an arch of t/R = {thickness} within a second [m]"), sunk, answer);
     }
 }

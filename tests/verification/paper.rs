@@ -1,4 +1,4 @@
-//! V2, V2b: the paper's ramps by its own scheme and by ours: what it prints, its trends in k_n, k_s and φ, and what is
+//! The paper's ramps by its own scheme and by ours: what it prints, its trends in k_n, k_s and φ, and what is
 //! left of its errors. `scenes/paper/run.py` does all of it at full length.
 
 use std::path::Path;
@@ -93,15 +93,15 @@ fn the_papers_scheme_errs_as_the_paper_says_over_the_normal_penalty() {
     }
     let fall = sizes.windows(2).take(4).map(|pair| pair[1].0 / pair[0].0).fold(0.0, f64::max);
     row(
-        "V2",
+        "the paper's ramps",
         "paper's scheme, Δt = 1e-4 s: error of the size at k_n over that at 10 k_n, 1e-1 to 1e-5 E, largest",
         fall,
         Answer::AtMost(0.5),
     );
-    row("V2", "… at k_n = 1e-5 E (paper: 1e-4)", sizes[4].0, Answer::AtMost(1e-4));
-    row("V2", "… at k_n = 1e-6 E (paper: 1e-3)", sizes[5].0, Answer::Within(1e-3, 0.25));
+    row("the paper's ramps", "… at k_n = 1e-5 E (paper: 1e-4)", sizes[4].0, Answer::AtMost(1e-4));
+    row("the paper's ramps", "… at k_n = 1e-6 E (paper: 1e-3)", sizes[5].0, Answer::Within(1e-3, 0.25));
     row(
-        "V2",
+        "the paper's ramps",
         "… energy gained at k_n = 1e-1 E, of the peak: why it bounces",
         sizes[0].1,
         Answer::AtLeast(0.5),
@@ -114,18 +114,18 @@ fn without_friction_our_error_is_a_hundredth_of_the_papers() {
         let values = [&NO_FRICTION[..], &["time.step_s=1e-4", integrator]].concat();
         let (slid, _) = ramp(45, &values);
         let what = format!("{integrator}: error along the slope, k_n = 1e-5 E, Δt = 1e-4 s (paper: 1e-4)");
-        row("V2", &what, all(&slid, |row| row.along), Answer::Near(0.0, 1e-6));
+        row("the paper's ramps", &what, all(&slid, |row| row.along), Answer::Near(0.0, 1e-6));
     }
     let stiff =
         ["time.step_s=1e-4", "time.end_s=0.03", "contact.penalty_pa=2e10", MIDPOINT, "time.contact_at=End()"];
     let (slid, gained) = ramp(45, &[&NO_FRICTION[..], &stiff].concat());
     row(
-        "V2",
+        "the paper's ramps",
         "contact at the end, k_n = 1e-1 E: error of the size, Δt = 1e-4 s",
         all(&slid, |row| row.size),
         Answer::Near(0.0, 1e-6),
     );
-    row("V2", "… energy gained, of the peak", gained, Answer::AtMost(1e-9));
+    row("the paper's ramps", "… energy gained, of the peak", gained, Answer::AtMost(1e-9));
 }
 
 #[test]
@@ -139,7 +139,7 @@ fn with_friction_our_error_at_the_end_is_a_tenth_of_the_papers() {
             let what = format!(
                 "{slope_deg}°, {body} prism, friction on velocities, the paper's Δt and k_n: largest error from 0.48 to 0.5 s (paper: {printed:e})"
             );
-            row("V2", &what, end, Answer::AtMost(part * printed));
+            row("the paper's ramps", &what, end, Answer::AtMost(part * printed));
         }
     }
 }
@@ -165,7 +165,7 @@ fn a_prism_that_slides_from_the_start_errs_by_a_tenth_of_the_paper_at_all_times(
             let what = format!(
                 "{slope_deg}°, {body} prism, … sliding from the start: largest error from 0.02 s on (paper: {printed:e})"
             );
-            row("V2", &what, all(&slid, |row| row.along), Answer::AtMost(part * printed));
+            row("the paper's ramps", &what, all(&slid, |row| row.along), Answer::AtMost(part * printed));
         }
     }
 }
@@ -181,7 +181,7 @@ fn steps_about_the_quick_one_on_the_ramp_of_30_reach_the_papers_error() {
     }
     let what =
         "30°, friction on velocities, Δt = 6.5e-4 to 4.2e-4 s: largest error from 0.1 s on (paper: 1e-2)";
-    row("V2", what, worst, Answer::AtMost(1e-2));
+    row("the paper's ramps", what, worst, Answer::AtMost(1e-2));
 }
 
 #[test]
@@ -204,7 +204,7 @@ fn from_rest_shear_springs_err_as_their_stick_stage_says() {
         let what = format!(
             "paper's scheme from rest, k_s = 1e-{exponent} E: error at 0.02 s, beside the spring's stick stage"
         );
-        row("V2b", &what, slid[0].along, Answer::Within(sprung, 0.25));
+        row("ramps with shear springs", &what, slid[0].along, Answer::Within(sprung, 0.25));
     }
 }
 
@@ -222,7 +222,7 @@ fn errors_swing_and_fade_at_every_angle_of_friction() {
         left = left.max(late / early);
     }
     row(
-        "V2",
+        "the paper's ramps",
         "φ = 0 to 35° at 45°: largest error from 0.25 s on over that to 0.05 s, worst angle",
         left,
         Answer::AtMost(0.1),

@@ -1,4 +1,4 @@
-//! V13: a slender block that rocks on its edges takes Housner's quarter period to come upright (Housner 1963).
+//! A slender block that rocks on its edges takes Housner's quarter period to come upright (Housner 1963).
 
 use ndda_mesh::{BlockId, Vec3};
 
@@ -65,11 +65,11 @@ fn a_rocking_block_takes_housners_quarter_period() {
         }
         let (housner, exact) = quarter_periods(part);
         row(
-            "V13",
+            "rocking block",
             &format!("quarter period from {part} α by the rigid block's equation [s]"),
             t,
             Within(exact, 1e-2),
         );
-        row("V13", &format!("quarter period from {part} α by Housner [s]"), t, Within(housner, 1e-2));
+        row("rocking block", &format!("quarter period from {part} α by Housner [s]"), t, Within(housner, 1e-2));
     }
 }

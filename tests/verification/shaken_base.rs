@@ -1,4 +1,4 @@
-//! V16: a block on a shaken base slides as Newmark's sliding block does (Newmark 1965): with the base while friction can
+//! A block on a shaken base slides as Newmark's sliding block does (Newmark 1965): with the base while friction can
 //! hold it, else decelerated by μ g relative to the ground.
 
 use std::f64::consts::PI;
@@ -78,7 +78,7 @@ fn a_block_on_a_shaken_base_slips_as_newmarks_sliding_block() {
             error = error.max((mean(BlockId(1)) - mean(BlockId(0)) - exact).abs());
         }
         row(
-            "V16",
+            "shaken base",
             &format!("largest error of the slip over the largest slip, {body} block"),
             error / largest,
             AtMost(5e-3),

@@ -1,4 +1,4 @@
-//! X12: a tall stack at rest stays at rest and weighs what it weighs. `NDDA_LARGE=1` makes it 100 slabs and 60 s.
+//! A tall stack at rest stays at rest and weighs what it weighs. `NDDA_LARGE=1` makes it 100 slabs and 60 s.
 
 use std::fmt::Write;
 
@@ -52,13 +52,13 @@ fn a_tall_stack_at_rest_neither_gains_energy_nor_loses_weight() {
     }
     let worst = simulation.invariants();
     let named = |what: &str| format!("{what}, {slabs} slabs for {end_s} s");
-    row("X12", &named("mean force on the base [N]"), force / steps as f64, Within(weight, 1e-3));
+    row("extreme: tall stack", &named("mean force on the base [N]"), force / steps as f64, Within(weight, 1e-3));
     row(
-        "X12",
+        "extreme: tall stack",
         &named("kinetic energy of the later half over the first"),
         kinetic[1] / kinetic[0],
         AtMost(2.0),
     );
-    row("X12", &named("kinetic energy over that in contact"), kinetic[0] / start.contact_j, AtMost(1e-4));
-    row("X12", &named("energy gained"), worst.energy_gain, AtMost(1e-4));
+    row("extreme: tall stack", &named("kinetic energy over that in contact"), kinetic[0] / start.contact_j, AtMost(1e-4));
+    row("extreme: tall stack", &named("energy gained"), worst.energy_gain, AtMost(1e-4));
 }

@@ -86,14 +86,14 @@ pub enum Verb {
     /// Run a scene over and over with other steps, integrators, meshes, …: error against time, as tables and pictures.
     ///
     /// Writes study.csv, study.json, time_to_error.csv and pictures; the same command goes on where it was interrupted.
-    /// How to write a study and read its results: docs/study.md.
+    /// How to write a study and read its results: docs/guide/study.md.
     Study(StudyArgs),
     /// Give every answer of a scene its error bar, from runs with steps that halve.
     ///
     /// Runs the scene with Δt, Δt/2 and Δt/4 (and with finer meshes and stiffer contact, if asked), and gives each monitor,
     /// the place and velocity of each block and the energies as value ± error: extrapolated where results converge, the
     /// spread where they do not; says when a motion is chaotic. Writes certificate.json, which `ndda report` shows, too.
-    /// The same command goes on where it was interrupted. What the bars mean: docs/certify.md.
+    /// The same command goes on where it was interrupted. What the bars mean: docs/guide/certify.md.
     Certify(CertifyArgs),
     /// Find the factor of safety: by how much joints may weaken, loads grow or gravity tilt before blocks move.
     ///
@@ -104,7 +104,7 @@ pub enum Verb {
     ///
     /// Tries settings by short runs that double their effort, judges them by the closed form of the scene or by certified
     /// runs of it, and prints the front of error against time, the settings as --set lines, and what was tried. Writes
-    /// tune.json. The same command goes on where it was interrupted. How it searches: docs/certify.md.
+    /// tune.json. The same command goes on where it was interrupted. How it searches: docs/guide/certify.md.
     Tune(TuneArgs),
     /// Draw columns of histories.
     #[cfg(feature = "plots")]
@@ -139,7 +139,7 @@ pub struct ReportArgs {
     /// Most frames to show, evenly spaced; 0 leaves the blocks out [default: all, or as many as a page can carry].
     #[arg(long, value_name = "N")]
     pub frames: Option<u32>,
-    /// Print JSON for programs, an object per line; see docs/json.md.
+    /// Print JSON for programs, an object per line; see docs/reference/json.md.
     #[arg(long)]
     pub json: bool,
 }
@@ -150,7 +150,7 @@ pub struct ReportArgs {
 pub struct ViewArgs {
     /// Output folder of a run.
     pub folder: PathBuf,
-    /// Print JSON for programs, an object per line; see docs/json.md.
+    /// Print JSON for programs, an object per line; see docs/reference/json.md.
     #[arg(long)]
     pub json: bool,
 }
@@ -178,7 +178,7 @@ pub struct PlotArgs {
     /// The picture, .svg or .png.
     #[arg(long, short, default_value = "plot.svg", value_name = "FILE")]
     pub out: PathBuf,
-    /// Print JSON for programs, an object per line; see docs/json.md.
+    /// Print JSON for programs, an object per line; see docs/reference/json.md.
     #[arg(long)]
     pub json: bool,
 }
@@ -205,7 +205,7 @@ pub struct MeshArgs {
     /// Write the blocks in other formats, too: `polyhedra` and `obj` are the convex parts of rock before they are filled.
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FORMAT")]
     pub also: Vec<Export>,
-    /// Print the report as JSON, one object on a line (see docs/json.md).
+    /// Print the report as JSON, one object on a line (see docs/reference/json.md).
     #[arg(long)]
     pub json: bool,
     /// Override a value of the scene by its path; may be repeated.
@@ -242,7 +242,7 @@ pub enum Fix {
 /// Which scene, and what is changed in it.
 #[derive(Debug, Default, Args)]
 pub struct SceneArgs {
-    /// Scene file (RON; see docs/scene.md).
+    /// Scene file (RON; see docs/reference/scene.md).
     #[arg(required_unless_present = "example")]
     pub scene: Option<PathBuf>,
     /// Take an example that is in the program instead of a file; without a name, list them.
@@ -287,7 +287,7 @@ pub struct HowArgs {
     /// Print all tables at the end: time by stage, every check, monitors and blocks. They are in run.log in any case.
     #[arg(long, short, conflicts_with_all = ["quiet", "json"])]
     pub verbose: bool,
-    /// Print events and results as JSON, one object per line (see docs/json.md).
+    /// Print events and results as JSON, one object per line (see docs/reference/json.md).
     #[arg(long)]
     pub json: bool,
 }
@@ -308,7 +308,7 @@ pub struct CheckArgs {
     /// The scene.
     #[command(flatten)]
     pub input: SceneArgs,
-    /// Print what is found as JSON, one object per line (see docs/json.md).
+    /// Print what is found as JSON, one object per line (see docs/reference/json.md).
     #[arg(long)]
     pub json: bool,
 }
@@ -338,7 +338,7 @@ pub struct NewArgs {
     /// Replace the file if it is there.
     #[arg(long)]
     pub force: bool,
-    /// Print JSON for programs, an object per line; see docs/json.md.
+    /// Print JSON for programs, an object per line; see docs/reference/json.md.
     #[arg(long)]
     pub json: bool,
 }
@@ -347,7 +347,7 @@ pub struct NewArgs {
 #[cfg(feature = "schema")]
 #[derive(Debug, Args)]
 pub struct SchemaArgs {
-    /// Print docs/scene.md instead.
+    /// Print docs/reference/scene.md instead.
     #[arg(long)]
     pub markdown: bool,
 }

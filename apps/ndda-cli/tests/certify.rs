@@ -1,4 +1,4 @@
-//! V24: error bars of `ndda certify` on the scenes of the seven studies, against runs of a thirty-second of the step and
+//! Error bars of `ndda certify` on the scenes of the seven studies, against runs of a thirty-second of the step and
 //! against closed forms: the true error lies within the bar in 95 % of the quantities, and the bar is at most ten times the
 //! true error in the median. `NDDA_LARGE=1` takes all seven, without it four.
 
@@ -187,15 +187,15 @@ fn true_errors_lie_within_the_bars_and_bars_are_tight_on_the_scenes_of_the_studi
         total.ratios.extend(found.ratios);
     }
     let part = total.within as f64 / total.all as f64;
-    row("V24", "quantities whose true error lies within the bar, part of all", part, Answer::AtLeast(0.95));
-    row("V24", "bar over true error, median", total.median(), Answer::AtMost(10.0));
+    row("error bars", "quantities whose true error lies within the bar, part of all", part, Answer::AtLeast(0.95));
+    row("error bars", "bar over true error, median", total.median(), Answer::AtMost(10.0));
 }
 
 /// Asserts that the bar of a quantity holds a value that is known.
 fn holds(certificate: &Certificate, name: &str, exact: f64, what: &str) {
     let quantity = certificate.quantity(name).unwrap();
     let (error, bar) = ((quantity.value - exact).abs(), quantity.error);
-    row("V24", what, error / bar, Answer::AtMost(1.0));
+    row("error bars", what, error / bar, Answer::AtMost(1.0));
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! With `--json`, standard output is lines of JSON as docs/json.md says, and nothing else.
+//! With `--json`, standard output is lines of JSON as docs/reference/json.md says, and nothing else.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

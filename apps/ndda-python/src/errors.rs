@@ -17,7 +17,7 @@ create_exception!(
     ndda,
     StopError,
     PyRuntimeError,
-    "A simulation that cannot go on without giving a wrong number.\n\n`code` is its section in docs/troubleshooting.md."
+    "A simulation that cannot go on without giving a wrong number.\n\n`code` is its section in docs/guide/troubleshooting.md."
 );
 
 /// A message as a dictionary.

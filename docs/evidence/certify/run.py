@@ -5,7 +5,7 @@
 
 NDDA is the program. Each scene is certified in FOLDER, and once more from a quarter of its step: the run of a sixteenth of the step counts as the truth. A
 row of FOLDER/results.csv is written as soon as a scene is done; a scene that has its row is not done again, so the same command goes on
-where it was interrupted. At the end the table of docs/certify.md is printed. Scenes that take long are shortened by the values of
+where it was interrupted. At the end the table of docs/guide/certify.md is printed. Scenes that take long are shortened by the values of
 SHORTENED, which the table repeats. Within: quantities whose true error at the end, and the largest over time, lies in the bar, of
 those that are compared; a difference that is rounding counts as within. Ratio: the median of bar over true error where that is more than rounding.
 """

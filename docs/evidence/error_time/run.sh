@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs the seven studies of error against time and keeps here what they find: every case (study.csv), the time to each error
-# (time_to_error.csv), the pictures; then writes the tables of docs/error-and-time.md. It goes on where it was interrupted.
+# (time_to_error.csv), the pictures; then writes the tables of docs/guide/error-and-time.md. It goes on where it was interrupted.
 # Usage: docs/evidence/error_time/run.sh [STUDY ...]
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
@@ -15,4 +15,4 @@ for study in "${studies[@]}"; do
     cp "out/${study}_study/$file" "$kept/$study/"
   done
 done
-python3 docs/error_and_time.py
+python3 docs/evidence/error_and_time.py

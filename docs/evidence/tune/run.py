@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How near `ndda tune` comes to the best of the seven studies: prints the table of docs/certify.md.
+"""How near `ndda tune` comes to the best of the seven studies: prints the table of docs/guide/certify.md.
 
   docs/evidence/tune/run.py NDDA [STUDY ...]
 

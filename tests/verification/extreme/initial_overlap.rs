@@ -1,4 +1,4 @@
-//! X9: blocks that overlap at the start are refused with the list of pairs; with `settle` they come to rest first.
+//! Blocks that overlap at the start are refused with the list of pairs; with `settle` they come to rest first.
 
 use ndda::Model;
 use ndda_solver::Settle;
@@ -26,7 +26,7 @@ fn blocks_that_overlap_at_the_start_are_refused_with_their_names_and_depth() {
         refused += u32::from(named);
     }
     row(
-        "X9",
+        "extreme: initial overlap",
         "overlaps of 1 to 90 %, of 7, refused with the pair",
         f64::from(refused),
         Answer::Near(7.0, 0.0),
@@ -48,7 +48,7 @@ fn blocks_that_overlap_come_to_rest_on_request() {
         let statics = 2650.0 * 9.8 / (2.0 * 2e8);
         let rests = -(lowest + ready.simulation.blocks().origin_m.z);
         let what = format!("depth at which a cube rests that began {depth} m deep [m]");
-        row("X9", &what, rests, Answer::Within(statics, 0.01));
+        row("extreme: initial overlap", &what, rests, Answer::Within(statics, 0.01));
     }
 }
 

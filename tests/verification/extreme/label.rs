@@ -1,4 +1,4 @@
-//! The label on a second problem (X1): an elastic block that bounces on a held one, over all h = ω_c Δt.
+//! The label on a second problem: an elastic block that bounces on a held one, over all h = ω_c Δt.
 
 use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
@@ -71,9 +71,9 @@ fn a_bounce_is_never_called_accurate_when_it_is_not() {
             too_modest += u32::from(!says && error <= SPEED && beyond <= 1.0);
         }
     }
-    row("X1", "bounces called accurate that are not", f64::from(claimed_wrongly), Answer::AtMost(0.0));
+    row("extreme: penalty, step and label", "bounces called accurate that are not", f64::from(claimed_wrongly), Answer::AtMost(0.0));
     row(
-        "X1",
+        "extreme: penalty, step and label",
         "bounces called inaccurate within the bound that are not",
         f64::from(too_modest),
         Answer::AtMost(0.0),

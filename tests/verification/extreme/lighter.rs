@@ -1,4 +1,4 @@
-//! X1: the error of a small block is not hidden by a large one (`small_beside_large.ron`), far away or hit by it.
+//! The error of a small block is not hidden by a large one (`small_beside_large.ron`), far away or hit by it.
 
 use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
@@ -57,7 +57,7 @@ fn a_small_block_answers_for_its_own_energy() {
     // paper's scheme stores a little more than the cube brought.
     let more = (leaves * leaves - 25.0) / (5.0 * leaves);
     row(
-        "X1",
+        "extreme: penalty, step and label",
         "energy that a bounce gives a cube beside a block of 2e6 times its mass",
         gain,
         Within(more, 0.1),
@@ -84,11 +84,11 @@ fn whatever_the_masses_of_two_blocks_a_wrong_meeting_is_not_called_accurate() {
         }
     }
     row(
-        "X1",
+        "extreme: penalty, step and label",
         "meetings of unlike blocks called accurate that are not",
         f64::from(claimed_wrongly),
         AtMost(0.0),
     );
-    row("X1", "meetings of unlike blocks called inaccurate that are not", f64::from(too_modest), AtMost(0.0));
-    row("X1", "meetings of unlike blocks called accurate, of 40", f64::from(accurate), AtLeast(20.0));
+    row("extreme: penalty, step and label", "meetings of unlike blocks called inaccurate that are not", f64::from(too_modest), AtMost(0.0));
+    row("extreme: penalty, step and label", "meetings of unlike blocks called accurate, of 40", f64::from(accurate), AtLeast(20.0));
 }

@@ -1,4 +1,4 @@
-//! X15: rock that is nearly incompressible is warned of, and incompressible rock refused. How much a cantilever loses is measured by
+//! Rock that is nearly incompressible is warned of, and incompressible rock refused. How much a cantilever loses is measured by
 //! tests/verification/cantilever.rs.
 
 use std::path::Path;

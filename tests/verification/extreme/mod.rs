@@ -1,4 +1,4 @@
-//! Extreme cases (X1 to X22): each runs a scene of `scenes/extreme/`, whose header says what is expected. The promise: a bounded,
+//! Extreme cases: each runs a scene of `scenes/extreme/`, whose header says what is expected. The promise: a bounded,
 //! reported answer, or a clean stop that names the cause; a run that is wrong and calls itself accurate is the only failure.
 
 mod concave;

@@ -1,4 +1,4 @@
-//! X17: a plate on a ramp with μ = tan α exactly, none, and a thousand.
+//! A plate on a ramp with μ = tan α exactly, none, and a thousand.
 
 use ndda::Model;
 use ndda_mesh::Vec3;
@@ -27,7 +27,7 @@ fn a_plate_at_the_limit_of_friction_and_far_beyond_it_does_not_creep() {
         let early = second(&mut ready);
         advance(&mut ready.simulation, 8000);
         let rate = (second(&mut ready) - early).norm() / 9.0;
-        row("X17", &format!("creep at μ = {name}, lengths a second"), rate, AtMost(1e-6));
+        row("extreme: friction at its limit", &format!("creep at μ = {name}, lengths a second"), rate, AtMost(1e-6));
     }
 }
 
@@ -36,7 +36,7 @@ fn a_plate_without_friction_slides_as_it_falls() {
     let mut ready = extreme("ramp_at_its_limit", &["contact.friction.friction_deg=0", "settle=None"]);
     advance(&mut ready.simulation, 500);
     let slide = ready.monitors[0].displacement(&ready.simulation).norm();
-    row("X17", "slide at μ = 0 within 0.5 s [m]", slide, Within(0.5 * 9.8 * 0.5 * 0.25, 1e-4));
+    row("extreme: friction at its limit", "slide at μ = 0 within 0.5 s [m]", slide, Within(0.5 * 9.8 * 0.5 * 0.25, 1e-4));
 }
 
 /// The plate as three equations of motion: along the ramp, off it, and its rocking, on a bed of springs that only push, with Coulomb's friction on
@@ -104,6 +104,6 @@ fn a_plate_at_its_limit_that_bounces_slides_as_three_equations_say() {
         }
         let slide = ready.monitors[0].displacement(&ready.simulation).dot(&along);
         let what = format!("slide of a bouncing plate at its limit of friction within {until_s} s [m]");
-        row("X17", &what, slide, Within(planar.along[0], tolerance));
+        row("extreme: friction at its limit", &what, slide, Within(planar.along[0], tolerance));
     }
 }

@@ -1,4 +1,4 @@
-//! The same scene at any size, in other units (X6) and anywhere (X7).
+//! The same scene at any size, in other units and anywhere.
 
 use ndda::Model;
 use ndda_io::code::Code;
@@ -64,11 +64,11 @@ fn a_collision_is_the_same_at_any_size_and_in_any_units() {
     let size = |l: f64| Units { length: l, time: l, mass: l.powi(3) };
     let units = Units { length: 1e3, time: 1.0, mass: 1e-3 };
     let cases = [
-        ("X6", "1 mm", size(1e-3)),
-        ("V21", "0.1 m", size(0.1)),
-        ("V21", "10 m", size(10.0)),
-        ("X6", "1 km", size(1e3)),
-        ("X6", "mm, t, s", units),
+        ("extreme: units and sizes", "1 mm", size(1e-3)),
+        ("far blocks, resumed runs, rest", "0.1 m", size(0.1)),
+        ("far blocks, resumed runs, rest", "10 m", size(10.0)),
+        ("extreme: units and sizes", "1 km", size(1e3)),
+        ("extreme: units and sizes", "mm, t, s", units),
     ];
     for (id, name, other) in cases {
         let what = format!("difference of a collision at 1 m and at {name}, relative");
@@ -91,7 +91,7 @@ fn a_collision_in_map_coordinates_is_the_one_at_the_origin_until_a_warning_says_
         let ready = moved(far);
         assert!(ready.loaded.warnings.is_empty(), "{:?}", ready.loaded.warnings);
         let what = format!("difference of a collision here and {far:e} m away, relative");
-        row("X7", &what, difference(&here, &run(ready)), AtMost(1e-6));
+        row("extreme: map coordinates", &what, difference(&here, &run(ready)), AtMost(1e-6));
     }
     let warnings = moved(1e9).loaded.warnings;
     assert!(

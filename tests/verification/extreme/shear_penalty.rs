@@ -1,4 +1,4 @@
-//! X2: shear penalties from 1e-3 to 1 E (the paper's Figs 8 and 9): the error against a slide without a spring falls as the
+//! Shear penalties from 1e-3 to 1 E (the paper's Figs 8 and 9): the error against a slide without a spring falls as the
 //! spring stiffens, and is what the spring's own closed form says.
 
 use super::labelled::{summary_of, word};
@@ -25,6 +25,6 @@ fn stiffer_shear_springs_slide_more_as_if_there_were_none() {
         assert!(error("error_end") < last, "k_s = {ratio} E: {} after {last}", error("error_end"));
         last = error("error_end");
         let what = format!("error against the spring's closed form, k_s = {ratio} E");
-        row("X2", &what, error("stick_stage_end"), Answer::AtMost(1e-3));
+        row("extreme: shear penalty", &what, error("stick_stage_end"), Answer::AtMost(1e-3));
     }
 }

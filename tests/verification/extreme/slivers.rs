@@ -1,4 +1,4 @@
-//! X5: elements a thousand to a million times as wide as high. Random ones against exact arithmetic are the families
+//! Elements a thousand to a million times as wide as high. Random ones against exact arithmetic are the families
 //! `sliver`, `two slivers` and `sliver along a face` of crates/ndda-contact/tests/exact/main.rs.
 
 use ndda_contact::integration::tet_overlap;
@@ -28,7 +28,7 @@ fn a_plane_cuts_off_slivers_what_their_corners_say() {
             worst = worst.max((shared / volume - (1.0 - part).powi(3)).abs());
         }
     }
-    row("X5", "volume cut off slivers of aspect 1e3 to 1e6, error over theirs", worst, AtMost(1e-9));
+    row("extreme: slivers", "volume cut off slivers of aspect 1e3 to 1e6, error over theirs", worst, AtMost(1e-9));
 }
 
 #[test]
@@ -47,7 +47,7 @@ fn a_sheet_of_slivers_bears_a_block() {
         }
         let weight = 2500.0 * 9.8 * (1.0 + thickness.parse::<f64>().unwrap());
         row(
-            "X5",
+            "extreme: slivers",
             &format!("force under a sheet of {thickness} m and a block [N]"),
             force,
             Within(weight, 1e-3),

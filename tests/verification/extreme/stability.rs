@@ -1,4 +1,4 @@
-//! X1: penalties from 1e-6 to 100 E and steps from 1e-7 to 0.1 s, for every integrator: the label agrees with the closed form.
+//! Penalties from 1e-6 to 100 E and steps from 1e-7 to 0.1 s, for every integrator: the label agrees with the closed form.
 //!
 //! Here the corners and both sides of the borders between accurate, inaccurate and stopped; `NDDA_LARGE=1` runs all 252
 //! cells, which `docs/evidence/stability/map.py` draws.
@@ -48,5 +48,5 @@ fn a_run_knows_whether_it_is_accurate_whatever_the_penalty_and_the_step() {
     }
     assert!(words.iter().all(|n| *n > 0), "every label should be met: {words:?}");
     let what = format!("cells of the stability map, of {count}, whose label and closed form differ");
-    row("X1", &what, f64::from(differ), Answer::AtMost(0.0));
+    row("extreme: penalty, step and label", &what, f64::from(differ), Answer::AtMost(0.0));
 }

@@ -1,4 +1,4 @@
-//! Faces that coincide (X10), corners and edges that only just meet (X11). Zero overlap that gives exactly nothing, and the
+//! Faces that coincide, corners and edges that only just meet. Zero overlap that gives exactly nothing, and the
 //! forces of concave blocks, are tested in crates/ndda-contact/src/potential_contact/contact.rs; any bits in tests/never_panics.rs there.
 
 use nalgebra::Rotation3;
@@ -19,7 +19,7 @@ fn cubes_face_to_face_stay_where_they_are() {
             extreme("coincident", &bodies.iter().map(String::as_str).collect::<Vec<_>>()).simulation;
         advance(&mut simulation, 1000);
         row(
-            "X10",
+            "extreme: coincident faces",
             &format!("motion of eight {body} cubes face to face in 1000 steps [m]"),
             farthest(&simulation),
             AtMost(1e-12),
@@ -67,7 +67,7 @@ fn a_pair_of_cubes_feels_the_same_force_however_it_is_turned() {
             force(lower.clone().placed(&turn, &Vec3::zeros()), upper.clone().placed(&turn, &Vec3::zeros()));
         spread = spread.max((turned - turn * still).norm() / still.norm());
     }
-    row("X10", "spread of the force over the 24 turns of a cube, relative", spread, AtMost(1e-12));
+    row("extreme: coincident faces", "spread of the force over the 24 turns of a cube, relative", spread, AtMost(1e-12));
 }
 
 /// A unit cube with a corner at the origin, turned so that the directions `from` of it point along z.
@@ -102,7 +102,7 @@ fn corners_and_edges_meet_without_a_jump() {
             "{name}: {forces:?}"
         );
         let order = (at(-1e-3) / at(-5e-4)).log2();
-        row("X11", &format!("{name}: power of the depth that the force goes with"), order, Near(3.0, 0.05));
+        row("extreme: corners and edges", &format!("{name}: power of the depth that the force goes with"), order, Near(3.0, 0.05));
     }
 }
 
@@ -119,13 +119,13 @@ fn corners_that_collide_keep_momentum_and_energy() {
         let worst = simulation.invariants();
         assert!(worst.contact_pairs_max > 0, "they do not meet");
         row(
-            "X11",
+            "extreme: corners and edges",
             &format!("momentum lost by corners that meet, gap {gap} m"),
             worst.linear_momentum,
             AtMost(1e-12),
         );
         row(
-            "X11",
+            "extreme: corners and edges",
             &format!("energy gained by corners that meet, gap {gap} m"),
             worst.energy_gain,
             AtMost(1e-2),
@@ -151,5 +151,5 @@ fn no_glancing_pair_is_not_a_number() {
             wrong += u32::from(!forces.nodal_n.iter().flatten().all(|f| f.is_finite()));
         }
     }
-    row("X11", &format!("pairs of {cases} that glance and are not a number"), f64::from(wrong), AtMost(0.0));
+    row("extreme: corners and edges", &format!("pairs of {cases} that glance and are not a number"), f64::from(wrong), AtMost(0.0));
 }

@@ -1,4 +1,4 @@
-//! X8: steps that take a cube 0.1 to 100 times the height of a plate's tetrahedra. What passes through is flagged, and with
+//! Steps that take a cube 0.1 to 100 times the height of a plate's tetrahedra. What passes through is flagged, and with
 //! steps that are controlled nothing does.
 
 use ndda::study::case::cases;
@@ -23,9 +23,9 @@ fn whatever_jumps_through_a_plate_is_flagged_or_prevented() {
     }
     assert!(through > 2, "only {through} of the fixed steps are too long: the scene is too easy");
     let what = "of 7 collisions with a thin plate, those right with controlled steps";
-    row("X8", what, f64::from(prevented), Answer::AtLeast(5.0));
+    row("extreme: long steps", what, f64::from(prevented), Answer::AtLeast(5.0));
     row(
-        "X8",
+        "extreme: long steps",
         "collisions with a thin plate whose label and closed form differ",
         f64::from(differ),
         Answer::AtMost(0.0),

@@ -1,4 +1,4 @@
-//! X16: how far a block turns in a step (`fast_spin.ron`): against ω t about a principal axis, and against Euler's equations.
+//! How far a block turns in a step (`fast_spin.ron`): against ω t about a principal axis, and against Euler's equations.
 
 use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
@@ -77,7 +77,7 @@ fn a_rigid_block_turns_about_its_axis_by_its_spin_however_long_a_step_is() {
     for angle in [0.01, 0.5, 2.5] {
         let simulation = turn("Rigid", "Midpoint(theta: 0.5)", &Vec3::z(), angle, 50.0).unwrap();
         let (error, says) = judged(&simulation, &Vec3::z());
-        row("X16", &format!("velocities after 50 rad in steps of {angle} rad, rigid"), error, AtMost(1e-8));
+        row("extreme: fast spin", &format!("velocities after 50 rad in steps of {angle} rad, rigid"), error, AtMost(1e-8));
         assert!(says, "{}", verdict::label(&simulation, None).reasons.join(", "));
     }
     let summary = summary_of("extreme/fast_spin.ron", &[]);
@@ -87,7 +87,7 @@ fn a_rigid_block_turns_about_its_axis_by_its_spin_however_long_a_step_is() {
     let exact = [0.5 * (cos - sin) - 0.5, 0.5 * (sin + cos) - 0.5];
     let place = |i: usize| summary["monitors"]["corner"]["displacement"][i].as_f64().unwrap();
     let off = (place(0) - exact[0]).hypot(place(1) - exact[1]);
-    row("X16", "a corner after 50 rad in steps of half a radian [m]", off, AtMost(1e-9));
+    row("extreme: fast spin", "a corner after 50 rad in steps of half a radian [m]", off, AtMost(1e-9));
     assert_eq!(word(&summary), "accurate");
 }
 
@@ -110,6 +110,6 @@ fn a_block_that_turns_too_far_in_a_step_says_so() {
         }
     }
     assert!(words.iter().all(|n| *n > 5), "both labels should be met: {words:?}");
-    row("X16", "turns called accurate that are not", f64::from(claimed_wrongly), AtMost(0.0));
-    row("X16", "turns called inaccurate that are not by a tenth of that", f64::from(too_modest), AtMost(0.0));
+    row("extreme: fast spin", "turns called accurate that are not", f64::from(claimed_wrongly), AtMost(0.0));
+    row("extreme: fast spin", "turns called inaccurate that are not by a tenth of that", f64::from(too_modest), AtMost(0.0));
 }

@@ -1,4 +1,4 @@
-//! X1: vibrations that steps do not resolve (`coarse_vibration.ron`), against that of a mass on springs.
+//! Vibrations that steps do not resolve (`coarse_vibration.ron`), against that of a mass on springs.
 
 use ndda::judge::verdict;
 use ndda_io::summary::LabelWord;
@@ -55,8 +55,8 @@ fn a_vibration_that_steps_do_not_resolve_says_so() {
             too_modest += u32::from(!says && error < 0.5 * SPEED);
         }
     }
-    row("X1", "vibrations called accurate that are not", f64::from(claimed_wrongly), AtMost(0.0));
-    row("X1", "vibrations called inaccurate that are not by half", f64::from(too_modest), AtMost(0.0));
+    row("extreme: penalty, step and label", "vibrations called accurate that are not", f64::from(claimed_wrongly), AtMost(0.0));
+    row("extreme: penalty, step and label", "vibrations called inaccurate that are not by half", f64::from(too_modest), AtMost(0.0));
 }
 
 #[test]

@@ -16,7 +16,7 @@ pub struct StudyArgs {
     /// Part of a study.
     #[command(subcommand)]
     pub part: Option<StudyPart>,
-    /// Study file (RON; see docs/study.md).
+    /// Study file (RON; see docs/guide/study.md).
     #[arg(required = true)]
     pub study: Option<PathBuf>,
     /// Where and how.

@@ -2,7 +2,7 @@
 
 use std::process::Command;
 
-/// Exit codes, as docs/scene.md lists them.
+/// Exit codes, as docs/reference/scene.md lists them.
 pub mod exit {
     pub const DONE: i32 = 0;
     pub const BAD_INPUT: i32 = 3;

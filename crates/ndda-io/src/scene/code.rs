@@ -1,4 +1,4 @@
-//! Codes of messages: `error[out-of-range]` is a section of `docs/troubleshooting.md`.
+//! Codes of messages: `error[out-of-range]` is a section of `docs/guide/troubleshooting.md`.
 
 use std::fmt;
 

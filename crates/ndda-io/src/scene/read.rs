@@ -203,7 +203,7 @@ fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: &Node) -> D
             let path = tree.path_at(span.start);
             let message = format!("the field `{field}`{} is missing", of(outer));
             Diagnostic::error(Code::MissingField, path, message, Some(span))
-                .with_help(format!("write `{field}: …,` (see docs/scene.md)"))
+                .with_help(format!("write `{field}: …,` (see docs/reference/scene.md)"))
         }
         RonError::DuplicateStructField { field, outer } => {
             at(Code::DuplicateField, format!("the field `{field}`{} is written twice", of(outer)))
@@ -213,7 +213,7 @@ fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: &Node) -> D
             .with_help("a closing bracket is missing, or the file was cut off"),
         RonError::InvalidValueForType { expected, found } => {
             at(Code::WrongType, format!("expected {expected}, found {found}"))
-                .with_help("see docs/scene.md for this field")
+                .with_help("see docs/reference/scene.md for this field")
         }
         RonError::ExpectedComma => {
             let (kind, message, help) = comma(text, start);
@@ -279,8 +279,8 @@ fn grammar(error: &RonError) -> (Code, &'static str) {
             Code::WrongType,
             "write a number, such as 1.5 or 20e9, or one with its unit, such as Megapascal(20)",
         ),
-        RonError::ExpectedIdentifier => (Code::WrongType, "see docs/scene.md for the choices of this field"),
-        RonError::ExpectedDifferentLength { .. } => (Code::WrongType, "see docs/scene.md for this field"),
+        RonError::ExpectedIdentifier => (Code::WrongType, "see docs/reference/scene.md for the choices of this field"),
+        RonError::ExpectedDifferentLength { .. } => (Code::WrongType, "see docs/reference/scene.md for this field"),
         RonError::ExpectedArray => (Code::WrongType, "a list is written between [ and ]"),
         RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_) => {
             (Code::WrongType, "structs and vectors are written between ( and )")
@@ -290,7 +290,7 @@ fn grammar(error: &RonError) -> (Code, &'static str) {
         }
         RonError::UnclosedBlockComment => (Code::Truncated, "close it with */"),
         RonError::ExpectedStringEnd => (Code::Truncated, "close the text with a quote"),
-        _ => (Code::Syntax, "see docs/scene.md for how scenes are written"),
+        _ => (Code::Syntax, "see docs/reference/scene.md for how scenes are written"),
     }
 }
 

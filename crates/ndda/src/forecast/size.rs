@@ -9,7 +9,7 @@
 //!
 //! (Santaló 1976, §III.16), and a block has 8 corners and 6 faces. Voronoi cells have 15.5 faces and 27 corners (Meijering 1953).
 //! Bytes are measured: `ndda check` on boxes of 20³ to 60³ cells, grids of 12³ and 24³ blocks, 500 and 2000 cells, under
-//! `/usr/bin/time -f %M`; see `docs/limits.md`.
+//! `/usr/bin/time -f %M`; see `docs/reference/limits.md`.
 
 use ndda_io::scene::{
     Axis, Body, Contact, Discontinuity, Domain, Fill, Grading, Pattern, Potential, Rock, Scene, Shape,

@@ -1,4 +1,4 @@
-//! `docs/scene.md` from the schema.
+//! `docs/reference/scene.md` from the schema.
 
 use std::fmt::Write;
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Writes the tables of docs/performance.md from what is kept of measurements.
+"""Writes the tables of docs/verification/performance.md from what is kept of measurements.
 
-  docs/performance.py                             from docs/evidence/{performance,scale}/*.csv and benches/figures.json
-  docs/performance.py --measure limits ranks      runs these benches of the workspace first, and keeps what they print
-  docs/performance.py --check                     fails where the page does not say what is kept
+  docs/evidence/performance.py                             from docs/evidence/{performance,scale}/*.csv and benches/figures.json
+  docs/evidence/performance.py --measure limits ranks      runs these benches of the workspace first, and keeps what they print
+  docs/evidence/performance.py --check                     fails where the page does not say what is kept
 
 The benches print lines of tab-separated cells: the name of a table, then its header, then its rows.
 """
@@ -16,10 +16,10 @@ from pathlib import Path
 
 from error_and_time import between, read, table
 
-ROOT = Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "performance.md"
+ROOT = Path(__file__).resolve().parents[2]
+PAGE = ROOT / "docs" / "verification" / "performance.md"
 KEPT = ROOT / "docs" / "evidence" / "performance"
-sys.path[:0] = [str(ROOT / "benches"), str(ROOT / "docs" / "evidence")]
+sys.path.insert(0, str(ROOT / "benches"))
 import scale
 import track
 
@@ -104,7 +104,7 @@ def main():
     now = PAGE.read_text(encoding="utf-8")
     made = written(now)
     if options.check:
-        return None if made == now else "docs/performance.md is out of date: docs/performance.py writes it anew"
+        return None if made == now else "docs/verification/performance.md is out of date: docs/evidence/performance.py writes it anew"
     PAGE.write_text(made, encoding="utf-8")
     return None
 

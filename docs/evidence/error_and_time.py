@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the tables of docs/error-and-time.md from the results kept in docs/evidence/error_time.
+"""Writes the tables of docs/guide/error-and-time.md from the results kept in docs/evidence/error_time.
 
 Usage: error_and_time.py      (after docs/evidence/error_time/run.sh, which calls it)
 """
@@ -8,9 +8,9 @@ import csv
 import re
 from pathlib import Path
 
-DOCS = Path(__file__).resolve().parent
+DOCS = Path(__file__).resolve().parent.parent
 KEPT = DOCS / "evidence" / "error_time"
-PAGE = DOCS / "error-and-time.md"
+PAGE = DOCS / "guide" / "error-and-time.md"
 BEGIN, END = "<!-- tables of {}: begin -->", "<!-- tables of {}: end -->"
 
 

@@ -5,7 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
+ROOT = Path(__file__).resolve().parents[2]
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 # The first is that of .ci/run, which has it already.
 PLACES = [TARGET / "ci-venv" / "bin" / "python", TARGET / "plots-venv" / "bin" / "python"]

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The figures of docs/verification.md, from the lines that tests leave with `evidence::row`.
+"""The figures of docs/verification/figures.md, from the lines that tests leave with `evidence::row`.
 
-  docs/verification.py [LOG]            writes the tables anew
-  docs/verification.py --check [LOG]    fails, naming the rows, where tables and figures disagree
+  docs/evidence/figures.py [LOG]            writes the tables anew
+  docs/evidence/figures.py --check [LOG]    fails, naming the rows, where tables and figures disagree
 
 LOG holds such lines, among others, as NDDA_EVIDENCE=LOG cargo test leaves them. Without it the tests of TESTS run.
 """
@@ -16,8 +16,8 @@ from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-MANUAL = ROOT / "docs" / "verification.md"
+ROOT = Path(__file__).resolve().parents[2]
+MANUAL = ROOT / "docs" / "verification" / "figures.md"
 BEGIN, END = "<!-- figures: begin -->", "<!-- figures: end -->"
 # Test binaries whose rows are in the manual.
 TESTS = ["verification", "scenes", "certify"]
@@ -63,12 +63,12 @@ def main(arguments):
     if check:
         faults = disagreements(from_manual(between_markers(text)[1]), rows)
         if faults:
-            sys.exit("\n".join(faults) + "\ndocs/verification.md is out of date: docs/verification.py writes it anew")
-        print(f"docs/verification.md says what {len(rows)} figures say")
+            sys.exit("\n".join(faults) + "\ndocs/verification/figures.md is out of date: docs/evidence/figures.py writes it anew")
+        print(f"docs/verification/figures.md says what {len(rows)} figures say")
     else:
         before, _, after = between_markers(text)
         MANUAL.write_text(f"{before}\n\n{tables(rows)}\n{after}", encoding="utf-8")
-        print(f"{len(rows)} figures are written to docs/verification.md")
+        print(f"{len(rows)} figures are written to docs/verification/figures.md")
 
 
 def run_tests():
@@ -90,7 +90,7 @@ def from_log(text):
         _, id_, place, what, measured, answer, error = fields
         file, _, number = place.partition(":")
         answer, tolerance = split_answer(answer)
-        row = Row(id_, file, what.replace("|", "∣"), plain(measured), answer, tolerance, plain(error))
+        row = Row(heading(id_), file, what.replace("|", "∣"), plain(measured), answer, tolerance, plain(error))
         found.add((natural(id_), file, int(number or 0), natural(what), row))
     return [entry[-1] for entry in sorted(found, key=lambda entry: entry[:-1] + (entry[-1].measured,))]
 
@@ -111,20 +111,24 @@ def plain(number):
 
 
 def natural(text):
-    """Sorts V9 before V10, and numbers before words."""
+    """Sorts 9 before 10, and numbers before words."""
     parts = re.findall(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?|\D+", text)
     return tuple((0, float(part), "") if part[0].isdecimal() else (1, 0.0, part) for part in parts)
 
 
 def title(file):
-    """The first paragraph of a test file's header, without the id in front of it."""
+    """The first paragraph of a test file's header."""
     header = []
     for line in (ROOT / file).read_text(encoding="utf-8").splitlines():
         if not line.startswith("//! "):
             break
         header.append(line.removeprefix("//! ").strip())
-    text = re.sub(r"^[VX]\d+\w?: ", "", " ".join(header))
+    text = " ".join(header)
     return text[:1].upper() + text[1:]
+
+
+def heading(id_):
+    return id_[:1].upper() + id_[1:]
 
 
 def tables(rows):
@@ -135,7 +139,7 @@ def tables(rows):
     text, last = [], None
     for (id_, file), members in groups.items():
         if id_ != last:
-            text.append(f"### {id_}\n")
+            text.append(f"## {id_}\n")
             last = id_
         text.append(f"`{file}`: {title(file)}\n\n{HEADER}")
         text.extend(row.cells() for row in members)
@@ -148,15 +152,15 @@ def between_markers(text):
     before, begin, rest = text.partition(BEGIN)
     between, end, after = rest.partition(END)
     if not (begin and end):
-        sys.exit(f"docs/verification.md has no {BEGIN} … {END}")
+        sys.exit(f"docs/verification/figures.md has no {BEGIN} … {END}")
     return before + begin, between, end + after
 
 
 def from_manual(text):
     rows, id_, file = [], "", ""
     for line in text.splitlines():
-        if line.startswith("### "):
-            id_ = line.removeprefix("### ")
+        if line.startswith("## "):
+            id_ = line.removeprefix("## ")
         elif line.startswith("`"):
             file = line.split("`")[1]
         elif line.startswith("| ") and not HEADER.startswith(line):
