@@ -13,6 +13,7 @@ mod contact_patch;
 mod conveyor;
 mod damping;
 mod damping_beyond_the_step;
+mod driven_blocks;
 mod elastic_waves;
 mod end_contact;
 mod evidence;

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use ndda::driver::{Driver, DriverSnapshot};
+use ndda::driver::{BlockId, Driver, DriverSnapshot, Vec3};
 use ndda_solver::{Sample, StepError};
 use numpy::{PyArray2, PyReadwriteArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -187,6 +187,26 @@ impl Simulation {
     #[getter]
     fn state_crc32(&self) -> String {
         self.driver.state_crc32()
+    }
+
+    /// Lets a force act at the centre of mass of a block from now on.
+    fn _set_force(&mut self, py: Python<'_>, block: u32, force_n: [f64; 3]) -> PyResult<()> {
+        self.usable(py)?;
+        let done = self.driver.set_force(BlockId(block), Vec3::from(force_n));
+        done.map_err(|error| PyValueError::new_err(error.to_string()))
+    }
+
+    /// Gives a block a velocity and a spin now.
+    fn _set_velocity(
+        &mut self,
+        py: Python<'_>,
+        block: u32,
+        velocity_m_s: [f64; 3],
+        spin_rad_s: [f64; 3],
+    ) -> PyResult<()> {
+        self.usable(py)?;
+        let done = self.driver.set_velocity(BlockId(block), Vec3::from(velocity_m_s), Vec3::from(spin_rad_s));
+        done.map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
     /// A copy of all that changes.

@@ -46,6 +46,7 @@ pub use linear::supernodal::{Supernodal, SupernodalFactor};
 pub use sink::{RunError, Sink, SinkError, View, resume, run};
 pub use step::Simulation;
 pub use step::control::AutoStep;
+pub use step::drive::DriveError;
 pub use step::implicit_contact::ImplicitContact;
 pub use step::plan::{FactorPlan, KindPlan, Plan};
 pub use step::report::{Iterations, StageTimes, StepCounts, StepReport};

@@ -3,7 +3,9 @@
 use ndda_contact::FacetContact;
 use ndda_io::checkpoint;
 use ndda_io::summary::Label;
-use ndda_solver::{RestoreError, Sample, Settle, Simulation, Snapshot, StepError};
+use ndda_solver::{DriveError, RestoreError, Sample, Settle, Simulation, Snapshot, StepError};
+
+pub use ndda_mesh::{BlockId, Vec3};
 
 use crate::Model;
 use crate::judge::verdict;
@@ -145,6 +147,27 @@ impl Driver {
         contact_rows(&self.model.simulation, &mut self.facets)
     }
 
+    /// Lets a force [N] act at a block's centre of mass from now on ([`Simulation::set_force`]).
+    ///
+    /// # Errors
+    /// [`DriveError`]; nothing has changed then.
+    pub fn set_force(&mut self, block: BlockId, force_n: Vec3) -> Result<(), DriveError> {
+        self.model.simulation.set_force(block, force_n)
+    }
+
+    /// Gives a block a velocity [m/s] and a spin [rad/s] now ([`Simulation::set_velocity`]).
+    ///
+    /// # Errors
+    /// [`DriveError`]; nothing has changed then.
+    pub fn set_velocity(
+        &mut self,
+        block: BlockId,
+        velocity_m_s: Vec3,
+        spin_rad_s: Vec3,
+    ) -> Result<(), DriveError> {
+        self.model.simulation.set_velocity(block, velocity_m_s, spin_rad_s)
+    }
+
     /// A copy of all that changes.
     pub fn snapshot(&self) -> DriverSnapshot {
         let scene = self.model.loaded.text.clone();
@@ -212,6 +235,21 @@ mod tests {
         }
         assert_eq!(driver.state_crc32(), outcome.summary.state_crc32);
         assert_eq!(driver.label(), outcome.summary.label);
+    }
+
+    #[test]
+    fn a_cube_that_is_struck_and_pushed_stays_accurate() {
+        let mut driver = Driver::new(bounce()).unwrap();
+        driver.step(100).unwrap();
+        let cube = driver.simulation().blocks().ids().find(|&id| {
+            let mut other = Driver::new(bounce()).unwrap();
+            other.set_force(id, Vec3::zeros()).is_ok()
+        });
+        let cube = cube.unwrap();
+        driver.set_velocity(cube, Vec3::new(0.1, 0.0, -0.5), Vec3::new(0.0, 0.2, 0.0)).unwrap();
+        driver.set_force(cube, Vec3::new(1.0, 0.0, 0.0)).unwrap();
+        driver.step(300).unwrap();
+        assert_eq!(driver.label().reasons, Vec::<String>::new());
     }
 
     #[test]

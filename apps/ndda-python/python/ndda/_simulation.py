@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from fnmatch import fnmatchcase
 from typing import Any
 
@@ -187,8 +187,78 @@ class Simulation(_core.Simulation):
         [0, 1, 2, 3, 4, 5, 6, 7]
         """
         starts = self._node_starts()
+        found = self._blocks(pattern)
+        return np.concatenate([np.arange(starts[i], starts[i + 1], dtype=np.int64) for i in found])
+
+    def set_force(self, pattern: str, force: Sequence[float]) -> None:
+        """Let a force act at the centre of mass of blocks from now on.
+
+        Its impulse and its work are in the balances of momentum and energy.
+
+        Parameters
+        ----------
+        pattern : str
+            Name of a block, or a pattern such as ``"cube_*"``.
+        force : sequence of 3 floats
+            Force on each block [N], beside the loads of the scene, until another one is set; zeros take it away.
+
+        Raises
+        ------
+        KeyError
+            No block has such a name.
+        ValueError
+            A block is fixed, or the force is not finite.
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.set_force("block", (0, 0, 2600 * 9.81))
+        >>> simulation.run()
+        >>> round(float(simulation.displacement[0, 2]), 9) + 0.0
+        0.0
+        """
+        for block in self._blocks(pattern):
+            self._set_force(block, force)
+
+    def set_velocity(
+        self, pattern: str, velocity: Sequence[float], spin: Sequence[float] = (0.0, 0.0, 0.0)
+    ) -> None:
+        """Give blocks a velocity now, as a blow would.
+
+        The impulse and the change of kinetic energy are in the balances of momentum and energy.
+
+        Parameters
+        ----------
+        pattern : str
+            Name of a block, or a pattern such as ``"cube_*"``.
+        velocity : sequence of 3 floats
+            Velocity of the centre of mass of each block [m/s].
+        spin : sequence of 3 floats
+            Angular velocity about it [rad/s].
+
+        Raises
+        ------
+        KeyError
+            No block has such a name.
+        ValueError
+            A block is fixed, its supports prescribe velocities, or a component is not finite.
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.set_velocity("block", (1, 0, 0))
+        >>> simulation.step()
+        >>> round(float(simulation.velocity[0, 0]), 9)
+        1.0
+        """
+        for block in self._blocks(pattern):
+            self._set_velocity(block, velocity, spin)
+
+    def _blocks(self, pattern: str) -> list[int]:
         names = self.block_names
         found = [i for i, name in enumerate(names) if name == pattern or fnmatchcase(name, pattern)]
         if not found:
             raise KeyError(f"no block is called {pattern!r}; there are {', '.join(names[:8])}")
-        return np.concatenate([np.arange(starts[i], starts[i + 1], dtype=np.int64) for i in found])
+        return found

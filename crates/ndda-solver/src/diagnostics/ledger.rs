@@ -137,6 +137,12 @@ impl Ledger {
         self.load_impulse += dt_s * self.load_n;
     }
 
+    /// Notes that loads jump between two steps: integrators that remember forces begin the next one with those after the jump.
+    /// Their moment about the mass centre is zero.
+    pub(crate) fn note_jump(&mut self, force_n: Vec3) {
+        self.last_force.0 += force_n;
+    }
+
     /// Books impulse and angular impulse on a block beside the forces, and the error of velocities that damping leaves in the step
     /// [m/s].
     pub(crate) fn add_impulses(&mut self, impulse: Vec3, angular_impulse: Vec3, error_m_s: f64) {

@@ -31,6 +31,8 @@ pub(crate) struct Loads {
     varying: Vec<VaryingLoad>,
     /// Pressure of water.
     pressures: Vec<FollowerPressure>,
+    /// Forces that a caller has set, per node [N]; empty while none was.
+    driving: Vec<Vec3>,
     /// Sum of the varying ones now; empty if there are none, and so is `total`.
     changing: Vec<Vec3>,
     total: Vec<Vec3>,
@@ -54,6 +56,7 @@ impl Loads {
             constant,
             varying,
             pressures,
+            driving: Vec::new(),
             changing: vec![Vec3::zeros(); nodes],
             total: vec![Vec3::zeros(); nodes],
             force,
@@ -74,7 +77,11 @@ impl Loads {
         if self.changing.is_empty() {
             return;
         }
-        self.changing.fill(Vec3::zeros());
+        if self.driving.is_empty() {
+            self.changing.fill(Vec3::zeros());
+        } else {
+            self.changing.copy_from_slice(&self.driving);
+        }
         self.unresolved_m_s = 0.0;
         for load in &self.varying {
             let Between { mean: factor, beyond_s } = load.factor.between(from_s, to_s);
@@ -87,6 +94,20 @@ impl Loads {
         let sums = self.constant.iter().zip(&self.changing);
         self.total.iter_mut().zip(sums).for_each(|(total, (a, b))| *total = a + b);
         self.force = self.total.iter().sum();
+    }
+
+    /// Lets forces per node [N] act from now on, beside the others.
+    pub(crate) fn drive(&mut self, nodal: Vec<Vec3>) {
+        if self.changing.is_empty() {
+            self.changing = vec![Vec3::zeros(); nodal.len()];
+            self.total = self.changing.clone();
+        }
+        self.driving = nodal;
+    }
+
+    /// Whether a caller has set forces.
+    pub(crate) fn is_driven(&self) -> bool {
+        !self.driving.is_empty()
     }
 
     /// What never changes, per node [N].

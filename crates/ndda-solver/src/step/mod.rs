@@ -9,6 +9,7 @@ pub(crate) mod contact_moments;
 pub(crate) mod contact_rates;
 pub(crate) mod control;
 pub(crate) mod deformation;
+pub(crate) mod drive;
 pub(crate) mod first_step;
 pub(crate) mod follower;
 pub(crate) mod implicit_contact;

@@ -104,6 +104,7 @@ impl Simulation {
                 inertia: vec![Inertia::default(); if weights.needs_acceleration { blocks.len() } else { 0 }],
                 contact_force: vec![Vec3::zeros(); newton_nodes],
                 ahead: Vec::new(),
+                driving_force: Vec::new(),
                 contact: Default::default(),
             },
             bodies: Vec::with_capacity(blocks.len()),

@@ -64,6 +64,10 @@ impl Simulation {
             (state.acceleration.len(), expected),
             (state.internal_force.len(), internal),
             (state.inertia.len(), self.state.inertia.len()),
+            (
+                state.driving_force.len(),
+                if state.driving_force.is_empty() { 0 } else { self.problem.blocks.len() },
+            ),
             (state.contact_force.len(), self.state.contact_force.len()),
             (ledger.block_count(), self.problem.blocks.len()),
             (
@@ -83,6 +87,7 @@ impl Simulation {
             self.scratch.contact_stiffness.fill(0.0);
         }
         self.scratch.friction_force.fill(Vec3::zeros());
+        self.place_driving_forces();
         self.control.iter_mut().for_each(|control| control.restore_balance(step_balance));
         Ok(())
     }

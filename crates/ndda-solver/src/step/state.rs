@@ -29,6 +29,8 @@ pub struct State {
     pub contact_force: Vec<Vec3>,
     /// How far ahead of each block contact looks [m]; empty where it does not look ahead of any (`first_step.rs`).
     pub ahead: Vec<Vec3>,
+    /// Force that a caller has set on each block [N]; empty while none was ever set.
+    pub driving_force: Vec<Vec3>,
     /// What contact remembers.
     pub contact: ContactHistory,
 }

@@ -1,0 +1,164 @@
+//! Forces and velocities that a caller gives blocks between two steps.
+
+use ndda_mesh::{BlockId, Vec3};
+
+use crate::bodies::kind::BodyKind;
+use crate::bodies::prototype::Prototype;
+use crate::step::Simulation;
+use crate::step::follower::Places;
+use crate::step::state::State;
+
+/// Why a block cannot be driven.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum DriveError {
+    /// There is no such block.
+    #[error("there is no block {number}: the simulation has {blocks}, counted from 0")]
+    NoSuchBlock {
+        /// Number that was asked for.
+        number: usize,
+        /// Blocks of the simulation.
+        blocks: usize,
+    },
+    /// The block does not move, or only as prescribed.
+    #[error(
+        "block {block} is Fixed, so that it only moves as prescribed: make it Rigid, Affine or Elastic to drive it"
+    )]
+    Fixed {
+        /// Its name.
+        block: String,
+    },
+    /// Nodes of the block have a velocity that its supports prescribe.
+    #[error(
+        "supports of block {block} prescribe velocities of its nodes: remove them to set its velocity, or set a force"
+    )]
+    Held {
+        /// Its name.
+        block: String,
+    },
+    /// A component is infinite or not a number.
+    #[error("{what} of block {block} is not finite")]
+    NotFinite {
+        /// Force, velocity or spin.
+        what: &'static str,
+        /// Its name.
+        block: String,
+    },
+}
+
+impl Simulation {
+    /// Lets a force [N] act at a block's centre of mass from now on, until another one is set; zero takes it away.
+    ///
+    /// It acts on every node by its share of the mass, beside the loads of the scene. Its impulse and its work are in the balances of
+    /// momentum and energy, and checkpoints keep it.
+    ///
+    /// # Errors
+    /// [`DriveError`] when there is no such block, it is fixed, or the force is not finite; nothing has changed then.
+    pub fn set_force(&mut self, block: BlockId, force_n: Vec3) -> Result<(), DriveError> {
+        self.drivable(block, &[("the force", force_n)])?;
+        if self.state.driving_force.is_empty() {
+            self.state.driving_force = vec![Vec3::zeros(); self.problem.blocks.len()];
+        }
+        let before_n = std::mem::replace(&mut self.state.driving_force[block.index()], force_n);
+        self.accelerate(block, force_n - before_n);
+        self.place_driving_forces();
+        Ok(())
+    }
+
+    /// Δa = ΔF/m at once, for integrators that remember accelerations: a force that jumps between two steps acts in full in the next one.
+    fn accelerate(&mut self, block: BlockId, change_n: Vec3) {
+        let change_m_s2 = change_n / self.shape(block).operator.mass_kg;
+        let nodes = self.problem.blocks.nodes_of(block);
+        self.audit.ledger.note_jump(change_n);
+        let State { acceleration, inertia, .. } = &mut self.state;
+        if let Some(inertia) = inertia.get_mut(block.index()) {
+            inertia.force += change_n;
+        }
+        for a in acceleration.get_mut(nodes).into_iter().flatten() {
+            *a += change_m_s2;
+        }
+    }
+
+    /// Gives a block the velocity v + ω × (x − c) [m/s, rad/s] about its centre of mass c now, as a blow would; nothing holds it afterwards.
+    ///
+    /// The impulse m Δv, its moment, and the change of kinetic energy are in the balances of momentum and energy, as those of loads.
+    /// Vibrations of a block that deforms are lost, as its nodes all get the velocity of a rigid motion.
+    ///
+    /// # Errors
+    /// [`DriveError`] when there is no such block, it is fixed or held, or a component is not finite; nothing has changed then.
+    pub fn set_velocity(
+        &mut self,
+        block: BlockId,
+        velocity_m_s: Vec3,
+        spin_rad_s: Vec3,
+    ) -> Result<(), DriveError> {
+        self.drivable(block, &[("the velocity", velocity_m_s), ("the spin", spin_rad_s)])?;
+        let nodes = self.problem.blocks.nodes_of(block);
+        let shape = &self.problem.shapes[self.bodies[block.index()].shape];
+        if !shape.supports.held.is_empty() || !shape.supports.motions.is_empty() {
+            return Err(DriveError::Held { block: self.problem.blocks.names[block.index()].clone() });
+        }
+        let ahead = self.state.ahead_of(block);
+        let State { position, velocity, .. } = &mut self.state;
+        let (position, velocity) = (&position[nodes.clone()], &mut velocity[nodes]);
+        let before = Motion::of(shape, position, velocity);
+        let center = shape.operator.center(position);
+        for (v, x) in velocity.iter_mut().zip(position) {
+            *v = velocity_m_s + spin_rad_s.cross(&(x - center));
+        }
+        let after = Motion::of(shape, position, velocity);
+        let impulse = after.momentum - before.momentum;
+        let moment = after.angular_momentum - before.angular_momentum + ahead.cross(&impulse);
+        self.audit.ledger.add_whole_impulse(impulse, moment);
+        self.audit.ledger.add_work(0.0, 0.0, after.kinetic_j - before.kinetic_j, 0.0);
+        Ok(())
+    }
+
+    fn drivable(&self, block: BlockId, vectors: &[(&'static str, Vec3)]) -> Result<(), DriveError> {
+        let blocks = self.problem.blocks.len();
+        if block.index() >= blocks {
+            return Err(DriveError::NoSuchBlock { number: block.index(), blocks });
+        }
+        let name = || self.problem.blocks.names[block.index()].clone();
+        if self.shape(block).kind == BodyKind::Fixed {
+            return Err(DriveError::Fixed { block: name() });
+        }
+        match vectors.iter().find(|(_, vector)| !vector.iter().all(|v| v.is_finite())) {
+            Some((what, _)) => Err(DriveError::NotFinite { what, block: name() }),
+            None => Ok(()),
+        }
+    }
+
+    /// Puts the driving forces of the state on the nodes.
+    pub(super) fn place_driving_forces(&mut self) {
+        if self.state.driving_force.is_empty() && !self.loads.is_driven() {
+            return;
+        }
+        let mut nodal = vec![Vec3::zeros(); self.problem.blocks.rest_position.len()];
+        for (block, force) in self.problem.blocks.ids().zip(&self.state.driving_force) {
+            let operator = &self.shape(block).operator;
+            let nodes = nodal[self.problem.blocks.nodes_of(block)].iter_mut();
+            nodes.zip(&operator.node_mass).for_each(|(f, m)| *f = force * (m / operator.mass_kg));
+        }
+        let State { position, velocity, .. } = &self.state;
+        let now_s = self.clock_s(0.0);
+        self.loads.drive(nodal);
+        self.loads.place(now_s, now_s, Places { position, velocity, lead_s: 0.0 });
+    }
+}
+
+/// What a blow changes.
+struct Motion {
+    momentum: Vec3,
+    angular_momentum: Vec3,
+    kinetic_j: f64,
+}
+
+impl Motion {
+    fn of(shape: &Prototype, position: &[Vec3], velocity: &[Vec3]) -> Self {
+        Self {
+            momentum: shape.operator.momentum(velocity),
+            angular_momentum: shape.operator.angular_momentum(&Vec3::zeros(), position, velocity),
+            kinetic_j: shape.operator.kinetic_energy_j(velocity),
+        }
+    }
+}
