@@ -97,6 +97,7 @@ fn the_top_level_reads_as_the_readme_says() {
         "README.md",
         "CHANGELOG.md",
         "CONTRIBUTING.md",
+        "deny.toml",
         "LICENSE-MIT",
         "LICENSE-APACHE",
         "rust-toolchain.toml",
@@ -271,4 +272,37 @@ fn every_path_that_a_document_names_exists() {
             assert!(known, "{} names {name}, which is not there", document.display());
         }
     }
+}
+
+fn cargo(words: &[&str]) -> String {
+    let output = std::process::Command::new(env!("CARGO")).args(words).current_dir(root()).output().unwrap();
+    assert!(output.status.success(), "cargo {words:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Whether a licence expression allows what is asked: one of its alternatives has allowed parts only.
+fn is_allowed(expression: &str, allowed: &[&str]) -> bool {
+    let alternatives = expression.replace(['(', ')'], "").replace('/', " OR ");
+    // `(A OR B) AND C` reads as A, or B and C, here: C has to be among the allowed ones then, as well.
+    let parts_of = |alternative: &str| alternative.split(" AND ").all(|part| allowed.contains(&part.trim()));
+    let together = expression.rsplit_once(") AND ").is_none_or(|(_, last)| allowed.contains(&last.trim()));
+    together && alternatives.split(" OR ").any(parts_of)
+}
+
+#[test]
+fn every_dependency_has_a_licence_that_deny_toml_allows() {
+    let rules = fs::read_to_string(root().join("deny.toml")).unwrap();
+    let list = rules.split("allow = [").nth(1).unwrap().split(']').next().unwrap();
+    let allowed: Vec<&str> = list.split('"').skip(1).step_by(2).collect();
+    let version = cargo(&["-vV"]);
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).unwrap();
+    let text =
+        cargo(&["metadata", "--locked", "--all-features", "--format-version=1", "--filter-platform", host]);
+    let metadata: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let packages = metadata["packages"].as_array().unwrap();
+    for package in packages {
+        let licence = package["license"].as_str().unwrap_or("none");
+        assert!(is_allowed(licence, &allowed), "{} {} has the licence {licence}", package["name"], package["version"]);
+    }
+    assert!(!is_allowed("GPL-3.0", &allowed) && !is_allowed("(MIT OR Zlib) AND GPL-3.0", &allowed));
 }
