@@ -85,12 +85,9 @@ impl PotentialContact {
         };
         self.overlaps.add_touching(input, &parts);
         let law = self.potential.law();
-        for touch in touching {
-            let (a, b) = (touch.owner, touch.target);
-            let overlap = self.overlaps.of(a, b);
+        for (overlap, pressure_m2) in self.overlaps.of_touching() {
             self.penalty_of_facet.push(self.penalty_pa * law.slope(overlap));
-            let curvature = self.penalty_pa * law.curvature(overlap) * self.overlaps.pressure_of(a, b);
-            self.curvature_of_facet.push(curvature);
+            self.curvature_of_facet.push(self.penalty_pa * law.curvature(overlap) * pressure_m2);
         }
     }
 

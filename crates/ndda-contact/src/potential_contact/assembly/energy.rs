@@ -49,6 +49,8 @@ pub(crate) struct BlockOverlaps {
     overlap_m3: Vec<f64>,
     /// ∫ φ dA over the pieces of both surfaces [m²].
     pressure_m2: Vec<f64>,
+    /// Place in `pairs` of each facet that touches.
+    pair_of_touch: Vec<u32>,
     origin: Vec<Option<Vec3>>,
     per_pair: Vec<f64>,
     per_tet: Vec<f64>,
@@ -60,9 +62,9 @@ impl BlockOverlaps {
         self.place(a, b).map_or(0.0, |k| self.overlap_m3[k])
     }
 
-    /// ∫ φ dA over both surfaces, as [`add_surfaces`](Self::add_surfaces) found it [m²].
-    pub(crate) fn pressure_of(&self, a: BlockId, b: BlockId) -> f64 {
-        self.place(a, b).map_or(0.0, |k| self.pressure_m2[k])
+    /// U [m³] and ∫ φ dA over both surfaces [m²] of each touching facet's pair, as [`add_touching`](Self::add_touching) found them.
+    pub(crate) fn of_touching(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.pair_of_touch.iter().map(|&k| (self.overlap_m3[k as usize], self.pressure_m2[k as usize]))
     }
 
     /// Σ w(U) [m³].
@@ -134,8 +136,10 @@ impl BlockOverlaps {
         self.list(candidates, facets.map(|facet| facet.neighbours));
         self.pressure_m2.clear();
         self.pressure_m2.resize(self.pairs.len(), 0.0);
+        self.pair_of_touch.clear();
         for touch in integrals.touching() {
             let k = self.place(touch.owner, touch.target).expect("listed above");
+            self.pair_of_touch.push(k as u32);
             self.pressure_m2[k] += integrals.sums_of(touch).pressure;
         }
     }
@@ -144,9 +148,8 @@ impl BlockOverlaps {
     fn add_surfaces(&mut self, input: &ContactInput, integrals: &Integrals) {
         self.origin.clear();
         self.origin.resize(self.pairs.len(), None);
-        for touch in integrals.touching() {
-            let k = self.place(touch.owner, touch.target).expect("listed above");
-            let sums = integrals.sums_of(touch);
+        for (touch, &k) in integrals.touching().iter().zip(&self.pair_of_touch) {
+            let (k, sums) = (k as usize, integrals.sums_of(touch));
             let corners = input.blocks.triangle_corners(touch.triangle, input.position);
             let origin = *self.origin[k].get_or_insert(corners[0]);
             let normal = triangle_area_vector(&corners).normalize();
