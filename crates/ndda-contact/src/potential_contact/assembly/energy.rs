@@ -57,11 +57,6 @@ pub(crate) struct BlockOverlaps {
 }
 
 impl BlockOverlaps {
-    /// U of a pair of blocks [m³]; zero for those that cannot touch.
-    pub(crate) fn of(&self, a: BlockId, b: BlockId) -> f64 {
-        self.place(a, b).map_or(0.0, |k| self.overlap_m3[k])
-    }
-
     /// U [m³] and ∫ φ dA over both surfaces [m²] of each touching facet's pair, as [`add_touching`](Self::add_touching) found them.
     pub(crate) fn of_touching(&self) -> impl Iterator<Item = (f64, f64)> {
         self.pair_of_touch.iter().map(|&k| (self.overlap_m3[k as usize], self.pressure_m2[k as usize]))

@@ -6,6 +6,7 @@
 //! together (`solve.rs`); blocks that deform answer to it at their nodes, as the solver says (`nodal.rs`).
 
 mod limit_surface;
+mod mixing;
 mod moments;
 mod nodal;
 mod opposite;
@@ -25,6 +26,7 @@ use crate::assembly::join_if::join_if;
 use crate::friction::facet::FacetForce;
 use crate::friction::law::FrictionLaw;
 use crate::friction::law_table::FrictionLawTable;
+use crate::friction::patches::mixing::Mixing;
 use crate::friction::patches::nodal::{Nodal, NodalSide};
 use crate::friction::patches::opposite::Opposite;
 use crate::friction::patches::patch::{ContactPatch, Moved, PatchSummary, Remembered};
@@ -111,6 +113,7 @@ pub(crate) struct FrictionPatches {
     /// Room for their solution, by block.
     most_n: Vec<f64>,
     pushed: Vec<u32>,
+    mixing: Mixing,
     new_faces: Vec<FaceMemory>,
     gaps_j: Vec<f64>,
     /// Second moments of each facet about its own centre of pressure [m²].
@@ -282,7 +285,7 @@ impl FrictionPatches {
     /// Friction of the patches.
     fn solve(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
         self.ask_blocks(scene, forces);
-        let Self { patches, bodies, coupled, nodal, sides, most_n, pushed, .. } = self;
+        let Self { patches, bodies, coupled, nodal, sides, most_n, pushed, mixing, .. } = self;
         let ContactInput { blocks, velocity, bodies: start, dt_s, is_iterated, .. } = *scene.input;
         coupled.clear();
         for ((number, patch), sides) in (0..).zip(&*patches).zip(&*sides) {
@@ -291,7 +294,8 @@ impl FrictionPatches {
             }
         }
         coupled.iter().for_each(|patch| patch.push_nodes(nodal));
-        let mut motion = Motion { blocks, start: velocity, bodies, nodal, dt_s, is_iterated, most_n, pushed };
+        let mut motion =
+            Motion { blocks, start: velocity, bodies, nodal, dt_s, is_iterated, most_n, pushed, mixing };
         solve::solve(coupled, start, &mut motion);
         for found in coupled.iter() {
             let patch = &mut patches[found.patch as usize];

@@ -15,6 +15,7 @@
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::friction::patches::limit_surface::LimitSurface;
+use crate::friction::patches::mixing::Mixing;
 use crate::friction::patches::nodal::{Nodal, NodalSide};
 use crate::friction::patches::patch::ContactPatch;
 use crate::model::Body;
@@ -33,6 +34,9 @@ const REGULAR: f64 = 1e-9;
 /// Sweeps over all patches, and patches looked at in them where these are few.
 const MOST_SWEEPS: usize = 100;
 const MOST_VISITS: usize = 20_000;
+
+/// The sweep after which their convergence is accelerated; the first sweep, to and fro, is none.
+const PLAIN_SWEEPS: usize = 9;
 
 /// One patch among others.
 #[derive(Clone, Copy, Debug, Default)]
@@ -183,6 +187,8 @@ pub(super) struct Motion<'a> {
     pub most_n: &'a mut Vec<f64>,
     /// When each block was pushed last by more than a tolerance.
     pub pushed: &'a mut Vec<u32>,
+    /// Earlier sweeps.
+    pub mixing: &'a mut Mixing,
 }
 
 /// Finds the friction of all patches; `motion` comes with the velocities at the end of the step under all loads, normal forces and the patches'
@@ -225,7 +231,7 @@ impl Motion<'_> {
     }
 }
 
-/// One of both minima.
+/// One of both minima, by sweeps over all patches to and fro.
 fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
     let time_s = GAMMA * motion.dt_s;
     motion.pushed.clear();
@@ -250,8 +256,34 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
         if !changes {
             return sweep;
         }
+        if sweep % 2 == 1 && sweep + 1 < most_sweeps {
+            accelerate(patches, motion, (sweep, time_s, now));
+        }
     }
     most_sweeps
+}
+
+/// Lets forces go on from where earlier sweeps lead to, once a few have not found them.
+fn accelerate(patches: &mut [CoupledPatch], motion: &mut Motion, (sweep, time_s, now): (usize, f64, u32)) {
+    let forces = patches.iter().map(|patch| patch.force);
+    if sweep < PLAIN_SWEEPS {
+        return;
+    }
+    if sweep == PLAIN_SWEEPS {
+        return motion.mixing.begin(forces);
+    }
+    let mut mixing = std::mem::take(motion.mixing);
+    let next = mixing.mix(patches.iter().map(|patch| (patch.force, patch.tolerance_n)));
+    for (patch, force) in patches.iter_mut().zip(next) {
+        patch.push(motion, &(force - patch.force), time_s);
+        patch.force = *force;
+        // What it would slip by without its own friction has to be asked for again.
+        patch.free_slip = Vec3::repeat(f64::NAN);
+        for block in [patch.owner, patch.target] {
+            motion.pushed[block.index()] = now + 1;
+        }
+    }
+    *motion.mixing = mixing;
 }
 
 impl CoupledPatch {
