@@ -1,4 +1,4 @@
-//! What a scene does not need is left out: the same bits as with the part in, counters at zero, no unknowns, no packages.
+//! A run leaves out all that its scene does not need: the same bits as with the part in, counters at zero, no unknowns, no packages.
 //!
 //! One block has no contact: tests/verification/one_block_alone.rs. Without friction no friction code acts:
 //! crates/ndda-contact/tests/without_friction.rs. Files and arrays are those asked for: apps/ndda-cli/tests/output.rs.

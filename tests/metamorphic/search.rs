@@ -10,7 +10,7 @@ use ndda_io::scene::Scene;
 
 use crate::generator::{Case, Wanted, case};
 
-/// What became of a case.
+/// Outcome of a case.
 pub enum Found {
     /// The relation holds.
     Holds,
@@ -31,7 +31,7 @@ pub fn seeds(usual: u64) -> Vec<u64> {
         .map_or_else(|| (0..number("NDDA_CASES").unwrap_or(usual)).collect(), |seed| vec![seed])
 }
 
-/// Where the scenes of failing seeds are kept.
+/// Folder of the scenes of failing seeds.
 pub fn folder() -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/metamorphic");
     std::fs::create_dir_all(&folder).expect("a folder under target");

@@ -15,7 +15,7 @@ const DENSITY: f64 = 2000.0;
 /// Length over which the potential rises.
 const REFERENCE_M: f64 = 1.0;
 
-/// What became of the block after `time_s`: how far it slid down the slope, and how far it turned [rad]. It may be
+/// Motion of the block after `time_s`: how far it slid down the slope, and how far it turned [rad]. It may be
 /// brought to rest first, as far as it stays.
 fn fate((height_m, friction_deg): (f64, f64), penalty_pa: f64, time_s: f64, settles: bool) -> (f64, f64) {
     // A step in proportion to the period of contact.

@@ -1,4 +1,4 @@
-//! What is far away, what went before, and waiting change nothing.
+//! Results do not depend on things far away, on what was computed before, or on waiting.
 
 use std::path::Path;
 

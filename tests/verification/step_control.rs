@@ -50,7 +50,7 @@ fn a_step_that_is_taken_back_leaves_nothing_behind() {
     }
     let parts = 1 << auto.state().control.halvings;
     let mut again = falling(&format!("step_s: {}", 4e-3 / f64::from(parts)));
-    // The same by a run of whole steps in the air, and one of steps as short as those parts: all bits are the same.
+    // A run of whole steps in the air, and one of steps as short as those parts, have the same bits.
     let steps = auto.state().step - 1;
     let mut whole = falling("step_s: 4e-3");
     for _ in 0..steps {

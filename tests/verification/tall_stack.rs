@@ -43,7 +43,7 @@ fn a_tall_stack_at_rest_neither_gains_energy_nor_loses_weight() {
     let (mut force, mut kinetic) = (0.0, [0.0f64; 2]);
     for step in 0..steps {
         simulation.step().unwrap();
-        // What the slabs press on the base with; its own weight is not theirs.
+        // Force of the slabs on the base; its own weight is not theirs.
         force += simulation.reaction_n(BlockId(0)).z - DENSITY * 144.0 * GRAVITY;
         if step % 50 == 0 {
             let half = usize::from(step > steps / 2);

@@ -243,7 +243,7 @@ fn a_fall_is_exact_to_rounding_and_its_certificate_is_written_shown_and_kept() {
     assert!((fallen.value + 0.05).abs() <= fallen.error && fallen.error < 1e-12, "{fallen:?}");
     assert_eq!((fallen.behaviour, certificate.order_of_scheme), (Behaviour::Rounding, 2.0));
     assert!(certificate.chaos.is_none() && certificate.runs.len() == 3, "{certificate:?}");
-    // The same command runs nothing again; with --json it prints the file.
+    // Given again, the command runs nothing; with --json it prints the file.
     let again = ndda(folder.path(), &["certify", "fall.ron", "--of", "momentum", "--json"]);
     assert_eq!(said(&again).matches("has run").count(), 3, "{}", said(&again));
     let printed: Value = serde_json::from_slice(&again.stdout).unwrap();

@@ -1,10 +1,10 @@
-//! What touching blocks do to each other, summed over their facets: force, moment, area, depth.
+//! Resultants of touching blocks over their facets: force, moment, area, depth.
 
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use crate::model::FacetContact;
 
-/// What two blocks do to each other.
+/// Resultants of contact between two blocks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PairResultant {
     /// The block of the smaller number.
@@ -42,7 +42,7 @@ fn resultant(
     (first, second): (BlockId, BlockId),
     facets: &[FacetContact],
 ) -> PairResultant {
-    // What a facet of the second feels is minus what the first does.
+    // A facet of the second block feels the opposite of the first block's force.
     let sign = |f: &FacetContact| if blocks.triangle_block[f.facet.index()] == first { 1.0 } else { -1.0 };
     let (mut force_n, mut friction_n, mut center) = (Vec3::zeros(), Vec3::zeros(), Vec3::zeros());
     let (mut area, mut slides, mut volume, mut weight) = (0.0, 0.0, 0.0, 0.0);

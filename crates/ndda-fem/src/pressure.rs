@@ -154,7 +154,7 @@ mod tests {
         PressureField { pieces: vec![PressurePiece { within: vec![depth], pressure_pa: depth }] }
     }
 
-    /// The same by many small triangles, each with the pressure at its centroid.
+    /// Nodal forces by many small triangles, each with the pressure at its centroid.
     fn by_many(field: &PressureField) -> [Vec3; 3] {
         let n = 600;
         let [a, b, c] = corners();

@@ -18,7 +18,7 @@ pub struct TransverselyIsotropic {
     density_kg_m3: f64,
 }
 
-/// What beds have across that they do not have along.
+/// Moduli of a bedded rock across its beds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bedding {
     /// Normal n of the beds in the axes of the scene at rest; its length does not matter.

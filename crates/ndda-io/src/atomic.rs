@@ -23,7 +23,7 @@ pub fn write(path: &Path, content: &[u8]) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// The same without waiting for the disk: a killed program leaves the old file or the new one, a power failure may leave
+/// Writes without waiting for the disk: a killed program leaves the old file or the new one, a power failure may leave
 /// less until [`sync`] has returned.
 ///
 /// # Errors

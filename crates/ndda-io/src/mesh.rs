@@ -36,7 +36,7 @@ pub use error::{FileProblem, MeshFileError};
 /// Endings that [`read`] knows, for messages.
 const ENDINGS: &str = ".msh, .node, .ele, .face, .vtu, .vtk, .inp, .geo, .step, .stp, .brep";
 
-/// What a file of a mesh holds.
+/// Content of a mesh file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
     /// Name and mesh of each body; coordinates as in the file.

@@ -1,4 +1,4 @@
-//! What a run writes, and the same read back.
+//! Results of a run: writing and reading them.
 
 pub mod checkpoint;
 pub mod folder;

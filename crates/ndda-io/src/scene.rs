@@ -89,7 +89,7 @@ pub struct Scene {
     /// Points whose motion is recorded. Default: none.
     #[serde(default)]
     pub monitors: Vec<Monitor>,
-    /// What is written and how often.
+    /// The output: which files, which fields, how often.
     #[serde(default)]
     pub output: Output,
     /// The closed form that the result is compared with. Default: none.

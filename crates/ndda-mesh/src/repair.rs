@@ -4,7 +4,7 @@ use crate::geometry::{Aabb, tet_volume};
 use crate::validate::first_twins;
 use crate::{BlockMesh, Vec3};
 
-/// What [`orient`] did.
+/// Changes made by [`orient`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Oriented {
     /// Tetrahedra whose last two nodes were exchanged.
@@ -25,7 +25,7 @@ pub fn orient(mesh: &mut BlockMesh) -> Oriented {
     done
 }
 
-/// What [`merge`] did; ids are those from before.
+/// Changes made by [`merge`]; ids are those from before.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Merged {
     /// Each node that went, after the one that stands for it.

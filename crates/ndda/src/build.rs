@@ -36,7 +36,7 @@ const ON_PLANE: f64 = 1e-6;
 pub struct Fault {
     /// Path of the value, as in `blocks[1].shape`.
     pub path: String,
-    /// What is wrong and what to do.
+    /// The problem and its remedy.
     pub message: String,
 }
 
@@ -149,7 +149,7 @@ pub fn simulation(scene: &Scene, blocks: BlockSet, folder: &Path) -> Result<Simu
     simulation_with(scene, blocks, folder, Choices::default())
 }
 
-/// The same with parts of one's own in the place of what the scene names.
+/// Builds the simulation with parts of one's own in the place of what the scene names.
 ///
 /// # Errors
 /// As [`simulation`].

@@ -1,4 +1,4 @@
-//! What a result depends on besides its scene: program and machine.
+//! Program and machine, on which a result depends besides its scene.
 
 use std::fs;
 

@@ -55,7 +55,7 @@ struct Recording {
     earlier: Option<Earlier>,
 }
 
-/// What came out of a run.
+/// Outcome of a run.
 pub struct Outcome {
     /// Energies, momenta, verdicts, the label, and where blocks and monitors ended.
     pub summary: Summary,

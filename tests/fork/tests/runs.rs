@@ -48,7 +48,7 @@ fn kill_on_its_way(words: &[&str], folder: &Path) {
 const RAMP: &str = "sliding_45_phi35_spring.ron";
 const COLLISION: &str = "collision_equal_free.ron";
 
-/// What each part can run: points that repel each other have no ramp.
+/// Scenes that each part can run: points that repel each other have no ramp.
 fn scenes_of(part: &str) -> &'static [&'static str] {
     if part == "point-springs" { &[COLLISION] } else { &[RAMP, COLLISION] }
 }

@@ -7,7 +7,7 @@ use super::labelled::{SPEED, summary_of, word};
 use crate::bouncing_block::{ball, contact_rate, restitution};
 use crate::evidence::{Answer, row};
 
-/// What is wrong with the restitution of a bounce, whether the run calls itself accurate, and the h that it reports over
+/// Error of the restitution of a bounce, whether the run calls itself accurate, and the h that it reports over
 /// the bound that it knows.
 fn bounce(integrator: &str, h: f64) -> Option<(f64, bool, f64)> {
     let mut simulation = ball(integrator, h / contact_rate());

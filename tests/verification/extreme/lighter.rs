@@ -53,7 +53,7 @@ fn a_small_block_answers_for_its_own_energy() {
     let gain = summary["verdicts"]["spurious contact energy"]["value"].as_f64().unwrap();
     let leaves = summary["monitors"]["cube"]["velocity"][2].as_f64().unwrap();
     assert_eq!(word(&summary), "inaccurate");
-    // What the cube has more than it came with, over m v V: it came at 5 m/s, and nothing is faster than it leaves. Contact of the
+    // Energy that the cube has gained, over m v V: it came at 5 m/s, and nothing is faster than it leaves. Contact of the
     // paper's scheme stores a little more than the cube brought.
     let more = (leaves * leaves - 25.0) / (5.0 * leaves);
     row(

@@ -10,7 +10,7 @@ use crate::evidence::row;
 use crate::simulation;
 
 const STEP_S: f64 = 1e-3;
-/// What a push brings a cube to [m/s].
+/// Speed that a push gives a cube [m/s].
 const SPEED_M_S: f64 = 2.0;
 
 /// A cube of 1 m of which a force makes 1 m/s² at a factor of one, and the state after 0.1 s.

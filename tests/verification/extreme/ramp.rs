@@ -8,7 +8,7 @@ use super::{advance, extreme};
 use crate::evidence::Answer::{AtMost, Within};
 use crate::evidence::row;
 
-/// Where the plate's centre is, mean of a second.
+/// Mean position of the plate's centre over a second.
 fn second(ready: &mut Model) -> Vec3 {
     let mut sum = Vec3::zeros();
     for _ in 0..1000 {

@@ -1,4 +1,4 @@
-//! What contact has to look at grows as the number of blocks. Time and memory, which no test may judge, are measured by
+//! The number of pairs that contact examines grows as the number of blocks. Time and memory, which no test may judge, are measured by
 //! docs/evidence/sizes.py.
 
 use super::{advance, extreme};

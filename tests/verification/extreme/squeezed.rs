@@ -15,7 +15,7 @@ const WEIGHT_N: f64 = 1e5 * 9.8;
 const SPRING_PA_M: f64 = 2e9;
 const DEPTH_M: f64 = WEIGHT_N / SPRING_PA_M;
 
-/// Where the slabs are: how wide the heavy one is [m], and how far the light one is from the middle [m].
+/// Sizes and places of the slabs: how wide the heavy one is [m], and how far the light one is from the middle [m].
 type Place = (f64, f64);
 
 const PLACES: [Place; 5] = [(1.0, 0.0), (1.0, 1e-6), (1.0, 0.1), (0.6, 0.1), (1.4, 0.1)];

@@ -80,7 +80,7 @@ fn standing(from: Vec3, cells: u32) -> BlockMesh {
 fn corners_and_edges_meet_without_a_jump() {
     let down = Rotation3::from_axis_angle(&Vec3::x_axis(), std::f64::consts::PI).into_inner();
     let cases = [
-        // What they share goes with the third power of the depth, and its energy with the fourth.
+        // The volume of the overlap goes with the third power of the depth, and its energy with the fourth.
         ("corner on corner", Vec3::new(1.0, 1.0, 1.0), Vec3::zeros()),
         ("edge across edge", Vec3::new(0.0, 1.0, 1.0), Vec3::new(-0.5, 0.0, 0.0)),
     ];

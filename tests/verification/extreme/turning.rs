@@ -59,7 +59,7 @@ fn euler(axis: &Vec3, time_s: f64) -> (Mat3, Vec3) {
     (rotation, rotation * spin)
 }
 
-/// What is wrong with the velocities, over the largest speed, and whether the run calls itself accurate.
+/// Error of the velocities, over the largest speed, and whether the run calls itself accurate.
 fn judged(simulation: &Simulation, axis: &Vec3) -> (f64, bool) {
     let (rotation, spin) = euler(axis, simulation.time_s());
     let rest = &simulation.blocks().rest_position;

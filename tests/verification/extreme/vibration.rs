@@ -25,7 +25,7 @@ fn cube(integrator: &str, step_s: f64) -> Simulation {
     ))
 }
 
-/// What is wrong with the speed in the first radian, or the first step, over its largest; and whether the run calls itself
+/// Error of the speed in the first radian, or the first step, over its largest; and whether the run calls itself
 /// accurate.
 fn vibrates(integrator: &str, theta: f64) -> (f64, bool) {
     let rate = (8.0 * SPRING_N_M / MASS_KG).sqrt();

@@ -54,7 +54,7 @@ pub struct Options {
     pub quiet: bool,
     /// All tables at the end.
     pub verbose: bool,
-    /// What programs read.
+    /// Event stream for other programs.
     pub events: Events,
     /// When this process began.
     pub started: Instant,
@@ -156,7 +156,7 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
     }
 }
 
-/// What a person reads at the end of a run.
+/// Prints the result of a run for a person.
 fn say_result(summary: &Summary, folder: &Path, verbose: bool) {
     if verbose {
         say(&table::text(summary));

@@ -1,4 +1,4 @@
-//! What `ndda certify` and `ndda tune` share: a scene that runs over and over.
+//! Common part of `ndda certify` and `ndda tune`: a scene that is run many times.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What the contact potential tells of its last evaluation.
+//! Audit of the contact potential's last evaluation.
 
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 

@@ -1,4 +1,4 @@
-//! What an evaluation consists of: candidate pairs, frames, penalties, forces of facets, and their stiffness.
+//! Stages of an evaluation: candidate pairs, frames, penalties, forces of facets, and their stiffness.
 
 use ndda_mesh::Mat3;
 use rayon::prelude::*;
@@ -24,7 +24,7 @@ use super::PotentialContact;
 
 /// Facets below which a second thread costs more than it brings.
 pub(super) const GRAIN_FACETS: usize = 128;
-/// The same for frames.
+/// Frames below which a second thread costs more than it brings.
 const GRAIN_FRAMES: usize = 512;
 impl PotentialContact {
     /// Integrals of all candidate pairs at `input.position`.
@@ -45,7 +45,7 @@ impl PotentialContact {
             let surfaces = BlockFaces::of_all(input.blocks);
             // Memory per element needs the elements.
             let phi_per_m = self.potential.phi_per_m().filter(|_| !self.candidates.split_by_element);
-            // What a facet remembers is its own.
+            // Each facet has a history of its own.
             let by_triangle = self.joints.as_ref().is_some_and(|joints| !joints.act_on_faces_only());
             self.hulls.fit(input.blocks, &surfaces, phi_per_m, input.affine, by_triangle);
             self.candidates.numbers_overlaps = field.as_ref().is_ok_and(PotentialField::is_element);
@@ -176,7 +176,7 @@ fn place_frames(
     Err(ContactError::CollapsedTet { tet, block: blocks.tet_block[tet.index()], volume_m3 })
 }
 
-/// What [`place_forces`] fills: forces of facets, what hosts feel of them, and what the laws keep.
+/// Output of [`place_forces`]: forces of facets, their reactions on host tetrahedra, and the numbers of the laws.
 pub(super) struct FacetRows<'a> {
     pub(super) forces: &'a mut Vec<FacetForce>,
     pub(super) on_host: &'a mut Vec<OnTarget>,

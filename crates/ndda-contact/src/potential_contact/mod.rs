@@ -55,7 +55,7 @@ pub struct PotentialContact {
     by_block: BlockContactIndex,
     frames: Vec<TetFrame>,
     forces: Vec<FacetForce>,
-    /// What hosts feel of them: a block need not look for the hits, which are far away in memory.
+    /// Forces of facets on host tetrahedra: a block need not look for the hits, which are far away in memory.
     on_host: Vec<OnTarget>,
     penalty_of_facet: Vec<f64>,
     /// k_n w″(U) ∫ φ dA of each facet's pair of blocks [Pa/m]; empty where the law is linear.
@@ -65,7 +65,7 @@ pub struct PotentialContact {
     reporter: Reporter,
     new_facets: Vec<FacetMemory>,
     new_state: Vec<f64>,
-    /// What the laws keep of each touching facet.
+    /// The friction laws' own numbers of each touching facet.
     state_of_facet: Vec<f64>,
     work_of_facet: Vec<f64>,
 }

@@ -1,4 +1,4 @@
-//! What this model consists of.
+//! The parts of this model.
 
 use super::PotentialContact;
 use crate::friction::law_table::{FrictionLawTable, Memory};

@@ -38,7 +38,7 @@ pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
     Ok(MeshFile { bodies: bodies.map_err(|fault| fault.of(path))? })
 }
 
-/// What either format holds.
+/// Content of a file of either format.
 pub(crate) fn data(bytes: &[u8]) -> Result<Data, crate::mesh::error::Fault> {
     if bytes.starts_with(b"# vtk") { legacy::read(bytes) } else { xml::read(bytes) }
 }

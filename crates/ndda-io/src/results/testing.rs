@@ -1,4 +1,4 @@
-//! What several tests of results need.
+//! Common parts of the tests of results.
 
 use ndda_mesh::{BlockMesh, BlockSet, Vec3};
 

@@ -1,4 +1,4 @@
-//! What the types of a scene cannot say: ranges, names, and what fits together. All of it in one pass.
+//! Checks that the types of a scene cannot express: ranges, names, and combinations. All errors are found in one pass.
 
 mod block;
 mod contact;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What kind of thing is wrong.
+/// The kind of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
     /// The file cannot be read as text.

@@ -14,7 +14,7 @@ pub enum Contact {
         /// Normal penalty k_n [Pa]. Contact gives way as E L₀/2k_n of rock does with `Smooth`; settlements and waves are
         /// wrong by that over the size of the blocks, slides and rebounds hardly.
         penalty_pa: f64,
-        /// What the potential is inside a block. Default: `Element`, the paper's.
+        /// The contact potential inside a block. Default: `Element`, the paper's.
         #[serde(default)]
         potential: Potential,
         /// Friction between all blocks. Default: none.
@@ -26,7 +26,7 @@ pub enum Contact {
         /// Friction on the faces of joints that cut rock, in place of all other; a later entry counts more. Default: none.
         #[serde(default)]
         laws: Vec<JointLaw>,
-        /// What a friction force is remembered with. Default: `Body`.
+        /// The owner of friction history. Default: `Body`.
         #[serde(default)]
         memory: Memory,
     },
@@ -73,7 +73,7 @@ pub struct Friction {
     /// Tensile strength σ_t [Pa], until it breaks for good; beyond c/tan φ it holds only without shear; needs `shear_penalty_pa_m`. Default: 0.
     #[serde(default)]
     pub tension_pa: f64,
-    /// What friction and cohesion fall to while the joint slips, instead of cohesion that breaks at once; with the same values as the peak
+    /// Values to which friction and cohesion fall while the joint slips, instead of cohesion that breaks at once; with the same values as the peak
     /// the joint is perfectly plastic. Needs `shear_penalty_pa_m`, and no tension. Default: none.
     #[serde(default)]
     pub residual: Option<Residual>,
@@ -121,7 +121,7 @@ pub struct JointLaw {
     pub friction: Option<Friction>,
 }
 
-/// What a friction force is remembered with.
+/// The owner of friction history.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Memory {

@@ -25,7 +25,7 @@ pub struct LoadedScene {
     pub text: String,
     /// The file, as it was named.
     pub file: String,
-    /// What may not be meant.
+    /// Entries that are probably not meant.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -226,7 +226,7 @@ fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: &Node) -> D
     }
 }
 
-/// What stands where a comma should.
+/// Diagnosis of the character that stands where a comma should.
 fn comma(text: &str, at: usize) -> (Code, &'static str, &'static str) {
     let after_number = text[..at].ends_with(|c: char| c.is_ascii_digit());
     // At the end, RON shows the bracket before it.
@@ -262,7 +262,7 @@ fn in_words(error: &RonError) -> String {
     }
 }
 
-/// What kind of complaint of the grammar it is, and what to do about it.
+/// Kind of a syntax error, and its remedy.
 fn grammar(error: &RonError) -> (Code, &'static str) {
     match error {
         RonError::ExpectedMapColon => (Code::Syntax, "a field is `name: value`"),

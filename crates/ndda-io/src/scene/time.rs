@@ -90,10 +90,10 @@ pub enum Step {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum ContactAt {
-    /// Where the integrator predicts blocks to be; a step must be short: ω_c Δt < 2.
+    /// At the positions that the integrator predicts; a step must be short: ω_c Δt < 2.
     #[default]
     Predicted,
-    /// Where blocks are at the end, solved for: stable for any step, and damps what a step does not resolve.
+    /// At the end of the step, solved for: stable for any step, and damps what a step does not resolve.
     End {
         /// Largest misfit of contact forces over the largest of contact forces and loads. Default: 1e-8.
         #[serde(default = "newton_tolerance")]
@@ -129,7 +129,7 @@ pub enum Integrator {
     },
     /// Second order; damps elastic modes far above 1/Δt, contact neither way.
     GeneralizedAlpha {
-        /// What is left of the highest modes after a step, 0 to 1 (no damping). Default: 0.8.
+        /// Spectral radius: the part of the highest modes that remains after a step, 0 to 1 (no damping). Default: 0.8.
         #[serde(default = "radius")]
         radius: f64,
     },

@@ -22,7 +22,7 @@ const PLACE: &str = "Point";
 pub struct Resolved {
     /// The text.
     pub text: String,
-    /// What is wrong with units.
+    /// Errors of units.
     pub errors: Vec<Diagnostic>,
     edits: Vec<Edit>,
 }

@@ -55,7 +55,7 @@ pub(super) fn convex_parts(
         let surface = best_cut(&polygons, surfaces, tolerance.least_depth_m);
         let plane = &surfaces[surface as usize].plane;
         let (mut above, mut below) = (Vec::new(), Vec::new());
-        // Those of the surface itself are done with, whatever rounding says: the list gets shorter each time.
+        // Polygons on the surface itself are finished, despite rounding: the list gets shorter each time.
         for polygon in polygons.into_iter().filter(|polygon| polygon.0 != surface) {
             divide(polygon, plane, tolerance.least_depth_m, &mut above, &mut below);
         }

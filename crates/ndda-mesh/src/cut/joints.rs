@@ -1,4 +1,4 @@
-//! What cuts rock: joint sets, single planes and discs.
+//! Discontinuities that cut rock: joint sets, single planes and discs.
 
 use super::CutError;
 use super::plane::{Plane, check_dip, dip_normal};

@@ -1,4 +1,4 @@
-//! What every generated mesh must satisfy.
+//! Contract of generated meshes.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -13,7 +13,7 @@ const FINEST: f64 = 0.25;
 /// Volume of a tetrahedron over its edge cubed, for a good mixture.
 const TET_VOLUME: f64 = 0.1;
 
-/// What the mesh is finer towards.
+/// Places towards which the mesh is finer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Towards {
     /// A point [m].
@@ -88,7 +88,7 @@ impl SizeField {
             size.largest_m = size.largest_m.max(own.largest_m);
             size.tets += own.tets;
             size.points.extend(own.points);
-            // The same in all parts.
+            // Settings that are equal in all parts.
             size.planes = own.planes;
         }
         let tets = size.tets;

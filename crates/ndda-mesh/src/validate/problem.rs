@@ -110,7 +110,7 @@ pub enum MeshProblem {
     Coincident {
         /// The first node there and a later one.
         pairs: Found<(u32, u32)>,
-        /// What counts as the same place [m].
+        /// Distance below which two places are the same [m].
         tolerance_m: f64,
     },
     /// Nodes that belong to no tetrahedron.

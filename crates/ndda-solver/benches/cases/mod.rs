@@ -1,4 +1,4 @@
-//! What is measured, by the clock and by counting instructions.
+//! Cases that are measured, by the clock and by counting instructions.
 #![allow(dead_code)] // each bench takes some of it
 
 use std::sync::Arc;
@@ -60,7 +60,7 @@ pub fn cubes(count: usize, n: u32, kind: BodyKind, integrator: Box<dyn TimeInteg
     .expect("a simulation")
 }
 
-/// The same by the default integrator.
+/// Elastic cubes with the default integrator.
 pub fn elastic_cubes(count: usize, n: u32) -> Simulation {
     cubes(count, n, BodyKind::Elastic, Box::new(Midpoint { theta: 0.5 }))
 }

@@ -21,7 +21,7 @@ pub(crate) struct Body {
     pub shape: usize,
     /// How it moves.
     pub motion: Motion,
-    /// What it reports of the last step.
+    /// Report on the last step.
     pub report: BlockReport,
     /// Why the last step failed.
     pub error: Option<BlockError>,

@@ -16,7 +16,7 @@ pub(crate) struct NodeSlices<'a> {
     pub internal_force: &'a mut [Vec3],
 }
 
-/// The same to read.
+/// Nodes of a group, read only.
 #[derive(Clone, Copy)]
 pub(crate) struct Nodes<'a> {
     /// x [m].

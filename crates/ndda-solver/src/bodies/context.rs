@@ -1,4 +1,4 @@
-//! What a block needs to know of a step.
+//! Input of a block's step.
 
 use ndda_mesh::Vec3;
 
@@ -6,7 +6,7 @@ use crate::bodies::mass_damping::MassDamping;
 use crate::bodies::prototype::Prototype;
 use crate::integrators::time_integrator::{Inertia, StepWeights, TimeIntegrator};
 
-/// What a block step needs besides the block itself.
+/// Input of a block's step besides the block itself.
 pub(crate) struct StepContext<'a> {
     /// The integrator.
     pub integrator: &'a dyn TimeIntegrator,
@@ -28,7 +28,7 @@ pub(crate) struct StepContext<'a> {
     pub force: &'a [Vec3],
     /// The loads in it [N].
     pub external: &'a [Vec3],
-    /// Those of them that change over time [N]; empty if none do.
+    /// The part of the loads that changes over time [N]; empty if none does.
     pub changing: &'a [Vec3],
     /// Friction's part of it [N]; empty without friction.
     pub friction_force: &'a [Vec3],

@@ -20,7 +20,7 @@ impl FixedBody {
         Self { anchor: if moves { position.to_vec() } else { Vec::new() } }
     }
 
-    /// Where the nodes are at the end of a step [m], `position` being where they are before it.
+    /// Positions of the nodes at the end of a step [m], `position` being where they are before it.
     pub(crate) fn end_position(&self, shape: &Prototype, end_s: f64, position: &[Vec3], out: &mut [Vec3]) {
         if self.anchor.is_empty() {
             out.copy_from_slice(position);

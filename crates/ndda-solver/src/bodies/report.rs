@@ -1,10 +1,10 @@
-//! What a block reports of a step.
+//! A block's report on a step.
 
 use ndda_mesh::Vec3;
 
 use crate::integrators::time_integrator::Inertia;
 
-/// What a block reports of its step.
+/// A block's report on its step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BlockReport {
     /// Force that supports exerted on the block [N].
@@ -38,16 +38,16 @@ pub(crate) struct BlockReport {
     pub sideways: LateralDrift,
     /// M a of the block as a whole at the end; for free blocks only.
     pub inertia: Inertia,
-    /// What drives it as a whole.
+    /// Forcing of its rigid motion.
     pub drive: Drive,
 }
 
-/// What a block reports of its acceleration as a whole.
+/// Forcing of a block's rigid motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Drive {
     /// Force of loads over its mass [m/s²].
     pub load_m_s2: Vec3,
-    /// The same of loads, contact and supports [m/s²].
+    /// Acceleration of translation by loads, contact and supports [m/s²].
     pub shift_m_s2: Vec3,
     /// Half the sum of the sizes of contact forces on its nodes, over its mass: what presses it from both sides [m/s²]. Zero for a
     /// block that does not deform, and where contact is taken in the middle of a step.

@@ -57,7 +57,7 @@ struct Book {
     /// Elastic energy at the first sample, and at the last [J].
     strain_start_j: f64,
     strain_j: f64,
-    /// What vibration and jumps of forces have left of errors.
+    /// Errors left by vibration and jumps of forces.
     ringing: Ringing,
 }
 

@@ -1,6 +1,6 @@
 //! Blocks that creep because shear springs lose slip while contact rings.
 //!
-//! Where the normal force swings about a mean N̄, the limit μ N of a spring falls below what the spring carries in each swing, and what it
+//! If the normal force swings about a mean N̄, the limit μ N of a spring falls below what the spring carries in each swing, and what it
 //! loses then does not come back, though in the mean it carries less than μ N̄ and a load at rest would be held. A swing ends where the
 //! limit, having been below its mean over the swing, rises above it; what the spring stretches within it comes back by then. Slip counts as creep in swings in which springs carry less than
 //! they may in the mean, from the second of such swings in a row: the only one is a block that slides and comes to rest. A
@@ -15,7 +15,7 @@ use crate::diagnostics::worst::{BlockScale, Worst};
 /// Part of the limit below which springs that are not all sliding could hold; above it a block slides, but for facets at its rim that come and go.
 const STICKS: f64 = 0.95;
 
-/// What the springs between a block and heavier ones did in a step, and in a swing.
+/// Slip and force of the springs between a block and heavier ones in a step, and in a swing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Swing {
     time_s: f64,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Vibration {
     /// Their speed [m/s].
     pub speed_m_s: f64,
-    /// What they are little beside, whatever moves: see [`BlockDiagnostics::strain_speed2`] [m²/s²].
+    /// Scale beside which they are small, whatever moves: see [`BlockDiagnostics::strain_speed2`] [m²/s²].
     pub borne_m2_s2: f64,
 }
 

@@ -76,6 +76,6 @@ pub struct Invariants {
     pub contact_pairs_total: u64,
     /// Most evaluations of contact that a step was solved with.
     pub iterations_max: u32,
-    /// What controlling the step took.
+    /// Counts of step control.
     pub control: StepCounts,
 }

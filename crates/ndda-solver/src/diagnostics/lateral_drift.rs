@@ -21,7 +21,7 @@ struct Pressed {
 }
 
 impl LateralDrift {
-    /// What a step gives a block.
+    /// Drift of a block in a step.
     pub(crate) fn of(shape: &Prototype, context: &StepContext, report: &BlockReport) -> Self {
         let pressed = Pressed::by(context);
         let unknown_n = context.direction_uncertainty * pressed.sum_n;
@@ -84,7 +84,7 @@ fn unresisted(force: &Vec3, net: &Vec3, unknown_n: f64) -> Vec3 {
     net.dot(&direction).clamp(-size, size) * direction
 }
 
-/// The same of the torque about the axis, as a force at the radius of gyration.
+/// Contribution of the torque about the axis, as a force at the radius of gyration.
 fn turning(shape: &Prototype, context: &StepContext, axis: &Vec3, unknown_n: f64) -> Vec3 {
     let operator = &shape.operator;
     let center = operator.center(context.contact_position);

@@ -278,7 +278,7 @@ impl Ledger {
         self.last_sample_s = sample.time_s;
         self.lasting_gain_j = self.lasting_gain_j.max(sample.balance_j - comes_back_j);
         self.lasting_loss_j = self.lasting_loss_j.max(-sample.balance_j - comes_back_j);
-        // What supports and loads exchange rounds as they do, however little it leaves to move.
+        // The exchange of supports and loads rounds in proportion to its size, however little it leaves to move.
         self.peak_momentum = self.peak_momentum.max(sample.momentum_scale).max(self.load_impulse);
         self.peak_angular = self.peak_angular.max(sample.angular_scale);
         let momentum_error = (sample.momentum - start.momentum - self.impulse).norm();

@@ -30,14 +30,14 @@ use crate::bodies::report::BlockReport;
 /// that is held at one end.
 const END_OF_A_BEAM: f64 = 3.0;
 
-/// What a step leaves of the sums of squares of the steps before it: they reach over about 64 steps.
+/// Factor by which a step reduces the sums of squares of the steps before it: they reach over about 64 steps.
 const KEPT: f64 = 1.0 - 1.0 / 64.0;
 
 /// Square of a second difference over its mean over the last steps from which on it is a jump, and no part of a vibration.
 const JUMP2: f64 = 4.0;
 
 impl Drive {
-    /// What drives a block in a step that is turned by R.
+    /// Forcing of a block in a step that is turned by R.
     pub(crate) fn of(
         shape: &Prototype,
         context: &StepContext,
@@ -52,7 +52,7 @@ impl Drive {
         let operator = &shape.operator;
         let load: Vec3 = context.external.iter().sum();
         let mut force: Vec3 = context.force.iter().sum();
-        // What moves supports does so exactly, jumps of velocities included.
+        // Prescribed motions of supports are exact, jumps of velocities included.
         if shape.supports.motions.is_empty() {
             force += report.reaction;
         }
@@ -118,7 +118,7 @@ pub(crate) struct Ringing {
     fastest_m_s: f64,
     /// Sum since contact began [m/s].
     now_m_s: f64,
-    /// What contacts that are over have left [m/s].
+    /// Velocity error left by contacts that are over [m/s].
     past_m_s: f64,
     /// All of it that is left now [m/s].
     error_m_s: f64,
@@ -138,7 +138,7 @@ impl Ringing {
         }
         let change = [now[0] - self.last[0], now[1] - self.last[1]];
         if std::mem::replace(&mut self.has_begun, step.is_first) {
-            // Nothing is known of the change before the first step.
+            // The change before the first step is unknown.
             self.change = change;
         }
         let second = [change[0] - self.change[0], change[1] - self.change[1]];

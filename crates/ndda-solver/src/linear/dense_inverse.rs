@@ -119,7 +119,7 @@ impl Inverse {
         }
     }
 
-    /// The same for one eight of rows and eight right-hand sides.
+    /// Product of one group of eight rows with eight right-hand sides.
     #[inline(always)]
     fn times_eight<S: Simd>(&self, simd: S, tiles: &[Eight], x: &[[f64; MULTI]], out: &mut [Eight; MULTI]) {
         for v in 0..MULTI / S::F64_LANES {

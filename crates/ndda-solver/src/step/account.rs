@@ -1,4 +1,4 @@
-//! What watches a step: impulses, work, energies of pairs, and extremes.
+//! Accounts of a step: impulses, work, energies of pairs, and extremes.
 
 use crate::step::report::StepReport;
 use std::time::Instant;

@@ -105,7 +105,7 @@ impl Simulation {
             self.scratch.friction_force.fill(Vec3::zeros());
             self.scratch.contact_stiffness.fill(0.0);
         }
-        // What contact writes is taken out, so that it may ask how the blocks answer.
+        // The output of contact is taken out, so that contact may query how the blocks answer.
         let (mut force, mut history) = (take(&mut self.scratch.force), take(&mut self.state.contact));
         let mut friction_force = take(&mut self.scratch.friction_force);
         let mut stiffness = take(&mut self.scratch.contact_stiffness);

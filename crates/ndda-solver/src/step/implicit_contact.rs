@@ -188,7 +188,7 @@ impl Simulation {
         self.motion_by(|node| force[node].norm_squared())
     }
 
-    /// The same of the change of contact forces by the rounding of positions: no misfit is known better.
+    /// Change of contact forces by the rounding of positions: no misfit is known better.
     fn resolution(&self) -> f64 {
         let rounding = |node: usize| f64::EPSILON * self.scratch.contact_position[node].amax();
         self.motion_by(|node| (self.scratch.contact_stiffness[node] * rounding(node)).powi(2))
@@ -219,7 +219,7 @@ impl Simulation {
         self.scratch.force.fill(Vec3::zeros());
         let report = self.add_contact_forces(Some(&newton.velocity))?;
         self.hold_friction(newton);
-        // What these forces turn the blocks by is that of all observers only together with the velocities of their pairs.
+        // The rotations due to these forces agree among observers only together with the velocities of their pairs.
         self.carry_contact_forces();
         for ((q, contact), f) in newton.residual.iter_mut().zip(&self.scratch.force).zip(&newton.force) {
             *q = contact - f;

@@ -67,7 +67,7 @@ pub struct Simulation {
     pub(crate) audit: Audit,
 }
 
-/// What no step changes.
+/// Data that no step changes.
 pub(crate) struct Problem {
     pub(crate) blocks: BlockSet,
     /// Operators, supports and factors; congruent blocks share one.
@@ -100,12 +100,12 @@ pub(crate) struct Scratch {
     pub(crate) moved: Vec<Vec3>,
 }
 
-/// What watches a run.
+/// Observers of a run: balances, diagnostics, timing.
 pub(crate) struct Audit {
     pub(crate) ledger: Ledger,
     pub(crate) stages: StageTimes,
     pub(crate) travel: Travel,
-    /// What facets did in the last step, if somebody wants to know.
+    /// Facets in contact in the last step, if they were requested.
     pub(crate) contacts: Option<Vec<FacetContact>>,
     /// Part of contact forces whose direction is not known in this step, and that no friction bears.
     pub(crate) direction_uncertainty: f64,

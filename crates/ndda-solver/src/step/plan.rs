@@ -1,4 +1,4 @@
-//! What a run will do and what it leaves out, read off the simulation as it is set up.
+//! The plan of a run: its parts and what it leaves out, read off the simulation as it is set up.
 
 use ndda_contact::Part;
 use serde::Serialize;
@@ -29,7 +29,7 @@ pub struct KindPlan {
     pub blocks: usize,
     /// Their tetrahedra.
     pub tets: usize,
-    /// What is solved for, over all of them.
+    /// Number of unknowns over all of them.
     pub unknowns: usize,
 }
 
@@ -49,7 +49,7 @@ pub struct FactorPlan {
 }
 
 impl Simulation {
-    /// What this simulation does in a step and what it leaves out.
+    /// The parts of this simulation's step and what it leaves out.
     pub fn plan(&self) -> Plan {
         let mut parts = self.block_parts();
         parts.extend(self.load_parts());

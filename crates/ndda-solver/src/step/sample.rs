@@ -1,4 +1,4 @@
-//! What a simulation is asked for when results are written: energies, momenta, stresses.
+//! Quantities computed when results are written: energies, momenta, stresses.
 
 use std::time::Instant;
 
@@ -149,13 +149,13 @@ impl Simulation {
         }
     }
 
-    /// What facets did in the last step, where contact was evaluated in it; none unless it was
+    /// Facets in contact in the last step, where contact was evaluated in it; none unless they were
     /// [watched](Self::watch_contacts), nor before the first step.
     pub fn contacts(&self) -> &[FacetContact] {
         self.audit.contacts.as_deref().unwrap_or(&[])
     }
 
-    /// What facets do to each other where the blocks are now; nothing of it is remembered.
+    /// Facets in contact at the present positions of the blocks; the history of contact is not changed.
     ///
     /// # Errors
     /// [`StepError::Contact`] when contact cannot be computed.

@@ -43,7 +43,7 @@ struct Swing {
     between: u64,
 }
 
-/// What the peak before counts a swing later: a small one may be chance, many in a row are not.
+/// Weight of the previous peak one swing later: a small one may be chance, many in a row are not.
 const REMEMBERED: f64 = 0.7;
 
 impl Swing {

@@ -1,4 +1,4 @@
-//! What changes from step to step, and nothing else.
+//! The state: everything that changes from step to step, and nothing else.
 
 use ndda_contact::ContactHistory;
 use ndda_mesh::{BlockId, Vec3};
@@ -29,7 +29,7 @@ pub struct State {
     pub contact_force: Vec<Vec3>,
     /// How far ahead of each block contact looks [m]; empty where it does not look ahead of any (`first_step.rs`).
     pub ahead: Vec<Vec3>,
-    /// What contact remembers.
+    /// Contact history.
     pub contact: ContactHistory,
 }
 
@@ -40,7 +40,7 @@ impl State {
     }
 }
 
-/// Where the control of the step is; part of the state.
+/// State of step control; part of the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StepState {
     /// n: a step is done in 2ⁿ parts.

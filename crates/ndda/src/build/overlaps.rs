@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-6;
 /// Pairs that are listed.
 const MOST_LISTED: usize = 10;
 
-/// What to say of the blocks of a scene that overlap too deep to begin with, if there are any.
+/// Diagnostic for blocks of a scene that overlap too deep at the start, if there are any.
 ///
 /// # Errors
 /// [`StepError`] when contact cannot be computed.

@@ -1,4 +1,4 @@
-//! What a run will take and write, from a few of its steps.
+//! Time and output of a run, estimated from a few of its steps.
 
 use std::fmt;
 use std::time::{Duration, Instant};
@@ -32,7 +32,7 @@ pub struct FileGuess {
     pub bytes: u64,
 }
 
-/// What a run will take and write.
+/// Estimated time and output of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Guess {
     /// Steps that were timed.
@@ -48,7 +48,7 @@ pub struct Guess {
 /// Does a few steps, a row and a frame, and reckons.
 ///
 /// # Errors
-/// What would stop the run in these steps.
+/// Errors that would stop the run in these steps.
 pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkError> {
     let steps = build::steps(&scene.time);
     simulation.watch_contacts(scene.output.contacts);

@@ -1,4 +1,4 @@
-//! What sudden gravity does to blocks that shear springs hold: they creep while their contact vibrates.
+//! Effect of sudden gravity on blocks that shear springs hold: they creep while their contact vibrates.
 
 use ndda_io::code::Code;
 use ndda_io::diagnostic::{Diagnostic, Severity};

@@ -1,4 +1,4 @@
-//! What in a scene is probably not meant: no error, and worth a question before a long run.
+//! Parts of a scene that are probably not meant: no error, and worth a question before a long run.
 
 use ndda_io::scene::{Contact, Friction, Material, Potential, Scene};
 use ndda_solver::BodyKind;

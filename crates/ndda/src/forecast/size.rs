@@ -43,7 +43,7 @@ const FILE_TRIANGLE_B: f64 = 30.0;
 /// Seconds per tetrahedron, and per Voronoi cell.
 const TET_S: f64 = 1e-5;
 const CELL_S: f64 = 3e-3;
-/// What a part of a scene comes to.
+/// Size of a part of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Count {
     /// Blocks.
@@ -67,7 +67,7 @@ pub struct Part {
     pub count: Count,
     /// Memory of a run [B].
     pub bytes: f64,
-    /// What makes it less.
+    /// Remedy.
     pub cure: &'static str,
 }
 

@@ -47,7 +47,7 @@ pub struct Forecast {
 pub struct Advice {
     /// Step at which h is half of its bound, for all contacts that were evaluated [s].
     pub step_s: f64,
-    /// The same for the contacts at the start alone [s]; none where no blocks touch.
+    /// Largest safe step for the contacts at the start alone [s]; none where no blocks touch.
     pub step_at_start_s: Option<f64>,
     /// Contacts at the start; none where no blocks touch.
     pub at_start: Option<Forecast>,

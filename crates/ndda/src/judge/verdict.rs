@@ -1,4 +1,4 @@
-//! What a run says of itself: its checks against their limits, and whether its motion is to be trusted.
+//! The verdict: a run's checks against their limits, and whether its motion is to be trusted.
 
 use ndda_io::summary::{Judgement, Label, LabelWord, Named, Verdict};
 use ndda_solver::{Simulation, Worst};
@@ -12,7 +12,7 @@ const MOST_FRICTION: f64 = 1e-3;
 const MOST_DEPTH: f64 = 0.05;
 /// Part of its strength by which a bond may be overloaded when it breaks.
 const BOND_OVERLOAD: f64 = 0.05;
-/// What the promise allows: speeds over the largest, and places over a height.
+/// Limits of an accurate run: errors of speeds over the largest, and of places over an element size.
 const SPEED: f64 = 0.01;
 const PLACE: f64 = 0.1;
 /// Speed of vibrations that a step turns over, over the largest speed: θ² of one that turns by θ in a step. It is late by θ²/12 of
@@ -29,7 +29,7 @@ struct Entry {
     verdict: Verdict,
     /// From which judgement on the motion is not to be trusted.
     spoils_at: Judgement,
-    /// What it is then.
+    /// Reason that is given then.
     reason: String,
 }
 

@@ -24,7 +24,7 @@ const MAIN: &str = include_str!("../../assets/report/main.js");
 const POLICY: &str =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 
-/// What the scripts read beside the numbers of the motion.
+/// Data of the scripts beside the numbers of the motion.
 #[derive(Serialize)]
 struct Data<'a> {
     charts: &'a Charts,

@@ -30,7 +30,7 @@ pub struct SavedRun {
     pub earlier: Earlier,
 }
 
-/// What the outputs of a run that goes on have to know.
+/// State of the outputs of a run that is resumed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Earlier {
     /// The history.
@@ -59,7 +59,7 @@ pub struct Outputs<'a, 'b> {
     stop: Arc<AtomicBool>,
 }
 
-/// What a recorded run writes besides its history.
+/// Files of a recorded run besides its history.
 struct Files {
     fields: Option<FieldWriter>,
     contacts: Option<ContactTable>,

@@ -24,7 +24,7 @@ pub struct Launch<'a> {
     pub jobs: u16,
     /// Threads of each.
     pub threads: u16,
-    /// What runs a case.
+    /// Runner of a case.
     pub runner: &'a dyn CaseRunner,
     /// Told how far it is, a line at a time.
     pub say: &'a (dyn Fn(&str) + Sync),

@@ -46,7 +46,7 @@ pub fn all(out: &Path, results: &Results) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// What errors are drawn against.
+/// Abscissa of pictures of errors.
 enum Across {
     Time,
     Dofs,

@@ -1,4 +1,4 @@
-//! What a study has found: a point per case, its errors and figures, and the fronts.
+//! The results of a study: a point per case, its errors and figures, and the fronts.
 
 use ndda_io::summary::{Invariants, Label, Named, ReferenceError};
 use serde::{Deserialize, Serialize};
@@ -17,9 +17,9 @@ pub struct Results {
     pub scene: String,
     /// Axes that tell curves apart.
     pub curves: Vec<String>,
-    /// What a run costs: `wall` or `processor` time.
+    /// Cost of a run: `wall` or `processor` time.
     pub clock: &'static str,
-    /// What errors are relative to.
+    /// Reference of relative errors.
     pub reference: Compared,
     /// One per case that has run.
     pub points: Vec<CasePoint>,
@@ -27,7 +27,7 @@ pub struct Results {
     pub missing: Vec<String>,
 }
 
-/// What errors are relative to.
+/// Reference of relative errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum Compared {
@@ -68,13 +68,13 @@ pub struct CasePoint {
     pub name: String,
     /// Choice by axis.
     pub labels: Named<String>,
-    /// What it gave; none if it failed.
+    /// Results of the case; none if it failed.
     pub figures: Option<Figures>,
     /// Why it failed.
     pub reason: Option<String>,
 }
 
-/// What a case gave.
+/// Results of a case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
     /// Relative error at the end.
@@ -93,17 +93,17 @@ pub struct Figures {
     pub processors_s: Vec<f64>,
     /// Invariants that were beyond their limits.
     pub beyond_limits: Vec<String>,
-    /// What the fastest run says of itself.
+    /// The fastest run's own report.
     #[serde(flatten)]
     pub run: Run,
 }
 
-/// What is read of a `summary.json`.
+/// The part of a `summary.json` that a study reads.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Version of ndda.
     pub version: String,
-    /// What the run says of itself.
+    /// The run's label.
     pub label: Label,
     /// The largest violation of each invariant.
     pub invariants: Invariants,
@@ -123,7 +123,7 @@ pub struct Run {
     pub stages_s: Map<String, Value>,
 }
 
-/// What a run ran on.
+/// Machine of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// The processor.

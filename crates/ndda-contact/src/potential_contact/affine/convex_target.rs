@@ -1,6 +1,6 @@
 //! The faces of convex blocks, and blocks that are taken whole.
 //!
-//! What is beyond one face of a convex block is not in the block. Blocks that lie side by side have many boundary
+//! A point beyond one face of a convex block is outside the block. Blocks that lie side by side have many boundary
 //! triangles that touch each other's edges and are in nothing; one comparison with the faces of the whole block says
 //! so, where its tetrahedra would be asked one by one.
 //!
@@ -30,7 +30,7 @@ use crate::integration::tet_frame::TetFrame;
 /// Faces below which a second thread costs more than it brings.
 const GRAIN_FACES: usize = 1024;
 
-/// The same for pairs of blocks.
+/// Pairs of blocks below which a second thread costs more than it brings.
 const GRAIN_PAIRS: usize = 128;
 
 /// A block of more faces is asked by its tetrahedra.
@@ -192,7 +192,7 @@ impl ConvexBlocks {
         self.whole.iter().flatten().count()
     }
 
-    /// Where the faces of a block are among those of all.
+    /// Range of a block's faces in the list of all faces.
     pub(crate) fn places_of(&self, block: BlockId) -> Range<usize> {
         let start = |block: usize| self.start.get(block).map_or(0, |&start| start as usize);
         start(block.index())..start(block.index() + 1)

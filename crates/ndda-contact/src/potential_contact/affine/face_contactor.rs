@@ -29,7 +29,7 @@ pub(crate) struct FaceContactor {
     pub triangle: TriangleId,
     /// Its corners, counter-clockwise.
     nodes: Vec<NodeId>,
-    /// The same in coordinates of the triangle.
+    /// Outline of the face in coordinates of the triangle.
     pub outline: Outline,
     /// Least and largest ψ₁ and ψ₂.
     pub range: PsiRange,

@@ -54,7 +54,7 @@ pub(crate) struct HalfSpaces {
     /// Bounds of the lead of each over one that comes before it, and over one that comes after; none where another is below everywhere.
     over_former: [Row; ROWS],
     over_later: [Row; ROWS],
-    /// Those that may be the smallest somewhere.
+    /// Half-spaces whose function may be the smallest somewhere.
     which: [u8; MOST_CUTS],
     len: usize,
     /// By how much each leads over the one that a region is of, and in its place that one itself, which has to be positive.

@@ -10,12 +10,12 @@ use crate::affine::convex_target::ConvexBlocks;
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::ActiveFacet;
 
-/// What couples read.
+/// Input of the computation of couples.
 #[derive(Clone, Copy)]
 pub(crate) struct CoupleScene<'a> {
     /// Topology.
     pub blocks: &'a BlockSet,
-    /// Where the nodes are [m].
+    /// Positions of the nodes [m].
     pub position: &'a [Vec3],
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,

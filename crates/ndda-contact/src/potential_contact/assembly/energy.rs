@@ -23,15 +23,15 @@ use crate::potential::piece_table::PieceTable;
 
 /// Pairs below which a second thread costs more than it brings.
 const GRAIN_PAIRS: usize = 512;
-/// The same for pairs of blocks.
+/// Pairs of blocks below which a second thread costs more than it brings.
 const GRAIN_BLOCK_PAIRS: usize = 4;
 
-/// What U is integrated from.
+/// Input of the integration of U.
 #[derive(Clone, Copy)]
 pub(crate) struct OverlapParts<'a> {
     /// Pairs and facets.
     pub candidates: &'a Candidates,
-    /// What touches.
+    /// Integrals of the facets in contact.
     pub integrals: &'a Integrals,
     /// A frame for each of [`Candidates::tets`].
     pub frames: &'a [TetFrame],
@@ -200,7 +200,7 @@ fn element_pieces(tets: usize) -> PieceTable {
     table
 }
 
-/// What blocks consist of: a block that is taken whole is one cell, others are their tetrahedra.
+/// Cells of the blocks: an affine convex target is one cell, others consist of their tetrahedra.
 struct Cells<'a> {
     input: &'a ContactInput<'a>,
     table: &'a PieceTable,
@@ -263,7 +263,7 @@ struct Cell<'a> {
     phi: Vec<Linear>,
 }
 
-/// What a cell is, seen from an origin.
+/// Shape of a cell, relative to an origin.
 enum Shape<'a> {
     /// A tetrahedron with these corners, in which these functions are not negative.
     Tet(TetId, [Vec3; 4], [Linear; 4]),
@@ -279,7 +279,7 @@ impl Cell<'_> {
         Self { bounds, shape, phi }
     }
 
-    /// What is not negative in it.
+    /// Linear functions that are non-negative in the cell.
     fn sides(&self) -> &[Linear] {
         match &self.shape {
             Shape::Tet(_, _, sides) => sides,

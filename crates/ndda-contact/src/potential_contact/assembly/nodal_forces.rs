@@ -18,12 +18,12 @@ use crate::model::ContactOutput;
 /// Facets per half below which a second thread costs more than it brings.
 const GRAIN_FACETS: usize = 200;
 
-/// What the sums read.
+/// Input of the sums over nodes.
 #[derive(Clone, Copy)]
 pub struct ScatterScene<'a> {
     /// Topology.
     pub blocks: &'a BlockSet,
-    /// Where the nodes are [m], if facets have couples.
+    /// Positions of the nodes [m], if facets have couples.
     pub position: Option<&'a [Vec3]>,
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,
@@ -33,7 +33,7 @@ pub struct ScatterScene<'a> {
     pub hulls: &'a ConvexBlocks,
     /// One entry per touching facet.
     pub forces: &'a [FacetForce],
-    /// What the host of its target feels of each, where that is taken whole.
+    /// Force of each facet on the host tetrahedron of its target, where that is an affine convex target.
     pub on_host: &'a [OnTarget],
     /// Stiffness per slope, one entry per touching facet [Pa].
     pub stiffness_pa: &'a [f64],
@@ -101,7 +101,7 @@ fn add_block(scene: &ScatterScene, block: BlockId, output: ContactOutput) {
     }
 }
 
-/// What other blocks found is far away in memory: asked for all at once it comes sooner than one after the other.
+/// Prefetches the results of other blocks, which are far away in memory: requested all at once they arrive sooner than one after the other.
 fn ask_for(scene: &ScatterScene, on_block: &[u32]) {
     let mut last = 0;
     for &t in on_block {
@@ -156,7 +156,7 @@ impl BlockNodes<'_> {
         }
     }
 
-    /// What presses on a block that is taken whole goes to its host. That and its faces on others make all its nodes as stiff as its fastest
+    /// Adds contact on an affine convex target to its host tetrahedron. That and its faces on others make all its nodes as stiff as its fastest
     /// affine motion; each hit counts as a spring at the mean of its slopes.
     fn add_whole(&mut self, scene: &ScatterScene, whole: &ConvexTarget, own: Range<u32>, on_block: &[u32]) {
         let mut springs = Matrix4::zeros();

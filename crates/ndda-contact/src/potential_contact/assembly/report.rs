@@ -1,4 +1,4 @@
-//! What an evaluation of contact tells of itself.
+//! Reports of an evaluation of contact.
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{TetId, TriangleId};

@@ -58,7 +58,7 @@ fn second_moments(part: &Polygon, area_m2: f64) -> [[f64; 3]; 3] {
     h
 }
 
-/// The same where the gradient of φ differs from point to point.
+/// Adds the stiffness of a pair where the gradient of φ differs from point to point.
 fn add_function(
     stiffness: &mut PairStiffness,
     part: &Polygon,
@@ -90,7 +90,7 @@ fn gradient_at(
     (0..4).map(|b| slope[b] * frame.gradient(b)).sum()
 }
 
-/// What φ is in the target of a pair.
+/// The function φ in the target of a pair.
 #[derive(Clone, Copy)]
 pub(crate) enum Target<'a> {
     /// 4 min λᵢ.

@@ -18,7 +18,7 @@ use crate::integration::capacity::MOST_CORNERS;
 
 /// Blocks below which a second thread costs more than it brings.
 const GRAIN_BLOCKS: usize = 16;
-/// The same for boxes.
+/// Boxes below which a second thread costs more than it brings.
 const GRAIN_BOXES: usize = 2048;
 /// Part of the nodes, 1 / this, beyond which placing all blocks at once is quicker than one by one.
 const MANY: usize = 4;
@@ -57,7 +57,7 @@ pub(crate) fn make_room<T>(list: &mut Vec<T>, more: usize) {
 #[derive(Default)]
 struct Found {
     pairs: Vec<(TriangleId, TetId)>,
-    /// Those of them with a renewed block, on either side.
+    /// Pairs with a renewed block, on either side.
     fresh: Vec<(TriangleId, TetId)>,
     changed: bool,
 }
@@ -297,7 +297,7 @@ impl TreeBroadPhase {
     }
 }
 
-/// What the search between two blocks reads.
+/// Input of the search between two blocks.
 struct Near<'a> {
     scene: &'a BroadScene<'a>,
     own: &'a [Option<Box<BlockBvh>>],

@@ -1,4 +1,4 @@
-//! Where the blocks were when their pairs were listed, and how far each may move before they are listed again.
+//! Positions of the blocks when their pairs were listed, and how far each may move before they are listed again.
 
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, NodeId, Vec3};

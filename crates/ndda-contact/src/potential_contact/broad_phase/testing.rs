@@ -14,20 +14,20 @@ const SCENES: usize = 10_000;
 /// Steps of each scene.
 const STEPS: usize = 3;
 
-/// What [`check_broad_phase`] saw; no pair that overlaps was missed.
+/// Counts of [`check_broad_phase`]; no pair that overlaps was missed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BroadCounts {
     /// Lists that were compared.
     pub lists: usize,
     /// Pairs in them.
     pub found: usize,
-    /// Those of them whose boxes, without a margin, do not touch.
+    /// Pairs whose boxes, without a margin, do not touch.
     pub extra: usize,
     /// Pairs whose boxes touch, of which it was seen from nearer by that they do not overlap.
     pub apart: usize,
     /// Pairs that overlap.
     pub overlapping: usize,
-    /// Those of them in one block.
+    /// Pairs within one block.
     pub in_one_block: usize,
 }
 

@@ -40,7 +40,7 @@ pub(crate) struct Chunk {
     /// Facets that have some, ascending, and what theirs come to.
     touching: Vec<ActiveFacet>,
     sums: Vec<FacetMoments>,
-    /// What the hits tell of themselves.
+    /// Report on the overlapping pairs.
     pub report: HitReport,
     /// Pairs of hits whose triangle has passed the tetrahedron's centroid, in their order, where φ is largest there.
     pub past: Vec<u32>,
@@ -71,12 +71,12 @@ struct PendingPair {
     tet: TetId,
     /// λ_b of the target at the corners of the contactor's triangle, as `[b][a]`.
     lambda: [[f64; 3]; 4],
-    /// Where the contactor is a face.
+    /// Range of ψ where the contactor is a face.
     range: Option<PsiRange>,
     moments: PairMoments,
 }
 
-/// What a thread needs while it is at a chunk.
+/// Scratch memory of a thread for one chunk.
 #[derive(Default)]
 struct Scratch {
     seen: Vec<PendingPair>,
@@ -382,7 +382,7 @@ impl Integrals {
         &self.chunks[touch.chunk as usize].hits[start..end]
     }
 
-    /// What the hits of a facet that touches come to.
+    /// Sums of the overlapping pairs of a facet in contact.
     pub(crate) fn sums_of(&self, touch: &ActiveFacet) -> &FacetMoments {
         &self.chunks[touch.chunk as usize].sums[touch.place as usize]
     }

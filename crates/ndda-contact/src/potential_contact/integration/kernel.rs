@@ -197,7 +197,7 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
         Self { x, y, len: 3 }
     }
 
-    /// What one cut leaves of the whole triangle: its corners ask for no products, and its rim leaves once at most.
+    /// Remainder of the whole triangle after one cut: its corners need no products, and its rim leaves once at most.
     #[inline(always)]
     fn of_triangle(simd: S, field: &Form<S>, bound: S::f64s) -> Self {
         let Form([c0, c1, c2]) = *field;

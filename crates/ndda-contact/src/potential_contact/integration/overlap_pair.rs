@@ -13,11 +13,11 @@ pub struct Hit {
     pub tet: TetId,
     /// ∫ φ ψ_a dA [m²].
     pub pressure: [f64; 3],
-    /// What the target's nodes feel.
+    /// Reaction on the target's nodes.
     pub on_target: OnTarget,
 }
 
-/// What the hits of a facet come to.
+/// Sums over the overlapping pairs of a facet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FacetMoments {
     /// ∫ φ dA [m²].

@@ -7,7 +7,7 @@ use crate::integration::overlap_pair::Hit;
 use crate::integration::scene::Scene;
 use crate::potential::contact_potential::PotentialField;
 
-/// What some hits tell of themselves.
+/// Report on a number of overlapping pairs.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct HitReport {
     /// Difference of action and reaction over either.

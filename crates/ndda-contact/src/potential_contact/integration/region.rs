@@ -85,7 +85,7 @@ impl Region {
         is_somewhere(&outside[i])
     }
 
-    /// Where the k-th of the functions is the smallest. False if that is nowhere.
+    /// Restricts the region to where the k-th of the functions is the smallest. False if that is nowhere.
     pub(crate) fn set_piece(&mut self, pieces: &Pieces, k: usize) -> bool {
         self.begin(pieces.at[k], pieces.slope[k].abs());
         self.len = pieces.cuts(k, |n, cut| self.cuts[n] = cut);

@@ -29,7 +29,7 @@ pub trait ContactPotential: Send + Sync {
         None
     }
 
-    /// What W is of U.
+    /// The law W(U).
     fn law(&self) -> OverlapLaw {
         OverlapLaw::Linear
     }

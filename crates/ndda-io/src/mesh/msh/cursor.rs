@@ -20,7 +20,7 @@ pub(super) enum Encoding {
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     next: usize,
-    /// Where the last item began.
+    /// Start of the last item.
     start: usize,
     /// How [`int`](Self::int), [`size`](Self::size) and [`real`](Self::real) read.
     pub encoding: Encoding,
@@ -90,7 +90,7 @@ impl<'a> Cursor<'a> {
         number.ok_or_else(|| self.unexpected(expected, word))
     }
 
-    /// What is left of the line, without its end; the cursor goes to the next line.
+    /// The rest of the line, without its end; the cursor goes to the next line.
     pub fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.next..];
         let length = rest.iter().take_while(|&&b| b != b'\n').count();

@@ -1,4 +1,4 @@
-//! What both versions of the format are read into.
+//! The mesh that both versions of the format are read into.
 
 use std::collections::{BTreeMap, HashMap};
 

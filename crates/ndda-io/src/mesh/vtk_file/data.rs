@@ -1,4 +1,4 @@
-//! What a file of VTK holds, of either format, and the mesh in it.
+//! Content of a VTK file, of either format, and the mesh in it.
 
 use std::collections::BTreeMap;
 

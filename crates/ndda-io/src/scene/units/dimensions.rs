@@ -14,7 +14,7 @@ pub struct Unit {
 pub struct Dimension {
     /// End of the field's name.
     pub suffix: &'static str,
-    /// What it is.
+    /// Name of the unit.
     pub name: &'static str,
     /// Units of it.
     pub units: &'static [Unit],

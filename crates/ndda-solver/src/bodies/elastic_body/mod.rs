@@ -26,7 +26,7 @@ pub(crate) struct ElasticBody {
     pub initial_force: Option<Vec<Vec3>>,
     /// σ₀ of each element [Pa]; empty without.
     pub initial_stress_pa: Vec<Voigt>,
-    /// Where the held nodes started [m], one entry per held node, then one per spring.
+    /// Start positions of the held nodes [m], one entry per held node, then one per spring.
     anchor: Vec<Vec3>,
     /// û [m].
     predicted: Vec<Vec3>,

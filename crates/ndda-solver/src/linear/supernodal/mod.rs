@@ -49,7 +49,7 @@ impl LinearSolver for Supernodal {
 }
 
 impl SupernodalFactor {
-    /// What each of the two sweeps of a solve reads of the factor [bytes].
+    /// Bytes of the factor that each of the two sweeps of a solve reads.
     pub fn bytes(&self) -> usize {
         size_of_val(self.panels.tiles.as_slice()) + size_of_val(self.panels.row.as_slice())
     }
