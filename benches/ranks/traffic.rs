@@ -11,7 +11,7 @@ use crate::split::Owners;
 
 /// Position and velocity of a node.
 const NODE: usize = 48;
-/// Load, torque and area in contact of a block, which friction on velocities asks for once normal forces are known.
+/// Load, torque and area in contact of a block, which friction on velocities requires once normal forces are known.
 const BODY: usize = 56;
 /// Bytes that the evaluating side would send back if pairs were evaluated once: integrals of a hit at four nodes of the target, and
 /// the number of the pair; of a facet at its three nodes; and the facet's pressure, friction and stiffness.

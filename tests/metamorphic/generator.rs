@@ -102,7 +102,7 @@ pub fn build(text: &str) -> Result<Model, String> {
     Model::new(loaded, folder).map_err(|e| e.render(false))
 }
 
-/// The step that contact asks for [s]; that of waves where there is no contact.
+/// The step that contact requires [s]; that of waves where there is no contact.
 fn advised_step_s(plan: &Plan) -> Option<f64> {
     let still = Pace {
         step_s: 1e-6,

@@ -34,7 +34,7 @@ struct Course {
 /// Compared results of a run.
 struct End {
     position: Vec<Vec3>,
-    /// Of each block, at the end and, if asked for, around it.
+    /// Of each block, at the end and, if requested, around it.
     courses: Vec<Vec<Course>>,
     speed_m_s: f64,
 }

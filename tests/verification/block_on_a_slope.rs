@@ -21,7 +21,7 @@ fn fate((height_m, friction_deg): (f64, f64), penalty_pa: f64, time_s: f64, sett
     // A step in proportion to the period of contact.
     let step_s = 9.0 / penalty_pa.sqrt();
     let (sin, cos) = DIP_DEG.to_radians().sin_cos();
-    // As deep as its weight asks for: p = 2 k_n h/L₀.
+    // As deep as its weight requires: p = 2 k_n h/L₀.
     let sunk = DENSITY * GRAVITY * cos * height_m * REFERENCE_M / (2.0 * penalty_pa);
     let mut simulation = simulation(&format!(
         "(title: \"slope\", time: (step_s: {step_s:e}, end_s: 1), gravity_m_s2: ({}, 0, -{}),

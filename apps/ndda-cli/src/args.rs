@@ -67,7 +67,7 @@ pub enum Verb {
     /// Build or read the blocks of a scene or a mesh file, check and measure them, and draw them.
     ///
     /// Prints counts, volumes, how large blocks are, how good their tetrahedra are (histograms, and the worst ten with
-    /// their places), the steps that contact of each material asks for, and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg.
+    /// their places), the steps that contact of each material requires, and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg.
     /// Tetrahedra with dihedral angles of a few degrees or an aspect above 50 make runs inexact or short of steps:
     /// use larger spacings, another `fill`, or `sliver_width_m`.
     Mesh(MeshArgs),
@@ -98,7 +98,7 @@ pub enum Verb {
     /// Find the factor of safety: by how much joints may weaken, loads grow or gravity tilt before blocks move.
     ///
     /// Brings the scene to rest, then runs trials side by side until the largest factor at which blocks stand and the
-    /// smallest at which they fail are as near as asked for. Writes safety.json and the failing run, folder mechanism.
+    /// smallest at which they fail are as near as requested. Writes safety.json and the failing run, folder mechanism.
     Safety(SafetyArgs),
     /// Find the cheapest settings that reach an error: integrator, step, potential, kind of body and penalty.
     ///

@@ -38,7 +38,7 @@ pub struct SpringSlip {
     pub slides: bool,
 }
 
-/// How blocks that deform move in a step: what friction that acts on velocities asks the solver.
+/// Response of deformable blocks to forces within a step, which friction on velocities needs from the solver.
 pub trait Deformation: Sync {
     /// Answers in place for all blocks at once. `columns` has an entry for each block, empty where nothing is asked, with columns of one
     /// vector per node of the block. The first column is the force of contact on each node [N] and becomes the velocity at the end of the step under all
@@ -167,7 +167,7 @@ pub enum ContactError {
     Potential(String),
     /// The contact history belongs to other friction laws.
     #[error(
-        "the remembered contact is of friction laws that keep {kept} numbers a facet, these keep {expected}: resume with \
+        "the contact history belongs to friction laws with {kept} numbers per facet, these have {expected}: resume with \
          the laws that wrote it"
     )]
     OtherLaws {

@@ -21,7 +21,7 @@ pub enum Hold {
     Motion(Motion),
 }
 
-/// One support of a block as asked for.
+/// One support of a block as requested.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeSupport {
     /// Nodes of the block, counted from its first.
@@ -85,7 +85,7 @@ pub struct Spring {
 pub struct BlockSupports {
     /// Nodes with eliminated unknowns, ascending.
     pub held: Vec<HeldNode>,
-    /// Springs, in the order asked for.
+    /// Springs, in the order requested.
     pub springs: Vec<Spring>,
     /// Prescribed motions.
     pub motions: Vec<Motion>,

@@ -42,7 +42,7 @@ impl Table {
 pub struct Between {
     /// Its mean, exact.
     pub mean: f64,
-    /// overshoot of its integral from the first time on beyond both of its ends [s], which the mean does not show.
+    /// Overshoot of its integral from the first time on beyond both of its ends [s], which the mean does not show.
     pub beyond_s: f64,
 }
 

@@ -9,7 +9,7 @@ use crate::write_error::WriteError;
 
 /// Ending of the temporary file beside the one that is being written.
 pub const TEMPORARY_ENDING: &str = ".tmp";
-/// Files that the disk is asked for at a time.
+/// Files that are synced at a time.
 const AT_A_TIME: usize = 8;
 
 /// Replaces the file at `path` by `content`: temporary file in the same folder, sync, rename, sync of the folder.

@@ -15,6 +15,7 @@ pub mod overrides;
 pub mod read;
 pub mod record;
 mod reference;
+mod renamed;
 mod rock;
 #[cfg(feature = "schema")]
 pub mod schema;
@@ -29,7 +30,7 @@ mod water;
 use serde::{Deserialize, Serialize};
 
 pub use block::{Block, Body, InSitu, Stress, StressGradient, Turn};
-pub use contact::{Contact, Friction, Joint, JointLaw, Memory, Potential, Residual};
+pub use contact::{Contact, Friction, JointLaw, MaterialPair, Memory, Potential, Residual};
 pub use load::{FactorRow, Force, Traction};
 pub use material::{Bedding, Damping, Material};
 pub use monitor::{At, Monitor};

@@ -1,4 +1,4 @@
-//! Repairs that a user asks for by name; each says what it did. Nothing here runs by itself.
+//! Repairs that a user requests by name; each says what it did. Nothing here runs by itself.
 
 use crate::geometry::{Aabb, tet_volume};
 use crate::validate::first_twins;

@@ -18,7 +18,7 @@ pub enum StepError {
         /// The cause.
         source: ContactError,
     },
-    /// However short a step, it asks for more than it may.
+    /// The limits are violated however short the step.
     #[error(
         "at t = {time_s} s: contact is too stiff or too fast even for steps of {step_s:e} s: reduce the penalty, refine \
          the mesh less, or allow more halvings"

@@ -29,7 +29,7 @@ use crate::run::schedule::is_due;
 /// ```
 pub struct Driver {
     model: Model,
-    /// Steps of the scene, and how many rows of history it asks for.
+    /// Steps of the scene, and how many rows of history it requests.
     steps: u64,
     rows: u64,
     /// Why the simulation cannot go on; its state is then not to be used.

@@ -30,7 +30,7 @@ pub struct MeshReport {
     /// Number and quality of the tetrahedra.
     #[serde(flatten)]
     pub quality: QualityReport,
-    /// Steps that contact asks for; empty without a scene, or where contact is stable at any step.
+    /// Steps that contact requires; empty without a scene, or where contact is stable at any step.
     pub steps: Vec<AdvisedStep>,
     /// The cut of each rock.
     pub rock: Vec<RockReport>,

@@ -58,7 +58,7 @@ struct Place<'a> {
 }
 
 impl Events {
-    /// Lines of `schema` if they are asked for.
+    /// Lines of `schema` if they are requested.
     pub fn new(asked: bool, schema: &'static str) -> Self {
         Self(asked.then_some(schema))
     }

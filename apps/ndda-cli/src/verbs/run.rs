@@ -25,7 +25,7 @@ pub fn run(args: &RunArgs) -> u8 {
     in_pool(&args.how, |options| run_here(args, options))
 }
 
-/// Does `work` on as many threads as are asked for.
+/// Does `work` on as many threads as are requested.
 pub fn in_pool(how: &HowArgs, work: impl FnOnce(&Options) -> u8 + Send) -> u8 {
     let started = Instant::now();
     let events = Events::new(how.json, events::RUN);

@@ -138,7 +138,7 @@ pub struct Evaluation {
     force: Vec<Vec3>,
     shear: Vec<Vec3>,
     stiffness: Vec<f64>,
-    /// Which blocks may be taken whole.
+    /// Which blocks may be an affine convex target.
     affine: Vec<bool>,
 }
 

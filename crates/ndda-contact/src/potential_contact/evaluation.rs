@@ -132,15 +132,15 @@ impl PotentialContact {
         let held = held.filter(|force| force.shear_slope > 0.0 && force.sticks);
         let corners = input.blocks.triangle_corners(touch.triangle, input.position);
         let outline = self.hulls.outline(touch.triangle, touch.target);
-        for hit in self.integrals.hits_of(touch) {
-            let tet = hit.tet;
-            let target = match (&self.field, self.hulls.whole(touch.target)) {
+        for overlap in self.integrals.overlaps_of(touch) {
+            let tet = overlap.tet;
+            let target = match (&self.field, self.hulls.affine_target(touch.target)) {
                 (_, Some(_)) => Target::Convex(self.hulls.planes_of(touch.target), outline),
                 (Some((_, PotentialField::Pieces(table))), None) => Target::Pieces(table.of(tet)),
                 (Some((_, PotentialField::Function(field))), None) => Target::Function(field, tet),
                 _ => Target::Element,
             };
-            let frame = &self.frames[self.candidates.pairs[hit.pair as usize].tet as usize];
+            let frame = &self.frames[self.candidates.pairs[overlap.pair as usize].tet as usize];
             let triangle = &input.blocks.triangles[touch.triangle.index()];
             let mut pair = PairStiffness::new(triangle, &input.blocks.tets[tet.index()]);
             tangent::add_pair(&mut pair, &corners, frame, target, self.penalty_of_facet[t]);
@@ -148,8 +148,8 @@ impl PotentialContact {
                 let normal = force.push.normalize();
                 let across = Mat3::identity() - normal * normal.transpose();
                 // The spring of a facet, shared among its hits by their pressure.
-                let [a, b, c] = hit.pressure;
-                let [d, e, g, h] = hit.on_target.pressure;
+                let [a, b, c] = overlap.pressure;
+                let [d, e, g, h] = overlap.on_target.pressure;
                 let total = a + b + c;
                 let weights = [a, b, c, -d, -e, -g, -h].map(|w| w / total);
                 pair.add_spring(&weights, &(force.shear_slope * total * across));
@@ -197,10 +197,10 @@ pub(super) fn place_forces(
     on_host.resize(touching.len(), OnTarget::default());
     state.resize(touching.len() * state_len, 0.0);
     let place = |force: &mut FacetForce, on_host: &mut OnTarget, t: usize, state: &mut [f64]| {
-        let (hits, sums) = (integrals.hits_of(&touching[t]), integrals.sums_of(&touching[t]));
-        *force = scene.force(&touching[t], hits, sums, penalty_of_facet[t], state);
-        if hulls.whole(touching[t].target).is_some() {
-            *on_host = hits[0].on_target;
+        let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
+        *force = scene.force(&touching[t], overlaps, sums, penalty_of_facet[t], state);
+        if hulls.affine_target(touching[t].target).is_some() {
+            *on_host = overlaps[0].on_target;
         }
     };
     if state_len > 0 {

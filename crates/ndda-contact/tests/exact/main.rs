@@ -7,7 +7,6 @@
 //!
 //! `NDDA_CASES` (or `PROPTEST_CASES`) sets the number of pairs: `NDDA_CASES=100000 cargo test --release
 //! -p ndda-contact --test exact -- --nocapture` prints the worst error of each family.
-#![cfg(feature = "potential")]
 
 mod families;
 mod rational;

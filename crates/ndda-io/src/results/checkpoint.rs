@@ -54,7 +54,7 @@ pub enum CheckpointError {
     Foreign {
         /// The file.
         path: PathBuf,
-        /// How it tells.
+        /// The evidence.
         what: String,
     },
     /// The file is of another version.

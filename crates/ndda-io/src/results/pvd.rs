@@ -1,4 +1,4 @@
-//! The series of frames: `fields.pvd` lists each `.vtu` with its time, and is what ParaView is asked to open.
+//! The series of frames: `fields.pvd` lists each `.vtu` with its time, and is the file to open in ParaView.
 
 use std::fmt::Write as _;
 use std::fs;

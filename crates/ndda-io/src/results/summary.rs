@@ -144,10 +144,10 @@ pub struct Machine {
     pub commit: String,
     /// Cargo features that it was built with.
     pub features: Vec<String>,
-    /// Most memory that it held at a time \[B\]. Left out where the system does not tell.
+    /// Most memory that it held at a time \[B\]. Left out where the system does not report it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_memory_b: Option<u64>,
-    /// Processor time of all its threads \[s\]. Left out where the system does not tell.
+    /// Processor time of all its threads \[s\]. Left out where the system does not report it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub processor_time_s: Option<f64>,
 }
@@ -188,7 +188,7 @@ pub enum Judgement {
     /// Within the limit.
     #[serde(rename = "pass")]
     Pass,
-    /// Beyond the limit that asks for attention.
+    /// Beyond the limit of a warning.
     #[serde(rename = "warn")]
     Warn,
     /// Beyond the limit: the result is not to be used.

@@ -11,8 +11,8 @@ pub enum Contact {
     Off,
     /// A contact potential: energy of the volume that blocks share.
     Potential {
-        /// Normal penalty k_n [Pa]. Contact gives way as E L₀/2k_n of rock does with `Smooth`; settlements and waves are
-        /// wrong by that over the size of the blocks, slides and rebounds hardly.
+        /// Normal penalty k_n [Pa]. With `Smooth`, contact is as compliant as E L₀/(2 k_n) of rock. The error of settlements and waves is about
+        /// that length relative to the block size; sliding and rebound are almost unaffected.
         penalty_pa: f64,
         /// The contact potential inside a block. Default: `Element`, the paper's.
         #[serde(default)]
@@ -22,10 +22,10 @@ pub enum Contact {
         friction: Option<Friction>,
         /// Friction between blocks of two materials, in place of `friction`; a later entry counts more. Default: none.
         #[serde(default)]
-        joints: Vec<Joint>,
+        material_pairs: Vec<MaterialPair>,
         /// Friction on the faces of joints that cut rock, in place of all other; a later entry counts more. Default: none.
         #[serde(default)]
-        laws: Vec<JointLaw>,
+        rock_joints: Vec<JointLaw>,
         /// The owner of friction history. Default: `Body`.
         #[serde(default)]
         memory: Memory,
@@ -98,7 +98,7 @@ pub struct Residual {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-pub struct Joint {
+pub struct MaterialPair {
     /// Names of the two materials, or of one twice.
     pub between: (String, String),
     /// Friction there. Default: none.
@@ -108,8 +108,8 @@ pub struct Joint {
 
 /// Friction on the faces that a named joint made.
 ///
-/// Each side of a contact rubs by the law of its own face: that of the joint, if it has one here, else that of the two
-/// materials. Where faces of different joints meet, each law acts on the pressure that its side bears, about half.
+/// Friction on each side of a contact follows the law of its own face: that of the joint, if it has one here, else that of the two
+/// materials. Where faces of different joints meet, each law acts on the pressure that its side carries, about half.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

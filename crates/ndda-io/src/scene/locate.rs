@@ -5,15 +5,17 @@
 
 use std::ops::Range;
 
+use crate::scene::renamed;
+
 /// Nesting beyond this is not followed; RON itself refuses it.
 const DEEPEST: usize = 100;
 
 /// A value in the text, with what is inside it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Node {
-    /// Name of the field that holds the value, when it is in a struct.
+    /// Current name of the field that holds the value, when it is in a struct.
     pub key: Option<String>,
-    /// Bytes of that name.
+    /// Bytes of the name as it is written, which may be a former one.
     pub key_span: Range<usize>,
     /// Bytes of the value, brackets included.
     pub span: Range<usize>,
@@ -23,14 +25,16 @@ pub struct Node {
     pub children: Vec<Node>,
 }
 
-/// Reads the shape of a text.
+/// Reads the shape of a text; fields that have been renamed go by their current keys.
 pub fn tree(text: &str) -> Node {
     let mut scanner = Scanner { text, at: 0 };
     scanner.skip_blank();
     while scanner.rest().starts_with("#![") {
         scanner.skip_attribute();
     }
-    scanner.value(0).unwrap_or_default()
+    let mut tree = scanner.value(0).unwrap_or_default();
+    renamed::rename(&mut tree);
+    tree
 }
 
 impl Node {

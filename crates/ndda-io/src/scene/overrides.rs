@@ -2,7 +2,8 @@
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
-use crate::scene::locate::{self, Node, segments};
+use crate::scene::locate::{self, Node};
+use crate::scene::renamed::current_segments;
 
 /// Keys whose value is a choice: what is inside cannot be written without saying which.
 const CHOICES: [&str; 6] = ["integrator", "contact", "reference", "shape", "on", "hold"];
@@ -22,7 +23,7 @@ fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
         return Err(refuse("has no `=`; write --set time.step_s=1e-3".into()));
     };
     let (path, value) = (path.trim(), value.trim());
-    let names = segments(path);
+    let names = current_segments(path);
     if names.is_empty() || value.is_empty() {
         return Err(refuse("needs a path and a value; write --set time.step_s=1e-3".into()));
     }

@@ -154,7 +154,7 @@ pub fn as_overrides(values: &Values) -> Vec<String> {
 pub struct LoadedStudy {
     /// The study.
     pub study: Study,
-    /// Its axes that tell curves apart.
+    /// Its axes that distinguish curves.
     pub curves: Vec<String>,
     /// The scene's file.
     pub scene: PathBuf,

@@ -62,7 +62,7 @@ pub enum Solver {
     },
 }
 
-/// Whether steps may be shorter. A step that asks for too much is taken back whole, contact's memory included, and done
+/// Whether steps may be shorter. A step that violates a limit is discarded, contact history included, and repeated
 /// again in more parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -71,7 +71,7 @@ pub enum Step {
     /// All are `step_s`.
     #[default]
     Fixed,
-    /// Each is done in as many parts, 1, 2, 4, …, as contact, speed and energy ask for.
+    /// Each is done in as many parts, 1, 2, 4, …, as contact, speed and energy require.
     Auto {
         /// Part of the integrator's bound on ω_c Δt that may be used. Default: 0.5.
         #[serde(default = "half")]

@@ -1,7 +1,7 @@
 //! Values with a unit: `Megapascal(20)` in a field `…_pa` is 20e6.
 //!
 //! The unit of a field is the end of its name. A value in another unit of the same dimension is turned into it in the text,
-//! before types are read; what is found wrong later is mapped back to the text as it was written.
+//! before types are read, and former names of fields into current ones; what is found wrong later is mapped back to the text as it was written.
 
 mod dimensions;
 
@@ -78,6 +78,9 @@ struct Resolver<'a> {
 impl Resolver<'_> {
     /// Looks for units in a value; items and components of a quantity are of its dimension.
     fn visit(&mut self, node: &Node, outer: Option<&'static Dimension>) {
+        if let Some(key) = node.key.as_deref().filter(|key| **key != self.text[node.key_span.clone()]) {
+            self.edit(node.key_span.clone(), key.to_string());
+        }
         let own = node.key.as_deref().and_then(dimension_of).or(outer);
         let word = node.word(self.text);
         if DIMENSIONS.iter().any(|d| d.unit(word).is_some()) {

@@ -4,7 +4,7 @@ use super::neighbours::neighbours;
 use super::polyhedron::{Face, Polyhedron};
 use super::surfaces::{Neighbour, Surface};
 
-/// A block thinner than asked for.
+/// A block thinner than requested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sliver {
     /// Index of the block.

@@ -1,4 +1,4 @@
-//! Seeded numbers: the same seed gives the same blocks, whatever the order in which they are asked for.
+//! Seeded numbers: the same seed gives the same blocks, whatever the order in which they are requested.
 
 use std::f64::consts::TAU;
 

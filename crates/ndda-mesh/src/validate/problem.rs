@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-/// How many culprits a problem lists.
+/// Number of faulty items that a problem lists.
 const LISTED: usize = 10;
 
-/// How many culprits there are, and the first ten of them.
+/// Number of faulty items, and the first ten of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found<T> {
     /// How many in all.

@@ -53,7 +53,7 @@ pub fn cubes(count: usize, n: u32, kind: BodyKind, integrator: Box<dyn TimeInteg
         mass: Mass::Consistent,
         integrator,
         contact: None,
-        end_contact: None,
+        implicit_contact: None,
         solver: Box::new(Direct),
         auto_step: None,
     })

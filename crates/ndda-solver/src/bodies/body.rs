@@ -35,7 +35,7 @@ pub(crate) enum Motion {
     Elastic(Box<ElasticBody>),
     /// Rigid blocks.
     Rigid(RigidBody),
-    /// Blocks that stay, or go where they are told to.
+    /// Blocks that stay, or move as prescribed.
     Fixed(FixedBody),
 }
 

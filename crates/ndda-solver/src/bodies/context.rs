@@ -22,8 +22,8 @@ pub(crate) struct StepContext<'a> {
     pub end_s: f64,
     /// Where contact was evaluated, x* per node of the block [m].
     pub contact_position: &'a [Vec3],
-    /// How far ahead of that contact saw it [m].
-    pub ahead: Vec3,
+    /// Contact offset: contact is evaluated this far from where the block is [m].
+    pub contact_offset: Vec3,
     /// Force per node of the block, contact and constant loads [N].
     pub force: &'a [Vec3],
     /// The loads in it [N].
@@ -34,7 +34,7 @@ pub(crate) struct StepContext<'a> {
     pub friction_force: &'a [Vec3],
     /// Row sums of the contact stiffness [N/m]; empty without contact.
     pub contact_stiffness: &'a [f64],
-    /// Part of a contact force whose direction is not known, and that no friction bears.
+    /// Direction uncertainty: part of a contact force whose direction is unknown, and that no friction carries.
     pub direction_uncertainty: f64,
     /// M a of the block as a whole at the start; zero where it does not matter.
     pub inertia: Inertia,

@@ -1,4 +1,4 @@
-//! Blocks without unknowns: they stay where they are, or go where they are told to.
+//! Blocks without unknowns: they stay where they are, or move as prescribed.
 
 use ndda_mesh::Vec3;
 
@@ -59,7 +59,7 @@ impl FixedBody {
         // The motion is prescribed, so the integrator's weights do not apply to what moves the block's own mass.
         report.motion_impulse = inertia;
         report.orbital_impulse = shape.operator.center(nodes.position).cross(&inertia);
-        // The support delivers what friction and changing loads take: their own work is booked as such.
+        // The support delivers what friction and changing loads take: their own work is recorded as such.
         report.friction_work_j = context.friction_force.iter().sum::<Vec3>().dot(&increment);
         report.load_work_j = context.changing.iter().sum::<Vec3>().dot(&increment);
         report.speed_m_s = velocity.norm();

@@ -324,7 +324,7 @@ fn lumped(operator: BlockOperator) -> (BlockOperator, f64) {
     (operator, relative.symmetric_eigenvalues().amax())
 }
 
-/// Whether a body of its kind can have the supports that are asked for.
+/// Whether a body of its kind can have the supports that are requested.
 fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
     let moves = |s: &NodeSupport| matches!(s.hold, Hold::Motion(_)) && s.spring_n_m.is_none();
     match setup.kind {

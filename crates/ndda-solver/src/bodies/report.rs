@@ -34,17 +34,17 @@ pub(crate) struct BlockReport {
     pub speed_m_s: f64,
     /// Largest Σ|k| / m over the nodes [1/s²]: a bound of ω_c².
     pub contact_rate2: f64,
-    /// Velocity that it owes to the unknown direction of contact forces.
-    pub sideways: LateralDrift,
+    /// Lateral velocity due to the uncertain direction of contact forces.
+    pub lateral_drift: LateralDrift,
     /// M a of the block as a whole at the end; for free blocks only.
     pub inertia: Inertia,
     /// Forcing of its rigid motion.
-    pub drive: Drive,
+    pub drive: RigidForcing,
 }
 
 /// Forcing of a block's rigid motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Drive {
+pub(crate) struct RigidForcing {
     /// Force of loads over its mass [m/s²].
     pub load_m_s2: Vec3,
     /// Acceleration of translation by loads, contact and supports [m/s²].
@@ -61,7 +61,7 @@ pub(crate) struct Drive {
     /// Speed of its fastest node [m/s].
     pub speed_m_s: f64,
     /// Whether friction acts on it.
-    pub rubs: bool,
+    pub has_friction: bool,
 }
 
 /// Velocity that forces of unknown direction give a block [m/s].

@@ -13,7 +13,7 @@ pub(crate) struct Vibration {
 }
 
 impl Vibration {
-    /// Over the largest speed and what the block bears.
+    /// Over the largest speed and the block's elastic scale.
     pub(crate) fn over(&self, largest_m_s: f64) -> f64 {
         if self.speed_m_s == 0.0 {
             0.0

@@ -128,7 +128,7 @@ pub trait LinearSolver: Send + Sync {
 
 /// A factored matrix; it exists only once factored, so nothing can be called in the wrong order.
 pub trait Factor: Send + Sync {
-    /// Its kind, for a person who asks.
+    /// Its kind, for reports.
     fn name(&self) -> &'static str;
 
     /// Number of unknowns.

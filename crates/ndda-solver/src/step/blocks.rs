@@ -37,7 +37,7 @@ impl Simulation {
             time_s: self.clock_s(0.0),
             end_s: self.clock_s(1.0),
             contact_position: &self.scratch.contact_position[range.clone()],
-            ahead: self.state.ahead_of(BlockId(index as u32)),
+            contact_offset: self.state.contact_offset_of(BlockId(index as u32)),
             force,
             external: &self.loads.total()[range.clone()],
             changing: self.loads.changing().get(range.clone()).unwrap_or(&[]),

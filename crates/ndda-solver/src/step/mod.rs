@@ -93,7 +93,7 @@ pub(crate) struct Scratch {
     /// Whether forces of friction and stiffness of contact may be other than zero.
     pub(crate) contact_has_acted: bool,
     pub(crate) contact_position: Vec<Vec3>,
-    /// Room for places that contact sees further ahead.
+    /// Scratch for positions with contact offsets.
     pub(crate) seen_position: Vec<Vec3>,
     pub(crate) contact_bodies: Vec<ContactBody>,
     /// Where nodes were before the step, later how far it moved them [m]; empty without contact.
@@ -107,7 +107,7 @@ pub(crate) struct Audit {
     pub(crate) travel: Travel,
     /// Facets in contact in the last step, if they were requested.
     pub(crate) contacts: Option<Vec<FacetContact>>,
-    /// Part of contact forces whose direction is not known in this step, and that no friction bears.
+    /// Direction uncertainty: part of contact forces whose direction is unknown in this step, and that no friction carries.
     pub(crate) direction_uncertainty: f64,
 }
 
@@ -127,7 +127,7 @@ impl Simulation {
     pub(crate) fn part_step(&mut self) -> Result<StepReport, StepError> {
         let mut watch = StageWatch::start();
         self.gather_loads();
-        self.look_ahead_in_the_first_step()?;
+        self.offset_contact_in_the_first_step()?;
         let (contact, iterations) = self.gather_contact()?;
         self.watch_contact(&contact);
         watch.stop(&mut self.audit.stages.contact_s);

@@ -46,7 +46,7 @@ pub struct Iterations {
 /// Counts of step control; zero without control.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepCounts {
-    /// Steps taken back.
+    /// Discarded steps.
     pub rejected: u64,
     /// Most halvings of a step.
     pub most_halvings: u32,

@@ -39,7 +39,7 @@ pub struct Guess {
     pub timed_steps: u64,
     /// Wall-clock time of a run on as many threads as this process has, if contacts stay as many [s].
     pub run_s: f64,
-    /// Most memory of this process, which has done all that a run does [B]; none where the system does not tell.
+    /// Most memory of this process, which has done all that a run does [B]; none where the system does not report it.
     pub memory_bytes: Option<u64>,
     /// Files.
     pub files: Vec<FileGuess>,

@@ -1,4 +1,4 @@
-//! How much memory a process may have: what the machine, its control group and its limits leave, or what was asked for.
+//! How much memory a process may have: what the machine, its control group and its limits leave, or what was requested.
 
 use std::fs;
 use std::path::Path;

@@ -128,7 +128,7 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
         let StepCounts { rejected, most_halvings } = worst.control;
         let shortest_s = simulation.step_s() * 0.5f64.powi(most_halvings as i32);
         advice.push(format!(
-            "steps went from {:.1e} s down to {shortest_s:.1e} s; {rejected} were taken back and done again",
+            "steps went from {:.1e} s down to {shortest_s:.1e} s; {rejected} were discarded and repeated",
             simulation.step_s()
         ));
     }
@@ -148,7 +148,7 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
     }
     if worst.max_penetration_ratio > 0.05 {
         advice.push(format!(
-            "penetration reached {:.1} % of a tet's height: raise penalty_pa",
+            "penetration reached {:.1} % of an element size: raise penalty_pa",
             100.0 * worst.max_penetration_ratio
         ));
     }

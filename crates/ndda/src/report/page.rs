@@ -20,7 +20,7 @@ const BLOCKS: [&str; 4] = [
     include_str!("../../assets/report/viewer.js"),
 ];
 const MAIN: &str = include_str!("../../assets/report/main.js");
-/// A page that asks for nothing from anywhere.
+/// A page that requires nothing from anywhere.
 const POLICY: &str =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 

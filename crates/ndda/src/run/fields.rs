@@ -1,4 +1,4 @@
-//! Sink of fields: a frame at even intervals, of what the scene asks for; nothing else is computed.
+//! Sink of fields: a frame at even intervals, of what the scene requests; nothing else is computed.
 
 use std::ops::ControlFlow;
 use std::time::Instant;

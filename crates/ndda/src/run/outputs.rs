@@ -24,7 +24,7 @@ use crate::judge::reference::{self, Comparison};
 pub struct SavedRun {
     /// The scene.
     pub identity: Identity,
-    /// State and books.
+    /// State and ledger.
     pub snapshot: Snapshot,
     /// How far the outputs had come.
     pub earlier: Earlier,
@@ -90,7 +90,7 @@ pub struct Course {
 pub type Place = (Identity, OutputFolder, Option<Earlier>);
 
 impl<'a, 'b> Outputs<'a, 'b> {
-    /// The outputs that a scene asks for; in memory where there is no place.
+    /// The outputs that a scene requests; in memory where there is no place.
     ///
     /// # Errors
     /// [`WriteError`] when a file cannot be written.

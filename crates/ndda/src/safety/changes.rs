@@ -70,12 +70,12 @@ pub fn has_springs_only(scene: &Scene) -> bool {
 }
 
 fn frictions(scene: &mut Scene) -> Vec<&mut Friction> {
-    let Some(Contact::Potential { friction, joints, laws, .. }) = &mut scene.contact else {
+    let Some(Contact::Potential { friction, material_pairs, rock_joints, .. }) = &mut scene.contact else {
         return Vec::new();
     };
-    let joints = joints.iter_mut().filter_map(|joint| joint.friction.as_mut());
-    let laws = laws.iter_mut().filter_map(|law| law.friction.as_mut());
-    friction.iter_mut().chain(joints).chain(laws).collect()
+    let pairs = material_pairs.iter_mut().filter_map(|pair| pair.friction.as_mut());
+    let laws = rock_joints.iter_mut().filter_map(|law| law.friction.as_mut());
+    friction.iter_mut().chain(pairs).chain(laws).collect()
 }
 
 /// Smallest shear stiffness of the scene's joints [Pa/m].

@@ -13,7 +13,7 @@ use super::launch::{Launch, clocked, least};
 use super::record::{RESULTS, Record, RunOutcome, folder};
 use super::result::{CasePoint, Compared, Figures, Run};
 
-/// Reference runs must agree this many times better than the smallest error that is told apart from zero.
+/// Reference runs must agree this many times better than the smallest error that is distinguished from zero.
 const AGREE: f64 = 5.0;
 
 /// Judge of results.

@@ -152,7 +152,7 @@ impl Launch<'_> {
 /// The times that count.
 ///
 /// # Errors
-/// [`StudyError::NoProcessorTime`] where the system does not tell.
+/// [`StudyError::NoProcessorTime`] where the system does not report it.
 pub fn clocked<'a>(
     clock: Clock,
     walls_s: &'a [f64],

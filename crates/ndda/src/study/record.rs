@@ -64,7 +64,7 @@ pub enum RunOutcome {
     Done {
         /// Wall time of each run [s].
         walls_s: Vec<f64>,
-        /// Processor time of each run [s]; none where the system does not tell.
+        /// Processor time of each run [s]; none where the system does not report it.
         #[serde(default)]
         processors_s: Vec<f64>,
         /// `summary.json` of the fastest.

@@ -15,7 +15,7 @@ pub struct Results {
     pub title: String,
     /// Name of the scene's file.
     pub scene: String,
-    /// Axes that tell curves apart.
+    /// Axes that distinguish curves.
     pub curves: Vec<String>,
     /// Cost of a run: `wall` or `processor` time.
     pub clock: &'static str,
@@ -44,15 +44,15 @@ pub enum Compared {
         disagreement_end: f64,
         /// How far they are apart at most, relative.
         disagreement_max: f64,
-        /// Errors at the end below this are not told apart.
+        /// Errors at the end below this are not distinguished.
         floor_end: f64,
-        /// Largest errors below this are not told apart.
+        /// Largest errors below this are not distinguished.
         floor_max: f64,
     },
 }
 
 impl Compared {
-    /// Errors at the end, and largest errors, below which points are not told apart.
+    /// Errors at the end, and largest errors, below which points are not distinguished.
     pub fn floors(&self) -> [f64; 2] {
         match self {
             Self::ClosedForm { .. } => [0.0; 2],
@@ -89,7 +89,7 @@ pub struct Figures {
     pub wall_s: f64,
     /// Wall time of each run [s].
     pub walls_s: Vec<f64>,
-    /// Processor time of each run [s]; none where the system does not tell.
+    /// Processor time of each run [s]; none where the system does not report it.
     pub processors_s: Vec<f64>,
     /// Invariants that were beyond their limits.
     pub beyond_limits: Vec<String>,

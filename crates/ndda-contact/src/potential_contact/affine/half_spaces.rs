@@ -1,6 +1,6 @@
-//! The functions of a block that is taken whole as a contactor sees them, as many at a time as the processor has lanes.
+//! The functions of a block that is an affine convex target as a contactor sees them, as many at a time as the processor has lanes.
 //!
-//! Most contactors see five or six sides, three of which make regions, and each region asks all others whether they lead. One by one that
+//! Most contactors see five or six sides, three of which make regions, and each region compares with all others. One by one that
 //! took as long as the integrals.
 
 use ndda_mesh::Vec3;

@@ -99,12 +99,12 @@ pub(crate) enum Target<'a> {
     Pieces(&'a [[f64; 4]]),
     /// A function of the tetrahedron.
     Function(&'a FunctionField, TetId),
-    /// The smallest of the functions of these sides of a block that is taken whole, on a contactor with this outline; λ are those of
+    /// The smallest of the functions of these sides of a block that is an affine convex target, on a contactor with this outline; λ are those of
     /// its host.
     Convex(&'a [Planes], &'a Outline),
 }
 
-/// Adds the stiffness of a contactor in a tetrahedron or a block that is taken whole; `corners` [m] are those of its triangle.
+/// Adds the stiffness of a contactor in a tetrahedron or a block that is an affine convex target; `corners` [m] are those of its triangle.
 pub(crate) fn add_pair(
     stiffness: &mut PairStiffness,
     corners: &[Vec3; 3],

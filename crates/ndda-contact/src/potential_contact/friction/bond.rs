@@ -66,7 +66,7 @@ fn bond_of(
         let shifted = corners.map(|x| x + into);
         let mut polygon = Polygon::all_of(&Outline::TRIANGLE);
         let mut cut = |at: [f64; 3]| polygon.cut(&Form::through(&at), f64::MIN_POSITIVE);
-        match hulls.whole(facet.target) {
+        match hulls.affine_target(facet.target) {
             Some(_) => {
                 hulls.faces_of(facet.target).iter().for_each(|face| cut(shifted.map(|x| face.phi(&x))))
             }

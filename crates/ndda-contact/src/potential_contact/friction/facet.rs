@@ -7,7 +7,7 @@ use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::friction::bond;
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, facet_basis, length};
 use crate::friction::law_table::{FrictionLawTable, Memory};
-use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, Hit};
+use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
 use crate::model::{ContactHistory, ContactInput, FacetMemory, SpringSlip};
 
 /// Friction below this part of what it may be holds like a spring.
@@ -57,7 +57,7 @@ impl FacetScene<'_> {
     pub(crate) fn force(
         &self,
         touch: &ActiveFacet,
-        hits: &[Hit],
+        hits: &[OverlapPair],
         sums: &FacetMoments,
         penalty_pa: f64,
         state: &mut [f64],
@@ -82,7 +82,7 @@ impl FacetScene<'_> {
         &self,
         joints: &FrictionLawTable,
         touch: &ActiveFacet,
-        (hits, sums): (&[Hit], &FacetMoments),
+        (hits, sums): (&[OverlapPair], &FacetMoments),
         (penalty_pa, normal): (f64, &Vec3),
         (force, state): (&mut FacetForce, &mut [f64]),
     ) {
@@ -118,7 +118,7 @@ impl FacetScene<'_> {
     fn slip(
         &self,
         touch: &ActiveFacet,
-        (hits, sums): (&[Hit], &FacetMoments),
+        (hits, sums): (&[OverlapPair], &FacetMoments),
         basis: &[Vec3; 2],
         penalty_pa: f64,
     ) -> FacetSlip {
@@ -168,7 +168,7 @@ impl FacetScene<'_> {
 /// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.
 pub(crate) fn relative_velocity(
     touch: &ActiveFacet,
-    found: (&[Hit], &FacetMoments),
+    found: (&[OverlapPair], &FacetMoments),
     input: &ContactInput,
 ) -> Vec3 {
     relative_motion(touch, found, (input.blocks, input.velocity))
@@ -177,7 +177,7 @@ pub(crate) fn relative_velocity(
 /// The same of any vectors per node.
 pub(crate) fn relative_motion(
     touch: &ActiveFacet,
-    (hits, sums): (&[Hit], &FacetMoments),
+    (hits, sums): (&[OverlapPair], &FacetMoments),
     (blocks, velocity): (&BlockSet, &[Vec3]),
 ) -> Vec3 {
     let triangle = &blocks.triangles[touch.triangle.index()];

@@ -21,7 +21,7 @@ pub(crate) type Row = [f64; GROUP];
 /// A group of regions; a field is given by its values at the corners of the contactor's triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct RegionGroup {
-    /// Outlines of the contactors, (ψ₁, ψ₂) of their corners; not asked for where they are triangles.
+    /// Outlines of the contactors, (ψ₁, ψ₂) of their corners; not requested where they are triangles.
     pub outline: [[Row; 2]; MOST_CORNERS],
     /// Corners in use.
     pub corners: usize,

@@ -6,7 +6,7 @@ use crate::integration::pair_moments::{OnTarget, PairMoments};
 
 /// A candidate pair that does overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
+pub struct OverlapPair {
     /// Index in [`Candidates::pairs`].
     pub pair: u32,
     /// The pair's tetrahedron, to be had without looking for the pair.
@@ -62,6 +62,6 @@ pub struct ActiveFacet {
     pub target: BlockId,
     /// Where its hits are, and the rest.
     pub(super) chunk: u32,
-    pub(super) hits: [u32; 2],
+    pub(super) overlaps: [u32; 2],
     pub(super) place: u32,
 }

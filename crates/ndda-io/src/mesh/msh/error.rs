@@ -59,7 +59,7 @@ pub enum MshProblem {
     /// Numbers of another size than on 64-bit machines.
     #[error("data size is {0} bytes; only 8 is read: save it with a 64-bit Gmsh")]
     DataSize(i64),
-    /// The number 1 that tells the byte order is not there.
+    /// The number 1 that gives the byte order is not there.
     #[error("byte order mark is {0:#010x}: expected 1 in either byte order")]
     ByteOrder(u32),
     /// The file ends too early.

@@ -14,10 +14,10 @@ pub(super) fn encode(bytes: &[u8], text: &mut String) {
     }
 }
 
-/// Decodes pieces as they are asked for.
+/// Decodes pieces as they are requested.
 pub(super) struct Decoder<'a> {
     text: &'a [u8],
-    /// Decoded but not yet asked for, from `next` on.
+    /// Decoded but not yet requested, from `next` on.
     ready: Vec<u8>,
     next: usize,
 }

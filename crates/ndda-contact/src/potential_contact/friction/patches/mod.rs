@@ -48,7 +48,7 @@ pub(crate) struct PatchScene<'a> {
     pub integrals: &'a Integrals,
     /// Laws.
     pub joints: &'a FrictionLawTable,
-    /// Blocks that are taken whole.
+    /// Blocks that are affine convex targets.
     pub hulls: &'a ConvexBlocks,
 }
 
@@ -95,7 +95,7 @@ pub(crate) struct FrictionPatches {
     run_of: Vec<u32>,
     opposite: Opposite,
     /// Patches by block.
-    by_block: BlockContactIndex,
+    adjacency: BlockContactIndex,
     /// Blocks with the velocities at the end of the step.
     bodies: Vec<Body>,
     /// Whether a block has patches with friction.
@@ -167,7 +167,7 @@ impl FrictionPatches {
         self.join_faces(scene, forces);
         self.find_patches(scene, forces, history);
         let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
-        self.by_block.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
+        self.adjacency.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
         self.advance_bodies(scene);
         self.solve(scene, forces);
         let Self { patches, runs, run_of, order, new_faces, own_m2, .. } = self;
@@ -237,12 +237,12 @@ impl FrictionPatches {
                 self.is_asked[block] = true;
             }
         }
-        let (is_asked, by_block, patches) = (&self.is_asked, &self.by_block, &self.patches);
+        let (is_asked, adjacency, patches) = (&self.is_asked, &self.adjacency, &self.patches);
         let is_nodal = |body: &Body| scene.input.deformation.is_some() && body.deforms;
         let advance = |(block, body): (usize, &mut Body)| {
             if is_asked[block] && body.mass_kg.is_finite() && !is_nodal(body) {
                 body.add_gyroscopic_torque();
-                for (k, sign) in by_block.at(BlockId(block as u32)) {
+                for (k, sign) in adjacency.at(BlockId(block as u32)) {
                     patches[k as usize].apply_loads(body, sign);
                     patches[k as usize].apply_previous_friction(body, sign);
                 }
@@ -254,7 +254,7 @@ impl FrictionPatches {
 
     /// How blocks that deform answer to the loads, and to the friction of patches, whose sides on them are found.
     fn ask_blocks(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
-        let Self { nodal, is_asked, by_block, runs, order, patches, sides, own_m2, .. } = self;
+        let Self { nodal, is_asked, adjacency, runs, order, patches, sides, own_m2, .. } = self;
         sides.clear();
         sides.resize(patches.len(), [None; 2]);
         nodal.begin(scene.input.blocks, scene.input.velocity.len());
@@ -262,7 +262,7 @@ impl FrictionPatches {
         let bodies = scene.input.bodies;
         for (block, body) in scene.input.blocks.ids().zip(bodies) {
             if is_asked[block.index()] && body.deforms {
-                let at = by_block.at(block).map(|(k, _)| &order[runs[k as usize].clone()]);
+                let at = adjacency.at(block).map(|(k, _)| &order[runs[k as usize].clone()]);
                 nodal.add_block(block, scene, forces, at);
             }
         }

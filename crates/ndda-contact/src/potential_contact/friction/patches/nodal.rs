@@ -224,7 +224,7 @@ fn each_weight(scene: &PatchScene, t: u32, is_owner: bool, mut add: impl FnMut(u
         let triangle = &scene.input.blocks.triangles[touch.triangle.index()];
         triangle.iter().zip(sums.weights).for_each(|(node, w)| add(node.index(), w));
     } else {
-        for hit in scene.integrals.hits_of(touch) {
+        for hit in scene.integrals.overlaps_of(touch) {
             let tet = &scene.input.blocks.tets[hit.tet.index()];
             tet.iter().zip(hit.on_target.pressure).for_each(|(node, w)| add(node.index(), w));
         }

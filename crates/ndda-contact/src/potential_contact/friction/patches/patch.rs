@@ -197,7 +197,7 @@ impl ContactPatch {
             let touch = &scene.integrals.touching()[t as usize];
             let sums = scene.integrals.sums_of(touch);
             if sums.pressure > 0.0 {
-                let found = (scene.integrals.hits_of(touch), sums);
+                let found = (scene.integrals.overlaps_of(touch), sums);
                 let moved = relative_motion(touch, found, (scene.blocks, scene.moved));
                 let slip = self.sign_of(touch) * moved / self.pressure;
                 shift += slip;
