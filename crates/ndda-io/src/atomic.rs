@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::write_error::WriteError;
 
 /// Ending of the temporary file beside the one that is being written.
-pub const TEMPORARY_ENDING: &str = ".tmp";
+pub(crate) const TEMPORARY_ENDING: &str = ".tmp";
 /// Files that are synced at a time.
 const AT_A_TIME: usize = 8;
 
@@ -28,7 +28,7 @@ pub fn write(path: &Path, content: &[u8]) -> Result<(), WriteError> {
 ///
 /// # Errors
 /// As [`write`].
-pub fn write_unsynced(path: &Path, content: &[u8]) -> Result<(), WriteError> {
+pub(crate) fn write_unsynced(path: &Path, content: &[u8]) -> Result<(), WriteError> {
     replace(path, content, false)
 }
 
@@ -36,7 +36,7 @@ pub fn write_unsynced(path: &Path, content: &[u8]) -> Result<(), WriteError> {
 ///
 /// # Errors
 /// [`WriteError::Io`] with the first that is not.
-pub fn sync(paths: &[PathBuf]) -> Result<(), WriteError> {
+pub(crate) fn sync(paths: &[PathBuf]) -> Result<(), WriteError> {
     let sync = |path: &PathBuf| {
         let file = File::open(path).map_err(WriteError::io("open", path))?;
         file.sync_all().map_err(WriteError::io("sync", path))

@@ -2,8 +2,8 @@
 
 pub mod checkpoint;
 pub mod folder;
-pub mod history;
-pub mod pvd;
+pub(crate) mod history;
+pub(crate) mod pvd;
 mod read;
 pub mod summary;
 pub mod table;

@@ -1,7 +1,7 @@
 //! The scene: everything a run needs, as a person writes it in RON. Every quantity is SI with its unit in the key.
 
 mod block;
-pub mod check;
+pub(crate) mod check;
 pub mod code;
 mod contact;
 pub mod diagnostic;
@@ -11,7 +11,7 @@ mod material;
 mod monitor;
 mod output;
 pub mod outside_files;
-pub mod overrides;
+pub(crate) mod overrides;
 pub mod read;
 pub mod record;
 mod reference;

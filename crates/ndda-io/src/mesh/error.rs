@@ -152,22 +152,22 @@ pub(crate) struct Fault {
 
 impl Fault {
     /// `problem` in `line`.
-    pub fn at(line: usize, problem: FileProblem) -> Self {
+    pub(crate) fn at(line: usize, problem: FileProblem) -> Self {
         Self { line: Some(line), problem }
     }
 
     /// Something else than `expected` in `line`.
-    pub fn unexpected(line: usize, expected: impl Into<String>, found: &[u8]) -> Self {
+    pub(crate) fn unexpected(line: usize, expected: impl Into<String>, found: &[u8]) -> Self {
         Self::at(line, FileProblem::Unexpected { expected: expected.into(), found: excerpt(found) })
     }
 
     /// The file ends before `what`.
-    pub fn truncated(what: impl Into<String>) -> Self {
+    pub(crate) fn truncated(what: impl Into<String>) -> Self {
         FileProblem::Truncated(what.into()).into()
     }
 
     /// With the file that it is in.
-    pub fn of(self, path: &Path) -> MeshFileError {
+    pub(crate) fn of(self, path: &Path) -> MeshFileError {
         MeshFileError::File { path: path.to_owned(), line: self.line, problem: self.problem }
     }
 }

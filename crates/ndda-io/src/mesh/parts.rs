@@ -26,7 +26,7 @@ pub(crate) struct Parts {
 
 impl Parts {
     /// Bodies in the order of their names, without those that have no tetrahedra. Nodes keep the order of the file.
-    pub fn split(self) -> Result<Vec<(String, BlockMesh)>, Fault> {
+    pub(crate) fn split(self) -> Result<Vec<(String, BlockMesh)>, Fault> {
         if self.tets.is_empty() {
             return Err(FileProblem::NoTetrahedra.into());
         }

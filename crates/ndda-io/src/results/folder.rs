@@ -121,7 +121,7 @@ impl OutputFolder {
     }
 
     /// Path of the checkpoint before.
-    pub fn previous_checkpoint(&self) -> PathBuf {
+    pub(crate) fn previous_checkpoint(&self) -> PathBuf {
         self.path.join(PREVIOUS)
     }
 

@@ -1,7 +1,7 @@
 //! Reading a history back: named columns of numbers.
 
 #[cfg(feature = "parquet")]
-pub mod parquet;
+pub(crate) mod parquet;
 
 use std::path::{Path, PathBuf};
 

@@ -12,7 +12,7 @@ use crate::scene::{Output, TableFormat};
 use crate::write_error::WriteError;
 
 /// Whether this build writes Parquet.
-pub const HAS_PARQUET: bool = cfg!(feature = "parquet");
+pub(crate) const HAS_PARQUET: bool = cfg!(feature = "parquet");
 
 /// Writes the tables of a run that has ended as Parquet, where the scene requests that.
 ///

@@ -36,7 +36,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// An error at a place of the text.
-    pub fn error(
+    pub(crate) fn error(
         code: Code,
         path: impl Into<String>,
         message: impl Into<String>,

@@ -44,7 +44,7 @@ impl Node {
     }
 
     /// The value of one more segment.
-    pub fn child(&self, text: &str, segment: &str) -> Option<&Self> {
+    pub(crate) fn child(&self, text: &str, segment: &str) -> Option<&Self> {
         if let Some(child) = self.children.iter().find(|c| c.key.as_deref() == Some(segment)) {
             return Some(child);
         }
@@ -59,7 +59,7 @@ impl Node {
     }
 
     /// The innermost bracketed value around a byte.
-    pub fn innermost(&self, offset: usize) -> Option<&Self> {
+    pub(crate) fn innermost(&self, offset: usize) -> Option<&Self> {
         if self.opening.is_none() || !(self.span.start <= offset && offset <= self.span.end) {
             return None;
         }
@@ -68,13 +68,13 @@ impl Node {
     }
 
     /// The word before the bracket that opens it, as `Box` in `Box(…)`; empty for anything else.
-    pub fn word<'a>(&self, text: &'a str) -> &'a str {
+    pub(crate) fn word<'a>(&self, text: &'a str) -> &'a str {
         let Some('(') = self.opening else { return "" };
         text[self.span.clone()].split(|c: char| "(/".contains(c) || c.is_whitespace()).next().unwrap_or("")
     }
 
     /// Path of the innermost value around or before a byte.
-    pub fn path_at(&self, offset: usize) -> String {
+    pub(crate) fn path_at(&self, offset: usize) -> String {
         let mut path = String::new();
         let mut node = self;
         let begun = |node: &Self| node.key.as_ref().map_or(node.span.start, |_| node.key_span.start);
@@ -101,7 +101,7 @@ impl Node {
 }
 
 /// Segments of a path: `a.b[1].c` is a, b, 1, c.
-pub fn segments(path: &str) -> Vec<&str> {
+pub(crate) fn segments(path: &str) -> Vec<&str> {
     path.split(['.', '[', ']']).filter(|segment| !segment.is_empty()).collect()
 }
 

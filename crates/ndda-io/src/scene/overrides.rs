@@ -13,7 +13,7 @@ const CHOICES: [&str; 6] = ["integrator", "contact", "reference", "shape", "on",
 ///
 /// # Errors
 /// A diagnostic when an override has no `=` or its path leads nowhere.
-pub fn apply(text: &str, overrides: &[String]) -> Result<String, Diagnostic> {
+pub(crate) fn apply(text: &str, overrides: &[String]) -> Result<String, Diagnostic> {
     overrides.iter().try_fold(text.to_string(), |text, one| apply_one(&text, one))
 }
 

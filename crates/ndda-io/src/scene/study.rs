@@ -10,7 +10,7 @@ use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors};
 use crate::scene::read::{self, LoadedScene};
 use crate::scene::suggest;
-use crate::{locate, overrides};
+use crate::scene::{locate, overrides};
 
 /// A study, as it is written.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -41,7 +41,7 @@ pub struct Study {
 }
 
 /// Values as text, by their paths in the scene.
-pub type Values = BTreeMap<String, Box<RawValue>>;
+pub(crate) type Values = BTreeMap<String, Box<RawValue>>;
 
 /// Something that varies.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -136,7 +136,7 @@ impl Axis {
     }
 
     /// Whether it varies the value at a path.
-    pub fn varies(&self, path: &str) -> bool {
+    pub(crate) fn varies(&self, path: &str) -> bool {
         match self {
             Self::Vary { path: own, .. } => own == path,
             Self::Choose { choices, .. } => choices.iter().any(|choice| choice.set.contains_key(path)),

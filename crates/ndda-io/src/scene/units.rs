@@ -19,7 +19,7 @@ const PLACE: &str = "Point";
 
 /// A text in which every value is in the unit of its field.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Resolved {
+pub(crate) struct Resolved {
     /// The text.
     pub text: String,
     /// Errors of units.
@@ -35,7 +35,7 @@ struct Edit {
 }
 
 /// Turns every value of a text into the unit of its field.
-pub fn resolve(text: &str, tree: &Node) -> Resolved {
+pub(crate) fn resolve(text: &str, tree: &Node) -> Resolved {
     let mut resolver = Resolver { text, tree, edits: Vec::new(), errors: Vec::new() };
     resolver.visit(tree, None);
     let Resolver { edits, errors, .. } = resolver;
@@ -52,7 +52,7 @@ pub fn resolve(text: &str, tree: &Node) -> Resolved {
 
 impl Resolved {
     /// Byte of the source that a byte of the text comes from.
-    pub fn source(&self, offset: usize) -> usize {
+    pub(crate) fn source(&self, offset: usize) -> usize {
         let (mut in_source, mut in_text) = (0, 0);
         for edit in &self.edits {
             let begins = in_text + (edit.at.start - in_source);

@@ -23,12 +23,12 @@ pub(super) struct Decoder<'a> {
 }
 
 impl<'a> Decoder<'a> {
-    pub fn new(text: &'a [u8]) -> Self {
+    pub(crate) fn new(text: &'a [u8]) -> Self {
         Self { text, ready: Vec::new(), next: 0 }
     }
 
     /// The next `count` bytes, if there are so many.
-    pub fn take(&mut self, count: usize) -> Option<Vec<u8>> {
+    pub(crate) fn take(&mut self, count: usize) -> Option<Vec<u8>> {
         if count > self.text.len() + self.ready.len() {
             return None;
         }

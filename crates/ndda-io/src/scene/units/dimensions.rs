@@ -133,7 +133,7 @@ pub fn dimension_of(field: &str) -> Option<&'static Dimension> {
 
 impl Dimension {
     /// Names of its units.
-    pub fn unit_names(&self) -> Vec<&'static str> {
+    pub(crate) fn unit_names(&self) -> Vec<&'static str> {
         self.units.iter().map(|unit| unit.name).collect()
     }
 
