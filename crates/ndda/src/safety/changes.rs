@@ -1,4 +1,4 @@
-//! What a trial changes in the scene.
+//! Changes of a trial to the scene.
 
 use ndda_io::scene::{Contact, Friction, Scene};
 use ndda_mesh::Vec3;
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SafetyError;
 
-/// What is to be changed.
+/// The quantity to be changed, as it is asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Question {
     /// The strength of all joints.
@@ -21,7 +21,7 @@ pub enum Question {
     },
 }
 
-/// What is changed by a factor F.
+/// The quantity that is changed by a factor F.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum By {

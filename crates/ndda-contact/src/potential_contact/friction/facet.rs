@@ -1,4 +1,4 @@
-//! What one facet does: normal force, slip and friction.
+//! One facet: normal force, slip and friction.
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockSet, TetId, Vec3};
@@ -18,7 +18,7 @@ const STICKS: f64 = 1.0 - 1e-9;
 pub struct FacetForce {
     /// −k n: what the facet's normal force is made of [Pa].
     pub push: Vec3,
-    /// The same for friction [Pa].
+    /// Shear traction of friction [Pa].
     pub shear: Vec3,
     /// Torque of friction about the centre of pressure, which `shear` does not have [N m].
     pub couple_n_m: Vec3,
@@ -26,7 +26,7 @@ pub struct FacetForce {
     pub shear_slope: f64,
     /// Whether its friction is below what it may be.
     pub sticks: bool,
-    /// What a shear spring did in the step, where there is one.
+    /// Slip and work of the shear spring in the step, where there is one.
     pub spring: Option<SpringSlip>,
     /// Shear force in the facet's basis [N], and whether cohesion is gone: what is kept where there is friction and contact.
     pub memory: Option<([f64; 2], bool)>,
@@ -38,7 +38,7 @@ pub struct FacetForce {
     pub facet: u32,
 }
 
-/// What the evaluation of a facet reads.
+/// Input of the evaluation of a facet.
 #[derive(Clone, Copy)]
 pub(crate) struct FacetScene<'a> {
     /// Blocks and their motion.
@@ -134,7 +134,7 @@ impl FacetScene<'_> {
         }
     }
 
-    /// What the facet remembers of its target, and the area of the last step; nothing when they did not touch before.
+    /// History of the facet on its target, and the area of the last step; none when they did not touch before.
     fn remembered<'a>(
         &self,
         facet: &Facet,
@@ -149,7 +149,7 @@ impl FacetScene<'_> {
                 state.copy_from_slice(&self.history.state_of(place)[..state.len()]);
                 (ShearMemory { shear_n, broken, state }, area_m2)
             }
-            // What touches from the start has done so before.
+            // Facets that touch from the start count as having touched before.
             Err(_) => {
                 law.begin(state);
                 let area_m2 = if self.history.begun { 0.0 } else { sums.area };
@@ -174,7 +174,7 @@ pub(crate) fn relative_velocity(
     relative_motion(touch, found, (input.blocks, input.velocity))
 }
 
-/// The same of any vectors per node.
+/// Relative motion of any vectors per node.
 pub(crate) fn relative_motion(
     touch: &ActiveFacet,
     (hits, sums): (&[OverlapPair], &FacetMoments),

@@ -36,10 +36,10 @@ use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
 /// Faces below which a second thread costs more than it brings.
 const GRAIN_PATCHES: usize = 64;
 
-/// The same for blocks.
+/// Blocks below which a second thread costs more than it brings.
 const GRAIN_BODIES: usize = 16;
 
-/// What all faces read.
+/// Input of all patches.
 #[derive(Clone, Copy)]
 pub(crate) struct PatchScene<'a> {
     /// Blocks and their motion.
@@ -65,7 +65,7 @@ impl PatchScene<'_> {
         self.touch(t).owner
     }
 
-    /// What couples of facets read.
+    /// Input of the computation of couples.
     fn couples(&self) -> CoupleScene<'_> {
         let ContactInput { blocks, position, .. } = *self.input;
         CoupleScene { blocks, position, integrals: self.integrals, hulls: self.hulls }
