@@ -32,6 +32,8 @@
 //! | [`stress`] | stresses, recovered for output |
 //! | [`testing`] | the contract suite of materials |
 
+#![warn(unreachable_pub)]
+
 pub mod block_operator;
 pub mod damped;
 pub mod frame;

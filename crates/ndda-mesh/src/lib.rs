@@ -34,6 +34,8 @@
 //! | [`validate`], [`quality`], [`repair`] | problems of a mesh, how good it is, and changes that mend it when asked to |
 //! | [`geometry`], [`surface`], [`stats`], [`ids`] | volumes and boxes, boundary triangles, counts, typed indices |
 
+#![warn(unreachable_pub)]
+
 pub mod block_mesh;
 pub mod block_set;
 pub mod cut;

@@ -3,9 +3,11 @@
 //! RON's parser forgets positions; this scanner keeps only them. It reads the shape of a text (structs, lists, maps,
 //! words) and nothing of its meaning, so that any text gives a tree and none gives a panic.
 
+mod keys;
+
 use std::ops::Range;
 
-use crate::scene::renamed;
+use keys::current;
 
 /// Nesting beyond this is not followed; RON itself refuses it.
 const DEEPEST: usize = 100;
@@ -33,8 +35,18 @@ pub fn tree(text: &str) -> Node {
         scanner.skip_attribute();
     }
     let mut tree = scanner.value(0).unwrap_or_default();
-    renamed::rename(&mut tree);
+    rename(&mut tree);
     tree
+}
+
+/// Gives the fields in the tree of a scene their current keys; their places in the text stay.
+fn rename(tree: &mut Node) {
+    for parent in &mut tree.children {
+        let name = parent.key.clone().unwrap_or_default();
+        for field in &mut parent.children {
+            field.key = field.key.take().map(|key| current(&name, &key).to_string());
+        }
+    }
 }
 
 impl Node {
@@ -103,6 +115,15 @@ impl Node {
 /// Segments of a path: `a.b[1].c` is a, b, 1, c.
 pub(crate) fn segments(path: &str) -> Vec<&str> {
     path.split(['.', '[', ']']).filter(|segment| !segment.is_empty()).collect()
+}
+
+/// Segments of a path with their current keys.
+pub(crate) fn current_segments(path: &str) -> Vec<&str> {
+    let mut names = segments(path);
+    if let [parent, field, ..] = &mut names[..] {
+        *field = current(parent, field);
+    }
+    names
 }
 
 struct Scanner<'a> {

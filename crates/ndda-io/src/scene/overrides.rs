@@ -2,8 +2,7 @@
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
-use crate::scene::locate::{self, Node};
-use crate::scene::renamed::current_segments;
+use crate::scene::locate::{self, Node, current_segments};
 
 /// Keys whose value is a choice: what is inside cannot be written without saying which.
 const CHOICES: [&str; 6] = ["integrator", "contact", "reference", "shape", "on", "hold"];

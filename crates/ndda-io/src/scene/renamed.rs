@@ -1,45 +1,8 @@
-//! Keys of scenes that have been renamed: the old ones are read for one more version, with a warning.
+//! Warnings of former keys, which are read for one more version.
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, Severity};
-use crate::scene::locate::{Node, segments};
-
-/// A field of a top-level struct of the scene, with its old and its new key.
-struct Renamed {
-    parent: &'static str,
-    old: &'static str,
-    new: &'static str,
-}
-
-/// All of them.
-const RENAMED: [Renamed; 2] = [
-    Renamed { parent: "contact", old: "joints", new: "material_pairs" },
-    Renamed { parent: "contact", old: "laws", new: "rock_joints" },
-];
-
-/// The key by which a field of `parent` goes now.
-fn current<'a>(parent: &str, key: &'a str) -> &'a str {
-    RENAMED.iter().find(|r| r.parent == parent && r.old == key).map_or(key, |r| r.new)
-}
-
-/// Gives the fields in the tree of a scene their current keys; their places in the text stay.
-pub(super) fn rename(tree: &mut Node) {
-    for parent in &mut tree.children {
-        let name = parent.key.clone().unwrap_or_default();
-        for field in &mut parent.children {
-            field.key = field.key.take().map(|key| current(&name, &key).to_string());
-        }
-    }
-}
-
-/// Segments of a path with their current keys.
-pub(super) fn current_segments(path: &str) -> Vec<&str> {
-    let mut names = segments(path);
-    if let [parent, field, ..] = &mut names[..] {
-        *field = current(parent, field);
-    }
-    names
-}
+use crate::scene::locate::{Node, current_segments, segments};
 
 /// A warning for each old key in a scene or in its overrides.
 pub(super) fn warnings(text: &str, tree: &Node, overrides: &[String]) -> Vec<Diagnostic> {

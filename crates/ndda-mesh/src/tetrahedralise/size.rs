@@ -53,7 +53,7 @@ fn positive(what: &'static str, value: f64) -> Result<(), FillError> {
 }
 
 impl SizeField {
-    pub fn new(block: &Polyhedron, size_m: f64, finer: &[Grading]) -> Result<Self, FillError> {
+    pub(crate) fn new(block: &Polyhedron, size_m: f64, finer: &[Grading]) -> Result<Self, FillError> {
         positive("size_m", size_m)?;
         let largest_m = size_m.min((LENGTH_PER_WIDTH * block.width_m()).max(FINEST * size_m));
         let mut size = Self { largest_m, points: Vec::new(), planes: Vec::new(), tets: 0.0 };
@@ -81,7 +81,7 @@ impl SizeField {
     }
 
     /// The field of a concave block in parts.
-    pub fn of_parts(parts: &[&Polyhedron], size_m: f64, finer: &[Grading]) -> Result<Self, FillError> {
+    pub(crate) fn of_parts(parts: &[&Polyhedron], size_m: f64, finer: &[Grading]) -> Result<Self, FillError> {
         let mut size = Self { largest_m: 0.0, points: Vec::new(), planes: Vec::new(), tets: 0.0 };
         for part in parts {
             let own = Self::new(part, size_m, finer)?;
@@ -96,7 +96,7 @@ impl SizeField {
     }
 
     /// Target length of edges at a point [m].
-    pub fn at(&self, x: &Vec3) -> f64 {
+    pub(crate) fn at(&self, x: &Vec3) -> f64 {
         let mut least = self.largest_m;
         for (at, size, growth) in &self.points {
             // Most points are too far to matter, which takes no root.

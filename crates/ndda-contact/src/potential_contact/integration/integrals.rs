@@ -188,15 +188,10 @@ impl Scratch {
             if scene.tet_is_on_one_side(tet, &corners[0], normal) {
                 continue;
             }
-            let overlap = self.seen.len() as u32;
+            let at = self.seen.len() as u32;
             let moments = PairMoments::default();
             self.seen.push(PendingPair { pair: index as u32, tet, lambda, range: None, moments });
-            self.add_regions(
-                arch,
-                scene,
-                overlap,
-                &Placed { tet, frame, lambda: &lambda, normal, area: *area },
-            );
+            self.add_regions(arch, scene, at, &Placed { tet, frame, lambda: &lambda, normal, area: *area });
         }
     }
 
@@ -218,21 +213,13 @@ impl Scratch {
         {
             return;
         }
-        let (overlap, index) = (self.seen.len() as u32, facet.pairs.start);
+        let (at, index) = (self.seen.len() as u32, facet.pairs.start);
         let slot = scene.candidates.pairs[index].tet as usize;
         let (pair, tet) = (index as u32, scene.candidates.tets[slot]);
         let (lambda, range) = (scene.frames[slot].lambda(corners), contactor.map(|face| face.range));
         self.seen.push(PendingPair { pair, tet, lambda, range, moments: PairMoments::default() });
         let Self { sides, region, batches, .. } = self;
-        arch.dispatch(PushHalfSpaceRegions {
-            sides,
-            region,
-            batches,
-            outline,
-            arch,
-            overlap,
-            area_m2: *area,
-        });
+        arch.dispatch(PushRegions { sides, region, batches, outline, arch, at, area_m2: *area });
     }
 
     fn make_room(&mut self, pairs: usize) {
@@ -242,20 +229,20 @@ impl Scratch {
         self.batches.make_room(pairs);
     }
 
-    fn add_regions(&mut self, arch: Arch, scene: &Scene, overlap: u32, placed: &Placed) {
+    fn add_regions(&mut self, arch: Arch, scene: &Scene, at: u32, placed: &Placed) {
         let Placed { tet, frame, lambda, normal, area } = *placed;
         match scene.field {
             PotentialField::Element => {
-                self.batches.push_element(arch, overlap, area, lambda, &frame.slopes(normal));
+                self.batches.push_element(arch, at, area, lambda, &frame.slopes(normal));
             }
             PotentialField::Pieces(table) => {
                 if self.pieces.set(lambda, table.of(tet), frame, normal) {
-                    self.batches.push_pieces(arch, overlap, area, &self.pieces);
+                    self.batches.push_pieces(arch, at, area, &self.pieces);
                 }
             }
             PotentialField::Function(field) => {
                 if self.pieces.set(lambda, field.regions.of(tet), frame, normal) {
-                    let moments = &mut self.seen[overlap as usize].moments;
+                    let moments = &mut self.seen[at as usize].moments;
                     add_function(moments, field, &self.pieces, &mut self.region, placed);
                 }
             }
@@ -282,25 +269,25 @@ impl WithSimd for EvaluateHalfSpaces<'_> {
 }
 
 /// The regions that are seen then.
-struct PushHalfSpaceRegions<'a> {
+struct PushRegions<'a> {
     sides: &'a mut HalfSpaces,
     region: &'a mut Region,
     batches: &'a mut RegionQueue,
     outline: &'a Outline,
     arch: Arch,
-    overlap: u32,
+    at: u32,
     area_m2: f64,
 }
 
-impl WithSimd for PushHalfSpaceRegions<'_> {
+impl WithSimd for PushRegions<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { sides, region, batches, outline, arch, overlap, area_m2 } = self;
+        let Self { sides, region, batches, outline, arch, at, area_m2 } = self;
         for k in 0..sides.len() {
             if sides.set_region(simd, k, outline, region) {
-                batches.push(arch, overlap, area_m2, region, outline);
+                batches.push(arch, at, area_m2, region, outline);
             }
         }
     }
