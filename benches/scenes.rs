@@ -73,7 +73,7 @@ fn begun(case: &Case) -> Simulation {
 fn step(c: &mut Criterion) {
     let large = if std::env::var_os("NDDA_LARGE").is_some() { &LARGE[..] } else { &[] };
     for case in CASES.iter().chain(large) {
-        // Built once, and only if it is asked for.
+        // Built once, and only if it is requested.
         let mut simulation = None;
         // A bounded number of steps, so that the block is still on its ramp.
         let mut group = c.benchmark_group("step of a scene");

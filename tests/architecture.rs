@@ -302,7 +302,12 @@ fn every_dependency_has_a_licence_that_deny_toml_allows() {
     let packages = metadata["packages"].as_array().unwrap();
     for package in packages {
         let licence = package["license"].as_str().unwrap_or("none");
-        assert!(is_allowed(licence, &allowed), "{} {} has the licence {licence}", package["name"], package["version"]);
+        assert!(
+            is_allowed(licence, &allowed),
+            "{} {} has the licence {licence}",
+            package["name"],
+            package["version"]
+        );
     }
     assert!(!is_allowed("GPL-3.0", &allowed) && !is_allowed("(MIT OR Zlib) AND GPL-3.0", &allowed));
 }

@@ -1,4 +1,4 @@
-//! The same bits on any number of threads, and in every run.
+//! Results have the same bits on any number of threads, and in every run.
 
 use std::path::Path;
 

@@ -1,7 +1,7 @@
-//! What a scene does not need is left out: the same bits as with the part in, counters at zero, no unknowns, no packages.
+//! A run leaves out all that its scene does not need: the same bits as with the part in, counters at zero, no unknowns, no packages.
 //!
 //! One block has no contact: tests/verification/one_block_alone.rs. Without friction no friction code acts:
-//! crates/ndda-contact/tests/without_friction.rs. Files and arrays are those asked for: apps/ndda-cli/tests/output.rs.
+//! crates/ndda-contact/tests/without_friction.rs. Files and arrays are those requested: apps/ndda-cli/tests/output.rs.
 
 use ndda::build;
 use ndda_io::read::load_text;
@@ -155,7 +155,11 @@ fn features_that_are_not_enabled_leave_their_packages_out() {
             "none" => "",
             name => name.trim_start_matches('`').split('`').next().unwrap(),
         };
-        assert_eq!(packages(features), count, "packages with `{features}`: docs/reference/features.md says {count}");
+        assert_eq!(
+            packages(features),
+            count,
+            "packages with `{features}`: docs/reference/features.md says {count}"
+        );
         rows += 1;
     }
     assert_eq!(rows, 12, "rows of docs/reference/features.md");

@@ -146,7 +146,7 @@ fn resumed(cell: &Cell, simulation: &Simulation) -> Simulation {
     next
 }
 
-/// What differs first, if anything does; and how many steps had contact.
+/// The first difference, if there is any; and how many steps had contact.
 fn first_difference(cell: &Cell, kills: usize, seed: u64) -> (Option<String>, u64) {
     let (mut whole, mut broken) = (cell.simulation(), cell.simulation());
     for simulation in [&mut whole, &mut broken] {

@@ -1,4 +1,4 @@
-//! What the machine can do: operations on numbers in registers, and bytes read.
+//! Rates of the machine: arithmetic operations in registers, and bytes read from memory.
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -1,4 +1,4 @@
-//! What is computed against what the machine can do, measured in the same run on one thread: the kernel of contact
+//! Rates of the program against those of the machine, measured in the same run on one thread: the kernel of contact
 //! against the rate of the processor's arithmetic, the solve of a block against the rate at which memory is read, and
 //! the step of a pile against the sum of both.
 //!

@@ -80,7 +80,7 @@ fn solves_ms(clock: &Clock, simulation: &Simulation) -> f64 {
     1e-6 * ns
 }
 
-/// What contact looks at where the blocks are now.
+/// Candidate pairs and overlapping pairs of contact at the blocks' present positions.
 struct Looks {
     frames: Vec<TetFrame>,
     triangles: Vec<[Vec3; 3]>,

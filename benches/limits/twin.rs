@@ -71,7 +71,7 @@ impl Form {
     }
 }
 
-/// What the kernel gives for one region: ∫ φ ψ_a, ∫ |∂φ/∂n| ψ_a, and the area, over that of the triangle.
+/// Results of the kernel for one region: ∫ φ ψ_a, ∫ |∂φ/∂n| ψ_a, and the area, over that of the triangle.
 pub type Moments = [f64; 7];
 
 /// The integrals of a region, and the operations that they took.
@@ -90,7 +90,7 @@ pub fn moments(region: &Region) -> (Moments, u64) {
 const TRIANGLE: [[Point; 2]; 3] =
     [[[ZERO, ZERO], [ONE, ZERO]], [[ONE, ZERO], [ZERO, ONE]], [[ZERO, ONE], [ZERO, ZERO]]];
 
-/// What one cut leaves of the triangle, whose corners ask for no products.
+/// Remainder of the triangle after one cut; its corners need no products.
 fn cut_triangle(&Form([c0, c1, c2]): &Form, bound: N) -> Vec<[Point; 2]> {
     let d = [c0, c0 + c1, c0 + c2];
     let is_out = d.map(|d| d < bound);

@@ -1,4 +1,4 @@
-//! What one rank knows: its own blocks, copies of those near them, and all that never move.
+//! Data of one rank: its own blocks, copies of those near them, and all that never move.
 
 use std::collections::BTreeSet;
 
@@ -17,7 +17,7 @@ pub struct Known {
 }
 
 impl Known {
-    /// Those of a rank.
+    /// Data of `rank`.
     pub fn of(rank: usize, owners: &Owners, candidates: &Candidates, all: &BlockSet) -> Self {
         let own = |block: &BlockId| owners.of(*block).is_none_or(|owner| owner == rank);
         let mut known: BTreeSet<BlockId> = all.ids().filter(own).collect();

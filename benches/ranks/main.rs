@@ -1,4 +1,4 @@
-//! What would cross between processes that own whole blocks: the pile of a thousand cubes, after its fall, split among
+//! Data that would cross between processes that own whole blocks: the pile of a thousand cubes, after its fall, split among
 //! 2, 4 and 8 of them.
 //!
 //! Each rank has its own blocks and copies of those of others that are near, of which it gets positions and velocities in

@@ -11,15 +11,15 @@ use crate::split::Owners;
 
 /// Position and velocity of a node.
 const NODE: usize = 48;
-/// Load, torque and area in contact of a block, which friction on velocities asks for once normal forces are known.
+/// Load, torque and area in contact of a block, which friction on velocities requires once normal forces are known.
 const BODY: usize = 56;
-/// What the evaluating side would send back if pairs were evaluated once: integrals of a hit at four nodes of the target, and
+/// Bytes that the evaluating side would send back if pairs were evaluated once: integrals of a hit at four nodes of the target, and
 /// the number of the pair; of a facet at its three nodes; and the facet's pressure, friction and stiffness.
 const HIT: usize = 8 * 8 + 4;
 const FACET_NODES: usize = 6 * 8;
 const FACET: usize = 7 * 8;
 
-/// What one rank gets from another.
+/// Data that one rank gets from another.
 #[derive(Default)]
 struct Message {
     /// Nodes of triangles and tetrahedra that are candidates.
@@ -50,7 +50,7 @@ struct Border {
 }
 
 impl Traffic {
-    /// What the cells mean.
+    /// Headings of the columns.
     pub const HEADER: [&str; 10] = [
         "ranks",
         "blocks a rank",
@@ -64,7 +64,7 @@ impl Traffic {
         "evaluated once: B per hit across",
     ];
 
-    /// What crosses where the blocks are now.
+    /// Traffic at the blocks' present positions.
     pub fn new(owners: &Owners, candidates: &Candidates, input: &ContactInput) -> Self {
         let mut traffic = Self {
             ranks: owners.ranks,

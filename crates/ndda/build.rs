@@ -1,10 +1,10 @@
-//! What the program says of its own making: compiler, commit, features.
+//! Build information for the program: compiler, commit, features.
 
 use std::env;
 use std::path::Path;
 use std::process::Command;
 
-/// What a command prints; none when it cannot.
+/// Output of a command; none when it fails.
 fn said(program: &str, arguments: &[&str]) -> Option<String> {
     let output =
         Command::new(program).args(arguments).output().ok().filter(|output| output.status.success())?;

@@ -11,14 +11,14 @@ use crate::families;
 use crate::laws;
 use crate::random::{Random, few_digits};
 
-/// What a relation asks of its scenes.
+/// Requirements of a relation on its scenes.
 #[derive(Clone, Copy, Default)]
 pub struct Wanted {
     /// Boxes whose meshes are their own mirror images, and no other shape.
     pub symmetric: bool,
     /// No rock that is cut, whose cuts belong to the axes.
     pub uncut: bool,
-    /// Nothing but blocks that fly, hit and slide: no supports on parts of blocks, no loads on places.
+    /// Only blocks that fly, hit and slide: no supports on parts of blocks, no loads on places.
     pub free: bool,
     /// So many nodes that steps are shared among threads.
     pub large: bool,
@@ -102,7 +102,7 @@ pub fn build(text: &str) -> Result<Model, String> {
     Model::new(loaded, folder).map_err(|e| e.render(false))
 }
 
-/// The step that contact asks for [s]; that of waves where there is no contact.
+/// The step that contact requires [s]; that of waves where there is no contact.
 fn advised_step_s(plan: &Plan) -> Option<f64> {
     let still = Pace {
         step_s: 1e-6,

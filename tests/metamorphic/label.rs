@@ -17,7 +17,7 @@ use crate::motion::{disturb, run};
 use crate::search::{each_seed, keep, seeds, text_of};
 use crate::table::{Record, Table};
 
-/// What the label promises: speeds over the largest, places over a height.
+/// Errors that the label promises: speeds over the largest, places over a height.
 const SPEED: f64 = 0.01;
 const PLACE: f64 = 0.1;
 /// A push over what is promised, and what it has become where a motion is sensitive.
@@ -31,15 +31,15 @@ struct Course {
     spin: Vec3,
 }
 
-/// What is compared of a run.
+/// Compared results of a run.
 struct End {
     position: Vec<Vec3>,
-    /// Of each block, at the end and, if asked for, around it.
+    /// Of each block, at the end and, if requested, around it.
     courses: Vec<Vec<Course>>,
     speed_m_s: f64,
 }
 
-/// What is needed of the blocks.
+/// Sizes of the blocks.
 struct Sizes {
     radius_m: Vec<f64>,
     height_m: Vec<f64>,
@@ -139,7 +139,7 @@ fn between(a: &End, b: &End, sizes: &Sizes) -> f64 {
     speeds.max(places)
 }
 
-/// What is known of the error: right, wrong, or neither.
+/// Decision on an error: right, wrong, or neither.
 fn decide(error: f64, doubt: f64) -> Option<bool> {
     if error + 2.0 * doubt <= 1.0 {
         Some(true)

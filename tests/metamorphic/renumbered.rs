@@ -7,7 +7,7 @@ use crate::motion::Motion;
 use crate::search::{Found, search, text_of};
 use crate::transform::{Map, compare};
 
-/// What the order of patches leaves of size and speed, where a hundred sweeps do not find friction to 1e-7.
+/// Effect of the order of patches relative to size and speed, where a hundred sweeps do not find friction to 1e-7.
 const ORDER: f64 = 1e-6;
 
 #[test]

@@ -15,7 +15,7 @@ fn rows_do_not_change_the_motion() {
         let also = run_to(&mut few.simulation, steps, steps, 3);
         if many.simulation.state().step != few.simulation.state().step {
             return match stopped {
-                // What is inside out is seen when it is looked at.
+                // An inverted element is noticed when it is evaluated.
                 Some(why) if why.contains("inside out") => Found::Skipped("stops where it is looked at"),
                 why => Found::Fails(format!("{why:?} is {also:?}")),
             };

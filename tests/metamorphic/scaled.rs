@@ -136,7 +136,7 @@ fn loads(twin: &mut Scene, units: &Units) {
     twin.forces.iter_mut().for_each(|force| times(&mut force.force_n, units.force()));
 }
 
-/// What a motion is in the old units.
+/// The motion in the old units.
 fn back(motion: &Motion, units: &Units) -> Motion {
     Motion {
         position: motion.position.iter().map(|x| x / units.length).collect(),

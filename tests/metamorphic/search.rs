@@ -10,7 +10,7 @@ use ndda_io::scene::Scene;
 
 use crate::generator::{Case, Wanted, case};
 
-/// What became of a case.
+/// Outcome of a case.
 pub enum Found {
     /// The relation holds.
     Holds,
@@ -25,13 +25,13 @@ pub fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name}={text} is no number")))
 }
 
-/// The seeds that are asked for.
+/// The seeds that are requested.
 pub fn seeds(usual: u64) -> Vec<u64> {
     number("NDDA_SEED")
         .map_or_else(|| (0..number("NDDA_CASES").unwrap_or(usual)).collect(), |seed| vec![seed])
 }
 
-/// Where the scenes of failing seeds are kept.
+/// Folder of the scenes of failing seeds.
 pub fn folder() -> PathBuf {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("target/metamorphic");
     std::fs::create_dir_all(&folder).expect("a folder under target");
@@ -66,7 +66,7 @@ pub fn keep(relation: &str, case: &Case, why: &str) -> String {
     format!("seed {}: {why}\n  {}\n  again: {command}", case.seed, path.display())
 }
 
-/// Checks a relation on the usual number of seeds, or on as many as are asked for.
+/// Checks a relation on the usual number of seeds, or on as many as are requested.
 pub fn search(relation: &str, usual: u64, wanted: &Wanted, check: impl Fn(&Case) -> Found + Sync) {
     let (failures, counts) = (Mutex::new(Vec::new()), Mutex::new(BTreeMap::<&str, u64>::new()));
     let count = |what: &'static str| *counts.lock().unwrap().entry(what).or_default() += 1;

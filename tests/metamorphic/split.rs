@@ -23,10 +23,10 @@ fn split_runs_are_the_run() {
             return Found::Fails(format!("split at step {middle}: {stopped:?} is {also:?}"));
         }
         let (own, mut other) = (whole.simulation.invariants(), second.simulation.invariants());
-        // What contact looks at in vain depends on what it remembers of the steps before, which no result does.
+        // The number of pairs that contact examines in vain depends on the steps before, and no result depends on it.
         other.candidate_pairs_max = own.candidate_pairs_max;
         other.candidate_pairs_total = own.candidate_pairs_total;
-        // What a step that stopped left behind is no result.
+        // A state that a failed step left behind is no result.
         if stopped.is_none() && whole.simulation.state() != second.simulation.state() {
             return Found::Fails(format!("split at step {middle} of {steps}, the end is another one"));
         }

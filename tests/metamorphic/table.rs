@@ -80,7 +80,7 @@ impl Record {
     }
 }
 
-/// What a reason is about, without its numbers.
+/// Subject of a reason, without its numbers.
 fn short(reason: &str) -> &'static str {
     const KINDS: [(&str, &str); 25] = [
         ("deviates from Coulomb", "friction"),

@@ -1,4 +1,4 @@
-//! The same bits on 1, 2, 3 and 8 threads.
+//! Results have the same bits on 1, 2, 3 and 8 threads.
 
 use crate::generator::Wanted;
 use crate::motion::run;

@@ -9,9 +9,9 @@ use crate::search::{Found, text_of};
 
 /// Part of the scene's size and speed by which a twin is disturbed.
 const DISTURBED: f64 = 1e-9;
-/// What rounding is of that disturbance: 2e-13 of the size of coordinates, in each of a hundred steps.
+/// Rounding relative to that disturbance: 2e-13 of the size of coordinates, in each of a hundred steps.
 const ROUNDING: f64 = 2e-2;
-/// What friction on velocities leaves of size and speed, which is found to 1e-7 of the largest force in each step.
+/// Effect of friction on velocities relative to size and speed; it is found to 1e-7 of the largest force in each step.
 const FRICTION: f64 = 5e-9;
 /// Growth of the disturbance beyond which nothing can be said.
 const CHAOS: f64 = 1e5;
@@ -21,7 +21,7 @@ pub struct Map {
     pub turn: Mat3,
     pub shift_m: Vec3,
     pub boost_m_s: Vec3,
-    /// What friction on velocities leaves of size and speed.
+    /// Effect of friction on velocities relative to size and speed.
     pub friction: f64,
 }
 

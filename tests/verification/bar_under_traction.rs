@@ -14,7 +14,7 @@ fn a_pulled_bar_reaches_uniform_strain_and_stress() {
     let mut simulation = bar("", &rollers(""), &loads);
     settle(&mut simulation);
     let strain = traction_pa / YOUNG_PA;
-    // What is left is ringing that has not died out.
+    // The tolerance is for ringing that has not died out.
     assert_uniform_strain(&simulation, Vec3::new(strain, -POISSON * strain, -POISSON * strain), 1e-9);
 
     let mut stress = vec![[0.0; 6]; simulation.blocks().tets.len()];

@@ -15,13 +15,13 @@ const DENSITY: f64 = 2000.0;
 /// Length over which the potential rises.
 const REFERENCE_M: f64 = 1.0;
 
-/// What became of the block after `time_s`: how far it slid down the slope, and how far it turned [rad]. It may be
+/// Motion of the block after `time_s`: how far it slid down the slope, and how far it turned [rad]. It may be
 /// brought to rest first, as far as it stays.
 fn fate((height_m, friction_deg): (f64, f64), penalty_pa: f64, time_s: f64, settles: bool) -> (f64, f64) {
     // A step in proportion to the period of contact.
     let step_s = 9.0 / penalty_pa.sqrt();
     let (sin, cos) = DIP_DEG.to_radians().sin_cos();
-    // As deep as its weight asks for: p = 2 k_n h/L₀.
+    // As deep as its weight requires: p = 2 k_n h/L₀.
     let sunk = DENSITY * GRAVITY * cos * height_m * REFERENCE_M / (2.0 * penalty_pa);
     let mut simulation = simulation(&format!(
         "(title: \"slope\", time: (step_s: {step_s:e}, end_s: 1), gravity_m_s2: ({}, 0, -{}),

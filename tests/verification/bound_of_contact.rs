@@ -14,11 +14,11 @@ use crate::simulation;
 
 const PENALTY_PA: f64 = 2e9;
 const DENSITY_KG_M3: f64 = 2650.0;
-/// Where contact of slope 2 k_n/L bears a plate 0.06 m thick.
+/// Where contact of slope 2 k_n/L carries a plate 0.06 m thick.
 const DEPTH_M: f64 = DENSITY_KG_M3 * 9.8 * 0.06 / (2.0 * PENALTY_PA);
 const STEPS: u64 = 1500;
 
-/// A plate, sunk to where contact bears it.
+/// A plate, sunk to where contact carries it.
 fn plate(young_pa: f64, step_s: f64) -> Simulation {
     let height_m = 0.25 - DEPTH_M;
     simulation(&format!(
@@ -62,7 +62,7 @@ fn rate(plate: &Simulation) -> f64 {
     both.symmetric_eigenvalues().max().sqrt()
 }
 
-/// How far nodes go in a step at most, over the depth at which contact bears the plate: less than one as long as they stay in contact.
+/// How far nodes go in a step at most, over the depth at which contact carries the plate: less than one as long as they stay in contact.
 fn swing(young_pa: f64, step_s: f64) -> f64 {
     let mut plate = plate(young_pa, step_s);
     let mut speed_m_s = 0.0f64;

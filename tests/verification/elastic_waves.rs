@@ -95,7 +95,7 @@ fn a_wave_runs_along_a_bar_at_its_speed() {
     row("elastic waves", "∫ v dt of the pulse [m]", passed[1].0 * step_s, Within(impulse, 5e-3));
 }
 
-/// What a joint of stiffness k [Pa/m] lets through of an incident wave of velocity v(t): v_T′ = (2 k/ρ c)(v − v_T), so that
+/// Wave transmitted by a joint of stiffness k [Pa/m] for an incident wave of velocity v(t): v_T′ = (2 k/ρ c)(v − v_T), so that
 /// |T| = 1/√(1 + (ω ρ c/2k)²) for waves of one frequency.
 fn transmitted(incident: impl Fn(f64) -> f64, stiffness_pa_m: f64, end_s: f64) -> impl Fn(f64) -> f64 {
     let rate = 2.0 * stiffness_pa_m / impedance();
@@ -147,7 +147,12 @@ fn a_joint_lets_through_what_its_stiffness_allows() {
             peak / amplitude,
             Within(largest / amplitude, 5e-3),
         );
-        row("joint between bars", &named("largest difference from the joint's equation"), error / amplitude, AtMost(0.02));
+        row(
+            "joint between bars",
+            &named("largest difference from the joint's equation"),
+            error / amplitude,
+            AtMost(0.02),
+        );
     }
 }
 

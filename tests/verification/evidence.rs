@@ -6,7 +6,7 @@ use std::fs::OpenOptions;
 use std::io::Write;
 use std::panic::Location;
 
-/// What a measured figure is held against.
+/// Reference value or bound of a measured figure.
 #[derive(Clone, Copy)]
 pub enum Answer {
     /// A closed form or an independent result, and the error that passes, as a part of it.

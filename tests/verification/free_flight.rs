@@ -157,7 +157,7 @@ fn a_collision_is_the_same_for_an_observer_who_moves() {
                 let (still, ..) = collision(integrator, body, contact_at, Vec3::zeros());
                 let (moving, linear, angular) = collision(integrator, body, contact_at, boost);
                 let apart = still.iter().zip(&moving).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-                // What Newton's method leaves of contact at the end of a step is not seen alike.
+                // The residual of Newton's method for implicit contact differs between observers.
                 let apart = if contact_at.is_empty() { apart } else { 0.0 };
                 let found = [apart, linear, angular];
                 largest.iter_mut().zip(found).for_each(|(worst, found)| *worst = worst.max(found));

@@ -43,7 +43,7 @@ fn plank(width_m: f64, speed_m_s: f64, spin_rad_s: f64, time_s: f64) -> (f64, f6
     (velocity.x, spin)
 }
 
-/// The same by Coulomb's law at 100 × 20 points of even pressure and small steps.
+/// Motion of the plank by Coulomb's law at 100 × 20 points of even pressure and small steps.
 fn plank_by_quadrature(width_m: f64, speed_m_s: f64, spin_rad_s: f64, time_s: f64) -> (f64, f64) {
     let (n, m, steps) = (100, 20, 2000);
     let friction = FRICTION_DEG.to_radians().tan() * GRAVITY / f64::from(n * m);

@@ -3,7 +3,7 @@
 //!
 //! A quarter of the flat is meshed, on rollers in its planes of symmetry, in cells that are uniform around the contact
 //! and grow outwards by the same map on every mesh. The sphere's cap is the paraboloid that Hertz's theory takes it for.
-//! What is left of the method and the box, to first order: contact's give lowers F by 1.5 E*/π s a, s = 2 k_n/L₀ (the
+//! Remaining errors of the method and the box, to first order: contact's give lowers F by 1.5 E*/π s a, s = 2 k_n/L₀ (the
 //! energy ½ ∫ p²/s dA at a given d), which is 0.5 % at the largest depth; the ends of the box at L raise it by the order of 2a/πL, 0.5 %.
 
 use std::path::Path;
@@ -149,7 +149,12 @@ fn a_sphere_pressed_on_a_flat_follows_hertz() {
     let named =
         |what: &str| format!("{what}, extrapolated from {} and {} cells", cells[last - 1], cells[last]);
     for (part, force) in DEPTHS.iter().zip(limit) {
-        row("Hertz contact", &named(&format!("force over Hertz's at {part} of the depth")), force, Within(1.0, 0.03));
+        row(
+            "Hertz contact",
+            &named(&format!("force over Hertz's at {part} of the depth")),
+            force,
+            Within(1.0, 0.03),
+        );
     }
     row("Hertz contact", &named("exponent of the depth"), exponent(&limit), Within(1.5, 0.02));
 }

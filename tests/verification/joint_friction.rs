@@ -19,7 +19,7 @@ fn dipping(rock: &str, laws: &str) -> Simulation {
     simulation(&format!(
         "(title: \"t\", time: (step_s: {STEP_S:e}, end_s: {END_S}), gravity_m_s2: (0, 0, -{GRAVITY_M_S2}),
           materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)], rock: [{rock}],
-          contact: Potential(penalty_pa: 2e9, potential: Smooth(), laws: [{laws}]))"
+          contact: Potential(penalty_pa: 2e9, potential: Smooth(), rock_joints: [{laws}]))"
     ))
 }
 
@@ -114,13 +114,13 @@ fn where_faces_of_two_joints_meet_each_law_acts_on_half_of_the_pressure() {
 fn a_wedge_on_two_joints_of_unlike_friction_slides_by_their_mean() {
     let scene = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/wedge_two_planes.ron");
     let (left, right) = (10.0, 25.0);
-    let laws = format!("contact.laws=[{}{}]", friction("left", left), friction("right", right));
+    let laws = format!("contact.rock_joints=[{}{}]", friction("left", left), friction("right", right));
     let mut ready = Model::open(&scene, &["contact.friction.friction_deg=0".into(), laws]).unwrap();
     let steps = build::steps(&ready.loaded.scene.time);
     for _ in 0..steps {
         ready.simulation.step().unwrap();
     }
-    // Both planes bear the same; ξ is the angle of the wedge, i the plunge of its line (the scene says how).
+    // Both planes carry the same; ξ is the angle of the wedge, i the plunge of its line (the scene says how).
     let (plunge, half_angle_sine) = (42.394086044865_f64.to_radians(), tan(20.0) / tan(22.693719299736));
     let line = Vec3::new(plunge.cos(), 0.0, -plunge.sin());
     let friction = 0.5 * (tan(left) + tan(right)) / half_angle_sine;

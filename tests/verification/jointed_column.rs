@@ -1,5 +1,5 @@
 //! The paper's §4.3: the more friction, the less a jointed column spreads. `NDDA_LARGE=1` runs all 0.7 s, for which the paper
-//! has 1.983, 1.970 and 1.886 m; its joints are not printed, so that the order is what is asked for.
+//! has 1.983, 1.970 and 1.886 m; its joints are not printed, so that the order is what is requested.
 
 use std::path::Path;
 

@@ -105,7 +105,7 @@ fn spin(simulation: &Simulation) -> Vec3 {
 
 #[test]
 fn rigid_and_affine_blocks_have_their_own_inertia_whatever_the_mass() {
-    // ω = T t/J with J = m a²/6; it has turned by 1.2e-4 rad. The rock of an affine block gives way by 1e-7.
+    // ω = T t/J with J = m a²/6; it has turned by 1.2e-4 rad. The rock of an affine block deforms by 1e-7.
     let expected = 1000.0 * 0.01 * 6.0 / 2500.0;
     for body in ["Rigid", "Affine"] {
         for mass in ["Consistent", "Lumped"] {
@@ -120,7 +120,7 @@ fn rigid_and_affine_blocks_have_their_own_inertia_whatever_the_mass() {
 
 #[test]
 fn a_lumped_elastic_block_that_turns_is_not_called_accurate_and_says_by_how_much() {
-    // Two opposite corners bear a quarter of the mass, the others a twelfth: J has m a²/2 on its diagonal and m a²/12 beside it, which is
+    // Two opposite corners carry a quarter of the mass, the others a twelfth: J has m a²/2 on its diagonal and m a²/12 beside it, which is
     // 7/12 m a² across the diagonal of the cube, 3.5 times the true m a²/6.
     let lumped = coupled("Elastic", "Lumped");
     let [(_, error)] = lumped.lumped_inertia_errors()[..] else { panic!("one kind of block") };

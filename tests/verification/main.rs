@@ -80,7 +80,7 @@ fn bar(more: &str, supports: &str, loads: &str) -> Simulation {
 const YOUNG_PA: f64 = 10e9;
 const POISSON: f64 = 0.25;
 
-/// The three lower faces of [`bar`] on rollers; `by` may ask for springs.
+/// The three lower faces of [`bar`] on rollers; `by` may request springs.
 fn rollers(by: &str) -> String {
     ["(1, 0, 0)", "(0, 1, 0)", "(0, 0, 1)"]
         .map(|n| format!("(block: \"bar\", on: Plane(point_m: (0, 0, 0), normal: {n}), hold: Normal, {by}),"))
@@ -114,5 +114,10 @@ fn assert_uniform_strain(simulation: &Simulation, strain: Vec3, tolerance: f64) 
         .zip(&simulation.blocks().rest_position)
         .map(|(u, rest)| (u - strain.component_mul(&(rest + origin))).norm());
     let worst = off.fold(0.0, f64::max) / largest;
-    row("uniform stress", "largest error of displacements under a uniform strain, relative", worst, AtMost(tolerance));
+    row(
+        "uniform stress",
+        "largest error of displacements under a uniform strain, relative",
+        worst,
+        AtMost(tolerance),
+    );
 }

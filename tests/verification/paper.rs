@@ -146,7 +146,7 @@ fn with_friction_our_error_at_the_end_is_a_tenth_of_the_papers() {
 
 #[test]
 fn a_prism_that_slides_from_the_start_errs_by_a_tenth_of_the_paper_at_all_times() {
-    // Sunk and tilted to where contact carries weight and friction, on a ramp that does not give way: as in scenes/paper/fig8.ron and fig9.ron.
+    // Sunk and tilted to where contact carries weight and friction, on a ramp that does not deform: as in scenes/paper/fig8.ron and fig9.ron.
     let starts = [
         (45, "(0.21212767180489694, 0, 1.2878636030929678)", 45.00148510166959, 1e-3),
         (30, "(0.25980390025081646, 0, 1.0046940936182225)", 30.001192951032646, 1e-2),
@@ -186,7 +186,7 @@ fn steps_about_the_quick_one_on_the_ramp_of_30_reach_the_papers_error() {
 
 #[test]
 fn from_rest_shear_springs_err_as_their_stick_stage_says() {
-    // Sunk to where contact carries the weight, on a ramp that does not give way: as in scenes/paper/fig8.ron.
+    // Sunk to where contact carries the weight, on a ramp that does not deform: as in scenes/paper/fig8.ron.
     let rest = [
         "blocks.prism.at_m=(0.21212767180489694, 0, 1.2878636030929678)",
         "blocks.ramp.body=Fixed",

@@ -17,7 +17,7 @@ const KINDS: [&str; 3] = ["Rigid", "Affine", "Elastic"];
 /// Steps after the blocks meet at the latest.
 const STEPS: f64 = 150.0;
 
-/// What an impact left: work of friction, all energy at the start [J], and the velocity of the mass centre of the box that flies [m/s].
+/// Result of an impact: work of friction, all energy at the start [J], and the velocity of the mass centre of the box that flies [m/s].
 struct Outcome {
     friction_j: f64,
     energy_j: f64,

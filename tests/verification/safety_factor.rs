@@ -39,7 +39,7 @@ pub(crate) fn kind(safety: &Safety) -> Kind {
     safety.mechanism.as_ref().expect("blocks fail").kind
 }
 
-/// The bracket contains a closed form and is as narrow as asked for.
+/// The bracket contains a closed form and is as narrow as requested.
 pub(crate) fn holds(what: &str, safety: &Safety, exact: f64) {
     let (lower, upper) = bracket(safety);
     row("safety", &format!("{what}: lower end [-]"), lower, AtMost(exact));

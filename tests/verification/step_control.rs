@@ -1,4 +1,4 @@
-//! Steps as short as they have to be: what is taken back leaves nothing behind.
+//! Steps as short as they have to be: a discarded step leaves no trace.
 
 use crate::evidence::Answer::AtMost;
 use crate::evidence::row;
@@ -43,14 +43,14 @@ fn a_fall_is_done_in_long_steps_and_the_impact_in_short_ones() {
 #[test]
 fn a_step_that_is_taken_back_leaves_nothing_behind() {
     let mut auto = falling("step_s: 4e-3, step: Auto(energy: 1e9)");
-    // Up to the first step that is taken back, and that step as it was done in the end.
+    // Up to the first step that is discarded, and that step as it was done in the end.
     let rejected = |s: &ndda_solver::Simulation| s.invariants().control.rejected;
     while rejected(&auto) == 0 {
         auto.step().unwrap();
     }
     let parts = 1 << auto.state().control.halvings;
     let mut again = falling(&format!("step_s: {}", 4e-3 / f64::from(parts)));
-    // The same by a run of whole steps in the air, and one of steps as short as those parts: all bits are the same.
+    // A run of whole steps in the air, and one of steps as short as those parts, have the same bits.
     let steps = auto.state().step - 1;
     let mut whole = falling("step_s: 4e-3");
     for _ in 0..steps {

@@ -1,6 +1,6 @@
 //! A block that gravity presses onto a held one all at once. It swings about the depth where contact carries it, v = −(g/ω) sin ωt, until
 //! it is back where it began. A step of `Midpoint` leaves of that its frequency, sin ½ΩΔt = ½ωΔt, and (ω Δt)⁴/128 of the size;
-//! without the ⅛ Δt² a that contact looks ahead of it the size would be off by (ω Δt)²/8.
+//! without the contact offset of ⅛ Δt² a the size would be off by (ω Δt)²/8.
 
 use crate::evidence::Answer::{AtMost, Near};
 use crate::evidence::row;
@@ -44,14 +44,19 @@ fn a_block_under_a_sudden_load_swings_by_the_load() {
     for body in ["Elastic", "Rigid"] {
         for turn in [0.2, 0.4, 0.8] {
             let what = format!("velocity under sudden gravity, {body}, ω Δt = {turn}: largest error, of g/ω");
-            row("bounce and contact stability", &what, error(body, turn), Near(0.0, turn.powi(4) / 128.0 + 2e-3));
+            row(
+                "bounce and contact stability",
+                &what,
+                error(body, turn),
+                Near(0.0, turn.powi(4) / 128.0 + 2e-3),
+            );
         }
     }
 }
 
 #[test]
 fn blocks_that_push_each_other_off_keep_momentum_angular_momentum_and_energy() {
-    // They overlap by two millimetres, and contact looks the further ahead of each the lighter it is. Without that they would gain 5 % of energy.
+    // They overlap by two millimetres, and the contact offset of each is the larger the lighter it is. Without that they would gain 5 % of energy.
     let mut simulation = simulation(
         "(title: \"off\", time: (step_s: 1e-3, end_s: 0.05),
           materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2500)],
@@ -68,7 +73,12 @@ fn blocks_that_push_each_other_off_keep_momentum_angular_momentum_and_energy() {
     simulation.sample().unwrap();
     let found = simulation.invariants();
     assert!(found.contact_pairs_max > 0 && found.max_h > 1.0, "they do not push: {found:?}");
-    row("bounce and contact stability", "three blocks pushed off by each other: momentum lost", found.linear_momentum, AtMost(1e-13));
+    row(
+        "bounce and contact stability",
+        "three blocks pushed off by each other: momentum lost",
+        found.linear_momentum,
+        AtMost(1e-13),
+    );
     row("bounce and contact stability", "… angular momentum lost", found.angular_momentum, AtMost(1e-12));
     let energy = found.lasting_gain.max(found.lasting_loss);
     row("bounce and contact stability", "… energy lost or gained once they part", energy, AtMost(1e-2));

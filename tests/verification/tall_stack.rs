@@ -16,7 +16,7 @@ const PENALTY_PA: f64 = 1e9;
 fn a_tall_stack_at_rest_neither_gains_energy_nor_loses_weight() {
     let large = std::env::var_os("NDDA_LARGE").is_some();
     let (slabs, end_s) = if large { (100, 60.0) } else { (20, 1.0) };
-    // Slabs of 10 × 10 × 1 m, each as deep in the next as the weight above asks for: p = 8 k d for elements a metre high.
+    // Slabs of 10 × 10 × 1 m, each as deep in the next as the weight above requires: p = 8 k d for elements a metre high.
     let mut blocks = String::new();
     let mut sunk = 0.0;
     for i in 0..slabs {
@@ -43,7 +43,7 @@ fn a_tall_stack_at_rest_neither_gains_energy_nor_loses_weight() {
     let (mut force, mut kinetic) = (0.0, [0.0f64; 2]);
     for step in 0..steps {
         simulation.step().unwrap();
-        // What the slabs press on the base with; its own weight is not theirs.
+        // Force of the slabs on the base; its own weight is not theirs.
         force += simulation.reaction_n(BlockId(0)).z - DENSITY * 144.0 * GRAVITY;
         if step % 50 == 0 {
             let half = usize::from(step > steps / 2);
@@ -52,13 +52,23 @@ fn a_tall_stack_at_rest_neither_gains_energy_nor_loses_weight() {
     }
     let worst = simulation.invariants();
     let named = |what: &str| format!("{what}, {slabs} slabs for {end_s} s");
-    row("extreme: tall stack", &named("mean force on the base [N]"), force / steps as f64, Within(weight, 1e-3));
+    row(
+        "extreme: tall stack",
+        &named("mean force on the base [N]"),
+        force / steps as f64,
+        Within(weight, 1e-3),
+    );
     row(
         "extreme: tall stack",
         &named("kinetic energy of the later half over the first"),
         kinetic[1] / kinetic[0],
         AtMost(2.0),
     );
-    row("extreme: tall stack", &named("kinetic energy over that in contact"), kinetic[0] / start.contact_j, AtMost(1e-4));
+    row(
+        "extreme: tall stack",
+        &named("kinetic energy over that in contact"),
+        kinetic[0] / start.contact_j,
+        AtMost(1e-4),
+    );
     row("extreme: tall stack", &named("energy gained"), worst.energy_gain, AtMost(1e-4));
 }

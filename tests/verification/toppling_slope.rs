@@ -17,7 +17,7 @@ const STEP_M: f64 = 1.0;
 const HEIGHTS_M: [f64; 16] =
     [4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0, 32.0, 36.0, 40.0, 34.0, 28.0, 22.0, 16.0, 10.0, 4.0];
 
-/// The force that block n−1 has to bear from block n, from the back of the slope to its toe, over γ Δx [m²]
+/// The force that block n−1 has to carry from block n, from the back of the slope to its toe, over γ Δx [m²]
 /// (Goodman & Bray 1976, eqs. 5 and 7): what keeps n from toppling or from sliding, whichever is more,
 ///   P_t = [P (M − Δx tan φ) + ½ W (y sin α − Δx cos α)] / L,   P_s = P − W (cos α tan φ − sin α) / (1 − tan² φ),
 /// where the push of the block above acts at its own or at this block's upper corner, M above the base, and the push
@@ -39,7 +39,7 @@ fn force_at_the_toe(tan_phi: f64) -> f64 {
     push
 }
 
-/// The friction at which nothing is left to be borne at the toe [degrees].
+/// The friction at which nothing is left to be carried at the toe [degrees].
 fn limit_deg() -> f64 {
     let (mut falls, mut stands) = (31.0_f64, 44.0_f64);
     for _ in 0..60 {

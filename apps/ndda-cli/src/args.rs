@@ -1,4 +1,4 @@
-//! What a person can type.
+//! The command line's arguments.
 
 mod safety;
 mod study;
@@ -24,7 +24,7 @@ pub struct Cli {
     /// Most memory to use, such as 8GB: what would take more is refused before it is built [default: what the machine has left].
     #[arg(long, global = true, value_name = "SIZE", value_parser = ndda::forecast::memory::parse)]
     pub memory: Option<u64>,
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub verb: Verb,
 }
@@ -67,7 +67,7 @@ pub enum Verb {
     /// Build or read the blocks of a scene or a mesh file, check and measure them, and draw them.
     ///
     /// Prints counts, volumes, how large blocks are, how good their tetrahedra are (histograms, and the worst ten with
-    /// their places), the steps that contact of each material asks for, and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg.
+    /// their places), the steps that contact of each material requires, and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg.
     /// Tetrahedra with dihedral angles of a few degrees or an aspect above 50 make runs inexact or short of steps:
     /// use larger spacings, another `fill`, or `sliver_width_m`.
     Mesh(MeshArgs),
@@ -93,12 +93,12 @@ pub enum Verb {
     /// Runs the scene with Δt, Δt/2 and Δt/4 (and with finer meshes and stiffer contact, if asked), and gives each monitor,
     /// the place and velocity of each block and the energies as value ± error: extrapolated where results converge, the
     /// spread where they do not; says when a motion is chaotic. Writes certificate.json, which `ndda report` shows, too.
-    /// The same command goes on where it was interrupted. What the bars mean: docs/guide/certify.md.
+    /// Given again, the command goes on where it was interrupted. How the error bars are made: docs/guide/certify.md.
     Certify(CertifyArgs),
     /// Find the factor of safety: by how much joints may weaken, loads grow or gravity tilt before blocks move.
     ///
     /// Brings the scene to rest, then runs trials side by side until the largest factor at which blocks stand and the
-    /// smallest at which they fail are as near as asked for. Writes safety.json and the failing run, folder mechanism.
+    /// smallest at which they fail are as near as requested. Writes safety.json and the failing run, folder mechanism.
     Safety(SafetyArgs),
     /// Find the cheapest settings that reach an error: integrator, step, potential, kind of body and penalty.
     ///
@@ -272,7 +272,7 @@ pub struct RunArgs {
     pub how: HowArgs,
 }
 
-/// What does not depend on the scene.
+/// Settings of a run that do not depend on the scene.
 #[derive(Debug, Default, Args)]
 pub struct HowArgs {
     /// Threads; results do not depend on it [default: all cores].
@@ -292,7 +292,7 @@ pub struct HowArgs {
     pub json: bool,
 }
 
-/// What `ndda resume` takes.
+/// Arguments of `ndda resume`.
 #[derive(Debug, Args)]
 pub struct ResumeArgs {
     /// Output folder of the run.

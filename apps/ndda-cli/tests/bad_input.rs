@@ -1,4 +1,4 @@
-//! What a person reads when a scene is wrong: each scene of `bad_input/` with the message beside it.
+//! The messages for wrong scenes: each scene of `bad_input/` is compared with the message beside it.
 //!
 //! `NDDA_ACCEPT=1 cargo test -p ndda-cli --test bad_input` writes the messages anew; read them before they are committed.
 

@@ -185,7 +185,7 @@ fn the_checkpoint_of_another_run_is_passed_over_for_the_one_before() {
     let (out, other) = (place.path().join("out"), place.path().join("other"));
     assert_eq!(run(&out, &[]).status.code(), Some(0));
     let expected = results(&out);
-    // The same columns and frames, but other numbers.
+    // A run with equal columns and frames, but other numbers.
     assert_eq!(run(&other, &["materials[0].density_kg_m3=2651"]).status.code(), Some(0));
     fs::copy(other.join(CHECKPOINT), out.join(CHECKPOINT)).expect("a copy");
     fs::remove_file(out.join("summary.json")).expect("a summary");

@@ -187,7 +187,12 @@ fn true_errors_lie_within_the_bars_and_bars_are_tight_on_the_scenes_of_the_studi
         total.ratios.extend(found.ratios);
     }
     let part = total.within as f64 / total.all as f64;
-    row("error bars", "quantities whose true error lies within the bar, part of all", part, Answer::AtLeast(0.95));
+    row(
+        "error bars",
+        "quantities whose true error lies within the bar, part of all",
+        part,
+        Answer::AtLeast(0.95),
+    );
     row("error bars", "bar over true error, median", total.median(), Answer::AtMost(10.0));
 }
 
@@ -243,7 +248,7 @@ fn a_fall_is_exact_to_rounding_and_its_certificate_is_written_shown_and_kept() {
     assert!((fallen.value + 0.05).abs() <= fallen.error && fallen.error < 1e-12, "{fallen:?}");
     assert_eq!((fallen.behaviour, certificate.order_of_scheme), (Behaviour::Rounding, 2.0));
     assert!(certificate.chaos.is_none() && certificate.runs.len() == 3, "{certificate:?}");
-    // The same command runs nothing again; with --json it prints the file.
+    // Given again, the command runs nothing; with --json it prints the file.
     let again = ndda(folder.path(), &["certify", "fall.ron", "--of", "momentum", "--json"]);
     assert_eq!(said(&again).matches("has run").count(), 3, "{}", said(&again));
     let printed: Value = serde_json::from_slice(&again.stdout).unwrap();

@@ -1,4 +1,4 @@
-//! What does not fit into memory is refused with its figures before it is built; what fits is built in about what was foreseen.
+//! A scene that does not fit into memory is refused with its figures before it is built; one that fits takes about the memory that was foreseen.
 
 #![cfg(target_os = "linux")]
 

@@ -1,4 +1,4 @@
-//! What a scene asks to be written is written, and nothing else; what is written balances.
+//! The output that a scene requests is written, and nothing else; written quantities balance.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -88,7 +88,7 @@ fn tables_are_left_in_the_forms_that_are_asked_for() {
     let out = run_ramp(place.path(), &["output.history=Parquet", "output.contacts=true"]);
     let found: BTreeSet<String> = files(&out).intersection(&set(&tables)).cloned().collect();
     assert_eq!(found, set(&["history.parquet", "contacts.parquet"]));
-    // What reads results finds them in columns, too.
+    // Readers of results find them in columnar tables, too.
     let picture = place.path().join("p.svg");
     for arguments in [&["report"][..], &["plot", "--columns", "kinetic", "-o", picture.to_str().unwrap()]] {
         let mut command = Command::new(env!("CARGO_BIN_EXE_ndda"));

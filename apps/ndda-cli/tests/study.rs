@@ -105,7 +105,7 @@ fn a_study_runs_lists_failures_and_goes_on_where_it_was() {
         }
     }
 
-    // Nothing runs again; a case whose record is lost does, and no other.
+    // A second start runs only the case whose record is lost.
     let (kept, lost) = ("step_s=1e-2__rock=good", "step_s=5e-3__rock=good");
     let before = changed(folder.path(), kept);
     fs::remove_file(out.join("cases").join(lost).join("case.json")).unwrap();

@@ -1,6 +1,6 @@
 //! The native part of the Python package `ndda`: scenes, simulations, arrays, exceptions.
 //!
-//! What Python can say shorter (patterns of names, loops with callbacks, logging) is in `python/ndda`.
+//! Conveniences that are shorter in Python (patterns of names, loops with callbacks, logging) are in `python/ndda`.
 
 mod arrays;
 mod errors;

@@ -15,7 +15,7 @@ use crate::errors::{diagnostic, scene_error, stop_error};
 #[pyclass(frozen, module = "ndda")]
 pub struct Scene {
     loaded: LoadedScene,
-    /// Where the files are that it names.
+    /// Folder that the file names of the scene are relative to.
     folder: PathBuf,
 }
 

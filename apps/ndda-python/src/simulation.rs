@@ -21,7 +21,7 @@ const SLICE: Duration = Duration::from_millis(50);
 #[pyclass(subclass, module = "ndda._core")]
 pub struct Simulation {
     driver: Driver,
-    /// Threads of its own, where a number of them was asked for.
+    /// Threads of its own, where a number of them was requested.
     pool: Option<ThreadPool>,
 }
 

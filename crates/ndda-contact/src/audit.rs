@@ -1,11 +1,11 @@
-//! What a contact model may tell of its last evaluation: for balances, the label, step control and output.
+//! Optional information of a contact model on its last evaluation: for balances, the label, step control and output.
 
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use crate::model::{ContactHistory, ContactInput, FacetContact, SpringSlip};
 use crate::plan::Part;
 
-/// What a contact model tells beyond its forces. Nothing is required; what a model does not tell is not judged by it.
+/// Information of a contact model beyond its forces. Nothing is required; a quantity that a model does not report is not judged.
 pub trait ContactAudit {
     /// Work of the normal forces of the last [`add_forces`](crate::ContactModel::add_forces) over displacements of the nodes [m]: blocks and
     /// work [J], one call for each facet, always in the same order. A model that does not say is not judged pair by pair.
@@ -28,7 +28,7 @@ pub trait ContactAudit {
     ) {
     }
 
-    /// What shear springs did in the last [`add_forces`](crate::ContactModel::add_forces): the block of a facet, its target, and the slip of the first on
+    /// Calls `add` for each shear spring of the last [`add_forces`](crate::ContactModel::add_forces), with the block of a facet, its target, and the slip of the first on
     /// the second, one call for each facet that has a spring, always in the same order.
     fn each_spring_slip(&self, _add: &mut dyn FnMut(BlockId, BlockId, &SpringSlip)) {}
 
@@ -49,7 +49,7 @@ pub trait ContactAudit {
         None
     }
 
-    /// What the model consists of, for a person who asks.
+    /// The parts of the model, for `ndda explain`.
     fn plan(&self) -> Vec<Part> {
         Vec::new()
     }

@@ -8,8 +8,8 @@ use crate::pair_stiffness::PairStiffness;
 
 /// A law of contact between blocks. `&mut self` is scratch only; memory that matters is in [`ContactHistory`].
 ///
-/// Forces and their energy are required. What the solver and reports may ask beyond that is in [`ContactAudit`], whose empty implementation
-/// tells nothing.
+/// Forces and their energy are required. Optional queries of the solver and of reports are in [`ContactAudit`], whose empty implementation
+/// reports nothing.
 pub trait ContactModel: ContactAudit + Send + Sync {
     /// Adds the contact forces at `input.position` to `output` and advances `history` by one step.
     ///
@@ -64,7 +64,7 @@ pub trait ContactModel: ContactAudit + Send + Sync {
         false
     }
 
-    /// Friction over normal force that bears at least between any two blocks.
+    /// Smallest friction coefficient between any two blocks.
     fn min_friction_coefficient(&self) -> f64 {
         0.0
     }

@@ -1,9 +1,9 @@
-//! What a contact model is given, what it returns, what it may remember.
+//! Input, output and history of a contact model.
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 use serde::{Deserialize, Serialize};
 
-/// What a contact model sees of the blocks: positions and velocities, nothing of materials or integrators.
+/// Input of a contact model: positions and velocities of the blocks, but neither materials nor integrators.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactInput<'a> {
     /// Topology and block ranges.
@@ -25,12 +25,12 @@ pub struct ContactInput<'a> {
     pub is_iterated: bool,
 }
 
-/// What the shear spring of a facet, or of several, did in a step.
+/// Slip, force and work of the shear spring of a facet, or of several, in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SpringSlip {
     /// Most that it carries [N].
     pub capacity_n: f64,
-    /// What it carries [N].
+    /// Shear force [N].
     pub shear_n: f64,
     /// Slip of the contactor on the target [m].
     pub slip_m: Vec3,
@@ -38,7 +38,7 @@ pub struct SpringSlip {
     pub slides: bool,
 }
 
-/// How blocks that deform move in a step: what friction that acts on velocities asks the solver.
+/// Response of deformable blocks to forces within a step, which friction on velocities needs from the solver.
 pub trait Deformation: Sync {
     /// Answers in place for all blocks at once. `columns` has an entry for each block, empty where nothing is asked, with columns of one
     /// vector per node of the block. The first column is the force of contact on each node [N] and becomes the velocity at the end of the step under all
@@ -68,7 +68,7 @@ impl<'a> ContactInput<'a> {
     }
 }
 
-/// What a contact model may know of a block's rigid motion and inertia.
+/// Rigid motion and inertia of a block, as far as contact needs them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Mass [kg]; infinite for a block that cannot move.
@@ -127,12 +127,12 @@ pub struct ContactOutput<'a> {
     pub stiffness: &'a mut [f64],
 }
 
-/// What one evaluation of contact found.
+/// Counts and extremes of one evaluation of contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactReport {
     /// Pairs of a boundary triangle and a tetrahedron that were looked at.
     pub candidate_pairs: usize,
-    /// Those of them that overlap.
+    /// Candidate pairs that overlap.
     pub contact_pairs: usize,
     /// Largest penetration depth over the height of the tetrahedron it is in (1/4 at the centroid).
     pub max_penetration_ratio: f64,
@@ -165,9 +165,9 @@ pub enum ContactError {
     /// The potential cannot serve a block.
     #[error("{0}")]
     Potential(String),
-    /// What is remembered is of other friction laws.
+    /// The contact history belongs to other friction laws.
     #[error(
-        "the remembered contact is of friction laws that keep {kept} numbers a facet, these keep {expected}: resume with \
+        "the contact history belongs to friction laws with {kept} numbers per facet, these have {expected}: resume with \
          the laws that wrote it"
     )]
     OtherLaws {
@@ -241,7 +241,7 @@ pub struct Bond {
     pub share: f64,
 }
 
-/// What contact remembers from step to step; part of the state, so it is saved and rolled back with it.
+/// Contact history from step to step; part of the state, so it is saved and rolled back with it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactHistory {
     /// One entry per facet and target in contact, sorted by (facet, target, element).
@@ -254,13 +254,13 @@ pub struct ContactHistory {
     pub begun: bool,
     /// How many numbers friction laws keep of each facet.
     pub law_state_len: u32,
-    /// Those numbers, facet by facet.
+    /// The numbers of the laws, facet by facet.
     pub law_state: Vec<f64>,
     /// For contact models of other people: whatever they remember.
     pub own: Vec<f64>,
 }
 
-/// What a boundary triangle and a block that it is pressed into do to each other.
+/// Contact between a boundary triangle and a block that it is pressed into.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FacetContact {
     /// The triangle.
@@ -271,7 +271,7 @@ pub struct FacetContact {
     pub area_m2: f64,
     /// Outward normal of the triangle.
     pub normal: Vec3,
-    /// Where the force acts: the centre of pressure, or the centroid that is glued [m].
+    /// Point of application of the force: the centre of pressure, or the centroid of a glued facet [m].
     pub center: Vec3,
     /// Force on the triangle but for friction [N].
     pub push_n: Vec3,

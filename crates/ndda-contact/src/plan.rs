@@ -1,11 +1,11 @@
-//! What a run consists of, said by the code that decides it.
+//! The parts of a run and whether they are used, reported by the code that decides it.
 
 use serde::Serialize;
 
 /// A part of a run that may be left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Part {
-    /// What it is.
+    /// Name of the part.
     pub name: &'static str,
     /// Whether it is in.
     pub included: bool,

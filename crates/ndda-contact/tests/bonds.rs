@@ -1,8 +1,6 @@
 //! Strength of bonded joints by prescribed motion: two plates of a square metre, bonded over unlike meshes, are pulled apart
 //! or pressed to a normal stress σ (compression positive) and then sheared; the largest shear force is the strength.
 
-#![cfg(feature = "potential")]
-
 use std::ops::Range;
 
 use ndda_contact::testing::{evaluate, test_box, test_set};

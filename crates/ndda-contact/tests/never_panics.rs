@@ -1,7 +1,6 @@
-//! Whatever bits come in, a pair gives a finite answer or an error.
+//! A pair gives a finite answer or an error for any bits that come in.
 //!
 //! `NDDA_CASES` sets the number of pairs and of lines (default 100 000); the same is done under a fuzzer in `fuzz/`.
-#![cfg(feature = "potential")]
 
 use ndda_contact::integration::TetFrame;
 use ndda_contact::integration::pair_moments;

@@ -1,5 +1,4 @@
 //! The fast kernel against its slow twin, over random and degenerate pairs of blocks.
-#![cfg(feature = "potential")]
 
 use ndda_contact::element_pairs;
 use ndda_contact::reference::tet_pair::NodalForces;

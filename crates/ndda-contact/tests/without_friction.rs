@@ -1,5 +1,4 @@
 //! Friction that is switched off leaves no trace.
-#![cfg(feature = "potential")]
 
 mod frictionless;
 

@@ -37,7 +37,7 @@ impl BlockOperator {
         Self::assembled(position, tets, density_kg_m3, None)
     }
 
-    /// The same with all of a row's mass on its node.
+    /// The operator with all of a row's mass on its node.
     pub fn with_lumped_mass(mut self) -> Self {
         self.mass.fill(0.0);
         for node in 0..self.nodes() as u32 {

@@ -8,7 +8,7 @@ use crate::material::{Damping, Material, Voigt};
 
 /// A material that loses energy to damping.
 pub struct Damped {
-    /// What it is without.
+    /// The material without damping.
     pub material: Arc<dyn Material>,
     /// Its damping.
     pub damping: Damping,

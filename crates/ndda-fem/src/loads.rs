@@ -1,4 +1,4 @@
-//! What acts on the nodes of a block from outside, as consistent nodal forces (eq 6).
+//! External loads on the nodes of a block, as consistent nodal forces (eq 6).
 
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::triangle_area_vector;
@@ -36,7 +36,7 @@ pub struct InitialStress {
 }
 
 impl InitialStress {
-    /// The same stress everywhere.
+    /// A uniform stress.
     pub fn uniform(stress_pa: Voigt) -> Self {
         Self { stress_pa, at: Vec3::zeros(), gradient_pa_m: [Voigt::zeros(); 3] }
     }

@@ -1,4 +1,4 @@
-//! What a material law must say.
+//! The contract of a material law.
 
 use nalgebra::{Matrix6, Vector6};
 

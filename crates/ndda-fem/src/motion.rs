@@ -9,7 +9,7 @@ use crate::table::interpolated;
 pub enum Motion {
     /// Time [s], ascending, and displacement [m]: linear between rows, constant before the first and after the last.
     Rows(Vec<(f64, Vec3)>),
-    /// What a record of accelerations comes to.
+    /// A record of accelerations, integrated to velocity and displacement.
     Record(Record),
 }
 

@@ -1,7 +1,7 @@
 //! Pressure of a fluid on faces, as consistent nodal forces that follow the faces.
 //!
 //! A field is a list of pieces, each a linear pressure within half-spaces. A triangle is cut by them, and what is left integrated exactly:
-//! a triangle that the water table crosses bears the pressure of its wet part.
+//! a triangle that the water table crosses carries the pressure of its wet part.
 
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::triangle_area_vector;
@@ -154,7 +154,7 @@ mod tests {
         PressureField { pieces: vec![PressurePiece { within: vec![depth], pressure_pa: depth }] }
     }
 
-    /// The same by many small triangles, each with the pressure at its centroid.
+    /// Nodal forces by many small triangles, each with the pressure at its centroid.
     fn by_many(field: &PressureField) -> [Vec3; 3] {
         let n = 600;
         let [a, b, c] = corners();

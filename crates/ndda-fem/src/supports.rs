@@ -10,7 +10,7 @@ use crate::motion::Motion;
 /// Two directions closer than this (sine of the angle) are the same; far above round-off, far below any joint.
 const SAME_DIRECTION: f64 = 1e-6;
 
-/// What a support does to its nodes.
+/// The constraint that a support puts on its nodes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Hold {
     /// No motion.
@@ -21,12 +21,12 @@ pub enum Hold {
     Motion(Motion),
 }
 
-/// One support of a block as asked for.
+/// One support of a block as requested.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeSupport {
     /// Nodes of the block, counted from its first.
     pub nodes: Vec<u32>,
-    /// What is held.
+    /// The constraint.
     pub hold: Hold,
     /// Stiffness per node of the springs that impose it [N/m]; `None` eliminates the unknowns.
     pub spring_n_m: Option<f64>,
@@ -85,7 +85,7 @@ pub struct Spring {
 pub struct BlockSupports {
     /// Nodes with eliminated unknowns, ascending.
     pub held: Vec<HeldNode>,
-    /// Springs, in the order asked for.
+    /// Springs, in the order requested.
     pub springs: Vec<Spring>,
     /// Prescribed motions.
     pub motions: Vec<Motion>,

@@ -15,7 +15,7 @@ impl Table {
         interpolated(&self.rows, time_s).unwrap_or(0.0)
     }
 
-    /// What the value does between two times, `from_s` before `to_s`.
+    /// Mean of the value between two times, `from_s` before `to_s`, and how far its integral overshoots.
     pub fn between(&self, from_s: f64, to_s: f64) -> Between {
         let first = self.rows.partition_point(|row| row.0 <= from_s);
         let last = self.rows.partition_point(|row| row.0 < to_s);
@@ -25,7 +25,7 @@ impl Table {
         let (mut before, mut sum) = ((from_s, self.at(from_s)), 0.0);
         let (mut most, mut least) = (0.0f64, 0.0f64);
         for &row in self.rows[first..last].iter().chain(&[(to_s, self.at(to_s))]) {
-            // Where the value changes sign its integral turns.
+            // The integral turns where the value changes sign.
             let turn = if before.1 * row.1 < 0.0 { before.1 / (before.1 - row.1) } else { 0.0 };
             let at_turn = sum + 0.5 * before.1 * turn * (row.0 - before.0);
             sum += 0.5 * (before.1 + row.1) * (row.0 - before.0);
@@ -37,12 +37,12 @@ impl Table {
     }
 }
 
-/// What a table does between two times.
+/// Behaviour of a table between two times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Between {
     /// Its mean, exact.
     pub mean: f64,
-    /// How far its integral from the first time on goes beyond both of its ends [s]: what it takes back unseen.
+    /// Overshoot of its integral from the first time on beyond both of its ends [s], which the mean does not show.
     pub beyond_s: f64,
 }
 

@@ -18,7 +18,7 @@ pub struct TransverselyIsotropic {
     density_kg_m3: f64,
 }
 
-/// What beds have across that they do not have along.
+/// Moduli of a bedded rock across its beds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bedding {
     /// Normal n of the beds in the axes of the scene at rest; its length does not matter.
@@ -148,7 +148,7 @@ mod tests {
         let (along, bedding) = shale(Vec3::z());
         let with =
             |poisson_across: f64| TransverselyIsotropic::new(&along, &Bedding { poisson_across, ..bedding });
-        // ν′² < (1 − ν) E′/2E is what a positive energy asks for.
+        // ν′² < (1 − ν) E′/2E is what a positive energy requires.
         let most = ((1.0 - 0.2) * 12.0 / 60.0f64).sqrt();
         assert!(with(0.999 * most).is_ok());
         assert_eq!(with(1.001 * most), Err(MaterialError::Unstable { poisson_across: 1.001 * most }));

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use crate::write_error::WriteError;
 
 /// Ending of the temporary file beside the one that is being written.
-pub const TEMPORARY_ENDING: &str = ".tmp";
-/// Files that the disk is asked for at a time.
+pub(crate) const TEMPORARY_ENDING: &str = ".tmp";
+/// Files that are synced at a time.
 const AT_A_TIME: usize = 8;
 
 /// Replaces the file at `path` by `content`: temporary file in the same folder, sync, rename, sync of the folder.
@@ -23,12 +23,12 @@ pub fn write(path: &Path, content: &[u8]) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// The same without waiting for the disk: a killed program leaves the old file or the new one, a power failure may leave
+/// Writes without waiting for the disk: a killed program leaves the old file or the new one, a power failure may leave
 /// less until [`sync`] has returned.
 ///
 /// # Errors
 /// As [`write`].
-pub fn write_unsynced(path: &Path, content: &[u8]) -> Result<(), WriteError> {
+pub(crate) fn write_unsynced(path: &Path, content: &[u8]) -> Result<(), WriteError> {
     replace(path, content, false)
 }
 
@@ -36,7 +36,7 @@ pub fn write_unsynced(path: &Path, content: &[u8]) -> Result<(), WriteError> {
 ///
 /// # Errors
 /// [`WriteError::Io`] with the first that is not.
-pub fn sync(paths: &[PathBuf]) -> Result<(), WriteError> {
+pub(crate) fn sync(paths: &[PathBuf]) -> Result<(), WriteError> {
     let sync = |path: &PathBuf| {
         let file = File::open(path).map_err(WriteError::io("open", path))?;
         file.sync_all().map_err(WriteError::io("sync", path))

@@ -10,7 +10,7 @@
 //!
 //! Coordinates are as in the file. Whether a mesh can be computed with is not looked at: see [`ndda_mesh::validate`].
 
-pub mod abaqus;
+pub(crate) mod abaqus;
 pub(crate) mod error;
 pub mod gmsh_program;
 pub(crate) mod join;
@@ -18,7 +18,7 @@ pub(crate) mod lines;
 pub mod msh;
 pub(crate) mod parts;
 pub mod surface_file;
-pub mod tetgen;
+pub(crate) mod tetgen;
 #[cfg(feature = "tetgen")]
 pub mod tetgen_fill;
 pub mod vtk_file;
@@ -36,7 +36,7 @@ pub use error::{FileProblem, MeshFileError};
 /// Endings that [`read`] knows, for messages.
 const ENDINGS: &str = ".msh, .node, .ele, .face, .vtu, .vtk, .inp, .geo, .step, .stp, .brep";
 
-/// What a file of a mesh holds.
+/// Content of a mesh file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
     /// Name and mesh of each body; coordinates as in the file.

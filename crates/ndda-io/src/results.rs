@@ -1,9 +1,9 @@
-//! What a run writes, and the same read back.
+//! Results of a run: writing and reading them.
 
 pub mod checkpoint;
 pub mod folder;
-pub mod history;
-pub mod pvd;
+pub(crate) mod history;
+pub(crate) mod pvd;
 mod read;
 pub mod summary;
 pub mod table;

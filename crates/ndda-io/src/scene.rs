@@ -1,7 +1,7 @@
 //! The scene: everything a run needs, as a person writes it in RON. Every quantity is SI with its unit in the key.
 
 mod block;
-pub mod check;
+pub(crate) mod check;
 pub mod code;
 mod contact;
 pub mod diagnostic;
@@ -11,10 +11,11 @@ mod material;
 mod monitor;
 mod output;
 pub mod outside_files;
-pub mod overrides;
+pub(crate) mod overrides;
 pub mod read;
 pub mod record;
 mod reference;
+mod renamed;
 mod rock;
 #[cfg(feature = "schema")]
 pub mod schema;
@@ -29,7 +30,7 @@ mod water;
 use serde::{Deserialize, Serialize};
 
 pub use block::{Block, Body, InSitu, Stress, StressGradient, Turn};
-pub use contact::{Contact, Friction, Joint, JointLaw, Memory, Potential, Residual};
+pub use contact::{Contact, Friction, JointLaw, MaterialPair, Memory, Potential, Residual};
 pub use load::{FactorRow, Force, Traction};
 pub use material::{Bedding, Damping, Material};
 pub use monitor::{At, Monitor};
@@ -89,7 +90,7 @@ pub struct Scene {
     /// Points whose motion is recorded. Default: none.
     #[serde(default)]
     pub monitors: Vec<Monitor>,
-    /// What is written and how often.
+    /// The output: which files, which fields, how often.
     #[serde(default)]
     pub output: Output,
     /// The closed form that the result is compared with. Default: none.

@@ -9,11 +9,11 @@ pub enum WriteError {
     /// The operating system refused.
     #[error("cannot {operation} {}: {source}{}", path.display(), advice(source.kind()))]
     Io {
-        /// What was being done, as a verb: "create", "write", "rename".
+        /// The operation, as a verb: "create", "write", "rename".
         operation: &'static str,
         /// The file or folder.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: io::Error,
     },
     /// A number is infinite or not a number; nothing was written.
@@ -36,7 +36,7 @@ pub enum WriteError {
     Encode {
         /// The file.
         path: PathBuf,
-        /// What the encoder said.
+        /// Error of the encoder.
         reason: String,
     },
     /// Two columns of a table have one name.
@@ -52,7 +52,7 @@ pub enum WriteError {
     NotThatTable {
         /// The table.
         path: PathBuf,
-        /// What it has.
+        /// The item.
         what: String,
     },
     /// Frames that a checkpoint knows of are gone.
@@ -109,7 +109,7 @@ pub enum WriteError {
         path.display()
     )]
     InTheWay {
-        /// What is in the way.
+        /// The file in the way.
         path: PathBuf,
         /// "file" or "folder".
         needed: &'static str,
@@ -140,7 +140,7 @@ fn bracketed(index: Option<usize>) -> String {
     index.map(|i| format!("[{i}]")).unwrap_or_default()
 }
 
-/// What a person can do about an error of the operating system.
+/// Remedy for an error of the operating system.
 fn advice(kind: io::ErrorKind) -> &'static str {
     match kind {
         io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {

@@ -14,7 +14,7 @@ use ndda_mesh::cut::{Domain, VoronoiOptions, voronoi_blocks};
 use ndda_mesh::generate::{BoxPattern, box_block};
 use ndda_mesh::{BlockMesh, Mat3, Vec3};
 
-/// What other programs write, and whether the two bodies are still told apart in it.
+/// Formats that other programs write, and whether the two bodies are still distinguished in it.
 const BACK: [(&str, bool); 14] = [
     ("meshio_zlib.vtu", true),
     ("meshio_plain.vtu", true),

@@ -21,7 +21,7 @@ fn two_boxes() -> Vec<(String, BlockMesh)> {
     vec![("below".into(), below), ("upper block".into(), above)]
 }
 
-/// What is wrong with the file, and in which line.
+/// The problem of the file, and its line.
 fn fault(path: &Path) -> (Option<usize>, FileProblem) {
     match read(path).unwrap_err() {
         MeshFileError::File { line, problem, .. } => (line, problem),
@@ -174,7 +174,7 @@ fn other_endings_missing_files_and_folders_are_refused() {
     assert_eq!(fault(&folder.path().join("a.inp")).1, FileProblem::NotAFile);
 }
 
-/// What is said of `a.ending` with that text; `.ele` has a `.node` of four corners beside it.
+/// The message for `a.ending` with that text; `.ele` has a `.node` of four corners beside it.
 fn said(ending: &str, text: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a.node"), CORNERS).unwrap();

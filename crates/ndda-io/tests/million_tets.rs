@@ -7,7 +7,7 @@ use std::time::Instant;
 use ndda_io::mesh_file::{read, write};
 use ndda_mesh::generate::{BoxPattern, box_block};
 
-/// Most memory that the process held since the last [`forget_peak`] [MiB]; 0 where the system does not tell.
+/// Most memory that the process held since the last [`forget_peak`] [MiB]; 0 where the system does not report it.
 fn peak_mib() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -25,7 +25,7 @@ fn parsed(bytes: &[u8]) -> Result<MshFile, MshError> {
     parse(Path::new("a.msh"), bytes)
 }
 
-/// What is wrong with `text`, and in which line.
+/// The problem of `text`, and its line.
 fn fault(text: &str) -> (Option<usize>, MshProblem) {
     let error = parsed(text.as_bytes()).unwrap_err();
     let line = error.place.map(|place| match place {

@@ -30,7 +30,7 @@ pub struct BlockSet {
     pub surface_names: Vec<String>,
     /// Named node sets of each block.
     pub node_sets: Vec<BTreeMap<String, Vec<NodeId>>>,
-    /// What was subtracted from every coordinate so that map coordinates keep their digits [m].
+    /// Vector that was subtracted from every coordinate so that map coordinates keep their digits [m].
     pub origin_m: Vec3,
     node_start: Vec<u32>,
     tet_start: Vec<u32>,

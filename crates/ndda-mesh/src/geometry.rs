@@ -66,7 +66,7 @@ impl Aabb {
 
     /// Makes the box hold `point` too.
     pub fn grow(&mut self, point: &Vec3) {
-        // What is not a number is left out.
+        // NaN is left out.
         for i in 0..3 {
             self.min[i] = if point[i] < self.min[i] { point[i] } else { self.min[i] };
             self.max[i] = if point[i] > self.max[i] { point[i] } else { self.max[i] };

@@ -1,12 +1,40 @@
-//! Blocks of rock as tetrahedra.
+//! Blocks of rock as tetrahedra: generators, cutting of rock by joints, filling, checks, and the set of blocks that all else works on.
 //!
-//! A [`BlockMesh`] is one block on its own: what a generator makes and an importer reads.
-//! A [`BlockSet`] is all blocks of a scene in structs of arrays, with constant topology: each block owns a
-//! contiguous range of nodes, tetrahedra and outward boundary triangles.
+//! A box of rock, cut by bedding of 1 m and filled with tetrahedra:
 //!
-//! Blocks come from [`generate`] (one shape each) or from [`cut`] (rock cut by joints, or Voronoi cells), which
-//! [`tetrahedralise`] fills. [`validate`] says what is wrong with a mesh, [`quality`] how good it is, and [`repair`]
-//! changes it when asked to.
+//! ```
+//! use ndda_mesh::cut::{CutOptions, Discontinuity, Domain, JointSet, cut_blocks};
+//! use ndda_mesh::geometry::tet_volume;
+//! use ndda_mesh::tetrahedralise::Fill;
+//! use ndda_mesh::{BlockSet, TetId, Vec3};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let rock = Domain::cuboid(Vec3::zeros(), Vec3::new(2.0, 2.0, 4.0))?;
+//! let bedding = JointSet::new("bedding", 0.0, 0.0, 1.0);
+//! let blocks = cut_blocks(&rock, &[Discontinuity::Set(bedding)], &CutOptions::default())?;
+//! let mut named = Vec::new();
+//! for block in 0..blocks.blocks.len() {
+//!     named.push((format!("block {block}"), blocks.mesh(block, &Fill::Fewest)?));
+//! }
+//! let set = BlockSet::new(named)?;
+//! let corners = (0..set.tets.len() as u32).map(|tet| set.tet_corners(TetId(tet), &set.rest_position));
+//! let volume_m3: f64 = corners.map(|corners| tet_volume(&corners)).sum();
+//! assert!(set.len() >= 4 && (volume_m3 - 16.0).abs() < 1e-12);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! | module | contents |
+//! |---|---|
+//! | [`block_mesh`] | one block on its own: what a generator makes and an importer reads |
+//! | [`block_set`] | all blocks of a scene in structs of arrays, with constant topology; each owns a contiguous range of nodes, tetrahedra and outward boundary triangles |
+//! | [`generate`] | blocks of one shape each: boxes, prisms, cylinders, spheres, voussoirs |
+//! | [`cut`] | rock cut by joints, and Voronoi cells |
+//! | [`tetrahedralise`] | tetrahedra that fill a polyhedron |
+//! | [`validate`], [`quality`], [`repair`] | problems of a mesh, how good it is, and changes that mend it when asked to |
+//! | [`geometry`], [`surface`], [`stats`], [`ids`] | volumes and boxes, boundary triangles, counts, typed indices |
+
+#![warn(unreachable_pub)]
 
 pub mod block_mesh;
 pub mod block_set;

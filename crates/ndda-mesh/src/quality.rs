@@ -106,7 +106,7 @@ impl Histogram {
     /// Prints the bars that are not empty.
     ///
     /// # Errors
-    /// Those of the formatter.
+    /// Errors of the formatter.
     pub fn show(&self, f: &mut fmt::Formatter<'_>, title: &str) -> fmt::Result {
         let most = self.counts.iter().copied().max().unwrap_or(0).max(1);
         writeln!(f, "{title}")?;

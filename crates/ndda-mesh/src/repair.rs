@@ -1,10 +1,10 @@
-//! Repairs that a user asks for by name; each says what it did. Nothing here runs by itself.
+//! Repairs that a user requests by name; each says what it did. Nothing here runs by itself.
 
 use crate::geometry::{Aabb, tet_volume};
 use crate::validate::first_twins;
 use crate::{BlockMesh, Vec3};
 
-/// What [`orient`] did.
+/// Changes made by [`orient`].
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Oriented {
     /// Tetrahedra whose last two nodes were exchanged.
@@ -25,7 +25,7 @@ pub fn orient(mesh: &mut BlockMesh) -> Oriented {
     done
 }
 
-/// What [`merge`] did; ids are those from before.
+/// Changes made by [`merge`]; ids are those from before.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Merged {
     /// Each node that went, after the one that stands for it.

@@ -1,4 +1,4 @@
-//! What a mesh amounts to, in numbers.
+//! Statistics of a mesh.
 
 use crate::BlockMesh;
 use crate::geometry::{tet_heights, tet_volume};

@@ -49,7 +49,7 @@ fn solve(mut case: Solve<f64>) -> f64 {
 #[library_benchmark]
 #[bench::unknowns_375(args = (4), setup = of_eight)]
 #[bench::unknowns_3000(args = (9), setup = of_eight)]
-fn solve_eight(mut case: Solve<[f64; MULTI]>) -> f64 {
+fn solve_multi(mut case: Solve<[f64; MULTI]>) -> f64 {
     let Solve { factor, scratch, x } = black_box(&mut case);
     factor.solve_multi_in_place(x, scratch).expect("a solution");
     x[0][0]
@@ -85,7 +85,7 @@ fn step(mut simulation: Simulation) -> Simulation {
     simulation
 }
 
-library_benchmark_group!(name = blocks, benchmarks = [solve, solve_eight, factor, step]);
+library_benchmark_group!(name = blocks, benchmarks = [solve, solve_multi, factor, step]);
 
 main!(
     config = LibraryBenchmarkConfig::default().tool(Callgrind::with_args(["--cache-sim=no"])),

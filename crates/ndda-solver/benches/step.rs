@@ -15,7 +15,7 @@ fn step(c: &mut Criterion) {
     }
 }
 
-/// What integrators and kinds of bodies cost beside each other.
+/// Costs of integrators and kinds of bodies, side by side.
 fn laws(c: &mut Criterion) {
     let integrators: [(&str, Box<dyn TimeIntegrator>); 3] = [
         ("Midpoint", Box::new(Midpoint { theta: 0.5 })),

@@ -18,7 +18,7 @@ pub enum StepError {
         /// The cause.
         source: ContactError,
     },
-    /// However short a step, it asks for more than it may.
+    /// The limits are violated however short the step.
     #[error(
         "at t = {time_s} s: contact is too stiff or too fast even for steps of {step_s:e} s: reduce the penalty, refine \
          the mesh less, or allow more halvings"
@@ -34,7 +34,7 @@ pub enum StepError {
     Factor {
         /// Δt [s].
         step_s: f64,
-        /// What is wrong with them.
+        /// The problem.
         source: FactorError,
     },
     /// Newton's method did not find the contact forces at the end of a step.
@@ -180,7 +180,7 @@ pub enum SetupError {
     Support {
         /// Name of the block.
         block: String,
-        /// What is wrong with them.
+        /// The problem.
         source: SupportError,
     },
     /// The equations of a block cannot be factored.
@@ -188,7 +188,7 @@ pub enum SetupError {
     Factor {
         /// Name of the block.
         block: String,
-        /// What is wrong with them.
+        /// The problem.
         source: FactorError,
     },
     /// Supports that a body of this kind cannot have.
@@ -196,7 +196,7 @@ pub enum SetupError {
     Kind {
         /// Name of the block.
         block: String,
-        /// What does not go together, and what to do.
+        /// The conflict and its remedy.
         reason: &'static str,
     },
     /// Contact at the start cannot be computed.

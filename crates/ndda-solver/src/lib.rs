@@ -4,6 +4,51 @@
 //! each block alone, account. Contact is known only through [`ContactModel`](ndda_contact::ContactModel), time through
 //! [`TimeIntegrator`], linear algebra through [`LinearSolver`].
 //!
+//! A block that falls for a tenth of a second:
+//!
+//! ```
+//! use std::sync::Arc;
+//!
+//! use ndda_fem::LinearElastic;
+//! use ndda_mesh::generate::{BoxPattern, box_block};
+//! use ndda_mesh::{BlockSet, Vec3};
+//! use ndda_solver::{BodyKind, BodySetup, Direct, Mass, Newmark, Setup, Simulation};
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let block = BodySetup {
+//!     kind: BodyKind::Elastic,
+//!     material: Arc::new(LinearElastic::new(50e9, 0.25, 2650.0)?),
+//!     supports: Vec::new(),
+//!     initial_stress: None,
+//!     tractions: Vec::new(),
+//!     pressures: Vec::new(),
+//!     forces: Vec::new(),
+//!     velocity_m_s: Vec3::zeros(),
+//!     spin_rad_s: Vec3::zeros(),
+//! };
+//! let mut simulation = Simulation::new(Setup {
+//!     blocks: BlockSet::new(vec![("block".into(), box_block([1.0; 3], [1, 1, 1], BoxPattern::Six)?)])?,
+//!     bodies: vec![block],
+//!     gravity_m_s2: Vec3::new(0.0, 0.0, -9.81),
+//!     gravity_factor: None,
+//!     mass: Mass::Consistent,
+//!     step_s: 1e-3,
+//!     integrator: Box::new(Newmark { alpha: 0.25, delta: 0.5 }),
+//!     contact: None,
+//!     implicit_contact: None,
+//!     solver: Box::new(Direct),
+//!     auto_step: None,
+//! })?;
+//! let start_m = simulation.state().position[0].z;
+//! for _ in 0..100 {
+//!     simulation.step()?;
+//! }
+//! let fallen_m = start_m - simulation.state().position[0].z;
+//! assert!((fallen_m - 0.5 * 9.81 * 0.1 * 0.1).abs() < 1e-9);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! | chapter | |
 //! |---|---|
 //! | `step` | the step, its control, contact at its end, settling, what changes ([`State`]) |

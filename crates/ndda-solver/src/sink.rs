@@ -7,11 +7,11 @@ use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::report::StepReport;
 
-/// What a sink is shown.
+/// The view that a sink is given.
 pub struct View<'a> {
     /// The simulation after the step.
     pub simulation: &'a mut Simulation,
-    /// What the step found; default before the first.
+    /// Report on the step; default before the first.
     pub report: &'a StepReport,
     /// Energies and momenta, if some sink wanted them at this step.
     pub sample: Option<&'a Sample>,
@@ -36,7 +36,7 @@ pub trait Sink {
     /// Called at the start and after each step; `Break` ends the run in good order.
     ///
     /// # Errors
-    /// Whatever keeps the sink from doing its work; the run then stops.
+    /// Any error that keeps the sink from doing its work; the run then stops.
     fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError>;
 
     /// Whether `view.sample` is wanted at this step.

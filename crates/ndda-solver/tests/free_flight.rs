@@ -31,7 +31,7 @@ fn cube(integrator: Box<dyn TimeIntegrator>, step_s: f64, gravity: Vec3, spin: V
         step_s,
         integrator,
         contact: None,
-        end_contact: None,
+        implicit_contact: None,
         solver: Box::new(Direct),
         auto_step: None,
     })

@@ -36,7 +36,7 @@ const ON_PLANE: f64 = 1e-6;
 pub struct Fault {
     /// Path of the value, as in `blocks[1].shape`.
     pub path: String,
-    /// What is wrong and what to do.
+    /// The problem and its remedy.
     pub message: String,
 }
 
@@ -149,7 +149,7 @@ pub fn simulation(scene: &Scene, blocks: BlockSet, folder: &Path) -> Result<Simu
     simulation_with(scene, blocks, folder, Choices::default())
 }
 
-/// The same with parts of one's own in the place of what the scene names.
+/// Builds the simulation with parts of one's own in the place of what the scene names.
 ///
 /// # Errors
 /// As [`simulation`].
@@ -180,7 +180,7 @@ pub fn simulation_with(
                 Some(AutoStep { safety, energy, most_halvings })
             }
         },
-        end_contact: match scene.time.contact_at {
+        implicit_contact: match scene.time.contact_at {
             scene::ContactAt::Predicted => None,
             scene::ContactAt::End { tolerance, most_iterations } => {
                 Some(ImplicitContact { tolerance, most_iterations })
@@ -214,7 +214,7 @@ pub(crate) fn contact_model(
     }
     match &scene.contact {
         None | Some(Contact::Off) => Ok(None),
-        Some(Contact::Potential { penalty_pa, potential, friction, joints, laws, memory }) => {
+        Some(Contact::Potential { penalty_pa, potential, friction, material_pairs, rock_joints, memory }) => {
             let potential = choices.potential.take().unwrap_or_else(|| contact_potential(potential));
             potential.field(blocks).map_err(|e| Fault::new("contact.potential", e))?;
             let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);
@@ -222,13 +222,13 @@ pub(crate) fn contact_model(
                 model = model.with_broad_phase(broad_phase);
             }
             let everywhere = choices.friction.take().or_else(|| friction.as_ref().and_then(friction_law));
-            let mut table = between_materials(scene, blocks, everywhere, joints);
-            add_joint_laws(&mut table, laws, blocks);
+            let mut table = between_materials(scene, blocks, everywhere, material_pairs);
+            add_joint_laws(&mut table, rock_joints, blocks);
             table.memory = match memory {
                 scene::Memory::Body => Memory::Body,
                 scene::Memory::Element => Memory::Element,
             };
-            // Where nothing rubs, no shear spring and no memory is made.
+            // Without friction, no shear spring and no memory is made.
             if table.have_laws() {
                 model = model.with_law_table(table);
             }
@@ -263,7 +263,7 @@ fn between_materials(
     scene: &Scene,
     blocks: &BlockSet,
     everywhere: Option<Box<dyn FrictionLaw>>,
-    special: &[scene::Joint],
+    special: &[scene::MaterialPair],
 ) -> FrictionLawTable {
     let index = |name: &str| material_index(scene, name);
     let mut joints = FrictionLawTable::between(materials_of(scene, blocks), scene.materials.len());
@@ -287,7 +287,7 @@ fn add_joint_laws(joints: &mut FrictionLawTable, laws: &[scene::JointLaw], block
     }
 }
 
-/// The law that a scene's friction asks for; `None` where nothing rubs.
+/// The law that a scene's friction requires; `None` where there is no friction.
 fn friction_law(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> {
     let scene::Friction { friction_deg, shear_penalty_pa_m, cohesion_pa, tension_pa, residual } = *friction;
     if friction_deg <= 0.0 && cohesion_pa <= 0.0 && tension_pa <= 0.0 {

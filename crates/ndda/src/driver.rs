@@ -31,7 +31,7 @@ use crate::run::schedule::is_due;
 /// ```
 pub struct Driver {
     model: Model,
-    /// Steps of the scene, and how many rows of history it asks for.
+    /// Steps of the scene, and how many rows of history it requests.
     steps: u64,
     rows: u64,
     /// Why the simulation cannot go on; its state is then not to be used.
@@ -118,7 +118,7 @@ impl Driver {
         self.model.simulation.sample().inspect_err(|error| self.stopped = Some(error.clone()))
     }
 
-    /// What the simulation says of its own result so far: a sample is taken first, so that nothing since the last one is missed.
+    /// The simulation's label so far: a sample is taken first, so that nothing since the last one is missed.
     pub fn label(&mut self) -> Label {
         let stopped_by = self.sample().err().map(|error| format!("[{}] {error}", error.code()));
         verdict::label(&self.model.simulation, stopped_by.as_deref())

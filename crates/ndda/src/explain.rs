@@ -1,4 +1,4 @@
-//! What a run of a scene does, what it leaves out, and why.
+//! The parts of a scene's run, what it leaves out, and why.
 //!
 //! The scene is built as it is for a run, and what was built says what it is.
 
@@ -31,7 +31,7 @@ pub struct Explanation {
     pub steps: u64,
     /// Δt [s].
     pub step_s: f64,
-    /// What contact says of that step.
+    /// Contact's advice on that step.
     pub step_advice: Option<String>,
     /// Blocks by how they may move.
     pub blocks: Vec<KindPlan>,

@@ -1,4 +1,4 @@
-//! What is known of a run before its first step.
+//! Forecasts: figures of a run that are known before its first step.
 
 pub mod admit;
 pub mod cost;

@@ -1,4 +1,4 @@
-//! What a result depends on besides its scene: program and machine.
+//! Program and machine, on which a result depends besides its scene.
 
 use std::fs;
 
@@ -22,20 +22,20 @@ pub fn describe() -> Machine {
     }
 }
 
-/// Name of the processor, or of its architecture where the system does not tell.
+/// Name of the processor, or of its architecture where the system does not report it.
 pub fn processor() -> String {
     let text = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     field(&text, "model name").map_or_else(|| std::env::consts::ARCH.into(), String::from)
 }
 
-/// Most memory that this process has had [B], where the system tells.
+/// Most memory that this process has had [B], where the system reports it.
 pub fn peak_memory_bytes() -> Option<u64> {
     let text = fs::read_to_string("/proc/self/status").ok()?;
     let kibibytes: u64 = field(&text, "VmHWM")?.strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024)
 }
 
-/// Time that the threads of this process have been computing [s], where the system tells.
+/// Time that the threads of this process have been computing [s], where the system reports it.
 pub fn processor_time_s() -> Option<f64> {
     let mut nanoseconds = 0u64;
     for thread in fs::read_dir("/proc/self/task").ok()? {

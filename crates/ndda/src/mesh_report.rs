@@ -1,4 +1,4 @@
-//! What a set of blocks amounts to.
+//! The report of a set of blocks.
 
 use std::fmt;
 
@@ -30,11 +30,11 @@ pub struct MeshReport {
     /// Number and quality of the tetrahedra.
     #[serde(flatten)]
     pub quality: QualityReport,
-    /// Steps that contact asks for; empty without a scene, or where contact is stable at any step.
+    /// Steps that contact requires; empty without a scene, or where contact is stable at any step.
     pub steps: Vec<AdvisedStep>,
-    /// What each rock was cut into.
+    /// The cut of each rock.
     pub rock: Vec<RockReport>,
-    /// What `--fix` did.
+    /// Changes made by `--fix`.
     pub fixes: Vec<String>,
 }
 

@@ -47,13 +47,13 @@ impl Model {
         Self::with(loaded, folder, Choices::default())
     }
 
-    /// The same with parts of one's own in the place of what the scene names.
+    /// Opens a scene with parts of one's own in the place of what the scene names.
     ///
     /// # Errors
     /// As [`open`](Self::open).
     pub fn with(loaded: LoadedScene, folder: &Path, choices: Choices) -> Result<Self, SceneErrors> {
         let mut model = Self::resuming_with(loaded, folder, choices)?;
-        // What contact cannot compute at the start stops the run with its own cause.
+        // Contact that cannot be computed at the start stops the run with its own cause.
         match overlaps::refusal(&model.loaded, &mut model.simulation) {
             Ok(Some(refused)) => Err(model.loaded.errors(vec![refused])),
             _ => Ok(model),
@@ -68,7 +68,7 @@ impl Model {
         Self::resuming_with(loaded, folder, Choices::default())
     }
 
-    /// The same with parts of one's own.
+    /// Resumes a run with parts of one's own.
     ///
     /// # Errors
     /// As [`resuming`](Self::resuming).

@@ -90,7 +90,7 @@ fn png(_: &str) -> Result<Vec<u8>, String> {
     Err("this program was built without the feature `png`: choose .svg".into())
 }
 
-/// What each colour stands for, one below the other; `width` is that of the line in the picture [px].
+/// Draws the legend of the colours, one below the other; `width` is that of the line in the picture [px].
 ///
 /// # Errors
 /// It cannot be drawn.

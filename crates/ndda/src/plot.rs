@@ -12,7 +12,7 @@ use crate::picture::{self, Area, Drawn, colour, log_axis, log_range, range, shor
 
 /// Width and height of the picture [px].
 const SIZE: (u32, u32) = (1160, 600);
-/// Width of the part of it that tells colours [px].
+/// Width of the part of it that shows colours [px].
 const KEY: u32 = 230;
 /// Endings of columns that are units, the longer ones before those that they end in.
 const UNITS: [(&str, &str); 6] =
@@ -35,12 +35,12 @@ pub enum PlotError {
     Column {
         /// The history.
         file: PathBuf,
-        /// What is wrong.
+        /// The problem.
         reason: String,
         /// The columns that it has.
         names: Vec<String>,
     },
-    /// Nothing that can be drawn.
+    /// There is no curve to draw.
     #[error("nothing to draw: no value is finite{0}")]
     Empty(&'static str),
     /// The picture cannot be written.
@@ -48,7 +48,7 @@ pub enum PlotError {
     Write(#[from] WriteError),
 }
 
-/// What is drawn.
+/// A picture to draw.
 #[derive(Clone, Debug)]
 pub struct Plot {
     /// Output folders of runs, or history files; several are drawn over each other.
@@ -118,7 +118,7 @@ fn history(input: &Path) -> PathBuf {
     results::history_file(input).unwrap_or_else(|| input.join(folder::HISTORY))
 }
 
-/// What a run is called in the legend.
+/// Name of a run in the legend.
 fn label(input: &Path) -> String {
     let named = if input.is_dir() { input } else { input.parent().unwrap_or(input) };
     named.file_name().unwrap_or(named.as_os_str()).to_string_lossy().into_owned()
@@ -202,7 +202,7 @@ where
         .y_label_formatter(&|y| short(*y))
         .draw()?;
     for (i, line) in lines.iter().enumerate() {
-        // What has no logarithm leaves a gap.
+        // Values without a logarithm leave a gap.
         for part in line.points.split(|(x, y)| !drawable(*x, *y, log)) {
             chart.draw_series(LineSeries::new(part.iter().copied(), colour(i).stroke_width(2)))?;
         }

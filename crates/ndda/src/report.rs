@@ -25,7 +25,7 @@ pub use error::ReportError;
 use input::Input;
 use motion::Motion;
 
-/// What was written.
+/// The files that were written.
 #[derive(Debug, Serialize)]
 pub struct Written {
     /// The file.

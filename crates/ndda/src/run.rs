@@ -55,7 +55,7 @@ struct Recording {
     earlier: Option<Earlier>,
 }
 
-/// What came out of a run.
+/// Outcome of a run.
 pub struct Outcome {
     /// Energies, momenta, verdicts, the label, and where blocks and monitors ended.
     pub summary: Summary,
@@ -171,7 +171,7 @@ impl Run {
         self.recording.as_ref().is_some_and(|recording| recording.earlier.is_some())
     }
 
-    /// Brings the scene to rest, if it asks for that and has not been.
+    /// Brings the scene to rest, if it is to settle and has not yet.
     fn settle(&mut self, settling: &mut dyn FnMut(&Settled)) -> Result<(), RunError> {
         let Some(settle) = self.model.loaded.scene.settle.filter(|_| !self.goes_on()) else { return Ok(()) };
         let settle = Settle { tolerance: settle.tolerance, most_steps: settle.most_steps };

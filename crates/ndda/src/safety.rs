@@ -27,10 +27,10 @@ pub use mechanism::{Kind, Mechanism, MovingBlock, Plane};
 pub use report::text;
 pub use trial::{State, Trial};
 
-/// What is asked for.
+/// The question of a search for a factor of safety.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
-    /// What is changed from trial to trial.
+    /// Quantity that is changed from trial to trial.
     pub by: Question,
     /// Relative width of the bracket.
     pub error: f64,
@@ -66,7 +66,7 @@ pub struct Safety {
     pub title: String,
     /// CRC-32 of the scene and its blocks, hexadecimal.
     pub scene_crc32: String,
-    /// What was changed from trial to trial.
+    /// Quantity that was changed from trial to trial.
     pub by: By,
     /// Relative width of the bracket that was asked for.
     pub error: f64,
@@ -79,7 +79,7 @@ pub struct Safety {
     pub moving_blocks: Vec<MovingBlock>,
     /// All trials by their factor.
     pub trials: Vec<Trial>,
-    /// What a person should know before using the answer.
+    /// Remarks to read before using the answer.
     pub remarks: Vec<String>,
     /// Wall-clock time, all calls together [s].
     pub wall_s: f64,
@@ -94,7 +94,7 @@ pub enum SafetyError {
     /// A changed scene is none that can be built.
     #[error("{}", .0.render(false))]
     Scene(#[from] SceneErrors),
-    /// Nothing holds blocks that could be reduced.
+    /// There is no strength that could be reduced.
     #[error(
         "the scene has no friction, cohesion or tensile strength to reduce: give contact.friction, or use --by load or --by gravity"
     )]
@@ -123,7 +123,7 @@ pub enum SafetyError {
     /// Blocks do not feel each other.
     #[error("the scene has no contact between blocks, so nothing can stand: give `contact`")]
     NoContact,
-    /// Nothing can move.
+    /// No block can move.
     #[error("every block of the scene is fixed, so nothing can fail")]
     NothingFree,
     /// The scene does not come to rest, however strong its joints are.
@@ -133,7 +133,7 @@ pub enum SafetyError {
     NotSettled {
         /// The largest factor on the strength that was tried.
         strength: f64,
-        /// What the solver says.
+        /// Error of the solver.
         source: StepError,
     },
     /// Somebody asked to end.
@@ -144,7 +144,7 @@ pub enum SafetyError {
     Write(#[from] WriteError),
 }
 
-/// Where the answer and its trials go, and who watches.
+/// Folder of the answer and its trials, and their observer.
 pub struct Watch<'a> {
     /// Folder of `safety.json`, which is written after each trial; none to write nothing.
     pub out: Option<&'a Path>,

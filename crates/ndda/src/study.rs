@@ -33,9 +33,9 @@ pub struct Study {
     pub loaded: LoadedStudy,
     /// Its name: the file without its ending.
     pub name: String,
-    /// What is plotted.
+    /// The plotted cases.
     pub cases: Vec<Case>,
-    /// What the cases are compared with.
+    /// The reference cases.
     pub references: Vec<Case>,
     /// The output folder.
     pub out: PathBuf,

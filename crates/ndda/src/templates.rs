@@ -7,7 +7,7 @@ use serde::Serialize;
 pub struct Template {
     /// Its name.
     pub name: &'static str,
-    /// What it is for.
+    /// Purpose.
     pub about: &'static str,
     /// The scene.
     #[serde(skip)]

@@ -68,7 +68,7 @@ impl From<StudyError> for TuneError {
     }
 }
 
-/// What is asked for.
+/// The request: target, budget and quantities.
 #[derive(Clone, Debug)]
 pub struct Wanted {
     /// The largest relative error that is allowed.
@@ -125,7 +125,7 @@ pub fn tune(
     Ok((tuned, json))
 }
 
-/// What a search has found.
+/// Result of a search.
 struct Found {
     tried: Vec<Tried>,
     best: Option<Best>,
@@ -240,7 +240,7 @@ impl Runner<'_> {
         Ok((tried, cheapest.or(Some(best))))
     }
 
-    /// What was found.
+    /// The result of a search.
     fn tuned(&self, trial: &Trial, tried: Vec<Tried>, best: Option<Best>, target: f64) -> Tuned {
         let mut points: Vec<TrialPoint> = tried.iter().map(|one| self.point(one)).collect();
         let ended: Vec<usize> = (0..points.len()).filter(|&i| points[i].error.is_some()).collect();
@@ -319,7 +319,7 @@ impl Trials for Runner<'_> {
     }
 }
 
-/// What a run cost: processor time, or wall time where the system does not tell [s].
+/// Cost of a run: processor time, or wall time where the system does not tell [s].
 fn cost_s(ended: &Ended) -> f64 {
     ended.summary.machine.processor_time_s.unwrap_or(ended.summary.wall_s)
 }

@@ -8,7 +8,7 @@ use crate::evidence::{Answer, row};
 
 const DEPTHS: [&str; 7] = ["0.01", "0.05", "0.1", "0.25", "0.5", "0.75", "0.9"];
 
-/// Where the cube is put.
+/// The scene with the cube sunk by a depth.
 fn sunk(depth: &str) -> String {
     format!("blocks.cube.at_m[2]=-{depth}")
 }

@@ -7,7 +7,7 @@ use super::labelled::{SPEED, summary_of, word};
 use crate::bouncing_block::{ball, contact_rate, restitution};
 use crate::evidence::{Answer, row};
 
-/// What is wrong with the restitution of a bounce, whether the run calls itself accurate, and the h that it reports over
+/// Error of the restitution of a bounce, whether the run calls itself accurate, and the h that it reports over
 /// the bound that it knows.
 fn bounce(integrator: &str, h: f64) -> Option<(f64, bool, f64)> {
     let mut simulation = ball(integrator, h / contact_rate());
@@ -71,7 +71,12 @@ fn a_bounce_is_never_called_accurate_when_it_is_not() {
             too_modest += u32::from(!says && error <= SPEED && beyond <= 1.0);
         }
     }
-    row("extreme: penalty, step and label", "bounces called accurate that are not", f64::from(claimed_wrongly), Answer::AtMost(0.0));
+    row(
+        "extreme: penalty, step and label",
+        "bounces called accurate that are not",
+        f64::from(claimed_wrongly),
+        Answer::AtMost(0.0),
+    );
     row(
         "extreme: penalty, step and label",
         "bounces called inaccurate within the bound that are not",

@@ -6,7 +6,7 @@ use ndda::{Model, Run};
 use ndda_io::OutputFolder;
 use serde_json::Value;
 
-/// What an accurate run promises: speeds to 1 %, places to a tenth of a tetrahedron's height.
+/// Errors that an accurate run promises: speeds to 1 %, places to a tenth of a tetrahedron's height.
 pub const SPEED: f64 = 0.01;
 pub const PLACE: f64 = 0.1;
 

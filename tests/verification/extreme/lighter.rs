@@ -53,7 +53,7 @@ fn a_small_block_answers_for_its_own_energy() {
     let gain = summary["verdicts"]["spurious contact energy"]["value"].as_f64().unwrap();
     let leaves = summary["monitors"]["cube"]["velocity"][2].as_f64().unwrap();
     assert_eq!(word(&summary), "inaccurate");
-    // What the cube has more than it came with, over m v V: it came at 5 m/s, and nothing is faster than it leaves. Contact of the
+    // Energy that the cube has gained, over m v V: it came at 5 m/s, and nothing is faster than it leaves. Contact of the
     // paper's scheme stores a little more than the cube brought.
     let more = (leaves * leaves - 25.0) / (5.0 * leaves);
     row(
@@ -89,6 +89,16 @@ fn whatever_the_masses_of_two_blocks_a_wrong_meeting_is_not_called_accurate() {
         f64::from(claimed_wrongly),
         AtMost(0.0),
     );
-    row("extreme: penalty, step and label", "meetings of unlike blocks called inaccurate that are not", f64::from(too_modest), AtMost(0.0));
-    row("extreme: penalty, step and label", "meetings of unlike blocks called accurate, of 40", f64::from(accurate), AtLeast(20.0));
+    row(
+        "extreme: penalty, step and label",
+        "meetings of unlike blocks called inaccurate that are not",
+        f64::from(too_modest),
+        AtMost(0.0),
+    );
+    row(
+        "extreme: penalty, step and label",
+        "meetings of unlike blocks called accurate, of 40",
+        f64::from(accurate),
+        AtLeast(20.0),
+    );
 }

@@ -1,4 +1,4 @@
-//! The same scene at any size, in other units and anywhere.
+//! Runs of one scene at any size, in other units and anywhere.
 
 use ndda::Model;
 use ndda_io::code::Code;
@@ -60,7 +60,7 @@ fn difference(a: &[Vec3], b: &[Vec3]) -> f64 {
 #[test]
 fn a_collision_is_the_same_at_any_size_and_in_any_units() {
     let metre = Units { length: 1.0, time: 1.0, mass: 1.0 }.run();
-    // The same stresses, so that times go with lengths, and masses with volumes.
+    // Stresses are equal, so that times go with lengths, and masses with volumes.
     let size = |l: f64| Units { length: l, time: l, mass: l.powi(3) };
     let units = Units { length: 1e3, time: 1.0, mass: 1e-3 };
     let cases = [

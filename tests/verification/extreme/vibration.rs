@@ -25,7 +25,7 @@ fn cube(integrator: &str, step_s: f64) -> Simulation {
     ))
 }
 
-/// What is wrong with the speed in the first radian, or the first step, over its largest; and whether the run calls itself
+/// Error of the speed in the first radian, or the first step, over its largest; and whether the run calls itself
 /// accurate.
 fn vibrates(integrator: &str, theta: f64) -> (f64, bool) {
     let rate = (8.0 * SPRING_N_M / MASS_KG).sqrt();
@@ -55,8 +55,18 @@ fn a_vibration_that_steps_do_not_resolve_says_so() {
             too_modest += u32::from(!says && error < 0.5 * SPEED);
         }
     }
-    row("extreme: penalty, step and label", "vibrations called accurate that are not", f64::from(claimed_wrongly), AtMost(0.0));
-    row("extreme: penalty, step and label", "vibrations called inaccurate that are not by half", f64::from(too_modest), AtMost(0.0));
+    row(
+        "extreme: penalty, step and label",
+        "vibrations called accurate that are not",
+        f64::from(claimed_wrongly),
+        AtMost(0.0),
+    );
+    row(
+        "extreme: penalty, step and label",
+        "vibrations called inaccurate that are not by half",
+        f64::from(too_modest),
+        AtMost(0.0),
+    );
 }
 
 #[test]

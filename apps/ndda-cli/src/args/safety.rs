@@ -17,7 +17,7 @@ pub struct SafetyArgs {
     /// The scene.
     #[command(flatten)]
     pub input: SceneArgs,
-    /// What is changed until blocks fail.
+    /// Quantity that is changed until blocks fail.
     #[arg(long, value_enum, default_value_t = SafetyBy::Strength)]
     pub by: SafetyBy,
     /// With `--by gravity`: where gravity is tilted to, as x,y,z [default: down the steepest plane that blocks stand on].
@@ -40,7 +40,7 @@ pub struct SafetyArgs {
     pub json: bool,
 }
 
-/// What a factor of safety changes.
+/// The quantity that a factor of safety scales.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum SafetyBy {
     /// Divide tan φ, cohesion and tensile strength of all joints.

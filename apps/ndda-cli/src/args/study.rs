@@ -67,7 +67,7 @@ pub struct StudyCollectArgs {
     pub json: bool,
 }
 
-/// What all parts of a study take.
+/// Settings that all parts of a study share.
 #[derive(Debug, Args)]
 pub struct StudyHow {
     /// Output folder [default: out/ and the name of the study with _study].
@@ -84,7 +84,7 @@ pub struct StudyHow {
     pub overrides: Vec<String>,
 }
 
-/// What runs the cases.
+/// Scheduler or shell that is to run the cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Emit {
     /// A job array of Slurm.

@@ -43,7 +43,7 @@ pub struct TuneArgs {
     /// The largest relative error that is allowed.
     #[arg(long, value_name = "ERROR", value_parser = error_of_one)]
     pub error: f64,
-    /// What has to be right: columns of history.csv or blocks, by name or its beginning [default: what the scene's closed
+    /// Results that have to be right: columns of history.csv or blocks, by name or its beginning [default: what the scene's closed
     /// form judges, else the displacements of all monitors and blocks].
     #[arg(long, value_delimiter = ',', value_name = "NAME")]
     pub of: Vec<String>,

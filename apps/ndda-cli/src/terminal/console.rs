@@ -16,7 +16,7 @@ pub fn is_coloured() -> bool {
     std::io::stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none()
 }
 
-/// Prints to standard output. Whoever closed it does not want to hear more; but a disk that is full is told of at the end.
+/// Prints to standard output. A closed pipe is ignored; a full disk is reported at the end.
 pub fn say(text: &str) {
     let mut out = std::io::stdout().lock();
     if let Err(error) = writeln!(out, "{text}").and_then(|()| out.flush())
@@ -37,7 +37,7 @@ pub fn complain(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 
-/// [`complain`], or nothing where a person asked for quiet.
+/// [`complain`], or nothing where a user requested quiet.
 pub fn complain_unless(quiet: bool) -> impl Fn(&str) + Sync {
     move |text: &str| {
         if !quiet {

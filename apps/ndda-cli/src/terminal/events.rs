@@ -1,4 +1,4 @@
-//! What other programs read: one JSON object per line on standard output, as docs/reference/json.md says.
+//! Events for other programs: one JSON object per line on standard output, as docs/reference/json.md says.
 
 use ndda_io::code::Code;
 use ndda_io::diagnostic::{Diagnostic, SceneErrors, Severity, line_column};
@@ -58,7 +58,7 @@ struct Place<'a> {
 }
 
 impl Events {
-    /// Lines of `schema` if they are asked for.
+    /// Lines of `schema` if they are requested.
     pub fn new(asked: bool, schema: &'static str) -> Self {
         Self(asked.then_some(schema))
     }

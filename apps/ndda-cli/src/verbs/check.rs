@@ -13,7 +13,7 @@ use crate::terminal::console::say;
 use crate::terminal::events::{self, Events};
 use crate::{exit, input};
 
-/// What is found in a scene without errors.
+/// Findings in a scene without errors.
 #[derive(Serialize)]
 struct Checked<'a> {
     exit_code: u8,

@@ -31,7 +31,7 @@ struct Input {
 
 /// Why there are no blocks to measure.
 enum Refused {
-    /// What is wrong with the scene.
+    /// Errors of the scene.
     Scene(Box<SceneErrors>),
     /// An exit code and what is wrong with the mesh file or the command line.
     Message(u8, String),

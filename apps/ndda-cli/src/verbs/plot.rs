@@ -10,7 +10,7 @@ use crate::exit;
 use crate::terminal::console::say;
 use crate::terminal::events::{self, Events};
 
-/// What came of it.
+/// Outcome of drawing.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Done {

@@ -25,7 +25,7 @@ pub fn run(args: &RunArgs) -> u8 {
     in_pool(&args.how, |options| run_here(args, options))
 }
 
-/// Does `work` on as many threads as are asked for.
+/// Does `work` on as many threads as are requested.
 pub fn in_pool(how: &HowArgs, work: impl FnOnce(&Options) -> u8 + Send) -> u8 {
     let started = Instant::now();
     let events = Events::new(how.json, events::RUN);
@@ -54,7 +54,7 @@ pub struct Options {
     pub quiet: bool,
     /// All tables at the end.
     pub verbose: bool,
-    /// What programs read.
+    /// Event stream for other programs.
     pub events: Events,
     /// When this process began.
     pub started: Instant,
@@ -156,7 +156,7 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
     }
 }
 
-/// What a person reads at the end of a run.
+/// Prints the result of a run for a person.
 fn say_result(summary: &Summary, folder: &Path, verbose: bool) {
     if verbose {
         say(&table::text(summary));

@@ -20,7 +20,7 @@ pub fn study(args: &StudyArgs) -> u8 {
             open(&collect.study, &collect.how).and_then(|opened| gather(&opened, collect.json))
         }
         (None, Some(study)) => run_all(study, args),
-        // The command line asks for one before it comes to this.
+        // The command line requires one before it comes to this.
         (None, None) => return exit::USAGE,
     };
     outcome.unwrap_or_else(|error| refuse(&error))

@@ -1,4 +1,4 @@
-//! What `ndda certify` and `ndda tune` share: a scene that runs over and over.
+//! Common part of `ndda certify` and `ndda tune`: a scene that is run many times.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ use crate::terminal::console::complain;
 use crate::terminal::events::Events;
 use crate::{exit, input};
 
-/// Reads, checks and builds a scene once, and makes its output folder, `out/NAME_purpose` unless another is asked for;
+/// Reads, checks and builds a scene once, and makes its output folder, `out/NAME_purpose` unless another is requested;
 /// `steps` is the number of steps of its longest step.
 ///
 /// # Errors

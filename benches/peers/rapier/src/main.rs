@@ -51,12 +51,12 @@ fn build(problem: &Value, setting: &Value) -> (PhysicsWorld, Vec<RigidBodyHandle
         parameters.contact_softness.natural_frequency = hertz;
         parameters.static_contact_softness.natural_frequency = hertz;
     }
-    let rubs = |collider: ColliderBuilder| {
+    let has_friction = |collider: ColliderBuilder| {
         collider.friction(number(&problem["friction"])).restitution(number(&problem["restitution"]))
     };
     for support in list(&problem["supports"]) {
         let (shape, at) = support_shape(support);
-        world.insert(RigidBodyBuilder::fixed().translation(at), rubs(shape));
+        world.insert(RigidBodyBuilder::fixed().translation(at), has_friction(shape));
     }
     let density = number(&problem["density_kg_m3"]);
     let mut handles = Vec::new();
@@ -69,7 +69,7 @@ fn build(problem: &Value, setting: &Value) -> (PhysicsWorld, Vec<RigidBodyHandle
             .translation(vector(&body["centre_m"]))
             .linvel(vector(&body["velocity_m_s"]))
             .can_sleep(false);
-        handles.push(world.insert(moving, rubs(shape).density(density)).0);
+        handles.push(world.insert(moving, has_friction(shape).density(density)).0);
     }
     (world, handles)
 }

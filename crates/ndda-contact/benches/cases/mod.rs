@@ -1,4 +1,4 @@
-//! What is measured, by the clock and by counting instructions.
+//! Cases that are measured, by the clock and by counting instructions.
 #![allow(dead_code)] // each bench takes some of it
 
 #[path = "../../tests/frictionless/mod.rs"]
@@ -52,7 +52,7 @@ impl Hits {
         Self::moved_out(0.0)
     }
 
-    /// The same moved towards a face until a corner is just inside.
+    /// Pairs moved towards a face until a corner is just inside.
     pub fn shallow() -> Self {
         Self::moved_out(0.97)
     }
@@ -138,7 +138,7 @@ pub struct Evaluation {
     force: Vec<Vec3>,
     shear: Vec<Vec3>,
     stiffness: Vec<f64>,
-    /// Which blocks may be taken whole.
+    /// Which blocks may be an affine convex target.
     affine: Vec<bool>,
 }
 
@@ -192,7 +192,7 @@ impl Evaluation {
         self.model.add_forces(&input, &mut self.history, &mut output).expect("sound blocks")
     }
 
-    /// The same by a model without a line of friction.
+    /// One step of a model without friction.
     pub fn frictionless_step(&mut self) -> ContactReport {
         let input = ContactInput::new(&self.blocks, &self.blocks.rest_position, &self.velocity, 1e-5);
         let mut output =

@@ -122,7 +122,7 @@ impl Cells {
     }
 }
 
-/// parry3d's tree, rebuilt in its own memory, and asked for each box.
+/// parry3d's tree, rebuilt in its own memory, and queried for each box.
 #[derive(Default)]
 pub struct Tree {
     tree: Bvh,

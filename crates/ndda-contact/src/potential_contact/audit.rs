@@ -1,4 +1,4 @@
-//! What the contact potential tells of its last evaluation.
+//! Audit of the contact potential's last evaluation.
 
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
@@ -21,7 +21,7 @@ impl ContactAudit for PotentialContact {
         let touching = integrals.touching();
         let work_of = |(t, work_j): (usize, &mut f64)| {
             let touch = &touching[t];
-            let found = (integrals.hits_of(touch), integrals.sums_of(touch));
+            let found = (integrals.overlaps_of(touch), integrals.sums_of(touch));
             *work_j = forces[t].push.dot(&relative_motion(touch, found, (blocks, moved)));
         };
         self.work_of_facet.resize(touching.len(), 0.0);

@@ -47,11 +47,11 @@ impl ContactModel for PotentialContact {
                 (history, &mut self.new_state),
             );
         }
-        let rubs = self.needs_bodies() && !input.bodies.is_empty();
-        let Self { by_block, faces, integrals, .. } = self;
+        let has_friction = self.needs_bodies() && !input.bodies.is_empty();
+        let Self { adjacency, faces, integrals, .. } = self;
         let sort = || {
-            by_block.arrange(input.blocks.len(), integrals.touching().iter().map(blocks_of));
-            if rubs {
+            adjacency.arrange(input.blocks.len(), integrals.touching().iter().map(blocks_of));
+            if has_friction {
                 faces.arrange(integrals);
             }
         };
@@ -64,15 +64,15 @@ impl ContactModel for PotentialContact {
             FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
         let place = || place_forces(rows, &facets, integrals, &self.penalty_of_facet, &self.hulls);
         join_if(integrals.touching().len() > GRAIN_FACETS, place, sort);
-        if let Some(joints) = self.joints.as_ref().filter(|_| rubs) {
+        if let Some(joints) = self.joints.as_ref().filter(|_| has_friction) {
             let scene = PatchScene { input, integrals: &self.integrals, joints, hulls: &self.hulls };
             self.faces.add(&scene, &mut self.forces, history);
         }
         let scene = ScatterScene {
             blocks: input.blocks,
-            position: rubs.then_some(input.position),
+            position: has_friction.then_some(input.position),
             integrals: &self.integrals,
-            by_block: &self.by_block,
+            adjacency: &self.adjacency,
             hulls: &self.hulls,
             forces: &self.forces,
             on_host: &self.on_host,
@@ -112,7 +112,7 @@ impl ContactModel for PotentialContact {
         Ok(self.penalty_pa * self.overlaps.energy_m3(law))
     }
 
-    /// The turning and stretching of triangles under their own pressure is left out, and so is what friction owes to
+    /// The turning and stretching of triangles under their own pressure is left out, and so is the dependence of friction on
     /// changes of pressure; where the law of the overlap is not linear, the rank-one part of its curvature, too.
     fn add_stiffness(
         &mut self,
@@ -132,7 +132,7 @@ impl ContactModel for PotentialContact {
     }
 
     fn uses_host_forces(&self, block: BlockId) -> bool {
-        self.hulls.whole(block).is_some()
+        self.hulls.affine_target(block).is_some()
     }
 
     fn needs_bodies(&self) -> bool {

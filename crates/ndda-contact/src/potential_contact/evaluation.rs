@@ -1,4 +1,4 @@
-//! What an evaluation consists of: candidate pairs, frames, penalties, forces of facets, and their stiffness.
+//! Stages of an evaluation: candidate pairs, frames, penalties, forces of facets, and their stiffness.
 
 use ndda_mesh::Mat3;
 use rayon::prelude::*;
@@ -24,7 +24,7 @@ use super::PotentialContact;
 
 /// Facets below which a second thread costs more than it brings.
 pub(super) const GRAIN_FACETS: usize = 128;
-/// The same for frames.
+/// Frames below which a second thread costs more than it brings.
 const GRAIN_FRAMES: usize = 512;
 impl PotentialContact {
     /// Integrals of all candidate pairs at `input.position`.
@@ -45,7 +45,7 @@ impl PotentialContact {
             let surfaces = BlockFaces::of_all(input.blocks);
             // Memory per element needs the elements.
             let phi_per_m = self.potential.phi_per_m().filter(|_| !self.candidates.split_by_element);
-            // What a facet remembers is its own.
+            // Each facet has a history of its own.
             let by_triangle = self.joints.as_ref().is_some_and(|joints| !joints.act_on_faces_only());
             self.hulls.fit(input.blocks, &surfaces, phi_per_m, input.affine, by_triangle);
             self.candidates.numbers_overlaps = field.as_ref().is_ok_and(PotentialField::is_element);
@@ -129,15 +129,15 @@ impl PotentialContact {
         let held = held.filter(|force| force.shear_slope > 0.0 && force.sticks);
         let corners = input.blocks.triangle_corners(touch.triangle, input.position);
         let outline = self.hulls.outline(touch.triangle, touch.target);
-        for hit in self.integrals.hits_of(touch) {
-            let tet = hit.tet;
-            let target = match (&self.field, self.hulls.whole(touch.target)) {
+        for overlap in self.integrals.overlaps_of(touch) {
+            let tet = overlap.tet;
+            let target = match (&self.field, self.hulls.affine_target(touch.target)) {
                 (_, Some(_)) => Target::Convex(self.hulls.planes_of(touch.target), outline),
                 (Some((_, PotentialField::Pieces(table))), None) => Target::Pieces(table.of(tet)),
                 (Some((_, PotentialField::Function(field))), None) => Target::Function(field, tet),
                 _ => Target::Element,
             };
-            let frame = &self.frames[self.candidates.pairs[hit.pair as usize].tet as usize];
+            let frame = &self.frames[self.candidates.pairs[overlap.pair as usize].tet as usize];
             let triangle = &input.blocks.triangles[touch.triangle.index()];
             let mut pair = PairStiffness::new(triangle, &input.blocks.tets[tet.index()]);
             tangent::add_pair(&mut pair, &corners, frame, target, self.penalty_of_facet[t]);
@@ -145,8 +145,8 @@ impl PotentialContact {
                 let normal = force.push.normalize();
                 let across = Mat3::identity() - normal * normal.transpose();
                 // The spring of a facet, shared among its hits by their pressure.
-                let [a, b, c] = hit.pressure;
-                let [d, e, g, h] = hit.on_target.pressure;
+                let [a, b, c] = overlap.pressure;
+                let [d, e, g, h] = overlap.on_target.pressure;
                 let total = a + b + c;
                 let weights = [a, b, c, -d, -e, -g, -h].map(|w| w / total);
                 pair.add_spring(&weights, &(force.shear_slope * total * across));
@@ -173,7 +173,7 @@ fn place_frames(
     Err(ContactError::CollapsedTet { tet, block: blocks.tet_block[tet.index()], volume_m3 })
 }
 
-/// What [`place_forces`] fills: forces of facets, what hosts feel of them, and what the laws keep.
+/// Output of [`place_forces`]: forces of facets, their reactions on host tetrahedra, and the numbers of the laws.
 pub(super) struct FacetRows<'a> {
     pub(super) forces: &'a mut Vec<FacetForce>,
     pub(super) on_host: &'a mut Vec<OnTarget>,
@@ -194,10 +194,10 @@ pub(super) fn place_forces(
     on_host.resize(touching.len(), OnTarget::default());
     state.resize(touching.len() * state_len, 0.0);
     let place = |force: &mut FacetForce, on_host: &mut OnTarget, t: usize, state: &mut [f64]| {
-        let (hits, sums) = (integrals.hits_of(&touching[t]), integrals.sums_of(&touching[t]));
-        *force = scene.force(&touching[t], hits, sums, penalty_of_facet[t], state);
-        if hulls.whole(touching[t].target).is_some() {
-            *on_host = hits[0].on_target;
+        let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
+        *force = scene.force(&touching[t], overlaps, sums, penalty_of_facet[t], state);
+        if hulls.affine_target(touching[t].target).is_some() {
+            *on_host = overlaps[0].on_target;
         }
     };
     if state_len > 0 {

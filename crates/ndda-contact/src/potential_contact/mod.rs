@@ -42,7 +42,25 @@ use crate::model::FacetMemory;
 
 /// Normal forces −k_n n ∫ φ dA on boundary triangles, both ways, and friction on top of them.
 ///
-/// One model serves one set of blocks: what it learns of their rest shape at the first evaluation it keeps.
+/// One model serves one set of blocks: it keeps data of their rest shape from the first evaluation on.
+///
+/// Two cubes of 1 m, one of which has sunk 1 mm into the other:
+///
+/// ```
+/// use ndda_contact::testing::{evaluate, test_box, test_set};
+/// use ndda_contact::{ContactHistory, ContactInput, PotentialContact};
+///
+/// let lower = test_box([0.0, 0.0, 0.0], [1.0; 3], [1, 1, 1]);
+/// let upper = test_box([0.0, 0.0, 0.999], [1.0; 3], [1, 1, 1]);
+/// let blocks = test_set(vec![lower, upper]);
+/// let velocity = vec![ndda_mesh::Vec3::zeros(); blocks.rest_position.len()];
+/// let input = ContactInput::new(&blocks, &blocks.rest_position, &velocity, 1e-3);
+/// let mut model = PotentialContact::new(1e9);
+/// let answer = evaluate(&mut model, &input, &mut ContactHistory::default());
+/// let total: ndda_mesh::Vec3 = answer.force.iter().sum();
+/// let on_upper: f64 = answer.force[blocks.nodes_of(ndda_mesh::BlockId(1))].iter().map(|f| f.z).sum();
+/// assert!(total.norm() < 1e-6 * on_upper);
+/// ```
 pub struct PotentialContact {
     penalty_pa: f64,
     potential: Box<dyn ContactPotential>,
@@ -52,10 +70,10 @@ pub struct PotentialContact {
     candidates: Candidates,
     hulls: ConvexBlocks,
     integrals: Integrals,
-    by_block: BlockContactIndex,
+    adjacency: BlockContactIndex,
     frames: Vec<TetFrame>,
     forces: Vec<FacetForce>,
-    /// What hosts feel of them: a block need not look for the hits, which are far away in memory.
+    /// Forces of facets on host tetrahedra: a block need not look for the hits, which are far away in memory.
     on_host: Vec<OnTarget>,
     penalty_of_facet: Vec<f64>,
     /// k_n w″(U) ∫ φ dA of each facet's pair of blocks [Pa/m]; empty where the law is linear.
@@ -65,7 +83,7 @@ pub struct PotentialContact {
     reporter: Reporter,
     new_facets: Vec<FacetMemory>,
     new_state: Vec<f64>,
-    /// What the laws keep of each touching facet.
+    /// The friction laws' own numbers of each touching facet.
     state_of_facet: Vec<f64>,
     work_of_facet: Vec<f64>,
 }
@@ -81,7 +99,7 @@ impl PotentialContact {
             candidates: Candidates::default(),
             hulls: ConvexBlocks::default(),
             integrals: Integrals::default(),
-            by_block: BlockContactIndex::default(),
+            adjacency: BlockContactIndex::default(),
             frames: Vec::new(),
             forces: Vec::new(),
             on_host: Vec::new(),

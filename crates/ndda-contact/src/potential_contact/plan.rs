@@ -1,4 +1,4 @@
-//! What this model consists of.
+//! The parts of this model.
 
 use super::PotentialContact;
 use crate::friction::law_table::{FrictionLawTable, Memory};
@@ -42,15 +42,15 @@ pub(super) fn parts(model: &PotentialContact) -> Vec<Part> {
 }
 
 fn whole_blocks(model: &PotentialContact) -> Part {
-    let count = model.hulls.count_whole();
+    let count = model.hulls.count_affine();
     let why_not = match model.potential.phi_per_m() {
-        None => format!("the potential {} lives in tetrahedra", model.potential.name()),
-        Some(_) => "no convex block moves by an affine map, or friction remembers elements".into(),
+        None => format!("the potential {} is defined per tetrahedron", model.potential.name()),
+        Some(_) => "no convex block moves by an affine map, or friction history belongs to elements".into(),
     };
     let what = format!(
         "{count} convex blocks that move by affine maps are one target each, without tetrahedra, and faces contactors in them"
     );
-    Part::of("whole blocks", count > 0, what, why_not)
+    Part::of("affine convex targets", count > 0, what, why_not)
 }
 
 fn friction(joints: &FrictionLawTable) -> [Part; 3] {

@@ -6,7 +6,7 @@ use crate::contact_model::ContactModel;
 use crate::model::{ContactHistory, ContactInput, ContactOutput, ContactReport};
 use crate::testing::shapes::{test_box, test_set};
 
-/// What a model gave for one input.
+/// Output of a model for one input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
     /// Total force per node [N].

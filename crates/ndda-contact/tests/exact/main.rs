@@ -7,7 +7,6 @@
 //!
 //! `NDDA_CASES` (or `PROPTEST_CASES`) sets the number of pairs: `NDDA_CASES=100000 cargo test --release
 //! -p ndda-contact --test exact -- --nocapture` prints the worst error of each family.
-#![cfg(feature = "potential")]
 
 mod families;
 mod rational;
@@ -24,7 +23,7 @@ use rational::{KEPT_BITS, Plane, Tet, float, integral, minus, on_grid, potential
 /// Volume over L³, energy over k L³, force over k L²: the bound for each, L the size of the larger tetrahedron.
 const BOUND: f64 = 1e-12;
 
-/// The same for the force of the kernel that blocks use, times the smallest height over L: it rounds λ to f64.
+/// Bound of the force of the kernel that blocks use, times the smallest height over L: it rounds λ to f64.
 const KERNEL_BOUND: f64 = 1e-14;
 
 /// Pairs without `NDDA_CASES`.

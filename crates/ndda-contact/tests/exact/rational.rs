@@ -80,7 +80,7 @@ impl Tet {
         Self { planes, six_volumes, corners }
     }
 
-    /// The same with its first two corners swapped if its volume is negative.
+    /// The tetrahedron with its first two corners swapped if its volume is negative.
     pub fn oriented(corners: [Point; 4]) -> Self {
         let tet = Self::new(corners);
         if tet.six_volumes.sign() != Sign::Minus {

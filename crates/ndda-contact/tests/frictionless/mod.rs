@@ -21,7 +21,7 @@ pub struct Frictionless {
     frames: Vec<TetFrame>,
     hulls: ConvexBlocks,
     integrals: Integrals,
-    by_block: BlockContactIndex,
+    adjacency: BlockContactIndex,
     reporter: Reporter,
     forces: Vec<FacetForce>,
     stiffness_pa: Vec<f64>,
@@ -59,7 +59,7 @@ impl Frictionless {
         self.forces.resize(touching.len(), FacetForce::default());
         let push = |(t, force): (usize, &mut FacetForce)| {
             *force = FacetForce::default();
-            if integrals.hits_of(&touching[t]).iter().flat_map(|hit| hit.pressure).sum::<f64>() > 0.0 {
+            if integrals.overlaps_of(&touching[t]).iter().flat_map(|hit| hit.pressure).sum::<f64>() > 0.0 {
                 let corners =
                     blocks.triangle_corners(facets[touching[t].facet as usize].triangle, input.position);
                 force.push = -penalty_pa * triangle_area_vector(&corners).normalize();
@@ -73,12 +73,12 @@ impl Frictionless {
         }
         self.stiffness_pa.clear();
         self.stiffness_pa.resize(touching.len(), penalty_pa);
-        self.by_block.arrange(blocks.len(), touching.iter().map(|touch| (touch.owner, touch.target)));
+        self.adjacency.arrange(blocks.len(), touching.iter().map(|touch| (touch.owner, touch.target)));
         let scene = ScatterScene {
             blocks,
             position: None,
             integrals,
-            by_block: &self.by_block,
+            adjacency: &self.adjacency,
             hulls: &self.hulls,
             forces: &self.forces,
             on_host: &[],

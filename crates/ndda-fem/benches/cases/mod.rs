@@ -1,4 +1,4 @@
-//! What is measured, by the clock and by counting instructions.
+//! Cases that are measured, by the clock and by counting instructions.
 #![allow(dead_code)] // each bench takes some of it
 
 use nalgebra::Rotation3;

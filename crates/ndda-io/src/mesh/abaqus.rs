@@ -18,14 +18,14 @@ use crate::mesh::lines::{parse, real};
 use crate::mesh::{FileProblem, MeshFile, MeshFileError};
 use keyword::{Keyword, Records};
 
-pub use write::write;
+pub(crate) use write::write;
 
 /// Reads a mesh.
 ///
 /// # Errors
 /// [`MeshFileError`] with the line; other elements of volumes than C3D4, several parts and moved instances are
 /// refused.
-pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
+pub(crate) fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
     let bytes = bytes_of(path)?;
     let bodies = model(&bytes).and_then(|model| sets::parts(model)?.split());
     Ok(MeshFile { bodies: bodies.map_err(|fault| fault.of(path))? })

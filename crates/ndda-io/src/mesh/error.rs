@@ -1,4 +1,4 @@
-//! What can be wrong with a file of a mesh or a surface.
+//! Errors of files of meshes or surfaces.
 
 use std::path::{Path, PathBuf};
 
@@ -17,7 +17,7 @@ pub enum MeshFileError {
         path: PathBuf,
         /// Line of a text, from 1, if it is one line.
         line: Option<usize>,
-        /// What is wrong.
+        /// The problem.
         problem: FileProblem,
     },
 }
@@ -45,9 +45,9 @@ pub enum FileProblem {
     /// Something else than expected.
     #[error("expected {expected}, found `{found}`")]
     Unexpected {
-        /// What the format asks for here.
+        /// Item that the format requires here.
         expected: String,
-        /// What is here.
+        /// Item that was found.
         found: String,
     },
     /// A header promises more than the file can hold.
@@ -55,7 +55,7 @@ pub enum FileProblem {
         "promises {count} {what}, more than the file can hold: it is truncated or damaged, save it again"
     )]
     TooShort {
-        /// What is promised.
+        /// Item that is announced.
         what: &'static str,
         /// How many.
         count: u64,
@@ -76,7 +76,7 @@ pub enum FileProblem {
     /// Something with a number that something else has.
     #[error("{what} {id} is there twice: remove one")]
     Twice {
-        /// What it is.
+        /// Name of the item.
         what: &'static str,
         /// Its number.
         id: u64,
@@ -92,9 +92,9 @@ pub enum FileProblem {
     /// A part of the format that is not read.
     #[error("{what} is not read: {cure}")]
     NotRead {
-        /// What it is.
+        /// Name of the item.
         what: String,
-        /// What to do.
+        /// Remedy.
         cure: &'static str,
     },
     /// No tetrahedra.
@@ -109,7 +109,7 @@ pub enum FileProblem {
         count: usize,
         /// Of how many.
         tets: usize,
-        /// What the format calls a body.
+        /// The format's word for a body.
         kind: &'static str,
     },
     /// A tetrahedron of two bodies.
@@ -146,28 +146,28 @@ pub enum FileProblem {
 pub(crate) struct Fault {
     /// Line from 1, if it is one line.
     pub line: Option<usize>,
-    /// What is wrong.
+    /// The problem.
     pub problem: FileProblem,
 }
 
 impl Fault {
     /// `problem` in `line`.
-    pub fn at(line: usize, problem: FileProblem) -> Self {
+    pub(crate) fn at(line: usize, problem: FileProblem) -> Self {
         Self { line: Some(line), problem }
     }
 
     /// Something else than `expected` in `line`.
-    pub fn unexpected(line: usize, expected: impl Into<String>, found: &[u8]) -> Self {
+    pub(crate) fn unexpected(line: usize, expected: impl Into<String>, found: &[u8]) -> Self {
         Self::at(line, FileProblem::Unexpected { expected: expected.into(), found: excerpt(found) })
     }
 
     /// The file ends before `what`.
-    pub fn truncated(what: impl Into<String>) -> Self {
+    pub(crate) fn truncated(what: impl Into<String>) -> Self {
         FileProblem::Truncated(what.into()).into()
     }
 
     /// With the file that it is in.
-    pub fn of(self, path: &Path) -> MeshFileError {
+    pub(crate) fn of(self, path: &Path) -> MeshFileError {
         MeshFileError::File { path: path.to_owned(), line: self.line, problem: self.problem }
     }
 }

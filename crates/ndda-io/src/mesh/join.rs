@@ -28,7 +28,7 @@ impl<'a> Joined<'a> {
     ///
     /// # Errors
     /// [`WriteError`] for a number that is not finite, an index without node, and names that no file can keep.
-    pub fn new(path: &Path, bodies: &'a [(String, BlockMesh)]) -> Result<Self, WriteError> {
+    pub(crate) fn new(path: &Path, bodies: &'a [(String, BlockMesh)]) -> Result<Self, WriteError> {
         let refuse = |reason: String| WriteError::Encode { path: path.to_path_buf(), reason };
         let mut joined = Self {
             nodes: Vec::new(),
@@ -85,7 +85,7 @@ impl<'a> Joined<'a> {
     }
 
     /// Index of each tetrahedron's body.
-    pub fn body_of_tets(&self) -> impl Iterator<Item = u32> + '_ {
+    pub(crate) fn body_of_tets(&self) -> impl Iterator<Item = u32> + '_ {
         (0..).zip(self.first_tet.windows(2)).flat_map(|(body, w)| std::iter::repeat_n(body, w[1] - w[0]))
     }
 }

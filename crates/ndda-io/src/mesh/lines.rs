@@ -15,17 +15,17 @@ pub(crate) struct Lines<'a> {
 
 impl<'a> Lines<'a> {
     /// Of `bytes`, with comments from the byte `comment` on; a byte order mark of UTF-8 is skipped.
-    pub fn new(bytes: &'a [u8], comment: u8) -> Self {
+    pub(crate) fn new(bytes: &'a [u8], comment: u8) -> Self {
         Self { rest: bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes), next: 1, comment }
     }
 
     /// Bytes that are left.
-    pub fn bytes_left(&self) -> usize {
+    pub(crate) fn bytes_left(&self) -> usize {
         self.rest.len()
     }
 
     /// The next line with its comment but without white space around it, even if it is empty.
-    pub fn raw(&mut self) -> Option<Line<'a>> {
+    pub(crate) fn raw(&mut self) -> Option<Line<'a>> {
         if self.rest.is_empty() {
             return None;
         }
@@ -38,7 +38,7 @@ impl<'a> Lines<'a> {
     }
 
     /// The next line or an error that it is not there.
-    pub fn expect(&mut self, what: &str) -> Result<Line<'a>, Fault> {
+    pub(crate) fn expect(&mut self, what: &str) -> Result<Line<'a>, Fault> {
         self.next().ok_or_else(|| Fault::truncated(what))
     }
 }
@@ -59,7 +59,7 @@ impl<'a> Iterator for Lines<'a> {
     }
 }
 
-/// What is left of a line.
+/// The rest of a line.
 #[derive(Clone, Copy)]
 pub(crate) struct Line<'a> {
     /// From 1.
@@ -70,7 +70,7 @@ pub(crate) struct Line<'a> {
 
 impl<'a> Line<'a> {
     /// The next word; commas separate words, too.
-    pub fn word(&mut self) -> Option<&'a [u8]> {
+    pub(crate) fn word(&mut self) -> Option<&'a [u8]> {
         let separates = |b: &u8| b.is_ascii_whitespace() || *b == b',';
         let skip = self.text.iter().take_while(|b| separates(b)).count();
         let length = self.text[skip..].iter().take_while(|b| !separates(b)).count();
@@ -80,19 +80,19 @@ impl<'a> Line<'a> {
     }
 
     /// The next word as a number.
-    pub fn number<T: FromStr>(&mut self, expected: &str) -> Result<T, Fault> {
+    pub(crate) fn number<T: FromStr>(&mut self, expected: &str) -> Result<T, Fault> {
         let word = self.word().ok_or_else(|| Fault::unexpected(self.number, expected, b"end of line"))?;
         parse(word).ok_or_else(|| Fault::unexpected(self.number, expected, word))
     }
 
     /// The next word as a finite number.
-    pub fn finite(&mut self, expected: &str) -> Result<f64, Fault> {
+    pub(crate) fn finite(&mut self, expected: &str) -> Result<f64, Fault> {
         let word = self.word().ok_or_else(|| Fault::unexpected(self.number, expected, b"end of line"))?;
         real(word).ok_or_else(|| Fault::unexpected(self.number, format!("{expected}, finite"), word))
     }
 
     /// Three finite coordinates.
-    pub fn point(&mut self) -> Result<Vec3, Fault> {
+    pub(crate) fn point(&mut self) -> Result<Vec3, Fault> {
         let mut next = || self.finite("a coordinate");
         Ok(Vec3::new(next()?, next()?, next()?))
     }

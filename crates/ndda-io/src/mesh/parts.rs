@@ -9,7 +9,7 @@ use super::error::{Fault, FileProblem};
 /// Name of the body of a file that names none.
 pub(crate) const ONLY_BODY: &str = "body";
 
-/// What a file holds, before it is split. All indices are checked by whoever fills it.
+/// Content of a file before it is split into bodies. All indices are checked by the reader that fills it.
 #[derive(Default)]
 pub(crate) struct Parts {
     /// Positions [unit of the file].
@@ -26,7 +26,7 @@ pub(crate) struct Parts {
 
 impl Parts {
     /// Bodies in the order of their names, without those that have no tetrahedra. Nodes keep the order of the file.
-    pub fn split(self) -> Result<Vec<(String, BlockMesh)>, Fault> {
+    pub(crate) fn split(self) -> Result<Vec<(String, BlockMesh)>, Fault> {
         if self.tets.is_empty() {
             return Err(FileProblem::NoTetrahedra.into());
         }

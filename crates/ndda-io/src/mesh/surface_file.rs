@@ -29,7 +29,7 @@ pub struct Surface {
 
 impl Surface {
     /// Volume under it, from tetrahedra to its first vertex [unit of the file, cubed]; negative if inside out.
-    pub fn volume(&self) -> f64 {
+    pub(crate) fn volume(&self) -> f64 {
         let Some(origin) = self.vertices.first() else { return 0.0 };
         let at = |v: u32| self.vertices[v as usize] - origin;
         let fan = |vertices: &[u32]| -> f64 {

@@ -16,13 +16,13 @@ use crate::mesh::lines::{Line, Lines};
 use crate::mesh::parts::Parts;
 use crate::mesh::{FileProblem, MeshFile, MeshFileError};
 
-pub use write::write;
+pub(crate) use write::write;
 
 /// Reads `.node` and `.ele` of the same name, and `.face` if it is there; `path` is any of the three.
 ///
 /// # Errors
 /// [`MeshFileError`] with file and line.
-pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
+pub(crate) fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
     let [node, ele, face] = ["node", "ele", "face"].map(|ending| path.with_extension(ending));
     let mut parts = Parts::default();
     let nodes = bytes_of(&node)?;

@@ -26,7 +26,7 @@ pub enum TetgenError {
     /// A face names a vertex that is not there, or there are too few.
     #[error("the surface has no vertex {0}: read it with ndda_io::surface_file")]
     Vertex(u32),
-    /// What TetGen says.
+    /// TetGen's message.
     #[error("TetGen cannot fill the surface: {0}; check that it is closed and does not cut itself")]
     Tetgen(String),
     /// The tetrahedra do not add up to the surface.
@@ -96,7 +96,7 @@ fn run(surface: &Surface, names: &[&str], most_volume: f64) -> Result<Tetgen, &'
     Ok(tetgen)
 }
 
-/// What TetGen made, with the corners in our order.
+/// TetGen's mesh, with the corners in our order.
 fn block(tetgen: &Tetgen, names: &[&str]) -> BlockMesh {
     let at = |i: usize| Vec3::from_fn(|axis, _| tetgen.out_point(i, axis));
     let nodes: Vec<Vec3> = (0..tetgen.out_npoint()).map(at).collect();

@@ -32,13 +32,13 @@ pub use write_legacy::write as write_legacy;
 ///
 /// # Errors
 /// [`MeshFileError`] with the line of a text.
-pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
+pub(crate) fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
     let bytes = bytes_of(path)?;
     let bodies = data(&bytes).and_then(|data| data.parts()?.split());
     Ok(MeshFile { bodies: bodies.map_err(|fault| fault.of(path))? })
 }
 
-/// What either format holds.
+/// Content of a file of either format.
 pub(crate) fn data(bytes: &[u8]) -> Result<Data, crate::mesh::error::Fault> {
     if bytes.starts_with(b"# vtk") { legacy::read(bytes) } else { xml::read(bytes) }
 }

@@ -18,7 +18,7 @@ use crate::results::folder::OutputFolder;
 use crate::write_error::WriteError;
 
 /// Changes whenever what is kept changes.
-pub const FORMAT: u32 = 11;
+pub(crate) const FORMAT: u32 = 11;
 
 const MAGIC: &[u8; 16] = b"NDDA-CHECKPOINT\n";
 const HEADER: usize = 16 + 4 + 8;
@@ -38,7 +38,7 @@ pub enum CheckpointError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// The file is not a checkpoint, or not a whole one.
@@ -46,7 +46,7 @@ pub enum CheckpointError {
     Damaged {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The damage.
         what: String,
     },
     /// The file belongs to another run.
@@ -54,7 +54,7 @@ pub enum CheckpointError {
     Foreign {
         /// The file.
         path: PathBuf,
-        /// How it tells.
+        /// The evidence.
         what: String,
     },
     /// The file is of another version.

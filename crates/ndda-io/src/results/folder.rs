@@ -21,9 +21,9 @@ pub const HISTORY: &str = "history.csv";
 pub const CONTACTS: &str = "contacts.csv";
 /// File of the motion of blocks.
 pub const BLOCKS: &str = "blocks.csv";
-/// The same tables in columns.
+/// The tables in columnar form.
 pub const PARQUET: [&str; 3] = ["history.parquet", "contacts.parquet", "blocks.parquet"];
-/// What the run said of itself.
+/// The log of the run.
 pub const LOG: &str = "run.log";
 /// File that lists the frames of fields.
 pub const FIELDS_INDEX: &str = "fields.pvd";
@@ -115,13 +115,13 @@ impl OutputFolder {
         Ok(Self { path: path.to_path_buf() })
     }
 
-    /// Where the newest checkpoint goes.
+    /// Path of the newest checkpoint.
     pub fn checkpoint(&self) -> PathBuf {
         self.path.join(CHECKPOINT)
     }
 
-    /// Where the one before goes.
-    pub fn previous_checkpoint(&self) -> PathBuf {
+    /// Path of the checkpoint before.
+    pub(crate) fn previous_checkpoint(&self) -> PathBuf {
         self.path.join(PREVIOUS)
     }
 
@@ -130,32 +130,32 @@ impl OutputFolder {
         self.path.join(WAITING)
     }
 
-    /// Where the summary goes.
+    /// Path of the summary.
     pub fn summary(&self) -> PathBuf {
         self.path.join(SUMMARY)
     }
 
-    /// Where the history goes.
+    /// Path of the history.
     pub fn history(&self) -> PathBuf {
         self.path.join(HISTORY)
     }
 
-    /// Where the contacts go.
+    /// Path of the contacts.
     pub fn contacts(&self) -> PathBuf {
         self.path.join(CONTACTS)
     }
 
-    /// Where the motion of blocks goes.
+    /// Path of the motion of blocks.
     pub fn blocks(&self) -> PathBuf {
         self.path.join(BLOCKS)
     }
 
-    /// Where the log goes.
+    /// Path of the log.
     pub fn log(&self) -> PathBuf {
         self.path.join(LOG)
     }
 
-    /// Where the list of frames goes.
+    /// Path of the list of frames.
     pub fn fields_index(&self) -> PathBuf {
         self.path.join(FIELDS_INDEX)
     }

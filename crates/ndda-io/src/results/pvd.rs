@@ -1,4 +1,4 @@
-//! The series of frames: `fields.pvd` lists each `.vtu` with its time, and is what ParaView is asked to open.
+//! The series of frames: `fields.pvd` lists each `.vtu` with its time, and is the file to open in ParaView.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -97,16 +97,6 @@ impl FieldSeries {
         Ok(())
     }
 
-    /// Number of frames written.
-    pub fn len(&self) -> usize {
-        self.times_s.len()
-    }
-
-    /// Whether no frame was written yet.
-    pub fn is_empty(&self) -> bool {
-        self.times_s.is_empty()
-    }
-
     /// The index: times in the shortest form that reads back to the same bits, paths relative to the index.
     fn text(&self) -> String {
         let mut text = String::from(
@@ -151,7 +141,7 @@ mod tests {
         for time_s in times_s {
             series.push(time_s, &frame).unwrap();
         }
-        assert_eq!(series.len(), 3);
+        assert_eq!(series.times_s().len(), 3);
         series.sync().unwrap();
         let text = fs::read_to_string(output.fields_index()).unwrap();
         let value = |line: &str, key: &str| {
@@ -179,6 +169,6 @@ mod tests {
         assert!(matches!(error, WriteError::NotFinite { index: Some(1), .. }));
         assert_eq!(fs::read_to_string(output.fields_index()).unwrap().matches("<DataSet").count(), 1);
         series.push(1.0, &good).unwrap();
-        assert_eq!(series.len(), 2);
+        assert_eq!(series.times_s().len(), 2);
     }
 }

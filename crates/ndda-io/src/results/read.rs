@@ -1,4 +1,4 @@
-//! What a run wrote, read back: summary, history, fields.
+//! Reads the results of a run: summary, history, fields.
 
 mod fields;
 
@@ -22,7 +22,7 @@ pub enum ResultsError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// Error of the operating system.
         source: std::io::Error,
     },
     /// The summary is none of this version.
@@ -30,7 +30,7 @@ pub enum ResultsError {
     Summary {
         /// The file.
         path: PathBuf,
-        /// What is wrong, with line and column.
+        /// Error of the reader, with line and column.
         source: serde_json::Error,
     },
     /// A row of the history is not numbers, one per column.

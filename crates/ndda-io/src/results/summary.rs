@@ -28,7 +28,7 @@ pub struct Summary {
     /// Why it stopped before its end. Left out when it did not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped_by: Option<String>,
-    /// What the run says of its own result.
+    /// The run's judgement of its own result.
     pub label: Label,
     /// Steps done.
     pub steps: u64,
@@ -42,7 +42,7 @@ pub struct Summary {
     pub wall_s: f64,
     /// Threads used.
     pub threads: usize,
-    /// What it ran on.
+    /// Machine and program.
     pub machine: Machine,
     /// Sizes of the problem.
     pub counts: Counts,
@@ -52,16 +52,16 @@ pub struct Summary {
     pub invariants: Invariants,
     /// The invariants and the scene's own criteria with their limits.
     pub verdicts: Named<Verdict>,
-    /// What moved, and how far. Left out where every block is fixed.
+    /// Blocks that moved, and how far. Left out where every block is fixed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
-    /// Where the monitors ended.
+    /// State of the monitors at the end.
     pub monitors: Named<MonitorEnd>,
-    /// Where the blocks ended.
+    /// State of the blocks at the end.
     pub blocks: Named<BlockEnd>,
     /// Comparison with the closed form that the scene names; null when it names none.
     pub reference: Option<ReferenceError>,
-    /// What a person should know before using the result.
+    /// Warnings to read before using the result.
     pub warnings: Vec<String>,
 }
 
@@ -79,7 +79,7 @@ pub enum Status {
     Interrupted,
 }
 
-/// What a run says of its own result, and why.
+/// A run's judgement of its own result, and why.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Label {
     /// Whether its motion is to be trusted.
@@ -135,7 +135,7 @@ pub struct Counts {
     pub clips_total: u64,
 }
 
-/// What a run ran on, and as which program.
+/// Machine and program of a run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// The processor.
@@ -144,10 +144,10 @@ pub struct Machine {
     pub commit: String,
     /// Cargo features that it was built with.
     pub features: Vec<String>,
-    /// Most memory that it held at a time \[B\]. Left out where the system does not tell.
+    /// Most memory that it held at a time \[B\]. Left out where the system does not report it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub peak_memory_b: Option<u64>,
-    /// Processor time of all its threads \[s\]. Left out where the system does not tell.
+    /// Processor time of all its threads \[s\]. Left out where the system does not report it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub processor_time_s: Option<f64>,
 }
@@ -188,7 +188,7 @@ pub enum Judgement {
     /// Within the limit.
     #[serde(rename = "pass")]
     Pass,
-    /// Beyond the limit that asks for attention.
+    /// Beyond the limit of a warning.
     #[serde(rename = "warn")]
     Warn,
     /// Beyond the limit: the result is not to be used.

@@ -1,7 +1,7 @@
 //! Reading a history back: named columns of numbers.
 
 #[cfg(feature = "parquet")]
-pub mod parquet;
+pub(crate) mod parquet;
 
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ pub enum TableError {
     Unreadable {
         /// The file.
         file: PathBuf,
-        /// What is wrong.
+        /// The problem.
         reason: String,
     },
     /// A value is not a number.
@@ -34,7 +34,7 @@ pub enum TableError {
         row: usize,
         /// The column.
         column: String,
-        /// What stands there.
+        /// The cell's text.
         value: String,
     },
 }

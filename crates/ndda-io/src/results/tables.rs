@@ -12,9 +12,9 @@ use crate::scene::{Output, TableFormat};
 use crate::write_error::WriteError;
 
 /// Whether this build writes Parquet.
-pub const HAS_PARQUET: bool = cfg!(feature = "parquet");
+pub(crate) const HAS_PARQUET: bool = cfg!(feature = "parquet");
 
-/// Writes the tables of a run that has ended as Parquet, where the scene asks for that.
+/// Writes the tables of a run that has ended as Parquet, where the scene requests that.
 ///
 /// # Errors
 /// [`WriteError`] when a table cannot be read or a file not be written.

@@ -9,7 +9,7 @@ use crate::mesh::vtk_file::grid::{Array, Grid};
 use crate::scene::{FieldFormat, Precision};
 use crate::write_error::WriteError;
 
-/// What is the same in all frames of a series, encoded once: cells, and numbers of the cells.
+/// Cells and their numbers, which are equal in all frames of a series; encoded once.
 #[derive(Debug)]
 pub struct Topology {
     format: FieldFormat,

@@ -36,7 +36,7 @@ pub struct Block {
     /// Turns applied one after the other about the shape's own origin, before `at_m`. Default: none.
     #[serde(default)]
     pub turns: Vec<Turn>,
-    /// Where the shape's origin is placed [m]. Default: (0, 0, 0).
+    /// Position of the shape's origin [m]. Default: (0, 0, 0).
     #[serde(default)]
     pub at_m: [f64; 3],
     /// Initial velocity of the mass centre [m/s]. Default: at rest.

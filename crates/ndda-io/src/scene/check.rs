@@ -1,4 +1,4 @@
-//! What the types of a scene cannot say: ranges, names, and what fits together. All of it in one pass.
+//! Checks that the types of a scene cannot express: ranges, names, and combinations. All errors are found in one pass.
 
 mod block;
 mod contact;
@@ -31,7 +31,7 @@ const HUGE: f64 = 1e50;
 const LIGHT_M_S: f64 = 299_792_458.0;
 
 /// Everything that is wrong or odd about a scene; `folder` is where its meshes should be. Places are not yet known.
-pub fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> {
+pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> {
     let mut check = Check { scene, found: Vec::new() };
     check.time();
     check.numbers("gravity_m_s2", &scene.gravity_m_s2);

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-/// What kind of thing is wrong.
+/// The kind of a problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Code {
     /// The file cannot be read as text.
@@ -15,6 +15,8 @@ pub enum Code {
     UnknownField,
     /// A field is not there.
     MissingField,
+    /// A field by a former name.
+    Renamed,
     /// A field is there twice.
     DuplicateField,
     /// There is no such choice.
@@ -55,12 +57,13 @@ pub enum Code {
 
 impl Code {
     /// All codes.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::Unreadable,
         Self::Syntax,
         Self::Truncated,
         Self::UnknownField,
         Self::MissingField,
+        Self::Renamed,
         Self::DuplicateField,
         Self::UnknownChoice,
         Self::WrongType,

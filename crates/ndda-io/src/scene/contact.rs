@@ -11,10 +11,10 @@ pub enum Contact {
     Off,
     /// A contact potential: energy of the volume that blocks share.
     Potential {
-        /// Normal penalty k_n [Pa]. Contact gives way as E L₀/2k_n of rock does with `Smooth`; settlements and waves are
-        /// wrong by that over the size of the blocks, slides and rebounds hardly.
+        /// Normal penalty k_n [Pa]. With `Smooth`, contact is as compliant as E L₀/(2 k_n) of rock. The error of settlements and waves is about
+        /// that length relative to the block size; sliding and rebound are almost unaffected.
         penalty_pa: f64,
-        /// What the potential is inside a block. Default: `Element`, the paper's.
+        /// The contact potential inside a block. Default: `Element`, the paper's.
         #[serde(default)]
         potential: Potential,
         /// Friction between all blocks. Default: none.
@@ -22,11 +22,11 @@ pub enum Contact {
         friction: Option<Friction>,
         /// Friction between blocks of two materials, in place of `friction`; a later entry counts more. Default: none.
         #[serde(default)]
-        joints: Vec<Joint>,
+        material_pairs: Vec<MaterialPair>,
         /// Friction on the faces of joints that cut rock, in place of all other; a later entry counts more. Default: none.
         #[serde(default)]
-        laws: Vec<JointLaw>,
-        /// What a friction force is remembered with. Default: `Body`.
+        rock_joints: Vec<JointLaw>,
+        /// The owner of friction history. Default: `Body`.
         #[serde(default)]
         memory: Memory,
     },
@@ -73,7 +73,7 @@ pub struct Friction {
     /// Tensile strength σ_t [Pa], until it breaks for good; beyond c/tan φ it holds only without shear; needs `shear_penalty_pa_m`. Default: 0.
     #[serde(default)]
     pub tension_pa: f64,
-    /// What friction and cohesion fall to while the joint slips, instead of cohesion that breaks at once; with the same values as the peak
+    /// Values to which friction and cohesion fall while the joint slips, instead of cohesion that breaks at once; with the same values as the peak
     /// the joint is perfectly plastic. Needs `shear_penalty_pa_m`, and no tension. Default: none.
     #[serde(default)]
     pub residual: Option<Residual>,
@@ -98,7 +98,7 @@ pub struct Residual {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
-pub struct Joint {
+pub struct MaterialPair {
     /// Names of the two materials, or of one twice.
     pub between: (String, String),
     /// Friction there. Default: none.
@@ -108,8 +108,8 @@ pub struct Joint {
 
 /// Friction on the faces that a named joint made.
 ///
-/// Each side of a contact rubs by the law of its own face: that of the joint, if it has one here, else that of the two
-/// materials. Where faces of different joints meet, each law acts on the pressure that its side bears, about half.
+/// Friction on each side of a contact follows the law of its own face: that of the joint, if it has one here, else that of the two
+/// materials. Where faces of different joints meet, each law acts on the pressure that its side carries, about half.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -121,7 +121,7 @@ pub struct JointLaw {
     pub friction: Option<Friction>,
 }
 
-/// What a friction force is remembered with.
+/// The owner of friction history.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Memory {

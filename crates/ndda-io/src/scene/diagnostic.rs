@@ -22,13 +22,13 @@ pub enum Severity {
 pub struct Diagnostic {
     /// How much it matters.
     pub severity: Severity,
-    /// What kind of thing it is.
+    /// The kind of the problem.
     pub code: Code,
     /// Path of the value, as in `blocks[1].shape.size_m`; empty when it is about the whole file.
     pub path: String,
-    /// What is wrong.
+    /// The problem.
     pub message: String,
-    /// What to do about it.
+    /// The remedy.
     pub help: Option<String>,
     /// Bytes of the text that it is about.
     pub span: Option<Range<usize>>,
@@ -36,7 +36,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// An error at a place of the text.
-    pub fn error(
+    pub(crate) fn error(
         code: Code,
         path: impl Into<String>,
         message: impl Into<String>,
@@ -46,7 +46,7 @@ impl Diagnostic {
         Self { severity: Severity::Error, code, path, message, help: None, span }
     }
 
-    /// The same message with advice.
+    /// Adds advice to the message.
     pub fn with_help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self

@@ -3,7 +3,11 @@
 //! RON's parser forgets positions; this scanner keeps only them. It reads the shape of a text (structs, lists, maps,
 //! words) and nothing of its meaning, so that any text gives a tree and none gives a panic.
 
+mod keys;
+
 use std::ops::Range;
+
+use keys::current;
 
 /// Nesting beyond this is not followed; RON itself refuses it.
 const DEEPEST: usize = 100;
@@ -11,9 +15,9 @@ const DEEPEST: usize = 100;
 /// A value in the text, with what is inside it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Node {
-    /// Name of the field that holds the value, when it is in a struct.
+    /// Current name of the field that holds the value, when it is in a struct.
     pub key: Option<String>,
-    /// Bytes of that name.
+    /// Bytes of the name as it is written, which may be a former one.
     pub key_span: Range<usize>,
     /// Bytes of the value, brackets included.
     pub span: Range<usize>,
@@ -23,14 +27,26 @@ pub struct Node {
     pub children: Vec<Node>,
 }
 
-/// Reads the shape of a text.
+/// Reads the shape of a text; fields that have been renamed go by their current keys.
 pub fn tree(text: &str) -> Node {
     let mut scanner = Scanner { text, at: 0 };
     scanner.skip_blank();
     while scanner.rest().starts_with("#![") {
         scanner.skip_attribute();
     }
-    scanner.value(0).unwrap_or_default()
+    let mut tree = scanner.value(0).unwrap_or_default();
+    rename(&mut tree);
+    tree
+}
+
+/// Gives the fields in the tree of a scene their current keys; their places in the text stay.
+fn rename(tree: &mut Node) {
+    for parent in &mut tree.children {
+        let name = parent.key.clone().unwrap_or_default();
+        for field in &mut parent.children {
+            field.key = field.key.take().map(|key| current(&name, &key).to_string());
+        }
+    }
 }
 
 impl Node {
@@ -40,7 +56,7 @@ impl Node {
     }
 
     /// The value of one more segment.
-    pub fn child(&self, text: &str, segment: &str) -> Option<&Self> {
+    pub(crate) fn child(&self, text: &str, segment: &str) -> Option<&Self> {
         if let Some(child) = self.children.iter().find(|c| c.key.as_deref() == Some(segment)) {
             return Some(child);
         }
@@ -55,7 +71,7 @@ impl Node {
     }
 
     /// The innermost bracketed value around a byte.
-    pub fn innermost(&self, offset: usize) -> Option<&Self> {
+    pub(crate) fn innermost(&self, offset: usize) -> Option<&Self> {
         if self.opening.is_none() || !(self.span.start <= offset && offset <= self.span.end) {
             return None;
         }
@@ -64,13 +80,13 @@ impl Node {
     }
 
     /// The word before the bracket that opens it, as `Box` in `Box(…)`; empty for anything else.
-    pub fn word<'a>(&self, text: &'a str) -> &'a str {
+    pub(crate) fn word<'a>(&self, text: &'a str) -> &'a str {
         let Some('(') = self.opening else { return "" };
         text[self.span.clone()].split(|c: char| "(/".contains(c) || c.is_whitespace()).next().unwrap_or("")
     }
 
     /// Path of the innermost value around or before a byte.
-    pub fn path_at(&self, offset: usize) -> String {
+    pub(crate) fn path_at(&self, offset: usize) -> String {
         let mut path = String::new();
         let mut node = self;
         let begun = |node: &Self| node.key.as_ref().map_or(node.span.start, |_| node.key_span.start);
@@ -97,8 +113,17 @@ impl Node {
 }
 
 /// Segments of a path: `a.b[1].c` is a, b, 1, c.
-pub fn segments(path: &str) -> Vec<&str> {
+pub(crate) fn segments(path: &str) -> Vec<&str> {
     path.split(['.', '[', ']']).filter(|segment| !segment.is_empty()).collect()
+}
+
+/// Segments of a path with their current keys.
+pub(crate) fn current_segments(path: &str) -> Vec<&str> {
+    let mut names = segments(path);
+    if let [parent, field, ..] = &mut names[..] {
+        *field = current(parent, field);
+    }
+    names
 }
 
 struct Scanner<'a> {

@@ -34,7 +34,7 @@ pub struct Damping {
     pub stiffness_s: f64,
 }
 
-/// What a bedded rock is across its beds (transverse isotropy).
+/// Moduli of a bedded rock across its beds (transverse isotropy).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

@@ -1,15 +1,15 @@
-//! What is written.
+//! The output of a run.
 
 use serde::{Deserialize, Serialize};
 
-/// What is written and how often. What is not asked for is not computed.
+/// Files that are written and how often. Quantities that are not requested are not computed.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
     /// Frames of fields after the first; 0 writes none. Default: 20.
     pub frames: u32,
-    /// What a frame holds besides positions. Default: `[Displacement, Velocity, VonMises, Stress, BlockId]`.
+    /// Fields of a frame besides positions. Default: `[Displacement, Velocity, VonMises, Stress, BlockId]`.
     pub fields: Vec<Field>,
     /// How frames are written. Default: `Compressed`.
     pub format: FieldFormat,
@@ -17,7 +17,7 @@ pub struct Output {
     pub precision: Precision,
     /// Rows of `history.csv` after the first, at most one per step. Default: 1000.
     pub history_rows: u32,
-    /// What becomes of the tables `history`, `contacts` and `blocks`. Default: `Csv`.
+    /// Format of the tables `history`, `contacts` and `blocks`. Default: `Csv`.
     pub history: TableFormat,
     /// Whether what each pair of touching blocks does to each other is written in every row, as `contacts.csv`. Default: false.
     pub contacts: bool,

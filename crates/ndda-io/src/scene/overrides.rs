@@ -2,7 +2,7 @@
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
-use crate::scene::locate::{self, Node, segments};
+use crate::scene::locate::{self, Node, current_segments};
 
 /// Keys whose value is a choice: what is inside cannot be written without saying which.
 const CHOICES: [&str; 6] = ["integrator", "contact", "reference", "shape", "on", "hold"];
@@ -12,7 +12,7 @@ const CHOICES: [&str; 6] = ["integrator", "contact", "reference", "shape", "on",
 ///
 /// # Errors
 /// A diagnostic when an override has no `=` or its path leads nowhere.
-pub fn apply(text: &str, overrides: &[String]) -> Result<String, Diagnostic> {
+pub(crate) fn apply(text: &str, overrides: &[String]) -> Result<String, Diagnostic> {
     overrides.iter().try_fold(text.to_string(), |text, one| apply_one(&text, one))
 }
 
@@ -22,7 +22,7 @@ fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
         return Err(refuse("has no `=`; write --set time.step_s=1e-3".into()));
     };
     let (path, value) = (path.trim(), value.trim());
-    let names = segments(path);
+    let names = current_segments(path);
     if names.is_empty() || value.is_empty() {
         return Err(refuse("needs a path and a value; write --set time.step_s=1e-3".into()));
     }

@@ -13,6 +13,7 @@ use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors, Severity};
 use crate::scene::locate::{self, Node};
 use crate::scene::overrides;
+use crate::scene::renamed;
 pub use crate::scene::suggest::suggest;
 use crate::scene::units::{self, Resolved};
 
@@ -25,7 +26,7 @@ pub struct LoadedScene {
     pub text: String,
     /// The file, as it was named.
     pub file: String,
-    /// What may not be meant.
+    /// Entries that are probably not meant.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -102,6 +103,8 @@ pub fn load_text(
     let scene: Scene = parse(&text, &tree).map_err(|found| fail(&text, found))?;
     let mut found = check::problems(&scene, folder);
     locate_all(&mut found, &text, &tree);
+    found.extend(renamed::warnings(&text, &tree, overrides));
+    sort(&mut found);
     if found.iter().any(|d| d.severity == Severity::Error) {
         return Err(fail(&text, found));
     }
@@ -145,6 +148,10 @@ pub(crate) fn locate_all(found: &mut [Diagnostic], text: &str, tree: &Node) {
     for diagnostic in found.iter_mut() {
         diagnostic.span = place(tree, text, &diagnostic.path);
     }
+    sort(found);
+}
+
+fn sort(found: &mut [Diagnostic]) {
     found.sort_by_key(|d| d.span.as_ref().map_or(0, |span| span.start));
 }
 
@@ -226,7 +233,7 @@ fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: &Node) -> D
     }
 }
 
-/// What stands where a comma should.
+/// Diagnosis of the character that stands where a comma should.
 fn comma(text: &str, at: usize) -> (Code, &'static str, &'static str) {
     let after_number = text[..at].ends_with(|c: char| c.is_ascii_digit());
     // At the end, RON shows the bracket before it.
@@ -262,7 +269,7 @@ fn in_words(error: &RonError) -> String {
     }
 }
 
-/// What kind of complaint of the grammar it is, and what to do about it.
+/// Kind of a syntax error, and its remedy.
 fn grammar(error: &RonError) -> (Code, &'static str) {
     match error {
         RonError::ExpectedMapColon => (Code::Syntax, "a field is `name: value`"),
@@ -279,8 +286,12 @@ fn grammar(error: &RonError) -> (Code, &'static str) {
             Code::WrongType,
             "write a number, such as 1.5 or 20e9, or one with its unit, such as Megapascal(20)",
         ),
-        RonError::ExpectedIdentifier => (Code::WrongType, "see docs/reference/scene.md for the choices of this field"),
-        RonError::ExpectedDifferentLength { .. } => (Code::WrongType, "see docs/reference/scene.md for this field"),
+        RonError::ExpectedIdentifier => {
+            (Code::WrongType, "see docs/reference/scene.md for the choices of this field")
+        }
+        RonError::ExpectedDifferentLength { .. } => {
+            (Code::WrongType, "see docs/reference/scene.md for this field")
+        }
         RonError::ExpectedArray => (Code::WrongType, "a list is written between [ and ]"),
         RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_) => {
             (Code::WrongType, "structs and vectors are written between ( and )")

@@ -12,7 +12,7 @@ pub enum RecordError {
     Csv {
         /// The file.
         file: PathBuf,
-        /// What is wrong, with the line.
+        /// The problem, with its line.
         source: csv::Error,
     },
     /// Values that are no record.
@@ -22,7 +22,7 @@ pub enum RecordError {
         file: PathBuf,
         /// Row of data, the first being 1.
         row: usize,
-        /// What is wrong with it.
+        /// The problem.
         reason: &'static str,
     },
 }
@@ -79,7 +79,7 @@ pub fn check_speed(file: &Path, rows: &[(f64, f64)], factor: f64) -> Result<(), 
     for (row, pair) in (2..).zip(rows.windows(2)) {
         let [(from_s, a), (to_s, b)] = [pair[0], pair[1]];
         speed_m_s += factor * (0.5 * a + 0.5 * b) * (to_s - from_s);
-        // What is not a number is beyond it, too.
+        // NaN is beyond the limit, too.
         if speed_m_s.is_nan() || speed_m_s.abs() > LIGHT_M_S {
             let reason = "brings the ground beyond the speed of light: give accelerations in m/s², or a smaller factor";
             return Err(RecordError::Row { file: file.to_path_buf(), row, reason });

@@ -36,7 +36,7 @@ pub struct Rock {
     pub material: String,
     /// The rock before it is cut.
     pub domain: Domain,
-    /// What cuts it, in this order: later ones meet smaller blocks. Default: nothing.
+    /// Discontinuities that cut it, in this order: later ones meet smaller blocks. Default: none.
     #[serde(default)]
     pub joints: Vec<Discontinuity>,
     /// Cuts it into Voronoi cells instead. Default: none.
@@ -235,10 +235,10 @@ pub enum SpacingScatter {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum DiscRule {
-    /// Those of which it meets the section.
+    /// Blocks that the section meets.
     #[default]
     Meets,
-    /// Those of which it covers the section.
+    /// Blocks that the section covers.
     Covers,
 }
 
@@ -259,14 +259,14 @@ pub struct Voronoi {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Whereabouts {
-    /// Those in a box.
+    /// Blocks in a box.
     Inside {
         /// Lowest corner [m].
         min_m: [f64; 3],
         /// Highest corner [m].
         max_m: [f64; 3],
     },
-    /// Those on the side of a plane that its normal points to.
+    /// Blocks on the side of a plane that its normal points to.
     Beyond {
         /// A point of the plane [m].
         point_m: [f64; 3],

@@ -1,4 +1,4 @@
-//! What a scene may say, from its types and their documentation: as a JSON Schema and in words.
+//! The grammar of scenes, from its types and their documentation: as a JSON Schema and in words.
 
 mod reference;
 

@@ -163,7 +163,7 @@ pub struct Grading {
     pub growth: f64,
 }
 
-/// What a mesh is finer towards.
+/// Places towards which a mesh is finer.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

@@ -10,7 +10,7 @@ use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors};
 use crate::scene::read::{self, LoadedScene};
 use crate::scene::suggest;
-use crate::{locate, overrides};
+use crate::scene::{locate, overrides};
 
 /// A study, as it is written.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -23,7 +23,7 @@ pub struct Study {
     /// Values put into the scene in every case, by path. Default: none.
     #[serde(default)]
     pub set: Values,
-    /// What varies; every choice of one axis is combined with every one of the others.
+    /// The quantities that vary; every choice of one axis is combined with every one of the others.
     pub axes: Vec<Axis>,
     /// Axes each of whose choices is a curve of its own; along the others a curve gets finer. Default: all but
     /// those that vary `time.step_s`.
@@ -32,16 +32,16 @@ pub struct Study {
     /// Runs of each case, of which the fastest counts. Default: 5.
     #[serde(default = "five")]
     pub repeats: u32,
-    /// What a run costs. Default: `Wall`.
+    /// The cost of a run: wall time or processor time. Default: `Wall`.
     #[serde(default)]
     pub clock: Clock,
-    /// What results are compared with. Default: `ClosedForm`.
+    /// The results that cases are compared with. Default: `ClosedForm`.
     #[serde(default)]
     pub reference: Reference,
 }
 
 /// Values as text, by their paths in the scene.
-pub type Values = BTreeMap<String, Box<RawValue>>;
+pub(crate) type Values = BTreeMap<String, Box<RawValue>>;
 
 /// Something that varies.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -67,7 +67,7 @@ pub enum Axis {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Choice {
-    /// What it is called in tables and pictures.
+    /// Name in tables and pictures.
     pub label: String,
     /// Values by path.
     pub set: Values,
@@ -83,7 +83,7 @@ pub enum Clock {
     Processor,
 }
 
-/// What results are compared with.
+/// The results that cases are compared with.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Reference {
@@ -114,7 +114,7 @@ fn sixteen() -> u32 {
 }
 
 impl Axis {
-    /// What it is called in tables.
+    /// Name in tables.
     pub fn name(&self) -> &str {
         match self {
             Self::Vary { path, .. } => locate::segments(path).last().copied().unwrap_or(path),
@@ -136,7 +136,7 @@ impl Axis {
     }
 
     /// Whether it varies the value at a path.
-    pub fn varies(&self, path: &str) -> bool {
+    pub(crate) fn varies(&self, path: &str) -> bool {
         match self {
             Self::Vary { path: own, .. } => own == path,
             Self::Choose { choices, .. } => choices.iter().any(|choice| choice.set.contains_key(path)),
@@ -154,7 +154,7 @@ pub fn as_overrides(values: &Values) -> Vec<String> {
 pub struct LoadedStudy {
     /// The study.
     pub study: Study,
-    /// Its axes that tell curves apart.
+    /// Its axes that distinguish curves.
     pub curves: Vec<String>,
     /// The scene's file.
     pub scene: PathBuf,
@@ -181,7 +181,7 @@ impl LoadedStudy {
     /// The scene with `overrides` in it.
     ///
     /// # Errors
-    /// What is wrong with the scene then.
+    /// The errors of the scene with these values.
     pub fn scene_with(&self, overrides: &[String]) -> Result<LoadedScene, SceneErrors> {
         let folder = self.scene.parent().unwrap_or(Path::new("."));
         read::load_text(&self.scene.display().to_string(), &self.scene_text, overrides, Some(folder))
@@ -233,7 +233,7 @@ fn default_curves(study: &Study) -> Vec<String> {
     others.map(|axis| axis.name().to_string()).collect()
 }
 
-/// What is wrong with a study, whatever the scene.
+/// Errors of a study that do not depend on the scene.
 fn problems(study: &Study) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let mut refuse =

@@ -29,14 +29,14 @@ pub struct Support {
     pub block: String,
     /// Which part of it.
     pub on: Region,
-    /// What is held.
+    /// The constraint.
     pub hold: Hold,
     /// How it is imposed. Default: `Elimination`.
     #[serde(default)]
     pub by: By,
 }
 
-/// What a support holds.
+/// The constraint of a support.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

@@ -62,7 +62,7 @@ pub enum Solver {
     },
 }
 
-/// Whether steps may be shorter. A step that asks for too much is taken back whole, contact's memory included, and done
+/// Whether steps may be shorter. A step that violates a limit is discarded, contact history included, and repeated
 /// again in more parts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -71,7 +71,7 @@ pub enum Step {
     /// All are `step_s`.
     #[default]
     Fixed,
-    /// Each is done in as many parts, 1, 2, 4, …, as contact, speed and energy ask for.
+    /// Each is done in as many parts, 1, 2, 4, …, as contact, speed and energy require.
     Auto {
         /// Part of the integrator's bound on ω_c Δt that may be used. Default: 0.5.
         #[serde(default = "half")]
@@ -90,10 +90,10 @@ pub enum Step {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum ContactAt {
-    /// Where the integrator predicts blocks to be; a step must be short: ω_c Δt < 2.
+    /// At the positions that the integrator predicts; a step must be short: ω_c Δt < 2.
     #[default]
     Predicted,
-    /// Where blocks are at the end, solved for: stable for any step, and damps what a step does not resolve.
+    /// At the end of the step, solved for: stable for any step, and damps what a step does not resolve.
     End {
         /// Largest misfit of contact forces over the largest of contact forces and loads. Default: 1e-8.
         #[serde(default = "newton_tolerance")]
@@ -129,7 +129,7 @@ pub enum Integrator {
     },
     /// Second order; damps elastic modes far above 1/Δt, contact neither way.
     GeneralizedAlpha {
-        /// What is left of the highest modes after a step, 0 to 1 (no damping). Default: 0.8.
+        /// Spectral radius: the part of the highest modes that remains after a step, 0 to 1 (no damping). Default: 0.8.
         #[serde(default = "radius")]
         radius: f64,
     },

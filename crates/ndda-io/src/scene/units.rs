@@ -1,7 +1,7 @@
 //! Values with a unit: `Megapascal(20)` in a field `…_pa` is 20e6.
 //!
 //! The unit of a field is the end of its name. A value in another unit of the same dimension is turned into it in the text,
-//! before types are read; what is found wrong later is mapped back to the text as it was written.
+//! before types are read, and former names of fields into current ones; what is found wrong later is mapped back to the text as it was written.
 
 mod dimensions;
 
@@ -19,10 +19,10 @@ const PLACE: &str = "Point";
 
 /// A text in which every value is in the unit of its field.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Resolved {
+pub(crate) struct Resolved {
     /// The text.
     pub text: String,
-    /// What is wrong with units.
+    /// Errors of units.
     pub errors: Vec<Diagnostic>,
     edits: Vec<Edit>,
 }
@@ -35,7 +35,7 @@ struct Edit {
 }
 
 /// Turns every value of a text into the unit of its field.
-pub fn resolve(text: &str, tree: &Node) -> Resolved {
+pub(crate) fn resolve(text: &str, tree: &Node) -> Resolved {
     let mut resolver = Resolver { text, tree, edits: Vec::new(), errors: Vec::new() };
     resolver.visit(tree, None);
     let Resolver { edits, errors, .. } = resolver;
@@ -52,7 +52,7 @@ pub fn resolve(text: &str, tree: &Node) -> Resolved {
 
 impl Resolved {
     /// Byte of the source that a byte of the text comes from.
-    pub fn source(&self, offset: usize) -> usize {
+    pub(crate) fn source(&self, offset: usize) -> usize {
         let (mut in_source, mut in_text) = (0, 0);
         for edit in &self.edits {
             let begins = in_text + (edit.at.start - in_source);
@@ -78,6 +78,9 @@ struct Resolver<'a> {
 impl Resolver<'_> {
     /// Looks for units in a value; items and components of a quantity are of its dimension.
     fn visit(&mut self, node: &Node, outer: Option<&'static Dimension>) {
+        if let Some(key) = node.key.as_deref().filter(|key| **key != self.text[node.key_span.clone()]) {
+            self.edit(node.key_span.clone(), key.to_string());
+        }
         let own = node.key.as_deref().and_then(dimension_of).or(outer);
         let word = node.word(self.text);
         if DIMENSIONS.iter().any(|d| d.unit(word).is_some()) {

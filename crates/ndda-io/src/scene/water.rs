@@ -6,7 +6,7 @@ use super::{FactorRow, Region};
 
 /// Pressure of water on faces, along their inward normals as they are at any time, over the whole wet area, whether blocks touch there or not.
 ///
-/// What contact bears is then the effective stress. Weights stay those of the rock. Where a pressure would be negative there is none. The faces
+/// Contact then carries the effective stress. Weights stay those of the rock. Where a pressure would be negative there is none. The faces
 /// of two blocks on one joint are both wet; those on the surface of a joint that no other block covers are, too.
 ///
 /// ```text
@@ -100,7 +100,7 @@ pub struct LinearPressure {
 }
 
 impl Pressure {
-    /// The same pressure whatever becomes of gravity, which now is `gravity_m_s2`.
+    /// The present pressure, kept when gravity, now `gravity_m_s2`, changes.
     pub fn held(&self, gravity_m_s2: [f64; 3]) -> Self {
         match *self {
             Self::Level { at_m, density_kg_m3 } => Self::Linear {

@@ -4,7 +4,7 @@ use super::neighbours::neighbours;
 use super::polyhedron::{Face, Polyhedron};
 use super::surfaces::{Neighbour, Surface};
 
-/// A block thinner than asked for.
+/// A block thinner than requested.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sliver {
     /// Index of the block.
@@ -15,7 +15,7 @@ pub struct Sliver {
     pub volume_m3: f64,
 }
 
-/// What a cut amounted to.
+/// Counts of a cut.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CutReport {
     /// Cuts made.
@@ -37,13 +37,13 @@ pub struct CutReport {
 pub struct Blocks {
     /// The blocks.
     pub blocks: Vec<Polyhedron>,
-    /// What made their faces; [`Face::surface`] counts in this list.
+    /// Surfaces that made their faces; [`Face::surface`] counts in this list.
     pub surfaces: Vec<Surface>,
     /// Names of the surfaces: those of the domain's faces, then of the joints.
     pub names: Vec<String>,
     /// Pairs of faces that meet.
     pub neighbours: Vec<Neighbour>,
-    /// What the cut amounted to.
+    /// Counts of the cut.
     pub report: CutReport,
 }
 

@@ -55,7 +55,7 @@ pub(super) fn convex_parts(
         let surface = best_cut(&polygons, surfaces, tolerance.least_depth_m);
         let plane = &surfaces[surface as usize].plane;
         let (mut above, mut below) = (Vec::new(), Vec::new());
-        // Those of the surface itself are done with, whatever rounding says: the list gets shorter each time.
+        // Polygons on the surface itself are finished, despite rounding: the list gets shorter each time.
         for polygon in polygons.into_iter().filter(|polygon| polygon.0 != surface) {
             divide(polygon, plane, tolerance.least_depth_m, &mut above, &mut below);
         }
@@ -85,14 +85,14 @@ fn face_to_face(
     tolerance: Tolerance,
 ) -> Result<Vec<Polyhedron>, CutError> {
     for _ in 0..MOST_ROUNDS {
-        let mut knives: BTreeSet<(u32, u32)> = BTreeSet::new();
+        let mut cutting_planes: BTreeSet<(u32, u32)> = BTreeSet::new();
         for pair in neighbours(&parts, surfaces, tolerance.least_depth_m) {
             for (own, other) in [(0, 1), (1, 0)] {
                 let part = &parts[pair.blocks[own] as usize];
                 let area = part.area_vector(&part.faces[pair.faces[own] as usize]).norm();
                 if area > (1.0 + SAME_AREA) * pair.area_m2 {
                     let beside = beside(&parts[pair.blocks[other] as usize], pair.faces[other]);
-                    knives.extend(beside.map(|surface| (pair.blocks[own], surface)));
+                    cutting_planes.extend(beside.map(|surface| (pair.blocks[own], surface)));
                 }
             }
         }
@@ -100,7 +100,7 @@ fn face_to_face(
         let mut cut: Vec<Polyhedron> = Vec::new();
         for (index, part) in (0..).zip(parts) {
             let mut pieces = vec![part];
-            for &(_, surface) in knives.range((index, 0)..=(index, u32::MAX)) {
+            for &(_, surface) in cutting_planes.range((index, 0)..=(index, u32::MAX)) {
                 let plane = &surfaces[surface as usize].plane;
                 for piece in std::mem::take(&mut pieces) {
                     if let Split::Both { above, below } = split(&piece, plane, surface, tolerance) {

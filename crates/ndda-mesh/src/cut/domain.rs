@@ -170,7 +170,7 @@ impl Domain {
         Aabb::around(self.parts.iter().flat_map(|part| &part.vertices))
     }
 
-    /// What counts as touching in this domain.
+    /// Tolerances of touching in this domain.
     pub(super) fn tolerance(&self) -> Tolerance {
         tolerance(&self.bounds())
     }

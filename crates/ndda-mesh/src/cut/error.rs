@@ -34,7 +34,7 @@ pub enum CutError {
         what: &'static str,
         /// Its value.
         value: f64,
-        /// What is accepted.
+        /// The accepted range.
         expected: &'static str,
     },
     /// More planes than the domain can sensibly be cut by.

@@ -1,4 +1,4 @@
-//! What cuts rock: joint sets, single planes and discs.
+//! Discontinuities that cut rock: joint sets, single planes and discs.
 
 use super::CutError;
 use super::plane::{Plane, check_dip, dip_normal};
@@ -136,7 +136,7 @@ pub enum Discontinuity {
 
 /// One plane to cut with.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Knife {
+pub(super) struct CuttingPlane {
     pub plane: Plane,
     pub number: u32,
     pub persistence: f64,
@@ -154,17 +154,22 @@ impl Discontinuity {
     }
 
     /// Its planes that come near the domain.
-    pub(super) fn knives(&self, index: u64, seed: u64, domain: &Aabb) -> Result<Vec<Knife>, CutError> {
+    pub(super) fn cutting_planes(
+        &self,
+        index: u64,
+        seed: u64,
+        domain: &Aabb,
+    ) -> Result<Vec<CuttingPlane>, CutError> {
         match self {
-            Self::Set(set) => set.knives(index, seed, domain),
+            Self::Set(set) => set.cutting_planes(index, seed, domain),
             Self::Plane { plane, .. } => {
-                Ok(vec![Knife { plane: *plane, number: 0, persistence: 1.0, disc: None }])
+                Ok(vec![CuttingPlane { plane: *plane, number: 0, persistence: 1.0, disc: None }])
             }
             Self::Disc(disc) => {
                 check(&disc.name, "radius", disc.radius_m, disc.radius_m > 0.0, "a length above 0 m")?;
                 let plane = Plane::dipping(disc.dip_deg, disc.dip_direction_deg, disc.center_m)?;
                 let disc = Some((disc.center_m, disc.radius_m, disc.rule));
-                Ok(vec![Knife { plane, number: 0, persistence: 1.0, disc }])
+                Ok(vec![CuttingPlane { plane, number: 0, persistence: 1.0, disc }])
             }
         }
     }
@@ -268,23 +273,28 @@ impl JointSet {
         Ok(positions)
     }
 
-    fn knives(&self, index: u64, seed: u64, domain: &Aabb) -> Result<Vec<Knife>, CutError> {
+    fn cutting_planes(&self, index: u64, seed: u64, domain: &Aabb) -> Result<Vec<CuttingPlane>, CutError> {
         self.check()?;
         let normal = dip_normal(self.dip_deg, self.dip_direction_deg);
         let reach = normal.abs().dot(&((domain.max - domain.min) * 0.5));
         let center = domain.center();
         let middle = normal.dot(&(center - self.origin_m));
         let positions = self.positions(index, seed, [middle - reach, middle + reach])?;
-        let knife = |(number, at): (u32, f64)| {
+        let cutting_plane = |(number, at): (u32, f64)| {
             let mut stream = Stream::new(seed, &[index, 3, at.to_bits()]);
             let pole = self.orientation.pole(&normal, &mut stream);
             let point = match self.orientation {
                 OrientationScatter::None => self.origin_m + normal * at,
                 _ => center + normal * (at - middle),
             };
-            Ok(Knife { plane: Plane::new(point, pole)?, number, persistence: self.persistence, disc: None })
+            Ok(CuttingPlane {
+                plane: Plane::new(point, pole)?,
+                number,
+                persistence: self.persistence,
+                disc: None,
+            })
         };
-        (0..).zip(positions).map(knife).collect()
+        (0..).zip(positions).map(cutting_plane).collect()
     }
 }
 
@@ -321,7 +331,7 @@ mod tests {
             SpacingScatter::Exponential,
         ] {
             let set = JointSet { spacing, ..JointSet::new("a", 0.0, 0.0, 0.1) };
-            let count = set.knives(0, 1, &DOMAIN).unwrap().len();
+            let count = set.cutting_planes(0, 1, &DOMAIN).unwrap().len();
             assert!((950..1050).contains(&count), "{spacing:?}: {count}");
         }
     }
@@ -346,13 +356,13 @@ mod tests {
             |s| s.orientation = OrientationScatter::Fisher { kappa: 0.0 },
             |s| s.spacing = SpacingScatter::Uniform { half_width_m: 1.0 },
         ];
-        assert!(good.knives(0, 0, &DOMAIN).is_ok());
+        assert!(good.cutting_planes(0, 0, &DOMAIN).is_ok());
         for spoil in spoil {
             let mut set = good.clone();
             spoil(&mut set);
-            assert!(set.knives(0, 0, &DOMAIN).is_err(), "{set:?}");
+            assert!(set.cutting_planes(0, 0, &DOMAIN).is_err(), "{set:?}");
         }
         let dense = JointSet { spacing_m: 1e-9, ..good };
-        assert!(matches!(dense.knives(0, 0, &DOMAIN), Err(CutError::TooManyPlanes { .. })));
+        assert!(matches!(dense.cutting_planes(0, 0, &DOMAIN), Err(CutError::TooManyPlanes { .. })));
     }
 }

@@ -8,7 +8,7 @@ use crate::geometry::Aabb;
 pub struct Face {
     /// Vertices, counter-clockwise seen from outside.
     pub vertices: Vec<u32>,
-    /// What made the face: an index into the list of surfaces of its [`Blocks`](super::Blocks).
+    /// Surface of the face: an index into the list of surfaces of its [`Blocks`](super::Blocks).
     pub surface: u32,
 }
 

@@ -14,7 +14,7 @@ const ATTEMPTS: usize = 6;
 /// Factor between bands.
 const WIDER: f64 = 4.0;
 
-/// What counts as touching, in metres.
+/// Tolerances of touching, in metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
     /// Vertices nearer to the plane lie on it [m]: rounding of coordinates.
@@ -23,7 +23,7 @@ pub struct Tolerance {
     pub least_depth_m: f64,
 }
 
-/// What a plane does to a block.
+/// Position of a block relative to a plane, and its halves where it is cut.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Split {
     /// The block lies above the plane, or touches it from there.

@@ -2,7 +2,7 @@
 
 use super::plane::Plane;
 
-/// What kind of surface made a face.
+/// Kind of surface that made a face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SurfaceKind {
     /// A face of the domain. Where blocks meet across it (a concave domain in convex parts), they are glued.
@@ -23,7 +23,7 @@ pub enum SurfaceKind {
 pub struct Surface {
     /// Its plane.
     pub plane: Plane,
-    /// What it is.
+    /// Kind of the surface.
     pub kind: SurfaceKind,
     /// Index of its name in [`Blocks::names`](super::Blocks::names).
     pub name: u32,

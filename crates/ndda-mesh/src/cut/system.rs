@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::CutError;
 use super::blocks::{Blocks, CutReport};
 use super::domain::Domain;
-use super::joints::{DiscRule, Discontinuity, Knife};
+use super::joints::{CuttingPlane, DiscRule, Discontinuity};
 use super::polyhedron::{Face, Polyhedron};
 use super::random::{Stream, key};
 use super::split::{Split, Tolerance, split};
@@ -44,17 +44,17 @@ pub fn cut_blocks(
 ) -> Result<Blocks, CutError> {
     let mut names = domain.names.clone();
     let mut surfaces = domain.surfaces.clone();
-    let mut knives: Vec<(u32, Knife)> = Vec::new();
+    let mut cutting_planes: Vec<(u32, CuttingPlane)> = Vec::new();
     for (joint, discontinuity) in (0u32..).zip(discontinuities) {
         let name = index_of(&mut names, discontinuity.name());
-        for knife in discontinuity.knives(u64::from(joint), options.seed, &domain.bounds())? {
-            knives.push((surfaces.len() as u32, knife));
-            let kind = SurfaceKind::Joint { joint, number: knife.number };
-            surfaces.push(Surface { plane: knife.plane, kind, name });
+        for cutting_plane in discontinuity.cutting_planes(u64::from(joint), options.seed, &domain.bounds())? {
+            cutting_planes.push((surfaces.len() as u32, cutting_plane));
+            let kind = SurfaceKind::Joint { joint, number: cutting_plane.number };
+            surfaces.push(Surface { plane: cutting_plane.plane, kind, name });
         }
     }
     let mut carving = Carving {
-        knives,
+        cutting_planes,
         seed: options.seed,
         most_blocks: options.most_blocks,
         tolerance: domain.tolerance(),
@@ -74,7 +74,7 @@ pub fn cut_blocks(
 
 struct Carving {
     /// Planes in the order of cutting, with their surfaces.
-    knives: Vec<(u32, Knife)>,
+    cutting_planes: Vec<(u32, CuttingPlane)>,
     seed: u64,
     most_blocks: usize,
     tolerance: Tolerance,
@@ -87,13 +87,13 @@ struct Carving {
 struct Piece {
     block: Polyhedron,
     history: u64,
-    knives: Vec<u32>,
+    cutting_planes: Vec<u32>,
 }
 
 impl Carving {
     /// Cuts one convex part by all planes, depth first: each piece inherits the later planes that touch its box.
     fn carve(&mut self, part: Polyhedron, number: u64) -> Result<(), CutError> {
-        let all: Vec<u32> = (0..self.knives.len() as u32).collect();
+        let all: Vec<u32> = (0..self.cutting_planes.len() as u32).collect();
         let mut stack = vec![self.piece(part, number, &all)];
         while let Some(piece) = stack.pop() {
             let Some((at, above, below)) = self.first_cut(&piece) else {
@@ -103,34 +103,34 @@ impl Carving {
                 }
                 continue;
             };
-            let knife = u64::from(piece.knives[at]);
-            let rest = &piece.knives[at + 1..];
-            stack.push(self.piece(above, key(piece.history, 2 * knife + 1), rest));
-            stack.push(self.piece(below, key(piece.history, 2 * knife), rest));
+            let cutting_plane = u64::from(piece.cutting_planes[at]);
+            let rest = &piece.cutting_planes[at + 1..];
+            stack.push(self.piece(above, key(piece.history, 2 * cutting_plane + 1), rest));
+            stack.push(self.piece(below, key(piece.history, 2 * cutting_plane), rest));
         }
         Ok(())
     }
 
-    fn piece(&self, block: Polyhedron, history: u64, knives: &[u32]) -> Piece {
+    fn piece(&self, block: Polyhedron, history: u64, cutting_planes: &[u32]) -> Piece {
         let bounds = block.bounds();
-        let touches = |&&k: &&u32| self.knives[k as usize].1.plane.touches(&bounds, 0.0);
-        let knives = knives.iter().filter(touches).copied().collect();
-        Piece { block, history, knives }
+        let touches = |&&k: &&u32| self.cutting_planes[k as usize].1.plane.touches(&bounds, 0.0);
+        let cutting_planes = cutting_planes.iter().filter(touches).copied().collect();
+        Piece { block, history, cutting_planes }
     }
 
     /// The first plane that cuts the piece, as its place in the list, and the parts.
     fn first_cut(&mut self, piece: &Piece) -> Option<(usize, Polyhedron, Polyhedron)> {
-        for (at, &k) in piece.knives.iter().enumerate() {
-            let (surface, knife) = self.knives[k as usize];
-            match split(&piece.block, &knife.plane, surface, self.tolerance) {
+        for (at, &k) in piece.cutting_planes.iter().enumerate() {
+            let (surface, cutting_plane) = self.cutting_planes[k as usize];
+            match split(&piece.block, &cutting_plane.plane, surface, self.tolerance) {
                 Split::Above | Split::Below => {}
                 Split::Refused => *self.refused.entry(surface).or_default() += 1,
                 Split::Both { above, below } => {
-                    if !reaches(&knife, &above) {
+                    if !reaches(&cutting_plane, &above) {
                         continue;
                     }
                     let draw = || Stream::new(self.seed, &[piece.history, u64::from(k)]).uniform();
-                    if knife.persistence < 1.0 && draw() >= knife.persistence {
+                    if cutting_plane.persistence < 1.0 && draw() >= cutting_plane.persistence {
                         self.report.bridged += 1;
                         continue;
                     }
@@ -144,8 +144,10 @@ impl Carving {
 }
 
 /// Whether a plane without end, or a disc by its rule, cuts where the section (the last face) is.
-fn reaches(knife: &Knife, part: &Polyhedron) -> bool {
-    let (Some((center, radius, rule)), Some(section)) = (knife.disc, part.faces.last()) else { return true };
+fn reaches(cutting_plane: &CuttingPlane, part: &Polyhedron) -> bool {
+    let (Some((center, radius, rule)), Some(section)) = (cutting_plane.disc, part.faces.last()) else {
+        return true;
+    };
     match rule {
         DiscRule::Covers => part.ring(section).all(|x| (x - center).norm() <= radius),
         DiscRule::Meets => distance(part, section, &center) < radius,

@@ -96,9 +96,9 @@ pub enum GenerateError {
         u32::MAX
     )]
     TooMany {
-        /// Nodes asked for.
+        /// Nodes requested.
         nodes: u128,
-        /// Tetrahedra asked for.
+        /// Tetrahedra requested.
         tets: u128,
     },
 }

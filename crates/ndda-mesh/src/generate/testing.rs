@@ -1,4 +1,4 @@
-//! What every generated mesh must satisfy.
+//! Contract of generated meshes.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,18 +6,18 @@ use crate::BlockMesh;
 use crate::geometry::{TET_FACES, tet_volume, triangle_area_vector};
 use crate::surface::boundary_faces;
 
-pub fn volume(mesh: &BlockMesh) -> f64 {
+pub(crate) fn volume(mesh: &BlockMesh) -> f64 {
     mesh.tets.iter().map(|tet| tet_volume(&tet.map(|i| mesh.nodes[i as usize]))).sum()
 }
 
-pub fn surface_area(mesh: &BlockMesh) -> f64 {
+pub(crate) fn surface_area(mesh: &BlockMesh) -> f64 {
     let area = |nodes: [u32; 3]| triangle_area_vector(&nodes.map(|i| mesh.nodes[i as usize])).norm();
     boundary_faces(&mesh.tets).iter().map(|face| area(face.nodes)).sum()
 }
 
 /// Panics unless all volumes are positive, all faces belong to one or two tetrahedra, and the surface is
 /// closed, outward and without holes: Euler characteristic V − E + F = 2.
-pub fn check_closed_conforming(mesh: &BlockMesh) {
+pub(crate) fn check_closed_conforming(mesh: &BlockMesh) {
     let mut owners: BTreeMap<[u32; 3], u32> = BTreeMap::new();
     for tet in &mesh.tets {
         assert!(tet_volume(&tet.map(|i| mesh.nodes[i as usize])) > 0.0);

@@ -55,7 +55,7 @@ pub enum FillError {
     /// A block that the system has not.
     #[error("there are {blocks} blocks, no block {block}: count from 0")]
     NoSuchBlock {
-        /// The block asked for.
+        /// The block requested.
         block: usize,
         /// Number of blocks.
         blocks: usize,
@@ -92,12 +92,12 @@ pub enum FillError {
         /// Number of parts.
         parts: usize,
     },
-    /// The size asks for more tetrahedra than can be counted or held.
+    /// The size requires more tetrahedra than can be counted or held.
     #[error(
         "edges of {size_m:e} m would need about {tets:e} tetrahedra; the most are {MOST_TETS}: use a larger size"
     )]
     TooFine {
-        /// Size asked for [m].
+        /// Size requested [m].
         size_m: f64,
         /// Tetrahedra expected.
         tets: f64,

@@ -32,7 +32,7 @@ pub(super) struct Ring {
 }
 
 impl Pool {
-    pub fn new(normals: Vec<Vec3>, filled: Filled) -> Self {
+    pub(crate) fn new(normals: Vec<Vec3>, filled: Filled) -> Self {
         let count = filled.nodes.len();
         let mut pool = Self {
             nodes: filled.nodes,
@@ -52,7 +52,7 @@ impl Pool {
     }
 
     /// Live tetrahedra, and the nodes that they use.
-    pub fn finish(self) -> Filled {
+    pub(crate) fn finish(self) -> Filled {
         let mut filled = Filled::default();
         let mut index = vec![u32::MAX; self.nodes.len()];
         for (node, around) in self.around.iter().enumerate() {
@@ -67,21 +67,21 @@ impl Pool {
         filled
     }
 
-    pub fn is_alive(&self, tet: u32) -> bool {
+    pub(crate) fn is_alive(&self, tet: u32) -> bool {
         self.sine[tet as usize] > f64::NEG_INFINITY
     }
 
     /// Live tetrahedra.
-    pub fn alive(&self) -> impl Iterator<Item = u32> + '_ {
+    pub(crate) fn alive(&self) -> impl Iterator<Item = u32> + '_ {
         (0..self.tets.len() as u32).filter(|&tet| self.is_alive(tet))
     }
 
     /// Smallest sine of a dihedral angle; at most 0 if inverted.
-    pub fn quality(&self, tet: [u32; 4]) -> f64 {
+    pub(crate) fn quality(&self, tet: [u32; 4]) -> f64 {
         least_sine(&tet.map(|n| self.nodes[n as usize]))
     }
 
-    pub fn add(&mut self, tet: [u32; 4]) {
+    pub(crate) fn add(&mut self, tet: [u32; 4]) {
         let sine = self.quality(tet);
         let slot = self.free.pop().unwrap_or(self.tets.len() as u32);
         if slot as usize == self.tets.len() {
@@ -102,18 +102,18 @@ impl Pool {
     }
 
     /// Whether a flip of a tetrahedron has not been tried as things are; from now on it has.
-    pub fn is_flip_due(&mut self, tet: u32) -> bool {
+    pub(crate) fn is_flip_due(&mut self, tet: u32) -> bool {
         let tried = std::mem::replace(&mut self.flip_tried[tet as usize], self.changes);
         self.tets[tet as usize].iter().any(|&n| self.changed[n as usize] > tried)
     }
 
     /// Whether a move of a node has not been tried as things are; from now on it has.
-    pub fn is_move_due(&mut self, node: u32) -> bool {
+    pub(crate) fn is_move_due(&mut self, node: u32) -> bool {
         let tried = std::mem::replace(&mut self.move_tried[node as usize], self.changes);
         self.changed[node as usize] > tried
     }
 
-    pub fn remove(&mut self, tet: u32) {
+    pub(crate) fn remove(&mut self, tet: u32) {
         for n in self.tets[tet as usize] {
             let around = &mut self.around[n as usize];
             if let Some(at) = around.iter().position(|&t| t == tet) {
@@ -125,7 +125,7 @@ impl Pool {
         self.mark(self.tets[tet as usize]);
     }
 
-    pub fn add_node(&mut self, at: Vec3, on: Vec<u32>) -> u32 {
+    pub(crate) fn add_node(&mut self, at: Vec3, on: Vec<u32>) -> u32 {
         self.nodes.push(at);
         self.on.push(on);
         self.around.push(Vec::new());
@@ -135,7 +135,7 @@ impl Pool {
     }
 
     /// Moves a node and grades the tetrahedra around it anew.
-    pub fn place(&mut self, node: u32, at: Vec3) {
+    pub(crate) fn place(&mut self, node: u32, at: Vec3) {
         self.nodes[node as usize] = at;
         for i in 0..self.around[node as usize].len() {
             let tet = self.around[node as usize][i];
@@ -145,25 +145,25 @@ impl Pool {
     }
 
     /// Smallest quality around a node.
-    pub fn worst_around(&self, node: u32) -> f64 {
+    pub(crate) fn worst_around(&self, node: u32) -> f64 {
         self.around[node as usize].iter().map(|&t| self.sine[t as usize]).fold(f64::INFINITY, f64::min)
     }
 
     /// Tetrahedra with the edge from `a` to `b`.
-    pub fn at_edge(&self, a: u32, b: u32) -> Vec<u32> {
+    pub(crate) fn at_edge(&self, a: u32, b: u32) -> Vec<u32> {
         let (a, b) =
             if self.around[a as usize].len() < self.around[b as usize].len() { (a, b) } else { (b, a) };
         self.around[a as usize].iter().copied().filter(|&t| self.tets[t as usize].contains(&b)).collect()
     }
 
     /// Faces of the block that two nodes share: where the edge between them lies, as the block is convex.
-    pub fn shared(&self, a: u32, b: u32) -> Vec<u32> {
+    pub(crate) fn shared(&self, a: u32, b: u32) -> Vec<u32> {
         let (a, b) = (&self.on[a as usize], &self.on[b as usize]);
         a.iter().copied().filter(|face| b.binary_search(face).is_ok()).collect()
     }
 
     /// The ring around the edge, counter-clockwise seen from `b`; `None` if the tetrahedra make no ring.
-    pub fn ring(&self, a: u32, b: u32, tets: &[u32]) -> Option<Ring> {
+    pub(crate) fn ring(&self, a: u32, b: u32, tets: &[u32]) -> Option<Ring> {
         let mut links: Vec<(u32, u32)> =
             tets.iter().map(|&t| opposite(self.tets[t as usize], a, b)).collect();
         let is_closed = links.iter().all(|link| links.iter().any(|other| other.1 == link.0));

@@ -1,4 +1,4 @@
-//! A coarse mesh brought to the size asked for.
+//! A coarse mesh brought to the size requested.
 
 use super::pool::Pool;
 use super::size::SizeField;

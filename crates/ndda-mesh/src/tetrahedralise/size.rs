@@ -13,7 +13,7 @@ const FINEST: f64 = 0.25;
 /// Volume of a tetrahedron over its edge cubed, for a good mixture.
 const TET_VOLUME: f64 = 0.1;
 
-/// What the mesh is finer towards.
+/// Places towards which the mesh is finer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Towards {
     /// A point [m].
@@ -53,7 +53,7 @@ fn positive(what: &'static str, value: f64) -> Result<(), FillError> {
 }
 
 impl SizeField {
-    pub fn new(block: &Polyhedron, size_m: f64, finer: &[Grading]) -> Result<Self, FillError> {
+    pub(crate) fn new(block: &Polyhedron, size_m: f64, finer: &[Grading]) -> Result<Self, FillError> {
         positive("size_m", size_m)?;
         let largest_m = size_m.min((LENGTH_PER_WIDTH * block.width_m()).max(FINEST * size_m));
         let mut size = Self { largest_m, points: Vec::new(), planes: Vec::new(), tets: 0.0 };
@@ -81,14 +81,14 @@ impl SizeField {
     }
 
     /// The field of a concave block in parts.
-    pub fn of_parts(parts: &[&Polyhedron], size_m: f64, finer: &[Grading]) -> Result<Self, FillError> {
+    pub(crate) fn of_parts(parts: &[&Polyhedron], size_m: f64, finer: &[Grading]) -> Result<Self, FillError> {
         let mut size = Self { largest_m: 0.0, points: Vec::new(), planes: Vec::new(), tets: 0.0 };
         for part in parts {
             let own = Self::new(part, size_m, finer)?;
             size.largest_m = size.largest_m.max(own.largest_m);
             size.tets += own.tets;
             size.points.extend(own.points);
-            // The same in all parts.
+            // Settings that are equal in all parts.
             size.planes = own.planes;
         }
         let tets = size.tets;
@@ -96,7 +96,7 @@ impl SizeField {
     }
 
     /// Target length of edges at a point [m].
-    pub fn at(&self, x: &Vec3) -> f64 {
+    pub(crate) fn at(&self, x: &Vec3) -> f64 {
         let mut least = self.largest_m;
         for (at, size, growth) in &self.points {
             // Most points are too far to matter, which takes no root.

@@ -1,4 +1,4 @@
-//! What every fill must satisfy, and how good the fine one is.
+//! Conditions that every fill must satisfy, and the quality of the fine one.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Vertices too close to tell apart become one.
+//! Vertices too close to distinguish become one.
 
 use crate::cut::{Face, Polyhedron};
 

@@ -1,4 +1,4 @@
-//! What can be wrong with a mesh, with the ids of what is wrong.
+//! Problems of a mesh, with the ids of its faulty parts.
 
 pub(crate) use coincident::first_twins;
 
@@ -83,7 +83,7 @@ fn set_problems(mesh: &BlockMesh) -> Vec<MeshProblem> {
     problems
 }
 
-/// What is wrong with volumes and distances; indices are in range and coordinates finite.
+/// Problems of volumes and distances; indices are in range and coordinates finite.
 fn shape_problems(mesh: &BlockMesh) -> Vec<MeshProblem> {
     let bounds = Aabb::around(&mesh.nodes);
     let farthest_m = bounds.min.amax().max(bounds.max.amax());

@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
-/// How many culprits a problem lists.
+/// Number of faulty items that a problem lists.
 const LISTED: usize = 10;
 
-/// How many culprits there are, and the first ten of them.
+/// Number of faulty items, and the first ten of them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found<T> {
     /// How many in all.
@@ -110,7 +110,7 @@ pub enum MeshProblem {
     Coincident {
         /// The first node there and a later one.
         pairs: Found<(u32, u32)>,
-        /// What counts as the same place [m].
+        /// Distance below which two places are the same [m].
         tolerance_m: f64,
     },
     /// Nodes that belong to no tetrahedron.

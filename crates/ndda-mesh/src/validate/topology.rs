@@ -13,7 +13,7 @@ struct Face {
     outward: bool,
 }
 
-/// What is wrong with the topology of `mesh`; `all_positive` says that every volume is.
+/// Problems of the topology of `mesh`; `all_positive` says that every volume is.
 pub(super) fn problems(mesh: &BlockMesh, all_positive: bool) -> Vec<MeshProblem> {
     let mut problems = Vec::new();
     let mut is_used = vec![false; mesh.nodes.len()];

@@ -1,4 +1,4 @@
-//! What is measured, by the clock and by counting instructions.
+//! Cases that are measured, by the clock and by counting instructions.
 #![allow(dead_code)] // each bench takes some of it
 
 use std::sync::Arc;
@@ -53,14 +53,14 @@ pub fn cubes(count: usize, n: u32, kind: BodyKind, integrator: Box<dyn TimeInteg
         mass: Mass::Consistent,
         integrator,
         contact: None,
-        end_contact: None,
+        implicit_contact: None,
         solver: Box::new(Direct),
         auto_step: None,
     })
     .expect("a simulation")
 }
 
-/// The same by the default integrator.
+/// Elastic cubes with the default integrator.
 pub fn elastic_cubes(count: usize, n: u32) -> Simulation {
     cubes(count, n, BodyKind::Elastic, Box::new(Midpoint { theta: 0.5 }))
 }

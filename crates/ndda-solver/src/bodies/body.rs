@@ -21,7 +21,7 @@ pub(crate) struct Body {
     pub shape: usize,
     /// How it moves.
     pub motion: Motion,
-    /// What it reports of the last step.
+    /// Report on the last step.
     pub report: BlockReport,
     /// Why the last step failed.
     pub error: Option<BlockError>,
@@ -35,7 +35,7 @@ pub(crate) enum Motion {
     Elastic(Box<ElasticBody>),
     /// Rigid blocks.
     Rigid(RigidBody),
-    /// Blocks that stay, or go where they are told to.
+    /// Blocks that stay, or move as prescribed.
     Fixed(FixedBody),
 }
 

@@ -16,7 +16,7 @@ pub(crate) struct NodeSlices<'a> {
     pub internal_force: &'a mut [Vec3],
 }
 
-/// The same to read.
+/// Nodes of a group, read only.
 #[derive(Clone, Copy)]
 pub(crate) struct Nodes<'a> {
     /// x [m].
@@ -83,12 +83,12 @@ impl CongruentGroups {
         self.starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
     }
 
-    /// Neighbours in the list for which `alike` holds, up to `most` in a run.
-    pub(crate) fn group(blocks: usize, most: usize, alike: impl Fn(usize, usize) -> bool) -> Self {
+    /// Neighbours in the list for which `congruent` holds, up to `most` in a run.
+    pub(crate) fn group(blocks: usize, most: usize, congruent: impl Fn(usize, usize) -> bool) -> Self {
         let mut starts: Vec<u32> = vec![0];
         for block in 1..blocks {
             let first = starts[starts.len() - 1] as usize;
-            if block - first == most || !alike(first, block) {
+            if block - first == most || !congruent(first, block) {
                 starts.push(block as u32);
             }
         }

@@ -1,4 +1,4 @@
-//! What a block needs to know of a step.
+//! Input of a block's step.
 
 use ndda_mesh::Vec3;
 
@@ -6,7 +6,7 @@ use crate::bodies::mass_damping::MassDamping;
 use crate::bodies::prototype::Prototype;
 use crate::integrators::time_integrator::{Inertia, StepWeights, TimeIntegrator};
 
-/// What a block step needs besides the block itself.
+/// Input of a block's step besides the block itself.
 pub(crate) struct StepContext<'a> {
     /// The integrator.
     pub integrator: &'a dyn TimeIntegrator,
@@ -22,19 +22,19 @@ pub(crate) struct StepContext<'a> {
     pub end_s: f64,
     /// Where contact was evaluated, x* per node of the block [m].
     pub contact_position: &'a [Vec3],
-    /// How far ahead of that contact saw it [m].
-    pub ahead: Vec3,
+    /// Contact offset: contact is evaluated this far from where the block is [m].
+    pub contact_offset: Vec3,
     /// Force per node of the block, contact and constant loads [N].
     pub force: &'a [Vec3],
     /// The loads in it [N].
     pub external: &'a [Vec3],
-    /// Those of them that change over time [N]; empty if none do.
+    /// The part of the loads that changes over time [N]; empty if none does.
     pub changing: &'a [Vec3],
     /// Friction's part of it [N]; empty without friction.
     pub friction_force: &'a [Vec3],
     /// Row sums of the contact stiffness [N/m]; empty without contact.
     pub contact_stiffness: &'a [f64],
-    /// Part of a contact force whose direction is not known, and that no friction bears.
+    /// Direction uncertainty: part of a contact force whose direction is unknown, and that no friction carries.
     pub direction_uncertainty: f64,
     /// M a of the block as a whole at the start; zero where it does not matter.
     pub inertia: Inertia,

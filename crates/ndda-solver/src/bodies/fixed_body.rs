@@ -1,4 +1,4 @@
-//! Blocks without unknowns: they stay where they are, or go where they are told to.
+//! Blocks without unknowns: they stay where they are, or move as prescribed.
 
 use ndda_mesh::Vec3;
 
@@ -20,7 +20,7 @@ impl FixedBody {
         Self { anchor: if moves { position.to_vec() } else { Vec::new() } }
     }
 
-    /// Where the nodes are at the end of a step [m], `position` being where they are before it.
+    /// Positions of the nodes at the end of a step [m], `position` being where they are before it.
     pub(crate) fn end_position(&self, shape: &Prototype, end_s: f64, position: &[Vec3], out: &mut [Vec3]) {
         if self.anchor.is_empty() {
             out.copy_from_slice(position);
@@ -59,7 +59,7 @@ impl FixedBody {
         // The motion is prescribed, so the integrator's weights do not apply to what moves the block's own mass.
         report.motion_impulse = inertia;
         report.orbital_impulse = shape.operator.center(nodes.position).cross(&inertia);
-        // The support delivers what friction and changing loads take: their own work is booked as such.
+        // The support delivers what friction and changing loads take: their own work is recorded as such.
         report.friction_work_j = context.friction_force.iter().sum::<Vec3>().dot(&increment);
         report.load_work_j = context.changing.iter().sum::<Vec3>().dot(&increment);
         report.speed_m_s = velocity.norm();

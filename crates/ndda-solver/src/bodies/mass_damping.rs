@@ -169,7 +169,7 @@ mod tests {
             let (old, force) = (Vec3::new(1.0, 2.0, -0.5), Vec3::new(0.3, -1.0, 0.2));
             let new = old + drag.gain(&old, &force);
             let off = new - old - force - drag.drag(&old, &new);
-            // What is left of a velocity is known to its rounding, which the rate multiplies.
+            // The remaining velocity is known to its rounding, which the rate multiplies.
             assert!(off.norm() < 1e-14 * (1.0 + z), "{z}: {off}");
         }
     }

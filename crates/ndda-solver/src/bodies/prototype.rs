@@ -1,4 +1,4 @@
-//! What blocks of one shape share: operator, supports, factor. Everything here is computed once per run.
+//! Common data of blocks of one shape: operator, supports, factor. Everything here is computed once per run.
 
 use crate::error::SetupError;
 use std::sync::Arc;
@@ -20,7 +20,7 @@ use crate::linear::linear_solver::{Factor, FactorError, LinearSolver};
 /// Shapes that agree to this fraction of their size share one factor; a false strain of this size is the price.
 const CONGRUENT: f64 = 1e-12;
 
-/// What one block brings besides its mesh.
+/// Data of one block besides its mesh.
 #[derive(Clone)]
 pub struct BodySetup {
     /// How it may move.
@@ -246,7 +246,7 @@ impl Prototype {
         self.kind != BodyKind::Fixed && !(self.damping.is_none() && self.supports.motions.is_empty())
     }
 
-    /// What the books must know of the block.
+    /// Scales of the block for its diagnostics.
     pub(crate) fn scale(&self) -> BlockScale {
         BlockScale {
             mass_kg: self.operator.mass_kg,
@@ -271,7 +271,7 @@ impl Prototype {
         Some(self.rigid.as_ref()?.inverse_turned(&rotation))
     }
 
-    /// What contact may know of the block's inertia. Supports that leave no rigid motion make it immovable.
+    /// The block's inertia for contact. Supports that leave no rigid motion make it immovable.
     pub(crate) fn contact_body(&self) -> ndda_contact::Body {
         let immovable = self.kind == BodyKind::Fixed || self.supports.hold_all_rigid_motions(&self.operator);
         ndda_contact::Body {
@@ -324,7 +324,7 @@ fn lumped(operator: BlockOperator) -> (BlockOperator, f64) {
     (operator, relative.symmetric_eigenvalues().amax())
 }
 
-/// Whether a body of its kind can have the supports that are asked for.
+/// Whether a body of its kind can have the supports that are requested.
 fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
     let moves = |s: &NodeSupport| matches!(s.hold, Hold::Motion(_)) && s.spring_n_m.is_none();
     match setup.kind {

@@ -4,13 +4,13 @@ use ndda_mesh::{Mat3, Vec3};
 
 use crate::bodies::context::StepContext;
 use crate::bodies::prototype::Prototype;
-use crate::bodies::report::{BlockReport, Drive, LateralDrift};
+use crate::bodies::report::{BlockReport, LateralDrift, RigidForcing};
 use crate::error::BlockError;
 
 impl BlockReport {
     /// Work, impulse and error of damping in proportion to mass, which acts on the block as a whole, too. Its moment is that of its forces
     /// at x*; a free block has noted that about its mass centre already, and all of it where contact is not taken in the middle of a step.
-    pub(crate) fn book_drag(
+    pub(crate) fn record_drag(
         &mut self,
         shape: &Prototype,
         context: &StepContext,
@@ -35,19 +35,19 @@ impl BlockReport {
         self.damping_error_m_s += drag.mean_velocity_error() * (square / operator.mass_kg).sqrt();
     }
 
-    /// Torque of loads, work of friction and of changing loads, the contact rate of a step u [m], and what squeezes a block turned by R.
+    /// Torque of loads, work of friction and of changing loads, the contact rate of a step u [m], and the lateral drift of a block turned by R.
     pub(crate) fn book(
         &mut self,
         shape: &Prototype,
         context: &StepContext,
         (rotation, increment): (&Mat3, &[Vec3]),
     ) {
-        let point = context.moment_point(shape) - context.ahead;
+        let point = context.moment_point(shape) - context.contact_offset;
         for (x, f) in context.contact_position.iter().zip(context.external) {
             self.outside_torque += (x - point).cross(f);
         }
-        self.outside_torque += context.ahead.cross(&self.reaction);
-        self.impulse_moment += context.ahead.cross(&self.impulse);
+        self.outside_torque += context.contact_offset.cross(&self.reaction);
+        self.impulse_moment += context.contact_offset.cross(&self.impulse);
         for (load, u) in context.changing.iter().zip(increment) {
             self.load_work_j += load.dot(u);
         }
@@ -57,9 +57,9 @@ impl BlockReport {
         for (stiffness, mass) in context.contact_stiffness.iter().zip(&shape.operator.node_mass) {
             self.contact_rate2 = self.contact_rate2.max(stiffness / mass);
         }
-        self.drive = Drive::of(shape, context, rotation, self);
+        self.drive = RigidForcing::of(shape, context, rotation, self);
         if self.contact_rate2 > 0.0 && context.direction_uncertainty > 0.0 {
-            self.sideways = LateralDrift::of(shape, context, self);
+            self.lateral_drift = LateralDrift::of(shape, context, self);
         }
     }
 }

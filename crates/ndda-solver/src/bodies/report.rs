@@ -1,10 +1,10 @@
-//! What a block reports of a step.
+//! A block's report on a step.
 
 use ndda_mesh::Vec3;
 
 use crate::integrators::time_integrator::Inertia;
 
-/// What a block reports of its step.
+/// A block's report on its step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct BlockReport {
     /// Force that supports exerted on the block [N].
@@ -34,20 +34,20 @@ pub(crate) struct BlockReport {
     pub speed_m_s: f64,
     /// Largest Σ|k| / m over the nodes [1/s²]: a bound of ω_c².
     pub contact_rate2: f64,
-    /// Velocity that it owes to the unknown direction of contact forces.
-    pub sideways: LateralDrift,
+    /// Lateral velocity due to the uncertain direction of contact forces.
+    pub lateral_drift: LateralDrift,
     /// M a of the block as a whole at the end; for free blocks only.
     pub inertia: Inertia,
-    /// What drives it as a whole.
-    pub drive: Drive,
+    /// Forcing of its rigid motion.
+    pub drive: RigidForcing,
 }
 
-/// What a block reports of its acceleration as a whole.
+/// Forcing of a block's rigid motion.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Drive {
+pub(crate) struct RigidForcing {
     /// Force of loads over its mass [m/s²].
     pub load_m_s2: Vec3,
-    /// The same of loads, contact and supports [m/s²].
+    /// Acceleration of translation by loads, contact and supports [m/s²].
     pub shift_m_s2: Vec3,
     /// Half the sum of the sizes of contact forces on its nodes, over its mass: what presses it from both sides [m/s²]. Zero for a
     /// block that does not deform, and where contact is taken in the middle of a step.
@@ -61,7 +61,7 @@ pub(crate) struct Drive {
     /// Speed of its fastest node [m/s].
     pub speed_m_s: f64,
     /// Whether friction acts on it.
-    pub rubs: bool,
+    pub has_friction: bool,
 }
 
 /// Velocity that forces of unknown direction give a block [m/s].

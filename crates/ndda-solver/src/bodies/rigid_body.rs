@@ -59,7 +59,7 @@ impl RigidBody {
         let mut report = BlockReport::default();
         let start = self.place_increment(shape, context, &nodes.view(), &mut report)?;
         report.speed_m_s = checked_speed(shape, &self.velocity)?;
-        report.book_drag(shape, context, (&self.increment, nodes.velocity, &self.velocity));
+        report.record_drag(shape, context, (&self.increment, nodes.velocity, &self.velocity));
         self.advance(context, &mut nodes);
         report.book(shape, context, (&start.rotation, &self.increment));
         Ok(report)

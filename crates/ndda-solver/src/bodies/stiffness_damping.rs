@@ -115,7 +115,7 @@ impl StiffnessDamping {
             *h = 0.5 * (rotation.tr_mul(v) - self.start.tr_mul(old));
         }
         self.apply(shape)?;
-        // What the filter leaves of a change that it meets half: D − D².
+        // Part of a change that the filter leaves when it meets half of it: D − D².
         let once = self.field.iter().zip(&operator.node_mass);
         self.change.iter_mut().zip(once.clone()).for_each(|(change, (d, _))| *change = *d);
         self.apply(shape)?;

@@ -1,4 +1,4 @@
-//! What a block is solved for: components of its nodes, or the few motions that it may make.
+//! Unknowns of a block: components of its nodes, or the few motions that it may make.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use ndda_fem::{BlockOperator, BlockSupports};
@@ -74,7 +74,7 @@ impl Unknowns {
         Self::Modes { modes: free.len(), shape }
     }
 
-    /// Nothing to solve for.
+    /// No unknowns.
     pub(crate) fn none() -> Self {
         Self::Modes { modes: 0, shape: Vec::new() }
     }
@@ -92,7 +92,7 @@ impl Unknowns {
         self.len() == 0
     }
 
-    /// What nodal forces do along the unknowns.
+    /// Projects nodal forces onto the unknowns.
     pub(crate) fn gather(&self, nodal: &[Vec3], out: &mut [f64]) {
         match self {
             Self::Nodal { .. } if out.len() == 3 * nodal.len() => {

@@ -1,7 +1,7 @@
-//! The books of single blocks: what contact gives the lighter one of each pair, and how far a turn is behind.
+//! Diagnostics of single blocks: spurious contact energy of the lighter one of each pair, rotation lag, lateral drift, creep, vibration.
 //!
 //! Energy of all blocks together hides the error of a small one. Contact of a pair brings energy from nowhere where the
-//! work of its forces on both blocks is not what its potential energy loses. The lighter block feels it: where two meet at v,
+//! work of its forces on both blocks differs from the loss of its potential energy. The lighter block is affected: where two collide at v,
 //! an error of energy δE is one of its speed δv = δE/(m v), whatever the other weighs.
 
 use crate::diagnostics::worst::BlockScale;
@@ -10,17 +10,17 @@ use ndda_contact::SpringSlip;
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
-use crate::bodies::report::Drive;
 use crate::bodies::report::LateralDrift;
+use crate::bodies::report::RigidForcing;
 use crate::diagnostics::creep::CreepDiagnostics;
 use crate::diagnostics::ringing::{Quadrature, Ringing};
 
 /// Part of ½ m V² that an error of V/100 is measured by where blocks meet at next to no speed: m v δv + ½ m δv².
 const SLOW: f64 = 0.005;
 
-/// The books of one block.
+/// Energy balance and diagnostics of one block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Book {
+struct BlockBalance {
     /// Work of contact with heavier blocks, on both [J].
     work_j: f64,
     /// Energy of contact with heavier blocks at the last sample [J].
@@ -29,10 +29,10 @@ struct Book {
     start_j: f64,
     largest_contact_j: f64,
     /// The work, times m over the reduced mass of each pair [J], and its largest so far.
-    swing_j: f64,
-    largest_swing_j: f64,
-    /// Farthest that it fell below that: ½ m v² for the speed v at which contact met its block.
-    met_j: f64,
+    impact_work_j: f64,
+    largest_impact_work_j: f64,
+    /// Farthest that it fell below that: ½ m v² for the speed v of the impact.
+    impact_j: f64,
     lasting_gain_j: f64,
     lasting_loss_j: f64,
     /// Energy that Coulomb friction with heavier blocks would have taken from their slips beyond what friction took [J].
@@ -47,27 +47,27 @@ struct Book {
     /// Largest error of a velocity [m/s] and of a place [m] for that.
     lumped_m_s: f64,
     lumped_m: f64,
-    /// Velocity of unknown direction that squeezing gave it, of its mass centre and of its turn [m/s], the largest, and where they took it [m].
+    /// Unresolved lateral velocity of its mass centre and of its rotation [m/s], the largest, and the drift that they add up to [m].
     shift_m_s: Vec3,
     turn_m_s: Vec3,
-    largest_sideways_m_s: f64,
+    largest_lateral_m_s: f64,
     shift_m: Vec3,
     turn_m: Vec3,
-    largest_sideways_m: f64,
+    largest_lateral_m: f64,
     /// Elastic energy at the first sample, and at the last [J].
     strain_start_j: f64,
     strain_j: f64,
-    /// What vibration and jumps of forces have left of errors.
+    /// Errors left by vibration and jumps of forces.
     ringing: Ringing,
 }
 
-/// The books of all blocks.
+/// Energy balances and diagnostics of all blocks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct BlockDiagnostics {
     scales: Vec<BlockScale>,
-    books: Vec<Book>,
+    balances: Vec<BlockBalance>,
     begun: bool,
-    /// Whether contact is solved for: a collision may be over within a step then, and how fast it was is not seen.
+    /// Whether contact is solved for: a collision may be over within a step then, and its speed is not resolved.
     solves_contact: bool,
     /// Largest error of a velocity for being turned too little [m/s].
     turned_m_s: f64,
@@ -75,12 +75,12 @@ pub(crate) struct BlockDiagnostics {
 }
 
 impl BlockDiagnostics {
-    /// Empty books.
+    /// No balances yet.
     pub(crate) fn new(scales: Vec<BlockScale>, solves_contact: bool) -> Self {
-        let books = vec![Book::default(); scales.len()];
+        let balances = vec![BlockBalance::default(); scales.len()];
         Self {
             scales,
-            books,
+            balances,
             begun: false,
             solves_contact,
             turned_m_s: 0.0,
@@ -90,7 +90,7 @@ impl BlockDiagnostics {
 
     /// Number of blocks.
     pub(crate) fn len(&self) -> usize {
-        self.books.len()
+        self.balances.len()
     }
 
     fn lighter(&self, a: BlockId, b: BlockId) -> usize {
@@ -98,28 +98,29 @@ impl BlockDiagnostics {
         if self.scales[second].weight() < self.scales[first].weight() { second } else { first }
     }
 
-    /// Books work of contact between two blocks, on both [J].
+    /// Records the work of contact between two blocks, on both [J].
     pub(crate) fn add_work(&mut self, a: BlockId, b: BlockId, work_j: f64) {
         let lighter = self.lighter(a, b);
         let heavier = if lighter == a.index() { b.index() } else { a.index() };
-        let book = &mut self.books[lighter];
-        book.work_j += work_j;
-        book.swing_j += work_j * (1.0 + self.scales[lighter].mass_kg / self.scales[heavier].weight());
+        let balance = &mut self.balances[lighter];
+        balance.work_j += work_j;
+        balance.impact_work_j +=
+            work_j * (1.0 + self.scales[lighter].mass_kg / self.scales[heavier].weight());
     }
 
-    /// Books how far friction between two blocks was from Coulomb's law in a step [J].
+    /// Records the deviation of friction between two blocks from Coulomb's law in a step [J].
     pub(crate) fn add_coulomb_gap(&mut self, a: BlockId, b: BlockId, gap_j: f64) {
         let lighter = self.lighter(a, b);
-        self.books[lighter].coulomb_gap_j += gap_j;
+        self.balances[lighter].coulomb_gap_j += gap_j;
     }
 
     /// Largest energy by which friction of a lighter block was off Coulomb's law, over ½ m V² or its largest energy of contact; what rounding may have done does not count.
     pub(crate) fn unresolved_friction(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
         let mut worst = Worst::default();
-        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
             let moving_j = 0.5 * scale.mass_kg * speed_m_s * speed_m_s;
-            let energy_j = moving_j.max(book.largest_contact_j);
-            let gap_j = book.coulomb_gap_j - rounding_j;
+            let energy_j = moving_j.max(balance.largest_contact_j);
+            let gap_j = balance.coulomb_gap_j - rounding_j;
             if gap_j > 0.0 && energy_j > 0.0 {
                 worst.take(gap_j / energy_j, block);
             }
@@ -127,7 +128,7 @@ impl BlockDiagnostics {
         worst
     }
 
-    /// Books what the shear spring of a facet of `owner` did in a step.
+    /// Records the shear spring of a facet of `owner` in a step.
     pub(crate) fn add_spring_slip(&mut self, owner: BlockId, target: BlockId, spring: &SpringSlip) {
         self.creep.make_room(self.scales.len());
         // Of two equal ones the second counts, which may lie on the first.
@@ -147,99 +148,100 @@ impl BlockDiagnostics {
         self.creep.worst(&self.scales, speed_m_s)
     }
 
-    /// Keeps how fast contact has met each block, once all work of a step is booked.
+    /// Keeps the energy of impact on each block, once all work of a step is recorded.
     pub(crate) fn close_step(&mut self) {
-        for book in &mut self.books {
-            book.largest_swing_j = book.largest_swing_j.max(book.swing_j);
-            book.met_j = book.met_j.max(book.largest_swing_j - book.swing_j);
+        for balance in &mut self.balances {
+            balance.largest_impact_work_j = balance.largest_impact_work_j.max(balance.impact_work_j);
+            balance.impact_j = balance.impact_j.max(balance.largest_impact_work_j - balance.impact_work_j);
         }
     }
 
     /// Forgets the energies of contact before new ones are noted.
     pub(crate) fn clear_energies(&mut self) {
-        self.books.iter_mut().for_each(|book| book.contact_j = 0.0);
+        self.balances.iter_mut().for_each(|balance| balance.contact_j = 0.0);
     }
 
     /// Notes the energy of contact between two blocks [J].
     pub(crate) fn add_energy(&mut self, a: BlockId, b: BlockId, energy_j: f64) {
         let lighter = self.lighter(a, b);
-        self.books[lighter].contact_j += energy_j;
+        self.balances[lighter].contact_j += energy_j;
     }
 
     /// Balances work against energies; `comes_back` is the part of contact's energy that explicit steps hold back.
     pub(crate) fn balance(&mut self, comes_back: f64) {
-        for book in &mut self.books {
-            let sum_j = book.work_j + book.contact_j;
+        for balance in &mut self.balances {
+            let sum_j = balance.work_j + balance.contact_j;
             if !self.begun {
-                book.start_j = sum_j;
+                balance.start_j = sum_j;
             }
-            let (error_j, back_j) = (sum_j - book.start_j, comes_back * book.contact_j);
-            book.largest_contact_j = book.largest_contact_j.max(book.contact_j);
-            book.lasting_gain_j = book.lasting_gain_j.max(error_j - back_j);
-            book.lasting_loss_j = book.lasting_loss_j.max(-error_j - back_j);
+            let (error_j, back_j) = (sum_j - balance.start_j, comes_back * balance.contact_j);
+            balance.largest_contact_j = balance.largest_contact_j.max(balance.contact_j);
+            balance.lasting_gain_j = balance.lasting_gain_j.max(error_j - back_j);
+            balance.lasting_loss_j = balance.lasting_loss_j.max(-error_j - back_j);
         }
         self.begun = true;
     }
 
     /// Notes the elastic energy of a block [J].
     pub(crate) fn note_strain(&mut self, block: BlockId, energy_j: f64) {
-        let book = &mut self.books[block.index()];
-        book.strain_j = energy_j.abs();
+        let balance = &mut self.balances[block.index()];
+        balance.strain_j = energy_j.abs();
         if !self.begun {
-            book.strain_start_j = book.strain_j;
+            balance.strain_start_j = balance.strain_j;
         }
     }
 
     /// Square of the speed at which a block would have the elastic energy that it began with or, where vibrations die out, that it has
     /// now [m²/s²].
     pub(crate) fn strain_speed2(&self, block: BlockId, die_out: bool) -> f64 {
-        let (book, scale) = (&self.books[block.index()], &self.scales[block.index()]);
-        let borne_j = if die_out { book.strain_start_j.max(book.strain_j) } else { book.strain_start_j };
+        let (balance, scale) = (&self.balances[block.index()], &self.scales[block.index()]);
+        let borne_j =
+            if die_out { balance.strain_start_j.max(balance.strain_j) } else { balance.strain_start_j };
         2.0 * borne_j / scale.mass_kg
     }
 
-    /// Books how far a block's turn falls behind, `since_s` after the last sample, at a spin [rad/s] and a rate [rad/s] now.
+    /// Records how far a block's rotation lags, `since_s` after the last sample, at a spin [rad/s] and a rate [rad/s] now.
     pub(crate) fn add_lag(&mut self, block: BlockId, since_s: f64, spin_rad_s: f64, rate_rad_s: f64) {
-        let (book, scale) = (&mut self.books[block.index()], &self.scales[block.index()]);
-        book.lag_rad += 0.5 * since_s * (book.lag_rate_rad_s + rate_rad_s);
-        book.lag_rate_rad_s = rate_rad_s;
-        self.turned_m_s = self.turned_m_s.max(book.lag_rad * spin_rad_s * scale.radius_m);
+        let (balance, scale) = (&mut self.balances[block.index()], &self.scales[block.index()]);
+        balance.lag_rad += 0.5 * since_s * (balance.lag_rate_rad_s + rate_rad_s);
+        balance.lag_rate_rad_s = rate_rad_s;
+        self.turned_m_s = self.turned_m_s.max(balance.lag_rad * spin_rad_s * scale.radius_m);
     }
 
-    /// Books the rotation of a block whose inertia is wrong by a part of it, `since_s` after the last sample, at a rate of rotation [rad/s] now:
+    /// Records the rotation of a block whose inertia is wrong by a part of it, `since_s` after the last sample, at a rate of rotation [rad/s] now:
     /// under given torques its rate of rotation and the angle that it turns by are wrong by as much.
     pub(crate) fn add_lumped_turn(&mut self, block: BlockId, since_s: f64, spin_rad_s: Vec3, error: f64) {
-        let (book, scale) = (&mut self.books[block.index()], &self.scales[block.index()]);
-        book.lumped_turn_rad += 0.5 * since_s * (book.lumped_spin_rad_s + spin_rad_s);
-        book.lumped_spin_rad_s = spin_rad_s;
+        let (balance, scale) = (&mut self.balances[block.index()], &self.scales[block.index()]);
+        balance.lumped_turn_rad += 0.5 * since_s * (balance.lumped_spin_rad_s + spin_rad_s);
+        balance.lumped_spin_rad_s = spin_rad_s;
         let radius_m = error * scale.radius_m;
-        book.lumped_m_s = book.lumped_m_s.max(radius_m * spin_rad_s.norm());
-        book.lumped_m = book.lumped_m.max(radius_m * book.lumped_turn_rad.norm());
+        balance.lumped_m_s = balance.lumped_m_s.max(radius_m * spin_rad_s.norm());
+        balance.lumped_m = balance.lumped_m.max(radius_m * balance.lumped_turn_rad.norm());
     }
 
     /// Largest error of a velocity for lumped masses over a speed, and of a place over the smallest height of the block's tetrahedra; what rounding
     /// may have done does not count.
     pub(crate) fn lumped(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
         let (mut speed, mut place) = (Worst::default(), Worst::default());
-        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
-            if 0.5 * scale.mass_kg * book.lumped_m_s * book.lumped_m_s > rounding_j {
-                speed.take(book.lumped_m_s / speed_m_s, block);
-                place.take(book.lumped_m / scale.height_m, block);
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            if 0.5 * scale.mass_kg * balance.lumped_m_s * balance.lumped_m_s > rounding_j {
+                speed.take(balance.lumped_m_s / speed_m_s, block);
+                place.take(balance.lumped_m / scale.height_m, block);
             }
         }
         (speed, place)
     }
 
-    /// Books what drove a block in a step, and with it the error that the step leaves.
-    pub(crate) fn add_ringing(&mut self, block: usize, step: &Quadrature, drive: &Drive) {
-        self.books[block].ringing.add(step, drive);
+    /// Records the forcing of a block in a step, and with it the error that the step leaves.
+    pub(crate) fn add_ringing(&mut self, block: usize, step: &Quadrature, drive: &RigidForcing) {
+        self.balances[block].ringing.add(step, drive);
     }
 
     /// Largest error of a velocity for ringing, over a speed; what rounding may have done does not count.
     pub(crate) fn ringing(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
         let mut worst = Worst::default();
-        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
-            let error_m_s = book.ringing.error_m_s();
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            let error_m_s = balance.ringing.error_m_s();
             if 0.5 * scale.mass_kg * error_m_s * error_m_s > rounding_j {
                 worst.take(error_m_s / speed_m_s, block);
             }
@@ -247,47 +249,49 @@ impl BlockDiagnostics {
         worst
     }
 
-    /// Books what squeezing gave a block in a step.
-    pub(crate) fn add_lateral_drift(&mut self, block: BlockId, dt_s: f64, sideways: &LateralDrift) {
-        let book = &mut self.books[block.index()];
-        book.shift_m_s += sideways.shift_m_s;
-        book.turn_m_s += sideways.turn_m_s;
-        book.shift_m += dt_s * book.shift_m_s;
-        book.turn_m += dt_s * book.turn_m_s;
-        let both = |shift: &Vec3, turn: &Vec3| shift.norm().max(turn.norm());
-        book.largest_sideways_m_s = book.largest_sideways_m_s.max(both(&book.shift_m_s, &book.turn_m_s));
-        book.largest_sideways_m = book.largest_sideways_m.max(both(&book.shift_m, &book.turn_m));
+    /// Records the lateral drift of a clamped block in a step.
+    pub(crate) fn add_lateral_drift(&mut self, block: BlockId, dt_s: f64, drift: &LateralDrift) {
+        let balance = &mut self.balances[block.index()];
+        balance.shift_m_s += drift.shift_m_s;
+        balance.turn_m_s += drift.turn_m_s;
+        balance.shift_m += dt_s * balance.shift_m_s;
+        balance.turn_m += dt_s * balance.turn_m_s;
+        let larger = |shift: &Vec3, turn: &Vec3| shift.norm().max(turn.norm());
+        balance.largest_lateral_m_s =
+            balance.largest_lateral_m_s.max(larger(&balance.shift_m_s, &balance.turn_m_s));
+        balance.largest_lateral_m = balance.largest_lateral_m.max(larger(&balance.shift_m, &balance.turn_m));
     }
 
-    /// Largest velocity that squeezing gave a block, over a speed, and largest error of a place for it, over the smallest height of the block's
+    /// Largest unresolved lateral velocity of a block, over a speed, and largest lateral drift, over the smallest height of the block's
     /// tetrahedra; what rounding may have done does not count.
-    pub(crate) fn squeezed(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
+    pub(crate) fn lateral_drift(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
         let (mut speed, mut place) = (Worst::default(), Worst::default());
-        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
-            let sideways_m_s = book.largest_sideways_m_s;
-            if 0.5 * scale.mass_kg * sideways_m_s * sideways_m_s > rounding_j {
-                speed.take(sideways_m_s / speed_m_s, block);
-                place.take(book.largest_sideways_m / scale.height_m, block);
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            let lateral_m_s = balance.largest_lateral_m_s;
+            if 0.5 * scale.mass_kg * lateral_m_s * lateral_m_s > rounding_j {
+                speed.take(lateral_m_s / speed_m_s, block);
+                place.take(balance.largest_lateral_m / scale.height_m, block);
             }
         }
         (speed, place)
     }
 
     /// Largest lasting gain and loss of a lighter block, over ½ m v V; what rounding may have done does not count. V is the largest speed of
-    /// the run, v that at which contact met the block, or V where that is not seen. Where contact stores more than ½ m V², that is what counts.
+    /// the run, v that of the impact, or V where that is not resolved. Where contact stores more than ½ m V², that is what counts.
     pub(crate) fn lasting(&self, speed_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
         let (mut gain, mut loss) = (Worst::default(), Worst::default());
-        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
             let moving_j = 0.5 * scale.mass_kg * speed_m_s * speed_m_s;
-            let unseen_j = if self.solves_contact { moving_j } else { 0.0 };
-            let met_j = book.met_j.max(book.largest_contact_j).max(unseen_j);
-            let energy_j = if met_j < moving_j { (met_j * moving_j).sqrt() } else { met_j } + SLOW * moving_j;
+            let unresolved_j = if self.solves_contact { moving_j } else { 0.0 };
+            let impact_j = balance.impact_j.max(balance.largest_contact_j).max(unresolved_j);
+            let energy_j =
+                if impact_j < moving_j { (impact_j * moving_j).sqrt() } else { impact_j } + SLOW * moving_j;
             let over = |error_j: f64| {
                 let counts = error_j > rounding_j && energy_j > 0.0;
                 if counts { (error_j - rounding_j) / energy_j } else { 0.0 }
             };
-            gain.take(over(book.lasting_gain_j), block);
-            loss.take(over(book.lasting_loss_j), block);
+            gain.take(over(balance.lasting_gain_j), block);
+            loss.take(over(balance.lasting_loss_j), block);
         }
         (gain, loss)
     }
@@ -295,8 +299,8 @@ impl BlockDiagnostics {
     /// Largest error of a place for being turned too little, over the smallest height of the block's tetrahedra.
     pub(crate) fn turned_over_height(&self) -> Worst {
         let mut worst = Worst::default();
-        for (block, (book, scale)) in self.books.iter().zip(&self.scales).enumerate() {
-            worst.take(book.lag_rad * scale.radius_m / scale.height_m, block);
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            worst.take(balance.lag_rad * scale.radius_m / scale.height_m, block);
         }
         worst
     }
@@ -311,54 +315,54 @@ impl BlockDiagnostics {
 mod tests {
     use super::*;
 
-    fn books() -> BlockDiagnostics {
+    fn balances() -> BlockDiagnostics {
         let scale = |mass_kg, is_held| BlockScale { mass_kg, is_held, radius_m: 2.0, height_m: 0.5 };
         BlockDiagnostics::new(vec![scale(1e6, false), scale(2.0, false), scale(1.0, true)], false)
     }
 
     #[test]
     fn the_lighter_of_two_answers_for_what_contact_makes() {
-        let mut books = books();
-        books.balance(0.0);
+        let mut balances = balances();
+        balances.balance(0.0);
         // A block of 2 kg meets a held one at 5 m/s, and leaves it with 1 J more than it came with.
-        books.add_work(BlockId(1), BlockId(2), -25.0);
-        books.close_step();
-        books.add_work(BlockId(2), BlockId(1), 26.0);
-        books.close_step();
-        books.balance(0.0);
-        let (gain, loss) = books.lasting(10.0, 0.0);
+        balances.add_work(BlockId(1), BlockId(2), -25.0);
+        balances.close_step();
+        balances.add_work(BlockId(2), BlockId(1), 26.0);
+        balances.close_step();
+        balances.balance(0.0);
+        let (gain, loss) = balances.lasting(10.0, 0.0);
         assert_eq!((gain, loss), (Worst { value: 1.0 / 50.5, block: 1 }, Worst::default()));
-        assert_eq!(books.lasting(10.0, 0.5).0.value, 0.5 / 50.5);
-        assert_eq!(books.lasting(1.0, 0.0).0.value, 1.0 / 25.005);
-        books.solves_contact = true;
-        assert_eq!(books.lasting(10.0, 0.0).0.value, 1.0 / 100.5);
+        assert_eq!(balances.lasting(10.0, 0.5).0.value, 0.5 / 50.5);
+        assert_eq!(balances.lasting(1.0, 0.0).0.value, 1.0 / 25.005);
+        balances.solves_contact = true;
+        assert_eq!(balances.lasting(10.0, 0.0).0.value, 1.0 / 100.5);
     }
 
     #[test]
     fn what_contact_stores_is_not_lost() {
-        let mut books = books();
-        books.balance(0.25);
-        books.add_work(BlockId(0), BlockId(1), -8.0);
-        books.add_energy(BlockId(0), BlockId(1), 8.0);
-        books.balance(0.25);
-        assert_eq!(books.lasting(1.0, 0.0), (Worst::default(), Worst::default()));
+        let mut balances = balances();
+        balances.balance(0.25);
+        balances.add_work(BlockId(0), BlockId(1), -8.0);
+        balances.add_energy(BlockId(0), BlockId(1), 8.0);
+        balances.balance(0.25);
+        assert_eq!(balances.lasting(1.0, 0.0), (Worst::default(), Worst::default()));
         // 2 J are missing while 8 J are stored: that part comes back. Once it is over, they are lost.
-        books.add_work(BlockId(0), BlockId(1), -2.0);
-        books.balance(0.25);
-        assert_eq!(books.lasting(1.0, 0.0).1.value, 0.0);
-        books.clear_energies();
-        books.add_work(BlockId(0), BlockId(1), 8.0);
-        books.balance(0.25);
-        assert_eq!(books.lasting(1.0, 0.0).1, Worst { value: 2.0 / 8.005, block: 1 });
+        balances.add_work(BlockId(0), BlockId(1), -2.0);
+        balances.balance(0.25);
+        assert_eq!(balances.lasting(1.0, 0.0).1.value, 0.0);
+        balances.clear_energies();
+        balances.add_work(BlockId(0), BlockId(1), 8.0);
+        balances.balance(0.25);
+        assert_eq!(balances.lasting(1.0, 0.0).1, Worst { value: 2.0 / 8.005, block: 1 });
     }
 
     #[test]
     fn a_lag_grows_by_the_mean_rate_and_moves_nodes_by_the_radius() {
-        let mut books = books();
-        books.add_lag(BlockId(1), 0.0, 3.0, 0.2);
-        books.add_lag(BlockId(1), 0.5, 3.0, 0.4);
+        let mut balances = balances();
+        balances.add_lag(BlockId(1), 0.0, 3.0, 0.2);
+        balances.add_lag(BlockId(1), 0.5, 3.0, 0.4);
         let lag = 0.5 * 0.5 * 0.6;
-        assert!((books.turned_over_height().value - lag * 2.0 / 0.5).abs() < 1e-15);
-        assert!((books.turned_m_s() - lag * 6.0).abs() < 1e-15);
+        assert!((balances.turned_over_height().value - lag * 2.0 / 0.5).abs() < 1e-15);
+        assert!((balances.turned_m_s() - lag * 6.0).abs() < 1e-15);
     }
 }

@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 pub(crate) struct Vibration {
     /// Their speed [m/s].
     pub speed_m_s: f64,
-    /// What they are little beside, whatever moves: see [`BlockDiagnostics::strain_speed2`] [m²/s²].
+    /// Scale beside which they are small, whatever moves: see [`BlockDiagnostics::strain_speed2`] [m²/s²].
     pub borne_m2_s2: f64,
 }
 
 impl Vibration {
-    /// Over the largest speed and what the block bears.
+    /// Over the largest speed and the block's elastic scale.
     pub(crate) fn over(&self, largest_m_s: f64) -> f64 {
         if self.speed_m_s == 0.0 {
             0.0

@@ -20,7 +20,7 @@ pub struct Invariants {
     pub lasting_gain: f64,
     /// largest loss that does not come back when contact parts, over the peak energy.
     pub lasting_loss: f64,
-    /// largest lasting gain of the lighter block of a pair, over ½ m v V for the speed v at which contact met it and the largest
+    /// largest lasting gain of the lighter block of a pair, over ½ m v V for the speed v of the impact and the largest
     /// speed V, or its largest energy of contact.
     pub block_gain: Worst,
     /// largest lasting loss of it, over the same.
@@ -31,10 +31,10 @@ pub struct Invariants {
     pub max_penetration_ratio: f64,
     /// by how much the strength of a bond was exceeded where one broke, over its strength without normal stress.
     pub bond_overload: f64,
-    /// largest velocity that a block owes to the unknown direction of the forces that squeeze it, over the largest speed.
-    pub squeezed_speed: Worst,
+    /// largest unresolved lateral velocity of a clamped block, due to the uncertain direction of contact forces, over the largest speed.
+    pub lateral_drift_speed: Worst,
     /// where that took it, over the smallest tet height of its block.
-    pub squeezed_place: Worst,
+    pub lateral_drift_place: Worst,
     /// mean speed at which a block creeps on shear springs that contact makes slip by ringing, over the largest speed.
     pub creep_speed: Worst,
     /// where that took it, over the smallest tet height of its block.
@@ -59,11 +59,11 @@ pub struct Invariants {
     pub lumped_place: Worst,
     /// error of a velocity over the largest speed, for the ringing of contact and supports.
     pub ringing: Worst,
-    /// speed of elastic vibrations that turns over in a step, over the largest speed and what the block bears; none below 0.001,
+    /// speed of elastic vibrations that turns over in a step, over the largest speed and the block's elastic scale; none below 0.001,
     /// and that of the last sample where the integrator lets them die out.
     pub vibration: f64,
     /// speed that loads and motions bring and take back within a step, over the largest speed.
-    pub unseen_speed: f64,
+    pub unresolved_speed: f64,
     /// largest error of velocities that damping leaves in a step, over the largest speed.
     pub damping_speed: f64,
     /// Most pairs looked at in a step.
@@ -76,6 +76,6 @@ pub struct Invariants {
     pub contact_pairs_total: u64,
     /// Most evaluations of contact that a step was solved with.
     pub iterations_max: u32,
-    /// What controlling the step took.
+    /// Counts of step control.
     pub control: StepCounts,
 }

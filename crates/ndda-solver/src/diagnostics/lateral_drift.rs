@@ -1,4 +1,4 @@
-//! Blocks that others press from both sides, and squeeze out.
+//! Unresolved lateral motion of blocks that others clamp from both sides.
 //!
 //! Blocks in contact have sunk into each other by d, and where their edges meet they press on each other's sides, too: by N d/2L for
 //! faces of length L. Their faces tilt by as much. So a contact force N has its direction to about d/L, and where a block is pressed
@@ -13,7 +13,7 @@ use crate::bodies::report::BlockReport;
 
 /// Normal contact forces on a block.
 #[derive(Default)]
-struct Pressed {
+struct ClampingForces {
     resultant: Vec3,
     sum_n: f64,
     friction_n: f64,
@@ -21,11 +21,11 @@ struct Pressed {
 }
 
 impl LateralDrift {
-    /// What a step gives a block.
+    /// Drift of a block in a step.
     pub(crate) fn of(shape: &Prototype, context: &StepContext, report: &BlockReport) -> Self {
-        let pressed = Pressed::by(context);
+        let pressed = ClampingForces::by(context);
         let unknown_n = context.direction_uncertainty * pressed.sum_n;
-        // Where friction is at work, a little more or less of it bears that.
+        // Where friction is at work, a little more or less of it carries that.
         if pressed.friction_n > unknown_n {
             return Self::default();
         }
@@ -40,7 +40,7 @@ impl LateralDrift {
     }
 }
 
-impl Pressed {
+impl ClampingForces {
     fn by(context: &StepContext) -> Self {
         let (mut pressed, mut largest_n) = (Self::default(), 0.0);
         // Most nodes are not in contact.
@@ -84,7 +84,7 @@ fn unresisted(force: &Vec3, net: &Vec3, unknown_n: f64) -> Vec3 {
     net.dot(&direction).clamp(-size, size) * direction
 }
 
-/// The same of the torque about the axis, as a force at the radius of gyration.
+/// Contribution of the torque about the axis, as a force at the radius of gyration.
 fn turning(shape: &Prototype, context: &StepContext, axis: &Vec3, unknown_n: f64) -> Vec3 {
     let operator = &shape.operator;
     let center = operator.center(context.contact_position);

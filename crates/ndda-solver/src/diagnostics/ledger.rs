@@ -1,4 +1,4 @@
-//! The books of a run: energy, momentum, and the worst of everything that has a limit.
+//! The ledger of a run: energy and momentum balance, and the worst of everything that has a limit.
 
 use crate::diagnostics::energies::Sample;
 use crate::diagnostics::energies::Vibration;
@@ -12,7 +12,7 @@ use crate::integrators::time_integrator::StepWeights;
 use crate::step::report::StepCounts;
 use crate::step::report::StepReport;
 
-/// Strain below which none is looked for: a tenth of what a linear law may bear.
+/// Strain below which the search is skipped: a tenth of the limit of a linear law.
 const LITTLE_STRAIN: f64 = 1e-2;
 
 /// Part of the largest speed of which it does not matter how much turns over in a step.
@@ -51,7 +51,7 @@ pub struct Ledger {
 }
 
 impl Ledger {
-    /// Empty books of some blocks; `start` is the force and torque from outside before the first step, zero unless the integrator remembers
+    /// An empty ledger of some blocks; `start` is the force and torque from outside before the first step, zero unless the integrator remembers
     /// accelerations [N, N m].
     pub(crate) fn new(start: (Vec3, Vec3), blocks: BlockDiagnostics) -> Self {
         let worst = Invariants {
@@ -66,8 +66,8 @@ impl Ledger {
             unresolved_friction: Worst::default(),
             max_penetration_ratio: 0.0,
             bond_overload: 0.0,
-            squeezed_speed: Worst::default(),
-            squeezed_place: Worst::default(),
+            lateral_drift_speed: Worst::default(),
+            lateral_drift_place: Worst::default(),
             creep_speed: Worst::default(),
             creep_place: Worst::default(),
             action_reaction: 0.0,
@@ -81,7 +81,7 @@ impl Ledger {
             lumped_place: Worst::default(),
             ringing: Worst::default(),
             vibration: 0.0,
-            unseen_speed: 0.0,
+            unresolved_speed: 0.0,
             damping_speed: 0.0,
             candidate_pairs_max: 0,
             contact_pairs_max: 0,
@@ -151,7 +151,7 @@ impl Ledger {
         self.damping_m_s = self.damping_m_s.max(error_m_s);
     }
 
-    /// Counts a step that is taken back.
+    /// Counts a discarded step.
     pub(crate) fn note_rejected(&mut self) {
         self.worst.control.rejected += 1;
     }
@@ -162,7 +162,7 @@ impl Ledger {
         control.most_halvings = control.most_halvings.max(halvings);
     }
 
-    /// Whether a first sample has opened the books.
+    /// Whether a first sample has opened the balance.
     pub(crate) fn is_open(&self) -> bool {
         self.start.is_some()
     }
@@ -185,7 +185,7 @@ impl Ledger {
         self.damping_work_j += damping_j;
     }
 
-    /// The books of single blocks.
+    /// Diagnostics of single blocks.
     pub(crate) fn blocks(&mut self) -> &mut BlockDiagnostics {
         &mut self.blocks
     }
@@ -261,7 +261,7 @@ impl Ledger {
         worst.iterations_max = worst.iterations_max.max(report.iterations.newton);
     }
 
-    /// Balances a sample against the books and keeps the extremes; the first sample opens the books.
+    /// Balances a sample against the ledger and keeps the extremes; the first sample opens the balance.
     ///
     /// Where contact is explicit and stable, what it keeps is v² (1 − h²/4)/2 + ω² x²/2: up to h²/4 of its own energy is
     /// missing while blocks are pressed, and comes back when they part. `explicit_contact` says that it is.
@@ -284,7 +284,7 @@ impl Ledger {
         self.last_sample_s = sample.time_s;
         self.lasting_gain_j = self.lasting_gain_j.max(sample.balance_j - comes_back_j);
         self.lasting_loss_j = self.lasting_loss_j.max(-sample.balance_j - comes_back_j);
-        // What supports and loads exchange rounds as they do, however little it leaves to move.
+        // The exchange of supports and loads rounds in proportion to its size, however little it leaves to move.
         self.peak_momentum = self.peak_momentum.max(sample.momentum_scale).max(self.load_impulse);
         self.peak_angular = self.peak_angular.max(sample.angular_scale);
         let momentum_error = (sample.momentum - start.momentum - self.impulse).norm();
@@ -301,7 +301,8 @@ impl Ledger {
         let over = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
         let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
         let (block_gain, block_loss) = self.blocks.lasting(self.largest_speed_m_s, self.rounding_j);
-        let (squeezed_speed, squeezed_place) = self.blocks.squeezed(self.largest_speed_m_s, self.rounding_j);
+        let (lateral_drift_speed, lateral_drift_place) =
+            self.blocks.lateral_drift(self.largest_speed_m_s, self.rounding_j);
         let (creep_speed, creep_place) = self.blocks.creep(self.largest_speed_m_s);
         let (lumped_speed, lumped_place) = self.blocks.lumped(self.largest_speed_m_s, self.rounding_j);
         let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
@@ -315,8 +316,8 @@ impl Ledger {
             block_gain,
             block_loss,
             unresolved_friction: self.blocks.unresolved_friction(self.largest_speed_m_s, self.rounding_j),
-            squeezed_speed,
-            squeezed_place,
+            lateral_drift_speed,
+            lateral_drift_place,
             creep_speed,
             creep_place,
             lumped_speed,
@@ -325,7 +326,7 @@ impl Ledger {
             turn_speed: speed(self.blocks.turned_m_s()),
             ringing: self.blocks.ringing(self.largest_speed_m_s, self.rounding_j),
             vibration: self.vibration.over(self.largest_speed_m_s),
-            unseen_speed: speed(self.unresolved_m_s),
+            unresolved_speed: speed(self.unresolved_m_s),
             damping_speed: speed(self.damping_m_s),
             ..self.worst
         }

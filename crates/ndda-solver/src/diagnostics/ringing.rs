@@ -15,7 +15,7 @@
 //! is free again, and where friction makes of the history of a force a velocity that stays. While a block vibrates, the error
 //! is at most twice the speed of its vibration, which is all wrong in phase then.
 
-use crate::bodies::report::Drive;
+use crate::bodies::report::RigidForcing;
 use std::f64::consts::PI;
 
 use ndda_mesh::{Mat3, Vec3};
@@ -30,14 +30,14 @@ use crate::bodies::report::BlockReport;
 /// that is held at one end.
 const END_OF_A_BEAM: f64 = 3.0;
 
-/// What a step leaves of the sums of squares of the steps before it: they reach over about 64 steps.
+/// Factor by which a step reduces the sums of squares of the steps before it: they reach over about 64 steps.
 const KEPT: f64 = 1.0 - 1.0 / 64.0;
 
 /// Square of a second difference over its mean over the last steps from which on it is a jump, and no part of a vibration.
 const JUMP2: f64 = 4.0;
 
-impl Drive {
-    /// What drives a block in a step that is turned by R.
+impl RigidForcing {
+    /// Forcing of a block in a step that is turned by R.
     pub(crate) fn of(
         shape: &Prototype,
         context: &StepContext,
@@ -52,7 +52,7 @@ impl Drive {
         let operator = &shape.operator;
         let load: Vec3 = context.external.iter().sum();
         let mut force: Vec3 = context.force.iter().sum();
-        // What moves supports does so exactly, jumps of velocities included.
+        // Prescribed motions of supports are exact, jumps of velocities included.
         if shape.supports.motions.is_empty() {
             force += report.reaction;
         }
@@ -77,7 +77,7 @@ impl Drive {
             is_held,
             touches,
             speed_m_s: report.speed_m_s,
-            rubs: context.friction_force.iter().any(|f| *f != Vec3::zeros()),
+            has_friction: context.friction_force.iter().any(|f| *f != Vec3::zeros()),
         }
     }
 }
@@ -110,7 +110,7 @@ pub(crate) struct Ringing {
     /// Whether the acceleration grew in the last step, and how often it has begun to fall since contact began.
     grows: bool,
     maxima: u32,
-    rubs: bool,
+    has_friction: bool,
     is_held: bool,
     /// Whether the last step was the first of all.
     has_begun: bool,
@@ -118,7 +118,7 @@ pub(crate) struct Ringing {
     fastest_m_s: f64,
     /// Sum since contact began [m/s].
     now_m_s: f64,
-    /// What contacts that are over have left [m/s].
+    /// Velocity error left by contacts that are over [m/s].
     past_m_s: f64,
     /// All of it that is left now [m/s].
     error_m_s: f64,
@@ -126,7 +126,7 @@ pub(crate) struct Ringing {
 
 impl Ringing {
     /// Books a step.
-    pub(crate) fn add(&mut self, step: &Quadrature, drive: &Drive) {
+    pub(crate) fn add(&mut self, step: &Quadrature, drive: &RigidForcing) {
         if !drive.is_held && !self.is_held {
             return;
         }
@@ -138,7 +138,7 @@ impl Ringing {
         }
         let change = [now[0] - self.last[0], now[1] - self.last[1]];
         if std::mem::replace(&mut self.has_begun, step.is_first) {
-            // Nothing is known of the change before the first step.
+            // The change before the first step is unknown.
             self.change = change;
         }
         let second = [change[0] - self.change[0], change[1] - self.change[1]];
@@ -149,7 +149,7 @@ impl Ringing {
         self.second2 = KEPT * self.second2 + second2;
         self.weight = KEPT * self.weight + 1.0;
         self.count_maxima(square(&now) - square(&self.last));
-        self.rubs |= drive.rubs;
+        self.has_friction |= drive.has_friction;
         self.fastest_m_s = self.fastest_m_s.max(drive.speed_m_s);
         let only_supported = drive.is_held && !drive.touches;
         self.now_m_s += step.dt_s
@@ -163,7 +163,7 @@ impl Ringing {
             };
         // Taken at one end of a step, forces of contact leave errors of first order until the block is free again.
         let is_over = !step.is_one_sided || step.judges_pairs && !drive.touches;
-        let cancels = self.maxima <= 1 && !self.rubs && is_over;
+        let cancels = self.maxima <= 1 && !self.has_friction && is_over;
         let new_m_s = if cancels { 0.0 } else { self.now_m_s };
         self.error_m_s = (self.past_m_s + new_m_s).min(self.bound_m_s(step, only_supported));
         (self.last, self.change, self.is_held) = (now, change, drive.is_held);
@@ -224,19 +224,24 @@ mod tests {
         Quadrature { dt_s, is_one_sided, elastic_lag: 0.0, judges_pairs: true, is_first: false }
     }
 
-    fn pushed(acceleration: f64, is_held: bool) -> Drive {
-        Drive { shift_m_s2: Vec3::new(0.0, 0.0, acceleration), is_held, touches: true, ..Drive::default() }
+    fn pushed(acceleration: f64, is_held: bool) -> RigidForcing {
+        RigidForcing {
+            shift_m_s2: Vec3::new(0.0, 0.0, acceleration),
+            is_held,
+            touches: true,
+            ..RigidForcing::default()
+        }
     }
 
     /// Half a period of ω = 1 in `steps`, as often as `collisions` says, without or with friction.
-    fn collide(ringing: &mut Ringing, steps: u32, collisions: u32, rubs: bool) {
+    fn collide(ringing: &mut Ringing, steps: u32, collisions: u32, has_friction: bool) {
         let dt_s = PI / f64::from(steps);
         for _ in 0..collisions {
             for k in 1..steps {
-                let drive = Drive { rubs, ..pushed((dt_s * f64::from(k)).sin(), true) };
+                let drive = RigidForcing { has_friction, ..pushed((dt_s * f64::from(k)).sin(), true) };
                 ringing.add(&step(dt_s, false), &drive);
             }
-            ringing.add(&step(dt_s, false), &Drive::default());
+            ringing.add(&step(dt_s, false), &RigidForcing::default());
         }
     }
 
@@ -288,7 +293,10 @@ mod tests {
         let mut ringing = Ringing::default();
         for k in 0..10 {
             let step = Quadrature { is_first: k == 0, ..step(0.01, false) };
-            ringing.add(&step, &Drive { rubs: true, ..pushed(if k < 5 { 2.0 } else { 1.0 }, true) });
+            ringing.add(
+                &step,
+                &RigidForcing { has_friction: true, ..pushed(if k < 5 { 2.0 } else { 1.0 }, true) },
+            );
         }
         assert!((ringing.error_m_s() - 0.5 * 0.01 * 1.0).abs() < 1e-15);
     }
@@ -300,7 +308,7 @@ mod tests {
         for push in [1.0, 2.0, 1.0] {
             ringing.add(&step, &pushed(push, true));
         }
-        ringing.add(&step, &Drive::default());
+        ringing.add(&step, &RigidForcing::default());
         assert!((ringing.error_m_s() - 0.5 * 0.01 * 4.0).abs() < 1e-15);
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What the books must know of a block.
+/// Scales of a block for its diagnostics.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct BlockScale {
     /// Mass [kg].
@@ -16,7 +16,7 @@ pub(crate) struct BlockScale {
 }
 
 impl BlockScale {
-    /// What of two blocks is the lighter one, held ones being heavier than all.
+    /// Order by which the lighter of two blocks is chosen; held ones are heavier than all.
     pub(crate) fn weight(&self) -> f64 {
         if self.is_held { f64::INFINITY } else { self.mass_kg }
     }

@@ -10,7 +10,7 @@ use crate::integrators::time_integrator::{StepWeights, TimeIntegrator};
 /// M (v₁ − v₀)/Δt + K [(1 − θ) d₀ + θ d₁] = f(x₀ + ½ Δt v₀)        d₁ = d₀ + Δt (v₀ + v₁)/2
 /// ```
 ///
-/// Contact looks ⅛ Δt² a further ahead of free blocks (`first_step.rs`).
+/// Contact of free blocks is offset by ⅛ Δt² a (`first_step.rs`).
 /// θ = ½ neither adds nor removes energy and is second order; its contact map has determinant 1 and is stable for
 /// ω_c Δt < 2. θ up to 1 damps high elastic modes. θ = 1 with contact at x₀ would be the paper's scheme.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,4 +1,4 @@
-//! What a time integrator must say.
+//! The contract of a time integrator.
 
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
@@ -67,7 +67,7 @@ impl StepWeights {
     }
 }
 
-/// What accelerates a block as a whole at the end of a step, of which integrators with `old_inertia` or `new_force` < 1 remember a part.
+/// Acceleration of a block as a whole at the end of a step, of which integrators with `old_inertia` or `new_force` < 1 remember a part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Inertia {
     /// Σ M a [N].

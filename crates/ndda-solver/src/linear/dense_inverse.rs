@@ -68,7 +68,7 @@ impl Factor for Inverse {
 
     fn solve_in_place(&self, rhs: &mut [f64], scratch: &mut Scratch) -> Result<(), SolveError> {
         let out = &mut scratch.lines[..self.n.div_ceil(MULTI)];
-        self.arch.dispatch(One { inverse: self, x: rhs, out });
+        self.arch.dispatch(SingleProduct { inverse: self, x: rhs, out });
         for (rhs, out) in rhs.chunks_mut(MULTI).zip(out) {
             rhs.copy_from_slice(&out.0[..rhs.len()]);
         }
@@ -82,7 +82,7 @@ impl Factor for Inverse {
     ) -> Result<(), SolveError> {
         scratch.make_room(self.lines_of_eight());
         let out = scratch.lines.as_chunks_mut().0;
-        self.arch.dispatch(AllEight { inverse: self, x: rhs, out });
+        self.arch.dispatch(MultiProduct { inverse: self, x: rhs, out });
         rhs.iter_mut().zip(out.as_flattened()).for_each(|(rhs, out)| *rhs = out.0);
         Ok(())
     }
@@ -119,9 +119,9 @@ impl Inverse {
         }
     }
 
-    /// The same for one eight of rows and eight right-hand sides.
+    /// Product of one group of eight rows with eight right-hand sides.
     #[inline(always)]
-    fn times_eight<S: Simd>(&self, simd: S, tiles: &[Eight], x: &[[f64; MULTI]], out: &mut [Eight; MULTI]) {
+    fn times_multi<S: Simd>(&self, simd: S, tiles: &[Eight], x: &[[f64; MULTI]], out: &mut [Eight; MULTI]) {
         for v in 0..MULTI / S::F64_LANES {
             let mut sums = [simd.splat_f64s(0.0); MULTI];
             for (tile, x) in tiles.iter().zip(x) {
@@ -138,13 +138,13 @@ impl Inverse {
 }
 
 /// A product, compiled for each kind of processor.
-struct One<'a> {
+struct SingleProduct<'a> {
     inverse: &'a Inverse,
     x: &'a [f64],
     out: &'a mut [Eight],
 }
 
-impl WithSimd for One<'_> {
+impl WithSimd for SingleProduct<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -163,19 +163,19 @@ impl WithSimd for One<'_> {
 }
 
 /// A product with eight right-hand sides, compiled for each kind of processor.
-struct AllEight<'a> {
+struct MultiProduct<'a> {
     inverse: &'a Inverse,
     x: &'a [[f64; MULTI]],
     out: &'a mut [[Eight; MULTI]],
 }
 
-impl WithSimd for AllEight<'_> {
+impl WithSimd for MultiProduct<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         for (tiles, out) in self.inverse.tiles.chunks(self.inverse.n.max(1)).zip(self.out) {
-            self.inverse.times_eight(simd, tiles, self.x, out);
+            self.inverse.times_multi(simd, tiles, self.x, out);
         }
     }
 }

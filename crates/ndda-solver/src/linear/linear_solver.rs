@@ -1,4 +1,4 @@
-//! What a linear solver must do, and the matrix that it is given.
+//! The contract of a linear solver, and the matrix that it is given.
 
 use std::any::Any;
 
@@ -94,7 +94,7 @@ impl Scratch {
         Self { own: Some(Box::new(own)), ..Self::default() }
     }
 
-    /// What it was made of; `None` if it was made of another type.
+    /// The value that it was made of; `None` if it was made of another type.
     pub fn own<T: Any>(&mut self) -> Option<&mut T> {
         self.own.as_mut().and_then(|own| own.downcast_mut())
     }
@@ -128,7 +128,7 @@ pub trait LinearSolver: Send + Sync {
 
 /// A factored matrix; it exists only once factored, so nothing can be called in the wrong order.
 pub trait Factor: Send + Sync {
-    /// Its kind, for a person who asks.
+    /// Its kind, for reports.
     fn name(&self) -> &'static str;
 
     /// Number of unknowns.

@@ -1,4 +1,4 @@
-//! What watches a step: impulses, work, energies of pairs, and extremes.
+//! Accounts of a step: impulses, work, energies of pairs, and extremes.
 
 use crate::step::report::StepReport;
 use std::time::Instant;
@@ -66,13 +66,13 @@ impl Simulation {
         self.audit.ledger.add_whole_impulse(impulse, orbital);
         self.audit.ledger.add_work(friction_j, motion_j, load_j, damping_j);
         if self.problem.has_impulses {
-            self.book_impulses();
+            self.record_impulses();
         }
-        let contact_work_j = self.book_work_of_contact(&contact);
+        let contact_work_j = self.record_contact_work(&contact);
         if self.audit.direction_uncertainty > 0.0 {
-            self.book_squeezing();
+            self.record_lateral_drift();
         }
-        self.book_springs(&contact);
+        self.record_springs(&contact);
         self.audit.ledger.watch_speeds(speed_m_s, self.unresolved_m_s());
         let report = StepReport { contact, h, travel, contact_work_j, iterations };
         self.audit.ledger.watch(&report);
@@ -95,9 +95,9 @@ impl Simulation {
         contact.contact_pairs > 0 && self.weights.forces_do_their_work()
     }
 
-    /// Books what normal contact did in the step on both blocks of each pair; returns the sum of what single facets did, without
+    /// Records the work of normal contact in the step on both blocks of each pair; returns the sum over single facets, without
     /// sign, where steps are controlled [J].
-    pub(super) fn book_work_of_contact(&mut self, contact: &ContactReport) -> f64 {
+    pub(super) fn record_contact_work(&mut self, contact: &ContactReport) -> f64 {
         let works = self.contact_does_work(contact);
         let mut contact_work_j = 0.0;
         self.audit.travel.touching.clear();
@@ -120,8 +120,8 @@ impl Simulation {
         contact_work_j
     }
 
-    /// Books the slip that shear springs lost in the step.
-    pub(super) fn book_springs(&mut self, contact: &ContactReport) {
+    /// Records the slip of shear springs in the step.
+    pub(super) fn record_springs(&mut self, contact: &ContactReport) {
         let Some(model) = self.contact.as_ref() else { return };
         let books = self.audit.ledger.blocks();
         if contact.contact_pairs > 0 {
@@ -132,18 +132,18 @@ impl Simulation {
         books.close_springs(self.part_s);
     }
 
-    /// Books the impulses of damping and of prescribed velocities, and how well the step resolves damping.
-    pub(super) fn book_impulses(&mut self) {
+    /// Records the impulses of damping and of prescribed velocities, and how well the step resolves damping.
+    pub(super) fn record_impulses(&mut self) {
         for report in self.bodies.iter().map(|body| &body.report) {
             self.audit.ledger.add_impulses(report.impulse, report.impulse_moment, report.damping_error_m_s);
         }
     }
 
-    /// Books what the step gave blocks that are squeezed.
-    pub(super) fn book_squeezing(&mut self) {
+    /// Records the lateral drift of clamped blocks.
+    pub(super) fn record_lateral_drift(&mut self) {
         let books = self.audit.ledger.blocks();
         for (block, body) in self.problem.blocks.ids().zip(&self.bodies) {
-            books.add_lateral_drift(block, self.part_s, &body.report.sideways);
+            books.add_lateral_drift(block, self.part_s, &body.report.lateral_drift);
         }
     }
 

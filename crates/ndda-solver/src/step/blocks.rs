@@ -14,13 +14,13 @@ use crate::error::StepError;
 use crate::step::Simulation;
 
 impl Simulation {
-    /// What block `index` of a shape needs to know of a step.
+    /// Input of the step of block `index` of a shape.
     pub(crate) fn context(&self, index: usize, shape: &Prototype) -> StepContext<'_> {
         let range = self.problem.blocks.nodes_of(BlockId(index as u32));
         self.context_under(index, shape, &self.scratch.force[range])
     }
 
-    /// The same with other forces on its nodes.
+    /// Input of the step with other forces on the block's nodes.
     pub(crate) fn context_under<'a>(
         &'a self,
         index: usize,
@@ -37,7 +37,7 @@ impl Simulation {
             time_s: self.clock_s(0.0),
             end_s: self.clock_s(1.0),
             contact_position: &self.scratch.contact_position[range.clone()],
-            ahead: self.state.ahead_of(BlockId(index as u32)),
+            contact_offset: self.state.contact_offset_of(BlockId(index as u32)),
             force,
             external: &self.loads.total()[range.clone()],
             changing: self.loads.changing().get(range.clone()).unwrap_or(&[]),

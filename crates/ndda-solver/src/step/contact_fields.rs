@@ -10,7 +10,7 @@ impl Simulation {
     /// Contact force on each node in the last step [N], friction included; zero before the first step.
     ///
     /// Where contact gathers the forces on a block on a few of its nodes, they are shown where facets press instead, on the nearest
-    /// triangle of the block, if contacts of the step are kept because a [`Sink`](crate::sink::Sink) asks for them.
+    /// triangle of the block, if contacts of the step are kept because a [`Sink`](crate::sink::Sink) requires them.
     pub fn contact_forces_n(&self) -> Vec<Vec3> {
         if self.state.step == 0 {
             return vec![Vec3::zeros(); self.scratch.force.len()];
@@ -50,9 +50,10 @@ impl Simulation {
     }
 
     fn nearest_triangle(&self, block: BlockId, contact: &FacetContact) -> [NodeId; 3] {
-        let ahead = self.state.ahead_of(block);
-        let corners =
-            |triangle: &[NodeId; 3]| triangle.map(|n| self.scratch.contact_position[n.index()] + ahead);
+        let contact_offset = self.state.contact_offset_of(block);
+        let corners = |triangle: &[NodeId; 3]| {
+            triangle.map(|n| self.scratch.contact_position[n.index()] + contact_offset)
+        };
         let distance = |triangle: &[NodeId; 3]| distance_to_triangle(&contact.center, &corners(triangle));
         let nearer = |a: &&[NodeId; 3], b: &&[NodeId; 3]| distance(a).total_cmp(&distance(b));
         *self.problem.blocks.triangles[self.problem.blocks.triangles_of(block)]
@@ -63,8 +64,8 @@ impl Simulation {
 
     /// Gives a force to the corners of a triangle, by the areas that the point makes with the other two.
     fn spread(&self, triangle: &[NodeId; 3], at: &Vec3, force_n: &Vec3, forces: &mut [Vec3]) {
-        let ahead = self.state.ahead_of(self.problem.blocks.block_of(triangle[0]));
-        let corners = triangle.map(|n| self.scratch.contact_position[n.index()] + ahead);
+        let contact_offset = self.state.contact_offset_of(self.problem.blocks.block_of(triangle[0]));
+        let corners = triangle.map(|n| self.scratch.contact_position[n.index()] + contact_offset);
         let normal = triangle_area_vector(&corners);
         let opposite = |a: usize| {
             let part = triangle_area_vector(&[*at, corners[(a + 1) % 3], corners[(a + 2) % 3]]);

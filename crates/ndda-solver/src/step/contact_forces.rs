@@ -1,4 +1,4 @@
-//! Contact forces at the places that the integrator asks for.
+//! Contact forces at the places that the integrator requires.
 
 use std::mem::take;
 
@@ -43,7 +43,7 @@ impl Simulation {
         self.place_moved_bases();
     }
 
-    /// x* of blocks that go where they are told to: where they are at that time.
+    /// x* of blocks that move as prescribed: where they are at that time.
     pub(super) fn place_moved_bases(&mut self) {
         let (now_s, then_s) = (self.clock_s(0.0), self.clock_s(self.weights.contact_lead));
         for (block, body) in self.problem.blocks.ids().zip(&self.bodies) {
@@ -59,7 +59,7 @@ impl Simulation {
         }
     }
 
-    /// Rigid motion and loads of the blocks, where contact asks for them.
+    /// Rigid motion and loads of the blocks, where contact needs them.
     pub(super) fn place_bodies(&mut self) {
         let (now_s, end_s) = (self.clock_s(0.0), self.clock_s(1.0));
         for (index, body) in self.scratch.contact_bodies.iter_mut().enumerate() {
@@ -71,8 +71,8 @@ impl Simulation {
             let (position, velocity) =
                 (&self.scratch.contact_position[range.clone()], &self.state.velocity[range.clone()]);
             let motion = shape.operator.rigid_motion(position, velocity);
-            let ahead = self.state.ahead_of(BlockId(index as u32));
-            body.center = motion.center + ahead;
+            let contact_offset = self.state.contact_offset_of(BlockId(index as u32));
+            body.center = motion.center + contact_offset;
             body.velocity_m_s = motion.velocity_m_s;
             body.spin_rad_s = motion.spin_rad_s;
             if held {
@@ -88,7 +88,7 @@ impl Simulation {
                 shape.rigid_inverse_inertia(position, &motion).unwrap_or(motion.inverse_inertia);
             (body.load_n, body.torque_n_m) = (Vec3::zeros(), Vec3::zeros());
             for (x, load) in position.iter().zip(&self.loads.total()[range]) {
-                body.push(&(x + ahead), load);
+                body.push(&(x + contact_offset), load);
             }
         }
     }
@@ -105,7 +105,7 @@ impl Simulation {
             self.scratch.friction_force.fill(Vec3::zeros());
             self.scratch.contact_stiffness.fill(0.0);
         }
-        // What contact writes is taken out, so that it may ask how the blocks answer.
+        // The output of contact is taken out, so that contact may query how the blocks answer.
         let (mut force, mut history) = (take(&mut self.scratch.force), take(&mut self.state.contact));
         let mut friction_force = take(&mut self.scratch.friction_force);
         let mut stiffness = take(&mut self.scratch.contact_stiffness);
@@ -116,7 +116,7 @@ impl Simulation {
             blocks: &self.problem.blocks,
             position: seen(
                 &self.problem.blocks,
-                &self.state.ahead,
+                &self.state.contact_offset,
                 &self.scratch.contact_position,
                 &mut seen_position,
             ),

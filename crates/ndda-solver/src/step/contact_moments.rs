@@ -64,7 +64,7 @@ fn mean_inertia(shape: &Prototype) -> f64 {
 }
 
 impl Simulation {
-    /// Finds Σ w × F of the contact forces just added, where the scheme asks for it.
+    /// Finds Σ w × F of the contact forces just added, where the scheme requires it.
     pub(crate) fn carry_contact_forces(&mut self) {
         let Some(mut moments) = self.contact_moments.take() else { return };
         moments.carried.fill(Vec3::zeros());

@@ -1,14 +1,14 @@
 //! Steps as short as they have to be.
 //!
-//! A step of the scene is done in 2ⁿ parts of Δt/2ⁿ. When a part asks for more than it may, the whole step is taken back
-//! (history of contact and books included) and done again in twice as many; when half as many would do for some steps in a
+//! A step of the scene is done in 2ⁿ parts of Δt/2ⁿ. When a part violates a limit, the whole step is discarded
+//! (contact history and ledger included) and repeated in twice as many; when half as many would do for some steps in a
 //! row, half as many are tried. Time stays a count of steps, outputs fall where they fall, and a change of n costs one
 //! factorisation per distinct block, once per n.
 //!
 //! The balance of energy costs more than a step, so it is evaluated only after steps that may have gained more than they are
 //! allowed. Explicit contact takes its force f at x*, halfway between two places; where f is linear, the work f·Δx differs from what
 //! contact stores by ¼ (ω_c Δt)² f·Δx, and a first contact stores at most ⅛ (ω_c Δt)² m v² before its force has acted
-//! (`Simulation::may_meet_with`). h bounds ω_c Δt, and the work of contact is known from the books.
+//! (`Simulation::may_collide_with`). h bounds ω_c Δt, and the work of contact is known from the ledger.
 
 use crate::bodies::step_damping::StepDamping;
 use crate::diagnostics::ledger::Ledger;
@@ -38,7 +38,7 @@ const RELAX_STEPS: u32 = 4;
 const HELPS: f64 = 0.7;
 /// Halvings in a row that do not help, before it is none of the step.
 const ENOUGH_TRIES: u32 = 3;
-/// Steps for which energy is not asked for after halving did not help.
+/// Steps that skip the energy criterion after halving failed to reduce the error.
 const COOLDOWN_STEPS: u32 = 100;
 /// Steps after which the balance of energy is evaluated in any case, for errors that are not of contact: at 1e-4 a step, as steps may
 /// gain by default, these make less than the 2 % of energy that an accurate run may be off.
@@ -67,7 +67,7 @@ type Factors = (Box<dyn Factor>, Option<Box<dyn Factor>>);
 
 /// Why a step has to be done again.
 enum Rejection {
-    /// It asks for more than this many times too much.
+    /// A limit is exceeded by more than this factor.
     TooLong(f64),
     /// It gained this much energy over the largest so far.
     Energy(f64),
@@ -128,7 +128,7 @@ impl Simulation {
             if let Rejection::Energy(gain) = rejection {
                 unhelpful = if gain > HELPS * last_gain { unhelpful + 1 } else { 0 };
                 last_gain = gain;
-                // Not an error of the step: take it as it is, and do not ask for a while.
+                // Not an error of the step: accept it, and skip the energy criterion for a while.
                 if unhelpful == ENOUGH_TRIES {
                     energy_check_cooldown = COOLDOWN_STEPS;
                 }
@@ -146,7 +146,7 @@ impl Simulation {
             }
             let more = match rejection {
                 Rejection::Energy(_) if energy_check_cooldown > 0 => 0,
-                // As many halvings as h asks for, at once.
+                // As many halvings as h requires, at once.
                 Rejection::TooLong(times) if times.is_finite() => (times.log2().ceil() as u32).max(1),
                 _ => 1,
             };
@@ -156,7 +156,7 @@ impl Simulation {
         }
     }
 
-    /// All parts of a step; stops at the first that asks for too much.
+    /// All parts of a step; stops at the first that violates a limit.
     fn try_parts(&mut self, control: &mut Control) -> Result<StepReport, Rejection> {
         let bound = self.contact_bound().map(|bound| control.settings.safety * bound);
         let mut worst = StepReport::default();
@@ -186,7 +186,7 @@ impl Simulation {
             return true;
         }
         let gained_j = 0.25 * report.h * report.h * report.contact_work_j;
-        NONLINEAR * gained_j > limit_j || self.may_meet_with(settings.safety * bound, limit_j)
+        NONLINEAR * gained_j > limit_j || self.may_collide_with(settings.safety * bound, limit_j)
     }
 
     /// Energy that the step just done gained, over the largest so far.
@@ -197,7 +197,7 @@ impl Simulation {
         };
         let after_j = self.sample()?.balance_j;
         let gain = (after_j - before_j) / self.audit.ledger.peak_energy_j();
-        // A step that is taken back begins where it began.
+        // A discarded step is repeated from its start.
         let is_taken_back = gain > control.settings.energy;
         let known = if is_taken_back { (control.state.step, before_j) } else { (self.state.step, after_j) };
         control.balance = Some(known);

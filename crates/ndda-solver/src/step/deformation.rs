@@ -13,7 +13,7 @@ use crate::step::Simulation;
 /// The blocks of a simulation before their step.
 pub(crate) struct StepDeformation<'a> {
     simulation: &'a Simulation,
-    /// Contact asks through a shared reference, once for all blocks.
+    /// Contact calls through a shared reference, once for all blocks.
     bodies: Mutex<&'a mut [Body]>,
 }
 

@@ -97,7 +97,7 @@ impl Simulation {
         if !shape.supports.held.is_empty() || !shape.supports.motions.is_empty() {
             return Err(DriveError::Held { block: self.problem.blocks.names[block.index()].clone() });
         }
-        let ahead = self.state.ahead_of(block);
+        let offset = self.state.contact_offset_of(block);
         let State { position, velocity, .. } = &mut self.state;
         let (position, velocity) = (&position[nodes.clone()], &mut velocity[nodes]);
         let before = Motion::of(shape, position, velocity);
@@ -107,7 +107,7 @@ impl Simulation {
         }
         let after = Motion::of(shape, position, velocity);
         let impulse = after.momentum - before.momentum;
-        let moment = after.angular_momentum - before.angular_momentum + ahead.cross(&impulse);
+        let moment = after.angular_momentum - before.angular_momentum + offset.cross(&impulse);
         self.audit.ledger.add_whole_impulse(impulse, moment);
         self.audit.ledger.add_work(0.0, 0.0, after.kinetic_j - before.kinetic_j, 0.0);
         Ok(())

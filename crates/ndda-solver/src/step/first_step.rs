@@ -1,8 +1,8 @@
-//! How far ahead of a free block contact looks.
+//! Contact offset of free blocks at the start.
 //!
 //! A scheme that takes contact at x* = x + ½ Δt v leaps from one x* to the next, by Δt v: these follow the motion, and x, the mean of
 //! two of them, is off by ⅛ Δt² a. A block that begins at x itself has its x* beside its course: where contact of frequency ω is to
-//! bear a load all at once, it swings by (ω Δt)²/8 of that too much. With contact o = ⅛ Δt² a further ahead, a being the acceleration of the
+//! carry a load all at once, it oscillates by (ω Δt)²/8 of that too much. With contact o = ⅛ Δt² a further ahead, a being the acceleration of the
 //! block as a whole at the start, that is (ω Δt)⁴/128. o never changes: x + o is what moves by the scheme and keeps its
 //! energy and angular momentum, while x falls by ½ g t² from where it was put.
 
@@ -12,34 +12,34 @@ use crate::error::StepError;
 use crate::step::Simulation;
 
 impl Simulation {
-    /// Looks ahead where the scheme asks for it.
-    pub(super) fn look_ahead_in_the_first_step(&mut self) -> Result<(), StepError> {
-        if self.begins() { self.begin_ahead() } else { Ok(()) }
+    /// Sets the contact offsets in the first step, where the scheme needs them.
+    pub(super) fn offset_contact_in_the_first_step(&mut self) -> Result<(), StepError> {
+        if self.needs_offset() { self.set_contact_offsets() } else { Ok(()) }
     }
 
-    /// Whether this is the first step, and one by a scheme of that kind. A scene that settled is on its course, with no load to bear all at
+    /// Whether this is the first step, and one by a scheme of that kind. A scene that settled is on its course, with no load to carry all at
     /// once.
-    fn begins(&self) -> bool {
+    fn needs_offset(&self) -> bool {
         let is_settled = self.settling || !self.state.start.is_empty();
         let first = self.state.step == 0 && self.state.control.part == 0 && !is_settled;
         first && self.contact.is_some() && self.newton.is_none() && self.weights.contact_in_the_middle()
     }
 
     /// o ← ⅛ Δt² a, by loads and contact where the blocks are put.
-    fn begin_ahead(&mut self) -> Result<(), StepError> {
-        self.state.ahead.clear();
+    fn set_contact_offsets(&mut self) -> Result<(), StepError> {
+        self.state.contact_offset.clear();
         let force = self.force_at_start()?;
         for block in self.problem.blocks.ids() {
             let (shape, nodes) = (self.shape(block), self.problem.blocks.nodes_of(block));
             let total: Vec3 = force[nodes.clone()].iter().sum();
             let acceleration = if shape.is_free() { total / shape.operator.mass_kg } else { Vec3::zeros() };
-            let ahead = 0.125 * self.part_s * self.part_s * acceleration;
+            let contact_offset = 0.125 * self.part_s * self.part_s * acceleration;
             let momentum = shape.operator.momentum(&self.state.velocity[nodes]);
-            self.audit.ledger.add_whole_impulse(Vec3::zeros(), ahead.cross(&momentum));
-            self.state.ahead.push(ahead);
+            self.audit.ledger.add_whole_impulse(Vec3::zeros(), contact_offset.cross(&momentum));
+            self.state.contact_offset.push(contact_offset);
         }
-        if self.state.ahead.iter().all(|ahead| *ahead == Vec3::zeros()) {
-            self.state.ahead.clear();
+        if self.state.contact_offset.iter().all(|contact_offset| *contact_offset == Vec3::zeros()) {
+            self.state.contact_offset.clear();
         }
         self.scratch.force.copy_from_slice(self.loads.total());
         Ok(())
@@ -56,24 +56,24 @@ impl Simulation {
     }
 }
 
-/// Where contact sees nodes that are at `places`: there, or ahead of it, in the room for that.
+/// Positions at which contact is evaluated for nodes at `places`: those, or with the contact offsets, in `room`.
 pub(crate) fn seen<'a>(
     blocks: &BlockSet,
-    ahead: &[Vec3],
+    contact_offset: &[Vec3],
     places: &'a [Vec3],
     room: &'a mut Vec<Vec3>,
 ) -> &'a [Vec3] {
-    if ahead.is_empty() {
+    if contact_offset.is_empty() {
         return places;
     }
     room.resize(places.len(), Vec3::zeros());
-    for (block, ahead) in blocks.ids().zip(ahead) {
+    for (block, contact_offset) in blocks.ids().zip(contact_offset) {
         let nodes = blocks.nodes_of(block);
         // Two at a time fill vectors.
         let ((seen, last_seen), (at, last_at)) =
             (room[nodes.clone()].as_chunks_mut(), places[nodes].as_chunks());
-        seen.iter_mut().zip(at).for_each(|(seen, [x, y])| *seen = [x + ahead, y + ahead]);
-        last_seen.iter_mut().zip(last_at).for_each(|(seen, x)| *seen = x + ahead);
+        seen.iter_mut().zip(at).for_each(|(seen, [x, y])| *seen = [x + contact_offset, y + contact_offset]);
+        last_seen.iter_mut().zip(last_at).for_each(|(seen, x)| *seen = x + contact_offset);
     }
     room
 }

@@ -1,6 +1,6 @@
 //! Contact at the end of the step, solved for.
 //!
-//! A step is u = G(f): each block answers to the forces f on it alone. Contact at the end asks for f = f_c(x + G(f)). It is
+//! A step is u = G(f): each block answers to the forces f on it alone. Contact at the end requires f = f_c(x + G(f)). It is
 //! the minimum of the incremental potential Π(u) = ½ (u − û)·K̃ (u − û) + W_c(x + u) + …, whose gradient at x + G(f) is
 //! f − f_c. So Newton's method works on the forces:
 //!
@@ -33,7 +33,7 @@ pub struct ImplicitContact {
 
 /// Evaluations of contact in which friction is found anew.
 const FRICTION_EVALUATIONS: u32 = 30;
-/// Reduction of the linear residual (squared) that a Newton step asks for.
+/// Reduction of the linear residual (squared) that a Newton step requires.
 const KRYLOV_REDUCTION2: f64 = 1e-4;
 /// Conjugate gradient steps after which a Newton step takes what it has.
 const MOST_KRYLOV: u32 = 2000;
@@ -134,7 +134,7 @@ impl Simulation {
         let (mut stride, mut search) = (0.0, None::<Search>);
         newton.base.copy_from_slice(&self.state.contact_force);
         // A rigid block takes torques about x*: the first evaluation takes them where the blocks are, not where an
-        // earlier step, or a part of one that was taken back, left x*.
+        // earlier step, or a part of one that was discarded, left x*.
         self.scratch.contact_position.copy_from_slice(&self.state.position);
         self.carry_by_blocks();
         newton.k_delta.fill(Vec3::zeros());
@@ -188,7 +188,7 @@ impl Simulation {
         self.motion_by(|node| force[node].norm_squared())
     }
 
-    /// The same of the change of contact forces by the rounding of positions: no misfit is known better.
+    /// Change of contact forces by the rounding of positions: no misfit is known better.
     fn resolution(&self) -> f64 {
         let rounding = |node: usize| f64::EPSILON * self.scratch.contact_position[node].amax();
         self.motion_by(|node| (self.scratch.contact_stiffness[node] * rounding(node)).powi(2))
@@ -219,7 +219,7 @@ impl Simulation {
         self.scratch.force.fill(Vec3::zeros());
         let report = self.add_contact_forces(Some(&newton.velocity))?;
         self.hold_friction(newton);
-        // What these forces turn the blocks by is that of all observers only together with the velocities of their pairs.
+        // The rotations due to these forces agree among observers only together with the velocities of their pairs.
         self.carry_contact_forces();
         for ((q, contact), f) in newton.residual.iter_mut().zip(&self.scratch.force).zip(&newton.force) {
             *q = contact - f;

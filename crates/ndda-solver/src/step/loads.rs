@@ -1,4 +1,4 @@
-//! What acts on the nodes from outside, at any time of a run.
+//! External loads on the nodes, at any time of a run.
 
 use ndda_fem::{Between, Table};
 use ndda_mesh::Vec3;
@@ -110,12 +110,12 @@ impl Loads {
         !self.driving.is_empty()
     }
 
-    /// What never changes, per node [N].
+    /// Constant part of the loads, per node [N].
     pub(crate) fn constant(&self) -> &[Vec3] {
         &self.constant
     }
 
-    /// What varies, as last placed [N]; empty if nothing does.
+    /// Varying part of the loads, as last placed [N]; empty if nothing varies.
     pub(crate) fn changing(&self) -> &[Vec3] {
         &self.changing
     }

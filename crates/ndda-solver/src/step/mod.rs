@@ -68,7 +68,7 @@ pub struct Simulation {
     pub(crate) audit: Audit,
 }
 
-/// What no step changes.
+/// Data that no step changes.
 pub(crate) struct Problem {
     pub(crate) blocks: BlockSet,
     /// Operators, supports and factors; congruent blocks share one.
@@ -94,21 +94,21 @@ pub(crate) struct Scratch {
     /// Whether forces of friction and stiffness of contact may be other than zero.
     pub(crate) contact_has_acted: bool,
     pub(crate) contact_position: Vec<Vec3>,
-    /// Room for places that contact sees further ahead.
+    /// Scratch for positions with contact offsets.
     pub(crate) seen_position: Vec<Vec3>,
     pub(crate) contact_bodies: Vec<ContactBody>,
     /// Where nodes were before the step, later how far it moved them [m]; empty without contact.
     pub(crate) moved: Vec<Vec3>,
 }
 
-/// What watches a run.
+/// Observers of a run: balances, diagnostics, timing.
 pub(crate) struct Audit {
     pub(crate) ledger: Ledger,
     pub(crate) stages: StageTimes,
     pub(crate) travel: Travel,
-    /// What facets did in the last step, if somebody wants to know.
+    /// Facets in contact in the last step, if they were requested.
     pub(crate) contacts: Option<Vec<FacetContact>>,
-    /// Part of contact forces whose direction is not known in this step, and that no friction bears.
+    /// Direction uncertainty: part of contact forces whose direction is unknown in this step, and that no friction carries.
     pub(crate) direction_uncertainty: f64,
 }
 
@@ -128,7 +128,7 @@ impl Simulation {
     pub(crate) fn part_step(&mut self) -> Result<StepReport, StepError> {
         let mut watch = StageWatch::start();
         self.gather_loads();
-        self.look_ahead_in_the_first_step()?;
+        self.offset_contact_in_the_first_step()?;
         let (contact, iterations) = self.gather_contact()?;
         self.watch_contact(&contact);
         watch.stop(&mut self.audit.stages.contact_s);

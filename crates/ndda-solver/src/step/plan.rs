@@ -1,4 +1,4 @@
-//! What a run will do and what it leaves out, read off the simulation as it is set up.
+//! The plan of a run: its parts and what it leaves out, read off the simulation as it is set up.
 
 use ndda_contact::Part;
 use serde::Serialize;
@@ -29,7 +29,7 @@ pub struct KindPlan {
     pub blocks: usize,
     /// Their tetrahedra.
     pub tets: usize,
-    /// What is solved for, over all of them.
+    /// Number of unknowns over all of them.
     pub unknowns: usize,
 }
 
@@ -49,7 +49,7 @@ pub struct FactorPlan {
 }
 
 impl Simulation {
-    /// What this simulation does in a step and what it leaves out.
+    /// The parts of this simulation's step and what it leaves out.
     pub fn plan(&self) -> Plan {
         let mut parts = self.block_parts();
         parts.extend(self.load_parts());
@@ -161,7 +161,7 @@ impl Simulation {
                 "nothing is held so",
             ),
             Part::of("supports by springs", springs, "part of the matrix", "there are none"),
-            Part::of("prescribed motion", moved, "its work is booked", "no support moves"),
+            Part::of("prescribed motion", moved, "its work is recorded", "no support moves"),
         ]
     }
 
@@ -180,14 +180,14 @@ impl Simulation {
         parts.push(Part::of(
             "work of friction",
             !self.scratch.friction_force.is_empty(),
-            "booked in every step",
+            "recorded in every step",
             "the model has no friction",
         ));
         parts.push(Part::of(
             "rigid motion of blocks for contact",
             model.needs_bodies(),
-            "friction on velocities asks for it",
-            "no law asks for it",
+            "friction on velocities needs it",
+            "no law needs it",
         ));
         parts
     }
@@ -208,7 +208,7 @@ impl Simulation {
             Part::of(
                 "control of the step",
                 self.control.is_some(),
-                "steps are taken back and divided when they ask for too much",
+                "steps that violate a limit are discarded and repeated with smaller substeps",
                 "every step is as long as the scene says: matrices are factored once",
             ),
             Part::of(

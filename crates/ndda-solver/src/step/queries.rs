@@ -1,4 +1,4 @@
-//! What a simulation tells of itself.
+//! Queries of a simulation.
 
 use crate::step::report::StageTimes;
 

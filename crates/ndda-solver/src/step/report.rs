@@ -1,11 +1,11 @@
-//! What one step found.
+//! The report of one step.
 
 use ndda_contact::ContactReport;
 use serde::{Deserialize, Serialize};
 
 use crate::diagnostics::worst::Worst;
 
-/// What one step found.
+/// The report of one step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct StepReport {
     /// Contact at x*.
@@ -17,7 +17,7 @@ pub struct StepReport {
     pub travel: Worst,
     /// Work of normal contact, the sum over facets without sign; only where steps are controlled [J].
     pub contact_work_j: f64,
-    /// What solving for contact took; none where it is taken at predicted positions.
+    /// Iterations of implicit contact; none where contact is taken at predicted positions.
     pub iterations: Iterations,
 }
 
@@ -34,7 +34,7 @@ impl StepReport {
     }
 }
 
-/// What solving for contact took.
+/// Iterations of implicit contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Iterations {
     /// Evaluations of contact.
@@ -43,10 +43,10 @@ pub struct Iterations {
     pub krylov: u32,
 }
 
-/// What controlling the step took; zero without control.
+/// Counts of step control; zero without control.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepCounts {
-    /// Steps taken back.
+    /// Discarded steps.
     pub rejected: u64,
     /// Most halvings of a step.
     pub most_halvings: u32,

@@ -1,4 +1,4 @@
-//! What a simulation is asked for when results are written: energies, momenta, stresses.
+//! Quantities computed when results are written: energies, momenta, stresses.
 
 use std::time::Instant;
 
@@ -16,7 +16,7 @@ use crate::step::first_step::seen;
 use crate::step::state::State;
 
 impl Simulation {
-    /// Energies and momenta now, balanced against the books.
+    /// Energies and momenta now, balanced against the ledger.
     ///
     /// # Errors
     /// [`StepError::Inverted`] when an element is inside out, or as [`step`](Self::step).
@@ -36,8 +36,9 @@ impl Simulation {
         let loads = self.loads.constant().iter().zip(&self.state.position).zip(self.start_position());
         sample.load_j = -loads.map(|((f, x), rest)| f.dot(&(x - rest))).sum::<f64>();
         if let Some(model) = &mut self.contact {
-            let State { position, velocity, ahead, .. } = &self.state;
-            let position = seen(&self.problem.blocks, ahead, position, &mut self.scratch.seen_position);
+            let State { position, velocity, contact_offset, .. } = &self.state;
+            let position =
+                seen(&self.problem.blocks, contact_offset, position, &mut self.scratch.seen_position);
             let input = ContactInput {
                 affine: &self.problem.affine,
                 ..ContactInput::new(&self.problem.blocks, position, velocity, self.part_s)
@@ -57,8 +58,8 @@ impl Simulation {
     }
 
     fn add_block_to(&mut self, sample: &mut Sample, block: BlockId) -> Result<(), StepError> {
-        let (range, time_s, ahead) =
-            (self.problem.blocks.nodes_of(block), sample.time_s, self.state.ahead_of(block));
+        let (range, time_s, contact_offset) =
+            (self.problem.blocks.nodes_of(block), sample.time_s, self.state.contact_offset_of(block));
         let body = &mut self.bodies[block.index()];
         let shape = &self.problem.shapes[body.shape];
         let (position, velocity) = (&self.state.position[range.clone()], &self.state.velocity[range]);
@@ -67,7 +68,7 @@ impl Simulation {
         sample.momentum += momentum;
         sample.angular_momentum += shape.operator.angular_momentum(&Vec3::zeros(), position, velocity);
         // Where contact sees the block: there its forces have no torque on all blocks together.
-        sample.angular_momentum += ahead.cross(&momentum);
+        sample.angular_momentum += contact_offset.cross(&momentum);
         for ((x, v), &m) in position.iter().zip(velocity).zip(&shape.operator.node_mass) {
             sample.momentum_scale += m * v.norm();
             sample.angular_scale += m * x.norm() * v.norm();
@@ -149,13 +150,13 @@ impl Simulation {
         }
     }
 
-    /// What facets did in the last step, where contact was evaluated in it; none unless it was
+    /// Facets in contact in the last step, where contact was evaluated in it; none unless they were
     /// [watched](Self::watch_contacts), nor before the first step.
     pub fn contacts(&self) -> &[FacetContact] {
         self.audit.contacts.as_deref().unwrap_or(&[])
     }
 
-    /// What facets do to each other where the blocks are now; nothing of it is remembered.
+    /// Facets in contact at the present positions of the blocks; the history of contact is not changed.
     ///
     /// # Errors
     /// [`StepError::Contact`] when contact cannot be computed.
@@ -169,7 +170,7 @@ impl Simulation {
         found.map(|report| (report, facets))
     }
 
-    /// Asks contact what it just did, before anything else asks it for something.
+    /// Takes contact's information on the step just done, before contact is evaluated again.
     pub(crate) fn note_contacts(&mut self) {
         let Some(mut contacts) = self.audit.contacts.take() else { return };
         contacts.clear();
@@ -179,10 +180,10 @@ impl Simulation {
 
     fn add_facets(&mut self, facets: &mut Vec<FacetContact>) {
         let Some(model) = &self.contact else { return };
-        let State { velocity, ahead, contact, .. } = &self.state;
+        let State { velocity, contact_offset, contact, .. } = &self.state;
         let position = seen(
             &self.problem.blocks,
-            ahead,
+            contact_offset,
             &self.scratch.contact_position,
             &mut self.scratch.seen_position,
         );

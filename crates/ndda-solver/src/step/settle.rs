@@ -2,7 +2,7 @@
 //!
 //! Kinetic damping (Cundall 1976; Barnes 1999): the scene moves freely until its kinetic energy begins to fall, which is
 //! where its forces balance on the way; there it is stopped, and starts again from nearer to equilibrium. All blocks are
-//! stopped at once: each by itself, a stack of fifty would take 27 times the steps, since the quick swings of neighbours
+//! stopped at once: each by itself, a stack of fifty would take 27 times the steps, since the quick oscillations of neighbours
 //! would stop the slow one of the whole again and again.
 
 use std::ops::ControlFlow;
@@ -32,9 +32,9 @@ pub struct Settled {
     pub speed_ratio: f64,
 }
 
-/// The swings of the whole scene.
+/// The oscillations of the whole scene.
 #[derive(Clone, Copy, Debug, Default)]
-struct Swing {
+struct Oscillation {
     energy_j: f64,
     /// Largest energy at which it was stopped, older ones counting less; none before the first time.
     peak_j: Option<f64>,
@@ -43,10 +43,10 @@ struct Swing {
     between: u64,
 }
 
-/// What the peak before counts a swing later: a small one may be chance, many in a row are not.
+/// Weight of the previous peak one oscillation later: a small one may be chance, many in a row are not.
 const REMEMBERED: f64 = 0.7;
 
-impl Swing {
+impl Oscillation {
     /// Takes the energy after a step; true when the scene is past its peak.
     fn is_past_peak(&mut self, energy_j: f64) -> bool {
         // One that no longer gains any is where nothing drives it.
@@ -60,13 +60,13 @@ impl Swing {
         past
     }
 
-    /// Energy that it may still have: what it has, and what its last swings had.
+    /// Energy that it may still have: what it has, and what its last oscillations had.
     fn left_j(&self) -> f64 {
         match self.peak_j {
-            // A swing that does not come back is over.
+            // A oscillation that does not come back is over.
             Some(peak_j) => {
-                let swings = self.since as f64 / self.between as f64;
-                (peak_j * REMEMBERED.powf(swings)).max(self.energy_j)
+                let oscillations = self.since as f64 / self.between as f64;
+                (peak_j * REMEMBERED.powf(oscillations)).max(self.energy_j)
             }
             None if self.energy_j > 0.0 => f64::INFINITY,
             None => 0.0,
@@ -105,7 +105,7 @@ impl Simulation {
         self.settling = true;
         let start = std::mem::take(&mut self.state.velocity);
         self.state.velocity = vec![Vec3::zeros(); start.len()];
-        let mut swing = Swing::default();
+        let mut oscillation = Oscillation::default();
         let (mut highest_j, mut settled) =
             (self.load_energy_j(), Settled { speed_ratio: f64::INFINITY, ..Settled::default() });
         while settled.speed_ratio > settle.tolerance {
@@ -120,10 +120,11 @@ impl Simulation {
                 total_j += self.shape(block).operator.kinetic_energy_j(&self.state.velocity[nodes]);
             }
             highest_j = highest_j.max(total_j);
-            if swing.is_past_peak(total_j) {
+            if oscillation.is_past_peak(total_j) {
                 self.state.velocity.fill(Vec3::zeros());
             }
-            settled.speed_ratio = if highest_j > 0.0 { (swing.left_j() / highest_j).sqrt() } else { 0.0 };
+            settled.speed_ratio =
+                if highest_j > 0.0 { (oscillation.left_j() / highest_j).sqrt() } else { 0.0 };
             if watch(&settled).is_break() {
                 return Ok(settled);
             }

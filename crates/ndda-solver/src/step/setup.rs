@@ -54,7 +54,7 @@ pub struct Setup {
     /// Contact; `None` where blocks do not feel each other.
     pub contact: Option<Box<dyn ContactModel>>,
     /// Contact at the end of the step, solved for; at predicted positions without.
-    pub end_contact: Option<ImplicitContact>,
+    pub implicit_contact: Option<ImplicitContact>,
     /// Linear solver.
     pub solver: Box<dyn LinearSolver>,
     /// Steps as short as they have to be, `step_s` being the longest; always `step_s` without.
@@ -76,11 +76,11 @@ impl Simulation {
             step_s,
             integrator,
             contact,
-            end_contact,
+            implicit_contact,
             solver,
             auto_step,
         } = setup;
-        let weights = step_weights(integrator.as_ref(), step_s, end_contact.is_some());
+        let weights = step_weights(integrator.as_ref(), step_s, implicit_contact.is_some());
         let (shapes, shape_of) =
             distinct_shapes(&blocks, &bodies, mass, (step_s, &weights), solver.as_ref())?;
         let nodes = blocks.rest_position.len();
@@ -89,8 +89,8 @@ impl Simulation {
         // Contact between fewer than two blocks is left out altogether.
         let contact = contact.filter(|_| blocks.len() > 1);
         let friction_nodes = if contact.as_ref().is_some_and(|c| c.has_friction()) { nodes } else { 0 };
-        let end_contact = end_contact.filter(|_| contact.is_some());
-        let newton_nodes = if end_contact.is_some() { nodes } else { 0 };
+        let implicit_contact = implicit_contact.filter(|_| contact.is_some());
+        let newton_nodes = if implicit_contact.is_some() { nodes } else { 0 };
         let contact_nodes = if contact.is_some() { nodes } else { 0 };
         let mut simulation = Self {
             state: State {
@@ -103,13 +103,13 @@ impl Simulation {
                 internal_force: vec![Vec3::zeros(); if weights.stiffness < 1.0 { nodes } else { 0 }],
                 inertia: vec![Inertia::default(); if weights.needs_acceleration { blocks.len() } else { 0 }],
                 contact_force: vec![Vec3::zeros(); newton_nodes],
-                ahead: Vec::new(),
+                contact_offset: Vec::new(),
                 driving_force: Vec::new(),
                 contact: Default::default(),
             },
             bodies: Vec::with_capacity(blocks.len()),
             loads: Loads::none(),
-            newton: end_contact.map(|settings| Box::new(Newton::new(settings, nodes, blocks.len()))),
+            newton: implicit_contact.map(|settings| Box::new(Newton::new(settings, nodes, blocks.len()))),
             contact_moments: None,
             part_s: step_s,
             weights,
@@ -173,8 +173,9 @@ impl Simulation {
     /// Runs of congruent neighbours, solved for together.
     fn group_congruent(&mut self, shape_of: &[usize]) {
         let shapes = &self.problem.shapes;
-        let alike = |a: usize, b: usize| shape_of[a] == shape_of[b] && shapes[shape_of[a]].factor.is_some();
-        self.problem.runs = CongruentGroups::group(shape_of.len(), MULTI, alike);
+        let congruent =
+            |a: usize, b: usize| shape_of[a] == shape_of[b] && shapes[shape_of[a]].factor.is_some();
+        self.problem.runs = CongruentGroups::group(shape_of.len(), MULTI, congruent);
         for run in self.problem.runs.ranges().filter(|run| run.len() >= ENOUGH_TOGETHER) {
             let factor = shapes[shape_of[run.start]].factor.as_deref();
             self.bodies[run.start].batch = factor.map(|factor| Box::new(Batch::new(factor)));
@@ -205,7 +206,7 @@ impl Simulation {
         let report = BlockReport::default();
         self.bodies.push(Body { shape: shape_index, motion, report, error: None, batch: None });
         if shape.kind == BodyKind::Fixed {
-            // It moves as prescribed from the start: contact sees it ahead of where it is, and facets slip by its velocity.
+            // It moves as prescribed from the start: contact is evaluated ahead of where it is, and facets slip by its velocity.
             let nodes = self.problem.blocks.nodes_of(block);
             self.state.velocity[nodes].fill(shape.velocity_as_a_whole(0.0));
             return;
@@ -272,7 +273,7 @@ impl Simulation {
         self.loads = Loads::new(constant, varying, pressures, rest);
     }
 
-    /// Opens the books, with the accelerations at the start for integrators that need them.
+    /// Opens the ledger, with the accelerations at the start for integrators that need them.
     fn open_ledger(&mut self, solver: &dyn LinearSolver) -> Result<(), SetupError> {
         if self.weights.needs_acceleration {
             self.place_accelerations(solver)?;
@@ -281,7 +282,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Empty books; `start` is the force and torque from outside before the first step.
+    /// An empty ledger; `start` is the force and torque from outside before the first step.
     pub(crate) fn new_ledger(&self, start: (Vec3, Vec3)) -> Ledger {
         let scales = self.problem.blocks.ids().map(|block| self.shape(block).scale()).collect();
         Ledger::new(start, BlockDiagnostics::new(scales, self.newton.is_some()))

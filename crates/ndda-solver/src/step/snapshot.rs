@@ -16,7 +16,7 @@ use crate::step::state::State;
 pub struct Snapshot {
     /// Positions, velocities, what contact remembers.
     pub state: State,
-    /// The books.
+    /// The ledger.
     pub ledger: Ledger,
     /// Seconds spent so far.
     pub stages: StageTimes,

@@ -1,4 +1,4 @@
-//! What changes from step to step, and nothing else.
+//! The state: everything that changes from step to step, and nothing else.
 
 use ndda_contact::ContactHistory;
 use ndda_mesh::{BlockId, Vec3};
@@ -27,22 +27,22 @@ pub struct State {
     pub inertia: Vec<Inertia>,
     /// Contact force per node at the end of the last step [N]; empty where contact is taken at predicted positions.
     pub contact_force: Vec<Vec3>,
-    /// How far ahead of each block contact looks [m]; empty where it does not look ahead of any (`first_step.rs`).
-    pub ahead: Vec<Vec3>,
+    /// Contact offset of each block [m]: contact is evaluated at x* plus this; empty where all are zero (`first_step.rs`).
+    pub contact_offset: Vec<Vec3>,
     /// Force that a caller has set on each block [N]; empty while none was ever set.
     pub driving_force: Vec<Vec3>,
-    /// What contact remembers.
+    /// Contact history.
     pub contact: ContactHistory,
 }
 
 impl State {
-    /// How far ahead of a block contact looks [m].
-    pub(crate) fn ahead_of(&self, block: BlockId) -> Vec3 {
-        self.ahead.get(block.index()).copied().unwrap_or_default()
+    /// Contact offset of a block [m].
+    pub(crate) fn contact_offset_of(&self, block: BlockId) -> Vec3 {
+        self.contact_offset.get(block.index()).copied().unwrap_or_default()
     }
 }
 
-/// Where the control of the step is; part of the state.
+/// State of step control; part of the state.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StepState {
     /// n: a step is done in 2ⁿ parts.
@@ -51,6 +51,6 @@ pub struct StepState {
     pub part: u32,
     /// Steps in a row that could have done with fewer parts.
     pub(super) relax_streak: u32,
-    /// Steps for which energy is not asked for.
+    /// Steps that still skip the energy criterion.
     pub(super) energy_check_cooldown: u32,
 }

@@ -100,7 +100,7 @@ impl Travel {
     /// The largest travel over width of two blocks that may meet.
     fn worst_pair(&mut self, dt_s: f64) -> Worst {
         let mut worst = Worst { value: FINE, block: 0 };
-        self.each_meeting(|i, first, j, second| {
+        self.each_close_pair(|i, first, j, second| {
             let thinner = if second.width_m < first.width_m { j } else { i };
             worst.take(first.ratio(second, dt_s), thinner);
         });
@@ -109,7 +109,7 @@ impl Travel {
 
     /// Calls for all pairs of blocks that may meet and do not both move as prescribed, by sort and sweep along the longest side
     /// of the scene.
-    fn each_meeting(&mut self, mut meet: impl FnMut(usize, &Sweep, usize, &Sweep)) {
+    fn each_close_pair(&mut self, mut meet: impl FnMut(usize, &Sweep, usize, &Sweep)) {
         let Self { sweeps, order, .. } = self;
         let mut all = Aabb::empty();
         for sweep in sweeps.iter() {
@@ -179,7 +179,7 @@ impl Simulation {
     /// Whether blocks that did not touch in the step just done may store more than `limit_j` in a first contact \[J\]: where two
     /// approach at v and a step may be as long as h = ω_c Δt, x is at most ½ Δt v deep before contact has acted for the first time,
     /// which stores ½ k (½ Δt v)² = ⅛ h² m v².
-    pub(crate) fn may_meet_with(&mut self, h: f64, limit_j: f64) -> bool {
+    pub(crate) fn may_collide_with(&mut self, h: f64, limit_j: f64) -> bool {
         if self.contact.is_none() {
             return false;
         }
@@ -188,7 +188,7 @@ impl Simulation {
             let mut touching = std::mem::take(&mut travel.touching);
             touching.sort_unstable();
             let mut found = false;
-            travel.each_meeting(|i, first, j, second| {
+            travel.each_close_pair(|i, first, j, second| {
                 let mass_kg = first.mass_kg.min(second.mass_kg);
                 let stored_j = |speed_m_s: f64| 0.125 * h * h * mass_kg * speed_m_s * speed_m_s;
                 let pair = (BlockId(i.min(j) as u32), BlockId(i.max(j) as u32));

@@ -1,4 +1,4 @@
-//! What a program puts in the place of what a scene names.
+//! Parts that a program puts in the place of those that a scene names.
 
 use std::sync::Arc;
 
@@ -24,7 +24,7 @@ pub struct Choices {
     pub potential: Option<Box<dyn ContactPotential>>,
     /// A friction law instead of `contact.friction`; those of single joints and pairs of materials stay.
     pub friction: Option<Box<dyn FrictionLaw>>,
-    /// What finds the pairs that may touch.
+    /// The search for pairs that may touch.
     pub broad_phase: Option<Box<dyn BroadPhase>>,
     /// A time integrator instead of `time.integrator`.
     pub integrator: Option<Box<dyn TimeIntegrator>>,

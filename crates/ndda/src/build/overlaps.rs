@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-6;
 /// Pairs that are listed.
 const MOST_LISTED: usize = 10;
 
-/// What to say of the blocks of a scene that overlap too deep to begin with, if there are any.
+/// Diagnostic for blocks of a scene that overlap too deep at the start, if there are any.
 ///
 /// # Errors
 /// [`StepError`] when contact cannot be computed.
@@ -54,10 +54,7 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
     let name = |block: BlockId| &simulation.blocks().names[block.index()];
     let one = |(pair, ratio): &(PairResultant, f64)| {
         let (first, second, percent) = (name(pair.first), name(pair.second), 100.0 * ratio);
-        format!(
-            "`{first}` and `{second}` {:.2e} m deep, {percent:.1} % of a tetrahedron's height",
-            pair.depth_m
-        )
+        format!("`{first}` and `{second}` {:.2e} m deep, {percent:.1} % of an element size", pair.depth_m)
     };
     let listed: Vec<String> = pairs.iter().take(MOST_LISTED).map(one).collect();
     let more = pairs.len().saturating_sub(MOST_LISTED);

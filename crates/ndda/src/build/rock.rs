@@ -16,7 +16,7 @@ use serde::Serialize;
 use super::{Fault, solid, vec3};
 use crate::forecast::admit;
 
-/// What a rock was cut into, and what was left out.
+/// Blocks that a rock was cut into, and what was left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RockReport {
     /// Name of the rock.
@@ -49,7 +49,7 @@ impl fmt::Display for RockReport {
 /// A rock in blocks.
 #[derive(Clone, Debug)]
 pub struct CutRock {
-    /// What the cut amounted to.
+    /// Counts of the cut.
     pub report: RockReport,
     /// The convex parts of the blocks that are left.
     pub blocks: Blocks,
@@ -61,7 +61,7 @@ pub type Meshes = Vec<(String, BlockMesh)>;
 /// Cuts and fills rock `index` of a scene.
 ///
 /// # Errors
-/// What cannot be cut or filled.
+/// Faults of rock that cannot be cut or filled.
 pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Meshes, CutRock), Vec<Fault>> {
     let rock = &scene.rock[index];
     let at = |field: &str| format!("rock[{index}]{field}");
@@ -210,7 +210,7 @@ fn cut(rock: &Rock, domain: &Domain) -> Result<Blocks, String> {
     }
     let joints =
         rock.joints.iter().map(discontinuity).collect::<Result<Vec<_>, _>>().map_err(|e| e.to_string())?;
-    // What scatter makes of the spacings is known only while it is cut.
+    // The number of blocks is known only while rock is cut, since spacings scatter.
     let most_blocks = admit::most_blocks(CutOptions::default().most_blocks);
     let options = CutOptions { seed: rock.seed, sliver_width_m: rock.sliver_width_m, most_blocks };
     cut_blocks(domain, &joints, &options).map_err(|e| e.to_string())

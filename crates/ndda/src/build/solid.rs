@@ -13,7 +13,7 @@ use crate::forecast::admit;
 
 /// Part of its size by which a flat face of a surface may be bent: nothing but rounding.
 pub(super) const EXACT: f64 = 0.0;
-/// The same in files, which are written in single precision.
+/// Tolerance for coordinates in files, which are written in single precision.
 pub(super) const ROUNDED: f64 = 1e-6;
 
 /// A surface by its corners and faces, `face_0`, `face_1`, ….

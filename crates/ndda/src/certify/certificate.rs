@@ -16,7 +16,7 @@ use super::quantities::{
 
 /// The file of a certificate.
 pub const FILE: &str = "certificate.json";
-/// What it calls its form; it changes when a key does.
+/// Schema of the file; it changes when a key does.
 pub const SCHEMA: &str = "ndda.certificate/1";
 /// The order in the size of elements on which a single finer mesh counts.
 const MESH_ORDER: f64 = 1.0;
@@ -48,7 +48,7 @@ pub struct Certificate {
     pub chaos: Option<Chaos>,
     /// Energy of vibrations that none of the steps resolves [J]; 0 where the energy error falls with the step.
     pub unresolved_energy_j: f64,
-    /// What a person should know.
+    /// Remarks for the reader.
     pub remarks: Vec<String>,
     /// Wall time of all runs [s].
     pub wall_s: f64,
@@ -65,7 +65,7 @@ pub struct RunRecord {
     pub step_s: f64,
     /// Steps.
     pub steps: u64,
-    /// What it says of itself.
+    /// The run's label.
     pub label: String,
     /// Wall time [s].
     pub wall_s: f64,
@@ -103,13 +103,13 @@ pub struct Certified {
     pub behaviour: Behaviour,
     /// The observed order in Δt; null where there is none.
     pub order: Option<f64>,
-    /// What the results tend to; null where no order is observed.
+    /// Limit of the results; null where no order is observed.
     pub limit: Option<f64>,
     /// Value at the end of the run of the scene's own step.
     pub own_value: f64,
     /// Its error bar.
     pub own_error: f64,
-    /// What the error bar is made of.
+    /// Contributions to the error bar.
     pub parts: Parts,
 }
 
@@ -136,7 +136,7 @@ pub struct Histories {
     pub twin: Option<Table>,
 }
 
-/// What else the estimates need.
+/// Further input of the estimates.
 pub struct Basis<'a> {
     /// Order of the scheme.
     pub order: f64,
@@ -257,7 +257,7 @@ impl Certified {
     }
 }
 
-/// What vibrations of the energy E that no step resolves may add: E to an energy, √(2E/m) to a velocity, and that over the
+/// Error that vibrations of the energy E that no step resolves may add: E to an energy, √(2E/m) to a velocity, and that over the
 /// longest step, which is longer than their periods, to a displacement.
 fn unresolved(kind: Kind, lost_j: f64, basis: &Basis) -> f64 {
     if basis.least_mass_kg <= 0.0 {

@@ -59,7 +59,7 @@ pub fn is_suspect(quantities: &[Quantity], tables: [&Table; 3]) -> bool {
     last > NEGLIGIBLE && last > STAYS * first
 }
 
-/// What the twin of the run of the longest step says; none where the motion is regular.
+/// Judgement by the twin of the run of the longest step; none where the motion is regular.
 pub fn judge(quantities: &[Quantity], tables: [&Table; 3], twin: &Table) -> Option<Chaos> {
     let growth = apart(quantities, twin, tables[0]).largest() / DISTURBANCE;
     let last = apart(quantities, tables[1], tables[2]);

@@ -31,7 +31,7 @@ pub enum CertifyError {
         /// Why.
         reason: String,
     },
-    /// Nothing to refine.
+    /// The scene has no mesh to refine.
     #[error("--mesh: no block of the scene has cells, levels or a size that could be halved")]
     NoMesh,
     /// No contact to make stiffer.
@@ -40,9 +40,9 @@ pub enum CertifyError {
     /// A name that no quantity begins with.
     #[error("--of {name}: no column of the history begins with it; there are {known}")]
     NoQuantity {
-        /// What was asked for.
+        /// The requested name.
         name: String,
-        /// What there is.
+        /// The known names.
         known: String,
     },
     /// A result cannot be written.

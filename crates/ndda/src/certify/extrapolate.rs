@@ -63,7 +63,7 @@ pub struct Estimate {
     pub behaviour: Behaviour,
     /// The observed order; none where differences do not fall or are rounding.
     pub order: Option<f64>,
-    /// What the results tend to; none where there is no order.
+    /// Limit of the results; none where there is no order.
     pub limit: Option<f64>,
 }
 
@@ -148,7 +148,7 @@ mod tests {
             let truth = (values[2] - 7.0).abs();
             assert_eq!(found.behaviour, behaviour, "order {order}, theory {theory}");
             assert!((found.order.unwrap() - order).abs() < 1e-6, "{found:?}");
-            // Where the order is higher than the scheme's, only the scheme's is counted on.
+            // An observed order above the scheme's is not used; the scheme's is.
             let most = if behaviour == Behaviour::Faster { 70.0 } else { 3.1 };
             assert!(truth <= found.error && found.error <= most * truth, "{found:?}, true {truth:e}");
         }

@@ -25,7 +25,7 @@ pub const FINER: f64 = 2.0;
 pub struct Plan {
     /// The scene as it is to be certified.
     pub scene: Scene,
-    /// What every run is given with `--set`, the person's own values first.
+    /// Arguments of every run's `--set`, the person's own values first.
     common: Vec<String>,
     /// Steps of the longest step.
     steps: u64,
@@ -148,7 +148,7 @@ fn rows(steps: u64, asked: u32, columns: u64) -> u64 {
     if divisor < FEW_ROWS && steps * columns <= MOST_NUMBERS { steps } else { divisor }
 }
 
-/// What makes the cells of a scene's meshes smaller by a half `times`, or larger where that is negative, by path; empty
+/// Values that make the cells of a scene's meshes smaller by a half `times`, or larger where that is negative, by path; empty
 /// where none can be changed.
 pub fn finer(scene: &Scene, times: i32) -> Vec<String> {
     let mut set = Vec::new();

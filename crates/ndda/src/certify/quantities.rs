@@ -1,4 +1,4 @@
-//! What is certified: the columns of histories, read at the instants that all runs have in common.
+//! Certified quantities: the columns of histories, read at the instants that all runs have in common.
 
 use std::ops::Range;
 
@@ -18,7 +18,7 @@ const SAME_TIME: f64 = 1e-9;
 /// Rounding of a sum of n steps is taken as this times n ε of the largest value.
 const ROUNDING: f64 = 8.0;
 
-/// What a quantity is, which decides what unresolved vibration adds to its error.
+/// Kind of a quantity, which decides what unresolved vibration adds to its error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A displacement [m].
@@ -36,7 +36,7 @@ pub enum Kind {
 pub struct Quantity {
     /// Its name in the history.
     pub name: String,
-    /// What it is.
+    /// Kind of the quantity.
     pub kind: Kind,
     /// Quantities of one group share their scale: the components of a vector, the energies.
     pub group: usize,

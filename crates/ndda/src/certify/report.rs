@@ -12,7 +12,7 @@ const MOST_BLOCKS: usize = 3;
 /// Rows that are shown.
 pub const MOST_ROWS: usize = 60;
 
-/// What a person reads.
+/// The certificate as text.
 pub fn text(certificate: &Certificate, of: &[String]) -> String {
     let mut text = format!("{}: {}\n", certificate.scene, certificate.title);
     for run in &certificate.runs {

@@ -19,7 +19,7 @@ use crate::study::record::{RESULTS, RunOutcome, folder};
 /// Steps that may stop before three are found that do not.
 const MOST_STOPPED: u32 = 2;
 
-/// What is asked for beside the error of the time step.
+/// Errors to estimate beside that of the time step.
 #[derive(Clone, Debug, Default)]
 pub struct Wanted {
     /// Finer meshes: 0, 1 or 2.

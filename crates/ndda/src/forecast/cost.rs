@@ -1,4 +1,4 @@
-//! What a run will take and write, from a few of its steps.
+//! Time and output of a run, estimated from a few of its steps.
 
 use std::fmt;
 use std::time::{Duration, Instant};
@@ -32,14 +32,14 @@ pub struct FileGuess {
     pub bytes: u64,
 }
 
-/// What a run will take and write.
+/// Estimated time and output of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Guess {
     /// Steps that were timed.
     pub timed_steps: u64,
     /// Wall-clock time of a run on as many threads as this process has, if contacts stay as many [s].
     pub run_s: f64,
-    /// Most memory of this process, which has done all that a run does [B]; none where the system does not tell.
+    /// Most memory of this process, which has done all that a run does [B]; none where the system does not report it.
     pub memory_bytes: Option<u64>,
     /// Files.
     pub files: Vec<FileGuess>,
@@ -48,7 +48,7 @@ pub struct Guess {
 /// Does a few steps, a row and a frame, and reckons.
 ///
 /// # Errors
-/// What would stop the run in these steps.
+/// Errors that would stop the run in these steps.
 pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkError> {
     let steps = build::steps(&scene.time);
     simulation.watch_contacts(scene.output.contacts);

@@ -1,4 +1,4 @@
-//! What sudden gravity does to blocks that shear springs hold: they creep while their contact vibrates.
+//! Effect of sudden gravity on blocks that shear springs hold: they creep while their contact vibrates.
 
 use ndda_io::code::Code;
 use ndda_io::diagnostic::{Diagnostic, Severity};
@@ -21,9 +21,9 @@ pub fn warning(loaded: &LoadedScene) -> Option<Diagnostic> {
 }
 
 fn has_springs(scene: &Scene) -> bool {
-    let Some(Contact::Potential { friction, laws, .. }) = &scene.contact else { return false };
+    let Some(Contact::Potential { friction, rock_joints, .. }) = &scene.contact else { return false };
     let is_spring =
         |friction: &Friction| friction.shear_penalty_pa_m.is_some() && friction.friction_deg > 0.0;
     friction.as_ref().is_some_and(is_spring)
-        || laws.iter().filter_map(|law| law.friction.as_ref()).any(is_spring)
+        || rock_joints.iter().filter_map(|law| law.friction.as_ref()).any(is_spring)
 }

@@ -1,4 +1,4 @@
-//! What in a scene is probably not meant: no error, and worth a question before a long run.
+//! Parts of a scene that are probably not meant: no error, and worth a question before a long run.
 
 use ndda_io::scene::{Contact, Friction, Material, Potential, Scene};
 use ndda_solver::BodyKind;
@@ -6,7 +6,7 @@ use ndda_solver::Simulation;
 
 use super::step::Advice;
 
-/// Penalties over Young's modulus, for a potential of 1 m, outside of which contact is deep or asks for short steps.
+/// Penalties over Young's modulus, for a potential of 1 m, outside of which contact is deep or requires short steps.
 const SOFT: f64 = 1e-6;
 const HARD: f64 = 1.0;
 
@@ -22,13 +22,15 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>) -
             "nothing is held, so all blocks fall together: give a block `body: Fixed`, or supports".into(),
         );
     }
-    let Some(Contact::Potential { penalty_pa, potential, friction, joints, laws, .. }) = &scene.contact
+    let Some(Contact::Potential { penalty_pa, potential, friction, material_pairs, rock_joints, .. }) =
+        &scene.contact
     else {
         return doubts;
     };
-    let rubs = |friction: &Option<Friction>| friction.is_some();
-    let has_friction =
-        rubs(friction) || joints.iter().any(|j| rubs(&j.friction)) || laws.iter().any(|l| rubs(&l.friction));
+    let has_friction = |friction: &Option<Friction>| friction.is_some();
+    let has_friction = has_friction(friction)
+        || material_pairs.iter().any(|j| has_friction(&j.friction))
+        || rock_joints.iter().any(|l| has_friction(&l.friction));
     if falls && !has_friction {
         doubts.push(
             "blocks slide on each other without friction: give contact.friction, if that is not meant".into(),

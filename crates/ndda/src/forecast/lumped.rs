@@ -1,4 +1,4 @@
-//! What lumped masses cost: an inertia of rotation that is too large.
+//! Error of lumped masses: an inertia of rotation that is too large.
 
 use ndda_io::code::Code;
 use ndda_io::diagnostic::{Diagnostic, Severity};

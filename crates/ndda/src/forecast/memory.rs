@@ -1,4 +1,4 @@
-//! How much memory a process may have: what the machine, its control group and its limits leave, or what was asked for.
+//! How much memory a process may have: what the machine, its control group and its limits leave, or what was requested.
 
 use std::fs;
 use std::path::Path;
@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use crate::machine::field;
 
-/// What `--memory` said [B].
+/// Value of `--memory` [B].
 static ASKED: OnceLock<u64> = OnceLock::new();
 
 /// Part of the address space that threads and libraries take before anything is built [B].
@@ -17,7 +17,7 @@ pub fn limit(bytes: u64) {
     let _ = ASKED.set(bytes);
 }
 
-/// What `--memory` said [B], if it was given.
+/// Value of `--memory` [B], if it was given.
 pub fn asked() -> Option<u64> {
     ASKED.get().copied()
 }
@@ -31,7 +31,7 @@ pub fn budget() -> Option<u64> {
 /// `8GB`, `500 MB`, `2GiB` or bytes.
 ///
 /// # Errors
-/// What was expected.
+/// The expected form.
 pub fn parse(text: &str) -> Result<u64, String> {
     let text = text.trim();
     let number = text.trim_end_matches(|c: char| c.is_ascii_alphabetic());
@@ -59,7 +59,7 @@ pub fn readable(bytes: u64) -> String {
     found.map_or_else(|| format!("{bytes} B"), |(size, unit)| format!("{:.1} {unit}", bytes as f64 / size))
 }
 
-/// What the machine can give without swapping [B].
+/// Memory that the machine can give without swapping [B].
 fn available() -> Option<u64> {
     kibibytes(&fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable")
 }
@@ -69,7 +69,7 @@ fn kibibytes(text: &str, name: &str) -> Option<u64> {
     Some(number * 1024)
 }
 
-/// What the control group of this process, and those above it, leave [B].
+/// Memory that the control group of this process, and those above it, leave [B].
 fn group() -> Option<u64> {
     let text = fs::read_to_string("/proc/self/cgroup").ok()?;
     let path = text.lines().find_map(|line| line.strip_prefix("0::/"));
@@ -88,7 +88,7 @@ fn left_of(folder: &Path, limit: &str, held: &str) -> Option<u64> {
     Some(most.saturating_sub(text.lines().find_map(of).unwrap_or(0)))
 }
 
-/// What the limit on the address space leaves (`ulimit -v`) [B].
+/// Memory that the limit on the address space leaves (`ulimit -v`) [B].
 fn addresses() -> Option<u64> {
     let limits = fs::read_to_string("/proc/self/limits").ok()?;
     let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;

@@ -1,4 +1,4 @@
-//! What coordinates far from the origin cost: the digits that a file's numbers have left for the blocks.
+//! Loss of digits by coordinates far from the origin: those that a file's numbers have left for the blocks.
 
 use ndda_io::code::Code;
 use ndda_io::diagnostic::{Diagnostic, Severity};

@@ -43,7 +43,7 @@ const FILE_TRIANGLE_B: f64 = 30.0;
 /// Seconds per tetrahedron, and per Voronoi cell.
 const TET_S: f64 = 1e-5;
 const CELL_S: f64 = 3e-3;
-/// What a part of a scene comes to.
+/// Size of a part of a scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Count {
     /// Blocks.
@@ -67,7 +67,7 @@ pub struct Part {
     pub count: Count,
     /// Memory of a run [B].
     pub bytes: f64,
-    /// What makes it less.
+    /// Remedy.
     pub cure: &'static str,
 }
 
@@ -81,7 +81,7 @@ pub fn parts(scene: &Scene, folder: &Path) -> Vec<Part> {
     });
     let rocks = scene.rock.iter().enumerate().map(|(i, rock)| {
         let (count, field, cure) = of_rock(rock, folder);
-        let touching_b = if is_whole(scene, rock.body) { WHOLE_B } else { TOUCHING_B };
+        let touching_b = if is_affine(scene, rock.body) { WHOLE_B } else { TOUCHING_B };
         part(scene, format!("rock[{i}]{field}"), count, rock.body, touching_b, cure)
     });
     blocks.chain(rocks).collect()
@@ -106,7 +106,7 @@ fn part(scene: &Scene, path: String, count: Count, body: Body, touching_b: f64, 
 }
 
 /// Whether contact sees convex blocks of this kind without their tetrahedra.
-fn is_whole(scene: &Scene, body: Body) -> bool {
+fn is_affine(scene: &Scene, body: Body) -> bool {
     let smooth =
         matches!(scene.contact, Some(Contact::Potential { potential: Potential::Smooth { .. }, .. }));
     smooth && body != Body::Elastic

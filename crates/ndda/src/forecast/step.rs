@@ -47,7 +47,7 @@ pub struct Forecast {
 pub struct Advice {
     /// Step at which h is half of its bound, for all contacts that were evaluated [s].
     pub step_s: f64,
-    /// The same for the contacts at the start alone [s]; none where no blocks touch.
+    /// Largest safe step for the contacts at the start alone [s]; none where no blocks touch.
     pub step_at_start_s: Option<f64>,
     /// Contacts at the start; none where no blocks touch.
     pub at_start: Option<Forecast>,
@@ -118,7 +118,7 @@ pub struct AdvisedStep {
     pub penalty_pa: f64,
     /// The step [s].
     pub step_s: f64,
-    /// The block that asks for it.
+    /// The block that requires it.
     pub block: String,
 }
 
@@ -132,7 +132,7 @@ impl fmt::Display for AdvisedStep {
     }
 }
 
-/// A block that is laid against its like.
+/// A block that is laid against an identical one.
 struct Trial<'a> {
     block: BlockId,
     name: &'a str,
@@ -256,20 +256,20 @@ fn smallest<'a>(blocks: &'a BlockSet, among: &[(BlockId, bool)], density_kg_m3: 
     trials
 }
 
-/// The largest ω_c of blocks against their like [1/s], and whose it is.
+/// The largest ω_c of blocks against identical ones [1/s], and whose it is.
 fn fastest<'a>(scene: &Scene, trials: impl Iterator<Item = Trial<'a>>) -> Option<(f64, String)> {
     let rates = trials.filter_map(|trial| Some((contact_rate2(scene, &trial)?.sqrt(), trial.name)));
     let fastest = rates.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(rate, _)| *rate > 0.0)?;
     Some((fastest.0, fastest.1.to_string()))
 }
 
-/// ω_c² of a block against its like [1/s²]; none if the scene's contact model cannot serve the two.
+/// ω_c² of a block against an identical one [1/s²]; none if the scene's contact model cannot serve the two.
 fn contact_rate2(scene: &Scene, trial: &Trial) -> Option<f64> {
     let Trial { mesh, node_mass, .. } = trial;
     let alone = BlockSet::new(vec![("it".into(), mesh.clone())]).ok()?;
     // Far from the origin, a set has one of its own.
     let mesh = &BlockMesh { nodes: alone.rest_position.clone(), ..mesh.clone() };
-    let pair = alone_with_its_like(scene, trial.block, trial.name);
+    let pair = scene_of_an_identical_pair(scene, trial.block, trial.name);
     let mut largest = 0.0f64;
     for (centroid, normal) in largest_faces(&alone) {
         let like = turned_over(mesh, &centroid, &normal, DEPTH * trial.smallest_height_m);
@@ -293,8 +293,8 @@ fn contact_rate2(scene: &Scene, trial: &Trial) -> Option<f64> {
     Some(largest)
 }
 
-/// The scene with nothing in it but a block and its like, for the laws of contact between them.
-fn alone_with_its_like(scene: &Scene, block: BlockId, name: &str) -> Scene {
+/// The scene with nothing in it but a block and an identical one, for the laws of contact between them.
+fn scene_of_an_identical_pair(scene: &Scene, block: BlockId, name: &str) -> Scene {
     let mut pair = Scene { rock: Vec::new(), ..scene.clone() };
     match scene.blocks.get(block.index()) {
         Some(own) => pair.blocks = vec![own.clone(), own.clone()],

@@ -133,7 +133,7 @@ pub enum Comparison {
     Displacement {
         /// Index of the monitor.
         monitor: usize,
-        /// What it is [m].
+        /// Exact value [m].
         exact_m: Vec3,
     },
 }

@@ -1,4 +1,4 @@
-//! What a run says of itself: its summary.
+//! The summary of a run.
 
 use ndda_fem::stress::volume_m3;
 use ndda_io::scene::{Integrator, Scene};
@@ -13,7 +13,7 @@ use crate::judge::verdict;
 use crate::machine;
 use crate::run::recorder::Recorder;
 
-/// What the summary needs besides the simulation.
+/// Input of the summary besides the simulation.
 pub struct Ending<'a> {
     /// The scene.
     pub scene: &'a Scene,
@@ -29,7 +29,7 @@ pub struct Ending<'a> {
     pub threads: usize,
     /// Seconds per stage outside the step.
     pub stages: Vec<(String, f64)>,
-    /// What was found before the run.
+    /// Warnings found before the run.
     pub warnings: Vec<String>,
     /// Whether a limit that is passed fails the run.
     pub strict: bool,
@@ -111,7 +111,7 @@ fn stages(simulation: &Simulation, outside: Vec<(String, f64)>, wall_s: f64) -> 
     Named(stages)
 }
 
-/// What a person should do about the numbers.
+/// Advice on the numbers.
 fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
     let worst = simulation.invariants();
     let mut advice = Vec::new();
@@ -128,7 +128,7 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
         let StepCounts { rejected, most_halvings } = worst.control;
         let shortest_s = simulation.step_s() * 0.5f64.powi(most_halvings as i32);
         advice.push(format!(
-            "steps went from {:.1e} s down to {shortest_s:.1e} s; {rejected} were taken back and done again",
+            "steps went from {:.1e} s down to {shortest_s:.1e} s; {rejected} were discarded and repeated",
             simulation.step_s()
         ));
     }
@@ -148,7 +148,7 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
     }
     if worst.max_penetration_ratio > 0.05 {
         advice.push(format!(
-            "penetration reached {:.1} % of a tet's height: raise penalty_pa",
+            "penetration reached {:.1} % of an element size: raise penalty_pa",
             100.0 * worst.max_penetration_ratio
         ));
     }

@@ -1,10 +1,10 @@
-//! What a run ends with: a few lines for a person, and tables of everything.
+//! The end of a run: a few lines for a person, and tables of everything.
 
 use ndda_io::summary::{Course, Judgement, LabelWord, Motion, Summary, Verdict};
 
 use crate::columns::columns;
 
-/// What a person wants to know first: whether the result is to be trusted, what moved, the error against a closed form, and the
+/// The first answers: whether the result is to be trusted, what moved, the error against a closed form, and the
 /// checks that failed.
 pub fn ending(summary: &Summary) -> String {
     let mut text = match (summary.label.word, summary.label.reasons.as_slice()) {

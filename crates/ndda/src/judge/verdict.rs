@@ -1,4 +1,4 @@
-//! What a run says of itself: its checks against their limits, and whether its motion is to be trusted.
+//! The verdict: a run's checks against their limits, and whether its motion is to be trusted.
 
 use ndda_io::summary::{Judgement, Label, LabelWord, Named, Verdict};
 use ndda_solver::{Simulation, Worst};
@@ -12,7 +12,7 @@ const MOST_FRICTION: f64 = 1e-3;
 const MOST_DEPTH: f64 = 0.05;
 /// Part of its strength by which a bond may be overloaded when it breaks.
 const BOND_OVERLOAD: f64 = 0.05;
-/// What the promise allows: speeds over the largest, and places over a height.
+/// Limits of an accurate run: errors of speeds over the largest, and of places over an element size.
 const SPEED: f64 = 0.01;
 const PLACE: f64 = 0.1;
 /// Speed of vibrations that a step turns over, over the largest speed: θ² of one that turns by θ in a step. It is late by θ²/12 of
@@ -29,7 +29,7 @@ struct Entry {
     verdict: Verdict,
     /// From which judgement on the motion is not to be trusted.
     spoils_at: Judgement,
-    /// What it is then.
+    /// Reason that is given then.
     reason: String,
 }
 
@@ -67,11 +67,11 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     let mut entries = vec![Entry::new("finite state", sound, fail, String::new())];
     entries.extend(momentum(simulation));
     entries.extend(energy(simulation));
-    entries.push(energy_of_the_lighter(simulation));
+    entries.push(spurious_contact_energy(simulation));
     entries.push(friction(simulation));
     entries.extend(creep(simulation));
     entries.extend(contact(simulation));
-    entries.extend(squeezed(simulation));
+    entries.extend(lateral_drift(simulation));
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
     let verdict = Verdict { value: Some(upright), limit: Some(0.0), verdict };
     entries.push(Entry::new(
@@ -95,7 +95,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
 fn momentum(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (linear, angular) = (worst.linear_momentum, worst.angular_momentum);
-    // Held blocks exchange angular momentum with their supports through strains that the books do not see.
+    // Held blocks exchange angular momentum with their supports through strains that the ledger does not record.
     let turning = if simulation.is_closed() { judged(angular, 1e-8, 1e-6) } else { shown(angular) };
     let reason = |what: &str, value: f64| {
         format!(
@@ -135,7 +135,7 @@ fn energy(simulation: &Simulation) -> [Entry; 3] {
 }
 
 /// Energy that contact makes or takes, pair by pair.
-fn energy_of_the_lighter(simulation: &Simulation) -> Entry {
+fn spurious_contact_energy(simulation: &Simulation) -> Entry {
     let worst = simulation.invariants();
     let (gain, loss) = (worst.block_gain, worst.block_loss);
     let (what, most) = if gain.value >= loss.value { ("added", gain) } else { ("removed", loss) };
@@ -210,10 +210,10 @@ fn contact(simulation: &Simulation) -> [Entry; 2] {
     ]
 }
 
-/// Whether blocks were squeezed out by forces whose direction is not known.
-fn squeezed(simulation: &Simulation) -> [Entry; 2] {
+/// Lateral drift of clamped blocks, due to the uncertain direction of contact forces.
+fn lateral_drift(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
-    let (place, speed) = (worst.squeezed_place, worst.squeezed_speed);
+    let (place, speed) = (worst.lateral_drift_place, worst.lateral_drift_speed);
     let why = "because it is clamped without friction and the direction of its contact forces is known no better than contact is deep: raise penalty_pa, or give the contact friction";
     let where_it_is = format!(
         "block `{}` drifts sideways by {:.2} of its smallest element size, limit {PLACE}, {why}",
@@ -347,9 +347,9 @@ fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
         percent(worst.vibration),
         percent(MOST_VIBRATION)
     );
-    let unseen = format!(
+    let missed = format!(
         "loads or motions change within a step: {:.1} % of the largest speed is missed, limit {:.0} %; reduce step_s",
-        percent(worst.unseen_speed),
+        percent(worst.unresolved_speed),
         percent(SPEED)
     );
     let damping = format!(
@@ -359,7 +359,7 @@ fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
     );
     [
         warned("unresolved vibration / largest speed", worst.vibration, MOST_VIBRATION, vibration),
-        warned("load change within a step / largest speed", worst.unseen_speed, SPEED, unseen),
+        warned("load change within a step / largest speed", worst.unresolved_speed, SPEED, missed),
         warned("damping error / largest speed", worst.damping_speed, SPEED, damping),
     ]
 }

@@ -17,7 +17,7 @@ pub struct Charts {
     time_s: Vec<f64>,
     /// The charts, in the order of the page.
     pub charts: Vec<Chart>,
-    /// What is left out, for people.
+    /// Notes on what is left out, for people.
     #[serde(skip)]
     pub notes: Vec<String>,
 }
@@ -25,7 +25,7 @@ pub struct Charts {
 /// Curves over one pair of axes.
 #[derive(Debug, PartialEq, Serialize)]
 pub struct Chart {
-    /// What it shows.
+    /// Title.
     pub title: String,
     unit: &'static str,
     is_log: bool,

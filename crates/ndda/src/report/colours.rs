@@ -1,4 +1,4 @@
-//! What blocks can be coloured by: every array of a frame that is a number or a vector, and von Mises stress.
+//! Quantities that blocks can be coloured by: every array of a frame that is a number or a vector, and von Mises stress.
 
 use ndda_io::results::{Array, FieldFrame};
 use ndda_io::vtu::von_mises_pa;
@@ -21,7 +21,7 @@ const UNITS: [(&str, &str); 10] = [
     ("_s", "s"),
 ];
 
-/// What a field has one value for.
+/// Entities that a field has one value for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// A node of the surface.
@@ -47,7 +47,7 @@ pub struct Field {
     pub label: String,
     /// Unit; empty where it has none.
     pub unit: &'static str,
-    /// What it has values for.
+    /// Entities that it has values for.
     pub place: Place,
     measure: Measure,
 }

@@ -10,7 +10,7 @@ use super::error::ReportError;
 use crate::certify::certificate::Certificate;
 use crate::study::record;
 
-/// What a run left, but for the frames themselves.
+/// Results of a run, but for the frames themselves.
 pub struct Input {
     /// Its summary.
     pub summary: Summary,
@@ -18,7 +18,7 @@ pub struct Input {
     pub history: Table,
     /// Its frames; none where it wrote no fields.
     pub frames: Vec<ListedFrame>,
-    /// What its answers may be wrong by; none where it was not certified.
+    /// Error bars of its answers; none where it was not certified.
     pub certificate: Option<Certificate>,
 }
 

@@ -17,7 +17,7 @@ const STILL: f64 = 0.01;
 /// Part of all values that the colours resolve where a few are far above the others.
 const USUAL: f64 = 0.995;
 
-/// What is seen of a run in 3D.
+/// The 3D view of a run.
 pub struct Motion {
     /// Times of the frames that are shown [s].
     pub times_s: Vec<f64>,
@@ -33,7 +33,7 @@ pub struct Motion {
     extent: Aabb,
 }
 
-/// What the page is told of a motion, beside the numbers themselves.
+/// Description of a motion for the page, beside the numbers themselves.
 #[derive(Serialize)]
 pub struct Description {
     times_s: Vec<f64>,
@@ -53,7 +53,7 @@ pub struct Description {
 struct Range {
     least: f32,
     largest: f32,
-    /// Where the colours end.
+    /// Upper end of the colour scale.
     top: f32,
 }
 
@@ -99,7 +99,7 @@ impl Motion {
         Ok(Self { times_s, start, moved: Codes::new(&moved), fields: fields.collect(), surface, extent })
     }
 
-    /// What the page is told, and the numbers as a text.
+    /// The page's description of the motion, and the numbers as a text.
     pub fn describe(&self) -> (Description, String) {
         let origin = self.extent.center();
         let mut packed = Packed::default();

@@ -25,7 +25,7 @@ pub struct PackedArray {
     length: usize,
 }
 
-/// The same number of values for every frame, as codes of 16 bits from the least to the largest.
+/// Values of equal number in every frame, as codes of 16 bits from the least to the largest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Codes {
     /// The value of code 0.
@@ -114,7 +114,7 @@ impl Packed {
 mod tests {
     use super::*;
 
-    /// What the page does.
+    /// Unpacks as the page does.
     fn unpacked(packed: &Packed) -> Vec<u8> {
         let deflated = BASE64_STANDARD.decode(packed.text()).unwrap();
         miniz_oxide::inflate::decompress_to_vec_zlib(&deflated).unwrap()

@@ -20,11 +20,11 @@ const BLOCKS: [&str; 4] = [
     include_str!("../../assets/report/viewer.js"),
 ];
 const MAIN: &str = include_str!("../../assets/report/main.js");
-/// A page that asks for nothing from anywhere.
+/// A page that requires nothing from anywhere.
 const POLICY: &str =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:";
 
-/// What the scripts read beside the numbers of the motion.
+/// Data of the scripts beside the numbers of the motion.
 #[derive(Serialize)]
 struct Data<'a> {
     charts: &'a Charts,

@@ -30,7 +30,7 @@ pub fn header(summary: &Summary) -> Markup {
     }
 }
 
-/// What the run says of itself; the status has said that it stopped.
+/// The run's label; the status has said that it stopped.
 fn label(summary: &Summary) -> Markup {
     let word = summary.label.word;
     html! {
@@ -63,7 +63,7 @@ pub fn warnings(summary: &Summary) -> Markup {
     }
 }
 
-/// What was run.
+/// Facts of the run.
 pub fn facts(summary: &Summary) -> Markup {
     let counts = &summary.counts;
     let speed = summary.steps as f64 / summary.wall_s.max(f64::MIN_POSITIVE);
@@ -129,7 +129,7 @@ fn judgement(verdict: &Verdict) -> Markup {
     html! { span class={ "badge " (class) } { (word) } }
 }
 
-/// Where the time went.
+/// Time per stage.
 pub fn stages(summary: &Summary) -> Markup {
     let share = |s: f64| if summary.wall_s > 0.0 { 100.0 * s / summary.wall_s } else { 0.0 };
     html! {

@@ -1,4 +1,4 @@
-//! What is seen of the blocks: boundary triangles and the edges between faces.
+//! Visible surface of the blocks: boundary triangles and the edges between faces.
 
 use ndda_io::results::FieldFrame;
 use ndda_mesh::Vec3;

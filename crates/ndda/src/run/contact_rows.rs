@@ -1,4 +1,4 @@
-//! What each pair of touching blocks does to each other, as rows of a table.
+//! Resultants of each pair of touching blocks, as rows of a table.
 
 use ndda_contact::{FacetContact, resultants};
 use ndda_solver::Simulation;

@@ -1,4 +1,4 @@
-//! Sink of fields: a frame at even intervals, of what the scene asks for; nothing else is computed.
+//! Sink of fields: a frame at even intervals, of what the scene requests; nothing else is computed.
 
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -31,7 +31,7 @@ pub struct FieldWriter {
     pub spent_s: f64,
 }
 
-/// What a checkpoint keeps of a [`FieldWriter`].
+/// State of a [`FieldWriter`] in a checkpoint.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SavedFields {
     times_s: Vec<f64>,
@@ -68,7 +68,7 @@ impl FieldWriter {
         })
     }
 
-    /// What a checkpoint keeps of it, all frames being on the disk.
+    /// Its state for a checkpoint, all frames being on the disk.
     ///
     /// # Errors
     /// [`WriteError`] when one of them is not.
@@ -119,7 +119,7 @@ pub fn need_stress(fields: &[Field]) -> bool {
     fields.iter().any(|field| matches!(field, Field::Stress | Field::VonMises))
 }
 
-/// What does not change from frame to frame.
+/// The part that does not change from frame to frame.
 fn topology(scene: &Scene, blocks: &BlockSet) -> Topology {
     let mut topology = Topology::new(blocks, scene.output.format);
     for field in &scene.output.fields {

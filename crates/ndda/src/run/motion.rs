@@ -69,7 +69,7 @@ impl LargestMotions {
         }
     }
 
-    /// What moved, in one record; none where every block is fixed.
+    /// The motion of the blocks, in one record; none where every block is fixed.
     pub fn summary(&self, simulation: &Simulation) -> Option<Motion> {
         let blocks = simulation.blocks();
         let free = || blocks.ids().filter(|&block| simulation.shape(block).kind != BodyKind::Fixed);

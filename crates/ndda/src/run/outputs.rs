@@ -24,13 +24,13 @@ use crate::judge::reference::{self, Comparison};
 pub struct SavedRun {
     /// The scene.
     pub identity: Identity,
-    /// State and books.
+    /// State and ledger.
     pub snapshot: Snapshot,
     /// How far the outputs had come.
     pub earlier: Earlier,
 }
 
-/// What the outputs of a run that goes on have to know.
+/// State of the outputs of a run that is resumed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Earlier {
     /// The history.
@@ -59,7 +59,7 @@ pub struct Outputs<'a, 'b> {
     stop: Arc<AtomicBool>,
 }
 
-/// What a recorded run writes besides its history.
+/// Files of a recorded run besides its history.
 struct Files {
     fields: Option<FieldWriter>,
     contacts: Option<ContactTable>,
@@ -90,7 +90,7 @@ pub struct Course {
 pub type Place = (Identity, OutputFolder, Option<Earlier>);
 
 impl<'a, 'b> Outputs<'a, 'b> {
-    /// The outputs that a scene asks for; in memory where there is no place.
+    /// The outputs that a scene requests; in memory where there is no place.
     ///
     /// # Errors
     /// [`WriteError`] when a file cannot be written.

@@ -65,7 +65,7 @@ impl Rows {
     }
 }
 
-/// What a checkpoint keeps of a [`Recorder`].
+/// State of a [`Recorder`] in a checkpoint.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SavedRecorder {
     rows: usize,
@@ -118,7 +118,7 @@ impl Recorder {
         })
     }
 
-    /// What a checkpoint keeps of it, all rows being on the disk.
+    /// Its state for a checkpoint, all rows being on the disk.
     ///
     /// # Errors
     /// [`WriteError`] when they are not.

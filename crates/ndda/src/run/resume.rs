@@ -15,7 +15,7 @@ use crate::build::Choices;
 pub struct Resumed {
     /// The run.
     pub run: Run,
-    /// What was wrong with the last checkpoint, where the one before it was taken.
+    /// Damage of the last checkpoint, where the one before it was taken.
     pub warnings: Vec<String>,
 }
 
@@ -48,7 +48,7 @@ impl Run {
         Self::resume_with(folder, Choices::default())
     }
 
-    /// The same for a run that was begun with parts of one's own: the same choices as then.
+    /// Resumes a run that was begun with parts of one's own, which must be given again.
     ///
     /// # Errors
     /// [`ResumeError`].

@@ -10,7 +10,7 @@ use ndda_io::{OutputFolder, WriteError};
 use super::identity::Identity;
 use crate::machine;
 
-/// What stands before the scene's fingerprint.
+/// Text before the scene's fingerprint.
 const CRC32: &str = "CRC-32 of its text ";
 
 /// The fingerprint of the scene that the log in a folder begins with, if there is a log.

@@ -1,4 +1,4 @@
-//! What a trial changes in the scene.
+//! Changes of a trial to the scene.
 
 use ndda_io::scene::{Contact, Friction, Scene};
 use ndda_mesh::Vec3;
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SafetyError;
 
-/// What is to be changed.
+/// The quantity to be changed, as it is asked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Question {
     /// The strength of all joints.
@@ -21,7 +21,7 @@ pub enum Question {
     },
 }
 
-/// What is changed by a factor F.
+/// The quantity that is changed by a factor F.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum By {
@@ -70,12 +70,12 @@ pub fn has_springs_only(scene: &Scene) -> bool {
 }
 
 fn frictions(scene: &mut Scene) -> Vec<&mut Friction> {
-    let Some(Contact::Potential { friction, joints, laws, .. }) = &mut scene.contact else {
+    let Some(Contact::Potential { friction, material_pairs, rock_joints, .. }) = &mut scene.contact else {
         return Vec::new();
     };
-    let joints = joints.iter_mut().filter_map(|joint| joint.friction.as_mut());
-    let laws = laws.iter_mut().filter_map(|law| law.friction.as_mut());
-    friction.iter_mut().chain(joints).chain(laws).collect()
+    let pairs = material_pairs.iter_mut().filter_map(|pair| pair.friction.as_mut());
+    let laws = rock_joints.iter_mut().filter_map(|law| law.friction.as_mut());
+    friction.iter_mut().chain(pairs).chain(laws).collect()
 }
 
 /// Smallest shear stiffness of the scene's joints [Pa/m].

@@ -31,7 +31,7 @@ pub enum Kind {
     Wedge,
     /// It turns over.
     Toppling,
-    /// Nothing that rests touches it.
+    /// No resting block touches it.
     Falling,
     /// None of these.
     Mixed,
@@ -220,7 +220,7 @@ fn plane(normal: &Vec3, on: &str, joint: Option<String>) -> Plane {
     }
 }
 
-/// What blocks do, each kind with how many, and the planes of the first.
+/// The motion of blocks, each kind with its count, and the planes of the first.
 fn words(blocks: &[MovingBlock]) -> String {
     let first = &blocks[0];
     let planes: Vec<String> = first.planes.iter().map(ToString::to_string).collect();

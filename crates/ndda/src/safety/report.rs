@@ -8,7 +8,7 @@ use crate::columns::columns;
 /// Blocks that are named.
 const MOST_BLOCKS: usize = 12;
 
-/// What a person reads.
+/// The answer as text.
 pub fn text(safety: &Safety) -> String {
     let mut text = format!("{}: {}\n", safety.scene, safety.title);
     let by = match safety.by {
@@ -64,7 +64,7 @@ pub fn text(safety: &Safety) -> String {
     text
 }
 
-/// What became of the blocks, in a word.
+/// The blocks' final state, in a word.
 pub fn state(state: State) -> &'static str {
     match state {
         State::Stands => "stand",

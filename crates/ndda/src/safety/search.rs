@@ -42,7 +42,7 @@ pub struct Search<'a> {
     begun: Instant,
     /// Trials of an earlier call that was interrupted.
     earlier: Vec<Trial>,
-    /// What is known so far.
+    /// The answer so far.
     answer: Mutex<Safety>,
 }
 
@@ -196,7 +196,7 @@ impl<'a> Search<'a> {
             let kept = self.answer.lock().expect("no trial panics");
             let mut answer = kept.clone();
             answer.wall_s = before_s + self.begun.elapsed().as_secs_f64();
-            // Those that are not asked for again yet are kept, too.
+            // Trials that are not needed again yet are kept, too.
             let known = |factor: f64| answer.trials.iter().any(|trial| trial.factor == factor);
             let others: Vec<Trial> = self.earlier.iter().filter(|t| !known(t.factor)).cloned().collect();
             answer.trials.extend(others);
@@ -339,7 +339,7 @@ fn inside(answer: &Safety, (lower, upper): (f64, f64), error: f64) -> Vec<f64> {
     }
 }
 
-/// What a person should know before using the answer.
+/// Remarks to read before using the answer.
 fn remarks(answer: &Safety) -> Vec<String> {
     let mut remarks = Vec::new();
     let Bracket { lower, upper } = answer.factor_of_safety;

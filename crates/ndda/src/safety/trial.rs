@@ -34,7 +34,7 @@ const WINDOWS: u64 = 24;
 /// Windows that are compared with each other.
 const SPAN: usize = 2;
 
-/// What became of the blocks.
+/// Final state of the blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum State {
@@ -51,7 +51,7 @@ pub enum State {
 pub struct Trial {
     /// The factor F.
     pub factor: f64,
-    /// What became of the blocks.
+    /// Final state of the blocks.
     pub state: State,
     /// Why, in words.
     pub reason: String,
@@ -110,7 +110,7 @@ impl Start {
         let shear_m = softest_pa_m.map_or(0.0, |stiffness| shear_pa / stiffness);
         let mass_kg: f64 = free(simulation).map(|block| simulation.shape(block).operator.mass_kg).sum();
         let gravity_m_s2 = if gravity_m_s2 > 0.0 { gravity_m_s2 } else { force_n / mass_kg };
-        // Nothing is smaller than what rounding moves.
+        // No size is smaller than its own rounding.
         let size_m = position.iter().map(|x| x.amax()).fold(0.0, f64::max);
         let elastic_m = normal_m.max(shear_m).max(1e-12 * size_m);
         let normals = super::mechanism::normals(simulation);
@@ -169,7 +169,7 @@ impl Course<'_> {
         })
     }
 
-    /// What becomes of the blocks, or why the run stopped; none if somebody asked to end.
+    /// Final state of the blocks, or why the run stopped; none if somebody asked to end.
     fn judge(
         &self,
         simulation: &mut Simulation,
@@ -261,7 +261,7 @@ impl Course<'_> {
     }
 }
 
-/// What is watched of a trial.
+/// Observed quantities of a trial.
 struct Watched {
     start: Vec<Vec3>,
     blocks: Vec<BlockId>,

@@ -21,7 +21,7 @@ pub struct Case {
     pub name: String,
     /// Axis and choice, in the order of the study.
     pub labels: Vec<(String, String)>,
-    /// What `ndda run` gets with `--set`.
+    /// Arguments of `--set` of `ndda run`.
     pub overrides: Vec<String>,
     /// How often it runs.
     pub repeats: u32,
@@ -112,7 +112,7 @@ pub fn plain(text: &str) -> String {
 /// Fingerprint of a case: the text of its scene and the files that it names.
 ///
 /// # Errors
-/// What is wrong with the scene.
+/// Errors of the scene.
 pub fn fingerprint(loaded: &LoadedStudy, case: &Case) -> Result<String, SceneErrors> {
     let text = loaded.scene_with(&case.overrides)?.text;
     let mut bytes = text.clone().into_bytes();
@@ -120,7 +120,7 @@ pub fn fingerprint(loaded: &LoadedStudy, case: &Case) -> Result<String, SceneErr
     locate::tree(&text).for_each_leaf(&mut |leaf| {
         let word = text[leaf.span.clone()].trim_matches('"');
         let file = folder.join(word);
-        // Whatever names a file, a mesh or a record, is part of the scene.
+        // Any word that names a file, such as a mesh or a record, is part of the scene.
         if !word.is_empty() && file.is_file() {
             bytes.extend(std::fs::read(&file).unwrap_or_default());
         }

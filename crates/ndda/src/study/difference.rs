@@ -22,7 +22,7 @@ pub enum DifferenceError {
     /// Too few rows.
     #[error("the history has fewer than two rows: raise output.history_rows")]
     TooShort,
-    /// Nothing moves.
+    /// No block moves.
     #[error("no monitor moves in the reference: compare with others")]
     NothingMoves,
 }

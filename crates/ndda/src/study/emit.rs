@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::case::Case;
 
-/// What runs the cases.
+/// Scheduler or shell that is to run the cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Emit {
     /// A job array of Slurm.

@@ -24,7 +24,7 @@ pub enum StudyError {
     #[error("reference.monitors: the scene has no monitor `{0}`: it has {1}")]
     NoMonitor(String, String),
     /// The system does not tell processor times.
-    #[error("this system does not tell processor times: leave out `clock: Processor`")]
+    #[error("this system does not report processor times: leave out `clock: Processor`")]
     NoProcessorTime,
     /// No such case.
     #[error("the study has no case `{0}`: `ndda study STUDY --emit list` prints all")]

@@ -53,7 +53,7 @@ impl Results {
     }
 }
 
-/// A case whose run ended in a way that another attempt may not: it is told, and run again the next time.
+/// A case whose run ended in a way that another attempt may not: it is reported, and run again the next time.
 fn unfinished(launch: &Launch, case: &Case) -> Result<Option<CasePoint>, StudyError> {
     let record = Record::read(&folder(launch.out, &case.name))?;
     let record = record.filter(|record| record.identity == launch.identity(case));

@@ -13,10 +13,10 @@ use super::launch::{Launch, clocked, least};
 use super::record::{RESULTS, Record, RunOutcome, folder};
 use super::result::{CasePoint, Compared, Figures, Run};
 
-/// Reference runs must agree this many times better than the smallest error that is told apart from zero.
+/// Reference runs must agree this many times better than the smallest error that is distinguished from zero.
 const AGREE: f64 = 5.0;
 
-/// What judges results.
+/// Judge of results.
 pub enum Judge {
     /// The closed form that the scene names.
     ClosedForm,
@@ -42,7 +42,7 @@ impl Judge {
         Ok(Self::Runs { first, step_s: scene.scene.time.step_s, apart, monitors })
     }
 
-    /// What errors are relative to; `kind` is the name of the closed form.
+    /// Reference of relative errors; `kind` is the name of the closed form.
     pub fn compared(&self, kind: String) -> Compared {
         match self {
             Self::ClosedForm => Compared::ClosedForm { name: kind },

@@ -24,7 +24,7 @@ pub struct Launch<'a> {
     pub jobs: u16,
     /// Threads of each.
     pub threads: u16,
-    /// What runs a case.
+    /// Runner of a case.
     pub runner: &'a dyn CaseRunner,
     /// Told how far it is, a line at a time.
     pub say: &'a (dyn Fn(&str) + Sync),
@@ -152,7 +152,7 @@ impl Launch<'_> {
 /// The times that count.
 ///
 /// # Errors
-/// [`StudyError::NoProcessorTime`] where the system does not tell.
+/// [`StudyError::NoProcessorTime`] where the system does not report it.
 pub fn clocked<'a>(
     clock: Clock,
     walls_s: &'a [f64],

@@ -13,7 +13,7 @@ use crate::picture::{self, Area, Drawn, colour, count_axis, log_axis, log_range,
 
 /// Width and height of the pictures with two frames [px].
 const SIZE: (u32, u32) = (1480, 560);
-/// Width of the part of it that tells colours [px].
+/// Width of the part of it that shows colours [px].
 const KEY: u32 = 290;
 /// Colour of the front.
 const FRONT: RGBColor = RGBColor(190, 190, 190);
@@ -46,7 +46,7 @@ pub fn all(out: &Path, results: &Results) -> Result<(), WriteError> {
     Ok(())
 }
 
-/// What errors are drawn against.
+/// Abscissa of pictures of errors.
 enum Across {
     Time,
     Dofs,

@@ -1,4 +1,4 @@
-//! What is kept of a case that has run: `case.json` in its folder.
+//! Record of a case that has run: `case.json` in its folder.
 
 use std::path::{Path, PathBuf};
 
@@ -19,13 +19,13 @@ pub const RESULTS: &str = "run";
 pub struct Record {
     /// Name of the case.
     pub name: String,
-    /// What was run, by what, and how.
+    /// Identity of the run: scene, program and settings.
     pub identity: Identity,
     /// How it went.
     pub outcome: RunOutcome,
 }
 
-/// What makes two records comparable.
+/// Identity by which two records are comparable.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Identity {
     /// Fingerprint of the scene and its files.
@@ -64,7 +64,7 @@ pub enum RunOutcome {
     Done {
         /// Wall time of each run [s].
         walls_s: Vec<f64>,
-        /// Processor time of each run [s]; none where the system does not tell.
+        /// Processor time of each run [s]; none where the system does not report it.
         #[serde(default)]
         processors_s: Vec<f64>,
         /// `summary.json` of the fastest.
@@ -72,7 +72,7 @@ pub enum RunOutcome {
     },
     /// A run did not reach its end.
     Failed {
-        /// What kind of failure it is.
+        /// Kind of failure.
         cause: Cause,
         /// Why, in its own words.
         reason: String,

@@ -1,4 +1,4 @@
-//! What a study has found: a point per case, its errors and figures, and the fronts.
+//! The results of a study: a point per case, its errors and figures, and the fronts.
 
 use ndda_io::summary::{Invariants, Label, Named, ReferenceError};
 use serde::{Deserialize, Serialize};
@@ -15,11 +15,11 @@ pub struct Results {
     pub title: String,
     /// Name of the scene's file.
     pub scene: String,
-    /// Axes that tell curves apart.
+    /// Axes that distinguish curves.
     pub curves: Vec<String>,
-    /// What a run costs: `wall` or `processor` time.
+    /// Cost of a run: `wall` or `processor` time.
     pub clock: &'static str,
-    /// What errors are relative to.
+    /// Reference of relative errors.
     pub reference: Compared,
     /// One per case that has run.
     pub points: Vec<CasePoint>,
@@ -27,7 +27,7 @@ pub struct Results {
     pub missing: Vec<String>,
 }
 
-/// What errors are relative to.
+/// Reference of relative errors.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum Compared {
@@ -44,15 +44,15 @@ pub enum Compared {
         disagreement_end: f64,
         /// How far they are apart at most, relative.
         disagreement_max: f64,
-        /// Errors at the end below this are not told apart.
+        /// Errors at the end below this are not distinguished.
         floor_end: f64,
-        /// Largest errors below this are not told apart.
+        /// Largest errors below this are not distinguished.
         floor_max: f64,
     },
 }
 
 impl Compared {
-    /// Errors at the end, and largest errors, below which points are not told apart.
+    /// Errors at the end, and largest errors, below which points are not distinguished.
     pub fn floors(&self) -> [f64; 2] {
         match self {
             Self::ClosedForm { .. } => [0.0; 2],
@@ -68,13 +68,13 @@ pub struct CasePoint {
     pub name: String,
     /// Choice by axis.
     pub labels: Named<String>,
-    /// What it gave; none if it failed.
+    /// Results of the case; none if it failed.
     pub figures: Option<Figures>,
     /// Why it failed.
     pub reason: Option<String>,
 }
 
-/// What a case gave.
+/// Results of a case.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Figures {
     /// Relative error at the end.
@@ -89,21 +89,21 @@ pub struct Figures {
     pub wall_s: f64,
     /// Wall time of each run [s].
     pub walls_s: Vec<f64>,
-    /// Processor time of each run [s]; none where the system does not tell.
+    /// Processor time of each run [s]; none where the system does not report it.
     pub processors_s: Vec<f64>,
     /// Invariants that were beyond their limits.
     pub beyond_limits: Vec<String>,
-    /// What the fastest run says of itself.
+    /// The fastest run's own report.
     #[serde(flatten)]
     pub run: Run,
 }
 
-/// What is read of a `summary.json`.
+/// The part of a `summary.json` that a study reads.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Version of ndda.
     pub version: String,
-    /// What the run says of itself.
+    /// The run's label.
     pub label: Label,
     /// The largest violation of each invariant.
     pub invariants: Invariants,
@@ -123,7 +123,7 @@ pub struct Run {
     pub stages_s: Map<String, Value>,
 }
 
-/// What a run ran on.
+/// Machine of a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Machine {
     /// The processor.

@@ -1,4 +1,4 @@
-//! What runs a case of a study.
+//! Runners of a study's cases.
 
 use std::path::Path;
 use std::sync::Arc;

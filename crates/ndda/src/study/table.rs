@@ -8,7 +8,7 @@ use super::front::{targets, time_to_error};
 use super::result::{Compared, Results};
 use crate::columns::columns;
 
-/// What each of the two errors is called.
+/// Names of the two errors.
 pub const WHICH: [&str; 2] = ["error at the end", "largest error over time"];
 
 /// One curve.
@@ -52,7 +52,7 @@ pub fn rows(results: &Results, which: usize) -> Vec<Row> {
     curves.iter().map(row).collect()
 }
 
-/// What a person reads: both tables, what failed and why, and what errors are relative to.
+/// The results as text: both tables, what failed and why, and what errors are relative to.
 pub fn text(results: &Results) -> String {
     let mut text = format!("{}: {}\n", results.name, results.title);
     for (which, name) in WHICH.iter().enumerate() {
@@ -82,7 +82,7 @@ pub fn text(results: &Results) -> String {
     text
 }
 
-/// What errors are relative to.
+/// Reference of relative errors, in words.
 fn against(reference: &Compared) -> String {
     match reference {
         Compared::ClosedForm { name } if name.is_empty() => String::new(),

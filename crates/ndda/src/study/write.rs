@@ -8,10 +8,10 @@ use serde::Serialize;
 use super::result::{CasePoint, Compared, Results};
 use super::table::{self, Row};
 
-/// What `study.json` calls its form; it changes when a key does.
+/// Schema of `study.json`; it changes when a key does.
 const SCHEMA: &str = "ndda.study/1";
 
-/// What `study.json` holds.
+/// Content of `study.json`.
 #[derive(Serialize)]
 struct Document<'a> {
     schema: &'static str,

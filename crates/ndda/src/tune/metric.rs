@@ -1,4 +1,4 @@
-//! What the error of a trial is: that against the scene's closed form, or against a run that is certified.
+//! The error of a trial: that against the scene's closed form, or against a run that is certified.
 
 use ndda_io::table::Table;
 
@@ -11,7 +11,7 @@ use crate::certify::runs::Ended;
 /// Differences of runs that halve the step are extrapolated with at most this order.
 const MOST_ORDER: f64 = 2.0;
 
-/// What trials are compared with.
+/// Reference of trials.
 pub enum Metric {
     /// The closed form of the scene.
     ClosedForm,
@@ -19,7 +19,7 @@ pub enum Metric {
     Run {
         /// Its history.
         history: Table,
-        /// What is compared.
+        /// Compared quantities.
         quantities: Vec<Quantity>,
         /// Its own relative error.
         error: f64,
@@ -43,7 +43,7 @@ impl Metric {
     }
 }
 
-/// What is compared: columns and blocks whose names begin with one of `of`; without them the displacements of the scene's
+/// Compared quantities: columns and blocks whose names begin with one of `of`; without them the displacements of the scene's
 /// monitors, or of all blocks where it has none.
 pub fn compared(history: &Table, of: &[String], monitors: &[String]) -> Vec<Quantity> {
     let all = quantities(history, of);

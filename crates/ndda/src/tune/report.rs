@@ -1,4 +1,4 @@
-//! What tuning has found: as `tune.json`, and in words.
+//! The result of tuning: as `tune.json`, and in words.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::columns::columns;
 use crate::study::emit::quoted;
 
-/// What `tune.json` calls its form; it changes when a key does.
+/// Schema of `tune.json`; it changes when a key does.
 pub const SCHEMA: &str = "ndda.tune/1";
 
 /// Everything that `tune.json` says.
@@ -23,7 +23,7 @@ pub struct Tuned {
     pub title: String,
     /// The relative error that was asked for.
     pub target: f64,
-    /// What errors are relative to, in words.
+    /// Reference of errors, in words.
     pub judged_by: String,
     /// The cheapest setting that reaches the error; the most exact one where none does.
     pub best: Option<TrialPoint>,
@@ -31,7 +31,7 @@ pub struct Tuned {
     pub is_reached: bool,
     /// All that was tried, in its order.
     pub tried: Vec<TrialPoint>,
-    /// What a person should know.
+    /// Remarks for the reader.
     pub remarks: Vec<String>,
     /// Wall time of all runs [s].
     pub wall_s: f64,
@@ -46,9 +46,9 @@ pub struct TrialPoint {
     pub label: String,
     /// Its step [s].
     pub step_s: f64,
-    /// What it sets, as `--set` takes it.
+    /// Values that it sets, as `--set` takes them.
     pub set: Vec<String>,
-    /// What it cost: processor time, or wall time where the system does not tell [s]. None where it failed.
+    /// Cost: processor time, or wall time where the system does not tell [s]. None where it failed.
     pub time_s: Option<f64>,
     /// Its relative error. None where it failed.
     pub error: Option<f64>,
@@ -71,7 +71,7 @@ impl Tuned {
         Ok(text)
     }
 
-    /// What a person reads.
+    /// The result as text.
     pub fn text(&self) -> String {
         let mut text = format!("{}: {}\n", self.scene, self.title);
         let front = |point: &&TrialPoint| point.on_front;

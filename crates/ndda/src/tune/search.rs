@@ -35,7 +35,7 @@ pub struct Search<'a, T> {
 pub struct Best {
     /// The setting.
     pub setting: Setting,
-    /// What it costs [s].
+    /// Cost [s].
     pub time_s: f64,
     /// Its error.
     pub error: f64,
@@ -50,7 +50,7 @@ impl<'a, T: Trials> Search<'a, T> {
     /// The cheapest setting that reaches the error, or the one of the least error where none does; none where no trial ends.
     ///
     /// # Errors
-    /// What ends the search.
+    /// Any error that ends the search.
     pub fn run(&mut self, start: &[i32]) -> Result<Option<Best>, T::Error> {
         let mut best = self.steps(start, self.space.first_level, None)?;
         for _ in 0..MOST_ROUNDS {
@@ -305,7 +305,7 @@ mod tests {
         assert_eq!(tried.len(), model.calls);
     }
 
-    /// Nothing ends.
+    /// An error that never occurs.
     struct Broken;
 
     impl Trials for Broken {

@@ -22,13 +22,13 @@ const MESHES: (i32, i32) = (-2, 2);
 /// One choice along an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
-    /// What it is called in tables.
+    /// Name in tables.
     pub label: String,
-    /// What it sets.
+    /// Values that it sets.
     pub set: Vec<String>,
 }
 
-/// What is varied in a scene.
+/// Settings of a scene that are varied.
 pub struct Settings {
     scene: Scene,
     /// Integrators, potentials, kinds of bodies, patterns of cells; the first of each is the scene's own.
@@ -60,7 +60,7 @@ impl Settings {
         }
     }
 
-    /// What is searched.
+    /// The search space.
     pub fn space(&self, target: f64, budget_s: f64) -> Space {
         let none = (0, 0);
         let mut axes: Vec<Axis> = self.choices.iter().map(|list| Axis::Choice(list.len() as i32)).collect();
@@ -77,7 +77,7 @@ impl Settings {
         vec![0; PENALTY + 2]
     }
 
-    /// What a setting sets but for its step.
+    /// Values of a setting but for its step.
     pub fn set(&self, setting: &Setting) -> Vec<String> {
         let mut set = Vec::new();
         for (choices, at) in self.choices.iter().zip(&setting.at) {
@@ -108,7 +108,7 @@ impl Settings {
     }
 }
 
-/// What the scene has.
+/// The scene's own choice.
 fn own() -> Choice {
     Choice { label: String::new(), set: Vec::new() }
 }

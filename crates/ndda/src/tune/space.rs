@@ -1,6 +1,6 @@
-//! What is searched: axes, settings, and how a trial of one went.
+//! The search space: axes, settings, and the outcome of a trial of one.
 
-/// What can be chosen along an axis.
+/// Choices along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
     /// One of so many choices, in no order.
@@ -9,7 +9,7 @@ pub enum Axis {
     Range(i32, i32),
 }
 
-/// What is searched.
+/// The search space.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Space {
     /// The axes, those first that change the cost and not what is computed.
@@ -29,7 +29,7 @@ pub struct Space {
 /// A setting.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Setting {
-    /// What is chosen along each axis.
+    /// The choice along each axis.
     pub at: Vec<i32>,
     /// The level of the step.
     pub level: i32,
@@ -40,7 +40,7 @@ pub struct Setting {
 pub enum Outcome {
     /// It ended.
     Done {
-        /// What it cost [s].
+        /// Cost [s].
         time_s: f64,
         /// Its relative error.
         error: f64,
@@ -65,12 +65,12 @@ pub struct Tried {
 
 /// Runs trials.
 pub trait Trials {
-    /// What ends a search.
+    /// Error that ends a search.
     type Error;
     /// Tries a setting.
     ///
     /// # Errors
-    /// What ends the search; a trial that fails is an outcome.
+    /// Any error that ends the search; a trial that fails is an outcome.
     fn run(&mut self, setting: &Setting) -> Result<Outcome, Self::Error>;
     /// Is told which settings come next, so that they can be run side by side.
     ///

@@ -1,8 +1,8 @@
-//! The faces of convex blocks, and blocks that are taken whole.
+//! The faces of convex blocks, and blocks that are affine convex targets.
 //!
-//! What is beyond one face of a convex block is not in the block. Blocks that lie side by side have many boundary
+//! A point beyond one face of a convex block is outside the block. Blocks that lie side by side have many boundary
 //! triangles that touch each other's edges and are in nothing; one comparison with the faces of the whole block says
-//! so, where its tetrahedra would be asked one by one.
+//! so, where its tetrahedra would be tested one by one.
 //!
 //! A convex block that moves by an affine map x = F X + c (a rigid one, an affine one, one that is held as a whole)
 //! keeps its faces plane. If φ is the depth below the nearest of them, it stays the smallest of the same linear
@@ -24,27 +24,27 @@ use crate::affine::half_spaces::{Planes, SIDES};
 use crate::affine::surface::BlockFaces;
 use crate::integration::capacity::MOST_CUTS;
 use crate::integration::clip::Outline;
-use crate::integration::polyhedron::Carried;
+use crate::integration::polyhedron::EmbeddedPolyhedron;
 use crate::integration::tet_frame::TetFrame;
 
 /// Faces below which a second thread costs more than it brings.
 const GRAIN_FACES: usize = 1024;
 
-/// The same for pairs of blocks.
+/// Pairs of blocks below which a second thread costs more than it brings.
 const GRAIN_PAIRS: usize = 128;
 
-/// A block of more faces is asked by its tetrahedra.
+/// A block of more faces is treated by its tetrahedra.
 const MOST_FACES: usize = 32;
 
-/// A convex block that is taken whole.
+/// A convex block that is an affine convex target.
 #[derive(Clone, Debug)]
-pub(crate) struct ConvexTarget {
+pub(crate) struct AffineConvexTarget {
     /// Its largest tetrahedron, whose corners take its forces.
     pub host: TetId,
     /// φ as deep as the block is wide: at the node furthest below a face, where that is least.
     pub most_phi: f64,
     /// Its shape, carried by the host.
-    pub shape: Carried,
+    pub shape: EmbeddedPolyhedron,
     /// Volume share of each node, a quarter of that of its tetrahedra.
     pub share: Vec<f64>,
     /// Λ⁻¹, Λ = Σ share λ λᵀ over the nodes, λ those of the host.
@@ -57,7 +57,7 @@ pub struct ConvexBlocks {
     faces: Vec<Face>,
     /// First face of each block; one that is concave or round has none.
     start: Vec<u32>,
-    whole: Vec<Option<ConvexTarget>>,
+    whole: Vec<Option<AffineConvexTarget>>,
     /// The faces of each block once more, by rows, and where those of each row are.
     planes: Vec<Planes>,
     in_row: Vec<Range<usize>>,
@@ -70,8 +70,8 @@ pub struct ConvexBlocks {
 
 impl ConvexBlocks {
     /// Takes the faces of all blocks; once per set of blocks. `phi_per_m` is φ per depth below the nearest face, if it is that;
-    /// then the blocks of which `affine` says that they move by an affine map are taken whole, and their faces are contactors unless
-    /// triangles are asked for.
+    /// then the blocks of which `affine` says that they move by an affine map are affine convex targets, and their faces are contactors unless
+    /// triangles are requested.
     pub fn fit(
         &mut self,
         blocks: &BlockSet,
@@ -98,7 +98,7 @@ impl ConvexBlocks {
             }
             self.start.push(self.faces.len() as u32);
             let own = &self.faces[self.places_of(block)];
-            let whole = phi_per_m.map(|_| ConvexTarget::new(blocks, block, own));
+            let whole = phi_per_m.map(|_| AffineConvexTarget::new(blocks, block, own));
             match &whole {
                 Some(whole) if !by_triangle => {
                     let host = TetFrame::new(&blocks.tet_corners(whole.host, &blocks.rest_position));
@@ -142,7 +142,7 @@ impl ConvexBlocks {
     /// Whether a face of the block keeps it from what these points span; touching is not overlap.
     #[inline]
     pub(crate) fn keep_apart(&self, arch: Arch, block: BlockId, points: &[Vec3]) -> bool {
-        arch.dispatch(KeepApart { planes: self.planes_of(block), points })
+        arch.dispatch(FacesSeparate { planes: self.planes_of(block), points })
     }
 
     /// The faces of a block; none of one that is concave or round.
@@ -163,22 +163,22 @@ impl ConvexBlocks {
         &self.faces
     }
 
-    /// A block that is taken whole.
+    /// A block that is an affine convex target.
     #[inline]
-    pub(crate) fn whole(&self, block: BlockId) -> Option<&ConvexTarget> {
+    pub(crate) fn affine_target(&self, block: BlockId) -> Option<&AffineConvexTarget> {
         self.whole.get(block.index()).and_then(Option::as_ref)
     }
 
     /// The faces of a block as contactors in another; none where it is put into that triangle by triangle.
     #[inline]
     pub(crate) fn contactors(&self, block: BlockId, target: BlockId) -> &[FaceContactor] {
-        if self.whole(target).is_some() { self.contactors.of_block(block) } else { &[] }
+        if self.affine_target(target).is_some() { self.contactors.of_block(block) } else { &[] }
     }
 
     /// The face that a triangle stands for as a contactor in another block.
     #[inline]
     pub(crate) fn contactor(&self, triangle: TriangleId, target: BlockId) -> Option<&FaceContactor> {
-        self.whole(target).and_then(|_| self.contactors.of_triangle(triangle))
+        self.affine_target(target).and_then(|_| self.contactors.of_triangle(triangle))
     }
 
     /// The outline of a contactor in another block: that of the face that the triangle stands for, or the triangle.
@@ -187,12 +187,12 @@ impl ConvexBlocks {
         self.contactor(triangle, target).map_or(&Outline::TRIANGLE, |face| &face.outline)
     }
 
-    /// How many blocks are taken whole.
-    pub(crate) fn count_whole(&self) -> usize {
+    /// How many blocks are affine convex targets.
+    pub(crate) fn count_affine(&self) -> usize {
         self.whole.iter().flatten().count()
     }
 
-    /// Where the faces of a block are among those of all.
+    /// Range of a block's faces in the list of all faces.
     pub(crate) fn places_of(&self, block: BlockId) -> Range<usize> {
         let start = |block: usize| self.start.get(block).map_or(0, |&start| start as usize);
         start(block.index())..start(block.index() + 1)
@@ -200,12 +200,12 @@ impl ConvexBlocks {
 }
 
 /// A question to the faces of a block.
-struct KeepApart<'a> {
+struct FacesSeparate<'a> {
     planes: &'a [Planes],
     points: &'a [Vec3],
 }
 
-impl WithSimd for KeepApart<'_> {
+impl WithSimd for FacesSeparate<'_> {
     type Output = bool;
 
     #[inline(always)]
@@ -214,7 +214,7 @@ impl WithSimd for KeepApart<'_> {
     }
 }
 
-impl ConvexTarget {
+impl AffineConvexTarget {
     fn new(blocks: &BlockSet, block: BlockId, faces: &[Face]) -> Self {
         let tets = || blocks.tets_of(block).map(|tet| TetId(tet as u32));
         let corners = |tet: TetId| blocks.tet_corners(tet, &blocks.rest_position);
@@ -244,7 +244,7 @@ impl ConvexTarget {
             face.linear(&Vec3::zeros())
         });
         let bounds = Aabb::around(&blocks.rest_position[blocks.nodes_of(block)]);
-        let shape = Carried::new(&bounds, sides, &frame);
+        let shape = EmbeddedPolyhedron::new(&bounds, sides, &frame);
         Self { host, most_phi, shape, share, inverse_spread }
     }
 

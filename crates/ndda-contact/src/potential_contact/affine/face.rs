@@ -16,9 +16,9 @@ pub(crate) struct Face {
     pub block: BlockId,
     /// Its largest triangle, which carries the plane along.
     pub corners: [NodeId; 3],
-    /// The node furthest below it at rest, and φ there, in a block that is taken whole.
+    /// The node furthest below it at rest, and φ there, in a block that is an affine convex target.
     pub(super) furthest: Option<(NodeId, f64)>,
-    /// n of φ = n·(p − x) in a block that is taken whole [1/m], in others of any length.
+    /// n of φ = n·(p − x) in a block that is an affine convex target [1/m], in others of any length.
     normal: Vec3,
     point: Vec3,
     /// n·(x − p) from which on a point is beyond: the largest of the block's nodes, less rounding.
@@ -57,7 +57,7 @@ impl Face {
         self.reach = reach - ROUNDING * largest * self.normal.lp_norm(1);
     }
 
-    /// φ of this face, in a block that is taken whole.
+    /// φ of this face, in a block that is an affine convex target.
     #[inline(always)]
     pub(crate) fn phi(&self, x: &Vec3) -> f64 {
         self.normal.dot(&(self.point - x))

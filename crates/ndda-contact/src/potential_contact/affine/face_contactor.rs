@@ -1,4 +1,4 @@
-//! Faces as contactors: what a block that is taken whole puts into others that are, too.
+//! Faces as contactors: what a block that is an affine convex target puts into others that are, too.
 //!
 //! A convex block that moves by an affine map keeps its faces plane, and what presses on a face moves all of the block, so that it
 //! does not matter which of the face's nodes take the force. Integrals over a face then are those over one of its
@@ -22,14 +22,14 @@ const MOST_TIMES: f64 = 16.0;
 /// Corners of an outline that turn by less than this are none.
 const STRAIGHT: f64 = 1e-9;
 
-/// A face, put into blocks that are taken whole.
+/// A face, put into blocks that are affine convex targets.
 #[derive(Clone, Debug)]
 pub(crate) struct FaceContactor {
     /// Its largest triangle, which stands for it.
     pub triangle: TriangleId,
     /// Its corners, counter-clockwise.
     nodes: Vec<NodeId>,
-    /// The same in coordinates of the triangle.
+    /// Outline of the face in coordinates of the triangle.
     pub outline: Outline,
     /// Least and largest ψ₁ and ψ₂.
     pub range: PsiRange,
@@ -37,7 +37,7 @@ pub(crate) struct FaceContactor {
     pub on_host: [[f64; 3]; 4],
 }
 
-/// The faces of blocks that are taken whole.
+/// The faces of blocks that are affine convex targets.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FaceContactors {
     all: Vec<FaceContactor>,
@@ -57,7 +57,7 @@ impl FaceContactors {
         self.place_of.resize(blocks.triangles.len(), 0);
     }
 
-    /// Takes the faces of the next block, which is taken whole with this host; none of them unless each is a convex polygon of one surface,
+    /// Takes the faces of the next block, which is an affine convex target with this host; none of them unless each is a convex polygon of one surface,
     /// neither too large nor with too many corners.
     pub(crate) fn take(&mut self, blocks: &BlockSet, block: BlockId, surface: &BlockFaces, host: &TetFrame) {
         let faces =

@@ -1,6 +1,6 @@
-//! The functions of a block that is taken whole as a contactor sees them, as many at a time as the processor has lanes.
+//! The functions of a block that is an affine convex target as a contactor sees them, as many at a time as the processor has lanes.
 //!
-//! Most contactors see five or six sides, three of which make regions, and each region asks all others whether they lead. One by one that
+//! Most contactors see five or six sides, three of which make regions, and each region compares with all others. One by one that
 //! took as long as the integrals.
 
 use ndda_mesh::Vec3;
@@ -54,7 +54,7 @@ pub(crate) struct HalfSpaces {
     /// Bounds of the lead of each over one that comes before it, and over one that comes after; none where another is below everywhere.
     over_former: [Row; ROWS],
     over_later: [Row; ROWS],
-    /// Those that may be the smallest somewhere.
+    /// Half-spaces whose function may be the smallest somewhere.
     which: [u8; MOST_CUTS],
     len: usize,
     /// By how much each leads over the one that a region is of, and in its place that one itself, which has to be positive.

@@ -1,15 +1,15 @@
-//! What one block does to another, block by block, so that what a block gives and takes is summed in one order on any number of threads.
+//! Contacts sorted by block, so that the forces on a block are summed in one order on any number of threads.
 
 use std::ops::Range;
 
 use ndda_mesh::BlockId;
 
-/// Where the deeds of each block are, and those on it: facets that touch, or faces.
+/// Index of the contacts on each block, in compressed rows: facets in contact, or faces, of the block itself and of others on it.
 #[derive(Default)]
 pub struct BlockContactIndex {
     /// First of each block's own; they are sorted by block.
     own_start: Vec<u32>,
-    /// Those on each block, by (target, number), and where each block's begin.
+    /// Contacts on each block, by (target, number), and where each block's begin.
     on_target: Vec<u32>,
     target_start: Vec<u32>,
 }
@@ -43,18 +43,18 @@ impl BlockContactIndex {
         }
     }
 
-    /// Those of a block, by number.
+    /// Contacts of a block's own facets, by number.
     pub(crate) fn of(&self, block: BlockId) -> Range<u32> {
         self.own_start[block.index()]..self.own_start[block.index() + 1]
     }
 
-    /// Those of others on it, ascending.
+    /// Contacts of other blocks' facets with it, ascending.
     pub(crate) fn on(&self, block: BlockId) -> &[u32] {
         let range = self.target_start[block.index()]..self.target_start[block.index() + 1];
         &self.on_target[range.start as usize..range.end as usize]
     }
 
-    /// Those of a block, and those on it with a minus.
+    /// Contacts of a block's own facets with sign +1, and of other blocks' facets with it with sign −1.
     pub(crate) fn at(&self, block: BlockId) -> impl Iterator<Item = (u32, f64)> {
         self.of(block).map(|k| (k, 1.0)).chain(self.on(block).iter().map(|&k| (k, -1.0)))
     }

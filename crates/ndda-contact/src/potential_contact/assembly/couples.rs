@@ -10,16 +10,16 @@ use crate::affine::convex_target::ConvexBlocks;
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::ActiveFacet;
 
-/// What couples read.
+/// Input of the computation of couples.
 #[derive(Clone, Copy)]
 pub(crate) struct CoupleScene<'a> {
     /// Topology.
     pub blocks: &'a BlockSet,
-    /// Where the nodes are [m].
+    /// Positions of the nodes [m].
     pub position: &'a [Vec3],
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,
-    /// Blocks that are taken whole.
+    /// Blocks that are affine convex targets.
     pub hulls: &'a ConvexBlocks,
 }
 
@@ -36,16 +36,16 @@ impl CoupleScene<'_> {
             let tet = self.blocks.triangle_tet[touch.triangle.index()];
             return self.each_of_tet(tet, couple_n_m, &mut add);
         }
-        if let Some(whole) = self.hulls.whole(touch.target) {
+        if let Some(whole) = self.hulls.affine_target(touch.target) {
             return self.each_of_tet(whole.host, couple_n_m, &mut add);
         }
-        let hits = self.integrals.hits_of(touch);
+        let overlaps = self.integrals.overlaps_of(touch);
         let pressure = |weights: &[f64; 4]| weights.iter().sum::<f64>();
-        let total: f64 = hits.iter().map(|hit| pressure(&hit.on_target.pressure)).sum();
-        for hit in hits {
-            let share = pressure(&hit.on_target.pressure) / total;
+        let total: f64 = overlaps.iter().map(|overlap| pressure(&overlap.on_target.pressure)).sum();
+        for overlap in overlaps {
+            let share = pressure(&overlap.on_target.pressure) / total;
             if share.is_finite() && share != 0.0 {
-                self.each_of_tet(hit.tet, &(share * couple_n_m), &mut add);
+                self.each_of_tet(overlap.tet, &(share * couple_n_m), &mut add);
             }
         }
     }

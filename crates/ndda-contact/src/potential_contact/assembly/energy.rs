@@ -2,7 +2,7 @@
 //!
 //! The element potential needs the surface pieces only (see [`pair`](crate::integration::tet_frame)), a volume is a sum over the
 //! surface of the overlap, and any other potential is integrated over the overlaps of tetrahedra. Forces never need
-//! U, except where its law is not linear; energies are asked for when results are written.
+//! U, except where its law is not linear; energies are requested when results are written.
 
 use ndda_mesh::geometry::{Aabb, triangle_area_vector};
 use ndda_mesh::{BlockId, TetId, Vec3};
@@ -14,7 +14,7 @@ use crate::broad_phase::candidates::{Candidates, Pair};
 use crate::integration::integrals::Integrals;
 use crate::integration::linear::Linear;
 use crate::integration::pair_moments::{has_centroid, pair_energy};
-use crate::integration::polyhedron::{Carried, Polyhedron, faces_of};
+use crate::integration::polyhedron::{EmbeddedPolyhedron, Polyhedron, faces_of};
 use crate::integration::tet_frame::TetFrame;
 use crate::model::ContactInput;
 use crate::potential::contact_potential::{OverlapLaw, PotentialField};
@@ -23,21 +23,21 @@ use crate::potential::piece_table::PieceTable;
 
 /// Pairs below which a second thread costs more than it brings.
 const GRAIN_PAIRS: usize = 512;
-/// The same for pairs of blocks.
+/// Pairs of blocks below which a second thread costs more than it brings.
 const GRAIN_BLOCK_PAIRS: usize = 4;
 
-/// What U is integrated from.
+/// Input of the integration of U.
 #[derive(Clone, Copy)]
 pub(crate) struct OverlapParts<'a> {
     /// Pairs and facets.
     pub candidates: &'a Candidates,
-    /// What touches.
+    /// Integrals of the facets in contact.
     pub integrals: &'a Integrals,
     /// A frame for each of [`Candidates::tets`].
     pub frames: &'a [TetFrame],
     /// φ.
     pub field: &'a PotentialField,
-    /// Blocks that are taken whole.
+    /// Blocks that are affine convex targets.
     pub hulls: &'a ConvexBlocks,
 }
 
@@ -198,7 +198,7 @@ fn element_pieces(tets: usize) -> PieceTable {
     table
 }
 
-/// What blocks consist of: a block that is taken whole is one cell, others are their tetrahedra.
+/// Cells of the blocks: an affine convex target is one cell, others consist of their tetrahedra.
 struct Cells<'a> {
     input: &'a ContactInput<'a>,
     table: &'a PieceTable,
@@ -235,10 +235,10 @@ impl Cells<'_> {
         origin: &Vec3,
     ) -> Vec<Cell<'_>> {
         let (blocks, position) = (self.input.blocks, self.input.position);
-        if let Some(whole) = self.hulls.whole(block) {
+        if let Some(whole) = self.hulls.affine_target(block) {
             let phi = self.hulls.faces_of(block).iter().map(|face| face.linear(origin)).collect();
             let host = blocks.tet_corners(whole.host, position).map(|x| x - origin);
-            return vec![Cell { bounds: *own, shape: Shape::ConvexTarget(&whole.shape, host), phi }];
+            return vec![Cell { bounds: *own, shape: Shape::AffineConvexTarget(&whole.shape, host), phi }];
         }
         let arch = Arch::new();
         let near = |tet: usize| {
@@ -261,12 +261,12 @@ struct Cell<'a> {
     phi: Vec<Linear>,
 }
 
-/// What a cell is, seen from an origin.
+/// Shape of a cell, relative to an origin.
 enum Shape<'a> {
     /// A tetrahedron with these corners, in which these functions are not negative.
     Tet(TetId, [Vec3; 4], [Linear; 4]),
-    /// A block that is taken whole, and the corners of its host; φ itself is not negative in it.
-    ConvexTarget(&'a Carried, [Vec3; 4]),
+    /// A block that is an affine convex target, and the corners of its host; φ itself is not negative in it.
+    AffineConvexTarget(&'a EmbeddedPolyhedron, [Vec3; 4]),
 }
 
 impl Cell<'_> {
@@ -277,11 +277,11 @@ impl Cell<'_> {
         Self { bounds, shape, phi }
     }
 
-    /// What is not negative in it.
+    /// Linear functions that are non-negative in the cell.
     fn sides(&self) -> &[Linear] {
         match &self.shape {
             Shape::Tet(_, _, sides) => sides,
-            Shape::ConvexTarget(..) => &self.phi,
+            Shape::AffineConvexTarget(..) => &self.phi,
         }
     }
 
@@ -294,7 +294,7 @@ impl Cell<'_> {
     ) -> f64 {
         match &self.shape {
             Shape::Tet(_, corners, _) => overlap.set_tet(corners),
-            Shape::ConvexTarget(body, host) => overlap.set_carried(body, host),
+            Shape::AffineConvexTarget(body, host) => overlap.set_embedded(body, host),
         }
         for side in t.sides() {
             overlap.cut(side);

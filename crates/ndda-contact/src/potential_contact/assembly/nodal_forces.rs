@@ -5,35 +5,35 @@ use std::ops::Range;
 use nalgebra::{Matrix4, Vector4};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
-use crate::affine::convex_target::{ConvexBlocks, ConvexTarget};
+use crate::affine::convex_target::{AffineConvexTarget, ConvexBlocks};
 use crate::assembly::adjacency::BlockContactIndex;
 use crate::assembly::couples::CoupleScene;
 use crate::assembly::join_if::join_if;
 use crate::friction::facet::FacetForce;
 use crate::integration::integrals::Integrals;
-use crate::integration::overlap_pair::{FacetMoments, Hit};
+use crate::integration::overlap_pair::{FacetMoments, OverlapPair};
 use crate::integration::pair_moments::OnTarget;
 use crate::model::ContactOutput;
 
 /// Facets per half below which a second thread costs more than it brings.
 const GRAIN_FACETS: usize = 200;
 
-/// What the sums read.
+/// Input of the sums over nodes.
 #[derive(Clone, Copy)]
 pub struct ScatterScene<'a> {
     /// Topology.
     pub blocks: &'a BlockSet,
-    /// Where the nodes are [m], if facets have couples.
+    /// Positions of the nodes [m], if facets have couples.
     pub position: Option<&'a [Vec3]>,
     /// Integrals of the pairs.
     pub integrals: &'a Integrals,
     /// The facets that touch, block by block.
-    pub by_block: &'a BlockContactIndex,
-    /// Blocks that are taken whole.
+    pub adjacency: &'a BlockContactIndex,
+    /// Blocks that are affine convex targets.
     pub hulls: &'a ConvexBlocks,
     /// One entry per touching facet.
     pub forces: &'a [FacetForce],
-    /// What the host of its target feels of each, where that is taken whole.
+    /// Force of each facet on the host tetrahedron of its target, where that is an affine convex target.
     pub on_host: &'a [OnTarget],
     /// Stiffness per slope, one entry per touching facet [Pa].
     pub stiffness_pa: &'a [f64],
@@ -48,7 +48,7 @@ impl ScatterScene<'_> {
         normal + self.forces[touch].shear_slope * pressure.abs()
     }
 
-    /// k λ λᵀ of a facet on a block that is taken whole, λ those of the host where the slope has its mean.
+    /// k λ λᵀ of a facet on a block that is an affine convex target, λ those of the host where the slope has its mean.
     fn spring(&self, touch: usize, OnTarget { pressure, slope }: &OnTarget) -> Matrix4<f64> {
         let (total, rise) = (pressure.iter().sum::<f64>(), slope.iter().sum::<f64>());
         let (weights, sum) = if rise > 0.0 { (slope, rise) } else { (pressure, total) };
@@ -71,7 +71,7 @@ pub fn add(scene: &ScatterScene, output: &mut ContactOutput) {
 }
 
 fn add_blocks(scene: &ScatterScene, blocks: Range<usize>, output: ContactOutput) {
-    match scene.by_block.count(&blocks) {
+    match scene.adjacency.count(&blocks) {
         0 => {}
         _ if blocks.len() == 1 => add_block(scene, BlockId(blocks.start as u32), output),
         _ => {
@@ -79,7 +79,7 @@ fn add_blocks(scene: &ScatterScene, blocks: Range<usize>, output: ContactOutput)
             let (head, tail) = (blocks.start..middle, middle..blocks.end);
             let starts = scene.blocks.node_starts();
             let (first, second) = split(output, (starts[middle] - starts[blocks.start]) as usize);
-            let parallel = scene.by_block.count(&head).min(scene.by_block.count(&tail)) > GRAIN_FACETS;
+            let parallel = scene.adjacency.count(&head).min(scene.adjacency.count(&tail)) > GRAIN_FACETS;
             join_if(parallel, || add_blocks(scene, head, first), || add_blocks(scene, tail, second));
         }
     }
@@ -87,26 +87,26 @@ fn add_blocks(scene: &ScatterScene, blocks: Range<usize>, output: ContactOutput)
 
 fn add_block(scene: &ScatterScene, block: BlockId, output: ContactOutput) {
     let mut nodes = BlockNodes { first: scene.blocks.nodes_of(block).start, output };
-    let (own, on_block) = (scene.by_block.of(block), scene.by_block.on(block));
-    match scene.hulls.whole(block) {
+    let (own, on_block) = (scene.adjacency.of(block), scene.adjacency.on(block));
+    match scene.hulls.affine_target(block) {
         None => {
             own.for_each(|t| nodes.add_contactor(scene, t as usize));
-            ask_for(scene, on_block);
+            prefetch(scene, on_block);
             on_block.iter().for_each(|&t| nodes.add_target(scene, t as usize));
         }
-        Some(whole) => nodes.add_whole(scene, whole, own, on_block),
+        Some(whole) => nodes.add_affine_target(scene, whole, own, on_block),
     }
     if let Some(position) = scene.position {
         nodes.add_couples(scene, block, position);
     }
 }
 
-/// What other blocks found is far away in memory: asked for all at once it comes sooner than one after the other.
-fn ask_for(scene: &ScatterScene, on_block: &[u32]) {
+/// Prefetches the results of other blocks, which are far away in memory: requested all at once they arrive sooner than one after the other.
+fn prefetch(scene: &ScatterScene, on_block: &[u32]) {
     let mut last = 0;
     for &t in on_block {
-        for hit in scene.integrals.hits_of(&scene.integrals.touching()[t as usize]) {
-            last |= hit.tet.0 | u32::from(hit.on_target.slope[3] != 0.0);
+        for overlap in scene.integrals.overlaps_of(&scene.integrals.touching()[t as usize]) {
+            last |= overlap.tet.0 | u32::from(overlap.on_target.slope[3] != 0.0);
         }
         last |= u32::from(scene.forces[t as usize].touches);
     }
@@ -148,7 +148,8 @@ impl BlockNodes<'_> {
         if !force.touches {
             return;
         }
-        for Hit { tet, on_target, .. } in scene.integrals.hits_of(&scene.integrals.touching()[t]) {
+        for OverlapPair { tet, on_target, .. } in scene.integrals.overlaps_of(&scene.integrals.touching()[t])
+        {
             let weights = on_target.pressure.iter().zip(on_target.slope);
             for (node, (pressure, slope)) in scene.blocks.tets[tet.index()].iter().zip(weights) {
                 self.add(node.index(), -pressure, force, scene.stiffness(t, slope.max(0.0), *pressure));
@@ -156,9 +157,15 @@ impl BlockNodes<'_> {
         }
     }
 
-    /// What presses on a block that is taken whole goes to its host. That and its faces on others make all its nodes as stiff as its fastest
+    /// Adds contact on an affine convex target to its host tetrahedron. That and its faces on others make all its nodes as stiff as its fastest
     /// affine motion; each hit counts as a spring at the mean of its slopes.
-    fn add_whole(&mut self, scene: &ScatterScene, whole: &ConvexTarget, own: Range<u32>, on_block: &[u32]) {
+    fn add_affine_target(
+        &mut self,
+        scene: &ScatterScene,
+        whole: &AffineConvexTarget,
+        own: Range<u32>,
+        on_block: &[u32],
+    ) {
         let mut springs = Matrix4::zeros();
         for (t, force) in
             own.map(|t| (t as usize, &scene.forces[t as usize])).filter(|(_, force)| force.touches)
@@ -192,8 +199,8 @@ impl BlockNodes<'_> {
     /// The couples of facets of this block, and the opposite of those on it.
     #[inline(never)]
     fn add_couples(&mut self, scene: &ScatterScene, block: BlockId, position: &[Vec3]) {
-        let own = scene.by_block.of(block).map(|t| (t, true));
-        let on_block = scene.by_block.on(block).iter().map(|&t| (t, false));
+        let own = scene.adjacency.of(block).map(|t| (t, true));
+        let on_block = scene.adjacency.on(block).iter().map(|&t| (t, false));
         let ScatterScene { blocks, integrals, hulls, .. } = *scene;
         let couples = CoupleScene { blocks, position, integrals, hulls };
         for (t, is_owner) in own.chain(on_block) {

@@ -58,7 +58,7 @@ fn second_moments(part: &Polygon, area_m2: f64) -> [[f64; 3]; 3] {
     h
 }
 
-/// The same where the gradient of φ differs from point to point.
+/// Adds the stiffness of a pair where the gradient of φ differs from point to point.
 fn add_function(
     stiffness: &mut PairStiffness,
     part: &Polygon,
@@ -90,7 +90,7 @@ fn gradient_at(
     (0..4).map(|b| slope[b] * frame.gradient(b)).sum()
 }
 
-/// What φ is in the target of a pair.
+/// The function φ in the target of a pair.
 #[derive(Clone, Copy)]
 pub(crate) enum Target<'a> {
     /// 4 min λᵢ.
@@ -99,12 +99,12 @@ pub(crate) enum Target<'a> {
     Pieces(&'a [[f64; 4]]),
     /// A function of the tetrahedron.
     Function(&'a FunctionField, TetId),
-    /// The smallest of the functions of these sides of a block that is taken whole, on a contactor with this outline; λ are those of
+    /// The smallest of the functions of these sides of a block that is an affine convex target, on a contactor with this outline; λ are those of
     /// its host.
     Convex(&'a [Planes], &'a Outline),
 }
 
-/// Adds the stiffness of a contactor in a tetrahedron or a block that is taken whole; `corners` [m] are those of its triangle.
+/// Adds the stiffness of a contactor in a tetrahedron or a block that is an affine convex target; `corners` [m] are those of its triangle.
 pub(crate) fn add_pair(
     stiffness: &mut PairStiffness,
     corners: &[Vec3; 3],

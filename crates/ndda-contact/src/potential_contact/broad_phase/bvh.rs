@@ -18,7 +18,7 @@ use crate::integration::capacity::MOST_CORNERS;
 
 /// Blocks below which a second thread costs more than it brings.
 const GRAIN_BLOCKS: usize = 16;
-/// The same for boxes.
+/// Boxes below which a second thread costs more than it brings.
 const GRAIN_BOXES: usize = 2048;
 /// Part of the nodes, 1 / this, beyond which placing all blocks at once is quicker than one by one.
 const MANY: usize = 4;
@@ -57,7 +57,7 @@ pub(crate) fn make_room<T>(list: &mut Vec<T>, more: usize) {
 #[derive(Default)]
 struct Found {
     pairs: Vec<(TriangleId, TetId)>,
-    /// Those of them with a renewed block, on either side.
+    /// Pairs with a renewed block, on either side.
     fresh: Vec<(TriangleId, TetId)>,
     changed: bool,
 }
@@ -297,7 +297,7 @@ impl TreeBroadPhase {
     }
 }
 
-/// What the search between two blocks reads.
+/// Input of the search between two blocks.
 struct Near<'a> {
     scene: &'a BroadScene<'a>,
     own: &'a [Option<Box<BlockBvh>>],
@@ -318,7 +318,7 @@ impl Near<'_> {
             for face in faces.iter().filter(reaches) {
                 let (id, corners) = (face.triangle, face.place(self.scene.position, &mut room));
                 let plane = self.scene.triangle_at(id.index(), other);
-                self.find_whole(id, &plane, corners, (block, other), found);
+                self.find_affine_target(id, &plane, corners, (block, other), found);
             }
             return;
         }
@@ -347,7 +347,7 @@ impl Near<'_> {
     }
 
     /// Adds a contactor, a triangle or the face with these corners that it stands for, that may reach into another block, taken whole.
-    fn find_whole(
+    fn find_affine_target(
         &self,
         id: TriangleId,
         triangle: &TriangleAt,
@@ -356,7 +356,7 @@ impl Near<'_> {
         found: &mut Vec<(TriangleId, TetId)>,
     ) {
         let scene = self.scene;
-        let Some(whole) = scene.hulls.whole(other) else { return };
+        let Some(whole) = scene.hulls.affine_target(other) else { return };
         let others = &scene.position[scene.blocks.nodes_of(other)];
         if !self.has_before(other, block, corners) && !triangle.are_on_one_side(others) {
             found.push((id, whole.host));
@@ -366,9 +366,9 @@ impl Near<'_> {
     fn find_tets(&self, i: usize, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
         let (scene, bounds) = (self.scene, &self.boxes.triangles[i]);
         let triangle = scene.triangle_at(i, other);
-        if scene.hulls.whole(other).is_some() {
+        if scene.hulls.affine_target(other).is_some() {
             let id = TriangleId(i as u32);
-            return self.find_whole(id, &triangle, &triangle.corners, (block, other), found);
+            return self.find_affine_target(id, &triangle, &triangle.corners, (block, other), found);
         }
         if block != other && self.has_before(other, block, &triangle.corners) {
             return;

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use crate::affine::convex_target::ConvexBlocks;
 use crate::broad_phase::bvh::{TreeBroadPhase, make_room};
 use crate::broad_phase::finder::BroadPhase;
-use crate::broad_phase::neighbour_list::Listed;
+use crate::broad_phase::neighbour_list::NeighbourList;
 use crate::model::ContactInput;
 
 /// Pairs below which a second thread costs more than it brings.
@@ -27,7 +27,7 @@ pub struct Facet {
     pub neighbours: u32,
 }
 
-/// One pair; the tetrahedron, which may stand for a block that is taken whole, is an index into [`Candidates::tets`], the overlap one into a list as long as
+/// One pair; the tetrahedron, which may stand for a block that is an affine convex target, is an index into [`Candidates::tets`], the overlap one into a list as long as
 /// [`Candidates::overlaps`] says.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pair {
@@ -51,7 +51,7 @@ pub struct Candidates {
     pub tets: Vec<TetId>,
     /// Their corners in the order of node numbers, on which neighbours agree.
     pub order: Vec<[u8; 4]>,
-    /// The distinct (target tetrahedron, contactor block), block by block; empty where nobody asks for them.
+    /// The distinct (target tetrahedron, contactor block), block by block; empty where they are not needed.
     pub overlaps: Vec<(TetId, BlockId)>,
     /// Counts the changes of the list.
     pub version: u64,
@@ -67,7 +67,7 @@ pub struct Candidates {
     /// First overlap of each contactor block.
     overlap_start: Vec<u32>,
     broad_phase: Box<dyn BroadPhase>,
-    listed: Listed,
+    neighbour_list: NeighbourList,
 }
 
 impl Default for Candidates {
@@ -95,7 +95,7 @@ impl Candidates {
             sorted: Vec::new(),
             overlap_start: Vec::new(),
             broad_phase,
-            listed: Listed::default(),
+            neighbour_list: NeighbourList::default(),
         }
     }
 
@@ -111,21 +111,21 @@ impl Candidates {
 
     /// Makes the next update start anew.
     pub fn forget(&mut self) {
-        self.listed.forget();
+        self.neighbour_list.forget();
     }
 
     /// Brings the list up to date and says whether it changed: the pairs of blocks that have moved no further than
     /// their margin since they were listed stay.
     pub fn update(&mut self, input: &ContactInput, hulls: &ConvexBlocks) -> bool {
-        let begins = self.listed.renew(input);
-        if self.listed.renewed().is_empty() && !begins {
+        let begins = self.neighbour_list.renew(input);
+        if self.neighbour_list.renewed().is_empty() && !begins {
             return false;
         }
-        let scene = self.listed.scene(input.blocks, hulls);
-        let changed = self.broad_phase.find_pairs(&scene, self.listed.renewed(), &mut self.found);
+        let scene = self.neighbour_list.scene(input.blocks, hulls);
+        let changed = self.broad_phase.find_pairs(&scene, self.neighbour_list.renewed(), &mut self.found);
         if changed || begins {
             self.arrange(input);
-            self.listed.note_neighbours(&self.neighbours);
+            self.neighbour_list.note_neighbours(&self.neighbours);
         }
         changed || begins
     }
@@ -139,7 +139,13 @@ impl Candidates {
         let overlaps = self.overlaps.capacity() * size_of::<(TetId, BlockId)>();
         let places = (self.slot_of.capacity() + self.overlap_start.capacity()) * size_of::<u32>()
             + (self.place_of.capacity() + self.neighbours.capacity()) * size_of::<(BlockId, u32)>();
-        pairs + tets + found + overlaps + places + self.listed.heap_bytes() + self.broad_phase.heap_bytes()
+        pairs
+            + tets
+            + found
+            + overlaps
+            + places
+            + self.neighbour_list.heap_bytes()
+            + self.broad_phase.heap_bytes()
     }
 
     /// Numbers what the pairs share.

@@ -19,7 +19,7 @@ pub struct BroadScene<'a> {
     pub position: &'a [Vec3],
     /// How far the nodes of each block may move while the answer is in use [m].
     pub margin_m: &'a [f64],
-    /// Which blocks are taken whole: the only tetrahedron of these is their host, and stands for all of the block.
+    /// Which blocks are affine convex targets: the only tetrahedron of these is their host, and stands for all of the block.
     pub hulls: &'a ConvexBlocks,
 }
 
@@ -43,7 +43,7 @@ impl BroadScene<'_> {
     /// Box around a tetrahedron, or around the block that it stands for, with the margin of its block.
     pub fn tet_box(&self, tet: usize) -> Aabb {
         let block = self.blocks.tet_block[tet];
-        match self.hulls.whole(block) {
+        match self.hulls.affine_target(block) {
             Some(whole) if whole.host.index() == tet => self.block_box(block),
             Some(_) => Aabb::empty(),
             None => self.around(&self.blocks.tets[tet]).inflated(self.margin_m[block.index()]),
@@ -74,9 +74,9 @@ impl BroadScene<'_> {
     }
 
     /// Whether a triangle and a tetrahedron of one block are too near each other at rest to be contact later: they
-    /// share a node, or are no further apart than they are large, or the block is taken whole.
+    /// share a node, or are no further apart than they are large, or the block is an affine convex target.
     pub fn are_neighbours(&self, triangle: usize, tet: usize) -> bool {
-        if self.hulls.whole(self.blocks.tet_block[tet]).is_some() {
+        if self.hulls.affine_target(self.blocks.tet_block[tet]).is_some() {
             return true;
         }
         let rest = |nodes: &[NodeId]| {
@@ -144,7 +144,7 @@ impl Side {
         let nodes = &scene.position[scene.blocks.nodes_of(face.block)];
         let furthest = match nodes.len() <= FEW_NODES {
             true => nodes.iter().map(above).fold(0.0, f64::max),
-            false if scene.hulls.whole(face.block).is_some() => 0.0,
+            false if scene.hulls.affine_target(face.block).is_some() => 0.0,
             // It would take longer to know than it saves.
             false => f64::INFINITY,
         };
@@ -170,7 +170,7 @@ pub(crate) fn shape_of(blocks: &BlockSet) -> [usize; 4] {
 /// Contract (checked by [`check_broad_phase`](crate::broad_phase::testing::check_broad_phase)): no such pair of two blocks is
 /// missed, nor one of two far parts of a concave block; each pair comes once, and neighbours in one block never.
 pub trait BroadPhase: Send + Sync {
-    /// Its name, for a person who asks.
+    /// Its name, for reports.
     fn name(&self) -> &'static str;
 
     /// Brings `pairs`, the answer to the last call, up to date after the blocks `renewed` (ascending; in the first

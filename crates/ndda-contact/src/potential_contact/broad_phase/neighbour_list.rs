@@ -1,4 +1,4 @@
-//! Where the blocks were when their pairs were listed, and how far each may move before they are listed again.
+//! Positions of the blocks when their pairs were listed, and how far each may move before they are listed again.
 
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, NodeId, Vec3};
@@ -23,7 +23,7 @@ const GRAIN_BLOCKS: usize = 2048;
 
 /// A record of positions, block by block.
 #[derive(Default)]
-pub(crate) struct Listed {
+pub(crate) struct NeighbourList {
     position: Vec<Vec3>,
     /// Mean size of the boundary triangles of each block at rest [m]; zero without any.
     size_m: Vec<f64>,
@@ -40,7 +40,7 @@ pub(crate) struct Listed {
     shape: Option<[usize; 4]>,
 }
 
-impl Listed {
+impl NeighbourList {
     /// Makes the next [`renew`](Self::renew) take all blocks.
     pub(crate) fn forget(&mut self) {
         self.shape = None;
@@ -191,7 +191,7 @@ mod tests {
         let mut velocity = vec![Vec3::zeros(); position.len()];
         let moving = blocks.nodes_of(BlockId(0));
         velocity[moving.clone()].fill(Vec3::x());
-        let (mut listed, mut records) = (Listed::default(), 0);
+        let (mut listed, mut records) = (NeighbourList::default(), 0);
         for _ in 0..steps {
             position[moving.clone()].iter_mut().for_each(|x| x.x += 1e-3 / 3.0);
             let begins = listed.renew(&ContactInput::new(&blocks, &position, &velocity, 1e-3 / 3.0));

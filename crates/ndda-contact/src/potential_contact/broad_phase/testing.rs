@@ -14,25 +14,25 @@ const SCENES: usize = 10_000;
 /// Steps of each scene.
 const STEPS: usize = 3;
 
-/// What [`check_broad_phase`] saw; no pair that overlaps was missed.
+/// Counts of [`check_broad_phase`]; no pair that overlaps was missed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BroadCounts {
     /// Lists that were compared.
     pub lists: usize,
     /// Pairs in them.
     pub found: usize,
-    /// Those of them whose boxes, without a margin, do not touch.
+    /// Pairs whose boxes, without a margin, do not touch.
     pub extra: usize,
     /// Pairs whose boxes touch, of which it was seen from nearer by that they do not overlap.
     pub apart: usize,
     /// Pairs that overlap.
     pub overlapping: usize,
-    /// Those of them in one block.
+    /// Pairs within one block.
     pub in_one_block: usize,
 }
 
 /// Panics unless a broad phase keeps the contract of [`BroadPhase`]: over random blocks of sizes from 1 to 1000, some
-/// concave, of which some turn, shift and deform in each step and some are taken whole, no pair that overlaps within the margin is missed, and
+/// concave, of which some turn, shift and deform in each step and some are affine convex targets, no pair that overlaps within the margin is missed, and
 /// every pair is one of [`AllPairs`].
 pub fn check_broad_phase<P: BroadPhase>(new: impl Fn() -> P) -> BroadCounts {
     let mut random = Random(1);
@@ -85,7 +85,7 @@ fn compare(input: &BroadScene, moved: &[Vec3], found: &[(TriangleId, TetId)], co
     }
 }
 
-/// Whether a triangle overlaps a tetrahedron, or any of a block that is taken whole.
+/// Whether a triangle overlaps a tetrahedron, or any of a block that is an affine convex target.
 fn overlap(input: &BroadScene, position: &[Vec3], (triangle, tet): &(TriangleId, TetId)) -> bool {
     let (blocks, block) = (input.blocks, input.blocks.tet_block[tet.index()]);
     let corners = blocks.triangle_corners(*triangle, position);
@@ -98,7 +98,7 @@ fn overlap(input: &BroadScene, position: &[Vec3], (triangle, tet): &(TriangleId,
         lambda.iter().for_each(|at| part.cut(&Form::through(at), 0.0));
         part.fan().map(|(_, part)| part).sum::<f64>() > 0.0
     };
-    match input.hulls.whole(block) {
+    match input.hulls.affine_target(block) {
         Some(_) => blocks.tets_of(block).any(overlaps),
         None => overlaps(tet.index()),
     }
@@ -124,11 +124,11 @@ impl Place {
             let nodes = blocks.nodes_of(block);
             let center = self.position[nodes.start];
             let shift = 0.2 * random.vector();
-            let (is_whole, stretch) = (self.hulls.whole(block).is_some(), 0.01 * random.vector());
+            let (is_affine, stretch) = (self.hulls.affine_target(block).is_some(), 0.01 * random.vector());
             for x in &mut self.position[nodes] {
-                let strain = if is_whole { stretch } else { 0.01 * random.vector() };
+                let strain = if is_affine { stretch } else { 0.01 * random.vector() };
                 let arm = turn * (*x - center);
-                *x = center + shift + arm + strain * if is_whole { arm.x + arm.y } else { arm.norm() };
+                *x = center + shift + arm + strain * if is_affine { arm.x + arm.y } else { arm.norm() };
             }
             self.margin_m[block.index()] = 0.02 * random.unit();
         }
@@ -157,7 +157,7 @@ impl Random {
         test_set(meshes)
     }
 
-    /// Some of the convex blocks are taken whole.
+    /// Some of the convex blocks are affine convex targets.
     fn hulls(&mut self, blocks: &BlockSet) -> ConvexBlocks {
         let (mut hulls, share) = (ConvexBlocks::default(), 1.5 * self.unit() - 0.25);
         let affine: Vec<bool> = blocks.ids().map(|_| self.unit() < share).collect();
@@ -184,8 +184,8 @@ impl Random {
         for block in blocks.ids() {
             let way_m = 1.15 * place.margin_m[block.index()];
             let shift = self.vector();
-            let is_whole = place.hulls.whole(block).is_some();
-            let shifts = || if is_whole { shift } else { self.vector() };
+            let is_affine = place.hulls.affine_target(block).is_some();
+            let shifts = || if is_affine { shift } else { self.vector() };
             moved[blocks.nodes_of(block)]
                 .iter_mut()
                 .zip(std::iter::repeat_with(shifts))

@@ -66,7 +66,7 @@ fn bond_of(
         let shifted = corners.map(|x| x + into);
         let mut polygon = Polygon::all_of(&Outline::TRIANGLE);
         let mut cut = |at: [f64; 3]| polygon.cut(&Form::through(&at), f64::MIN_POSITIVE);
-        match hulls.whole(facet.target) {
+        match hulls.affine_target(facet.target) {
             Some(_) => {
                 hulls.faces_of(facet.target).iter().for_each(|face| cut(shifted.map(|x| face.phi(&x))))
             }
@@ -215,7 +215,7 @@ struct Stretch {
     offset_m: Vec3,
     /// Half of the bonded area [m²].
     half_area: f64,
-    /// What of lengths is rounding [m].
+    /// Rounding of lengths [m].
     rounding_m: f64,
 }
 
@@ -346,7 +346,7 @@ mod tests {
             position[upper.clone()].iter_mut().for_each(|x| x.z += gap_m);
             let input = ContactInput::new(&blocks, &position, &velocity, 1e-3);
             let answer = evaluate(&mut model, &input, history);
-            // What a bond stores is work of friction: from rest, −½ f·u.
+            // The energy of a bond is counted as work of friction: from rest, −½ f·u.
             let moved = position.iter().zip(&blocks.rest_position).map(|(x, rest)| x - rest);
             let stored: f64 = answer.friction_force.iter().zip(moved).map(|(f, u)| -0.5 * f.dot(&u)).sum();
             assert!(answer.force.iter().sum::<Vec3>().norm() < 1e-9);

@@ -1,4 +1,4 @@
-//! What one facet does: normal force, slip and friction.
+//! One facet: normal force, slip and friction.
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockSet, TetId, Vec3};
@@ -7,7 +7,7 @@ use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::friction::bond;
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, facet_basis, length};
 use crate::friction::law_table::{FrictionLawTable, Memory};
-use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, Hit};
+use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
 use crate::model::{ContactHistory, ContactInput, FacetMemory, SpringSlip};
 
 /// Friction below this part of what it may be holds like a spring.
@@ -18,7 +18,7 @@ const STICKS: f64 = 1.0 - 1e-9;
 pub struct FacetForce {
     /// −k n: what the facet's normal force is made of [Pa].
     pub push: Vec3,
-    /// The same for friction [Pa].
+    /// Shear traction of friction [Pa].
     pub shear: Vec3,
     /// Torque of friction about the centre of pressure, which `shear` does not have [N m].
     pub couple_n_m: Vec3,
@@ -26,7 +26,7 @@ pub struct FacetForce {
     pub shear_slope: f64,
     /// Whether its friction is below what it may be.
     pub sticks: bool,
-    /// What a shear spring did in the step, where there is one.
+    /// Slip and work of the shear spring in the step, where there is one.
     pub spring: Option<SpringSlip>,
     /// Shear force in the facet's basis [N], and whether cohesion is gone: what is kept where there is friction and contact.
     pub memory: Option<([f64; 2], bool)>,
@@ -38,7 +38,7 @@ pub struct FacetForce {
     pub facet: u32,
 }
 
-/// What the evaluation of a facet reads.
+/// Input of the evaluation of a facet.
 #[derive(Clone, Copy)]
 pub(crate) struct FacetScene<'a> {
     /// Blocks and their motion.
@@ -57,7 +57,7 @@ impl FacetScene<'_> {
     pub(crate) fn force(
         &self,
         touch: &ActiveFacet,
-        hits: &[Hit],
+        hits: &[OverlapPair],
         sums: &FacetMoments,
         penalty_pa: f64,
         state: &mut [f64],
@@ -82,7 +82,7 @@ impl FacetScene<'_> {
         &self,
         joints: &FrictionLawTable,
         touch: &ActiveFacet,
-        (hits, sums): (&[Hit], &FacetMoments),
+        (hits, sums): (&[OverlapPair], &FacetMoments),
         (penalty_pa, normal): (f64, &Vec3),
         (force, state): (&mut FacetForce, &mut [f64]),
     ) {
@@ -118,7 +118,7 @@ impl FacetScene<'_> {
     fn slip(
         &self,
         touch: &ActiveFacet,
-        (hits, sums): (&[Hit], &FacetMoments),
+        (hits, sums): (&[OverlapPair], &FacetMoments),
         basis: &[Vec3; 2],
         penalty_pa: f64,
     ) -> FacetSlip {
@@ -134,7 +134,7 @@ impl FacetScene<'_> {
         }
     }
 
-    /// What the facet remembers of its target, and the area of the last step; nothing when they did not touch before.
+    /// History of the facet on its target, and the area of the last step; none when they did not touch before.
     fn remembered<'a>(
         &self,
         facet: &Facet,
@@ -149,7 +149,7 @@ impl FacetScene<'_> {
                 state.copy_from_slice(&self.history.state_of(place)[..state.len()]);
                 (ShearMemory { shear_n, broken, state }, area_m2)
             }
-            // What touches from the start has done so before.
+            // Facets that touch from the start count as having touched before.
             Err(_) => {
                 law.begin(state);
                 let area_m2 = if self.history.begun { 0.0 } else { sums.area };
@@ -168,16 +168,16 @@ impl FacetScene<'_> {
 /// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.
 pub(crate) fn relative_velocity(
     touch: &ActiveFacet,
-    found: (&[Hit], &FacetMoments),
+    found: (&[OverlapPair], &FacetMoments),
     input: &ContactInput,
 ) -> Vec3 {
     relative_motion(touch, found, (input.blocks, input.velocity))
 }
 
-/// The same of any vectors per node.
+/// Relative motion of any vectors per node.
 pub(crate) fn relative_motion(
     touch: &ActiveFacet,
-    (hits, sums): (&[Hit], &FacetMoments),
+    (hits, sums): (&[OverlapPair], &FacetMoments),
     (blocks, velocity): (&BlockSet, &[Vec3]),
 ) -> Vec3 {
     let triangle = &blocks.triangles[touch.triangle.index()];

@@ -2,7 +2,7 @@
 
 use ndda_mesh::Vec3;
 
-/// What a facet, or a whole face, does against its target in this step; vectors are in the facet's own basis.
+/// Motion of a facet, or a whole face, on its target in this step; vectors are in the facet's own basis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FacetSlip {
     /// Normal force f_n on the facet [N]; negative for tension, which only an unbroken contact carries.
@@ -19,7 +19,7 @@ pub struct FacetSlip {
     pub stopping_n: [f64; 2],
 }
 
-/// What a facet remembers of its target.
+/// History of a facet on its target.
 #[derive(Debug, PartialEq)]
 pub struct ShearMemory<'a> {
     /// Shear force on the contactor in the facet's own basis (first edge, normal × first edge) [N].
@@ -27,7 +27,7 @@ pub struct ShearMemory<'a> {
     pub shear_n: [f64; 2],
     /// Whether cohesion is gone; it never comes back.
     pub broken: bool,
-    /// What the law keeps beside them: as many numbers as its [`state_len`](FrictionLaw::state_len) says, kept from step to step and in
+    /// Numbers of the law's own: as many as its [`state_len`](FrictionLaw::state_len) says, kept from step to step and in
     /// checkpoints.
     pub state: &'a mut [f64],
 }
@@ -53,7 +53,7 @@ pub trait FrictionLaw: Send + Sync {
         0
     }
 
-    /// Those numbers where a contact begins; zeros unless a law says otherwise.
+    /// Sets the law's own numbers where a contact begins; zeros unless a law says otherwise.
     fn begin(&self, state: &mut [f64]) {
         state.fill(0.0);
     }

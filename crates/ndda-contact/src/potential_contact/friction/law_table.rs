@@ -4,7 +4,7 @@ use ndda_mesh::{BlockId, BlockSet, TriangleId};
 
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory};
 
-/// What a facet's friction history belongs to.
+/// The owner of a facet's friction history.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Memory {
     /// The facet and the other block: it survives when the block slides from one element to the next.
@@ -14,10 +14,10 @@ pub enum Memory {
     Element,
 }
 
-/// What acts on the faces of one named surface.
+/// Law of the faces of one named surface.
 #[derive(Clone, Copy, Debug, Default)]
 enum OnSurface {
-    /// What acts between the materials.
+    /// The law of the two materials.
     #[default]
     Materials,
     /// A law of its own, or none.
@@ -38,7 +38,7 @@ pub struct FrictionLawTable {
     law_of: Vec<Option<u32>>,
     /// By index in [`BlockSet::surface_names`]; surfaces beyond the list have no law of their own.
     on_surface: Vec<OnSurface>,
-    /// What history belongs to.
+    /// Owner of the friction history.
     pub memory: Memory,
 }
 

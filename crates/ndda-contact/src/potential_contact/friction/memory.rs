@@ -1,4 +1,4 @@
-//! What friction laws keep of each facet, beside what every law remembers.
+//! Friction laws' own numbers per facet, beside the history that all laws share.
 
 use crate::model::{ContactError, ContactHistory, FacetMemory};
 
@@ -19,7 +19,7 @@ impl ContactHistory {
         Ok(())
     }
 
-    /// What laws keep of a facet.
+    /// The law's own numbers of a facet.
     pub(crate) fn state_of(&self, place: usize) -> &[f64] {
         let len = self.law_state_len as usize;
         &self.law_state[place * len..(place + 1) * len]

@@ -151,7 +151,7 @@ mod tests {
         assert!((memory.state[0] - 1e5 * step_m).abs() < 1e-6);
     }
 
-    /// Whatever the step, strength is that of the plastic slip.
+    /// For any step, strength is that of the plastic slip.
     #[test]
     fn one_long_step_ends_where_many_short_ones_do() {
         let law = SofteningCoulomb::new(1e10, (40.0, 2e5), (25.0, 0.0), 5e-3);

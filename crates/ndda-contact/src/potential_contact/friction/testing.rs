@@ -123,7 +123,7 @@ fn check_energy(law: &dyn FrictionLaw) {
     }
 }
 
-/// The same slip in turned axes gives the turned force, and the same slip again the same bits.
+/// Slip in turned axes gives the turned force, and repeated slip the same bits.
 fn check_turning(law: &dyn FrictionLaw) {
     let (sine, cosine) = 0.7f64.sin_cos();
     let turn = |[x, y]: [f64; 2]| [cosine * x - sine * y, sine * x + cosine * y];

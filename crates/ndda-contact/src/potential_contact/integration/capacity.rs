@@ -1,4 +1,4 @@
-//! What fixed arrays of outlines, regions and polyhedra hold.
+//! Sizes of the fixed arrays of outlines, regions and polyhedra.
 
 /// Most corners of a contactor's outline; a face of a block that has more is left to its triangles.
 pub(crate) const MOST_CORNERS: usize = 8;

@@ -102,7 +102,7 @@ impl Polygon {
         let count = std::mem::take(&mut self.len);
         let first = self.corners[0];
         let (mut here, mut from) = (first, field.at(&first));
-        // What is left takes the place of what was looked at.
+        // Corners that are kept take the place of those already examined.
         for seen in 2..count + 2 {
             let next = if seen > count { first } else { self.corners[seen - 1] };
             let to = field.at(&next);

@@ -92,7 +92,7 @@ pub(crate) struct Barycentric {
 }
 
 impl Barycentric {
-    /// Those of a tetrahedron that is not flat [m].
+    /// Coordinates of a tetrahedron that is not flat [m].
     pub(crate) fn new(corners: &[Vec3; 4]) -> Self {
         let faces = TET_FACES.map(|face| face.map(|i| corners[i]));
         let edges = faces.map(|[p, q, r]| [arm(&q, &p), arm(&r, &p)]);

@@ -13,9 +13,9 @@ use crate::broad_phase::candidates::{Facet, Pair};
 use crate::broad_phase::finder::FEW_NODES;
 use crate::integration::clip::Outline;
 use crate::integration::function_moments::{Placed, add_function};
-use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, Hit};
+use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
 use crate::integration::pair_moments::{PairMoments, PsiRange};
-use crate::integration::pair_report::{HitReport, list_past_centroid};
+use crate::integration::pair_report::{OverlapReport, list_past_centroid};
 use crate::integration::queue::RegionQueue;
 use crate::integration::region::{Pieces, Region};
 use crate::integration::scene::{Scene, are_on_one_side};
@@ -34,14 +34,14 @@ pub(crate) struct Chunk {
     /// Facets of this chunk, in [`Candidates::facets`].
     facets: Range<usize>,
     /// Hits in the order of pairs.
-    pub hits: Vec<Hit>,
+    pub overlaps: Vec<OverlapPair>,
     /// Its number.
     number: u32,
     /// Facets that have some, ascending, and what theirs come to.
     touching: Vec<ActiveFacet>,
     sums: Vec<FacetMoments>,
-    /// What the hits tell of themselves.
-    pub report: HitReport,
+    /// Report on the overlapping pairs.
+    pub report: OverlapReport,
     /// Pairs of hits whose triangle has passed the tetrahedron's centroid, in their order, where φ is largest there.
     pub past: Vec<u32>,
 }
@@ -71,12 +71,12 @@ struct PendingPair {
     tet: TetId,
     /// λ_b of the target at the corners of the contactor's triangle, as `[b][a]`.
     lambda: [[f64; 3]; 4],
-    /// Where the contactor is a face.
+    /// Range of ψ where the contactor is a face.
     range: Option<PsiRange>,
     moments: PairMoments,
 }
 
-/// What a thread needs while it is at a chunk.
+/// Scratch memory of a thread for one chunk.
 #[derive(Default)]
 struct Scratch {
     seen: Vec<PendingPair>,
@@ -90,9 +90,9 @@ impl Chunk {
     fn integrate(&mut self, arch: Arch, scene: &Scene, scratch: &mut Scratch) {
         let facets = &scene.candidates.facets[self.facets.clone()];
         let pairs = facets[facets.len() - 1].pairs.end - facets[0].pairs.start;
-        self.hits.clear();
-        // A contact that closes further rarely asks for more than a quarter.
-        self.hits.reserve(pairs / 4);
+        self.overlaps.clear();
+        // A contact that closes further rarely requires more than a quarter.
+        self.overlaps.reserve(pairs / 4);
         self.touching.clear();
         self.touching.reserve(facets.len());
         self.sums.reserve(facets.len());
@@ -108,43 +108,44 @@ impl Chunk {
             }
             let first = scratch.seen.len() as u32;
             scratch.add_facet(arch, scene, facet, &triangle);
-            let hits = [first, scratch.seen.len() as u32];
-            if hits[0] < hits[1] {
+            let overlaps = [first, scratch.seen.len() as u32];
+            if overlaps[0] < overlaps[1] {
                 let (chunk, place) = (self.number, self.touching.len() as u32);
                 let Facet { triangle, target, .. } = *facet;
                 let owner = scene.blocks.triangle_block[triangle.index()];
                 let facet = (self.facets.start + k) as u32;
-                self.touching.push(ActiveFacet { facet, triangle, owner, target, chunk, hits, place });
+                self.touching.push(ActiveFacet { facet, triangle, owner, target, chunk, overlaps, place });
             }
         }
         let Scratch { batches, seen, .. } = scratch;
         batches.finish(arch, |part| seen[part.pair as usize].moments.add_region(part));
         self.take(scene, seen);
         if scene.field.is_element() {
-            list_past_centroid(&self.hits, scene, &mut self.past);
+            list_past_centroid(&self.overlaps, scene, &mut self.past);
         }
     }
 
     /// Keeps what has an area, and the facets that have such hits; what is not a number stays to be reported.
     fn take(&mut self, scene: &Scene, seen: &mut [PendingPair]) {
-        let Self { hits, sums, report, .. } = self;
+        let Self { overlaps, sums, report, .. } = self;
         sums.clear();
-        *report = HitReport::default();
+        *report = OverlapReport::default();
         self.touching.retain_mut(|touch| {
-            let (first, mut sum) = (hits.len() as u32, FacetMoments::default());
-            for seen in &mut seen[touch.hits[0] as usize..touch.hits[1] as usize] {
+            let (first, mut sum) = (overlaps.len() as u32, FacetMoments::default());
+            for seen in &mut seen[touch.overlaps[0] as usize..touch.overlaps[1] as usize] {
                 seen.drop_rounding();
                 let PendingPair { pair, tet, lambda, moments, .. } = seen;
                 if moments.area != 0.0 {
                     let on_target = moments.on_target(lambda);
-                    let hit = Hit { pair: *pair, tet: *tet, pressure: moments.pressure, on_target };
-                    report.add(&hit, moments.depth, scene);
+                    let overlap =
+                        OverlapPair { pair: *pair, tet: *tet, pressure: moments.pressure, on_target };
+                    report.add(&overlap, moments.depth, scene);
                     sum.add(moments);
-                    hits.push(hit);
+                    overlaps.push(overlap);
                 }
             }
-            (touch.hits, touch.place) = ([first, hits.len() as u32], sums.len() as u32);
-            let touches = touch.hits[0] < touch.hits[1];
+            (touch.overlaps, touch.place) = ([first, overlaps.len() as u32], sums.len() as u32);
+            let touches = touch.overlaps[0] < touch.overlaps[1];
             if touches {
                 sums.push(sum);
             }
@@ -168,8 +169,8 @@ impl Scratch {
         if *area == 0.0 {
             return;
         }
-        if scene.hulls.whole(facet.target).is_some() {
-            return self.add_whole(arch, scene, facet, triangle);
+        if scene.hulls.affine_target(facet.target).is_some() {
+            return self.add_affine_target(arch, scene, facet, triangle);
         }
         if scene.hulls.keep_apart(arch, facet.target, corners)
             || scene.is_on_one_side(facet, &corners[0], normal)
@@ -187,15 +188,15 @@ impl Scratch {
             if scene.tet_is_on_one_side(tet, &corners[0], normal) {
                 continue;
             }
-            let hit = self.seen.len() as u32;
+            let at = self.seen.len() as u32;
             let moments = PairMoments::default();
             self.seen.push(PendingPair { pair: index as u32, tet, lambda, range: None, moments });
-            self.add_regions(arch, scene, hit, &Placed { tet, frame, lambda: &lambda, normal, area: *area });
+            self.add_regions(arch, scene, at, &Placed { tet, frame, lambda: &lambda, normal, area: *area });
         }
     }
 
-    /// A facet on a block that is taken whole.
-    fn add_whole(
+    /// A facet on a block that is an affine convex target.
+    fn add_affine_target(
         &mut self,
         arch: Arch,
         scene: &Scene,
@@ -206,19 +207,19 @@ impl Scratch {
         let contactor = scene.hulls.contactor(facet.triangle, facet.target);
         let outline = contactor.map_or(&Outline::TRIANGLE, |face| &face.outline);
         let planes = scene.hulls.planes_of(facet.target);
-        if !arch.dispatch(Look { sides: &mut self.sides, planes, corners, normal, outline })
+        if !arch.dispatch(EvaluateHalfSpaces { sides: &mut self.sides, planes, corners, normal, outline })
             || (nodes.len() <= FEW_NODES
                 && are_on_one_side(scene.position[nodes].iter(), &corners[0], normal))
         {
             return;
         }
-        let (hit, index) = (self.seen.len() as u32, facet.pairs.start);
+        let (at, index) = (self.seen.len() as u32, facet.pairs.start);
         let slot = scene.candidates.pairs[index].tet as usize;
         let (pair, tet) = (index as u32, scene.candidates.tets[slot]);
         let (lambda, range) = (scene.frames[slot].lambda(corners), contactor.map(|face| face.range));
         self.seen.push(PendingPair { pair, tet, lambda, range, moments: PairMoments::default() });
         let Self { sides, region, batches, .. } = self;
-        arch.dispatch(PushSides { sides, region, batches, outline, arch, hit, area_m2: *area });
+        arch.dispatch(PushRegions { sides, region, batches, outline, arch, at, area_m2: *area });
     }
 
     fn make_room(&mut self, pairs: usize) {
@@ -228,20 +229,20 @@ impl Scratch {
         self.batches.make_room(pairs);
     }
 
-    fn add_regions(&mut self, arch: Arch, scene: &Scene, hit: u32, placed: &Placed) {
+    fn add_regions(&mut self, arch: Arch, scene: &Scene, at: u32, placed: &Placed) {
         let Placed { tet, frame, lambda, normal, area } = *placed;
         match scene.field {
             PotentialField::Element => {
-                self.batches.push_element(arch, hit, area, lambda, &frame.slopes(normal));
+                self.batches.push_element(arch, at, area, lambda, &frame.slopes(normal));
             }
             PotentialField::Pieces(table) => {
                 if self.pieces.set(lambda, table.of(tet), frame, normal) {
-                    self.batches.push_pieces(arch, hit, area, &self.pieces);
+                    self.batches.push_pieces(arch, at, area, &self.pieces);
                 }
             }
             PotentialField::Function(field) => {
                 if self.pieces.set(lambda, field.regions.of(tet), frame, normal) {
-                    let moments = &mut self.seen[hit as usize].moments;
+                    let moments = &mut self.seen[at as usize].moments;
                     add_function(moments, field, &self.pieces, &mut self.region, placed);
                 }
             }
@@ -249,8 +250,8 @@ impl Scratch {
     }
 }
 
-/// A look at a block that is taken whole.
-struct Look<'a> {
+/// A look at a block that is an affine convex target.
+struct EvaluateHalfSpaces<'a> {
     sides: &'a mut HalfSpaces,
     planes: &'a [Planes],
     corners: &'a [Vec3; 3],
@@ -258,7 +259,7 @@ struct Look<'a> {
     outline: &'a Outline,
 }
 
-impl WithSimd for Look<'_> {
+impl WithSimd for EvaluateHalfSpaces<'_> {
     type Output = bool;
 
     #[inline(always)]
@@ -268,25 +269,25 @@ impl WithSimd for Look<'_> {
 }
 
 /// The regions that are seen then.
-struct PushSides<'a> {
+struct PushRegions<'a> {
     sides: &'a mut HalfSpaces,
     region: &'a mut Region,
     batches: &'a mut RegionQueue,
     outline: &'a Outline,
     arch: Arch,
-    hit: u32,
+    at: u32,
     area_m2: f64,
 }
 
-impl WithSimd for PushSides<'_> {
+impl WithSimd for PushRegions<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let Self { sides, region, batches, outline, arch, hit, area_m2 } = self;
+        let Self { sides, region, batches, outline, arch, at, area_m2 } = self;
         for k in 0..sides.len() {
             if sides.set_region(simd, k, outline, region) {
-                batches.push(arch, hit, area_m2, region, outline);
+                batches.push(arch, at, area_m2, region, outline);
             }
         }
     }
@@ -377,12 +378,12 @@ impl Integrals {
     }
 
     /// The hits of a facet that touches, in the order of pairs.
-    pub fn hits_of(&self, touch: &ActiveFacet) -> &[Hit] {
-        let [start, end] = touch.hits.map(|k| k as usize);
-        &self.chunks[touch.chunk as usize].hits[start..end]
+    pub fn overlaps_of(&self, touch: &ActiveFacet) -> &[OverlapPair] {
+        let [start, end] = touch.overlaps.map(|k| k as usize);
+        &self.chunks[touch.chunk as usize].overlaps[start..end]
     }
 
-    /// What the hits of a facet that touches come to.
+    /// Sums of the overlapping pairs of a facet in contact.
     pub(crate) fn sums_of(&self, touch: &ActiveFacet) -> &FacetMoments {
         &self.chunks[touch.chunk as usize].sums[touch.place as usize]
     }

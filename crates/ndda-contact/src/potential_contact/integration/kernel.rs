@@ -21,7 +21,7 @@ pub(crate) type Row = [f64; GROUP];
 /// A group of regions; a field is given by its values at the corners of the contactor's triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct RegionGroup {
-    /// Outlines of the contactors, (ψ₁, ψ₂) of their corners; not asked for where they are triangles.
+    /// Outlines of the contactors, (ψ₁, ψ₂) of their corners; not requested where they are triangles.
     pub outline: [[Row; 2]; MOST_CORNERS],
     /// Corners in use.
     pub corners: usize,
@@ -197,7 +197,7 @@ impl<S: Simd, const MOST: usize> Edges<S, MOST> {
         Self { x, y, len: 3 }
     }
 
-    /// What one cut leaves of the whole triangle: its corners ask for no products, and its rim leaves once at most.
+    /// Remainder of the whole triangle after one cut: its corners need no products, and its rim leaves once at most.
     #[inline(always)]
     fn of_triangle(simd: S, field: &Form<S>, bound: S::f64s) -> Self {
         let Form([c0, c1, c2]) = *field;

@@ -6,18 +6,18 @@ use crate::integration::pair_moments::{OnTarget, PairMoments};
 
 /// A candidate pair that does overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hit {
+pub struct OverlapPair {
     /// Index in [`Candidates::pairs`].
     pub pair: u32,
     /// The pair's tetrahedron, to be had without looking for the pair.
     pub tet: TetId,
     /// ∫ φ ψ_a dA [m²].
     pub pressure: [f64; 3],
-    /// What the target's nodes feel.
+    /// Reaction on the target's nodes.
     pub on_target: OnTarget,
 }
 
-/// What the hits of a facet come to.
+/// Sums over the overlapping pairs of a facet.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct FacetMoments {
     /// ∫ φ dA [m²].
@@ -62,6 +62,6 @@ pub struct ActiveFacet {
     pub target: BlockId,
     /// Where its hits are, and the rest.
     pub(super) chunk: u32,
-    pub(super) hits: [u32; 2],
+    pub(super) overlaps: [u32; 2],
     pub(super) place: u32,
 }

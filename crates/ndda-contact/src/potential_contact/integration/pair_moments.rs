@@ -106,7 +106,7 @@ impl PairMoments {
         self.area = non_negative(self.area);
     }
 
-    /// The same where ψ is not positive all over: what is left is what the total and the range of ψ on the contactor leave room for, and
+    /// Removes rounding where ψ is not positive all over: the result is bounded by the total and the range of ψ on the contactor, and
     /// adds up to the total.
     #[inline]
     pub(crate) fn drop_rounding_within(&mut self, range: &PsiRange) {
@@ -114,7 +114,7 @@ impl PairMoments {
             let total = non_negative(sums.iter().sum());
             for (sum, [least, most]) in sums[1..].iter_mut().zip(range) {
                 let [least, most] = [total * least, total * most];
-                // What is not a number stays so.
+                // NaN stays NaN.
                 *sum = if *sum < least { least } else { *sum };
                 *sum = if *sum > most { most } else { *sum };
             }
@@ -125,7 +125,7 @@ impl PairMoments {
         self.area = non_negative(self.area);
     }
 
-    /// What the target's nodes feel; `lambda[b][a]` is λ_b at corner a.
+    /// Reaction on the target's nodes; `lambda[b][a]` is λ_b at corner a.
     #[inline(always)]
     pub fn on_target(&self, lambda: &[[f64; 3]; 4]) -> OnTarget {
         OnTarget::of(lambda, &self.pressure, &self.slope)

@@ -16,12 +16,12 @@ pub(super) const MOST_CORNERS: usize = 152;
 
 /// A convex polyhedron that moves along with a tetrahedron: its corners by their λ, and its graph.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Carried {
+pub(crate) struct EmbeddedPolyhedron {
     lambda: Vec<[f64; 4]>,
     neighbours: Vec<[u8; 3]>,
 }
 
-impl Carried {
+impl EmbeddedPolyhedron {
     /// A convex body in a box, given by functions that are not negative in it, at rest where the tetrahedron is.
     pub(crate) fn new(bounds: &Aabb, sides: impl Iterator<Item = Linear>, tet: &TetFrame) -> Self {
         let mut body = Polyhedron::default();
@@ -78,7 +78,7 @@ impl Polyhedron {
     }
 
     /// Becomes a body that moves along with a tetrahedron, which has these corners [m] now.
-    pub(crate) fn set_carried(&mut self, body: &Carried, [a, b, c, d]: &[Vec3; 4]) {
+    pub(crate) fn set_embedded(&mut self, body: &EmbeddedPolyhedron, [a, b, c, d]: &[Vec3; 4]) {
         (self.len, self.outgrown) = (body.lambda.len(), false);
         for (x, l) in self.position.iter_mut().zip(&body.lambda) {
             *x = a * l[0] + b * l[1] + c * l[2] + d * l[3];

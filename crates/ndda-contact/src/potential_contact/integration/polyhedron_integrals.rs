@@ -90,7 +90,7 @@ impl Polyhedron {
         part: &mut Self,
         over: impl Fn(usize, &Self) -> f64,
     ) -> f64 {
-        // What is everywhere above another's largest value is nowhere the smallest.
+        // A function that exceeds another's largest value everywhere is nowhere the smallest.
         let mut least = [0.0; MOST_CUTS];
         let mut enough = f64::INFINITY;
         for (least, f) in least.iter_mut().zip(functions) {

@@ -23,7 +23,7 @@ impl Quadrature {
         &self.triangle
     }
 
-    /// The same of a tetrahedron.
+    /// Points and weights of a tetrahedron.
     pub(crate) fn tetrahedron(&self) -> &[([f64; 4], f64)] {
         &self.tetrahedron
     }

@@ -62,7 +62,7 @@ impl RegionQueue {
         slopes: &[f64; 4],
     ) {
         let outside = element_outside(lambda);
-        // One by one: a loop would ask for each of its cuts which region this is.
+        // One by one: a loop would look up the region for each of its cuts.
         self.push_one(arch, pair, area_m2, (lambda, &outside, 0, slopes[0]));
         self.push_one(arch, pair, area_m2, (lambda, &outside, 1, slopes[1]));
         self.push_one(arch, pair, area_m2, (lambda, &outside, 2, slopes[2]));

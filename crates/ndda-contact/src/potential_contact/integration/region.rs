@@ -63,7 +63,7 @@ impl Region {
         (self.phi, self.slope, self.len) = (phi, slope, 0);
     }
 
-    /// Adds a cut if it cuts anything: to write is quicker than to ask.
+    /// Branch-free append of a cut; `len` advances only if the cut is active.
     #[inline(always)]
     pub(crate) fn put(&mut self, cut: Cut, cuts: bool) {
         self.cuts[self.len] = cut;
@@ -85,7 +85,7 @@ impl Region {
         is_somewhere(&outside[i])
     }
 
-    /// Where the k-th of the functions is the smallest. False if that is nowhere.
+    /// Restricts the region to where the k-th of the functions is the smallest. False if that is nowhere.
     pub(crate) fn set_piece(&mut self, pieces: &Pieces, k: usize) -> bool {
         self.begin(pieces.at[k], pieces.slope[k].abs());
         self.len = pieces.cuts(k, |n, cut| self.cuts[n] = cut);
@@ -208,7 +208,7 @@ impl Pieces {
     }
 
     /// Gives each cut of the region of the k-th its place and returns how many there are; a place may be given again, and the one after
-    /// the last too: to write is quicker than to ask.
+    /// the last too: branch-free append, `len` advances only if it is active.
     #[inline(always)]
     pub(crate) fn cuts(&self, k: usize, mut put: impl FnMut(usize, Cut)) -> usize {
         for (n, cut) in self.faces[..self.faces_len].iter().enumerate() {
@@ -249,7 +249,7 @@ pub(crate) fn is_somewhere([a, b, c, d]: &[u8; 4]) -> bool {
 
 /// The cuts of region i of the element potential that cut something: λ_i ≥ 0, and λ_j − λ_i; where λ_i = λ_j the
 /// smaller index has the point. Gives each its place and returns how many there are; a place may be given again, and
-/// the one after the last too: to write is quicker than to ask.
+/// the one after the last too: branch-free append, `len` advances only if it is active.
 #[inline(always)]
 pub(crate) fn element_cuts(
     lambda: &[[f64; 3]; 4],
@@ -271,7 +271,7 @@ pub(crate) fn element_cuts(
 /// The regions of the element potential that are somewhere.
 pub fn element_regions(lambda: &[[f64; 3]; 4], slopes: &[f64; 4], mut visit: impl FnMut(usize, &Region)) {
     let (mut region, outside) = (Region::default(), element_outside(lambda));
-    // One by one: a loop would ask for each of its cuts which region this is.
+    // One by one: a loop would look up the region for each of its cuts.
     visit_element(&mut region, lambda, &outside, slopes, 0, &mut visit);
     visit_element(&mut region, lambda, &outside, slopes, 1, &mut visit);
     visit_element(&mut region, lambda, &outside, slopes, 2, &mut visit);

@@ -7,7 +7,7 @@ use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::integration::tet_frame::TetFrame;
 use crate::potential::contact_potential::PotentialField;
 
-/// What all chunks read.
+/// Input of all chunks.
 #[derive(Clone, Copy)]
 pub struct Scene<'a> {
     /// Topology.
@@ -20,7 +20,7 @@ pub struct Scene<'a> {
     pub frames: &'a [TetFrame],
     /// φ.
     pub field: &'a PotentialField,
-    /// What keeps facets out of whole blocks.
+    /// Convex blocks, whose faces exclude facets.
     pub hulls: &'a ConvexBlocks,
 }
 

@@ -5,7 +5,7 @@ use ndda_mesh::Vec3;
 /// One number for each face of a tetrahedron; face b is opposite to corner b.
 type Faces = [f64; 4];
 
-/// What the kernel needs of a target tetrahedron; made once per step.
+/// A target tetrahedron as the kernel needs it; made once per step.
 ///
 /// λ_b(x) = n·(x − p) / n·(x_b − p), the normal n and the point p of the face opposite to corner b taken from its
 /// corners in the order of their coordinates. Two tetrahedra that share a face therefore compute the same n·(x − p)

@@ -26,7 +26,7 @@ pub enum PairError {
     Penalty(f64),
 }
 
-/// What two tetrahedra share.
+/// Overlap of two tetrahedra.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TetOverlap {
     /// Volume of c ∩ t [m³].
@@ -54,7 +54,7 @@ pub(crate) struct ScaledPair {
     pub corners: [[Vec3; 4]; 2],
     /// Whether the first two corners are swapped.
     pub swapped: [bool; 2],
-    /// What the caller's coordinates were divided by [m].
+    /// Length that the caller's coordinates were divided by [m].
     pub unit_m: f64,
 }
 

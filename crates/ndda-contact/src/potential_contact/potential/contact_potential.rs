@@ -23,13 +23,13 @@ pub trait ContactPotential: Send + Sync {
     /// [`PotentialError`] naming the block that it cannot serve.
     fn field(&self, blocks: &BlockSet) -> Result<PotentialField, PotentialError>;
 
-    /// φ per depth below the nearest face of a convex block [1/m], if it is that: such a block is taken whole where it moves by an
+    /// φ per depth below the nearest face of a convex block [1/m], if it is that: such a block is an affine convex target where it moves by an
     /// affine map, see [`ConvexBlocks`](crate::affine::ConvexBlocks).
     fn phi_per_m(&self) -> Option<f64> {
         None
     }
 
-    /// What W is of U.
+    /// The law W(U).
     fn law(&self) -> OverlapLaw {
         OverlapLaw::Linear
     }

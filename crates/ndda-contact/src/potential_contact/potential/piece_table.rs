@@ -40,7 +40,7 @@ impl PieceTable {
         self.values.iter().flatten().all(|&value| value == first).then_some(first)
     }
 
-    /// What φ does not exceed in the tetrahedron: the largest value of a function at a corner, least over the functions.
+    /// Upper bound of φ in the tetrahedron: the largest value of a function at a corner, least over the functions.
     #[inline]
     pub fn most_in(&self, tet: TetId) -> f64 {
         self.most[tet.index()]

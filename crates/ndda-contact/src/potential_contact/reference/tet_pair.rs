@@ -19,7 +19,7 @@ use crate::integration::tet_overlap::ScaledPair;
 /// Pairs at a time, so that all about them stays in the cache.
 const CHUNK: usize = 64;
 
-/// What a pair of tetrahedra gives.
+/// Contact of a pair of tetrahedra.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PairForces {
     /// Volume of c ∩ t [m³].

@@ -14,17 +14,17 @@ pub(super) struct Keyword {
 
 impl Keyword {
     /// The value of a parameter, if it is there.
-    pub fn get(&self, parameter: &str) -> Option<&str> {
+    pub(crate) fn get(&self, parameter: &str) -> Option<&str> {
         self.parameters.iter().find(|(name, _)| name == parameter).map(|(_, value)| value.as_str())
     }
 
     /// Whether a parameter is there.
-    pub fn has(&self, parameter: &str) -> bool {
+    pub(crate) fn has(&self, parameter: &str) -> bool {
         self.get(parameter).is_some()
     }
 
     /// The value of a parameter that has to be there.
-    pub fn value(&self, parameter: &str) -> Result<&str, Fault> {
+    pub(crate) fn value(&self, parameter: &str) -> Result<&str, Fault> {
         let value = self.get(parameter).filter(|value| !value.is_empty());
         let expected = || format!("{parameter}=… after *{}", self.name);
         value.ok_or_else(|| Fault::unexpected(self.line, expected(), b"end of line"))
@@ -41,7 +41,7 @@ pub(super) struct Data<'a> {
 
 impl Data<'_> {
     /// Word `i` as a number that is not negative.
-    pub fn integer(&self, i: usize, expected: &str) -> Result<u64, Fault> {
+    pub(crate) fn integer(&self, i: usize, expected: &str) -> Result<u64, Fault> {
         let word = self.words.get(i).copied().unwrap_or(b"end of line");
         parse(word).ok_or_else(|| Fault::unexpected(self.line, expected, word))
     }
@@ -54,7 +54,7 @@ pub(super) struct Records<'a> {
 }
 
 impl<'a> Records<'a> {
-    pub fn new(bytes: &'a [u8]) -> Self {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
         // No byte begins a comment inside a line.
         Self { lines: Lines::new(bytes, b'\n'), waiting: None }
     }
@@ -64,7 +64,7 @@ impl<'a> Records<'a> {
     }
 
     /// The next keyword line; data lines before it are skipped.
-    pub fn keyword(&mut self) -> Result<Option<Keyword>, Fault> {
+    pub(crate) fn keyword(&mut self) -> Result<Option<Keyword>, Fault> {
         while let Some(line) = self.line() {
             if line.text.starts_with(b"*") {
                 return self.parameters(line).map(Some);
@@ -89,7 +89,7 @@ impl<'a> Records<'a> {
     }
 
     /// The next data line of the last keyword; `None` when they are at an end.
-    pub fn data(&mut self) -> Result<Option<Data<'a>>, Fault> {
+    pub(crate) fn data(&mut self) -> Result<Option<Data<'a>>, Fault> {
         let Some(mut line) = self.line() else { return Ok(None) };
         if line.text.starts_with(b"*") {
             self.waiting = Some(line);

@@ -15,7 +15,7 @@ use crate::write_error::WriteError;
 /// # Errors
 /// [`WriteError`] for a number that is not finite, a name that cannot be kept (Abaqus does not tell small letters
 /// from capitals), and what the operating system refuses.
-pub fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
+pub(crate) fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
     let joined = Joined::new(path, bodies)?;
     for names in [joined.names.clone(), joined.sets.keys().copied().collect()] {
         let mut known = BTreeSet::new();

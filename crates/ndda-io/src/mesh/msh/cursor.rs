@@ -20,7 +20,7 @@ pub(super) enum Encoding {
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     next: usize,
-    /// Where the last item began.
+    /// Start of the last item.
     start: usize,
     /// How [`int`](Self::int), [`size`](Self::size) and [`real`](Self::real) read.
     pub encoding: Encoding,
@@ -28,13 +28,13 @@ pub(super) struct Cursor<'a> {
 
 impl<'a> Cursor<'a> {
     /// At the beginning of `bytes`, after a byte order mark of UTF-8.
-    pub fn new(bytes: &'a [u8]) -> Self {
+    pub(crate) fn new(bytes: &'a [u8]) -> Self {
         let next = if bytes.starts_with(b"\xEF\xBB\xBF") { 3 } else { 0 };
         Self { bytes, next, start: next, encoding: Encoding::Ascii }
     }
 
     /// The place of byte `at` as the user finds it.
-    pub fn place(&self, at: usize) -> Place {
+    pub(crate) fn place(&self, at: usize) -> Place {
         match self.encoding {
             Encoding::Ascii => Place::Line(1 + self.bytes[..at].iter().filter(|&&b| b == b'\n').count()),
             _ => Place::Byte(at),
@@ -42,12 +42,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// The byte where the last item began.
-    pub fn start(&self) -> usize {
+    pub(crate) fn start(&self) -> usize {
         self.start
     }
 
     /// `problem` at the item that was read last.
-    pub fn fault(&self, problem: MshProblem) -> Fault {
+    pub(crate) fn fault(&self, problem: MshProblem) -> Fault {
         Fault { at: Some(self.start), problem }
     }
 
@@ -60,12 +60,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// Whether only white space is left.
-    pub fn is_at_end(&self) -> bool {
+    pub(crate) fn is_at_end(&self) -> bool {
         self.bytes[self.next..].iter().all(u8::is_ascii_whitespace)
     }
 
     /// The next word of text.
-    pub fn word(&mut self, expected: &str) -> Result<&'a [u8], Fault> {
+    pub(crate) fn word(&mut self, expected: &str) -> Result<&'a [u8], Fault> {
         let rest = &self.bytes[self.next..];
         let skip = rest.iter().take_while(|b| b.is_ascii_whitespace()).count();
         let length = rest[skip..].iter().take_while(|b| !b.is_ascii_whitespace()).count();
@@ -78,20 +78,20 @@ impl<'a> Cursor<'a> {
     }
 
     /// The next word, which must be `word`.
-    pub fn keyword(&mut self, word: &str) -> Result<(), Fault> {
+    pub(crate) fn keyword(&mut self, word: &str) -> Result<(), Fault> {
         let found = self.word(&format!("`{word}`"))?;
         if found == word.as_bytes() { Ok(()) } else { Err(self.unexpected(&format!("`{word}`"), found)) }
     }
 
     /// The next word as a number, whatever the encoding.
-    pub fn text<T: FromStr>(&mut self, expected: &str) -> Result<T, Fault> {
+    pub(crate) fn text<T: FromStr>(&mut self, expected: &str) -> Result<T, Fault> {
         let word = self.word(expected)?;
         let number = std::str::from_utf8(word).ok().and_then(|text| text.parse().ok());
         number.ok_or_else(|| self.unexpected(expected, word))
     }
 
-    /// What is left of the line, without its end; the cursor goes to the next line.
-    pub fn rest_of_line(&mut self) -> &'a [u8] {
+    /// The rest of the line, without its end; the cursor goes to the next line.
+    pub(crate) fn rest_of_line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.next..];
         let length = rest.iter().take_while(|&&b| b != b'\n').count();
         self.start = self.next;
@@ -109,12 +109,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// Four bytes as they are, lowest first.
-    pub fn raw_u32(&mut self, expected: &str) -> Result<u32, Fault> {
+    pub(crate) fn raw_u32(&mut self, expected: &str) -> Result<u32, Fault> {
         Ok(u32::from_le_bytes(self.raw(expected)?))
     }
 
     /// The format's `int`.
-    pub fn int(&mut self, expected: &str) -> Result<i32, Fault> {
+    pub(crate) fn int(&mut self, expected: &str) -> Result<i32, Fault> {
         match self.encoding {
             Encoding::Ascii => self.text(expected),
             Encoding::LittleEndian => Ok(i32::from_le_bytes(self.raw(expected)?)),
@@ -123,7 +123,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// The format's `size_t`.
-    pub fn size(&mut self, expected: &str) -> Result<u64, Fault> {
+    pub(crate) fn size(&mut self, expected: &str) -> Result<u64, Fault> {
         match self.encoding {
             Encoding::Ascii => self.text(expected),
             Encoding::LittleEndian => Ok(u64::from_le_bytes(self.raw(expected)?)),
@@ -132,7 +132,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// The format's `double`.
-    pub fn real(&mut self, expected: &str) -> Result<f64, Fault> {
+    pub(crate) fn real(&mut self, expected: &str) -> Result<f64, Fault> {
         match self.encoding {
             Encoding::Ascii => self.text(expected),
             Encoding::LittleEndian => Ok(f64::from_le_bytes(self.raw(expected)?)),
@@ -141,12 +141,12 @@ impl<'a> Cursor<'a> {
     }
 
     /// Whether numbers are binary.
-    pub fn is_binary(&self) -> bool {
+    pub(crate) fn is_binary(&self) -> bool {
         self.encoding != Encoding::Ascii
     }
 
     /// `count` if that many items of at least `text` bytes (ASCII) or `binary` bytes fit into the rest.
-    pub fn fitting(
+    pub(crate) fn fitting(
         &self,
         what: &'static str,
         count: u64,
@@ -162,7 +162,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Goes behind the next occurrence of `word` at the start of a line.
-    pub fn skip_past(&mut self, word: &str) -> Result<(), Fault> {
+    pub(crate) fn skip_past(&mut self, word: &str) -> Result<(), Fault> {
         let line = format!("\n{word}");
         let from = self.next.saturating_sub(1);
         match self.bytes[from..].windows(line.len()).position(|window| window == line.as_bytes()) {

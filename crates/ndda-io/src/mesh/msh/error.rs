@@ -1,4 +1,4 @@
-//! What can be wrong with a `.msh` file.
+//! Errors of `.msh` files.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ pub struct MshError {
     pub path: PathBuf,
     /// Where in the file, if it is one place.
     pub place: Option<Place>,
-    /// What is wrong.
+    /// The problem.
     pub problem: MshProblem,
 }
 
@@ -42,7 +42,7 @@ pub enum MshProblem {
     /// A folder or a device.
     #[error("is not a file: name the .msh file")]
     NotAFile,
-    /// Nothing in it.
+    /// The file is empty.
     #[error("is empty: save the mesh again")]
     Empty,
     /// Does not begin as a `.msh` file.
@@ -59,7 +59,7 @@ pub enum MshProblem {
     /// Numbers of another size than on 64-bit machines.
     #[error("data size is {0} bytes; only 8 is read: save it with a 64-bit Gmsh")]
     DataSize(i64),
-    /// The number 1 that tells the byte order is not there.
+    /// The number 1 that gives the byte order is not there.
     #[error("byte order mark is {0:#010x}: expected 1 in either byte order")]
     ByteOrder(u32),
     /// The file ends too early.
@@ -68,9 +68,9 @@ pub enum MshProblem {
     /// Something else than expected.
     #[error("expected {expected}, found `{found}`")]
     Unexpected {
-        /// What the format asks for here.
+        /// Item that the format requires here.
         expected: String,
-        /// What is here.
+        /// Item that was found.
         found: String,
     },
     /// A header promises more than the rest of the file can hold.
@@ -78,11 +78,11 @@ pub enum MshProblem {
         "promises {count} {what}, but only {bytes} bytes follow: the file is truncated or damaged, save it again"
     )]
     TooShort {
-        /// What is promised.
+        /// Item that is announced.
         what: &'static str,
         /// How many.
         count: u64,
-        /// What is left of the file [bytes].
+        /// Rest of the file [bytes].
         bytes: usize,
     },
     /// The blocks of a section do not add up to its header.
@@ -90,7 +90,7 @@ pub enum MshProblem {
         "the section promises {promised} {what}, its blocks hold {held}: the file is damaged, save it again"
     )]
     Sum {
-        /// What is counted.
+        /// Item that is counted.
         what: &'static str,
         /// By the header.
         promised: u64,
@@ -116,7 +116,7 @@ pub enum MshProblem {
     Section {
         /// Its name, with `$`.
         section: &'static str,
-        /// What to do.
+        /// Remedy.
         cure: &'static str,
     },
     /// An element type that Gmsh does not document.
@@ -187,7 +187,7 @@ fn cure(types: &[(&'static str, usize)]) -> &'static str {
 pub(super) struct Fault {
     /// Byte in the file, if it is one place.
     pub at: Option<usize>,
-    /// What is wrong.
+    /// The problem.
     pub problem: MshProblem,
 }
 

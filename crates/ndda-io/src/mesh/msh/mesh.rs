@@ -1,4 +1,4 @@
-//! What both versions of the format are read into.
+//! The mesh that both versions of the format are read into.
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -39,7 +39,7 @@ pub(super) struct Mesh {
 
 impl Mesh {
     /// Adds a node that `cursor` has just read; its coordinates must be finite.
-    pub fn add_node(&mut self, cursor: &Cursor, tag: u64, at: Vec3) -> Result<(), Fault> {
+    pub(crate) fn add_node(&mut self, cursor: &Cursor, tag: u64, at: Vec3) -> Result<(), Fault> {
         let Ok(index) = u32::try_from(self.nodes.len()) else {
             return Err(cursor.fault(MshProblem::TooManyNodes(self.nodes.len() + 1)));
         };
@@ -51,7 +51,7 @@ impl Mesh {
     }
 
     /// Adds an element that `cursor` has just read, once per group; types that are not computed with are counted.
-    pub fn add_element(&mut self, kind: &Kind, tag: u64, at: usize, groups: &[u32], nodes: &[u64]) {
+    pub(crate) fn add_element(&mut self, kind: &Kind, tag: u64, at: usize, groups: &[u32], nodes: &[u64]) {
         if !kind.is_linear_simplex() {
             *self.others.entry(kind.name).or_default() += 1;
             return;
@@ -77,10 +77,10 @@ pub(super) struct Kind {
 
 impl Kind {
     /// The most nodes of any type.
-    pub const MOST_NODES: usize = 125;
+    pub(crate) const MOST_NODES: usize = 125;
 
     /// The type with that number.
-    pub fn find(id: i32) -> Option<&'static Self> {
+    pub(crate) fn find(id: i32) -> Option<&'static Self> {
         KINDS.iter().find(|kind| kind.id == id)
     }
 

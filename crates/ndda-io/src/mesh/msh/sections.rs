@@ -66,7 +66,7 @@ fn end_of(section: &[u8]) -> String {
     format!("$End{}", String::from_utf8_lossy(&section[1..]))
 }
 
-/// `version file-type data-size`, and in a binary file the number 1 that tells the byte order.
+/// `version file-type data-size`, and in a binary file the number 1 that gives the byte order.
 fn format(cursor: &mut Cursor) -> Result<Version, Fault> {
     let version = match cursor.word("the version of the format")? {
         b"2.2" => Version::V2,

@@ -17,7 +17,7 @@ use crate::write_error::WriteError;
 ///
 /// # Errors
 /// [`WriteError`] for a number that is not finite, a name that cannot be kept, and what the operating system refuses.
-pub fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
+pub(crate) fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
     let joined = Joined::new(path, bodies)?;
     let content = nodes(&joined).and_then(|n| Ok([n, tets(&joined)?, faces(&joined)?]));
     let content = content.expect("a String takes all that is written to it");

@@ -14,21 +14,21 @@ pub(super) fn encode(bytes: &[u8], text: &mut String) {
     }
 }
 
-/// Decodes pieces as they are asked for.
+/// Decodes pieces as they are requested.
 pub(super) struct Decoder<'a> {
     text: &'a [u8],
-    /// Decoded but not yet asked for, from `next` on.
+    /// Decoded but not yet requested, from `next` on.
     ready: Vec<u8>,
     next: usize,
 }
 
 impl<'a> Decoder<'a> {
-    pub fn new(text: &'a [u8]) -> Self {
+    pub(crate) fn new(text: &'a [u8]) -> Self {
         Self { text, ready: Vec::new(), next: 0 }
     }
 
     /// The next `count` bytes, if there are so many.
-    pub fn take(&mut self, count: usize) -> Option<Vec<u8>> {
+    pub(crate) fn take(&mut self, count: usize) -> Option<Vec<u8>> {
         if count > self.text.len() + self.ready.len() {
             return None;
         }

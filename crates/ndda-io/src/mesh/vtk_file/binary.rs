@@ -17,7 +17,7 @@ pub(super) enum Kind {
 
 impl Kind {
     /// By its name in XML or in the legacy format, in small letters.
-    pub fn find(name: &str) -> Option<Self> {
+    pub(crate) fn find(name: &str) -> Option<Self> {
         Some(match name {
             "float32" | "float" => Self::F32,
             "float64" | "double" => Self::F64,
@@ -34,7 +34,7 @@ impl Kind {
     }
 
     /// Bytes of a number.
-    pub fn size(self) -> usize {
+    pub(crate) fn size(self) -> usize {
         match self {
             Self::I8 | Self::U8 => 1,
             Self::I16 | Self::U16 => 2,
@@ -44,7 +44,7 @@ impl Kind {
     }
 
     /// Numbers from bytes, the lowest first or last; bytes that make no whole number are left out.
-    pub fn numbers(self, bytes: &[u8], is_big: bool) -> Vec<f64> {
+    pub(crate) fn numbers(self, bytes: &[u8], is_big: bool) -> Vec<f64> {
         let raw = |chunk: &[u8]| {
             let digit = |value: u64, byte: &u8| value << 8 | u64::from(*byte);
             if is_big { chunk.iter().fold(0, digit) } else { chunk.iter().rev().fold(0, digit) }

@@ -1,4 +1,4 @@
-//! What a file of VTK holds, of either format, and the mesh in it.
+//! Content of a VTK file, of either format, and the mesh in it.
 
 use std::collections::BTreeMap;
 
@@ -55,7 +55,7 @@ pub(crate) struct Data {
 
 impl Data {
     /// Adds points, three coordinates each.
-    pub fn add_points(&mut self, coordinates: &[f64]) -> Result<(), Fault> {
+    pub(crate) fn add_points(&mut self, coordinates: &[f64]) -> Result<(), Fault> {
         if let Some(bad) = coordinates.iter().find(|x| !x.is_finite()) {
             let (expected, found) = ("finite coordinates".into(), bad.to_string());
             return Err(FileProblem::Unexpected { expected, found }.into());
@@ -65,7 +65,7 @@ impl Data {
     }
 
     /// Adds cells by their types, ends in `connectivity`, and points counted from point `first`.
-    pub fn add_cells(
+    pub(crate) fn add_cells(
         &mut self,
         kinds: &[f64],
         ends: &[f64],
@@ -94,13 +94,13 @@ impl Data {
     }
 
     /// Type and points of each cell.
-    pub fn cells(&self) -> impl Iterator<Item = (u8, &[u32])> {
+    pub(crate) fn cells(&self) -> impl Iterator<Item = (u8, &[u32])> {
         let start = |i: usize| if i == 0 { 0 } else { self.ends[i - 1] };
         self.kinds.iter().enumerate().map(move |(i, &kind)| (kind, &self.nodes[start(i)..self.ends[i]]))
     }
 
     /// The tetrahedra, their bodies and the node sets.
-    pub fn parts(mut self) -> Result<Parts, Fault> {
+    pub(crate) fn parts(mut self) -> Result<Parts, Fault> {
         let mut parts = Parts::default();
         let mut ids = Vec::new();
         let body = BODY_ARRAYS.iter().find_map(|name| self.cell_data.get_key_value(*name));

@@ -15,7 +15,7 @@ const LEVEL: u8 = 1;
 
 /// An array, ready to be put into a file: it can be put into many.
 #[derive(Clone, Debug)]
-pub struct Array {
+pub(crate) struct Array {
     declaration: String,
     content: Vec<u8>,
     format: FieldFormat,
@@ -80,7 +80,7 @@ pub(crate) struct Grid {
 
 impl Grid {
     /// With so many points and cells.
-    pub fn new(points: usize, cells: usize, format: FieldFormat) -> Self {
+    pub(crate) fn new(points: usize, cells: usize, format: FieldFormat) -> Self {
         let compressor = match format {
             FieldFormat::Compressed => " compressor=\"vtkZLibDataCompressor\"",
             _ => "",
@@ -97,15 +97,15 @@ impl Grid {
         self.text.push(b'\n');
     }
 
-    pub fn open(&mut self, section: &str) {
+    pub(crate) fn open(&mut self, section: &str) {
         self.line(&format!("<{section}>"));
     }
 
-    pub fn close(&mut self, section: &str) {
+    pub(crate) fn close(&mut self, section: &str) {
         self.line(&format!("</{section}>"));
     }
 
-    pub fn open_piece(&mut self) {
+    pub(crate) fn open_piece(&mut self) {
         let [points, cells] = self.counts;
         self.line(&format!("<Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"));
     }
@@ -114,7 +114,7 @@ impl Grid {
     ///
     /// # Panics
     /// When it was made for another format.
-    pub fn add(&mut self, array: &Array) {
+    pub(crate) fn add(&mut self, array: &Array) {
         assert_eq!(array.format, self.format, "the format of an array");
         self.text.extend(array.declaration.as_bytes());
         if array.format == FieldFormat::Base64 {
@@ -128,38 +128,38 @@ impl Grid {
     }
 
     /// A section of its own for arrays.
-    pub fn section<'a>(&mut self, name: &str, arrays: impl IntoIterator<Item = &'a Array>) {
+    pub(crate) fn section<'a>(&mut self, name: &str, arrays: impl IntoIterator<Item = &'a Array>) {
         self.open(name);
         arrays.into_iter().for_each(|array| self.add(array));
         self.close(name);
     }
 
     /// Adds field data, whose length no count of points or cells says.
-    pub fn field_bytes(&mut self, name: &str, bytes: &[u8]) {
+    pub(crate) fn field_bytes(&mut self, name: &str, bytes: &[u8]) {
         let more = format!(" NumberOfTuples=\"{}\"", bytes.len());
         self.add(&Array::declared("UInt8", name, &more, bytes, self.format));
     }
 
-    pub fn bytes(&mut self, name: &str, bytes: &[u8]) {
+    pub(crate) fn bytes(&mut self, name: &str, bytes: &[u8]) {
         self.add(&Array::bytes(name, bytes, self.format));
     }
 
-    pub fn integers(&mut self, name: &str, values: impl Iterator<Item = i64>) {
+    pub(crate) fn integers(&mut self, name: &str, values: impl Iterator<Item = i64>) {
         self.add(&Array::integers(name, values, self.format));
     }
 
-    pub fn reals(&mut self, name: &str, values: impl Iterator<Item = f64>) {
+    pub(crate) fn reals(&mut self, name: &str, values: impl Iterator<Item = f64>) {
         let bytes: Vec<u8> = values.flat_map(f64::to_le_bytes).collect();
         self.add(&Array::new("Float64", name, 1, &bytes, self.format));
     }
 
-    pub fn points(&mut self, points: impl Iterator<Item = [f64; 3]>) {
+    pub(crate) fn points(&mut self, points: impl Iterator<Item = [f64; 3]>) {
         let bytes: Vec<u8> = points.flatten().flat_map(f64::to_le_bytes).collect();
         self.section("Points", [&Array::new("Float64", "Points", 3, &bytes, self.format)]);
     }
 
     /// The whole file.
-    pub fn finish(mut self) -> Vec<u8> {
+    pub(crate) fn finish(mut self) -> Vec<u8> {
         self.line("</Piece>\n</UnstructuredGrid>");
         if self.format != FieldFormat::Base64 {
             self.text.extend(b"<AppendedData encoding=\"raw\">\n_");

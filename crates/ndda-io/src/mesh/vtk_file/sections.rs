@@ -20,13 +20,13 @@ pub(super) struct Piece {
 
 impl Piece {
     /// A piece with the attributes of its header.
-    pub fn new(attributes: &HashMap<String, String>) -> Self {
+    pub(crate) fn new(attributes: &HashMap<String, String>) -> Self {
         let number = |name: &str| attributes.get(name).and_then(|text| parse(text.as_bytes()));
         Self { promised: ["NumberOfPoints", "NumberOfCells"].map(number), ..Self::default() }
     }
 
     /// Takes an array; those of no concern here are left out.
-    pub fn add(
+    pub(crate) fn add(
         &mut self,
         data: &mut Data,
         section: &str,
@@ -50,7 +50,7 @@ impl Piece {
     }
 
     /// Adds the piece to what the file holds.
-    pub fn finish(mut self, data: &mut Data) -> Result<(), Fault> {
+    pub(crate) fn finish(mut self, data: &mut Data) -> Result<(), Fault> {
         let (first_point, first_cell) = (data.points.len(), data.kinds.len());
         count("coordinates", self.points.len(), self.points.len() / 3 * 3)?;
         data.add_points(&self.points)?;

@@ -14,7 +14,7 @@ use crate::mesh::FileProblem;
 use crate::mesh::error::{Fault, excerpt};
 use crate::mesh::lines::parse;
 
-/// What the root says of all arrays, and the appended ones.
+/// Encoding of all arrays as the root element declares it, and the appended data.
 struct Encoding<'a> {
     is_big: bool,
     header: Kind,
@@ -197,7 +197,7 @@ impl Source<'_> {
     }
 }
 
-/// What miniz says, for a person.
+/// Message for an error of miniz.
 fn status(error: &DecompressError) -> &'static str {
     match error.status {
         TINFLStatus::HasMoreOutput => "a longer one",

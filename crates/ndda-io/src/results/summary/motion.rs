@@ -1,4 +1,4 @@
-//! What moved, and where it is at the end.
+//! Blocks that moved, and where they are at the end.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,12 +11,12 @@ pub struct MonitorEnd {
     pub velocity: [f64; 3],
 }
 
-/// What moved in a run.
+/// Motion of the blocks in a run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
     /// Blocks that are not fixed.
     pub can_move: usize,
-    /// Those of which a point has gone, by the end, farther than 1 % of the distance from their mass centre to their farthest node.
+    /// Blocks of which a point has gone, by the end, farther than 1 % of the distance from their mass centre to their farthest node.
     pub moved: usize,
     /// The block of which a point has gone farthest.
     pub farthest: String,

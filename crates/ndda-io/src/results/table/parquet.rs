@@ -26,7 +26,7 @@ const GROUP_ROWS: usize = 1 << 17;
 /// # Errors
 /// [`WriteError::NotThatTable`] when the text is no table of numbers; [`WriteError::Io`] when it cannot be read or the
 /// file not be written.
-pub fn from_csv(csv: &Path, parquet: &Path) -> Result<(), WriteError> {
+pub(crate) fn from_csv(csv: &Path, parquet: &Path) -> Result<(), WriteError> {
     let unread = |e: csv::Error| WriteError::io("read", csv)(io::Error::other(e));
     let mut table = csv::Reader::from_path(csv).map_err(unread)?;
     let names: Vec<String> = table.headers().map_err(unread)?.iter().map(String::from).collect();
@@ -56,7 +56,7 @@ pub fn from_csv(csv: &Path, parquet: &Path) -> Result<(), WriteError> {
 ///
 /// # Errors
 /// [`TableError::Unreadable`] when the file cannot be read, or has a column that is not of doubles.
-pub fn read(file: &Path) -> Result<Table, TableError> {
+pub(crate) fn read(file: &Path) -> Result<Table, TableError> {
     let refuse = |reason: String| TableError::Unreadable { file: file.to_path_buf(), reason };
     let opened = File::open(file).map_err(|e| refuse(e.to_string()))?;
     read_columns(opened).map_err(|e| refuse(e.to_string()))

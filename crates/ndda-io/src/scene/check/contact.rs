@@ -2,7 +2,7 @@
 
 use super::{CELLS, Check};
 use crate::scene::code::Code;
-use crate::scene::{Contact, Friction, Joint, JointLaw, Potential, Residual, matches};
+use crate::scene::{Contact, Friction, JointLaw, MaterialPair, Potential, Residual, matches};
 
 impl Check<'_> {
     pub(super) fn contact(&mut self) {
@@ -12,14 +12,16 @@ impl Check<'_> {
                 let help = "write `contact: Potential(penalty_pa: …)` or `contact: Off`";
                 self.misfit("contact", "more than one block, and no word on contact", help);
             }
-            Some(Contact::Potential { penalty_pa, potential, friction, joints, laws, .. }) => {
+            Some(Contact::Potential {
+                penalty_pa, potential, friction, material_pairs, rock_joints, ..
+            }) => {
                 self.positive("contact.penalty_pa".into(), *penalty_pa, "Pa");
                 self.potential(potential);
                 if let Some(friction) = friction {
                     self.friction("contact.friction", friction);
                 }
-                self.joints(joints);
-                self.laws(laws);
+                self.material_pairs(material_pairs);
+                self.rock_joints(rock_joints);
                 if !several && !self.scene.blocks.is_empty() {
                     self.warn(
                         Code::NoEffect,
@@ -105,29 +107,39 @@ impl Check<'_> {
         }
     }
 
-    fn joints(&mut self, joints: &[Joint]) {
+    fn material_pairs(&mut self, pairs: &[MaterialPair]) {
         let scene = self.scene;
         let materials: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
-        for (i, joint) in joints.iter().enumerate() {
-            self.known(format!("contact.joints[{i}].between[0]"), "material", &joint.between.0, &materials);
-            self.known(format!("contact.joints[{i}].between[1]"), "material", &joint.between.1, &materials);
-            if let Some(friction) = &joint.friction {
-                self.friction(&format!("contact.joints[{i}].friction"), friction);
+        for (i, pair) in pairs.iter().enumerate() {
+            self.known(
+                format!("contact.material_pairs[{i}].between[0]"),
+                "material",
+                &pair.between.0,
+                &materials,
+            );
+            self.known(
+                format!("contact.material_pairs[{i}].between[1]"),
+                "material",
+                &pair.between.1,
+                &materials,
+            );
+            if let Some(friction) = &pair.friction {
+                self.friction(&format!("contact.material_pairs[{i}].friction"), friction);
             }
         }
     }
 
-    fn laws(&mut self, laws: &[JointLaw]) {
+    fn rock_joints(&mut self, laws: &[JointLaw]) {
         let scene = self.scene;
         let mut names: Vec<&str> =
             scene.rock.iter().flat_map(|rock| &rock.joints).map(|j| j.name()).collect();
         names.extend(scene.rock.iter().filter(|rock| rock.voronoi.is_some()).map(|_| CELLS));
         for (i, law) in laws.iter().enumerate() {
             if !names.iter().any(|name| matches(&law.joint, name)) {
-                self.known(format!("contact.laws[{i}].joint"), "joint", &law.joint, &names);
+                self.known(format!("contact.rock_joints[{i}].joint"), "joint", &law.joint, &names);
             }
             if let Some(friction) = &law.friction {
-                self.friction(&format!("contact.laws[{i}].friction"), friction);
+                self.friction(&format!("contact.rock_joints[{i}].friction"), friction);
             }
         }
     }

@@ -85,7 +85,7 @@ impl Writer<'_> {
     }
 }
 
-/// What a field or choice means, in one line of a table.
+/// Meaning of a field or choice, in one line of a table.
 fn meaning(schema: &Value) -> String {
     schema["description"].as_str().unwrap_or_default().replace('\n', " ").replace('|', "\\|")
 }

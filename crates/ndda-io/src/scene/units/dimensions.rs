@@ -14,7 +14,7 @@ pub struct Unit {
 pub struct Dimension {
     /// End of the field's name.
     pub suffix: &'static str,
-    /// What it is.
+    /// Name of the unit.
     pub name: &'static str,
     /// Units of it.
     pub units: &'static [Unit],
@@ -133,7 +133,7 @@ pub fn dimension_of(field: &str) -> Option<&'static Dimension> {
 
 impl Dimension {
     /// Names of its units.
-    pub fn unit_names(&self) -> Vec<&'static str> {
+    pub(crate) fn unit_names(&self) -> Vec<&'static str> {
         self.units.iter().map(|unit| unit.name).collect()
     }
 

@@ -26,7 +26,7 @@ pub(crate) struct ElasticBody {
     pub initial_force: Option<Vec<Vec3>>,
     /// σ₀ of each element [Pa]; empty without.
     pub initial_stress_pa: Vec<Voigt>,
-    /// Where the held nodes started [m], one entry per held node, then one per spring.
+    /// Start positions of the held nodes [m], one entry per held node, then one per spring.
     anchor: Vec<Vec3>,
     /// û [m].
     predicted: Vec<Vec3>,
@@ -38,7 +38,7 @@ pub(crate) struct ElasticBody {
     correction: Vec<Vec3>,
     /// K w + ∫Bᵀσ₀ in the block's frame [N].
     elastic: Vec<Vec3>,
-    /// Rigid part of u that keeps the books of momentum [m]; zero for supported blocks.
+    /// Rigid part of u, for the momentum balance [m]; zero for supported blocks.
     rigid: Vec<Vec3>,
     /// R of the last step.
     rotation: Mat3,
@@ -337,7 +337,7 @@ impl ElasticBody {
         }
     }
 
-    /// f_int ← R (K (w + s) + ∫Bᵀσ₀) at the end of the step, where somebody will ask for it.
+    /// f_int ← R (K (w + s) + ∫Bᵀσ₀) at the end of the step, where it will be needed.
     fn update_internal_force(&mut self, shape: &Prototype, rotation: &Mat3, internal_force: &mut [Vec3]) {
         if shape.is_free() && internal_force.is_empty() {
             return;

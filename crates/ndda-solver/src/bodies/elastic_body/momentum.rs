@@ -110,7 +110,7 @@ impl ElasticBody {
             (self.load[i], self.elastic[i]) = (v + rate * self.rigid[i], a);
             *u += self.rigid[i];
         }
-        self.report.book_drag(shape, context, (&self.correction, nodes.velocity, &self.load));
+        self.report.record_drag(shape, context, (&self.correction, nodes.velocity, &self.load));
         if moved(shape).next().is_some() {
             self.prescribe_velocities(shape, context, nodes.position);
         }

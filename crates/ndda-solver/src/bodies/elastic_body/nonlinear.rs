@@ -68,7 +68,7 @@ impl Nonlinear {
         self.place = place;
     }
 
-    /// What the material stores beyond ½ ε·D ε [J].
+    /// Energy that the material stores beyond ½ ε·D ε [J].
     pub(super) fn excess_energy_j(&self, shape: &Prototype, displacement: &[Vec3]) -> f64 {
         let density = |strain: &Voigt| {
             shape.material.energy_density(strain) - 0.5 * strain.dot(&(self.moduli * strain))

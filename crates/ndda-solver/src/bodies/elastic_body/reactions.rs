@@ -11,7 +11,7 @@ use crate::bodies::record::displacement_at;
 use crate::integrators::time_integrator::StepWeights;
 
 impl ElasticBody {
-    /// What supports must exert for held components and springs to do as they do.
+    /// Forces that supports must exert to hold components and springs as prescribed.
     pub(super) fn collect_reactions(
         &mut self,
         shape: &Prototype,
@@ -34,7 +34,7 @@ impl ElasticBody {
         }
     }
 
-    /// The same of a block that is kept affine: what keeps it so acts on each node, but has no resultant and no torque, so that of all
+    /// Reactions of a block that is kept affine: the constraint acts on each node, but has no resultant and no torque, so that of all
     /// nodes together is that of the supports.
     pub(super) fn collect_as_a_whole(
         &mut self,

@@ -49,7 +49,7 @@ impl LinearSolver for Supernodal {
 }
 
 impl SupernodalFactor {
-    /// What each of the two sweeps of a solve reads of the factor [bytes].
+    /// Bytes of the factor that each of the two sweeps of a solve reads.
     pub fn bytes(&self) -> usize {
         size_of_val(self.panels.tiles.as_slice()) + size_of_val(self.panels.row.as_slice())
     }
@@ -61,13 +61,13 @@ impl SupernodalFactor {
 }
 
 /// A solve, compiled for each kind of processor.
-struct One<'a> {
+struct SingleSolve<'a> {
     panels: &'a Panels,
     x: &'a mut [f64],
     local: &'a mut [Eight],
 }
 
-impl WithSimd for One<'_> {
+impl WithSimd for SingleSolve<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -77,13 +77,13 @@ impl WithSimd for One<'_> {
 }
 
 /// A solve for eight right-hand sides, compiled for each kind of processor.
-struct AllEight<'a> {
+struct MultiSolve<'a> {
     panels: &'a Panels,
     x: &'a mut [Eight],
     local: &'a mut [[Eight; MULTI]],
 }
 
-impl WithSimd for AllEight<'_> {
+impl WithSimd for MultiSolve<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -114,7 +114,7 @@ impl Factor for SupernodalFactor {
         let x = &mut scratch.numbers[..=self.unknowns()];
         x[self.unknowns()] = 0.0;
         x.iter_mut().zip(&self.unknown).for_each(|(x, &u)| *x = rhs[u as usize]);
-        self.arch.dispatch(One { panels: &self.panels, x, local: &mut scratch.lines });
+        self.arch.dispatch(SingleSolve { panels: &self.panels, x, local: &mut scratch.lines });
         x.iter().zip(&self.unknown).for_each(|(x, &u)| rhs[u as usize] = *x);
         Ok(())
     }
@@ -128,7 +128,7 @@ impl Factor for SupernodalFactor {
         let (x, local) = scratch.lines.split_at_mut(self.unknowns() + 1);
         x[self.unknowns()] = Eight::default();
         x.iter_mut().zip(&self.unknown).for_each(|(x, &u)| x.0 = rhs[u as usize]);
-        self.arch.dispatch(AllEight { panels: &self.panels, x, local: local.as_chunks_mut().0 });
+        self.arch.dispatch(MultiSolve { panels: &self.panels, x, local: local.as_chunks_mut().0 });
         x.iter().zip(&self.unknown).for_each(|(x, &u)| rhs[u as usize] = x.0);
         Ok(())
     }
@@ -238,10 +238,10 @@ mod tests {
         let pairs: Vec<_> = (0..500).flat_map(|i| [(i, (i * 7 + 3) % 500), (i, (i + 25) % 500)]).collect();
         let SupernodalFactor { panels, .. } =
             Supernodal::factor_panels(&dominant(500, &pairs)).expect("definite");
-        let solve = |solve: &dyn Fn(One)| {
+        let solve = |solve: &dyn Fn(SingleSolve)| {
             let mut x: Vec<f64> = (0..501).map(|i| if i < 500 { (i as f64).sin() } else { 0.0 }).collect();
             let mut local = vec![Eight::default(); panels.most_height()];
-            solve(One { panels: &panels, x: &mut x, local: &mut local });
+            solve(SingleSolve { panels: &panels, x: &mut x, local: &mut local });
             x.into_iter().map(f64::to_bits).collect::<Vec<_>>()
         };
         let one_by_one = solve(&|one| pulp::Scalar::new().vectorize(one));

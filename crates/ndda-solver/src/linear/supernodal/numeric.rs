@@ -111,7 +111,7 @@ struct Front {
     below: usize,
     /// Columns of the supernode.
     panel: Vec<f64>,
-    /// What they leave for the rows below.
+    /// Update matrix for the rows below.
     update: Vec<f64>,
     unknowns: usize,
 }

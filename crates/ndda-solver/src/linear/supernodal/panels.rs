@@ -1,7 +1,7 @@
 //! The factor as the two sweeps of a solve read it, once each and from one end to the other.
 //!
 //! With the columns s of a panel and the rows b below them, L = [L_ss; L_bs]. Kept is P = [L_ss⁻¹; −L_bs L_ss⁻¹], of
-//! which one product is all that a panel asks for in each sweep:
+//! which one product is all that a panel requires in each sweep:
 //! forward, x_s ← L_ss⁻¹ x_s and x_b ← x_b − L_bs L_ss⁻¹ x_s; backward, x_s ← Pᵀ [x_s; x_b].
 //! P is cut into tiles of eight rows by eight columns, of which those above the diagonal are left out.
 //!
@@ -125,19 +125,19 @@ impl Panels {
     #[inline(always)]
     pub(super) fn solve_multi<S: Simd>(&self, simd: S, x: &mut [Eight], local: &mut [[Eight; MULTI]]) {
         for panel in &self.panels {
-            self.forward_eight(simd, panel, x, &mut local[..panel.height]);
+            self.forward_multi(simd, panel, x, &mut local[..panel.height]);
         }
         for panel in self.panels.iter().rev() {
-            self.backward_eight(simd, panel, x, &mut local[..panel.height]);
+            self.backward_multi(simd, panel, x, &mut local[..panel.height]);
         }
     }
 
     #[inline(always)]
-    fn forward_eight<S: Simd>(&self, simd: S, panel: &Panel, x: &mut [Eight], local: &mut [[Eight; MULTI]]) {
+    fn forward_multi<S: Simd>(&self, simd: S, panel: &Panel, x: &mut [Eight], local: &mut [[Eight; MULTI]]) {
         local.fill(Default::default());
         let own = &mut x[panel.first..panel.first + panel.width];
         for (g, columns, group) in self.groups(panel) {
-            by_columns!(columns, add_tiles_eight::<S>(simd, group, &own[MULTI * g..], &mut local[g..]));
+            by_columns!(columns, add_tiles_multi::<S>(simd, group, &own[MULTI * g..], &mut local[g..]));
         }
         own.fill(Eight::default());
         for (rows, local) in self.row[panel.rows..].iter().zip(&*local) {
@@ -148,13 +148,13 @@ impl Panels {
     }
 
     #[inline(always)]
-    fn backward_eight<S: Simd>(&self, simd: S, panel: &Panel, x: &mut [Eight], local: &mut [[Eight; MULTI]]) {
+    fn backward_multi<S: Simd>(&self, simd: S, panel: &Panel, x: &mut [Eight], local: &mut [[Eight; MULTI]]) {
         for (rows, local) in self.row[panel.rows..].iter().zip(&mut *local) {
             *local = rows.map(|row| x[row as usize]);
         }
         let own = &mut x[panel.first..panel.first + panel.width];
         for (g, columns, group) in self.groups(panel) {
-            by_columns!(columns, tiles_times_eight::<S>(simd, group, &local[g..], &mut own[MULTI * g..]));
+            by_columns!(columns, tiles_times_multi::<S>(simd, group, &local[g..], &mut own[MULTI * g..]));
         }
     }
 }
@@ -208,7 +208,7 @@ fn tiles_times<S: Simd, const C: usize>(simd: S, tiles: &[Eight], x: &[Eight], o
 
 /// [`add_tiles`] for eight right-hand sides.
 #[inline(always)]
-fn add_tiles_eight<S: Simd, const C: usize>(
+fn add_tiles_multi<S: Simd, const C: usize>(
     simd: S,
     tiles: &[Eight],
     x: &[Eight],
@@ -234,7 +234,7 @@ fn add_tiles_eight<S: Simd, const C: usize>(
 
 /// [`tiles_times`] for eight right-hand sides.
 #[inline(always)]
-fn tiles_times_eight<S: Simd, const C: usize>(
+fn tiles_times_multi<S: Simd, const C: usize>(
     simd: S,
     tiles: &[Eight],
     x: &[[Eight; MULTI]],

@@ -145,7 +145,7 @@ impl Split {
         self.label.iter().zip(&graph.weight).for_each(|(&l, &w)| self.weight[l as usize] += i64::from(w));
     }
 
-    /// What to make small: the separator, dearer the less the sides are balanced; first that no side is too large.
+    /// Objective to minimise: the separator, dearer the less the sides are balanced; first that no side is too large.
     fn cost(&self) -> (i64, i64) {
         let [a, b, separator] = self.weight;
         let over = a.max(b) - (MOST_OF_WHOLE * (a + b + separator) as f64).ceil() as i64;
@@ -154,7 +154,7 @@ impl Split {
         (over.max(0), (16.0 * separator as f64 * (1.0 + 0.5 * uneven)) as i64)
     }
 
-    /// What the separator loses in weight when `v` leaves it for `side`.
+    /// Weight that the separator loses when `v` leaves it for `side`.
     fn gain(&self, graph: &Graph, v: u32, side: u8) -> i64 {
         let pulled = graph.of(v).iter().filter(|&&u| self.label[u as usize] == 1 - side);
         i64::from(graph.weight[v as usize])

@@ -1,9 +1,9 @@
-//! Where the factor has entries: supernodes, merged further while that makes the solve quicker.
+//! Symbolic factorisation: supernodes, merged further while that makes the solve quicker.
 
 use super::dissection::dissect;
 use super::graph::{Compressed, Graph};
 
-/// What a solve takes for one supernode, in entries of L read from memory: the relaxation is tuned by these.
+/// Cost of a solve for one supernode, in entries of L read from memory: the relaxation is tuned by these.
 #[derive(Clone, Copy, Debug)]
 struct Cost;
 
@@ -117,7 +117,7 @@ impl Front {
         self.width += child.width;
     }
 
-    /// What the solve gains if this front takes over `child`.
+    /// Gain of the solve if this front takes over `child`.
     fn gain(&self, child: &Front) -> f64 {
         let [wide, below] = [self.width, self.below].map(f64::from);
         let [child_wide, child_below] = [child.width, child.below].map(f64::from);

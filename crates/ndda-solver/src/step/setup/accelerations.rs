@@ -33,7 +33,7 @@ impl Simulation {
                 let torque = operator.angular_momentum(&Vec3::zeros(), position, acceleration);
                 self.place_inertia(block, force, total, torque);
             } else {
-                // It stays at rest: what holds it bears loads and contact.
+                // It stays at rest: what holds it carries loads and contact.
                 self.place_inertia(block, force, Vec3::zeros(), Vec3::zeros());
             }
         }

@@ -24,10 +24,10 @@ const SMOOTHING: [f64; 2] = [1e-3, 1e-8];
 /// Newton steps for each, and halvings of one.
 const MOST_STEPS: usize = 30;
 const MOST_HALVINGS: usize = 30;
-/// What is left of D where Newton's method ends.
+/// Residual of D at which Newton's method ends.
 const TOLERANCE: f64 = 1e-11;
 
-/// What friction of a patch can carry. Slips are (V₁, V₂, Ω r) along the axes of the rectangle, forces (F₁, F₂, T/r), r the radius of gyration.
+/// The limit surface of a patch's friction. Slips are (V₁, V₂, Ω r) along the axes of the rectangle, forces (F₁, F₂, T/r), r the radius of gyration.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct LimitSurface {
     /// μN [N].
@@ -58,7 +58,7 @@ impl LimitSurface {
         surface
     }
 
-    /// The same for slips like this one: where a patch hardly turns, one cell has the same friction to second order in Ω r/|V|.
+    /// The limit surface for slips like this one: where a patch hardly turns, one cell has the same friction to second order in Ω r/|V|.
     fn for_slip(mut self, slip: &Vec3) -> Self {
         let speed2 = slip.x * slip.x + slip.y * slip.y;
         if slip.z * slip.z < TRANSLATES * TRANSLATES * speed2 {

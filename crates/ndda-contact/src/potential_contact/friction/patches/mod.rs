@@ -38,10 +38,10 @@ use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
 /// Faces below which a second thread costs more than it brings.
 const GRAIN_PATCHES: usize = 64;
 
-/// The same for blocks.
+/// Blocks below which a second thread costs more than it brings.
 const GRAIN_BODIES: usize = 16;
 
-/// What all faces read.
+/// Input of all patches.
 #[derive(Clone, Copy)]
 pub(crate) struct PatchScene<'a> {
     /// Blocks and their motion.
@@ -50,7 +50,7 @@ pub(crate) struct PatchScene<'a> {
     pub integrals: &'a Integrals,
     /// Laws.
     pub joints: &'a FrictionLawTable,
-    /// Blocks that are taken whole.
+    /// Blocks that are affine convex targets.
     pub hulls: &'a ConvexBlocks,
 }
 
@@ -67,7 +67,7 @@ impl PatchScene<'_> {
         self.touch(t).owner
     }
 
-    /// What couples of facets read.
+    /// Input of the computation of couples.
     fn couples(&self) -> CoupleScene<'_> {
         let ContactInput { blocks, position, .. } = *self.input;
         CoupleScene { blocks, position, integrals: self.integrals, hulls: self.hulls }
@@ -97,7 +97,7 @@ pub(crate) struct FrictionPatches {
     run_of: Vec<u32>,
     opposite: Opposite,
     /// Patches by block.
-    by_block: BlockContactIndex,
+    adjacency: BlockContactIndex,
     /// Blocks with the velocities at the end of the step.
     bodies: Vec<Body>,
     /// Whether a block has patches with friction.
@@ -170,7 +170,7 @@ impl FrictionPatches {
         self.join_faces(scene, forces);
         self.find_patches(scene, forces, history);
         let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
-        self.by_block.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
+        self.adjacency.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
         self.advance_bodies(scene);
         self.solve(scene, forces);
         let Self { patches, runs, run_of, order, new_faces, own_m2, .. } = self;
@@ -240,12 +240,12 @@ impl FrictionPatches {
                 self.is_asked[block] = true;
             }
         }
-        let (is_asked, by_block, patches) = (&self.is_asked, &self.by_block, &self.patches);
+        let (is_asked, adjacency, patches) = (&self.is_asked, &self.adjacency, &self.patches);
         let is_nodal = |body: &Body| scene.input.deformation.is_some() && body.deforms;
         let advance = |(block, body): (usize, &mut Body)| {
             if is_asked[block] && body.mass_kg.is_finite() && !is_nodal(body) {
                 body.add_gyroscopic_torque();
-                for (k, sign) in by_block.at(BlockId(block as u32)) {
+                for (k, sign) in adjacency.at(BlockId(block as u32)) {
                     patches[k as usize].apply_loads(body, sign);
                     patches[k as usize].apply_previous_friction(body, sign);
                 }
@@ -257,7 +257,7 @@ impl FrictionPatches {
 
     /// How blocks that deform answer to the loads, and to the friction of patches, whose sides on them are found.
     fn ask_blocks(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
-        let Self { nodal, is_asked, by_block, runs, order, patches, sides, own_m2, .. } = self;
+        let Self { nodal, is_asked, adjacency, runs, order, patches, sides, own_m2, .. } = self;
         sides.clear();
         sides.resize(patches.len(), [None; 2]);
         nodal.begin(scene.input.blocks, scene.input.velocity.len());
@@ -265,7 +265,7 @@ impl FrictionPatches {
         let bodies = scene.input.bodies;
         for (block, body) in scene.input.blocks.ids().zip(bodies) {
             if is_asked[block.index()] && body.deforms {
-                let at = by_block.at(block).map(|(k, _)| &order[runs[k as usize].clone()]);
+                let at = adjacency.at(block).map(|(k, _)| &order[runs[k as usize].clone()]);
                 nodal.add_block(block, scene, forces, at);
             }
         }

@@ -19,7 +19,7 @@ pub(super) fn second_moment_m2(scene: &PatchScene, touch: &ActiveFacet, area_m2:
     let area_vector = triangle_area_vector(&corners);
     let (whole_m2, normal) = (area_vector.norm(), area_vector.normalize());
     if area_m2 > SMALL * whole_m2 {
-        let found = match scene.hulls.whole(touch.target) {
+        let found = match scene.hulls.affine_target(touch.target) {
             Some(_) => of_cut_facet(scene, touch, &corners, center),
             None => Some(of_triangle(&corners) * (area_m2 / whole_m2).min(1.0)),
         };

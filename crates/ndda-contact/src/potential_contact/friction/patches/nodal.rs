@@ -12,7 +12,7 @@ use crate::friction::patches::patch::ContactPatch;
 use crate::friction::patches::{PatchScene, Place};
 use crate::model::Deformation;
 
-/// What a node feels of one facet of a patch.
+/// Share of a node in the force of one facet of a patch.
 #[derive(Clone, Copy, Debug)]
 struct Weight {
     /// Counted from the first of all blocks.
@@ -23,7 +23,7 @@ struct Weight {
     twist: Vec3,
 }
 
-/// Where the weights and answers of one side of a patch are.
+/// Ranges of the weights and answers of one side of a patch.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct NodalSide {
     weights: [u32; 2],
@@ -224,7 +224,7 @@ fn each_weight(scene: &PatchScene, t: u32, is_owner: bool, mut add: impl FnMut(u
         let triangle = &scene.input.blocks.triangles[touch.triangle.index()];
         triangle.iter().zip(sums.weights).for_each(|(node, w)| add(node.index(), w));
     } else {
-        for hit in scene.integrals.hits_of(touch) {
+        for hit in scene.integrals.overlaps_of(touch) {
             let tet = &scene.input.blocks.tets[hit.tet.index()];
             tet.iter().zip(hit.on_target.pressure).for_each(|(node, w)| add(node.index(), w));
         }

@@ -13,7 +13,7 @@ use crate::model::{Body, ContactHistory, FaceMemory};
 /// Second moments that differ by less than this part are the same.
 const TIE: f64 = 1e-6;
 
-/// What a patch is, in short.
+/// Summary of a patch.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PatchSummary {
     pub owner: BlockId,
@@ -116,7 +116,7 @@ impl ContactPatch {
         if touch.owner == self.owner { 1.0 } else { -1.0 }
     }
 
-    /// What it does to one of its facets, of the owner or, with the opposite sign, of the target.
+    /// Adds the patch's friction to one of its facets, of the owner or, with the opposite sign, of the target.
     pub(super) fn spread_to(&self, force: &mut FacetForce, (pressure, own): (f64, &Mat3), sign: f64) {
         if self.has_friction() {
             let twist = sign * self.torque_n_m / self.pressure / self.radius2();
@@ -133,7 +133,7 @@ impl ContactPatch {
         body.torque_n_m += sign * self.load_torque_n_m;
     }
 
-    /// The same by its friction of the last step.
+    /// Applies the patch's friction of the last step to a body.
     pub(super) fn apply_previous_friction(&self, body: &mut Body, sign: f64) {
         if let Some(old) = &self.previous {
             body.push(&self.center, &(sign * old.force_n));
@@ -197,7 +197,7 @@ impl ContactPatch {
             let touch = &scene.integrals.touching()[t as usize];
             let sums = scene.integrals.sums_of(touch);
             if sums.pressure > 0.0 {
-                let found = (scene.integrals.hits_of(touch), sums);
+                let found = (scene.integrals.overlaps_of(touch), sums);
                 let moved = relative_motion(touch, found, (scene.blocks, scene.moved));
                 let slip = self.sign_of(touch) * moved / self.pressure;
                 shift += slip;
@@ -274,7 +274,7 @@ impl FaceMemory {
     }
 }
 
-/// What faces remember, in their order: asked for one after the other, it is at hand.
+/// Histories of faces, in their order, read ahead of use.
 pub(super) struct Remembered<'a> {
     rest: &'a [FaceMemory],
 }

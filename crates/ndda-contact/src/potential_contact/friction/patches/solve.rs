@@ -27,7 +27,7 @@ const TOLERANCE: f64 = 1e-7;
 /// The same, and sweeps, where the solver compares forces of one evaluation with the next.
 const ITERATED_TOLERANCE: f64 = 1e-8;
 const ITERATED_SWEEPS: usize = 300;
-/// What is left of the friction of one patch when it is found, as a part of the change that does not matter.
+/// Residual at which the friction of one patch is accepted, relative to the change that does not matter.
 const LOCAL_TOLERANCE: f64 = 0.1;
 /// Least flexibility of a patch in any direction over the largest.
 const REGULAR: f64 = 1e-9;
@@ -55,7 +55,7 @@ pub(super) struct CoupledPatch {
     tolerance_n: f64,
     /// When this patch was advanced last.
     seen: u32,
-    /// What a force changes the slip by in a whole step, and the inverse.
+    /// Change of slip per force in a whole step, and its inverse.
     flexibility: Mat3,
     stiffness: Mat3,
     /// Slip without its own friction where that was found last.
@@ -125,7 +125,7 @@ impl CoupledPatch {
         of(self.owner, 0) - of(self.target, 1)
     }
 
-    /// The same of one block that does not deform.
+    /// Slip of one block that does not deform.
     fn slip_of(&self, body: &Body, arm: &Vec3) -> Vec3 {
         let velocity = body.velocity_m_s + body.spin_rad_s.cross(arm);
         let spin = self.surface.radius_m * body.spin_rad_s;

@@ -1,5 +1,4 @@
-//! Blocks that are taken whole against the same blocks taken by their tetrahedra.
-#![cfg(feature = "potential")]
+//! Blocks that are affine convex targets against the same blocks taken by their tetrahedra.
 
 use nalgebra::{DMatrix, DVector};
 use ndda_contact::testing::{Answer, Random, evaluate, test_box, test_set};
