@@ -155,7 +155,11 @@ fn features_that_are_not_enabled_leave_their_packages_out() {
             "none" => "",
             name => name.trim_start_matches('`').split('`').next().unwrap(),
         };
-        assert_eq!(packages(features), count, "packages with `{features}`: docs/reference/features.md says {count}");
+        assert_eq!(
+            packages(features),
+            count,
+            "packages with `{features}`: docs/reference/features.md says {count}"
+        );
         rows += 1;
     }
     assert_eq!(rows, 12, "rows of docs/reference/features.md");

@@ -12,15 +12,18 @@ fn the_reference_is_that_of_the_types() {
     let told = ndda_io::schema::reference();
     let differs =
         reference().lines().zip(told.lines()).find(|(a, b)| a != b).map(|(a, b)| format!("{a}\n{b}"));
-    assert!(reference() == told, "write it anew: ndda schema --markdown > docs/reference/scene.md\n{differs:?}");
+    assert!(
+        reference() == told,
+        "write it anew: ndda schema --markdown > docs/reference/scene.md\n{differs:?}"
+    );
 }
 
 #[test]
 fn the_example_of_the_reference_is_a_scene_without_warnings_that_runs() {
     let reference = reference();
     let example = reference.split("```ron\n").nth(1).unwrap().split("```").next().unwrap();
-    let loaded =
-        ndda_io::read::load_text("docs/reference/scene.md", example, &[], None).unwrap_or_else(|e| panic!("{e}"));
+    let loaded = ndda_io::read::load_text("docs/reference/scene.md", example, &[], None)
+        .unwrap_or_else(|e| panic!("{e}"));
     assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
     let blocks = ndda::build::blocks(&loaded.scene, Path::new(".")).unwrap();
     let mut simulation = ndda::build::simulation(&loaded.scene, blocks, Path::new(".")).unwrap();

@@ -66,8 +66,18 @@ fn a_rigid_block_keeps_the_energy_of_its_spin_to_rounding_and_turns_over_about_i
         }
         let end = simulation.sample().unwrap();
         let named = |what: &str| format!("rigid brick that turns over, {integrator}: {what}");
-        row("spin of all kinds of body", &named("kinetic energy [J]"), end.kinetic_j, Within(start.kinetic_j, 1e-12));
-        row("spin of all kinds of body", &named("angular momentum"), simulation.invariants().angular_momentum, AtMost(1e-12));
+        row(
+            "spin of all kinds of body",
+            &named("kinetic energy [J]"),
+            end.kinetic_j,
+            Within(start.kinetic_j, 1e-12),
+        );
+        row(
+            "spin of all kinds of body",
+            &named("angular momentum"),
+            simulation.invariants().angular_momentum,
+            AtMost(1e-12),
+        );
         assert!(lowest < -0.5, "{integrator}: it never turned over ({lowest})");
         let rest = &simulation.blocks().rest_position;
         let x = &simulation.state().position;
@@ -192,7 +202,12 @@ fn a_block_of_any_kind_slides_down_a_fixed_ramp_as_the_closed_form_says() {
         let mean = block.iter().sum::<Vec3>() / block.len() as f64;
         let exact = 0.5 * 6.929646455628166 * 0.25;
         let gain = simulation.invariants().energy_gain;
-        row("the paper's ramps", &format!("slide of a block on a fixed ramp, {body} [m]"), mean.x, Within(exact, 1e-6));
+        row(
+            "the paper's ramps",
+            &format!("slide of a block on a fixed ramp, {body} [m]"),
+            mean.x,
+            Within(exact, 1e-6),
+        );
         row("the paper's ramps", &format!("energy gained by it, {body}"), gain, AtMost(1e-4));
     }
 }

@@ -146,7 +146,12 @@ fn midpoint_and_generalised_alpha_are_of_second_order_in_contact_and_the_papers_
         // The paper's comes to its order from below.
         let tolerance = if expected == 1.0 { 0.12 } else { 0.1 };
         let of = if scene == PRESSED { "a block pressed on a base" } else { "two cubes that meet" };
-        row("bounce and contact stability", &format!("order of {of}, {integrator}"), order, Near(expected, tolerance));
+        row(
+            "bounce and contact stability",
+            &format!("order of {of}, {integrator}"),
+            order,
+            Near(expected, tolerance),
+        );
     }
 }
 
@@ -169,6 +174,11 @@ fn momentum_on_supports_is_accounted_for_from_the_first_step() {
         }
         simulation.sample().unwrap();
         let error = simulation.invariants().linear_momentum;
-        row("bounce and contact stability", &format!("momentum on supports, {integrator}"), error, AtMost(1e-12));
+        row(
+            "bounce and contact stability",
+            &format!("momentum on supports, {integrator}"),
+            error,
+            AtMost(1e-12),
+        );
     }
 }

@@ -147,7 +147,12 @@ fn a_joint_lets_through_what_its_stiffness_allows() {
             peak / amplitude,
             Within(largest / amplitude, 5e-3),
         );
-        row("joint between bars", &named("largest difference from the joint's equation"), error / amplitude, AtMost(0.02));
+        row(
+            "joint between bars",
+            &named("largest difference from the joint's equation"),
+            error / amplitude,
+            AtMost(0.02),
+        );
     }
 }
 

@@ -149,7 +149,12 @@ fn a_sphere_pressed_on_a_flat_follows_hertz() {
     let named =
         |what: &str| format!("{what}, extrapolated from {} and {} cells", cells[last - 1], cells[last]);
     for (part, force) in DEPTHS.iter().zip(limit) {
-        row("Hertz contact", &named(&format!("force over Hertz's at {part} of the depth")), force, Within(1.0, 0.03));
+        row(
+            "Hertz contact",
+            &named(&format!("force over Hertz's at {part} of the depth")),
+            force,
+            Within(1.0, 0.03),
+        );
     }
     row("Hertz contact", &named("exponent of the depth"), exponent(&limit), Within(1.5, 0.02));
 }

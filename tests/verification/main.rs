@@ -23,6 +23,7 @@ mod glancing_collision;
 mod ground_stress;
 mod hertz;
 mod joint_friction;
+mod joint_laws;
 mod jointed_column;
 mod large_strain;
 mod loads_over_time;
@@ -113,5 +114,10 @@ fn assert_uniform_strain(simulation: &Simulation, strain: Vec3, tolerance: f64) 
         .zip(&simulation.blocks().rest_position)
         .map(|(u, rest)| (u - strain.component_mul(&(rest + origin))).norm());
     let worst = off.fold(0.0, f64::max) / largest;
-    row("uniform stress", "largest error of displacements under a uniform strain, relative", worst, AtMost(tolerance));
+    row(
+        "uniform stress",
+        "largest error of displacements under a uniform strain, relative",
+        worst,
+        AtMost(tolerance),
+    );
 }

@@ -55,6 +55,11 @@ fn a_semicircular_arch_stands_above_milankovitchs_thickness_and_falls_below_it()
     for (thickness, stands) in [(0.12, true), (0.1, false)] {
         let sunk = sinks(thickness);
         let answer = if stands { AtMost(1e-2) } else { AtLeast(0.1) };
-        row("masonry arch", &format!("sinking of an arch of t/R = {thickness} within a second [m]"), sunk, answer);
+        row(
+            "masonry arch",
+            &format!("sinking of an arch of t/R = {thickness} within a second [m]"),
+            sunk,
+            answer,
+        );
     }
 }

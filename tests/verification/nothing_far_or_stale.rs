@@ -43,7 +43,12 @@ fn blocks_far_away_leave_every_bit_of_a_collision_as_it_is() {
     assert_eq!(alone.state().position, with.state().position[..nodes]);
     assert_eq!(alone.state().velocity, with.state().velocity[..nodes]);
     let apart = alone.state().position.iter().zip(&with.state().position).map(|(a, b)| (a - b).norm());
-    row("far blocks, resumed runs, rest", "what far blocks change in a collision [m]", apart.fold(0.0, f64::max), AtMost(0.0));
+    row(
+        "far blocks, resumed runs, rest",
+        "what far blocks change in a collision [m]",
+        apart.fold(0.0, f64::max),
+        AtMost(0.0),
+    );
 }
 
 #[test]
@@ -83,8 +88,18 @@ fn a_cube_at_rest_for_ten_seconds_does_not_tilt() {
     let moved: Vec<Vec3> = late.iter().zip(&early).map(|(late, early)| late - early).collect();
     let (low, high) =
         moved.iter().fold((f64::INFINITY, -f64::INFINITY), |(l, h), u| (l.min(u.z), h.max(u.z)));
-    row("far blocks, resumed runs, rest", "tilt of a cube at rest from the first second to the tenth [rad]", high - low, AtMost(1e-8));
-    row("far blocks, resumed runs, rest", "drift of it [m]", moved.iter().map(|u| u.norm()).fold(0.0, f64::max), AtMost(1e-7));
+    row(
+        "far blocks, resumed runs, rest",
+        "tilt of a cube at rest from the first second to the tenth [rad]",
+        high - low,
+        AtMost(1e-8),
+    );
+    row(
+        "far blocks, resumed runs, rest",
+        "drift of it [m]",
+        moved.iter().map(|u| u.norm()).fold(0.0, f64::max),
+        AtMost(1e-7),
+    );
 }
 
 /// Mean places of the cube's nodes over a second: a vibration is no tilt.

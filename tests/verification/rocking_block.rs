@@ -70,6 +70,11 @@ fn a_rocking_block_takes_housners_quarter_period() {
             t,
             Within(exact, 1e-2),
         );
-        row("rocking block", &format!("quarter period from {part} α by Housner [s]"), t, Within(housner, 1e-2));
+        row(
+            "rocking block",
+            &format!("quarter period from {part} α by Housner [s]"),
+            t,
+            Within(housner, 1e-2),
+        );
     }
 }

@@ -44,7 +44,12 @@ fn a_block_under_a_sudden_load_swings_by_the_load() {
     for body in ["Elastic", "Rigid"] {
         for turn in [0.2, 0.4, 0.8] {
             let what = format!("velocity under sudden gravity, {body}, ω Δt = {turn}: largest error, of g/ω");
-            row("bounce and contact stability", &what, error(body, turn), Near(0.0, turn.powi(4) / 128.0 + 2e-3));
+            row(
+                "bounce and contact stability",
+                &what,
+                error(body, turn),
+                Near(0.0, turn.powi(4) / 128.0 + 2e-3),
+            );
         }
     }
 }
@@ -68,7 +73,12 @@ fn blocks_that_push_each_other_off_keep_momentum_angular_momentum_and_energy() {
     simulation.sample().unwrap();
     let found = simulation.invariants();
     assert!(found.contact_pairs_max > 0 && found.max_h > 1.0, "they do not push: {found:?}");
-    row("bounce and contact stability", "three blocks pushed off by each other: momentum lost", found.linear_momentum, AtMost(1e-13));
+    row(
+        "bounce and contact stability",
+        "three blocks pushed off by each other: momentum lost",
+        found.linear_momentum,
+        AtMost(1e-13),
+    );
     row("bounce and contact stability", "… angular momentum lost", found.angular_momentum, AtMost(1e-12));
     let energy = found.lasting_gain.max(found.lasting_loss);
     row("bounce and contact stability", "… energy lost or gained once they part", energy, AtMost(1e-2));

@@ -52,13 +52,23 @@ fn a_tall_stack_at_rest_neither_gains_energy_nor_loses_weight() {
     }
     let worst = simulation.invariants();
     let named = |what: &str| format!("{what}, {slabs} slabs for {end_s} s");
-    row("extreme: tall stack", &named("mean force on the base [N]"), force / steps as f64, Within(weight, 1e-3));
+    row(
+        "extreme: tall stack",
+        &named("mean force on the base [N]"),
+        force / steps as f64,
+        Within(weight, 1e-3),
+    );
     row(
         "extreme: tall stack",
         &named("kinetic energy of the later half over the first"),
         kinetic[1] / kinetic[0],
         AtMost(2.0),
     );
-    row("extreme: tall stack", &named("kinetic energy over that in contact"), kinetic[0] / start.contact_j, AtMost(1e-4));
+    row(
+        "extreme: tall stack",
+        &named("kinetic energy over that in contact"),
+        kinetic[0] / start.contact_j,
+        AtMost(1e-4),
+    );
     row("extreme: tall stack", &named("energy gained"), worst.energy_gain, AtMost(1e-4));
 }

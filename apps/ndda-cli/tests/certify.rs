@@ -187,7 +187,12 @@ fn true_errors_lie_within_the_bars_and_bars_are_tight_on_the_scenes_of_the_studi
         total.ratios.extend(found.ratios);
     }
     let part = total.within as f64 / total.all as f64;
-    row("error bars", "quantities whose true error lies within the bar, part of all", part, Answer::AtLeast(0.95));
+    row(
+        "error bars",
+        "quantities whose true error lies within the bar, part of all",
+        part,
+        Answer::AtLeast(0.95),
+    );
     row("error bars", "bar over true error, median", total.median(), Answer::AtMost(10.0));
 }
 

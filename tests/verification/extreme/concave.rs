@@ -18,6 +18,11 @@ fn a_concave_block_bears_what_rests_in_it_and_all_of_it_rests() {
         force += (simulation.reaction_n(base).z - 24.0 * 2500.0 * 9.8) / f64::from(steps);
     }
     // An L of 3 + 2 cells of 1 × 2 × 1 m, and a cube.
-    row("extreme: concave blocks", "force under an L and a cube on its ledge [N]", force, Within(11.0 * 2500.0 * 9.8, 1e-3));
+    row(
+        "extreme: concave blocks",
+        "force under an L and a cube on its ledge [N]",
+        force,
+        Within(11.0 * 2500.0 * 9.8, 1e-3),
+    );
     row("extreme: concave blocks", "motion after settling [m]", farthest(&simulation), AtMost(1e-6));
 }

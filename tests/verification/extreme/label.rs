@@ -71,7 +71,12 @@ fn a_bounce_is_never_called_accurate_when_it_is_not() {
             too_modest += u32::from(!says && error <= SPEED && beyond <= 1.0);
         }
     }
-    row("extreme: penalty, step and label", "bounces called accurate that are not", f64::from(claimed_wrongly), Answer::AtMost(0.0));
+    row(
+        "extreme: penalty, step and label",
+        "bounces called accurate that are not",
+        f64::from(claimed_wrongly),
+        Answer::AtMost(0.0),
+    );
     row(
         "extreme: penalty, step and label",
         "bounces called inaccurate within the bound that are not",

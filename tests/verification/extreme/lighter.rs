@@ -89,6 +89,16 @@ fn whatever_the_masses_of_two_blocks_a_wrong_meeting_is_not_called_accurate() {
         f64::from(claimed_wrongly),
         AtMost(0.0),
     );
-    row("extreme: penalty, step and label", "meetings of unlike blocks called inaccurate that are not", f64::from(too_modest), AtMost(0.0));
-    row("extreme: penalty, step and label", "meetings of unlike blocks called accurate, of 40", f64::from(accurate), AtLeast(20.0));
+    row(
+        "extreme: penalty, step and label",
+        "meetings of unlike blocks called inaccurate that are not",
+        f64::from(too_modest),
+        AtMost(0.0),
+    );
+    row(
+        "extreme: penalty, step and label",
+        "meetings of unlike blocks called accurate, of 40",
+        f64::from(accurate),
+        AtLeast(20.0),
+    );
 }

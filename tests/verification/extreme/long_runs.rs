@@ -20,7 +20,12 @@ fn a_block_that_coasts_is_where_its_velocity_takes_it() {
     assert_eq!(simulation.time_s(), steps as f64 * 1e-3, "t is n Δt");
     let exact = ndda_mesh::Vec3::new(0.3, -0.1, 0.7) * simulation.time_s();
     let error = displacements(&simulation).iter().map(|u| (u - exact).norm()).fold(0.0, f64::max);
-    row("extreme: coasting", &format!("error of the place after {steps} steps over an edge"), error, AtMost(1e-9));
+    row(
+        "extreme: coasting",
+        &format!("error of the place after {steps} steps over an edge"),
+        error,
+        AtMost(1e-9),
+    );
 }
 
 #[test]
@@ -44,6 +49,11 @@ fn a_block_that_spins_keeps_its_volume_and_has_no_false_stress() {
             drift,
             AtMost(1e-9),
         );
-        row("extreme: fast spin", &format!("largest stress over E, steps of {step_s} s"), largest / 200e9, AtMost(1e-6));
+        row(
+            "extreme: fast spin",
+            &format!("largest stress over E, steps of {step_s} s"),
+            largest / 200e9,
+            AtMost(1e-6),
+        );
     }
 }

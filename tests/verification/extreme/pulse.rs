@@ -62,7 +62,12 @@ fn a_push_brings_its_impulse_however_short_it_is() {
     let summary = summary_of("extreme/pulse_between_steps.ron", &[]);
     let summary = summary.unwrap();
     let speed = summary["monitors"]["cube"]["velocity"][0].as_f64().unwrap();
-    row("extreme: penalty, step and label", "a push between two steps [m/s]", speed, Within(1e4 / 2650.0, 1e-9));
+    row(
+        "extreme: penalty, step and label",
+        "a push between two steps [m/s]",
+        speed,
+        Within(1e4 / 2650.0, 1e-9),
+    );
     assert_eq!(word(&summary), "accurate");
 }
 
@@ -89,8 +94,18 @@ fn what_comes_and_goes_within_a_step_says_so() {
             too_modest += u32::from(!says && speed_m_s < SPEED);
         }
     }
-    row("extreme: penalty, step and label", "loads within a step called accurate that are not", f64::from(claimed_wrongly), AtMost(0.0));
-    row("extreme: penalty, step and label", "loads within a step called inaccurate that are not", f64::from(too_modest), AtMost(0.0));
+    row(
+        "extreme: penalty, step and label",
+        "loads within a step called accurate that are not",
+        f64::from(claimed_wrongly),
+        AtMost(0.0),
+    );
+    row(
+        "extreme: penalty, step and label",
+        "loads within a step called inaccurate that are not",
+        f64::from(too_modest),
+        AtMost(0.0),
+    );
 }
 
 #[test]

@@ -27,7 +27,12 @@ fn a_plate_at_the_limit_of_friction_and_far_beyond_it_does_not_creep() {
         let early = second(&mut ready);
         advance(&mut ready.simulation, 8000);
         let rate = (second(&mut ready) - early).norm() / 9.0;
-        row("extreme: friction at its limit", &format!("creep at μ = {name}, lengths a second"), rate, AtMost(1e-6));
+        row(
+            "extreme: friction at its limit",
+            &format!("creep at μ = {name}, lengths a second"),
+            rate,
+            AtMost(1e-6),
+        );
     }
 }
 
@@ -36,7 +41,12 @@ fn a_plate_without_friction_slides_as_it_falls() {
     let mut ready = extreme("ramp_at_its_limit", &["contact.friction.friction_deg=0", "settle=None"]);
     advance(&mut ready.simulation, 500);
     let slide = ready.monitors[0].displacement(&ready.simulation).norm();
-    row("extreme: friction at its limit", "slide at μ = 0 within 0.5 s [m]", slide, Within(0.5 * 9.8 * 0.5 * 0.25, 1e-4));
+    row(
+        "extreme: friction at its limit",
+        "slide at μ = 0 within 0.5 s [m]",
+        slide,
+        Within(0.5 * 9.8 * 0.5 * 0.25, 1e-4),
+    );
 }
 
 /// The plate as three equations of motion: along the ramp, off it, and its rocking, on a bed of springs that only push, with Coulomb's friction on

@@ -19,5 +19,10 @@ fn pairs_grow_as_blocks_do() {
     }
     assert_eq!(per_block[0], 0.0, "one block has nothing to look at");
     // A block inside has 26 neighbours; at the rim of a small cube it has fewer.
-    row("extreme: many blocks", "pairs looked at per block, 1000 blocks over 125", per_block[3] / per_block[2], AtMost(2.0));
+    row(
+        "extreme: many blocks",
+        "pairs looked at per block, 1000 blocks over 125",
+        per_block[3] / per_block[2],
+        AtMost(2.0),
+    );
 }

@@ -28,7 +28,12 @@ fn a_plane_cuts_off_slivers_what_their_corners_say() {
             worst = worst.max((shared / volume - (1.0 - part).powi(3)).abs());
         }
     }
-    row("extreme: slivers", "volume cut off slivers of aspect 1e3 to 1e6, error over theirs", worst, AtMost(1e-9));
+    row(
+        "extreme: slivers",
+        "volume cut off slivers of aspect 1e3 to 1e6, error over theirs",
+        worst,
+        AtMost(1e-9),
+    );
 }
 
 #[test]

@@ -17,5 +17,10 @@ fn very_stiff_springs_hold_as_elimination_does() {
     let largest = held.iter().map(|u| u.norm()).fold(0.0, f64::max);
     let apart = held.iter().zip(&sprung).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
     assert!(apart > 0.0, "springs that do not give at all are no springs");
-    row("extreme: stiff springs", "springs of 1e6 E against elimination, relative", apart / largest, AtMost(1e-6));
+    row(
+        "extreme: stiff springs",
+        "springs of 1e6 E against elimination, relative",
+        apart / largest,
+        AtMost(1e-6),
+    );
 }

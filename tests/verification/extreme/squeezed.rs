@@ -99,9 +99,24 @@ fn whatever_the_masses_a_slab_that_is_squeezed_out_is_not_called_accurate() {
             }
         }
     }
-    row("extreme: unlike masses", "squeezed slabs called accurate that are not", f64::from(claimed_wrongly), AtMost(0.0));
-    row("extreme: unlike masses", "squeezed slabs called inaccurate that are not", f64::from(too_modest), AtMost(0.0));
-    row("extreme: unlike masses", "squeezed slabs called accurate, of 70", f64::from(accurate), AtLeast(20.0));
+    row(
+        "extreme: unlike masses",
+        "squeezed slabs called accurate that are not",
+        f64::from(claimed_wrongly),
+        AtMost(0.0),
+    );
+    row(
+        "extreme: unlike masses",
+        "squeezed slabs called inaccurate that are not",
+        f64::from(too_modest),
+        AtMost(0.0),
+    );
+    row(
+        "extreme: unlike masses",
+        "squeezed slabs called accurate, of 70",
+        f64::from(accurate),
+        AtLeast(20.0),
+    );
 }
 
 #[test]
@@ -114,8 +129,18 @@ fn a_slab_that_friction_holds_stays_and_is_called_accurate() {
             called += u32::from(says);
         }
     }
-    row("extreme: unlike masses", "way of a slab that friction holds, over its height", farthest, AtMost(1e-3));
-    row("extreme: unlike masses", "slabs that friction holds called accurate, of 21", f64::from(called), AtLeast(21.0));
+    row(
+        "extreme: unlike masses",
+        "way of a slab that friction holds, over its height",
+        farthest,
+        AtMost(1e-3),
+    );
+    row(
+        "extreme: unlike masses",
+        "slabs that friction holds called accurate, of 21",
+        f64::from(called),
+        AtLeast(21.0),
+    );
 }
 
 /// A rigid wedge of 20 kg, `angle` steep, under a rigid block of 20 t, both free on a floor: how far it is pressed out, over what it should be,
@@ -182,8 +207,18 @@ fn a_scene_in_which_a_slab_leaves_says_so() {
         &summary["monitors"]["light"],
     );
     let left_m = left["displacement"][0].as_f64().unwrap().hypot(left["displacement"][1].as_f64().unwrap());
-    row("extreme: unlike masses", "way of a slab of a millionth of the mass above it [m]", left_m, AtLeast(1.0));
+    row(
+        "extreme: unlike masses",
+        "way of a slab of a millionth of the mass above it [m]",
+        left_m,
+        AtLeast(1.0),
+    );
     // It grows as the instability does; the limit is 1e-2.
-    row("extreme: unlike masses", "its speed that is not known, over the largest", value.as_f64().unwrap(), AtLeast(0.1));
+    row(
+        "extreme: unlike masses",
+        "its speed that is not known, over the largest",
+        value.as_f64().unwrap(),
+        AtLeast(0.1),
+    );
     assert_eq!(word(&summary), "inaccurate");
 }

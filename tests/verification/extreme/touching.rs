@@ -67,7 +67,12 @@ fn a_pair_of_cubes_feels_the_same_force_however_it_is_turned() {
             force(lower.clone().placed(&turn, &Vec3::zeros()), upper.clone().placed(&turn, &Vec3::zeros()));
         spread = spread.max((turned - turn * still).norm() / still.norm());
     }
-    row("extreme: coincident faces", "spread of the force over the 24 turns of a cube, relative", spread, AtMost(1e-12));
+    row(
+        "extreme: coincident faces",
+        "spread of the force over the 24 turns of a cube, relative",
+        spread,
+        AtMost(1e-12),
+    );
 }
 
 /// A unit cube with a corner at the origin, turned so that the directions `from` of it point along z.
@@ -102,7 +107,12 @@ fn corners_and_edges_meet_without_a_jump() {
             "{name}: {forces:?}"
         );
         let order = (at(-1e-3) / at(-5e-4)).log2();
-        row("extreme: corners and edges", &format!("{name}: power of the depth that the force goes with"), order, Near(3.0, 0.05));
+        row(
+            "extreme: corners and edges",
+            &format!("{name}: power of the depth that the force goes with"),
+            order,
+            Near(3.0, 0.05),
+        );
     }
 }
 
@@ -151,5 +161,10 @@ fn no_glancing_pair_is_not_a_number() {
             wrong += u32::from(!forces.nodal_n.iter().flatten().all(|f| f.is_finite()));
         }
     }
-    row("extreme: corners and edges", &format!("pairs of {cases} that glance and are not a number"), f64::from(wrong), AtMost(0.0));
+    row(
+        "extreme: corners and edges",
+        &format!("pairs of {cases} that glance and are not a number"),
+        f64::from(wrong),
+        AtMost(0.0),
+    );
 }

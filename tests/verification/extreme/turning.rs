@@ -77,7 +77,12 @@ fn a_rigid_block_turns_about_its_axis_by_its_spin_however_long_a_step_is() {
     for angle in [0.01, 0.5, 2.5] {
         let simulation = turn("Rigid", "Midpoint(theta: 0.5)", &Vec3::z(), angle, 50.0).unwrap();
         let (error, says) = judged(&simulation, &Vec3::z());
-        row("extreme: fast spin", &format!("velocities after 50 rad in steps of {angle} rad, rigid"), error, AtMost(1e-8));
+        row(
+            "extreme: fast spin",
+            &format!("velocities after 50 rad in steps of {angle} rad, rigid"),
+            error,
+            AtMost(1e-8),
+        );
         assert!(says, "{}", verdict::label(&simulation, None).reasons.join(", "));
     }
     let summary = summary_of("extreme/fast_spin.ron", &[]);
@@ -111,5 +116,10 @@ fn a_block_that_turns_too_far_in_a_step_says_so() {
     }
     assert!(words.iter().all(|n| *n > 5), "both labels should be met: {words:?}");
     row("extreme: fast spin", "turns called accurate that are not", f64::from(claimed_wrongly), AtMost(0.0));
-    row("extreme: fast spin", "turns called inaccurate that are not by a tenth of that", f64::from(too_modest), AtMost(0.0));
+    row(
+        "extreme: fast spin",
+        "turns called inaccurate that are not by a tenth of that",
+        f64::from(too_modest),
+        AtMost(0.0),
+    );
 }

@@ -18,9 +18,24 @@ fn a_slab_of_a_million_times_the_mass_sinks_as_deep_as_statics_says() {
     let depth = 2.5e6 * 9.8 * 0.25 / 2e10;
     let below = sunk(&simulation, "light", 0.0);
     let between = sunk(&simulation, "heavy", 0.5) - sunk(&simulation, "light", 0.5);
-    row("extreme: unlike masses", "depth of the light slab in the base, mass ratio 1e6 [m]", below, Within(depth, 1e-2));
-    row("extreme: unlike masses", "depth of the heavy slab in the light one [m]", between, Within(depth, 1e-2));
-    row("extreme: unlike masses", "energy gained over the peak", simulation.invariants().energy_gain, AtMost(1e-2));
+    row(
+        "extreme: unlike masses",
+        "depth of the light slab in the base, mass ratio 1e6 [m]",
+        below,
+        Within(depth, 1e-2),
+    );
+    row(
+        "extreme: unlike masses",
+        "depth of the heavy slab in the light one [m]",
+        between,
+        Within(depth, 1e-2),
+    );
+    row(
+        "extreme: unlike masses",
+        "energy gained over the peak",
+        simulation.invariants().energy_gain,
+        AtMost(1e-2),
+    );
 }
 
 #[test]
@@ -33,7 +48,12 @@ fn stiff_rock_on_soft_ground_bears_the_stress_of_springs_in_series() {
     for name in ["lower", "upper"] {
         let part = &stress[simulation.blocks().tets_of(block(&simulation, name))];
         let mean = -part.iter().map(|s| s[2]).sum::<f64>() / part.len() as f64;
-        row("extreme: unlike stiffness", &format!("stress of the {name} bar, modulus ratio 1e6 [Pa]"), mean, Within(series, 2e-2));
+        row(
+            "extreme: unlike stiffness",
+            &format!("stress of the {name} bar, modulus ratio 1e6 [Pa]"),
+            mean,
+            Within(series, 2e-2),
+        );
     }
 }
 
@@ -59,5 +79,10 @@ fn the_advised_step_is_that_of_the_smallest_block_and_will_do() {
     let grain = simulation.blocks().nodes_of(block(&simulation, "grain"));
     let velocity = &simulation.state().velocity[grain.clone()];
     let speed = (velocity.iter().map(|v| v.z).sum::<f64>() / grain.len() as f64).abs();
-    row("extreme: unlike sizes", "speed of the grain after it has flown to and fro [m/s]", speed, Within(0.1, 1e-2));
+    row(
+        "extreme: unlike sizes",
+        "speed of the grain after it has flown to and fro [m/s]",
+        speed,
+        Within(0.1, 1e-2),
+    );
 }

@@ -55,8 +55,18 @@ fn a_vibration_that_steps_do_not_resolve_says_so() {
             too_modest += u32::from(!says && error < 0.5 * SPEED);
         }
     }
-    row("extreme: penalty, step and label", "vibrations called accurate that are not", f64::from(claimed_wrongly), AtMost(0.0));
-    row("extreme: penalty, step and label", "vibrations called inaccurate that are not by half", f64::from(too_modest), AtMost(0.0));
+    row(
+        "extreme: penalty, step and label",
+        "vibrations called accurate that are not",
+        f64::from(claimed_wrongly),
+        AtMost(0.0),
+    );
+    row(
+        "extreme: penalty, step and label",
+        "vibrations called inaccurate that are not by half",
+        f64::from(too_modest),
+        AtMost(0.0),
+    );
 }
 
 #[test]

@@ -279,8 +279,12 @@ fn grammar(error: &RonError) -> (Code, &'static str) {
             Code::WrongType,
             "write a number, such as 1.5 or 20e9, or one with its unit, such as Megapascal(20)",
         ),
-        RonError::ExpectedIdentifier => (Code::WrongType, "see docs/reference/scene.md for the choices of this field"),
-        RonError::ExpectedDifferentLength { .. } => (Code::WrongType, "see docs/reference/scene.md for this field"),
+        RonError::ExpectedIdentifier => {
+            (Code::WrongType, "see docs/reference/scene.md for the choices of this field")
+        }
+        RonError::ExpectedDifferentLength { .. } => {
+            (Code::WrongType, "see docs/reference/scene.md for this field")
+        }
         RonError::ExpectedArray => (Code::WrongType, "a list is written between [ and ]"),
         RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_) => {
             (Code::WrongType, "structs and vectors are written between ( and )")

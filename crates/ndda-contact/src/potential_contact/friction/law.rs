@@ -95,6 +95,16 @@ pub trait FrictionLaw: Send + Sync {
         0.0
     }
 
+    /// Angle by which a joint opens while it slips, as far as the law itself says [°]: see [`Dilating`](crate::Dilating).
+    fn dilation_deg(&self, _slip: &FacetSlip, _memory: &ShearMemory) -> f64 {
+        0.0
+    }
+
+    /// By how much a joint has opened by slip [m].
+    fn dilation_m(&self, _memory: &ShearMemory) -> f64 {
+        0.0
+    }
+
     /// Whether the law acts on whole faces through [`FacetSlip::stopping_n`], not on each facet by its slip.
     fn acts_on_faces(&self) -> bool {
         false

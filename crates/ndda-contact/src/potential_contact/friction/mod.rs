@@ -1,7 +1,9 @@
 //! Friction, cohesion and tension: their laws, and the forces on facets and patches that they limit.
 
+pub(crate) mod barton_bandis;
 pub(crate) mod bond;
 pub(crate) mod coulomb;
+pub(crate) mod dilating;
 pub(crate) mod facet;
 pub(crate) mod law;
 pub(crate) mod law_table;
