@@ -34,22 +34,22 @@ pub struct JointArgs {
     #[arg(long, value_enum, default_value_t = JointTestKind::Shear)]
     pub test: JointTestKind,
     /// Normal stress: at the start of a shear test, at the end of a closure test.
-    #[arg(long, value_name = "PA", default_value_t = 1e6)]
+    #[arg(long, value_name = "PA", default_value_t = 1e6, allow_negative_numbers = true)]
     pub normal_stress: f64,
     /// Let nothing open the joint while it is sheared: constant volume in place of a constant normal stress.
     #[arg(long, conflicts_with = "spring")]
     pub constant_volume: bool,
     /// Hold the joint by a spring of this stiffness while it is sheared, in place of a constant normal stress.
-    #[arg(long, value_name = "PA_PER_M")]
+    #[arg(long, value_name = "PA_PER_M", allow_negative_numbers = true)]
     pub spring: Option<f64>,
     /// Normal stiffness of the joint [default: 2 penalty_pa / L₀ of the scene's potential, where that is Smooth or Closure].
-    #[arg(long, value_name = "PA_PER_M")]
+    #[arg(long, value_name = "PA_PER_M", allow_negative_numbers = true)]
     pub joint_stiffness: Option<f64>,
     /// Largest closure of the joint, whose --joint-stiffness is then the initial one of a hyperbola.
-    #[arg(long, value_name = "M", requires = "joint_stiffness")]
+    #[arg(long, value_name = "M", requires = "joint_stiffness", allow_negative_numbers = true)]
     pub max_closure: Option<f64>,
     /// Slip to shear to.
-    #[arg(long, value_name = "M", default_value_t = 0.01)]
+    #[arg(long, value_name = "M", default_value_t = 0.01, allow_negative_numbers = true)]
     pub amplitude: f64,
     /// Cycles forth and back through the start; 0 shears in one direction.
     #[arg(long, value_name = "N", default_value_t = 0)]

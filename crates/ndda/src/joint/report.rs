@@ -109,11 +109,12 @@ fn table<const N: usize>(columns: &[(&str, &str, f64); N], rows: impl Iterator<I
     out
 }
 
-/// Five digits; what is nothing but for rounding is 0.
+/// A few digits; what is nothing but for rounding is 0.
 fn number(value: f64) -> String {
     match value.abs() {
         0.0..1e-12 => "0".into(),
-        1e-3..1e5 => format!("{value:.4}"),
+        1e-3..1e4 => format!("{value:.4}"),
+        1e4..1e9 => format!("{value:.1}"),
         _ => format!("{value:.3e}"),
     }
 }
@@ -138,8 +139,8 @@ mod tests {
     #[test]
     fn numbers_are_as_long_as_they_need_to_be() {
         assert_eq!(
-            [0.0, 1e-17, 0.0126, 123.456789, 2e7].map(number),
-            ["0", "0", "0.0126", "123.4568", "2.000e7"]
+            [0.0, 1e-17, 0.0126, 123.456789, 104_123.45, 2e9].map(number),
+            ["0", "0", "0.0126", "123.4568", "104123.5", "2.000e9"]
         );
     }
 }

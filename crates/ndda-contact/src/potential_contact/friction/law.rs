@@ -2,6 +2,8 @@
 
 use ndda_mesh::Vec3;
 
+use crate::friction::fracture::Fracture;
+
 /// What a facet, or a whole face, does against its target in this step; vectors are in the facet's own basis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FacetSlip {
@@ -93,6 +95,11 @@ pub trait FrictionLaw: Send + Sync {
     /// Stiffness of a bond that carries tension [Pa/m].
     fn bond_stiffness_pa_m(&self) -> f64 {
         0.0
+    }
+
+    /// How bonds break, where they do so gradually; the law itself is then that of what is broken, and sees only its part of the force and the area.
+    fn fracture(&self) -> Option<&Fracture> {
+        None
     }
 
     /// Angle by which a joint opens while it slips, as far as the law itself says [°]: see [`Dilating`](crate::Dilating).
