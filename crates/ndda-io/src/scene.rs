@@ -29,7 +29,9 @@ mod water;
 use serde::{Deserialize, Serialize};
 
 pub use block::{Block, Body, InSitu, Stress, StressGradient, Turn};
-pub use contact::{Contact, Dilation, Friction, Joint, JointLaw, Memory, Potential, Residual, Roughness};
+pub use contact::{
+    Contact, Dilation, FractureEnergy, Friction, Joint, JointLaw, Memory, Potential, Residual, Roughness,
+};
 pub use load::{FactorRow, Force, Traction};
 pub use material::{Bedding, Damping, Material};
 pub use monitor::{At, Monitor};

@@ -236,6 +236,22 @@ fn joints_that_cannot_be_are_pointed_at() {
             "(friction_deg: 25, shear_penalty_pa_m: 2e9",
             "(friction_deg: 25, dilation: @(psi_deg: 10, to_slip_m: 0.01)",
         ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, cohesion_pa: 2e5, tension_pa: 1e5, fracture: (tension_j_m2: @2, shear_j_m2: 20)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, cohesion_pa: 2e5, tension_pa: 1e5, fracture: (tension_j_m2: 20, shear_j_m2: @9)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, cohesion_pa: 2e5, fracture: @(tension_j_m2: 20, shear_j_m2: 20)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, fracture: @(tension_j_m2: 1, shear_j_m2: 1)",
+        ),
         ("penalty_pa: 2e6", "penalty_pa: 2e6, potential: Closure(max_closure_m: @0)"),
     ]);
 }

@@ -90,10 +90,26 @@ pub struct Friction {
     /// the whole angle at most 70°. Needs `shear_penalty_pa_m`, and no cohesion, tension or `residual`. Default: none.
     #[serde(default)]
     pub roughness: Option<Roughness>,
+    /// Energies that the joint takes to break, in place of bonds that break at once: tension and cohesion fall gradually, in mixed mode
+    /// (δ_n/δ_nc)² + (δ_s/δ_sc)² = 1, and friction acts on what is broken. Needs `shear_penalty_pa_m`, cohesion and tension, and no `residual`, `roughness` or
+    /// `dilation`. Default: none.
+    #[serde(default)]
+    pub fracture: Option<FractureEnergy>,
     /// How the joint opens while it slips: `ndda joint` tests it, contact of blocks in a run does not open by it. Needs `shear_penalty_pa_m`, and no
     /// `roughness`, which dilates by half of its own angle. Default: none.
     #[serde(default)]
     pub dilation: Option<Dilation>,
+}
+
+/// Energies that it takes to break a joint: its stress falls linearly to nothing at an opening of 2 G_I/σ_t or a slip of 2 G_II/c.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct FractureEnergy {
+    /// Fracture energy G_I in tension [J/m²], at least σ_t²/2k_s.
+    pub tension_j_m2: f64,
+    /// Fracture energy G_II in shear without normal stress [J/m²], at least c²/2k_s.
+    pub shear_j_m2: f64,
 }
 
 /// Roughness of a joint after Barton and Bandis (1982).

@@ -1,8 +1,8 @@
 //! The friction laws that scenes name.
 
 use ndda_contact::{
-    BartonBandis, Coulomb, Dilating, Dilation, FrictionLaw, MohrCoulomb, Roughness, SofteningCoulomb,
-    VelocityCoulomb,
+    BartonBandis, Coulomb, Dilating, Dilation, Fracture, FrictionLaw, MohrCoulomb, Roughness, SofteningBond,
+    SofteningCoulomb, VelocityCoulomb,
 };
 use ndda_io::scene;
 
@@ -12,6 +12,14 @@ pub fn friction_law(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> 
         *friction;
     if let (Some(rough), Some(shear)) = (&friction.roughness, shear_penalty_pa_m) {
         return Some(Box::new(barton_bandis(friction_deg, rough, shear)));
+    }
+    if let (Some(energy), Some(stiffness_pa_m)) = (&friction.fracture, shear_penalty_pa_m) {
+        let fracture = Fracture {
+            stiffness_pa_m,
+            strength_pa: [tension_pa, cohesion_pa],
+            energy_j_m2: [energy.tension_j_m2, energy.shear_j_m2],
+        };
+        return Some(Box::new(SofteningBond::new(friction_deg, fracture)));
     }
     if friction_deg <= 0.0 && cohesion_pa <= 0.0 && tension_pa <= 0.0 {
         return None;

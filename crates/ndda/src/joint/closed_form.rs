@@ -45,6 +45,9 @@ pub fn shear(friction: &Friction, test: &ShearTest, rows: &[ShearRow]) -> Vec<Co
     if mobilised {
         return peak(friction, test, rows).into_iter().collect();
     }
+    if friction.fracture.is_some() {
+        return broken(friction, test, last).into_iter().collect();
+    }
     let end = match (softens(friction), is_forth, test.hold) {
         (false, true, _) => forth(friction, test, last.slip_m),
         (false, false, Hold::Stress) => cycled(friction, test, last),
@@ -204,4 +207,13 @@ fn peak(friction: &Friction, test: &ShearTest, rows: &[ShearRow]) -> Option<Comp
     let found_pa = rows.iter().map(|row| row.shear_pa).fold(0.0, f64::max);
     let exact_pa = rough.strength_factor * joint.strength_pa(test.stress_pa);
     Some(Comparison::new("largest shear stress, of all steps", "Pa", found_pa, exact_pa))
+}
+
+/// Friction of a joint that has broken gradually in one direction, under a constant stress.
+fn broken(friction: &Friction, test: &ShearTest, last: &ShearRow) -> Option<Comparison> {
+    let last_m = 2.0 * friction.fracture?.shear_j_m2 / friction.cohesion_pa;
+    let exact_pa = friction.friction_deg.to_radians().tan() * test.stress_pa;
+    let slips = last.slip_m - last_m > 2.0 * exact_pa / friction.shear_penalty_pa_m?;
+    let holds = slips && test.hold == Hold::Stress;
+    holds.then(|| Comparison::new("shear stress at the end", "Pa", last.shear_pa, exact_pa))
 }

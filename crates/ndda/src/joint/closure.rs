@@ -45,6 +45,7 @@ impl ClosureTest {
     pub fn run(&self) -> Result<Vec<ClosureRow>, JointError> {
         positive("the normal stress", self.stress_pa)?;
         positive("the number of steps", f64::from(self.steps))?;
+        self.normal.check()?;
         if self.normal == NormalStiffness::Rigid {
             return Err(JointError::NoStiffness);
         }

@@ -3,6 +3,8 @@
 use ndda_contact::HyperbolicClosure;
 use serde::Serialize;
 
+use super::{JointError, positive};
+
 /// Closure V of a joint under a normal stress σ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -24,6 +26,21 @@ pub enum NormalStiffness {
 }
 
 impl NormalStiffness {
+    /// Whether its numbers are above zero.
+    ///
+    /// # Errors
+    /// [`JointError::OutOfRange`].
+    pub fn check(&self) -> Result<(), JointError> {
+        match *self {
+            Self::Rigid => Ok(()),
+            Self::Linear { stiffness_pa_m } => positive("the joint's stiffness", stiffness_pa_m),
+            Self::Hyperbolic { initial_pa_m, most_m } => {
+                positive("the joint's stiffness", initial_pa_m)?;
+                positive("the largest closure", most_m)
+            }
+        }
+    }
+
     /// Closure V under a normal stress [m].
     pub fn closure_m(&self, stress_pa: f64) -> f64 {
         match *self {

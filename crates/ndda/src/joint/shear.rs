@@ -97,6 +97,9 @@ struct Side {
     shear_n: [f64; 2],
     broken: bool,
     state: Vec<f64>,
+    /// Slip, and part that is broken, of bonds that break gradually.
+    slip_m: f64,
+    damage: f64,
 }
 
 impl Side {
@@ -105,6 +108,24 @@ impl Side {
         let result = with(&mut memory);
         (self.shear_n, self.broken) = (memory.shear_n, memory.broken);
         result
+    }
+
+    /// Shear stress of both sides against the slip: friction, and what bonds carry that break gradually [Pa].
+    fn shear_pa(&self, law: &dyn FrictionLaw) -> f64 {
+        let bonds = law.fracture().map_or(0.0, |f| (1.0 - self.damage) * f.stiffness_pa_m * self.slip_m);
+        bonds - 2.0 * self.shear_n[0]
+    }
+
+    /// Energy in the springs of both sides [J/m²].
+    fn stored_j_m2(&self, law: &dyn FrictionLaw) -> f64 {
+        let (stiffness_pa_m, rubs_pa) = (law.shear_stiffness_pa_m(), 2.0 * self.shear_n[0]);
+        let Some(fracture) = law.fracture() else { return 0.5 * rubs_pa * rubs_pa / stiffness_pa_m };
+        let bonds = 0.5 * (1.0 - self.damage) * fracture.stiffness_pa_m * self.slip_m * self.slip_m;
+        if self.damage > 0.0 {
+            bonds + 0.5 * rubs_pa * rubs_pa / (self.damage * stiffness_pa_m)
+        } else {
+            bonds
+        }
     }
 }
 
@@ -118,14 +139,16 @@ impl ShearTest {
         let mut state = vec![0.0; law.state_len()];
         law.begin(&mut state);
         // What touches at the start of a test has its cohesion.
-        let mut side = Side { shear_n: [0.0; 2], broken: false, state };
+        let mut side = Side { shear_n: [0.0; 2], broken: false, state, slip_m: 0.0, damage: 0.0 };
         let mut rows = vec![ShearRow { normal_pa: self.stress_pa, ..ShearRow::default() }];
         for &slip_m in &self.path_m {
             let last = rows[rows.len() - 1];
             let normal_pa = self.balance(law, &side, &last, slip_m)?;
             let strength_n = side.memory(|memory| law.capacity_n(&self.slip(0.0, last.normal_pa), memory));
+            let stored_j_m2 = side.stored_j_m2(law);
             self.advance(law, &mut side, slip_m - last.slip_m, normal_pa);
-            rows.push(self.row(law, &mut side, &last, (slip_m, normal_pa, 2.0 * strength_n)));
+            let before = (2.0 * strength_n, stored_j_m2);
+            rows.push(self.row(law, &mut side, &last, (slip_m, normal_pa), before));
         }
         Ok(rows)
     }
@@ -135,15 +158,10 @@ impl ShearTest {
         if let Hold::Stiffness { stiffness_pa_m } = self.hold {
             positive("the stiffness that holds the joint", stiffness_pa_m)?;
         }
-        match self.normal {
-            NormalStiffness::Rigid if self.hold == Hold::Volume => Err(JointError::NoStiffness),
-            NormalStiffness::Rigid => Ok(()),
-            NormalStiffness::Linear { stiffness_pa_m } => positive("the joint's stiffness", stiffness_pa_m),
-            NormalStiffness::Hyperbolic { initial_pa_m, most_m } => {
-                positive("the joint's stiffness", initial_pa_m)?;
-                positive("the largest closure", most_m)
-            }
+        if self.normal == NormalStiffness::Rigid && self.hold == Hold::Volume {
+            return Err(JointError::NoStiffness);
         }
+        self.normal.check()
     }
 
     /// What one side feels in a step.
@@ -161,6 +179,12 @@ impl ShearTest {
     /// One step of one side at a normal stress; the opening by slip after it.
     fn advance(&self, law: &dyn FrictionLaw, side: &mut Side, slip_m: f64, normal_pa: f64) -> f64 {
         let mut slip = self.slip(slip_m, normal_pa);
+        if let Some(fracture) = law.fracture() {
+            side.slip_m += slip_m;
+            side.damage = side.damage.max(fracture.damage(0.0, side.slip_m));
+            slip.normal_n *= side.damage;
+            (slip.area_m2, slip.mean_area_m2) = (side.damage, side.damage);
+        }
         side.memory(|memory| {
             if law.acts_on_faces() && slip_m != 0.0 {
                 // A slip that is prescribed is stopped by no force: all that friction can do acts against it.
@@ -205,15 +229,22 @@ impl ShearTest {
         law: &dyn FrictionLaw,
         side: &mut Side,
         last: &ShearRow,
-        (slip_m, normal_pa, strength_pa): (f64, f64, f64),
+        (slip_m, normal_pa): (f64, f64),
+        (strength_pa, stored_j_m2): (f64, f64),
     ) -> ShearRow {
-        let shear_pa = -2.0 * side.shear_n[0];
+        let shear_pa = side.shear_pa(law);
         let dilation_m = side.memory(|memory| law.dilation_m(memory));
         let stiffness_pa_m = law.shear_stiffness_pa_m();
         let stretch_m = if stiffness_pa_m > 0.0 { (shear_pa - last.shear_pa) / stiffness_pa_m } else { 0.0 };
         let slid_m = slip_m - last.slip_m - stretch_m;
         // From the strength that the joint had, which is where it yields, to the one that it has.
-        let mean_pa = 0.5 * (strength_pa.abs() + shear_pa.abs());
+        let slid_j_m2 = match law.fracture() {
+            None => 0.5 * (strength_pa.abs() + shear_pa.abs()) * slid_m.abs(),
+            Some(_) => {
+                let work_j_m2 = 0.5 * (last.shear_pa + shear_pa) * (slip_m - last.slip_m);
+                work_j_m2 - (side.stored_j_m2(law) - stored_j_m2)
+            }
+        };
         let opened_j_m2 = 0.5 * (last.normal_pa + normal_pa) * (dilation_m - last.dilation_m);
         let closed_m = self.normal.closure_m(normal_pa) - self.normal.closure_m(self.stress_pa);
         ShearRow {
@@ -223,7 +254,7 @@ impl ShearTest {
             opening_m: dilation_m - closed_m,
             dilation_m,
             plastic_slip_m: last.plastic_slip_m + slid_m.abs(),
-            dissipated_j_m2: last.dissipated_j_m2 + mean_pa * slid_m.abs() - opened_j_m2,
+            dissipated_j_m2: last.dissipated_j_m2 + slid_j_m2 - opened_j_m2,
         }
     }
 }
@@ -254,7 +285,9 @@ fn zero_between(function: &dyn Fn(f64) -> f64, mut low: (f64, f64), mut high: (f
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ndda_contact::{BartonBandis, Coulomb, Dilating, Dilation, Roughness, SofteningCoulomb};
+    use ndda_contact::{
+        BartonBandis, Coulomb, Dilating, Dilation, Fracture, Roughness, SofteningBond, SofteningCoulomb,
+    };
 
     const STIFFNESS_PA_M: f64 = 1e10;
     const LINEAR: NormalStiffness = NormalStiffness::Linear { stiffness_pa_m: STIFFNESS_PA_M };
@@ -361,6 +394,26 @@ mod tests {
                 assert!(lost >= -1e-9, "{hold:?}: {lost} J/m² at a slip of {} m", pair[1].slip_m);
                 assert!(pair[1].normal_pa > 0.0);
             }
+        }
+    }
+
+    #[test]
+    fn a_joint_that_breaks_gradually_loses_its_fracture_energy_and_rubs_on_what_is_broken() {
+        let fracture =
+            Fracture { stiffness_pa_m: 1e12, strength_pa: [1e6, 2e6], energy_j_m2: [100.0, 400.0] };
+        let law = SofteningBond::new(30.0, fracture);
+        let [_, last_m] = fracture.last_m();
+        let path_m: Vec<f64> = (1..=20_000).map(|k| 1e-4 * last_m * f64::from(k)).collect();
+        let normal = NormalStiffness::Rigid;
+        let test = ShearTest { stress_pa: 1.0, hold: Hold::Stress, normal, path_m: path_m.clone() };
+        let rows = test.run(&law).expect("a test");
+        near(rows[20_000].dissipated_j_m2, 400.0, 1e-5);
+        near(rows.iter().map(|row| row.shear_pa).fold(0.0, f64::max), 2e6, 1e-3);
+        let rows = ShearTest { stress_pa: 1e6, ..test }.run(&law).expect("a test");
+        near(rows[20_000].shear_pa, 1e6 * tan(30.0), 1e-12);
+        for pair in rows.windows(2) {
+            let lost = pair[1].dissipated_j_m2 - pair[0].dissipated_j_m2;
+            assert!(lost > -1e-6, "a joint gives {lost} J/m²");
         }
     }
 

@@ -64,6 +64,11 @@ pub fn weaken(scene: &mut Scene, factor: f64) {
             residual.friction_deg = (residual.friction_deg.to_radians().tan() / factor).atan().to_degrees();
             residual.cohesion_pa /= factor;
         }
+        // A joint then breaks at the same opening and slip.
+        if let Some(fracture) = &mut friction.fracture {
+            fracture.tension_j_m2 /= factor;
+            fracture.shear_j_m2 /= factor;
+        }
         if let Some(dilation) = &mut friction.dilation {
             let residual_deg = friction.residual.map_or(friction.friction_deg, |r| r.friction_deg);
             dilation.psi_deg = dilation.psi_deg.min(friction.friction_deg).min(residual_deg);

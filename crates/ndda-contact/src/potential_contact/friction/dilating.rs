@@ -37,9 +37,10 @@ impl Dilating {
     /// A law that acts on facets, and how its joint opens.
     ///
     /// # Panics
-    /// If the law acts on whole faces, or keeps more than eight numbers.
+    /// If the law acts on whole faces, breaks gradually, or keeps more than eight numbers.
     pub fn new(law: Box<dyn FrictionLaw>, dilation: Dilation) -> Self {
-        assert!(!law.acts_on_faces() && law.state_len() <= MOST_WITHIN, "{}: cannot dilate", law.name());
+        let may = !law.acts_on_faces() && law.fracture().is_none() && law.state_len() <= MOST_WITHIN;
+        assert!(may, "{}: cannot dilate", law.name());
         Self { law, dilation }
     }
 

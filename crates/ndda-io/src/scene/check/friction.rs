@@ -2,7 +2,7 @@
 
 use super::Check;
 use crate::scene::code::Code;
-use crate::scene::{Dilation, Friction, Residual, Roughness};
+use crate::scene::{Dilation, FractureEnergy, Friction, Residual, Roughness};
 
 /// Largest roughness coefficient.
 const MOST_JRC: f64 = 20.0;
@@ -32,6 +32,9 @@ impl Check<'_> {
         }
         if let Some(roughness) = &friction.roughness {
             self.roughness(&field("roughness"), friction, roughness);
+        }
+        if let Some(fracture) = &friction.fracture {
+            self.fracture(&field("fracture"), friction, fracture);
         }
         if let Some(dilation) = &friction.dilation {
             self.dilation(&field("dilation"), friction, dilation);
@@ -94,6 +97,38 @@ impl Check<'_> {
         if strengths || friction.residual.is_some() {
             let help = "leave out cohesion_pa, tension_pa and residual, or roughness";
             self.misfit(path.to_string(), "a rough joint has the strength of its roughness only", help);
+        }
+    }
+
+    fn fracture(&mut self, path: &str, friction: &Friction, fracture: &FractureEnergy) {
+        let Some(stiffness_pa_m) = friction.shear_penalty_pa_m else {
+            let help = "give shear_penalty_pa_m, the stiffness of the joint until it breaks";
+            return self.misfit(
+                path.to_string(),
+                "a joint that holds together needs a spring to hold with",
+                help,
+            );
+        };
+        if !(friction.cohesion_pa > 0.0 && friction.tension_pa > 0.0) {
+            let help = "give cohesion_pa and tension_pa, or leave out fracture";
+            self.misfit(path.to_string(), "a joint without strength takes no energy to break", help);
+        }
+        if friction.residual.is_some() || friction.roughness.is_some() || friction.dilation.is_some() {
+            let help = "leave out residual, roughness and dilation, or fracture";
+            self.misfit(path.to_string(), "a joint that breaks gradually leaves plain friction", help);
+        }
+        for (name, energy_j_m2, strength_pa) in [
+            ("tension_j_m2", fracture.tension_j_m2, friction.tension_pa),
+            ("shear_j_m2", fracture.shear_j_m2, friction.cohesion_pa),
+        ] {
+            // What the spring stores when it breaks.
+            let least_j_m2 = 0.5 * strength_pa * strength_pa / stiffness_pa_m;
+            if !(energy_j_m2 > least_j_m2 && energy_j_m2.is_finite()) {
+                let message = format!("{energy_j_m2} J/m²: must be above {least_j_m2:e} J/m²");
+                let help =
+                    "the spring of a joint stores that until it breaks: make shear_penalty_pa_m larger";
+                self.error(format!("{path}.{name}"), message, help);
+            }
         }
     }
 
