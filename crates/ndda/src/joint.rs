@@ -15,21 +15,24 @@ mod closed_form;
 mod closure;
 mod compare;
 mod normal;
+mod path;
 #[cfg(feature = "plots")]
 mod picture;
 mod report;
 mod select;
 mod shear;
+mod side;
 
 pub use closed_form::shear as shear_comparisons;
 pub use closure::{ClosureRow, ClosureTest, comparisons as closure_comparisons};
 pub use compare::Comparison;
 pub use normal::NormalStiffness;
+pub use path::path;
 #[cfg(feature = "plots")]
 pub use picture::{draw_closure, draw_shear};
 pub use report::{Rows, closure_csv, shear_csv, text};
 pub use select::{SelectError, Which, friction, normal_stiffness};
-pub use shear::{Hold, ShearRow, ShearTest, path};
+pub use shear::{Hold, ShearRow, ShearTest};
 
 /// Why a joint cannot be tested.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::path::steps;
 use super::{Comparison, JointError, NormalStiffness, positive};
 
 /// Points and weights of a rule on 0…1 that is exact to degree 9 (Gauss–Legendre).
@@ -44,7 +45,7 @@ impl ClosureTest {
     /// [`JointError`]: numbers that a test cannot begin with, or a joint that does not close.
     pub fn run(&self) -> Result<Vec<ClosureRow>, JointError> {
         positive("the normal stress", self.stress_pa)?;
-        positive("the number of steps", f64::from(self.steps))?;
+        steps(u64::from(self.steps))?;
         self.normal.check()?;
         if self.normal == NormalStiffness::Rigid {
             return Err(JointError::NoStiffness);

@@ -1,14 +1,13 @@
 //! Direct shear of one joint.
 
-use ndda_contact::{FacetSlip, FrictionLaw, ShearMemory};
+use ndda_contact::{FacetSlip, FrictionLaw};
 use serde::Serialize;
 
+use super::side::Side;
 use super::{JointError, NormalStiffness, positive};
 
 /// Halvings of a bracket of normal stresses, at most.
 const MOST_TRIALS: usize = 300;
-/// Slips of a path, at most.
-const MOST_STEPS: usize = 10_000_000;
 /// Normal stresses are found to this part of themselves.
 const BALANCED: f64 = 4.0 * f64::EPSILON;
 
@@ -70,65 +69,6 @@ pub struct ShearRow {
     pub dissipated_j_m2: f64,
 }
 
-/// Slips of a test: to the amplitude and no farther, or forth and back about the start so many times.
-///
-/// # Errors
-/// [`JointError::OutOfRange`].
-pub fn path(amplitude_m: f64, cycles: u32, steps: u32) -> Result<Vec<f64>, JointError> {
-    positive("--amplitude", amplitude_m)?;
-    let count = u64::from(steps) * if cycles == 0 { 1 } else { 4 * u64::from(cycles) };
-    if count == 0 || count > MOST_STEPS as u64 {
-        let advice = "give --steps and --cycles with 1 to 10 million steps in all";
-        return Err(JointError::OutOfRange { what: "the number of steps", value: count as f64, advice });
-    }
-    let part = |k: u64| (k as f64) / f64::from(steps);
-    let at = |k: u64| match (k / u64::from(steps)) % 4 {
-        _ if cycles == 0 => part(k),
-        0 => part(k % (4 * u64::from(steps))),
-        1 | 2 => 2.0 - part(k % (4 * u64::from(steps))),
-        _ => part(k % (4 * u64::from(steps))) - 4.0,
-    };
-    Ok((1..=count).map(|k| amplitude_m * at(k)).collect())
-}
-
-/// One side of a joint of a square metre.
-#[derive(Clone)]
-struct Side {
-    shear_n: [f64; 2],
-    broken: bool,
-    state: Vec<f64>,
-    /// Slip, and part that is broken, of bonds that break gradually.
-    slip_m: f64,
-    damage: f64,
-}
-
-impl Side {
-    fn memory<R>(&mut self, with: impl FnOnce(&mut ShearMemory) -> R) -> R {
-        let mut memory = ShearMemory { shear_n: self.shear_n, broken: self.broken, state: &mut self.state };
-        let result = with(&mut memory);
-        (self.shear_n, self.broken) = (memory.shear_n, memory.broken);
-        result
-    }
-
-    /// Shear stress of both sides against the slip: friction, and what bonds carry that break gradually [Pa].
-    fn shear_pa(&self, law: &dyn FrictionLaw) -> f64 {
-        let bonds = law.fracture().map_or(0.0, |f| (1.0 - self.damage) * f.stiffness_pa_m * self.slip_m);
-        bonds - 2.0 * self.shear_n[0]
-    }
-
-    /// Energy in the springs of both sides [J/m²].
-    fn stored_j_m2(&self, law: &dyn FrictionLaw) -> f64 {
-        let (stiffness_pa_m, rubs_pa) = (law.shear_stiffness_pa_m(), 2.0 * self.shear_n[0]);
-        let Some(fracture) = law.fracture() else { return 0.5 * rubs_pa * rubs_pa / stiffness_pa_m };
-        let bonds = 0.5 * (1.0 - self.damage) * fracture.stiffness_pa_m * self.slip_m * self.slip_m;
-        if self.damage > 0.0 {
-            bonds + 0.5 * rubs_pa * rubs_pa / (self.damage * stiffness_pa_m)
-        } else {
-            bonds
-        }
-    }
-}
-
 impl ShearTest {
     /// Shears a joint of this law. Both of its sides follow it, so that each bears half.
     ///
@@ -138,8 +78,7 @@ impl ShearTest {
         self.check()?;
         let mut state = vec![0.0; law.state_len()];
         law.begin(&mut state);
-        // What touches at the start of a test has its cohesion.
-        let mut side = Side { shear_n: [0.0; 2], broken: false, state, slip_m: 0.0, damage: 0.0 };
+        let mut side = Side::whole(state);
         let mut rows = vec![ShearRow { normal_pa: self.stress_pa, ..ShearRow::default() }];
         for &slip_m in &self.path_m {
             let last = rows[rows.len() - 1];
@@ -285,6 +224,7 @@ fn zero_between(function: &dyn Fn(f64) -> f64, mut low: (f64, f64), mut high: (f
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::joint::path;
     use ndda_contact::{
         BartonBandis, Coulomb, Dilating, Dilation, Fracture, Roughness, SofteningBond, SofteningCoulomb,
     };
@@ -434,6 +374,5 @@ mod tests {
         assert_eq!(test.run(&law), Err(JointError::NoStiffness));
         let pulled = ShearTest { stress_pa: -1.0, ..test };
         assert!(pulled.run(&law).expect_err("tension").to_string().contains("above 0"));
-        assert!(path(-1.0, 0, 10).is_err() && path(1.0, 0, 0).is_err() && path(1.0, u32::MAX, 10).is_err());
     }
 }
