@@ -76,3 +76,23 @@ fn a_bar_with_a_joint_across_breaks_by_its_fracture_energy() {
         assert!(bar.state().contact.bonds.is_empty());
     }
 }
+
+#[test]
+fn a_bar_that_is_half_broken_goes_on_from_its_snapshot_with_the_same_bits() {
+    let mut whole = simulation(&scene([2, 1]));
+    for _ in 0..50_000 {
+        whole.step().unwrap();
+    }
+    let damage =
+        |bar: &Simulation| bar.state().contact.bonds.iter().map(|bond| bond.damage).fold(0.0, f64::max);
+    assert!(damage(&whole) > 0.5 && damage(&whole) < 1.0, "{}", damage(&whole));
+    let bytes = postcard::to_stdvec(&whole.snapshot()).unwrap();
+    let mut resumed = simulation(&scene([2, 1]));
+    resumed.restore(postcard::from_bytes(&bytes).unwrap()).unwrap();
+    for _ in 0..1000 {
+        whole.step().unwrap();
+        resumed.step().unwrap();
+    }
+    let bits = |bar: &Simulation| postcard::to_stdvec(&bar.snapshot().state).unwrap();
+    assert!(bits(&whole) == bits(&resumed), "the states differ");
+}
