@@ -2,13 +2,14 @@
 
 use ndda::build::friction::joint_law;
 use ndda::joint::{ClosureTest, Hold, NormalStiffness, ShearRow, ShearTest};
+use ndda::safety::Question;
 use ndda_io::scene::{Contact, Friction, Scene};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Settle;
 
 use crate::evidence::Answer::{AtMost, Within};
 use crate::evidence::row;
-use crate::{advance, displacements, simulation};
+use crate::{advance, displacements, safety_factor, simulation};
 
 const SHEAR_PA_M: f64 = 10e9;
 
@@ -147,10 +148,10 @@ const SLOPE_DEG: f64 = 35.0;
 const RAMP_S: f64 = 0.02;
 const END_S: f64 = 0.25;
 
-/// How far a rigid slab slides in a quarter of a second down a joint [m], its law being that of `contact`.
-fn slides_m(contact: &str) -> f64 {
-    let mut slab = simulation(&format!(
-        "(title: \"slab\", time: (step_s: 1e-4, end_s: {END_S}), gravity_m_s2: (0, 0, -{GRAVITY_M_S2}), gravity_ramp_s: {RAMP_S},
+/// A rigid slab on a joint that dips, its law being that of `contact`.
+fn slab(gravity: &str, contact: &str) -> String {
+    format!(
+        "(title: \"slab\", time: (step_s: 1e-4, end_s: {END_S}), gravity_m_s2: (0, 0, -{GRAVITY_M_S2}), {gravity}
           materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
           rock: [(name: \"slope\", material: \"rock\", domain: Box(min_m: (0, 0, 0), max_m: (4, 2, 5)), body: Rigid, fill: Centre,
               fixed: [Beyond(point_m: (2, 1, 2.5), normal: (-{0}, 0, -{1}))],
@@ -160,7 +161,12 @@ fn slides_m(contact: &str) -> f64 {
           contact: Potential(penalty_pa: 2e9, potential: Smooth(), {contact}))",
         SLOPE_DEG.to_radians().sin(),
         SLOPE_DEG.to_radians().cos(),
-    ));
+    )
+}
+
+/// How far it slides in a quarter of a second [m].
+fn slides_m(contact: &str) -> f64 {
+    let mut slab = simulation(&slab(&format!("gravity_ramp_s: {RAMP_S},"), contact));
     advance(&mut slab, 2500);
     let blocks = slab.blocks();
     let downhill = Vec3::new(SLOPE_DEG.to_radians().cos(), 0.0, -SLOPE_DEG.to_radians().sin());
@@ -199,4 +205,14 @@ fn a_slab_slides_on_a_rough_joint_whether_its_law_is_of_materials_or_of_the_join
     }
     let held = "friction: (friction_deg: 25, shear_penalty_pa_m: 1e9, roughness: (jrc: 10, jcs_pa: 1e6))";
     row("rough joints", "slide on a joint that holds [m]", slides_m(held), AtMost(1e-3));
+}
+
+/// F = tan(φ_r + JRC log₁₀(JCS/σ))/tan α.
+#[test]
+fn a_slab_on_a_rough_joint_has_the_factor_of_safety_of_its_strength() {
+    let rough = "friction: (friction_deg: 25, shear_penalty_pa_m: 1e9, roughness: (jrc: 10, jcs_pa: 1e6))";
+    let stress_pa = 2650.0 * GRAVITY_M_S2 * SLOPE_DEG.to_radians().cos().powi(2);
+    let exact = tan(25.0 + 10.0 * (1e6 / stress_pa).log10()) / tan(SLOPE_DEG);
+    let safety = safety_factor::found(&slab("", rough), Question::Strength);
+    safety_factor::holds("slab on 35°, φ_r = 25°, JRC 10, JCS 1 MPa", &safety, exact);
 }
