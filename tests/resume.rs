@@ -191,3 +191,17 @@ fn a_run_that_goes_on_from_its_checkpoint_has_the_bits_of_one_that_was_never_kil
     different.iter().take(40).for_each(|text| println!("{text}"));
     assert!(different.is_empty() && without_contact == 0, "{without_contact} cells without contact");
 }
+
+#[test]
+fn a_run_on_worn_and_closing_joints_has_the_bits_of_one_that_was_never_killed() {
+    let friction = "friction: (friction_deg: 30, shear_penalty_pa_m: 1e8, roughness: (jrc: 10, jcs_pa: 1e6, mobilised: true))";
+    for bodies in BODIES {
+        for (contact_at, potential) in [("Predicted", "Closure(max_closure_m: 0.02)"), ("End()", "Smooth()")]
+        {
+            let (integrator, step) = ("Midpoint()", "Fixed");
+            let cell = Cell { integrator, bodies, contact_at, potential, friction, step };
+            let (differs, pairs) = first_difference(&cell, 5, 1);
+            assert!(differs.is_none() && pairs > 0, "{differs:?}, {pairs} pairs in contact");
+        }
+    }
+}

@@ -107,6 +107,10 @@ fn contact(twin: &mut Scene, units: &Units) {
     match potential {
         Potential::Element => {}
         Potential::Smooth { reference_m } => *reference_m *= units.length,
+        Potential::Closure { reference_m, max_closure_m } => {
+            *reference_m *= units.length;
+            *max_closure_m *= units.length;
+        }
         Potential::Volume { reference_m3, .. } => *reference_m3 *= units.length.powi(3),
     }
     if let Some(friction) = friction {

@@ -37,6 +37,7 @@ impl Record {
                 let potential = match potential {
                     Potential::Element => "Element",
                     Potential::Smooth { .. } => "Smooth",
+                    Potential::Closure { .. } => "Closure",
                     Potential::Volume { .. } => "Volume",
                 };
                 let friction = match friction {

@@ -1,5 +1,6 @@
 //! The command line's arguments.
 
+mod joint;
 mod safety;
 mod study;
 mod trial;
@@ -7,6 +8,7 @@ mod trial;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+pub use joint::{JointArgs, JointTestKind};
 pub use safety::{SafetyArgs, SafetyBy};
 pub use study::{Emit, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 pub use trial::{CertifyArgs, TrialHow, TuneArgs};
@@ -100,6 +102,12 @@ pub enum Verb {
     /// Brings the scene to rest, then runs trials side by side until the largest factor at which blocks stand and the
     /// smallest at which they fail are as near as requested. Writes safety.json and the failing run, folder mechanism.
     Safety(SafetyArgs),
+    /// Test the law of a joint as in a laboratory: direct shear at constant normal stress, constant volume or against a spring, in
+    /// one direction or in cycles, and normal closure.
+    ///
+    /// Prints shear and normal stress, opening, slip and the energy that is lost, and the closed form where there is one. The law is that
+    /// of a scene (between all blocks, of a named joint, of two materials), or written on the command line.
+    Joint(JointArgs),
     /// Find the cheapest settings that reach an error: integrator, step, potential, kind of body and penalty.
     ///
     /// Tries settings by short runs that double their effort, judges them by the closed form of the scene or by certified

@@ -21,7 +21,7 @@ use verbs::report;
 use verbs::schema;
 #[cfg(feature = "shell")]
 use verbs::shell;
-use verbs::{certify, check, explain, mesh, new, resume, run, safety, study, tune};
+use verbs::{certify, check, explain, joint, mesh, new, resume, run, safety, study, tune};
 
 fn main() -> ExitCode {
     let Cli { memory, verb } = Cli::parse();
@@ -54,6 +54,7 @@ fn main() -> ExitCode {
         #[cfg(not(feature = "report"))]
         Verb::Report(_) | Verb::View(_) => absent("report"),
         Verb::Certify(args) => certify::certify(&args),
+        Verb::Joint(args) => joint::joint(&args),
         Verb::Safety(args) => safety::safety(&args),
         Verb::Tune(args) => tune::tune(&args),
         Verb::Study(args) => study::study(&args),

@@ -3,6 +3,7 @@
 pub mod certify;
 pub mod check;
 pub mod explain;
+pub mod joint;
 pub mod mesh;
 pub mod new;
 #[cfg(feature = "plots")]

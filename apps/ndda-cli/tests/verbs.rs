@@ -148,3 +148,59 @@ fn a_verb_that_is_not_built_in_names_its_feature() {
     assert_eq!(code, 2);
     assert!(said.contains("without the feature `shell`") && said.contains("--features shell"), "{said}");
 }
+
+#[test]
+fn joints_are_tested_from_scenes_and_from_laws_on_the_command_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let law = "(friction_deg: 30, shear_penalty_pa_m: 1e10, dilation: (psi_deg: 10, to_slip_m: 1))";
+    let volume = ["joint", "--friction", law, "--constant-volume", "--joint-stiffness", "1e10"];
+    let words = [&volume[..], &["--amplitude", "5e-3", "--out", "rough", "--json"]].concat();
+    let done: Value = serde_json::from_str(&said(folder.path(), &words)).unwrap();
+    assert_eq!(done["schema"], "ndda.joint/1");
+    let found = done["comparisons"].as_array().unwrap();
+    let normal = found.iter().find(|row| row["what"] == "normal stress at the end").unwrap();
+    assert!((normal["exact"].as_f64().unwrap() / 8.90936e6 - 1.0).abs() < 1e-6, "{normal}");
+    assert!(found.iter().all(|row| row["error"].as_f64().unwrap() < 1e-4), "{found:?}");
+    let table = std::fs::read_to_string(folder.path().join("rough/joint.csv")).unwrap();
+    assert_eq!(table.lines().count(), 1002);
+    assert!(folder.path().join("rough/joint.json").exists());
+    assert!(folder.path().join("rough/joint.svg").exists() || !cfg!(feature = "plots"));
+
+    let example = ["joint", "--example", "sliding_45_phi35_spring", "--amplitude", "1e-3", "--cycles", "2"];
+    assert!(said(folder.path(), &example).contains("energy lost"));
+    let closure = ["joint", "--test", "closure", "--joint-stiffness", "20e9", "--max-closure", "0.3e-3"];
+    assert!(said(folder.path(), &closure).contains("27.2222"), "tangent stiffness at 1 MPa");
+}
+
+#[test]
+fn joints_that_cannot_be_tested_are_refused_with_what_to_change() {
+    let folder = tempfile::tempdir().unwrap();
+    for (words, code, reason) in [
+        (&["joint"][..], 2, "name a scene"),
+        (&["joint", "--friction", "(friction_deg: 30, psi: 1)"], 3, "psi"),
+        (
+            &[
+                "joint",
+                "--friction",
+                "(friction_deg: 30, shear_penalty_pa_m: 1e9, dilation: (psi_deg: 40, to_slip_m: 1))",
+            ],
+            3,
+            "would give energy",
+        ),
+        (&["joint", "--friction", "(friction_deg: 30)", "--constant-volume"], 3, "--joint-stiffness"),
+        (&["joint", "--friction", "(friction_deg: 0)"], 3, "no strength"),
+        (&["joint", "--friction", "(friction_deg: 30)", "--amplitude", "-1"], 3, "above 0"),
+        (&["joint", "--friction", "(friction_deg: 30)", "--amplitude", "0"], 3, "above 0"),
+        (&["joint", "--example", "sliding_45_phi35", "--of", "bedding"], 3, "there is contact.friction"),
+        (&["joint", "--example", "sliding_45_phi35", "--between", "rock"], 2, "two materials"),
+        (&["joint", "--test", "closure", "--joint-stiffness", "0"], 3, "above 0"),
+        (
+            &["joint", "--test", "closure", "--example", "sliding_45_phi35", "--normal-stress", "nan"],
+            3,
+            "above 0",
+        ),
+    ] {
+        let (found, said) = refused(folder.path(), words);
+        assert!(found == code && said.contains(reason), "{words:?}: {found}: {said}");
+    }
+}

@@ -239,6 +239,10 @@ pub struct Bond {
     pub lambda: [f64; 4],
     /// Bonded area over the area of the facet.
     pub share: f64,
+    /// Part of the facet's contact that it holds: one bond holds all of it, or three a third each.
+    pub part: f64,
+    /// Part of it that is broken, where bonds break gradually.
+    pub damage: f64,
 }
 
 /// Contact history from step to step; part of the state, so it is saved and rolled back with it.

@@ -30,7 +30,10 @@ mod water;
 use serde::{Deserialize, Serialize};
 
 pub use block::{Block, Body, InSitu, Stress, StressGradient, Turn};
-pub use contact::{Contact, Friction, JointLaw, MaterialPair, Memory, Potential, Residual};
+pub use contact::{
+    Contact, Dilation, FractureEnergy, Friction, JointLaw, MaterialPair, Memory, Potential, Residual,
+    Roughness,
+};
 pub use load::{FactorRow, Force, Traction};
 pub use material::{Bedding, Damping, Material};
 pub use monitor::{At, Monitor};

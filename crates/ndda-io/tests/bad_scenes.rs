@@ -186,6 +186,77 @@ fn values_out_of_range_are_pointed_at() {
 }
 
 #[test]
+fn joints_that_cannot_be_are_pointed_at() {
+    assert_refused(&[
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, roughness: (jrc: @25, jcs_pa: 1e8)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, roughness: (jrc: 10, jcs_pa: @0)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, roughness: (jrc: 10, jcs_pa: 1e8, sample_m: @0)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, roughness: (jrc: 10, jcs_pa: 1e8, length_m: @-1)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, roughness: (jrc: 10, jcs_pa: 1e8, strength_factor: @0)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, cohesion_pa: 1e5, roughness: @(jrc: 10, jcs_pa: 1e8)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, dilation: (psi_deg: @26, to_slip_m: 0.01)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, residual: (friction_deg: 20), dilation: (psi_deg: @21, to_slip_m: 0.01)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, dilation: (psi_deg: 10, to_slip_m: @-0.01)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, roughness: (jrc: 10, jcs_pa: 1e8), dilation: @(psi_deg: 10, to_slip_m: 0.01)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, roughness: @(jrc: 10, jcs_pa: 1e8)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, dilation: @(psi_deg: 10, to_slip_m: 0.01)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, cohesion_pa: 2e5, tension_pa: 1e5, fracture: (tension_j_m2: @2, shear_j_m2: 20)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, cohesion_pa: 2e5, tension_pa: 1e5, fracture: (tension_j_m2: 20, shear_j_m2: @9)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, cohesion_pa: 2e5, fracture: @(tension_j_m2: 20, shear_j_m2: 20)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, fracture: @(tension_j_m2: 1, shear_j_m2: 1)",
+        ),
+        ("penalty_pa: 2e6", "penalty_pa: 2e6, potential: Closure(max_closure_m: @0)"),
+    ]);
+}
+
+#[test]
 fn references_to_nothing_are_pointed_at() {
     assert_refused(&[
         ("material: \"rock\"", "material: @\"rok\""),

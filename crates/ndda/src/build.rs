@@ -2,6 +2,7 @@
 
 mod bodies;
 mod choices;
+pub mod friction;
 pub mod overlaps;
 mod regions;
 mod rock;
@@ -12,8 +13,8 @@ mod water;
 use std::path::Path;
 
 use ndda_contact::{
-    ContactModel, ContactPotential, Coulomb, ElementPotential, FrictionLaw, FrictionLawTable, Memory,
-    MohrCoulomb, PotentialContact, SmoothPotential, SofteningCoulomb, VelocityCoulomb, VolumePotential,
+    ClosurePotential, ContactModel, ContactPotential, ElementPotential, FrictionLaw, FrictionLawTable,
+    Memory, PotentialContact, SmoothPotential, VolumePotential,
 };
 use ndda_fem::Table;
 use ndda_io::scene::{self, At, Contact, Integrator, Scene};
@@ -25,6 +26,7 @@ use ndda_solver::{
 
 use crate::run::monitor::Monitor;
 pub use choices::Choices;
+use friction::friction_law;
 use regions::{find, find_all};
 pub use rock::{CutRock, Meshes, RockReport};
 
@@ -242,6 +244,9 @@ fn contact_potential(potential: &scene::Potential) -> Box<dyn ContactPotential> 
     match *potential {
         scene::Potential::Element => Box::new(ElementPotential),
         scene::Potential::Smooth { reference_m } => Box::new(SmoothPotential { reference_m }),
+        scene::Potential::Closure { reference_m, max_closure_m } => {
+            Box::new(ClosurePotential { reference_m, most_m: max_closure_m })
+        }
         scene::Potential::Volume { exponent, reference_m3 } => {
             Box::new(VolumePotential { exponent, reference_m3 })
         }
@@ -285,27 +290,6 @@ fn add_joint_laws(joints: &mut FrictionLawTable, laws: &[scene::JointLaw], block
             (0..).zip(&blocks.surface_names).filter(named).map(|(surface, _)| surface).collect();
         joints.set_on(&surfaces, law.friction.as_ref().and_then(friction_law));
     }
-}
-
-/// The law that a scene's friction requires; `None` where there is no friction.
-fn friction_law(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> {
-    let scene::Friction { friction_deg, shear_penalty_pa_m, cohesion_pa, tension_pa, residual } = *friction;
-    if friction_deg <= 0.0 && cohesion_pa <= 0.0 && tension_pa <= 0.0 {
-        return None;
-    }
-    Some(match shear_penalty_pa_m {
-        Some(shear) if residual.is_some() => {
-            let peak = (friction_deg, cohesion_pa);
-            let (after, over_m) =
-                residual.map_or((peak, 0.0), |r| ((r.friction_deg, r.cohesion_pa), r.over_m));
-            Box::new(SofteningCoulomb::new(shear, peak, after, over_m))
-        }
-        None => Box::new(VelocityCoulomb::new(friction_deg)),
-        Some(shear) if cohesion_pa > 0.0 || tension_pa > 0.0 => {
-            Box::new(MohrCoulomb::new(friction_deg, shear, cohesion_pa, tension_pa))
-        }
-        Some(shear) => Box::new(Coulomb::new(friction_deg, shear)),
-    })
 }
 
 /// The time integrator that a scene names.

@@ -33,6 +33,7 @@
 //! | [`explain`] | what a run will do, what it leaves out and why |
 //! | [`study`] | many runs of one scene: error against time |
 //! | [`certify`] | every result as value ± error |
+//! | [`joint`] | direct shear and closure of one joint, without blocks |
 //! | [`tune`] | the cheapest settings that reach an error |
 //! | [`examples`], [`templates`] | scenes that come with the program |
 //! | `report` | a run as a page of HTML (feature `report`) |
@@ -45,6 +46,7 @@ pub mod driver;
 pub mod examples;
 pub mod explain;
 pub mod forecast;
+pub mod joint;
 pub mod judge;
 pub mod machine;
 #[cfg(feature = "plots")]

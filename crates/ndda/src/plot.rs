@@ -18,10 +18,12 @@ const KEY: u32 = 230;
 const UNITS: [(&str, &str); 6] =
     [("_kg_m2_s", "kg m²/s"), ("_kg_m_s", "kg m/s"), ("_m_s", "m/s"), ("_m", "m"), ("_j", "J"), ("_s", "s")];
 
-/// One line of the picture.
-struct Line {
-    name: String,
-    points: Vec<(f64, f64)>,
+/// One line of a picture.
+pub(crate) struct Line {
+    /// What the key calls it.
+    pub(crate) name: String,
+    /// Its points.
+    pub(crate) points: Vec<(f64, f64)>,
 }
 
 /// Why nothing is drawn.
@@ -158,7 +160,8 @@ fn axis_title(names: &[String]) -> String {
     format!("{} {unit}", name.replace('_', " ")).trim().to_string()
 }
 
-fn draw(root: &Area, lines: &[Line], axes: &[String; 2], log: bool) -> Drawn {
+/// Lines in one frame with titles of its axes, and a key beside it.
+pub(crate) fn draw(root: &Area, lines: &[Line], axes: &[String; 2], log: bool) -> Drawn {
     let (frame, key) = root.split_horizontally(SIZE.0 - KEY);
     let entry = |(i, line): (usize, &Line)| (line.name.clone(), colour(i), 2);
     picture::key(&key, &lines.iter().enumerate().map(entry).collect::<Vec<_>>())?;

@@ -6,10 +6,10 @@ use crate::assembly::energy::OverlapParts;
 use crate::assembly::join_if::join_if;
 use crate::assembly::nodal_forces::{self, ScatterScene};
 use crate::contact_model::ContactModel;
-use crate::friction::bond;
 use crate::friction::facet::FacetScene;
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::patches::PatchScene;
+use crate::friction::{bond, bond_formation};
 use crate::integration::overlap_pair::ActiveFacet;
 use crate::model::{ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport};
 use crate::pair_stiffness::PairStiffness;
@@ -30,7 +30,7 @@ impl ContactModel for PotentialContact {
         history.expect_state(state_len)?;
         self.integrate(input)?;
         if let Some(joints) = self.joints.as_ref().filter(|joints| joints.hold_together() && !history.begun) {
-            bond::form(joints, (&self.candidates, &self.hulls), input, &mut history.bonds);
+            bond_formation::form(joints, (&self.candidates, &self.hulls), input, &mut history.bonds);
         }
         let Some((_, field)) = &self.field else { return Ok(ContactReport::default()) };
         let (candidates, integrals) = (&self.candidates, &self.integrals);

@@ -13,12 +13,17 @@ pub mod potential;
 pub mod reference;
 
 pub use {
+    friction::barton_bandis::{BartonBandis, Roughness},
     friction::coulomb::Coulomb,
+    friction::dilating::{Dilating, Dilation},
+    friction::fracture::Fracture,
     friction::law::{FacetSlip, FrictionLaw, ShearMemory},
     friction::law_table::{FrictionLawTable, Memory},
     friction::mohr_coulomb::MohrCoulomb,
+    friction::softening_bond::SofteningBond,
     friction::softening_coulomb::SofteningCoulomb,
     friction::velocity_coulomb::VelocityCoulomb,
+    potential::closure::{ClosurePotential, HyperbolicClosure},
     potential::contact_potential::{ContactPotential, OverlapLaw, PotentialError, PotentialField},
     potential::element::ElementPotential,
     potential::function::{FunctionField, PotentialFunction},

@@ -2,6 +2,7 @@
 
 mod block;
 mod contact;
+mod friction;
 mod load;
 mod material;
 mod reference;

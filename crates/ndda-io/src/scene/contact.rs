@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
+#[expect(clippy::large_enum_variant, reason = "a scene has one contact")]
 pub enum Contact {
     /// Blocks do not feel each other.
     Off,
@@ -46,6 +47,15 @@ pub enum Potential {
         #[serde(default = "one_metre")]
         reference_m: f64,
     },
+    /// Hyperbolic closure after Bandis, by the same depth: flat joints have σ = k_ni V/(1 − V/V_m), V being their closure and k_ni = 2 k_n/L₀; from 0.99 V_m
+    /// on along the tangent. Integrated by quadrature, which takes longer.
+    Closure {
+        /// L₀ [m]: k_ni is 2 penalty_pa / L₀. Default: 1.
+        #[serde(default = "one_metre")]
+        reference_m: f64,
+        /// Largest closure V_m [m].
+        max_closure_m: f64,
+    },
     /// One pressure for the whole patch, k_n (V/V₀)^(m − 1), from the volume V that two blocks share.
     Volume {
         /// m, above 1. Default: 2.
@@ -77,6 +87,65 @@ pub struct Friction {
     /// the joint is perfectly plastic. Needs `shear_penalty_pa_m`, and no tension. Default: none.
     #[serde(default)]
     pub residual: Option<Residual>,
+    /// Roughness after Barton and Bandis: shear strength σ tan(φ_r + JRC log₁₀(JCS/σ)), `friction_deg` being the residual angle φ_r, and
+    /// the whole angle at most 70°. Needs `shear_penalty_pa_m`, and no cohesion, tension or `residual`. Default: none.
+    #[serde(default)]
+    pub roughness: Option<Roughness>,
+    /// Energies that the joint takes to break, in place of bonds that break at once: tension and cohesion fall gradually, in mixed mode
+    /// (δ_n/δ_nc)² + (δ_s/δ_sc)² = 1, and friction acts on what is broken. Needs `shear_penalty_pa_m`, cohesion and tension, and no `residual`, `roughness` or
+    /// `dilation`. Default: none.
+    #[serde(default)]
+    pub fracture: Option<FractureEnergy>,
+    /// How the joint opens while it slips: `ndda joint` tests it, contact of blocks in a run does not open by it. Needs `shear_penalty_pa_m`, and no
+    /// `roughness`, which dilates by half of its own angle. Default: none.
+    #[serde(default)]
+    pub dilation: Option<Dilation>,
+}
+
+/// Energies that it takes to break a joint: its stress falls linearly to nothing at an opening of 2 G_I/σ_t or a slip of 2 G_II/c.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct FractureEnergy {
+    /// Fracture energy G_I in tension [J/m²], at least σ_t²/2k_s.
+    pub tension_j_m2: f64,
+    /// Fracture energy G_II in shear without normal stress [J/m²], at least c²/2k_s.
+    pub shear_j_m2: f64,
+}
+
+/// Roughness of a joint after Barton and Bandis (1982).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Roughness {
+    /// Joint roughness coefficient JRC [-], from 0 (smooth) to 20.
+    pub jrc: f64,
+    /// Compressive strength of the walls JCS [Pa].
+    pub jcs_pa: f64,
+    /// Length that JRC and JCS were measured on [m]. Default: 0.1.
+    #[serde(default = "sample_length")]
+    pub sample_m: f64,
+    /// Length of the joint between its crossings with others [m]: JRC and JCS are corrected to it. Default: `sample_m`.
+    #[serde(default)]
+    pub length_m: Option<f64>,
+    /// Whether roughness is mobilised and worn off by slip, from no strength at no slip over the peak at (L/500) (JRC/L)^0.33 to φ_r at a hundred
+    /// times that; else the strength is that of the peak at any slip. Default: false.
+    #[serde(default)]
+    pub mobilised: bool,
+    /// What the shear strength is multiplied by; `ndda safety` divides it. Default: 1.
+    #[serde(default = "one")]
+    pub strength_factor: f64,
+}
+
+/// Dilation of a joint: v = tan ψ min(|u_p|, u_zd), u_p being its slip beyond the stretch of its spring; it closes again where slip is reversed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Dilation {
+    /// Dilation angle ψ [°], at most the friction angle, also the residual one: a joint cannot give energy.
+    pub psi_deg: f64,
+    /// Slip u_zd at which dilation ends [m].
+    pub to_slip_m: f64,
 }
 
 /// Strength of a joint that has slipped.
@@ -130,6 +199,14 @@ pub enum Memory {
     Body,
     /// The facet and the element that it touches, as in the paper: lost on every element border.
     Element,
+}
+
+fn sample_length() -> f64 {
+    0.1
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 fn one_metre() -> f64 {

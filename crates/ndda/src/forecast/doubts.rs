@@ -49,7 +49,9 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>) -
 /// Whether contact is far too soft or too hard for the rock of blocks that move.
 fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &Potential) -> Option<String> {
     let per_metre_pa = match potential {
-        Potential::Smooth { reference_m } => penalty_pa / reference_m,
+        Potential::Smooth { reference_m } | Potential::Closure { reference_m, .. } => {
+            penalty_pa / reference_m
+        }
         // The stiffness of these depends on the mesh and on the overlap.
         Potential::Element | Potential::Volume { .. } => return None,
     };

@@ -53,12 +53,25 @@ pub fn at_rest(scene: &Scene) -> Scene {
 /// The scene with joints as strong as theirs over `factor`.
 pub fn weaken(scene: &mut Scene, factor: f64) {
     for friction in frictions(scene) {
+        if let Some(roughness) = &mut friction.roughness {
+            roughness.strength_factor /= factor;
+            continue;
+        }
         friction.friction_deg = (friction.friction_deg.to_radians().tan() / factor).atan().to_degrees();
         friction.cohesion_pa /= factor;
         friction.tension_pa /= factor;
         if let Some(residual) = &mut friction.residual {
             residual.friction_deg = (residual.friction_deg.to_radians().tan() / factor).atan().to_degrees();
             residual.cohesion_pa /= factor;
+        }
+        // A joint then breaks at the same opening and slip.
+        if let Some(fracture) = &mut friction.fracture {
+            fracture.tension_j_m2 /= factor;
+            fracture.shear_j_m2 /= factor;
+        }
+        if let Some(dilation) = &mut friction.dilation {
+            let residual_deg = friction.residual.map_or(friction.friction_deg, |r| r.friction_deg);
+            dilation.psi_deg = dilation.psi_deg.min(friction.friction_deg).min(residual_deg);
         }
     }
 }
@@ -94,8 +107,10 @@ impl Question {
     pub fn check(&self, scene: &mut Scene) -> Result<(), SafetyError> {
         match self {
             Self::Strength => {
-                let holds =
-                    |f: &&mut Friction| f.friction_deg > 0.0 || f.cohesion_pa > 0.0 || f.tension_pa > 0.0;
+                let holds = |f: &&mut Friction| {
+                    let rough = f.roughness.is_some();
+                    rough || f.friction_deg > 0.0 || f.cohesion_pa > 0.0 || f.tension_pa > 0.0
+                };
                 let found = frictions(scene).iter().any(holds);
                 if found { Ok(()) } else { Err(SafetyError::NoStrength) }
             }

@@ -169,8 +169,8 @@ fn potentials(scene: &Scene, simulation: &Simulation) -> Vec<Choice> {
         Potential::Smooth { .. } => {
             choices.push(Choice { label: "Element".into(), set: vec!["contact.potential=Element".into()] });
         }
-        // Its stiffness is that of the whole patch: no other potential is as stiff.
-        Potential::Volume { .. } => {}
+        // Their stiffness is that of the whole patch, or grows with the closure: no other potential is as stiff.
+        Potential::Volume { .. } | Potential::Closure { .. } => {}
     }
     choices
 }

@@ -9,26 +9,22 @@
 //! ```
 //!
 //! the half because facets of both sides carry bonds; f_n is the facet's contact force. The bond breaks for good when
-//! k_b δ > σ_t or |k_s s| > max(0, c + σ tan φ). Its shear is then handed to the friction law of the facet. As shear is
+//! k_b δ > σ_t or |k_s s| > max(0, c + σ tan φ). Its shear is then handed to the friction law of the facet. Where the law has a fracture energy
+//! ([`Fracture`]), a facet has three bonds, each breaks gradually, and the facet's friction acts on the part of it that is broken. As shear is
 //! measured from where the bond formed, it does not depend on whether the joint was open or closed on the way. Both
 //! blocks feel f at the same place, so its torques balance, and its work is booked as that of friction.
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 
-use crate::affine::convex_target::ConvexBlocks;
-use crate::broad_phase::candidates::{Candidates, Facet};
+use crate::broad_phase::candidates::Candidates;
+use crate::friction::fracture::Fracture;
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, facet_basis};
 use crate::friction::law_table::{FrictionLawTable, Memory};
-use crate::integration::clip::{Form, Outline, Polygon};
 use crate::integration::integrals::Integrals;
 use crate::integration::tet_frame::TetFrame;
 use crate::model::{Bond, ContactHistory, ContactInput, ContactOutput, FacetContact, FacetMemory};
 use crate::pair_stiffness::PairStiffness;
-
-/// A facet touches a block when it is no further outside than this part of the size of the target's tetrahedron, and a
-/// bond has at least this part of the facet's area.
-const TOUCHING: f64 = 1e-6;
 
 /// Offsets below this part of the coordinates are rounding.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -36,68 +32,12 @@ const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Identifies a facet's contact: the triangle, the other block and, with memory per element, the element.
 type Key = (TriangleId, BlockId, Option<TetId>);
 
-/// Forms the bonds of a scene whose contact is evaluated for the first time.
-pub(crate) fn form(
-    joints: &FrictionLawTable,
-    (candidates, hulls): (&Candidates, &ConvexBlocks),
-    input: &ContactInput,
-    bonds: &mut Vec<Bond>,
-) {
-    let holds = |facet: &&Facet| {
-        joints.law(input.blocks, facet.triangle, facet.target).is_some_and(|law| law.holds_together())
-    };
-    let facets = candidates.facets.iter().filter(holds);
-    bonds.extend(facets.filter_map(|facet| bond_of(facet, (candidates, hulls), input)));
-}
-
-/// The bond of a facet over the area where it touches its target; none where that is nothing.
-fn bond_of(
-    facet: &Facet,
-    (candidates, hulls): (&Candidates, &ConvexBlocks),
-    input: &ContactInput,
-) -> Option<Bond> {
-    let blocks = input.blocks;
-    let corners = blocks.triangle_corners(facet.triangle, input.position);
-    let normal = triangle_area_vector(&corners).normalize();
-    let (mut share, mut moment) = (0.0, [0.0; 2]);
-    for pair in facet.pairs.clone() {
-        let frame = frame_of(candidates.tet_of(pair as u32), input);
-        let into = TOUCHING * frame.volume_m3.cbrt() * normal;
-        let shifted = corners.map(|x| x + into);
-        let mut polygon = Polygon::all_of(&Outline::TRIANGLE);
-        let mut cut = |at: [f64; 3]| polygon.cut(&Form::through(&at), f64::MIN_POSITIVE);
-        match hulls.affine_target(facet.target) {
-            Some(_) => {
-                hulls.faces_of(facet.target).iter().for_each(|face| cut(shifted.map(|x| face.phi(&x))))
-            }
-            None => frame.lambda(&shifted).into_iter().for_each(&mut cut),
-        }
-        if polygon.corners().len() < 3 {
-            continue;
-        }
-        for ([a, b, c], twice) in polygon.fan() {
-            share += twice;
-            [0, 1].into_iter().for_each(|k| moment[k] += twice * (a[k] + b[k] + c[k]) / 3.0);
-        }
-    }
-    if share <= TOUCHING {
-        return None;
-    }
-    let [second, third] = moment.map(|m| m / share);
-    let weights = [1.0 - second - third, second, third];
-    let center = mean(&corners, &weights);
-    let lambda_in = |pair: usize| {
-        let tet = candidates.tet_of(pair as u32);
-        (tet, frame_of(tet, input).lambda_at(&center))
-    };
-    let least = |lambda: &[f64; 4]| lambda.iter().copied().fold(f64::INFINITY, f64::min);
-    let deepest = facet.pairs.clone().map(lambda_in).max_by(|a, b| least(&a.1).total_cmp(&least(&b.1)));
-    deepest.map(|(tet, lambda)| Bond { facet: facet.triangle, tet, weights, lambda, share })
-}
-
-/// Whether a bond holds a facet to its target.
-pub(crate) fn holds(bonds: &[Bond], blocks: &BlockSet, memory: Memory, wanted: Key) -> bool {
-    bonds.binary_search_by_key(&wanted, |bond| key(blocks, memory, bond)).is_ok()
+/// Part of a facet's contact that no bond holds any more; none where there are no bonds.
+pub(crate) fn broken_part(bonds: &[Bond], blocks: &BlockSet, memory: Memory, wanted: Key) -> Option<f64> {
+    let first = bonds.partition_point(|bond| key(blocks, memory, bond) < wanted);
+    let own = bonds[first..].iter().take_while(|bond| key(blocks, memory, bond) == wanted);
+    let whole: f64 = own.map(|bond| (1.0 - bond.damage) * bond.part).sum();
+    (whole > 0.0).then_some(1.0 - whole)
 }
 
 fn key(blocks: &BlockSet, memory: Memory, bond: &Bond) -> Key {
@@ -117,8 +57,12 @@ pub(crate) fn break_overloaded(
     let mut largest = 0.0f64;
     let (blocks, touching) = (input.blocks, integrals.touching());
     let mut bonds = std::mem::take(&mut history.bonds);
-    bonds.retain(|bond| {
+    bonds.retain_mut(|bond| {
         let Some(law) = law(joints, blocks, bond) else { return false };
+        if let Some(fracture) = law.fracture() {
+            largest = largest.max(damage(bond, fracture, input));
+            return bond.damage < 1.0;
+        }
         let wanted = key(blocks, joints.memory, bond);
         let place = touching.binary_search_by_key(&wanted, |touch| {
             let first = candidates.facets[touch.facet as usize].pairs.start as u32;
@@ -139,6 +83,17 @@ pub(crate) fn break_overloaded(
     });
     history.bonds = bonds;
     largest
+}
+
+/// Damages a bond by how far it is stretched. Gives its overload where it breaks at once.
+fn damage(bond: &mut Bond, fracture: &Fracture, input: &ContactInput) -> f64 {
+    let stretch = Stretch::of(input, bond);
+    let (opening_m, slip_m) = (stretch.opening_m - stretch.rounding_m, stretch.offset_m.norm());
+    let slip_m = (slip_m - stretch.rounding_m).max(0.0);
+    let reached = fracture.damage(opening_m, slip_m);
+    let at_once = bond.damage == 0.0 && reached >= 1.0;
+    bond.damage = bond.damage.max(reached);
+    if at_once { fracture.load(opening_m, slip_m) - 1.0 } else { 0.0 }
 }
 
 /// Makes the shear of a bond that breaks the friction that its facet remembers; the law then limits it.
@@ -183,6 +138,7 @@ pub(crate) fn add_forces(
         let stretch = Stretch::of(input, bond);
         let force = stretch.tension_n(law) * stretch.normal + stretch.shear_n(law);
         let stiffness = law.shear_stiffness_pa_m().max(law.bond_stiffness_pa_m()) * stretch.half_area;
+        let stiffness = stretch.whole * stiffness;
         let rows = 1.0 + stretch.lambda.iter().map(|l| l.abs()).sum::<f64>();
         let mut add = |node: usize, weight: f64| {
             output.force[node] += weight * force;
@@ -217,6 +173,8 @@ struct Stretch {
     half_area: f64,
     /// Rounding of lengths [m].
     rounding_m: f64,
+    /// Part of it that is not broken.
+    whole: f64,
 }
 
 impl Stretch {
@@ -238,17 +196,18 @@ impl Stretch {
             offset_m: stretch - opening_m * normal,
             half_area: 0.5 * bond.share * area_vector.norm(),
             rounding_m: ROUNDING * largest,
+            whole: 1.0 - bond.damage,
         }
     }
 
-    /// Tension ½ S k_b max(δ, 0) [N].
+    /// Tension ½ S k_b max(δ, 0) of what is not broken [N].
     fn tension_n(&self, law: &dyn FrictionLaw) -> f64 {
-        law.bond_stiffness_pa_m() * self.half_area * self.opening_m.max(0.0)
+        self.whole * law.bond_stiffness_pa_m() * self.half_area * self.opening_m.max(0.0)
     }
 
-    /// Shear ½ S k_s s on the facet [N].
+    /// Shear ½ S k_s s of what is not broken on the facet [N].
     fn shear_n(&self, law: &dyn FrictionLaw) -> Vec3 {
-        law.shear_stiffness_pa_m() * self.half_area * self.offset_m
+        self.whole * law.shear_stiffness_pa_m() * self.half_area * self.offset_m
     }
 
     /// By how much the joint's strength is exceeded, over its strength without normal stress; not above zero while it holds:
@@ -305,22 +264,22 @@ pub(crate) fn add_stiffness(
     for bond in bonds {
         let (triangle, tet) = (&blocks.triangles[bond.facet.index()], &blocks.tets[bond.tet.index()]);
         let Some(law) = law(joints, blocks, bond) else { continue };
-        let Stretch { normal, opening_m, half_area, lambda, .. } = Stretch::of(input, bond);
+        let Stretch { normal, opening_m, half_area, lambda, whole, .. } = Stretch::of(input, bond);
         let along = normal * normal.transpose();
         let normal_pa_m = if opening_m > 0.0 { law.bond_stiffness_pa_m() } else { 0.0 };
         let spring = normal_pa_m * along + law.shear_stiffness_pa_m() * (Mat3::identity() - along);
         let ([u, v, w], [a, b, c, d]) = (bond.weights, lambda);
         let mut pair = PairStiffness::new(triangle, tet);
-        pair.add_spring(&[u, v, w, -a, -b, -c, -d], &(half_area * spring));
+        pair.add_spring(&[u, v, w, -a, -b, -c, -d], &(whole * half_area * spring));
         stiffness.push(pair);
     }
 }
 
-fn frame_of(tet: TetId, input: &ContactInput) -> TetFrame {
+pub(crate) fn frame_of(tet: TetId, input: &ContactInput) -> TetFrame {
     TetFrame::new(&input.blocks.tet_corners(tet, input.position))
 }
 
-fn mean(corners: &[Vec3; 3], weights: &[f64; 3]) -> Vec3 {
+pub(crate) fn mean(corners: &[Vec3; 3], weights: &[f64; 3]) -> Vec3 {
     corners.iter().zip(weights).map(|(x, weight)| *weight * x).sum()
 }
 

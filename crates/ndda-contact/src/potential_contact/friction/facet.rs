@@ -95,13 +95,21 @@ impl FacetScene<'_> {
         let (mut memory, last_area_m2) = self.remembered(facet, sums, (law, state));
         let bonds = &self.history.bonds;
         let key = (facet.triangle, facet.target, self.element_of(facet));
-        if !bonds.is_empty() && bond::holds(bonds, self.input.blocks, joints.memory, key) {
+        let bonded = !bonds.is_empty();
+        let broken =
+            bonded.then(|| bond::broken_part(bonds, self.input.blocks, joints.memory, key)).flatten();
+        if broken.is_some_and(|part| part == 0.0 || law.fracture().is_none()) {
             // The bond carries the shear.
             (force.sticks, force.memory) = (true, Some((memory.shear_n, false)));
             return;
         }
         let mut slip = self.slip(touch, (hits, sums), &basis, penalty_pa);
         slip.mean_area_m2 = 0.5 * (last_area_m2 + sums.area);
+        if let Some(part) = broken {
+            slip.normal_n *= part;
+            slip.area_m2 *= part;
+            slip.mean_area_m2 *= part;
+        }
         law.advance(&slip, &mut memory);
         let [x, y] = memory.shear_n;
         force.sticks = length([x, y]) < STICKS * law.capacity_n(&slip, &memory);

@@ -2,6 +2,8 @@
 
 use ndda_mesh::Vec3;
 
+use crate::friction::fracture::Fracture;
+
 /// Motion of a facet, or a whole face, on its target in this step; vectors are in the facet's own basis.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FacetSlip {
@@ -92,6 +94,21 @@ pub trait FrictionLaw: Send + Sync {
 
     /// Stiffness of a bond that carries tension [Pa/m].
     fn bond_stiffness_pa_m(&self) -> f64 {
+        0.0
+    }
+
+    /// How bonds break, where they do so gradually; the law itself is then that of what is broken, and sees only its part of the force and the area.
+    fn fracture(&self) -> Option<&Fracture> {
+        None
+    }
+
+    /// Angle by which a joint opens while it slips, as far as the law itself says [°]: see [`Dilating`](crate::Dilating).
+    fn dilation_deg(&self, _slip: &FacetSlip, _memory: &ShearMemory) -> f64 {
+        0.0
+    }
+
+    /// By how much a joint has opened by slip [m].
+    fn dilation_m(&self, _memory: &ShearMemory) -> f64 {
         0.0
     }
 

@@ -1,5 +1,6 @@
 //! The potential φ within a block, and the pressure that follows from it.
 
+pub(crate) mod closure;
 pub(crate) mod contact_potential;
 pub(crate) mod element;
 pub(crate) mod function;

@@ -35,7 +35,7 @@ const fn dimension(suffix: &'static str, name: &'static str, units: &'static [Un
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// Dimensions; an end that is part of another comes after it.
-pub const DIMENSIONS: [Dimension; 13] = [
+pub const DIMENSIONS: [Dimension; 14] = [
     dimension(
         "_kg_m3",
         "a density",
@@ -44,6 +44,11 @@ pub const DIMENSIONS: [Dimension; 13] = [
             decimal("TonnePerCubicMetre", 3),
             decimal("GramPerCubicCentimetre", 3),
         ],
+    ),
+    dimension(
+        "_j_m2",
+        "an energy per area",
+        &[decimal("JoulePerSquareMetre", 0), decimal("KilojoulePerSquareMetre", 3)],
     ),
     dimension(
         "_m_s2",

@@ -172,6 +172,15 @@ impl LimitSurface {
             }
             let mut part = 1.0;
             let mut next = value.at(&(slip - step));
+            if gain <= TOLERANCE * least {
+                // Rounding of the value hides what is left to gain; the slope still tells.
+                if next.1.amax() >= slope.amax() {
+                    break;
+                }
+                slip -= step;
+                (least, slope, curvature) = next;
+                continue;
+            }
             for _ in 0..MOST_HALVINGS {
                 if next.0 <= least - 1e-4 * part * gain {
                     break;

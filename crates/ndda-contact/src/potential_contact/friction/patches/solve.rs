@@ -22,7 +22,7 @@ use crate::model::Body;
 
 /// γ of Alexander's method.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
-/// Friction is found when no patch changes its own by more than this part of μN, or of the largest on both of its blocks.
+/// Friction is found when a sweep changes that on no block by more than this part of the largest μN on it.
 const TOLERANCE: f64 = 1e-7;
 /// The same, and sweeps, where the solver compares forces of one evaluation with the next.
 const ITERATED_TOLERANCE: f64 = 1e-8;
@@ -143,6 +143,10 @@ impl CoupledPatch {
             }
             let (body, arm) = (&mut motion.bodies[block.index()], &self.arms[k]);
             if body.mass_kg.is_finite() {
+                let net = &mut motion.net[block.index()];
+                net.force_n += sign * along;
+                net.torque_n_m += sign * (arm.cross(&along) + torque);
+                net.lever_m = net.lever_m.max(arm.norm());
                 body.velocity_m_s += sign * time_s / body.mass_kg * along;
                 body.spin_rad_s += body.inverse_inertia * (sign * time_s * (arm.cross(&along) + torque));
             }
@@ -187,14 +191,25 @@ pub(super) struct Motion<'a> {
     pub most_n: &'a mut Vec<f64>,
     /// When each block was pushed last by more than a tolerance.
     pub pushed: &'a mut Vec<u32>,
+    /// Changes of friction in a sweep, by block.
+    pub net: &'a mut Vec<Net>,
     /// Earlier sweeps.
     pub mixing: &'a mut Mixing,
+}
+
+/// Change of the friction on a block by all of its patches within a sweep: force, torque about its mass centre, and the largest arm of them.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Net {
+    force_n: Vec3,
+    torque_n_m: Vec3,
+    lever_m: f64,
 }
 
 /// Finds the friction of all patches; `motion` comes with the velocities at the end of the step under all loads, normal forces and the patches'
 /// friction of the last step, `start` with those at its start. Gives the sweeps.
 pub(super) fn solve(patches: &mut [CoupledPatch], start: &[Body], motion: &mut Motion) -> usize {
     motion.set_tolerances(patches);
+    motion.net.resize(motion.bodies.len(), Net::default());
     motion.change(start, |from, to| from + GAMMA * (to - from));
     let first = solve_stage(patches, motion);
     motion.change(start, |from, to| from + (to - from) / GAMMA);
@@ -203,6 +218,10 @@ pub(super) fn solve(patches: &mut [CoupledPatch], start: &[Body], motion: &mut M
 }
 
 impl Motion<'_> {
+    fn tolerance(&self) -> f64 {
+        if self.is_iterated { ITERATED_TOLERANCE } else { TOLERANCE }
+    }
+
     /// A change of friction matters by what else acts on both blocks: the lesser of both largest.
     fn set_tolerances(&mut self, patches: &mut [CoupledPatch]) {
         self.most_n.clear();
@@ -212,7 +231,7 @@ impl Motion<'_> {
                 self.most_n[block] = self.most_n[block].max(patch.surface.most_n);
             }
         }
-        let tolerance = if self.is_iterated { ITERATED_TOLERANCE } else { TOLERANCE };
+        let tolerance = self.tolerance();
         for patch in patches {
             let of = |block: BlockId| {
                 let is_held = self.bodies[block.index()].mass_kg.is_infinite();
@@ -220,6 +239,16 @@ impl Motion<'_> {
             };
             patch.tolerance_n = tolerance * of(patch.owner).min(of(patch.target));
         }
+    }
+
+    /// Whether the friction on a rigid or affine block has changed within a sweep. Patches may pass friction on to others of the same two blocks for long:
+    /// what both blocks feel is what counts.
+    fn net_changes(&self) -> bool {
+        let tolerance = self.tolerance();
+        self.net.iter().zip(&*self.most_n).any(|(net, most_n)| {
+            let most_n = tolerance * most_n;
+            net.force_n.norm() > most_n || net.torque_n_m.norm() > most_n * net.lever_m
+        })
     }
 
     fn change(&mut self, start: &[Body], change: impl Fn(Vec3, Vec3) -> Vec3) {
@@ -244,6 +273,7 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
     };
     for sweep in 0..most_sweeps {
         let mut changes = false;
+        motion.net.fill(Net::default());
         let mut advance = |patch: &mut CoupledPatch| {
             now += 1;
             changes |= patch.advance(motion, time_s, (now, sweep == 0));
@@ -253,7 +283,7 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
         } else {
             patches.iter_mut().rev().for_each(&mut advance);
         }
-        if !changes {
+        if !changes && !motion.net_changes() {
             return sweep;
         }
         if sweep % 2 == 1 && sweep + 1 < most_sweeps {
@@ -287,7 +317,7 @@ fn accelerate(patches: &mut [CoupledPatch], motion: &mut Motion, (sweep, time_s,
 }
 
 impl CoupledPatch {
-    /// Friction of this patch while that of the others stays; whether it had to change.
+    /// Friction of this patch while that of the others stays; whether it had to change on a block that deforms, whose net friction says too little.
     fn advance(&mut self, motion: &mut Motion, time_s: f64, (now, is_first): (u32, bool)) -> bool {
         let pushed = motion.pushed[self.owner.index()].max(motion.pushed[self.target.index()]);
         if !is_first && pushed <= self.seen {
@@ -312,6 +342,6 @@ impl CoupledPatch {
         for block in [self.owner, self.target] {
             motion.pushed[block.index()] = now;
         }
-        true
+        self.sides.iter().any(Option::is_some)
     }
 }

@@ -1,0 +1,163 @@
+//! Checks of friction.
+
+use super::Check;
+use crate::scene::code::Code;
+use crate::scene::{Dilation, FractureEnergy, Friction, Residual, Roughness};
+
+/// Largest roughness coefficient.
+const MOST_JRC: f64 = 20.0;
+
+impl Check<'_> {
+    pub(super) fn friction(&mut self, path: &str, friction: &Friction) {
+        let field = |name: &str| format!("{path}.{name}");
+        let angle = friction.friction_deg;
+        if !(0.0..90.0).contains(&angle) {
+            let message = format!("{angle}°: must be from 0 to below 90");
+            self.error(field("friction_deg"), message, "μ = tan φ");
+        }
+        if let Some(penalty) = friction.shear_penalty_pa_m {
+            self.positive(field("shear_penalty_pa_m"), penalty, "Pa/m");
+        }
+        for (name, strength) in [("cohesion_pa", friction.cohesion_pa), ("tension_pa", friction.tension_pa)] {
+            if !(strength >= 0.0 && strength.is_finite()) {
+                let message = format!("{strength} Pa: must be zero or positive");
+                self.error(field(name), message, "0 for a joint that does not hold together");
+            } else if strength > 0.0 && friction.shear_penalty_pa_m.is_none() {
+                let help = "give shear_penalty_pa_m, the stiffness of the joint until it breaks";
+                self.misfit(field(name), "a joint that holds together needs a spring to hold with", help);
+            }
+        }
+        if let Some(residual) = &friction.residual {
+            self.residual(&field("residual"), friction, residual);
+        }
+        if let Some(roughness) = &friction.roughness {
+            self.roughness(&field("roughness"), friction, roughness);
+        }
+        if let Some(fracture) = &friction.fracture {
+            self.fracture(&field("fracture"), friction, fracture);
+        }
+        if let Some(dilation) = &friction.dilation {
+            self.dilation(&field("dilation"), friction, dilation);
+        }
+    }
+
+    fn residual(&mut self, path: &str, peak: &Friction, residual: &Residual) {
+        let field = |name: &str| format!("{path}.{name}");
+        let Residual { friction_deg, cohesion_pa, over_m } = *residual;
+        if !(0.0..=peak.friction_deg).contains(&friction_deg) {
+            let message = format!("{friction_deg}°: must be from 0 to the peak, {}°", peak.friction_deg);
+            self.error(field("friction_deg"), message, "joints weaken when they slip");
+        }
+        if !(0.0..=peak.cohesion_pa).contains(&cohesion_pa) {
+            let message = format!("{cohesion_pa} Pa: must be from 0 to the peak, {} Pa", peak.cohesion_pa);
+            self.error(field("cohesion_pa"), message, "joints weaken when they slip");
+        }
+        if !(over_m >= 0.0 && over_m.is_finite()) {
+            self.error(
+                field("over_m"),
+                format!("{over_m} m: must be zero or positive"),
+                "0 for a strength that falls at once",
+            );
+        }
+        if peak.shear_penalty_pa_m.is_none() {
+            let help = "give shear_penalty_pa_m, the stiffness of the joint before it slips";
+            self.misfit(path.to_string(), "a joint that softens needs a spring that measures its slip", help);
+        }
+        if peak.tension_pa > 0.0 {
+            let help = "leave out tension_pa, or residual";
+            self.misfit(path.to_string(), "a joint that softens has no tensile strength", help);
+        }
+    }
+
+    fn roughness(&mut self, path: &str, friction: &Friction, roughness: &Roughness) {
+        let field = |name: &str| format!("{path}.{name}");
+        if !(0.0..=MOST_JRC).contains(&roughness.jrc) {
+            let message = format!("{}: must be from 0 to {MOST_JRC}", roughness.jrc);
+            self.error(
+                field("jrc"),
+                message,
+                "0 for a smooth joint, 20 for the roughest of Barton's profiles",
+            );
+        }
+        self.positive(field("jcs_pa"), roughness.jcs_pa, "Pa");
+        self.positive(field("sample_m"), roughness.sample_m, "m");
+        if let Some(length_m) = roughness.length_m {
+            self.positive(field("length_m"), length_m, "m");
+        }
+        let factor = roughness.strength_factor;
+        if !(factor > 0.0 && factor.is_finite()) {
+            let message = format!("{factor}: must be positive");
+            self.error(field("strength_factor"), message, "1 for the strength of the joint as it is");
+        }
+        if friction.shear_penalty_pa_m.is_none() {
+            let help = "give shear_penalty_pa_m, the shear stiffness of the joint";
+            self.misfit(path.to_string(), "a rough joint needs a spring", help);
+        }
+        let strengths = friction.cohesion_pa > 0.0 || friction.tension_pa > 0.0;
+        if strengths || friction.residual.is_some() {
+            let help = "leave out cohesion_pa, tension_pa and residual, or roughness";
+            self.misfit(path.to_string(), "a rough joint has the strength of its roughness only", help);
+        }
+    }
+
+    fn fracture(&mut self, path: &str, friction: &Friction, fracture: &FractureEnergy) {
+        let Some(stiffness_pa_m) = friction.shear_penalty_pa_m else {
+            let help = "give shear_penalty_pa_m, the stiffness of the joint until it breaks";
+            return self.misfit(
+                path.to_string(),
+                "a joint that holds together needs a spring to hold with",
+                help,
+            );
+        };
+        if !(friction.cohesion_pa > 0.0 && friction.tension_pa > 0.0) {
+            let help = "give cohesion_pa and tension_pa, or leave out fracture";
+            self.misfit(path.to_string(), "a joint without strength takes no energy to break", help);
+        }
+        if friction.residual.is_some() || friction.roughness.is_some() || friction.dilation.is_some() {
+            let help = "leave out residual, roughness and dilation, or fracture";
+            self.misfit(path.to_string(), "a joint that breaks gradually leaves plain friction", help);
+        }
+        for (name, energy_j_m2, strength_pa) in [
+            ("tension_j_m2", fracture.tension_j_m2, friction.tension_pa),
+            ("shear_j_m2", fracture.shear_j_m2, friction.cohesion_pa),
+        ] {
+            // What the spring stores when it breaks.
+            let least_j_m2 = 0.5 * strength_pa * strength_pa / stiffness_pa_m;
+            if !(energy_j_m2 > least_j_m2 && energy_j_m2.is_finite()) {
+                let message = format!("{energy_j_m2} J/m²: must be above {least_j_m2:e} J/m²");
+                let help =
+                    "the spring of a joint stores that until it breaks: make shear_penalty_pa_m larger";
+                self.error(format!("{path}.{name}"), message, help);
+            }
+        }
+    }
+
+    fn dilation(&mut self, path: &str, friction: &Friction, dilation: &Dilation) {
+        let field = |name: &str| format!("{path}.{name}");
+        let residual_deg = friction.residual.map_or(friction.friction_deg, |residual| residual.friction_deg);
+        let most_deg = friction.friction_deg.min(residual_deg);
+        let psi_deg = dilation.psi_deg;
+        if !(0.0..=most_deg).contains(&psi_deg) {
+            let message = format!("{psi_deg}°: must be from 0 to the least friction angle, {most_deg}°");
+            self.error(
+                field("psi_deg"),
+                message,
+                "a joint that dilates by more than it rubs would give energy",
+            );
+        }
+        if !(dilation.to_slip_m >= 0.0 && dilation.to_slip_m.is_finite()) {
+            let message = format!("{} m: must be zero or positive", dilation.to_slip_m);
+            self.error(field("to_slip_m"), message, "the slip at which dilation ends");
+        }
+        if friction.shear_penalty_pa_m.is_none() {
+            let help = "give shear_penalty_pa_m, the shear stiffness of the joint";
+            self.misfit(path.to_string(), "dilation is driven by slip beyond the stretch of a spring", help);
+        }
+        if friction.roughness.is_some() {
+            let help = "leave out dilation, or roughness";
+            self.misfit(path.to_string(), "a rough joint dilates by half of its own angle", help);
+        }
+        let message = "blocks in a run are not moved apart by dilation";
+        self.warn(Code::NoEffect, path, message, "`ndda joint` tests the law with its dilation");
+    }
+}

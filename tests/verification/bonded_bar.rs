@@ -1,0 +1,98 @@
+//! A bar of 0.1 m and 1 cm² that is pulled apart slowly, with a joint across that breaks gradually by its fracture energy.
+
+use ndda_mesh::BlockId;
+use ndda_solver::Simulation;
+
+use crate::evidence::Answer::Within;
+use crate::evidence::row;
+use crate::simulation;
+
+const YOUNG_PA: f64 = 30e9;
+const LENGTH_M: f64 = 0.1;
+const AREA_M2: f64 = 1e-4;
+const TENSION_PA: f64 = 3e6;
+const ENERGY_J_M2: f64 = 100.0;
+/// Stiffness of the joint until it breaks, beside the bar's 300 GPa/m.
+const JOINT_PA_M: f64 = 5e11;
+const PULLED_M: f64 = 70e-6;
+const END_S: f64 = 0.01;
+const STEP_S: f64 = 1e-7;
+
+/// The bar with this many cells across, one end held and one pulled.
+fn scene(cells: [u32; 2]) -> String {
+    let block = |name: &str, z: f64| {
+        format!(
+            "(name: \"{name}\", material: \"rock\", shape: Box(size_m: (0.01, 0.01, 0.05), cells: ({}, {}, 1)), at_m: (0, 0, {z})),",
+            cells[0], cells[1]
+        )
+    };
+    format!(
+        "(title: \"bar\", time: (step_s: {STEP_S:e}, end_s: {END_S}, integrator: Newmark(alpha: 0.5, delta: 1)),
+          materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: 0, density_kg_m3: 2500)],
+          blocks: [{}{}],
+          supports: [
+              (block: \"lower\", on: Plane(point_m: (0, 0, 0), normal: (0, 0, 1)), hold: Fixed),
+              (block: \"upper\", on: Plane(point_m: (0, 0, 0.1), normal: (0, 0, 1)), hold: Motion([
+                  (time_s: 0, displacement_m: (0, 0, 0)), (time_s: {END_S}, displacement_m: (0, 0, {PULLED_M:e}))])),
+          ],
+          contact: Potential(penalty_pa: 2e11, potential: Smooth(), friction: (friction_deg: 30, shear_penalty_pa_m: {JOINT_PA_M:e},
+              cohesion_pa: 6e6, tension_pa: {TENSION_PA:e}, fracture: (tension_j_m2: {ENERGY_J_M2}, shear_j_m2: 400))))",
+        block("lower", 0.0),
+        block("upper", 0.05),
+    )
+}
+
+/// Stress in the lower half, by how far its end has moved [Pa].
+fn stress_pa(bar: &Simulation, end: &[usize]) -> f64 {
+    let rest = &bar.blocks().rest_position;
+    let moved_m = end.iter().map(|&n| bar.state().position[n].z - rest[n].z).sum::<f64>() / end.len() as f64;
+    YOUNG_PA * moved_m / (0.5 * LENGTH_M)
+}
+
+#[test]
+fn a_bar_with_a_joint_across_breaks_by_its_fracture_energy() {
+    for cells in [[1, 1], [2, 1], [2, 2]] {
+        let mut bar = simulation(&scene(cells));
+        let height_m = |n: &usize| bar.blocks().rest_position[*n].z + bar.blocks().origin_m.z;
+        let end: Vec<usize> = bar.blocks().nodes_of(BlockId(0)).filter(|n| height_m(n) > 0.049).collect();
+        let (steps, mut peak_pa, mut at_40_pa) = ((END_S / STEP_S).round() as u32, 0.0f64, 0.0);
+        for k in 1..=steps {
+            bar.step().unwrap();
+            let found_pa = stress_pa(&bar, &end);
+            peak_pa = peak_pa.max(found_pa);
+            if k == (f64::from(steps) * 40e-6 / PULLED_M).round() as u32 {
+                at_40_pa = found_pa;
+            }
+        }
+        // u = σ (L/E + 1/k) + w, σ = f_t (1 − w/δ_c).
+        let (last_m, gives_m_pa) = (2.0 * ENERGY_J_M2 / TENSION_PA, LENGTH_M / YOUNG_PA + 1.0 / JOINT_PA_M);
+        let exact_pa = (last_m - 40e-6) / (last_m / TENSION_PA - gives_m_pa);
+        let across = format!("a joint of {} × {} cells across", cells[0], cells[1]);
+        row("bonded bar", &format!("largest force, {across} [N]"), peak_pa * AREA_M2, Within(300.0, 0.03));
+        row("bonded bar", &format!("stress at 40 µm, {across} [Pa]"), at_40_pa, Within(exact_pa, 0.02));
+        let lost_j = -bar.sample().unwrap().friction_work_j;
+        let what = format!("work of {across} [J]");
+        row("bonded bar", &what, lost_j, Within(ENERGY_J_M2 * AREA_M2, 0.01));
+        assert!(bar.state().contact.bonds.is_empty());
+    }
+}
+
+#[test]
+fn a_bar_that_is_half_broken_goes_on_from_its_snapshot_with_the_same_bits() {
+    let mut whole = simulation(&scene([2, 1]));
+    for _ in 0..50_000 {
+        whole.step().unwrap();
+    }
+    let damage =
+        |bar: &Simulation| bar.state().contact.bonds.iter().map(|bond| bond.damage).fold(0.0, f64::max);
+    assert!(damage(&whole) > 0.5 && damage(&whole) < 1.0, "{}", damage(&whole));
+    let bytes = postcard::to_stdvec(&whole.snapshot()).unwrap();
+    let mut resumed = simulation(&scene([2, 1]));
+    resumed.restore(postcard::from_bytes(&bytes).unwrap()).unwrap();
+    for _ in 0..1000 {
+        whole.step().unwrap();
+        resumed.step().unwrap();
+    }
+    let bits = |bar: &Simulation| postcard::to_stdvec(&bar.snapshot().state).unwrap();
+    assert!(bits(&whole) == bits(&resumed), "the states differ");
+}
