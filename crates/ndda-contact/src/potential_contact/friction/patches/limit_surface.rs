@@ -12,7 +12,6 @@
 //! friction is its slope: force F = −∂D/∂V, torque T = −∂D/∂Ω.
 
 use ndda_mesh::{Mat3, Vec3};
-use pulp::Arch;
 
 /// Cells along and across a patch whose spin matters, by its aspect ratio: force and torque are then right to 3 % of μN, the torque
 /// of a pure twist to 0.5 %.
@@ -76,38 +75,38 @@ impl LimitSurface {
 
     /// D, its gradient and its second derivatives, |v| being √(|v|² + ε²).
     fn dissipation(&self, slip: &Vec3, smoothing2: f64) -> (f64, Vec3, Mat3) {
-        self.sums(&Cells::new(self.cells, self.half), slip, smoothing2)
-    }
-
-    /// The same over cells whose centres are known.
-    #[inline(always)]
-    fn sums(&self, cells: &Cells, slip: &Vec3, smoothing2: f64) -> (f64, Vec3, Mat3) {
-        let mut sums = [[0.0; LANES]; 10];
-        for (x, y) in cells.x.iter().zip(&cells.y).take(cells.groups) {
-            for lane in 0..LANES {
-                let (x, y) = (x[lane], y[lane]);
+        let ([n, m], [a, b]) = (self.cells, self.half);
+        let place = |i: u32, n: u32, half: f64| (f64::from(2 * i + 1) / f64::from(n) - 1.0) * half;
+        let (mut value, mut slope, mut curvature) = (0.0, Vec3::zeros(), Mat3::zeros());
+        for i in 0..n {
+            let x = place(i, n, a);
+            for j in 0..m {
+                let y = place(j, m, b);
                 let (u, v) = (slip.x - slip.z * y, slip.y + slip.z * x);
                 let twist = self.cell_radius2 * slip.z;
                 let speed = (u * u + v * v + twist * slip.z + smoothing2).sqrt();
-                let per_speed = if speed > 0.0 { 1.0 / speed } else { 0.0 };
-                let (e, f) = (u * per_speed, v * per_speed);
-                let t = x * f - y * e + twist * per_speed;
+                if speed == 0.0 {
+                    continue;
+                }
+                let (e, f) = (u / speed, v / speed);
+                let t = x * f - y * e + twist / speed;
+                value += speed;
+                slope += Vec3::new(e, f, t);
+                let per_speed = 1.0 / speed;
                 let turn = x * x + y * y + self.cell_radius2;
-                sums[0][lane] += speed;
-                sums[1][lane] += e;
-                sums[2][lane] += f;
-                sums[3][lane] += t;
-                sums[4][lane] += (1.0 - e * e) * per_speed;
-                sums[5][lane] += (1.0 - f * f) * per_speed;
-                sums[6][lane] += (turn - t * t) * per_speed;
-                sums[7][lane] -= e * f * per_speed;
-                sums[8][lane] -= (y + e * t) * per_speed;
-                sums[9][lane] += (x - f * t) * per_speed;
+                curvature[(0, 0)] += (1.0 - e * e) * per_speed;
+                curvature[(1, 1)] += (1.0 - f * f) * per_speed;
+                curvature[(2, 2)] += (turn - t * t) * per_speed;
+                curvature[(0, 1)] -= e * f * per_speed;
+                curvature[(0, 2)] -= (y + e * t) * per_speed;
+                curvature[(1, 2)] += (x - f * t) * per_speed;
             }
         }
-        let share = self.most_n / cells.count;
-        let [value, e, f, t, ee, ff, tt, ef, et, ft] = sums.map(|lanes| share * sum_of(&lanes, cells.lanes));
-        (value, Vec3::new(e, f, t), Mat3::new(ee, ef, et, ef, ff, ft, et, ft, tt))
+        curvature[(1, 0)] = curvature[(0, 1)];
+        curvature[(2, 0)] = curvature[(0, 2)];
+        curvature[(2, 1)] = curvature[(1, 2)];
+        let share = self.most_n / f64::from(n * m);
+        (share * value, share * slope, share * curvature)
     }
 
     /// Whether a force is within the limit for sure: within the hull of all forces without torque and all torques without force.
@@ -131,21 +130,15 @@ impl LimitSurface {
             return stopping;
         }
         let surface = self.for_slip(free_slip);
-        let smoothings = &SMOOTHING[usize::from(!is_first)..];
-        let slip = Arch::new().dispatch(
-            #[inline(always)]
-            || {
-                smoothings.iter().fold(*start, |slip, smoothing| {
-                    surface.least(stiffness, (free_slip, slip), smoothing * free_slip.norm(), tolerance_n)
-                })
-            },
-        );
+        let mut slip = *start;
+        for &smoothing in &SMOOTHING[usize::from(!is_first)..] {
+            slip = surface.least(stiffness, (free_slip, slip), smoothing * free_slip.norm(), tolerance_n);
+        }
         let force = stiffness * (slip - free_slip);
         self.shortened(force)
     }
 
     /// Newton's method with a line search.
-    #[inline(always)]
     fn least(
         &self,
         stiffness: &Mat3,
@@ -153,16 +146,15 @@ impl LimitSurface {
         smoothing: f64,
         tolerance_n: f64,
     ) -> Vec3 {
-        let cells = Cells::new(self.cells, self.half);
-        let value = Objective {
-            surface: self,
-            cells: &cells,
-            stiffness,
-            free_slip,
-            smoothing2: smoothing * smoothing,
+        let smoothing2 = smoothing * smoothing;
+        let value = |slip: &Vec3| {
+            let gap = slip - free_slip;
+            let force = stiffness * gap;
+            let (dissipation, slope, curvature) = self.dissipation(slip, smoothing2);
+            (0.5 * gap.dot(&force) + dissipation, force + slope, stiffness + curvature)
         };
         let mut slip = start;
-        let (mut least, mut slope, mut curvature) = value.at(&slip);
+        let (mut least, mut slope, mut curvature) = value(&slip);
         for _ in 0..MOST_STEPS {
             let Some(step) = solved(&curvature, &slope) else { break };
             let gain = slope.dot(&step);
@@ -171,22 +163,13 @@ impl LimitSurface {
                 break;
             }
             let mut part = 1.0;
-            let mut next = value.at(&(slip - step));
-            if gain <= TOLERANCE * least {
-                // Rounding of the value hides what is left to gain; the slope still tells.
-                if next.1.amax() >= slope.amax() {
-                    break;
-                }
-                slip -= step;
-                (least, slope, curvature) = next;
-                continue;
-            }
+            let mut next = value(&(slip - step));
             for _ in 0..MOST_HALVINGS {
                 if next.0 <= least - 1e-4 * part * gain {
                     break;
                 }
                 part *= 0.5;
-                next = value.at(&(slip - part * step));
+                next = value(&(slip - part * step));
             }
             if next.0 >= least {
                 break;
@@ -203,64 +186,6 @@ impl LimitSurface {
         let part = if along > self.most_n { self.most_n / along } else { 1.0 };
         Vec3::new(part * force.x, part * force.y, force.z.clamp(-self.most_twist_n, self.most_twist_n))
     }
-}
-
-/// ½ (σ − s)·A (σ − s) + D(σ).
-struct Objective<'a> {
-    surface: &'a LimitSurface,
-    cells: &'a Cells,
-    stiffness: &'a Mat3,
-    free_slip: &'a Vec3,
-    smoothing2: f64,
-}
-
-impl Objective<'_> {
-    /// Its value, gradient and second derivatives.
-    #[inline(always)]
-    fn at(&self, slip: &Vec3) -> (f64, Vec3, Mat3) {
-        let gap = slip - self.free_slip;
-        let force = self.stiffness * gap;
-        let (dissipation, slope, curvature) = self.surface.sums(self.cells, slip, self.smoothing2);
-        (0.5 * gap.dot(&force) + dissipation, force + slope, self.stiffness + curvature)
-    }
-}
-
-/// Cells that are looked at together.
-const LANES: usize = 8;
-/// Most groups of them.
-const MOST_GROUPS: usize = 4;
-
-/// Centres of the cells over r, in groups; a single cell is the first lane of its group, whose others do not count.
-struct Cells {
-    x: [[f64; LANES]; MOST_GROUPS],
-    y: [[f64; LANES]; MOST_GROUPS],
-    groups: usize,
-    /// Lanes that count: all, or one.
-    lanes: usize,
-    count: f64,
-}
-
-impl Cells {
-    #[inline(always)]
-    fn new([n, m]: [u32; 2], [a, b]: [f64; 2]) -> Self {
-        let place = |i: u32, n: u32, half: f64| (f64::from(2 * i + 1) / f64::from(n) - 1.0) * half;
-        let (mut x, mut y) = ([[0.0; LANES]; MOST_GROUPS], [[0.0; LANES]; MOST_GROUPS]);
-        let mut k = 0;
-        for i in 0..n {
-            for j in 0..m {
-                (x[k / LANES][k % LANES], y[k / LANES][k % LANES]) = (place(i, n, a), place(j, m, b));
-                k += 1;
-            }
-        }
-        Self { x, y, groups: k.div_ceil(LANES), lanes: k.min(LANES), count: k as f64 }
-    }
-}
-
-/// Always in the same order, however many lanes a processor has.
-#[inline(always)]
-fn sum_of(lanes: &[f64; LANES], counting: usize) -> f64 {
-    let [a, b, c, d, e, f, g, h] = *lanes;
-    if counting == 1 { a } else { ((a + e) + (c + g)) + ((b + f) + (d + h)) }
 }
 
 /// A⁻¹ b for a positive definite A.

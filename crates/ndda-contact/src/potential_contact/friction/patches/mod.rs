@@ -6,7 +6,6 @@
 //! together (`solve.rs`); blocks that deform answer to it at their nodes, as the solver says (`nodal.rs`).
 
 mod limit_surface;
-mod mixing;
 mod moments;
 mod nodal;
 mod opposite;
@@ -26,11 +25,10 @@ use crate::assembly::join_if::join_if;
 use crate::friction::facet::FacetForce;
 use crate::friction::law::FrictionLaw;
 use crate::friction::law_table::FrictionLawTable;
-use crate::friction::patches::mixing::Mixing;
 use crate::friction::patches::nodal::{Nodal, NodalSide};
 use crate::friction::patches::opposite::Opposite;
 use crate::friction::patches::patch::{ContactPatch, Moved, PatchSummary, Remembered};
-use crate::friction::patches::solve::{CoupledPatch, Motion, Net};
+use crate::friction::patches::solve::{CoupledPatch, Motion};
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments};
 use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
@@ -113,8 +111,6 @@ pub(crate) struct FrictionPatches {
     /// Room for their solution, by block.
     most_n: Vec<f64>,
     pushed: Vec<u32>,
-    net: Vec<Net>,
-    mixing: Mixing,
     new_faces: Vec<FaceMemory>,
     gaps_j: Vec<f64>,
     /// Second moments of each facet about its own centre of pressure [m²].
@@ -286,7 +282,7 @@ impl FrictionPatches {
     /// Friction of the patches.
     fn solve(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
         self.ask_blocks(scene, forces);
-        let Self { patches, bodies, coupled, nodal, sides, most_n, pushed, net, mixing, .. } = self;
+        let Self { patches, bodies, coupled, nodal, sides, most_n, pushed, .. } = self;
         let ContactInput { blocks, velocity, bodies: start, dt_s, is_iterated, .. } = *scene.input;
         coupled.clear();
         for ((number, patch), sides) in (0..).zip(&*patches).zip(&*sides) {
@@ -295,8 +291,7 @@ impl FrictionPatches {
             }
         }
         coupled.iter().for_each(|patch| patch.push_nodes(nodal));
-        let mut motion =
-            Motion { blocks, start: velocity, bodies, nodal, dt_s, is_iterated, most_n, pushed, net, mixing };
+        let mut motion = Motion { blocks, start: velocity, bodies, nodal, dt_s, is_iterated, most_n, pushed };
         solve::solve(coupled, start, &mut motion);
         for found in coupled.iter() {
             let patch = &mut patches[found.patch as usize];

@@ -15,14 +15,13 @@
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::friction::patches::limit_surface::LimitSurface;
-use crate::friction::patches::mixing::Mixing;
 use crate::friction::patches::nodal::{Nodal, NodalSide};
 use crate::friction::patches::patch::ContactPatch;
 use crate::model::Body;
 
 /// γ of Alexander's method.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
-/// Friction is found when a sweep changes that on no block by more than this part of the largest μN on it.
+/// Friction is found when no patch changes its own by more than this part of μN, or of the largest on both of its blocks.
 const TOLERANCE: f64 = 1e-7;
 /// The same, and sweeps, where the solver compares forces of one evaluation with the next.
 const ITERATED_TOLERANCE: f64 = 1e-8;
@@ -34,9 +33,6 @@ const REGULAR: f64 = 1e-9;
 /// Sweeps over all patches, and patches looked at in them where these are few.
 const MOST_SWEEPS: usize = 100;
 const MOST_VISITS: usize = 20_000;
-
-/// The sweep after which their convergence is accelerated; the first sweep, to and fro, is none.
-const PLAIN_SWEEPS: usize = 9;
 
 /// One patch among others.
 #[derive(Clone, Copy, Debug, Default)]
@@ -143,10 +139,6 @@ impl CoupledPatch {
             }
             let (body, arm) = (&mut motion.bodies[block.index()], &self.arms[k]);
             if body.mass_kg.is_finite() {
-                let net = &mut motion.net[block.index()];
-                net.force_n += sign * along;
-                net.torque_n_m += sign * (arm.cross(&along) + torque);
-                net.lever_m = net.lever_m.max(arm.norm());
                 body.velocity_m_s += sign * time_s / body.mass_kg * along;
                 body.spin_rad_s += body.inverse_inertia * (sign * time_s * (arm.cross(&along) + torque));
             }
@@ -191,25 +183,12 @@ pub(super) struct Motion<'a> {
     pub most_n: &'a mut Vec<f64>,
     /// When each block was pushed last by more than a tolerance.
     pub pushed: &'a mut Vec<u32>,
-    /// Changes of friction in a sweep, by block.
-    pub net: &'a mut Vec<Net>,
-    /// Earlier sweeps.
-    pub mixing: &'a mut Mixing,
-}
-
-/// Change of the friction on a block by all of its patches within a sweep: force, torque about its mass centre, and the largest arm of them.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Net {
-    force_n: Vec3,
-    torque_n_m: Vec3,
-    lever_m: f64,
 }
 
 /// Finds the friction of all patches; `motion` comes with the velocities at the end of the step under all loads, normal forces and the patches'
 /// friction of the last step, `start` with those at its start. Gives the sweeps.
 pub(super) fn solve(patches: &mut [CoupledPatch], start: &[Body], motion: &mut Motion) -> usize {
     motion.set_tolerances(patches);
-    motion.net.resize(motion.bodies.len(), Net::default());
     motion.change(start, |from, to| from + GAMMA * (to - from));
     let first = solve_stage(patches, motion);
     motion.change(start, |from, to| from + (to - from) / GAMMA);
@@ -218,10 +197,6 @@ pub(super) fn solve(patches: &mut [CoupledPatch], start: &[Body], motion: &mut M
 }
 
 impl Motion<'_> {
-    fn tolerance(&self) -> f64 {
-        if self.is_iterated { ITERATED_TOLERANCE } else { TOLERANCE }
-    }
-
     /// A change of friction matters by what else acts on both blocks: the lesser of both largest.
     fn set_tolerances(&mut self, patches: &mut [CoupledPatch]) {
         self.most_n.clear();
@@ -231,7 +206,7 @@ impl Motion<'_> {
                 self.most_n[block] = self.most_n[block].max(patch.surface.most_n);
             }
         }
-        let tolerance = self.tolerance();
+        let tolerance = if self.is_iterated { ITERATED_TOLERANCE } else { TOLERANCE };
         for patch in patches {
             let of = |block: BlockId| {
                 let is_held = self.bodies[block.index()].mass_kg.is_infinite();
@@ -239,16 +214,6 @@ impl Motion<'_> {
             };
             patch.tolerance_n = tolerance * of(patch.owner).min(of(patch.target));
         }
-    }
-
-    /// Whether the friction on a rigid or affine block has changed within a sweep. Patches may pass friction on to others of the same two blocks for long:
-    /// what both blocks feel is what counts.
-    fn net_changes(&self) -> bool {
-        let tolerance = self.tolerance();
-        self.net.iter().zip(&*self.most_n).any(|(net, most_n)| {
-            let most_n = tolerance * most_n;
-            net.force_n.norm() > most_n || net.torque_n_m.norm() > most_n * net.lever_m
-        })
     }
 
     fn change(&mut self, start: &[Body], change: impl Fn(Vec3, Vec3) -> Vec3) {
@@ -260,7 +225,7 @@ impl Motion<'_> {
     }
 }
 
-/// One of both minima, by sweeps over all patches to and fro.
+/// One of both minima.
 fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
     let time_s = GAMMA * motion.dt_s;
     motion.pushed.clear();
@@ -273,7 +238,6 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
     };
     for sweep in 0..most_sweeps {
         let mut changes = false;
-        motion.net.fill(Net::default());
         let mut advance = |patch: &mut CoupledPatch| {
             now += 1;
             changes |= patch.advance(motion, time_s, (now, sweep == 0));
@@ -283,41 +247,15 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
         } else {
             patches.iter_mut().rev().for_each(&mut advance);
         }
-        if !changes && !motion.net_changes() {
+        if !changes {
             return sweep;
-        }
-        if sweep % 2 == 1 && sweep + 1 < most_sweeps {
-            accelerate(patches, motion, (sweep, time_s, now));
         }
     }
     most_sweeps
 }
 
-/// Lets forces go on from where earlier sweeps lead to, once a few have not found them.
-fn accelerate(patches: &mut [CoupledPatch], motion: &mut Motion, (sweep, time_s, now): (usize, f64, u32)) {
-    let forces = patches.iter().map(|patch| patch.force);
-    if sweep < PLAIN_SWEEPS {
-        return;
-    }
-    if sweep == PLAIN_SWEEPS {
-        return motion.mixing.begin(forces);
-    }
-    let mut mixing = std::mem::take(motion.mixing);
-    let next = mixing.mix(patches.iter().map(|patch| (patch.force, patch.tolerance_n)));
-    for (patch, force) in patches.iter_mut().zip(next) {
-        patch.push(motion, &(force - patch.force), time_s);
-        patch.force = *force;
-        // What it would slip by without its own friction has to be asked for again.
-        patch.free_slip = Vec3::repeat(f64::NAN);
-        for block in [patch.owner, patch.target] {
-            motion.pushed[block.index()] = now + 1;
-        }
-    }
-    *motion.mixing = mixing;
-}
-
 impl CoupledPatch {
-    /// Friction of this patch while that of the others stays; whether it had to change on a block that deforms, whose net friction says too little.
+    /// Friction of this patch while that of the others stays; whether it had to change.
     fn advance(&mut self, motion: &mut Motion, time_s: f64, (now, is_first): (u32, bool)) -> bool {
         let pushed = motion.pushed[self.owner.index()].max(motion.pushed[self.target.index()]);
         if !is_first && pushed <= self.seen {
@@ -342,6 +280,6 @@ impl CoupledPatch {
         for block in [self.owner, self.target] {
             motion.pushed[block.index()] = now;
         }
-        self.sides.iter().any(Option::is_some)
+        true
     }
 }
