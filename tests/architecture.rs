@@ -311,3 +311,28 @@ fn every_dependency_has_a_licence_that_deny_toml_allows() {
     }
     assert!(!is_allowed("GPL-3.0", &allowed) && !is_allowed("(MIT OR Zlib) AND GPL-3.0", &allowed));
 }
+
+/// Sources go by the end of their path; `src` and `potential_contact`, in which chapters lie, may be left out.
+#[test]
+fn every_source_file_that_a_document_names_exists() {
+    let mut sources = Vec::new();
+    let mut documents = Vec::new();
+    for top in ["crates", "apps", "tests", "benches"] {
+        files(&root().join(top), "rs", &mut sources);
+    }
+    files(&root().join("docs"), "md", &mut documents);
+    let shortened = |path: &Path| {
+        let path = path.strip_prefix(root()).unwrap().to_string_lossy().into_owned();
+        [path.clone(), path.replace("/src/", "/").replace("/potential_contact/", "/")]
+    };
+    let known: Vec<String> = sources.iter().flat_map(|path| shortened(path)).collect();
+    for document in documents {
+        let text = fs::read_to_string(&document).unwrap();
+        let names = text.split('`').skip(1).step_by(2).filter(|name| name.ends_with(".rs"));
+        for name in names.filter(|name| name.chars().all(|c| c.is_ascii_alphanumeric() || "/_-.".contains(c)))
+        {
+            let exists = known.iter().any(|path| path == name || path.ends_with(&format!("/{name}")));
+            assert!(exists, "{} names {name}, which is not there", document.display());
+        }
+    }
+}

@@ -57,7 +57,7 @@ pub struct Simulation {
     pub(crate) contact: Option<Box<dyn ContactModel>>,
     /// Contact at the end of steps; none where it is taken at predicted positions.
     pub(crate) newton: Option<Box<Newton>>,
-    /// Moments of contact forces, for schemes that take them elsewhere than in the middle of a step.
+    /// Correction that conserves angular momentum where the integrator evaluates contact away from mid-step or remembers accelerations.
     pub(crate) contact_moments: Option<Box<ContactMoments>>,
     /// The length of the parts that a step is done in, and the integrator's weights for it.
     pub(crate) part_s: f64,
@@ -73,7 +73,7 @@ pub(crate) struct Problem {
     pub(crate) blocks: BlockSet,
     /// Operators, supports and factors; congruent blocks share one.
     pub(crate) shapes: Vec<Prototype>,
-    /// Blocks that are solved for together.
+    /// Groups of congruent blocks that one thread solves together.
     pub(crate) runs: CongruentGroups,
     pub(crate) integrator: Box<dyn TimeIntegrator>,
     /// Δt of a whole step.
@@ -91,13 +91,13 @@ pub(crate) struct Scratch {
     pub(crate) force: Vec<Vec3>,
     pub(crate) friction_force: Vec<Vec3>,
     pub(crate) contact_stiffness: Vec<f64>,
-    /// Whether forces of friction and stiffness of contact may be other than zero.
+    /// Whether `friction_force` or `contact_stiffness` may hold values other than zero; if not, they are neither cleared nor read.
     pub(crate) contact_has_acted: bool,
     pub(crate) contact_position: Vec<Vec3>,
     /// Scratch for positions with contact offsets.
     pub(crate) seen_position: Vec<Vec3>,
     pub(crate) contact_bodies: Vec<ContactBody>,
-    /// Where nodes were before the step, later how far it moved them [m]; empty without contact.
+    /// Node positions before the step, overwritten in the same step by its displacements [m]; empty without contact.
     pub(crate) moved: Vec<Vec3>,
 }
 
@@ -108,12 +108,13 @@ pub(crate) struct Audit {
     pub(crate) travel: Travel,
     /// Facets in contact in the last step, if they were requested.
     pub(crate) contacts: Option<Vec<FacetContact>>,
-    /// Direction uncertainty: part of contact forces whose direction is unknown in this step, and that no friction carries.
+    /// Uncertainty of the direction of contact forces in this step, as a fraction of their size: the largest penetration ratio, or 0 where friction
+    /// everywhere can carry that much.
     pub(crate) direction_uncertainty: f64,
 }
 
 impl Simulation {
-    /// One step. The order is the paper's; what differs is where contact and rotation are taken.
+    /// One step Δt, in the paper's order; contact and rotation are evaluated at other times than in the paper (docs/theory/method.md).
     ///
     /// # Errors
     /// [`StepError`] naming time, block and element; the state is then not to be used.
@@ -124,7 +125,8 @@ impl Simulation {
         report
     }
 
-    /// One step, or one part of a step that is done in several: loads, contact, each block alone; the rest watches.
+    /// Advances by a whole step, or by one of the parts that a step is done in: loads, contact, each block alone, then the clock. The first step also sets how
+    /// far ahead contact looks; the other calls only measure.
     pub(crate) fn part_step(&mut self) -> Result<StepReport, StepError> {
         let mut watch = StageWatch::start();
         self.gather_loads();
@@ -140,7 +142,7 @@ impl Simulation {
         Ok(report)
     }
 
-    /// f ← gravity, tractions and forces, as their mean over a step about the time at which the integrator takes them.
+    /// f ← all loads, averaged over the step around the time at which the integrator evaluates them.
     fn gather_loads(&mut self) {
         let lead = self.weights.load_lead;
         let (from_s, to_s) = (self.clock_s(lead - 0.5), self.clock_s(lead + 0.5));

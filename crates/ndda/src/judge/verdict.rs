@@ -7,16 +7,16 @@ use ndda_solver::{Simulation, Worst};
 const MOST_ENERGY: f64 = 0.02;
 /// Energy by which friction was off Coulomb's law over ½ m V²: an energy of m v δv is a speed that is off by δv.
 const MOST_FRICTION: f64 = 1e-3;
-/// Penetration over the height of the tetrahedron. A collision that goes d deep delays blocks by up to π d / 2, which is
-/// within the tenth of a height that places may be off.
+/// Penetration over the element size. A collision of depth d leaves blocks up to π d/2 from where they should be: 0.08 element sizes at this limit, less
+/// than the promised 0.1.
 const MOST_DEPTH: f64 = 0.05;
 /// Part of its strength by which a bond may be overloaded when it breaks.
 const BOND_OVERLOAD: f64 = 0.05;
 /// Limits of an accurate run: errors of speeds over the largest, and of places over an element size.
 const SPEED: f64 = 0.01;
 const PLACE: f64 = 0.1;
-/// Speed of vibrations that a step turns over, over the largest speed: θ² of one that turns by θ in a step. It is late by θ²/12 of
-/// each radian, as contact within its bound is.
+/// Limit of vibrations: the speed that elasticity changes in one step, over the largest speed. A vibration of θ = ω Δt changes θ² of its speed and lags by
+/// θ²/12 per radian, so that this limit keeps the lag within [`SPEED`].
 const MOST_VIBRATION: f64 = 12.0 * SPEED;
 /// Strain up to which a linear law is taken for true: terms of second order are half of it, 5 % of the stress.
 const MOST_STRAIN: f64 = 0.1;
@@ -27,7 +27,7 @@ const MOST_TRAVEL: f64 = 0.5;
 struct Entry {
     name: &'static str,
     verdict: Verdict,
-    /// From which judgement on the motion is not to be trusted.
+    /// The judgement, `Warn` or `Fail`, at which the label becomes `inaccurate`.
     spoils_at: Judgement,
     /// Reason that is given then.
     reason: String,
@@ -99,7 +99,7 @@ fn momentum(simulation: &Simulation) -> [Entry; 2] {
     let turning = if simulation.is_closed() { judged(angular, 1e-8, 1e-6) } else { shown(angular) };
     let reason = |what: &str, value: f64| {
         format!(
-            "{what} is not balanced: {value:.1e} of the largest appeared or vanished; please report this scene"
+            "{what} is not conserved: the error is {value:.1e} of the largest {what}; please report this scene"
         )
     };
     [
@@ -124,7 +124,7 @@ fn energy(simulation: &Simulation) -> [Entry; 3] {
         100.0 * MOST_ENERGY
     );
     let gained = format!(
-        "{:.1} % of the total energy was added by numerical error for a time; reduce step_s",
+        "at some time {:.1} % of the total energy was added by numerical error, limit 2 %; reduce step_s",
         100.0 * worst.energy_gain
     );
     [
@@ -165,7 +165,7 @@ fn friction(simulation: &Simulation) -> Entry {
 fn creep(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.creep_place, worst.creep_speed);
-    let cure = "because its shear springs slip while contact vibrates: begin with settle: (), ramp gravity by gravity_ramp_s, or leave out shear_penalty_pa_m";
+    let cure = "because vibrating contact makes its shear springs slip: add settle: (), set gravity_ramp_s, or remove shear_penalty_pa_m";
     let where_it_is = format!(
         "block `{}` crept by {:.2} of its smallest element size, limit {PLACE}, {cure}",
         name(simulation, place),
@@ -214,7 +214,7 @@ fn contact(simulation: &Simulation) -> [Entry; 2] {
 fn lateral_drift(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.lateral_drift_place, worst.lateral_drift_speed);
-    let why = "because it is clamped without friction and the direction of its contact forces is known no better than contact is deep: raise penalty_pa, or give the contact friction";
+    let why = "because its neighbours press it from both sides without friction, and the deeper contact is, the less certain is the direction of its force: raise penalty_pa, or give the contact friction";
     let where_it_is = format!(
         "block `{}` drifts sideways by {:.2} of its smallest element size, limit {PLACE}, {why}",
         name(simulation, place),
@@ -331,7 +331,7 @@ fn ringing(simulation: &Simulation) -> Entry {
 fn bonds(simulation: &Simulation) -> Option<Entry> {
     let overload = simulation.invariants().bond_overload;
     let reason = format!(
-        "a bond broke {:.0} % beyond its strength, limit {:.0} %, so that others may hold or break that should not: reduce step_s",
+        "a bond broke only at {:.0} % above its strength, limit {:.0} %, so other bonds may have held or broken wrongly: reduce step_s",
         100.0 * overload,
         100.0 * BOND_OVERLOAD
     );
@@ -343,7 +343,7 @@ fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
     let worst = simulation.invariants();
     let percent = |value: f64| 100.0 * value;
     let vibration = format!(
-        "steps do not resolve vibrations: {:.1} % of the largest speed reverses within one step, limit {:.0} %; reduce step_s",
+        "steps are too long for the vibrations of blocks: elasticity changes velocities by {:.1} % of the largest speed in one step, limit {:.0} %; reduce step_s",
         percent(worst.vibration),
         percent(MOST_VIBRATION)
     );

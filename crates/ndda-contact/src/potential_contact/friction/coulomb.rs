@@ -23,8 +23,8 @@ impl FrictionLaw for Coulomb {
         "Coulomb with a shear spring"
     }
 
-    /// f′ = f − ½ k_s Δu S̄, capped at μ |f_n| along its own direction; S̄ is the mean area of the step, so that springs of contacts that grow are of
-    /// second order.
+    /// f′ = f − ½ k_s Δu S̄, capped at μ f_n along its own direction; S̄ is the mean of the areas at this step and the last, so that the error of a growing contact is of
+    /// second order in Δt.
     fn advance(&self, slip: &FacetSlip, memory: &mut ShearMemory) {
         let spring = 0.5 * self.shear_penalty_pa_m * slip.mean_area_m2;
         let trial = [0, 1].map(|i| memory.shear_n[i] - spring * slip.slip_m[i]);
@@ -35,7 +35,7 @@ impl FrictionLaw for Coulomb {
         self.shear_penalty_pa_m
     }
 
-    /// μ |f_n|.
+    /// μ f_n; normal forces of contact are never negative.
     fn capacity_n(&self, slip: &FacetSlip, _memory: &ShearMemory) -> f64 {
         self.friction * slip.normal_n
     }
