@@ -1,7 +1,5 @@
 //! Bonds that break gradually, by prescribed motion: two plates of a square metre, bonded over unlike meshes, are pulled apart, turned and sheared.
 
-#![cfg(feature = "potential")]
-
 use ndda_contact::testing::{evaluate, test_box, test_set};
 use ndda_contact::{
     ContactHistory, ContactInput, Fracture, PotentialContact, SmoothPotential, SofteningBond,
