@@ -55,18 +55,24 @@ def main():
     program, folder = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     results = folder / "results.csv"
-    for scene in sys.argv[3:] or scenes():
+    for row in each(sys.argv[3:], results, COLUMNS, lambda scene: judged(program, folder, scene)):
+        print(f"{row['scene']}: {row['within']} of {row['compared']}, code {row['code']}, {row['spent_s']} s", file=sys.stderr)
+    show(rows(results))
+
+
+def each(names, results, columns, row_of):
+    """Rows of the scenes of these names, of all without names, each kept as soon as it is done; those that are kept are not done again."""
+    for scene in names or scenes():
         if scene in {row["scene"] for row in rows(results)}:
             continue
-        row = judged(program, folder, scene)
+        row = row_of(scene)
         is_new = not results.exists()
         with results.open("a", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, COLUMNS)
+            writer = csv.DictWriter(file, columns)
             if is_new:
                 writer.writeheader()
             writer.writerow(row)
-        print(f"{scene}: {row['within']} of {row['compared']}, code {row['code']}, {row['spent_s']} s", file=sys.stderr)
-    show(rows(results))
+        yield row
 
 
 def scenes():

@@ -8,7 +8,6 @@ soon as it is done, and a scene that has its row is not done again. Scenes that 
 shortens them. Gain: processor time of the scene's own setting, at the longest step that reaches the error, over that of the answer.
 """
 
-import csv
 import json
 import sys
 import time
@@ -29,17 +28,8 @@ def main():
     program, folder = str(Path(sys.argv[1]).resolve()), Path(sys.argv[2]).resolve()
     folder.mkdir(parents=True, exist_ok=True)
     results = folder / "results.csv"
-    for scene in sys.argv[3:] or certify.scenes():
-        if scene in {row["scene"] for row in certify.rows(results)}:
-            continue
-        row = tuned(program, folder, scene)
-        is_new = not results.exists()
-        with results.open("a", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, COLUMNS)
-            if is_new:
-                writer.writeheader()
-            writer.writerow(row)
-        print(f"{scene}: code {row['code']}, error {row['error']}, {row['spent_s']} s", file=sys.stderr)
+    for row in certify.each(sys.argv[3:], results, COLUMNS, lambda scene: tuned(program, folder, scene)):
+        print(f"{row['scene']}: code {row['code']}, error {row['error']}, {row['spent_s']} s", file=sys.stderr)
     show(certify.rows(results))
 
 
