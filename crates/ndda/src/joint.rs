@@ -40,11 +40,11 @@ pub enum JointError {
     /// A number that a test cannot begin with.
     #[error("{what} is {value}: {advice}")]
     OutOfRange {
-        /// What it is of.
+        /// Name of the quantity.
         what: &'static str,
         /// The number.
         value: f64,
-        /// What to give.
+        /// The range that is allowed.
         advice: &'static str,
     },
     /// A joint that may not open, or that a spring holds, needs a normal stiffness.

@@ -20,7 +20,7 @@ const UNITS: [(&str, &str); 6] =
 
 /// One line of a picture.
 pub(crate) struct Line {
-    /// What the key calls it.
+    /// Name in the legend.
     pub(crate) name: String,
     /// Its points.
     pub(crate) points: Vec<(f64, f64)>,

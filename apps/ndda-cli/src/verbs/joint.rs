@@ -163,7 +163,7 @@ fn closure(args: &JointArgs, normal: NormalStiffness) -> Result<Done, String> {
     })
 }
 
-/// What the joint is called.
+/// Name of the joint in the output.
 fn name(args: &JointArgs, loaded: &LoadedScene) -> String {
     match (&args.of, &args.between, &args.friction) {
         (Some(name), ..) => format!("joint `{name}`"),

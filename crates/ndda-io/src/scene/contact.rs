@@ -132,7 +132,7 @@ pub struct Roughness {
     /// times that; else the strength is that of the peak at any slip. Default: false.
     #[serde(default)]
     pub mobilised: bool,
-    /// What the shear strength is multiplied by; `ndda safety` divides it. Default: 1.
+    /// Factor of the shear strength, which `ndda safety` divides. Default: 1.
     #[serde(default = "one")]
     pub strength_factor: f64,
 }

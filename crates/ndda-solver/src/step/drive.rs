@@ -46,7 +46,7 @@ pub enum DriveError {
 }
 
 impl Simulation {
-    /// Lets a force [N] act at a block's centre of mass from now on, until another one is set; zero takes it away.
+    /// Applies a constant force [N] at the centre of mass of a block, from now on until another one is set; zero removes it.
     ///
     /// It acts on every node by its share of the mass, beside the loads of the scene. Its impulse and its work are in the balances of
     /// momentum and energy, and checkpoints keep it.
@@ -146,7 +146,7 @@ impl Simulation {
     }
 }
 
-/// What a blow changes.
+/// Momentum and energy of a block, which a blow changes.
 struct Motion {
     momentum: Vec3,
     angular_momentum: Vec3,

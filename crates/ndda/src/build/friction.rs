@@ -37,7 +37,7 @@ pub fn friction_law(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> 
     })
 }
 
-/// The same law with the dilation of the joint, as tests of joints take it.
+/// The friction law with the dilation of the joint, for laboratory tests.
 pub fn joint_law(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> {
     let law = friction_law(friction)?;
     Some(match friction.dilation {

@@ -191,7 +191,7 @@ fn softened(friction: &Friction, test: &ShearTest, slip_m: f64) -> Option<End> {
     let dilation_m = law.opening_m(plastic_slip_m);
     let falling_m = plastic_slip_m.min(over_m);
     let lost_j_m2 = 0.5 * (peak_pa + shear_pa) * falling_m + residual_pa * (plastic_slip_m - falling_m);
-    // What a joint that snaps loses of its spring's energy is a matter of its inertia.
+    // A joint that snaps loses part of its spring's energy to motion, which depends on inertia.
     let dissipated_j_m2 = (!snaps).then_some(lost_j_m2 - test.stress_pa * dilation_m);
     Some(End { shear_pa, normal_pa: test.stress_pa, plastic_slip_m, dilation_m, dissipated_j_m2 })
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What was found, and what the closed form says.
+/// A computed value beside that of the closed form.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Comparison {
     /// Of what.

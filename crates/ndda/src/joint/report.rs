@@ -18,7 +18,7 @@ const SHEAR: [(&str, &str, f64); 7] = [
     ("energy lost", "J/m²", 1.0),
 ];
 
-/// The same of a closure test.
+/// Columns of a closure test: name, unit, factor from SI.
 const CLOSURE: [(&str, &str, f64); 4] = [
     ("closure", "mm", 1e3),
     ("normal stress", "MPa", 1e-6),

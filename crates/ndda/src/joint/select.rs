@@ -25,15 +25,15 @@ pub enum SelectError {
     /// No such joint, or no law for it.
     #[error("{wanted} has no law of its own in this scene; there is {known}")]
     Unknown {
-        /// What was asked for.
+        /// The joint or pair that was requested.
         wanted: String,
-        /// What there is.
+        /// Joints and pairs that have a law.
         known: String,
     },
     /// The joint has no friction.
     #[error("{wanted} has no friction in this scene, and so nothing to test")]
     Smooth {
-        /// What was asked for.
+        /// The joint or pair that was requested.
         wanted: String,
     },
 }

@@ -11,7 +11,7 @@ const MOST_TRIALS: usize = 300;
 /// Normal stresses are found to this part of themselves.
 const BALANCED: f64 = 4.0 * f64::EPSILON;
 
-/// What the normal stress does while the joint is sheared.
+/// Boundary condition in the normal direction during shear.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Hold {
@@ -42,7 +42,7 @@ impl Hold {
 pub struct ShearTest {
     /// Normal stress σ₀ that the joint is pressed to before it is sheared [Pa].
     pub stress_pa: f64,
-    /// What the normal stress does then.
+    /// Boundary condition in the normal direction during shear.
     pub hold: Hold,
     /// How the joint closes.
     pub normal: NormalStiffness,
@@ -103,7 +103,7 @@ impl ShearTest {
         self.normal.check()
     }
 
-    /// What one side feels in a step.
+    /// Slip and normal force of one side in a step.
     fn slip(&self, slip_m: f64, normal_pa: f64) -> FacetSlip {
         FacetSlip {
             normal_n: 0.5 * normal_pa,

@@ -13,7 +13,7 @@ const MOBILISED: [[f64; 2]; 8] =
 /// Bisections that find a slip to the last bit.
 const HALVINGS: usize = 60;
 
-/// What a rough joint is, from a sample or of its full size.
+/// Properties of a rough joint, measured on a sample or at full size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Roughness {
     /// Joint roughness coefficient JRC [-].
@@ -27,7 +27,7 @@ pub struct Roughness {
 }
 
 impl Roughness {
-    /// The same joint at another length L: JRC (L/L₀)^(−0.02 JRC) and JCS (L/L₀)^(−0.03 JRC) (Bandis, Lumsden & Barton 1981).
+    /// Properties at another length L: JRC (L/L₀)^(−0.02 JRC) and JCS (L/L₀)^(−0.03 JRC) (Bandis, Lumsden & Barton 1981).
     pub fn of_length(self, length_m: f64) -> Self {
         let ratio = length_m / self.length_m;
         Self {
@@ -90,7 +90,7 @@ pub struct BartonBandis {
     shear_penalty_pa_m: f64,
     /// Slip at the peak, where roughness is mobilised by slip [m].
     peak_slip_m: Option<f64>,
-    /// What tan φ is divided by.
+    /// Factor that divides tan φ [-].
     reduction: f64,
 }
 

@@ -5,7 +5,7 @@ use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, capped};
 
 /// Bonds that soften by a fracture energy in tension and shear, with Coulomb friction on what is broken: τ = (1 − D) k δ_s + τ_f, |τ_f| ≤ D σ tan φ.
 ///
-/// What touches when contact is first evaluated is bonded, at three points of each facet, so that a joint carries moments; what comes into contact later has
+/// Facets that touch when contact is first evaluated are bonded at three points each, so that a joint carries moments; contacts that form later have
 /// friction alone. The law itself is that of the broken part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SofteningBond {

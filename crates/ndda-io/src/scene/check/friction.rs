@@ -121,7 +121,7 @@ impl Check<'_> {
             ("tension_j_m2", fracture.tension_j_m2, friction.tension_pa),
             ("shear_j_m2", fracture.shear_j_m2, friction.cohesion_pa),
         ] {
-            // What the spring stores when it breaks.
+            // Energy stored in the spring at its strength.
             let least_j_m2 = 0.5 * strength_pa * strength_pa / stiffness_pa_m;
             if !(energy_j_m2 > least_j_m2 && energy_j_m2.is_finite()) {
                 let message = format!("{energy_j_m2} J/m²: must be above {least_j_m2:e} J/m²");
