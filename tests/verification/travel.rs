@@ -75,7 +75,7 @@ fn slivers_that_contact_of_rigid_cells_does_not_see_do_not_shorten_steps() {
                         shape: Box(size_m: (6, 6, 1), cells: (6, 6, 1), pattern: TwentyFour))],
               rock: [(name: \"cell\", material: \"rock\", body: Rigid, domain: Box(min_m: (-2, -2, 0), max_m: (2, 2, 5.4)),
                       voronoi: (count: 400), seed: 9, fill: Centre)],
-              contact: Potential(penalty_pa: 1e9, potential: Smooth(), friction: (friction_deg: 40)))"
+              contact: Potential(penalty_pa: 1e9, potential: Smooth()))"
         ))
     };
     let mut fixed = cells("Fixed");

@@ -33,6 +33,7 @@
 //! | [`explain`] | what a run will do, what it leaves out and why |
 //! | [`study`] | many runs of one scene: error against time |
 //! | [`certify`] | every result as value ± error |
+//! | [`safety`] | the factor of safety of a slope, and how its blocks fail |
 //! | [`joint`] | direct shear and closure of one joint, without blocks |
 //! | [`tune`] | the cheapest settings that reach an error |
 //! | [`examples`], [`templates`] | scenes that come with the program |

@@ -99,7 +99,13 @@ impl Simulation {
         self.audit.ledger.largest_speed_m_s()
     }
 
-    /// The worst of the run so far.
+    /// Time since energies and momenta were measured by [`sample`](Self::sample) [s].
+    pub fn unsampled_s(&self) -> f64 {
+        self.audit.ledger.since_sample_s(self.time_s())
+    }
+
+    /// The worst of the run so far. Errors of energy and momentum are the worst of the [samples](Self::sample), and zero where there was none;
+    /// [`unsampled_s`](Self::unsampled_s) says how much of the run they miss.
     pub fn invariants(&self) -> Invariants {
         self.audit.ledger.invariants()
     }

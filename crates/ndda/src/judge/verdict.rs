@@ -65,6 +65,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     let sound = Verdict { value: None, limit: None, verdict: Judgement::Pass };
     let fail = Judgement::Fail;
     let mut entries = vec![Entry::new("finite state", sound, fail, String::new())];
+    entries.extend(measured(simulation));
     entries.extend(momentum(simulation));
     entries.extend(energy(simulation));
     entries.push(spurious_contact_energy(simulation));
@@ -90,6 +91,17 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
         entries.extend(lumped_rotation(simulation));
     }
     entries
+}
+
+/// An error that nobody has measured does not pass.
+fn measured(simulation: &Simulation) -> Option<Entry> {
+    let unsampled_s = simulation.unsampled_s();
+    let verdict = Verdict { value: Some(unsampled_s), limit: Some(0.0), verdict: Judgement::Fail };
+    let reason = format!(
+        "energy and momentum were not measured in the last {unsampled_s:.3e} s; call `Simulation::sample` before the label"
+    );
+    (unsampled_s > 0.0)
+        .then(|| Entry::new("time since energy was measured [s]", verdict, Judgement::Fail, reason))
 }
 
 fn momentum(simulation: &Simulation) -> [Entry; 2] {

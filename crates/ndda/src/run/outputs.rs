@@ -1,4 +1,4 @@
-//! All that is written while a run goes on, and what a checkpoint holds.
+//! Everything that is written while a run goes on: history, fields, log, and a checkpoint after each period of `checkpoint_wall_s`.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

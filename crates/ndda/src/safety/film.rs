@@ -27,13 +27,16 @@ pub fn record(
     stop: &Arc<AtomicBool>,
 ) -> Result<(), SafetyError> {
     let ([first_s, _], [last_s, gone_m]) = (trial.history[0], trial.history[trial.history.len() - 1]);
+    // A trial that fails while it is brought to rest has no history of free motion.
+    let trial_s =
+        if last_s > first_s { last_s - first_s } else { trial.steps as f64 * model.simulation.step_s() };
     let simulation = &model.simulation;
     let sizes = free(simulation).map(|block| radius_m(&simulation.shape(block).operator));
     let visible_m = VISIBLE * sizes.fold(f64::INFINITY, f64::min);
     // A constant acceleration goes as the square of time.
     let longer = if gone_m > 0.0 { (visible_m / gone_m).sqrt().clamp(1.0, LONGEST) } else { 1.0 };
     let scene = &mut model.loaded.scene;
-    scene.time.end_s = ((last_s - first_s) * longer / scene.time.step_s).ceil().max(1.0) * scene.time.step_s;
+    scene.time.end_s = (trial_s * longer / scene.time.step_s).ceil().max(1.0) * scene.time.step_s;
     scene.settle = None;
     let file = Path::new(&model.loaded.file).to_path_buf();
     model.loaded.scene.output = Output { frames: FRAMES, ..Output::default() };
