@@ -4,7 +4,7 @@
 use ndda_mesh::Vec3;
 use ndda_solver::{Simulation, StepError};
 
-use crate::evidence::Answer::{AtMost, Near, Within};
+use crate::evidence::Answer::{AtMost, Near};
 use crate::evidence::row;
 use crate::simulation;
 
@@ -52,13 +52,48 @@ pub fn contact_rate() -> f64 {
     (2.0 * 4e6 / 2500.0f64).sqrt()
 }
 
-#[test]
-fn the_papers_scheme_throws_back_faster_and_by_as_much_as_theory_says() {
-    for step_s in [2e-3, 1e-3, 5e-4] {
-        let (restitution, ..) = bounce("Newmark(alpha: 0.5, delta: 1)", step_s);
-        let theory = (std::f64::consts::FRAC_PI_4 * contact_rate() * step_s).exp();
-        let what = format!("restitution − 1, the paper's scheme, Δt = {step_s:e} s");
-        row("bounce and contact stability", &what, restitution - 1.0, Within(theory - 1.0, 0.2));
+/// Speed after over before of one mass on a one-sided spring, −ω² d, by the steps of a scheme in one dimension.
+fn one_mass(scheme: &str, step_s: f64) -> f64 {
+    let (dt, rate) = (step_s, contact_rate());
+    // Height above the held block, as in the scene.
+    let (mut x, mut v, mut a, mut touched) = (1e-3, -SPEED_M_S, 0.0, false);
+    let push = |x: f64| rate * rate * (-x).max(0.0);
+    loop {
+        let force;
+        match scheme {
+            "Newmark(alpha: 0.5, delta: 1), contact_at: Predicted" => {
+                force = push(x);
+                x += dt * v + 0.5 * dt * dt * force;
+                v += dt * force;
+            }
+            "Midpoint(theta: 0.5), contact_at: Predicted" => {
+                force = push(x + 0.5 * dt * v);
+                x += dt * (v + 0.5 * dt * force);
+                v += dt * force;
+            }
+            "Midpoint(theta: 0.5), contact_at: End()" => {
+                // F = −ω² x₁ with x₁ = x + Δt v + ½ Δt² F.
+                force = push(x + dt * v) / (1.0 + 0.5 * rate * rate * dt * dt);
+                x += dt * (v + 0.5 * dt * force);
+                v += dt * force;
+            }
+            // Chung & Hulbert 1993, eqs 4–9, 17 and 24, with ρ∞ = 0.8; contact acts where docs/theory/method.md says.
+            "GeneralizedAlpha(radius: 0.8), contact_at: Predicted" => {
+                let (on_mass, on_force) = (0.6 / 1.8, 0.8 / 1.8);
+                let (gamma, beta) = (0.5 - on_mass + on_force, 0.25 * (1.0f64 - on_mass + on_force).powi(2));
+                let lead = on_mass * (0.5 - on_mass) / 3.0;
+                force = push(x + (1.0 - on_force) * dt * v + lead * dt * dt * a);
+                let new = (force - on_mass * a) / (1.0 - on_mass);
+                x += dt * v + dt * dt * ((0.5 - beta) * a + beta * new);
+                v += dt * ((1.0 - gamma) * a + gamma * new);
+                a = new;
+            }
+            other => unreachable!("{other}"),
+        }
+        touched |= force > 0.0;
+        if touched && force == 0.0 {
+            return v / SPEED_M_S;
+        }
     }
 }
 
@@ -76,22 +111,23 @@ fn midpoint_and_generalised_alpha_give_back_what_they_get() {
 }
 
 #[test]
-fn restitution_over_the_step_follows_theory_for_every_scheme() {
+fn restitution_over_the_step_is_that_of_one_mass_on_a_spring_for_every_scheme() {
     // The lines are what docs/pictures/restitution.py draws.
     let schemes = [
-        ("Newmark(alpha: 0.5, delta: 1)", "Predicted", 1.0),
-        ("Midpoint(theta: 0.5)", "Predicted", 0.0),
-        ("GeneralizedAlpha(radius: 0.8)", "Predicted", 0.0),
-        ("Midpoint(theta: 0.5)", "End()", -1.0),
+        ("Newmark(alpha: 0.5, delta: 1)", "Predicted"),
+        ("Midpoint(theta: 0.5)", "Predicted"),
+        ("GeneralizedAlpha(radius: 0.8)", "Predicted"),
+        ("Midpoint(theta: 0.5)", "End()"),
     ];
-    for (integrator, contact_at, sign) in schemes {
+    for (integrator, contact_at) in schemes {
         for h in [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0] {
             let step_s = h / contact_rate();
             let (restitution, ..) = bounce(&format!("{integrator}, contact_at: {contact_at}"), step_s);
             println!("restitution;{integrator};{contact_at};{h};{restitution}");
-            let theory = (sign * std::f64::consts::FRAC_PI_4 * h).exp();
+            let expected = one_mass(&format!("{integrator}, contact_at: {contact_at}"), step_s);
             let what = format!("restitution, {integrator}, contact_at {contact_at}, h = {h}");
-            row("bounce and contact stability", &what, restitution, Near(theory, 0.35 * h));
+            // The sides of both blocks are nearer than the depth of 9 mm along a rim of their face of 1 m: contact is softer by 2 %.
+            row("bounce and contact stability", &what, restitution, Near(expected, 0.025 * h));
         }
     }
 }
