@@ -1,6 +1,8 @@
 //! The command line's arguments.
 
 mod joint;
+#[cfg(feature = "plots")]
+mod picture;
 mod safety;
 mod study;
 mod trial;
@@ -9,6 +11,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 pub use joint::{JointArgs, JointTestKind};
+#[cfg(feature = "plots")]
+pub use picture::PictureArgs;
 pub use safety::{SafetyArgs, SafetyBy};
 pub use study::{Emit, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 pub use trial::{CertifyArgs, TrialHow, TuneArgs};
@@ -120,6 +124,15 @@ pub enum Verb {
     /// Not in this program, which was built without the feature `plots`.
     #[cfg(not(feature = "plots"))]
     Plot(AbsentArgs),
+    /// Draw the blocks of a run, or of a scene before it runs, in 3D as a picture or an animation.
+    ///
+    /// Shows the blocks that have moved and what is around them, with a scale of colours, axes and a scale bar; blocks at rest
+    /// that hide them are seen through. Needs neither browser nor graphics card.
+    #[cfg(feature = "plots")]
+    Picture(PictureArgs),
+    /// Not in this program, which was built without the feature `plots`.
+    #[cfg(not(feature = "plots"))]
+    Picture(AbsentArgs),
 }
 
 /// Arguments of a verb that this program was built without: whatever is typed.

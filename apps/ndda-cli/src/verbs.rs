@@ -7,6 +7,8 @@ pub mod joint;
 pub mod mesh;
 pub mod new;
 #[cfg(feature = "plots")]
+pub mod picture;
+#[cfg(feature = "plots")]
 pub mod plot;
 mod processes;
 #[cfg(feature = "report")]

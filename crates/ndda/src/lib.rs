@@ -38,6 +38,7 @@
 //! | [`examples`], [`templates`] | scenes that come with the program |
 //! | `report` | a run as a page of HTML (feature `report`) |
 //! | `picture` | pictures as SVG and PNG (features `plots`, `png`) |
+//! | `view3d` | pictures and animations of blocks in 3D (features `plots`, `png`) |
 
 pub mod build;
 pub mod certify;
@@ -45,6 +46,8 @@ pub mod columns;
 pub mod driver;
 pub mod examples;
 pub mod explain;
+#[cfg(any(feature = "plots", feature = "report"))]
+mod field;
 pub mod forecast;
 pub mod joint;
 pub mod judge;
@@ -62,8 +65,12 @@ pub mod report;
 pub mod run;
 pub mod safety;
 pub mod study;
+#[cfg(any(feature = "plots", feature = "report"))]
+mod surface;
 pub mod templates;
 pub mod tune;
+#[cfg(feature = "plots")]
+pub mod view3d;
 
 pub use model::Model;
 pub use run::{Outcome, Run, RunError};
