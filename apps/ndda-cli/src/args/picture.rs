@@ -16,8 +16,9 @@ use ndda::view3d::{self, Colour, FrameChoice, Resting, View};
 pub struct PictureArgs {
     /// Output folder of a run, or a scene file.
     pub input: PathBuf,
-    /// Which frame: last, first, a number from 0, or the nearest to a time, as 0.35s.
-    #[arg(long, value_name = "FRAME", default_value = "last")]
+    /// Which frame: last, first, a number from 0, or the nearest to a time, as 0.35s; auto is the last, and of a mechanism that `ndda
+    /// safety` found the first at which motion is seen.
+    #[arg(long, value_name = "FRAME", default_value = "auto")]
     pub frame: FrameChoice,
     /// Where the viewer stands: iso, top, front (in the south), side (in the east), or AZIMUTH,ELEVATION in degrees, clockwise from
     /// north and above the horizontal.

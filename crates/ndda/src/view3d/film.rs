@@ -11,7 +11,7 @@ const STILL: f64 = 0.01;
 /// A scale that begins below this part of its end begins at zero.
 const NEAR_ZERO: f64 = 0.2;
 /// Values that differ by less than this part of the largest are one value.
-const EQUAL: f64 = 0.01;
+const EQUAL: f64 = 0.1;
 
 /// Blocks at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -149,7 +149,7 @@ mod tests {
     fn a_scale_that_begins_near_zero_or_has_one_value_begins_at_zero() {
         assert_eq!(range([0.5, 4.0].into_iter()), [0.0, 4.0]);
         assert_eq!(range([4.0, 4.0].into_iter()), [0.0, 4.0]);
-        assert_eq!(range([3.99, 4.0].into_iter()), [0.0, 4.0]);
+        assert_eq!(range([3.9, 4.0].into_iter()), [0.0, 4.0]);
     }
 
     #[test]

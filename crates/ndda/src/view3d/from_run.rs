@@ -6,6 +6,7 @@ use std::str::FromStr;
 use ndda_io::folder::{FIELDS_INDEX, SUMMARY};
 use ndda_io::results::{self, FieldFrame, ListedFrame};
 use ndda_mesh::Vec3;
+use ndda_mesh::geometry::Aabb;
 
 use super::Colour;
 use super::error::ViewError;
@@ -15,12 +16,16 @@ use crate::surface::Surface;
 
 /// Folder of the failing run in the output folder of `ndda safety`.
 const MECHANISM: &str = "mechanism";
+/// A mechanism is seen when a block has gone this part of its size.
+const SEEN: f64 = 0.1;
 
 /// Which frame of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum FrameChoice {
-    /// The last.
+    /// The last; of a mechanism that `ndda safety` found, the first at which a block has gone a tenth of its size.
     #[default]
+    Auto,
+    /// The last.
     Last,
     /// By its number, from 0.
     Number(usize),
@@ -34,6 +39,7 @@ impl FromStr for FrameChoice {
     fn from_str(text: &str) -> Result<Self, String> {
         let time = text.strip_suffix('s').and_then(|seconds| seconds.trim().parse().ok());
         match (text, text.parse(), time) {
+            ("auto", ..) => Ok(Self::Auto),
             ("last", ..) => Ok(Self::Last),
             ("first", ..) => Ok(Self::Number(0)),
             (_, Ok(number), _) => Ok(Self::Number(number)),
@@ -47,6 +53,7 @@ impl FromStr for FrameChoice {
 impl std::fmt::Display for FrameChoice {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         match self {
+            Self::Auto => write!(f, "auto"),
             Self::Last => write!(f, "last"),
             Self::Number(number) => write!(f, "{number}"),
             Self::Time(time_s) => write!(f, "{time_s}s"),
@@ -76,7 +83,13 @@ pub fn read(folder: &Path, frames: Frames, colour: &Colour) -> Result<Film, View
     let start = positions(&first, &surface, &first_listed.path)?;
     let source = Source::find(colour, &first, &surface)?;
     let mut moments = Vec::new();
-    for index in chosen(frames, &listed)? {
+    let shown = match frames {
+        Frames::One(FrameChoice::Auto) if folder.ends_with(MECHANISM) => {
+            vec![seen(&listed, &first, &surface)?]
+        }
+        _ => chosen(frames, &listed)?,
+    };
+    for index in shown {
         let ListedFrame { time_s, path } = &listed[index];
         let frame = results::frame(path)?;
         compare(path, &first, &frame)?;
@@ -111,7 +124,7 @@ fn chosen(frames: Frames, listed: &[ListedFrame]) -> Result<Vec<usize>, ViewErro
     let distance = |frame: &ListedFrame, time_s: f64| (frame.time_s - time_s).abs();
     match frames {
         Frames::Most(most) => Ok(evenly(listed.len(), most)),
-        Frames::One(FrameChoice::Last) => Ok(vec![last]),
+        Frames::One(FrameChoice::Last | FrameChoice::Auto) => Ok(vec![last]),
         Frames::One(FrameChoice::Number(number)) if number <= last => Ok(vec![number]),
         Frames::One(FrameChoice::Time(time_s))
             if (0.0..=listed[last].time_s * (1.0 + 1e-9)).contains(&time_s) =>
@@ -127,6 +140,28 @@ fn chosen(frames: Frames, listed: &[ListedFrame]) -> Result<Vec<usize>, ViewErro
             last_s: listed[last].time_s,
         }),
     }
+}
+
+/// The first frame at which a block has gone a part of its size; the last where none has.
+fn seen(listed: &[ListedFrame], first: &FieldFrame, surface: &Surface) -> Result<usize, ViewError> {
+    let start = positions(first, surface, &listed[0].path)?;
+    let mut bounds = vec![Aabb::empty(); surface.block_count()];
+    for (corners, &block) in surface.triangles.iter().zip(&surface.blocks) {
+        corners.iter().for_each(|&n| bounds[block as usize].grow(&start[n as usize]));
+    }
+    for (index, ListedFrame { path, .. }) in listed.iter().enumerate() {
+        let frame = results::frame(path)?;
+        compare(path, first, &frame)?;
+        let now = positions(&frame, surface, path)?;
+        let has_gone = |(corners, &block): (&[u32; 3], &u32)| {
+            let moved = (now[corners[0] as usize] - start[corners[0] as usize]).norm();
+            moved > SEEN * bounds[block as usize].diagonal()
+        };
+        if surface.triangles.iter().zip(&surface.blocks).any(has_gone) {
+            return Ok(index);
+        }
+    }
+    Ok(listed.len() - 1)
 }
 
 /// At most `most` of `count` frames, at least one.

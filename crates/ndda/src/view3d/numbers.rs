@@ -42,6 +42,19 @@ pub fn ticks(low: f64, high: f64, count: usize) -> Vec<f64> {
     (first..=last).map(|i| i as f64 * step).collect()
 }
 
+/// A value of a scale, with enough digits to tell its marks apart and at least three of the largest.
+pub fn on_scale(value: f64, low: f64, high: f64) -> String {
+    let largest = low.abs().max(high.abs());
+    if !(1e-3..1e5).contains(&largest) {
+        return three_digits(value);
+    }
+    let of_span = if high > low { (-(high - low).log10()).ceil() + 1.0 } else { 0.0 };
+    let decimals = of_span.max(2.0 - largest.log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    if text == "-0" { "0".into() } else { text.into() }
+}
+
 /// A number of three digits, without zeros at the end.
 pub fn three_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
@@ -77,6 +90,18 @@ mod tests {
             assert!((round_below(most) / found - 1.0).abs() < 1e-12, "{most}");
         }
         assert_eq!(round_below(0.0), 1.0);
+    }
+
+    #[test]
+    fn marks_of_a_scale_have_the_digits_that_tell_them_apart() {
+        let marks = |low: f64, high: f64| {
+            let marks = [low, 0.5 * (low + high), high];
+            marks.map(|value| on_scale(value, low, high)).join(" ")
+        };
+        assert_eq!(marks(0.0, 1.108), "0 0.55 1.11");
+        assert_eq!(marks(2.43, 2.45), "2.43 2.44 2.45");
+        assert_eq!(marks(-768.4, 0.0), "-768 -384 0");
+        assert_eq!(marks(0.0, 2e7), "0 1e7 2e7");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use ndda_mesh::Vec3;
 
 use super::camera::{Axes, Camera, Pane};
 use super::film::{Colouring, Film};
-use super::numbers::{round_below, three_digits, ticks, unit_for};
+use super::numbers::{on_scale, round_below, three_digits, ticks, unit_for};
 use super::paint::{Rgb, Theme, group_colour, hex, viridis};
 
 /// Colours of the axes x, y and z.
@@ -189,7 +189,7 @@ fn scale(
         let y = at(value);
         let colour = if bold { theme.text } else { theme.faint };
         svg.line([x + width, y], [x + width + 5.0 * u, y], 1.2 * u, colour);
-        let words = three_digits(value / size);
+        let words = on_scale(value / size, low / size, high / size);
         svg.words([x + width + 10.0 * u, y], 13.0 * u, Anchor::Start, colour, room - width, &words);
     };
     mark(high, true);
