@@ -4,6 +4,7 @@ mod joint;
 #[cfg(feature = "plots")]
 mod picture;
 mod safety;
+mod stereonet;
 mod study;
 mod trial;
 
@@ -14,6 +15,7 @@ pub use joint::{JointArgs, JointTestKind};
 #[cfg(feature = "plots")]
 pub use picture::PictureArgs;
 pub use safety::{SafetyArgs, SafetyBy};
+pub use stereonet::StereonetArgs;
 pub use study::{Emit, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 
@@ -118,6 +120,8 @@ pub enum Verb {
     /// runs of it, and prints the front of error against time, the settings as --set lines, and what was tried. Writes
     /// tune.json. The same command goes on where it was interrupted. How it searches: docs/guide/certify.md.
     Tune(TuneArgs),
+    /// Draw joints on a stereonet: poles, mean and concentration of each set, and which may slide or topple out of a slope.
+    Stereonet(StereonetArgs),
     /// Draw columns of histories.
     #[cfg(feature = "plots")]
     Plot(PlotArgs),
@@ -223,32 +227,16 @@ pub struct MeshArgs {
     /// Replace the results of an earlier call in the output folder.
     #[arg(long)]
     pub force: bool,
-    /// Write the blocks in other formats, too: `polyhedra` and `obj` are the convex parts of rock before they are filled.
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "FORMAT")]
-    pub also: Vec<Export>,
+    /// Write the blocks in other formats, too: gmsh, abaqus, tetgen, vtu (with node sets), and polyhedra or obj (the convex parts of
+    /// rock before they are filled).
+    #[arg(long, value_delimiter = ',', value_name = "FORMAT")]
+    pub also: Vec<ndda::mesh_export::Export>,
     /// Print the report as JSON, one object on a line (see docs/reference/json.md).
     #[arg(long)]
     pub json: bool,
     /// Override a value of the scene by its path; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub overrides: Vec<String>,
-}
-
-/// A format of meshes or blocks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Export {
-    /// mesh.msh, with a physical volume per block.
-    Gmsh,
-    /// mesh.inp.
-    Abaqus,
-    /// mesh.node, mesh.ele and mesh.face.
-    Tetgen,
-    /// mesh.vtu, with the sets of nodes.
-    Vtu,
-    /// ROCK_parts.vtu, with the blocks of a rock as polyhedra.
-    Polyhedra,
-    /// ROCK_parts.obj.
-    Obj,
 }
 
 /// A repair.

@@ -19,7 +19,7 @@ use verbs::report;
 use verbs::schema;
 #[cfg(feature = "shell")]
 use verbs::shell;
-use verbs::{certify, check, explain, joint, mesh, new, resume, run, safety, study, tune};
+use verbs::{certify, check, explain, joint, mesh, new, resume, run, safety, stereonet, study, tune};
 #[cfg(feature = "plots")]
 use verbs::{picture, plot};
 
@@ -57,6 +57,7 @@ fn main() -> ExitCode {
         Verb::Joint(args) => joint::joint(&args),
         Verb::Safety(args) => safety::safety(&args),
         Verb::Tune(args) => tune::tune(&args),
+        Verb::Stereonet(args) => stereonet::stereonet(&args),
         Verb::Study(args) => study::study(&args),
         #[cfg(feature = "plots")]
         Verb::Plot(args) => plot::plot(&args),

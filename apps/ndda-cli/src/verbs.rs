@@ -20,6 +20,7 @@ pub mod safety;
 pub mod schema;
 #[cfg(feature = "shell")]
 pub mod shell;
+pub mod stereonet;
 pub mod study;
 mod trial;
 pub mod tune;

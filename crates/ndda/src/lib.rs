@@ -34,6 +34,7 @@
 //! | [`study`] | many runs of one scene: error against time |
 //! | [`certify`] | every result as value ± error |
 //! | [`joint`] | direct shear and closure of one joint, without blocks |
+//! | [`stereonet`] | orientations of joints, and kinematic checks of a slope |
 //! | [`tune`] | the cheapest settings that reach an error |
 //! | [`examples`], [`templates`] | scenes that come with the program |
 //! | `report` | a run as a page of HTML (feature `report`) |
@@ -52,6 +53,7 @@ pub mod forecast;
 pub mod joint;
 pub mod judge;
 pub mod machine;
+pub mod mesh_export;
 #[cfg(feature = "plots")]
 pub mod mesh_picture;
 pub mod mesh_report;
@@ -64,6 +66,7 @@ pub mod plot;
 pub mod report;
 pub mod run;
 pub mod safety;
+pub mod stereonet;
 pub mod study;
 #[cfg(any(feature = "plots", feature = "report"))]
 mod surface;

@@ -1,5 +1,6 @@
 //! Pictures: drawn once as SVG; a PNG is that SVG rendered with a font that the program brings.
 
+pub mod svg;
 #[cfg(feature = "png")]
 mod text;
 
@@ -56,7 +57,15 @@ pub fn colour(i: usize) -> RGBColor {
 /// [`WriteError::Encode`] when it cannot be drawn; [`WriteError::Io`] when it cannot be written.
 pub fn write(path: &Path, size: (u32, u32), draw: impl FnOnce(&Area) -> Drawn) -> Result<(), WriteError> {
     let encode = |reason: String| WriteError::Encode { path: path.to_path_buf(), reason };
-    let svg = svg(size, draw).map_err(|e| encode(e.to_string()))?;
+    write_svg(path, svg(size, draw).map_err(|e| encode(e.to_string()))?)
+}
+
+/// Writes an SVG picture to `path`, as PNG if that is its ending.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_svg(path: &Path, svg: String) -> Result<(), WriteError> {
+    let encode = |reason: String| WriteError::Encode { path: path.to_path_buf(), reason };
     let bytes = match path.extension().and_then(|ending| ending.to_str()) {
         Some("svg") => svg.into_bytes(),
         Some("png") => png(&svg).map_err(encode)?,

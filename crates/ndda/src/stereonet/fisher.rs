@@ -122,7 +122,10 @@ mod tests {
         assert_eq!(fisher(&[]), None);
         for count in [1, 5] {
             let found = fisher(&vec![plane(33.0, 210.0); count]).unwrap();
-            assert!((found.mean.dip_deg - 33.0).abs() < 1e-9 && (found.mean.dip_direction_deg - 210.0).abs() < 1e-9);
+            assert!(
+                (found.mean.dip_deg - 33.0).abs() < 1e-9
+                    && (found.mean.dip_direction_deg - 210.0).abs() < 1e-9
+            );
             assert_eq!((found.k, found.confidence_95_deg, found.planes), (None, None, count));
         }
     }

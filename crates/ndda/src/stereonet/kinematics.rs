@@ -133,8 +133,12 @@ mod tests {
         let line = plane(40.0, 130.0).intersection(&plane(60.0, 220.0)).unwrap();
         // Trend 155.85° and plunge 37.06°, by the closed form in the tests of orientations.
         assert!(slope(65.0, 156.0, 30.0).wedge_slides(&line));
-        assert!(!slope(65.0, 156.0, 37.1).wedge_slides(&line) && slope(65.0, 156.0, 37.0).wedge_slides(&line));
-        assert!(!slope(37.0, 155.85, 30.0).wedge_slides(&line) && slope(37.1, 155.85, 30.0).wedge_slides(&line));
+        assert!(
+            !slope(65.0, 156.0, 37.1).wedge_slides(&line) && slope(65.0, 156.0, 37.0).wedge_slides(&line)
+        );
+        assert!(
+            !slope(37.0, 155.85, 30.0).wedge_slides(&line) && slope(37.1, 155.85, 30.0).wedge_slides(&line)
+        );
         assert!(!slope(65.0, 336.0, 30.0).wedge_slides(&line));
     }
 

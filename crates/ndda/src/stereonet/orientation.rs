@@ -118,6 +118,9 @@ mod tests {
 
     #[test]
     fn azimuths_are_compared_across_north() {
-        assert_eq!((between_deg(350.0, 15.0), between_deg(10.0, 190.0), between_deg(-10.0, 350.0)), (25.0, 180.0, 0.0));
+        assert_eq!(
+            (between_deg(350.0, 15.0), between_deg(10.0, 190.0), between_deg(-10.0, 350.0)),
+            (25.0, 180.0, 0.0)
+        );
     }
 }

@@ -3,6 +3,7 @@
 use std::str::FromStr;
 
 use ndda_mesh::Vec3;
+use ndda_mesh::cut::sin_cos;
 
 /// The names of directions, with azimuth and elevation [°].
 const NAMED: [(&str, f64, f64); 4] =
@@ -128,17 +129,6 @@ impl Axes {
     /// Place in the plane of the picture, and distance towards the viewer [m].
     pub fn plane(&self, x: &Vec3) -> ([f64; 2], f64) {
         ([self.right.dot(x), self.up.dot(x)], self.towards.dot(x))
-    }
-}
-
-/// Sine and cosine of degrees, exact at right angles.
-fn sin_cos(degrees: f64) -> (f64, f64) {
-    match degrees.rem_euclid(360.0) {
-        0.0 => (0.0, 1.0),
-        90.0 => (1.0, 0.0),
-        180.0 => (0.0, -1.0),
-        270.0 => (-1.0, 0.0),
-        other => other.to_radians().sin_cos(),
     }
 }
 

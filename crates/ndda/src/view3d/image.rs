@@ -5,10 +5,11 @@ use base64::prelude::BASE64_STANDARD;
 
 use super::camera::View;
 use super::film::{Film, Moment};
-use super::overlay::{self, Layout, Svg};
+use super::overlay::{self, Layout};
 use super::paint::{DARK_THEME, LIGHT_THEME, Theme, hex};
 use super::raster::Pixels;
 use super::stage::{Resting, Setting, Stage};
+use crate::picture::svg::Svg;
 
 /// Fewest pixels on a side.
 pub const SMALLEST_PX: u32 = 160;

@@ -1,13 +1,12 @@
 //! Everything beside the blocks, as SVG: title, scale of colours, axes and scale bar.
 
-use std::fmt::Write as _;
-
 use ndda_mesh::Vec3;
 
 use super::camera::{Axes, Camera, Pane};
 use super::film::{Colouring, Film};
 use super::numbers::{on_scale, round_below, three_digits, ticks, unit_for};
-use super::paint::{Rgb, Theme, group_colour, hex, viridis};
+use super::paint::{Theme, group_colour, viridis};
+use crate::picture::svg::{Anchor, Rgb, Svg};
 
 /// Colours of the axes x, y and z.
 const AXIS_COLOURS: [Rgb; 3] = [[205, 62, 54], [44, 146, 84], [56, 118, 200]];
@@ -15,93 +14,6 @@ const AXIS_COLOURS: [Rgb; 3] = [[205, 62, 54], [44, 146, 84], [56, 118, 200]];
 const MOST_GROUPS: usize = 14;
 /// The scale bar is at most this part of the pane's width.
 const BAR_PART: f64 = 0.22;
-
-/// Where text stands relative to its place.
-#[derive(Clone, Copy)]
-pub enum Anchor {
-    /// To the right of it.
-    Start,
-    /// In the middle of it.
-    Middle,
-    /// To the left of it.
-    End,
-}
-
-/// An SVG picture that grows.
-pub struct Svg {
-    text: String,
-}
-
-impl Svg {
-    /// An empty picture of so many pixels.
-    pub fn new([width, height]: [usize; 2]) -> Self {
-        let text = format!(
-            "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\">\n"
-        );
-        Self { text }
-    }
-
-    /// The picture as a file.
-    pub fn finish(self) -> String {
-        self.text + "</svg>\n"
-    }
-
-    /// Adds an element as it is written.
-    pub fn raw(&mut self, element: &str) {
-        self.text.push_str(element);
-        self.text.push('\n');
-    }
-
-    fn line(&mut self, [x1, y1]: [f64; 2], [x2, y2]: [f64; 2], width: f64, colour: Rgb) {
-        let _ = writeln!(
-            self.text,
-            "<line x1=\"{x1:.2}\" y1=\"{y1:.2}\" x2=\"{x2:.2}\" y2=\"{y2:.2}\" stroke=\"{}\" stroke-width=\"{width:.2}\"/>",
-            hex(colour)
-        );
-    }
-
-    fn rect(&mut self, [x, y]: [f64; 2], [width, height]: [f64; 2], colour: Rgb) {
-        let _ = writeln!(
-            self.text,
-            "<rect x=\"{x:.2}\" y=\"{y:.2}\" width=\"{width:.2}\" height=\"{height:.2}\" fill=\"{}\"/>",
-            hex(colour)
-        );
-    }
-
-    fn polygon(&mut self, points: &[[f64; 2]], colour: Rgb) {
-        let points: Vec<String> = points.iter().map(|[x, y]| format!("{x:.2},{y:.2}")).collect();
-        let _ = writeln!(self.text, "<polygon points=\"{}\" fill=\"{}\"/>", points.join(" "), hex(colour));
-    }
-
-    /// Text whose middle line is at a height; cut where it is wider than `room`.
-    fn words(&mut self, [x, y]: [f64; 2], size: f64, anchor: Anchor, colour: Rgb, room: f64, words: &str) {
-        let anchor = match anchor {
-            Anchor::Start => "start",
-            Anchor::Middle => "middle",
-            Anchor::End => "end",
-        };
-        let _ = writeln!(
-            self.text,
-            "<text x=\"{x:.2}\" y=\"{y:.2}\" dy=\"0.36em\" text-anchor=\"{anchor}\" font-family=\"DejaVu Sans, sans-serif\" font-size=\"{size:.2}\" fill=\"{}\">\n{}\n</text>",
-            hex(colour),
-            escaped(&shortened(words, (room / (0.56 * size)) as usize))
-        );
-    }
-}
-
-/// At most so many letters.
-fn shortened(words: &str, most: usize) -> String {
-    if words.chars().count() <= most {
-        return words.to_string();
-    }
-    words.chars().take(most.saturating_sub(1)).chain(['…']).collect()
-}
-
-/// Text that is no markup; letters that XML does not have are left out.
-fn escaped(words: &str) -> String {
-    let kept: String = words.chars().filter(|c| !c.is_control()).collect();
-    kept.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
 
 /// Places of everything in a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -247,12 +159,7 @@ pub fn triad(svg: &mut Svg, layout: &Layout, theme: &Theme, axes: &Axes) {
         svg.line(centre, tip, 2.2 * u, AXIS_COLOURS[i]);
         if long < 0.2 {
             // An axis along the line of sight is a dot.
-            let (x, y) = (tip[0], tip[1]);
-            svg.raw(&format!(
-                "<circle cx=\"{x:.2}\" cy=\"{y:.2}\" r=\"{:.2}\" fill=\"{}\"/>",
-                3.4 * u,
-                hex(AXIS_COLOURS[i])
-            ));
+            svg.circle(tip, 3.4 * u, AXIS_COLOURS[i]);
             let beside = [centre[0] - 10.0 * u, centre[1] + 12.0 * u];
             svg.words(beside, 13.0 * u, Anchor::End, theme.text, 60.0 * u, named[i].1);
             continue;
@@ -325,14 +232,5 @@ mod tests {
             let expected = length_m * layout.pane.width / width_m;
             assert!((ends[1] - ends[0] - expected).abs() < 0.02, "{width_m}: {ends:?} {expected}");
         }
-    }
-
-    #[test]
-    fn words_of_a_scene_are_no_markup() {
-        let mut svg = Svg::new([100, 100]);
-        svg.words([0.0, 0.0], 10.0, Anchor::Start, [0; 3], 1e3, "</text><script>&\"\u{1}");
-        let text = svg.finish();
-        assert!(text.contains("&lt;/text&gt;&lt;script&gt;&amp;&quot;\n") && !text.contains("<script"));
-        assert_eq!(shortened("abcdef", 4), "abc…");
     }
 }

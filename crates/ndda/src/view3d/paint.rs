@@ -2,8 +2,7 @@
 
 use ndda_mesh::Vec3;
 
-/// Red, green and blue.
-pub type Rgb = [u8; 3];
+pub use crate::picture::svg::{Rgb, hex};
 
 /// Matplotlib's viridis at even places, without its darkest ninth, where edges would not be seen; as in the report.
 const VIRIDIS: [Rgb; 9] = [
@@ -89,11 +88,6 @@ pub fn lit(colour: Rgb, brightness: f64) -> Rgb {
 pub fn mix(from: Rgb, to: Rgb, part: f64) -> Rgb {
     let between = |i: usize| f64::from(from[i]) + part * (f64::from(to[i]) - f64::from(from[i]));
     [0, 1, 2].map(|i| between(i).round() as u8)
-}
-
-/// A colour as SVG writes it.
-pub fn hex([r, g, b]: Rgb) -> String {
-    format!("#{r:02x}{g:02x}{b:02x}")
 }
 
 #[cfg(test)]
