@@ -72,10 +72,10 @@ pub enum Verb {
     /// Not in this program, which was built without the feature `shell`.
     #[cfg(not(feature = "shell"))]
     Man(AbsentArgs),
-    /// Build or read the blocks of a scene or a mesh file, check and measure them, and draw them.
+    /// Build or read the blocks of a scene or a mesh file, check and measure them, and draw histograms of them.
     ///
     /// Prints counts, volumes, how large blocks are, how good their tetrahedra are (histograms, and the worst ten with
-    /// their places), the steps that contact of each material requires, and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg.
+    /// their places), the steps that contact of each material requires, and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg (histograms). `ndda picture` draws the blocks.
     /// Tetrahedra with dihedral angles of a few degrees or an aspect above 50 make runs inexact or short of steps:
     /// use larger spacings, another `fill`, or `sliver_width_m`.
     Mesh(MeshArgs),

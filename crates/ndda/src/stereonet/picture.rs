@@ -147,7 +147,7 @@ fn key(svg: &mut Svg, stereonet: &Stereonet, face: Option<Orientation>, friction
     }
     line(svg, &|_, _| (), "");
     if stereonet.sets.iter().any(|set| set.fisher.planes > 1) {
-        line(svg, &|svg, at| square(svg, at, GREY), "mean pole of a set (its plane: thin line)");
+        line(svg, &|svg, at| square(svg, at, GREY), "mean pole of a set");
     }
     if !stereonet.wedges.is_empty() {
         line(svg, &|svg, at| triangle(svg, at, INK), "intersection of mean planes");
