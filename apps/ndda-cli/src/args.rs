@@ -1,7 +1,10 @@
 //! The command line's arguments.
 
 mod joint;
+#[cfg(feature = "plots")]
+mod picture;
 mod safety;
+mod stereonet;
 mod study;
 mod trial;
 
@@ -9,7 +12,10 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 pub use joint::{JointArgs, JointTestKind};
+#[cfg(feature = "plots")]
+pub use picture::PictureArgs;
 pub use safety::{SafetyArgs, SafetyBy};
+pub use stereonet::StereonetArgs;
 pub use study::{Emit, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 
@@ -66,10 +72,10 @@ pub enum Verb {
     /// Not in this program, which was built without the feature `shell`.
     #[cfg(not(feature = "shell"))]
     Man(AbsentArgs),
-    /// Build or read the blocks of a scene or a mesh file, check and measure them, and draw them.
+    /// Build or read the blocks of a scene or a mesh file, check and measure them, and draw histograms of them.
     ///
     /// Prints counts, volumes, how large blocks are, how good their tetrahedra are (histograms, and the worst ten with
-    /// their places), the steps that contact of each material requires, and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg.
+    /// their places), the steps that contact of each material requires, and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg (histograms). `ndda picture` draws the blocks.
     /// Tetrahedra with dihedral angles of a few degrees or an aspect above 50 make runs inexact or short of steps:
     /// use larger spacings, another `fill`, or `sliver_width_m`.
     Mesh(MeshArgs),
@@ -114,12 +120,23 @@ pub enum Verb {
     /// runs of it, and prints the front of error against time, the settings as --set lines, and what was tried. Writes
     /// tune.json. The same command goes on where it was interrupted. How it searches: docs/guide/certify.md.
     Tune(TuneArgs),
+    /// Draw joints on a stereonet: poles, mean and concentration of each set, and which may slide or topple out of a slope.
+    Stereonet(StereonetArgs),
     /// Draw columns of histories.
     #[cfg(feature = "plots")]
     Plot(PlotArgs),
     /// Not in this program, which was built without the feature `plots`.
     #[cfg(not(feature = "plots"))]
     Plot(AbsentArgs),
+    /// Draw the blocks of a run, or of a scene before it runs, in 3D as a picture or an animation.
+    ///
+    /// Shows the blocks that have moved and what is around them, with a scale of colours, axes and a scale bar; blocks at rest
+    /// that hide them are seen through. Needs neither browser nor graphics card.
+    #[cfg(feature = "plots")]
+    Picture(PictureArgs),
+    /// Not in this program, which was built without the feature `plots`.
+    #[cfg(not(feature = "plots"))]
+    Picture(AbsentArgs),
 }
 
 /// Arguments of a verb that this program was built without: whatever is typed.
@@ -210,32 +227,16 @@ pub struct MeshArgs {
     /// Replace the results of an earlier call in the output folder.
     #[arg(long)]
     pub force: bool,
-    /// Write the blocks in other formats, too: `polyhedra` and `obj` are the convex parts of rock before they are filled.
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "FORMAT")]
-    pub also: Vec<Export>,
+    /// Write the blocks in other formats, too: gmsh, abaqus, tetgen, vtu (with node sets), and polyhedra or obj (the convex parts of
+    /// rock before they are filled).
+    #[arg(long, value_delimiter = ',', value_name = "FORMAT")]
+    pub also: Vec<ndda::mesh_export::Export>,
     /// Print the report as JSON, one object on a line (see docs/reference/json.md).
     #[arg(long)]
     pub json: bool,
     /// Override a value of the scene by its path; may be repeated.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub overrides: Vec<String>,
-}
-
-/// A format of meshes or blocks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Export {
-    /// mesh.msh, with a physical volume per block.
-    Gmsh,
-    /// mesh.inp.
-    Abaqus,
-    /// mesh.node, mesh.ele and mesh.face.
-    Tetgen,
-    /// mesh.vtu, with the sets of nodes.
-    Vtu,
-    /// ROCK_parts.vtu, with the blocks of a rock as polyhedra.
-    Polyhedra,
-    /// ROCK_parts.obj.
-    Obj,
 }
 
 /// A repair.

@@ -13,15 +13,15 @@ use ndda::forecast::memory as limits;
 
 use args::{Cli, Verb};
 use terminal::console::has_lost;
-#[cfg(feature = "plots")]
-use verbs::plot;
 #[cfg(feature = "report")]
 use verbs::report;
 #[cfg(feature = "schema")]
 use verbs::schema;
 #[cfg(feature = "shell")]
 use verbs::shell;
-use verbs::{certify, check, explain, joint, mesh, new, resume, run, safety, study, tune};
+use verbs::{certify, check, explain, joint, mesh, new, resume, run, safety, stereonet, study, tune};
+#[cfg(feature = "plots")]
+use verbs::{picture, plot};
 
 fn main() -> ExitCode {
     let Cli { memory, verb } = Cli::parse();
@@ -57,11 +57,14 @@ fn main() -> ExitCode {
         Verb::Joint(args) => joint::joint(&args),
         Verb::Safety(args) => safety::safety(&args),
         Verb::Tune(args) => tune::tune(&args),
+        Verb::Stereonet(args) => stereonet::stereonet(&args),
         Verb::Study(args) => study::study(&args),
         #[cfg(feature = "plots")]
         Verb::Plot(args) => plot::plot(&args),
+        #[cfg(feature = "plots")]
+        Verb::Picture(args) => picture::picture(&args),
         #[cfg(not(feature = "plots"))]
-        Verb::Plot(_) => absent("plots"),
+        Verb::Plot(_) | Verb::Picture(_) => absent("plots"),
     };
     let lost = outcome == exit::DONE && !results_in_files && has_lost();
     ExitCode::from(if lost { exit::INPUT_OUTPUT } else { outcome })

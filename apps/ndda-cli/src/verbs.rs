@@ -7,6 +7,8 @@ pub mod joint;
 pub mod mesh;
 pub mod new;
 #[cfg(feature = "plots")]
+pub mod picture;
+#[cfg(feature = "plots")]
 pub mod plot;
 mod processes;
 #[cfg(feature = "report")]
@@ -18,6 +20,7 @@ pub mod safety;
 pub mod schema;
 #[cfg(feature = "shell")]
 pub mod shell;
+pub mod stereonet;
 pub mod study;
 mod trial;
 pub mod tune;

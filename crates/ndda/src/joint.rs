@@ -14,6 +14,7 @@
 mod closed_form;
 mod closure;
 mod compare;
+mod files;
 mod normal;
 mod path;
 #[cfg(feature = "plots")]
@@ -26,11 +27,10 @@ mod side;
 pub use closed_form::shear as shear_comparisons;
 pub use closure::{ClosureRow, ClosureTest, comparisons as closure_comparisons};
 pub use compare::Comparison;
+pub use files::write;
 pub use normal::NormalStiffness;
 pub use path::path;
-#[cfg(feature = "plots")]
-pub use picture::{draw_closure, draw_shear};
-pub use report::{Rows, closure_csv, shear_csv, text};
+pub use report::{Rows, text};
 pub use select::{SelectError, Which, friction, normal_stiffness};
 pub use shear::{Hold, ShearRow, ShearTest};
 

@@ -35,10 +35,12 @@
 //! | [`certify`] | every result as value ± error |
 //! | [`safety`] | the factor of safety of a slope, and how its blocks fail |
 //! | [`joint`] | direct shear and closure of one joint, without blocks |
+//! | [`stereonet`] | orientations of joints, and kinematic checks of a slope |
 //! | [`tune`] | the cheapest settings that reach an error |
 //! | [`examples`], [`templates`] | scenes that come with the program |
 //! | `report` | a run as a page of HTML (feature `report`) |
 //! | `picture` | pictures as SVG and PNG (features `plots`, `png`) |
+//! | `view3d` | pictures and animations of blocks in 3D (features `plots`, `png`) |
 
 pub mod build;
 pub mod certify;
@@ -46,10 +48,13 @@ pub mod columns;
 pub mod driver;
 pub mod examples;
 pub mod explain;
+#[cfg(any(feature = "plots", feature = "report"))]
+mod field;
 pub mod forecast;
 pub mod joint;
 pub mod judge;
 pub mod machine;
+pub mod mesh_export;
 #[cfg(feature = "plots")]
 pub mod mesh_picture;
 pub mod mesh_report;
@@ -62,9 +67,14 @@ pub mod plot;
 pub mod report;
 pub mod run;
 pub mod safety;
+pub mod stereonet;
 pub mod study;
+#[cfg(any(feature = "plots", feature = "report"))]
+mod surface;
 pub mod templates;
 pub mod tune;
+#[cfg(feature = "plots")]
+pub mod view3d;
 
 pub use model::Model;
 pub use run::{Outcome, Run, RunError};

@@ -1,5 +1,6 @@
 //! Pictures: drawn once as SVG; a PNG is that SVG rendered with a font that the program brings.
 
+pub mod svg;
 #[cfg(feature = "png")]
 mod text;
 
@@ -11,6 +12,8 @@ use plotters::coord::Shift;
 use plotters::coord::combinators::{BindKeyPoints, IntoLogRange, LogCoord, WithKeyPoints};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+#[cfg(feature = "png")]
+use resvg::{tiny_skia, usvg};
 
 /// Where things are drawn.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -54,7 +57,15 @@ pub fn colour(i: usize) -> RGBColor {
 /// [`WriteError::Encode`] when it cannot be drawn; [`WriteError::Io`] when it cannot be written.
 pub fn write(path: &Path, size: (u32, u32), draw: impl FnOnce(&Area) -> Drawn) -> Result<(), WriteError> {
     let encode = |reason: String| WriteError::Encode { path: path.to_path_buf(), reason };
-    let svg = svg(size, draw).map_err(|e| encode(e.to_string()))?;
+    write_svg(path, svg(size, draw).map_err(|e| encode(e.to_string()))?)
+}
+
+/// Writes an SVG picture to `path`, as PNG if that is its ending.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_svg(path: &Path, svg: String) -> Result<(), WriteError> {
+    let encode = |reason: String| WriteError::Encode { path: path.to_path_buf(), reason };
     let bytes = match path.extension().and_then(|ending| ending.to_str()) {
         Some("svg") => svg.into_bytes(),
         Some("png") => png(&svg).map_err(encode)?,
@@ -76,13 +87,31 @@ fn svg(size: (u32, u32), draw: impl FnOnce(&Area) -> Drawn) -> Result<String, Bo
 
 #[cfg(feature = "png")]
 fn png(svg: &str) -> Result<Vec<u8>, String> {
-    use resvg::{tiny_skia, usvg};
-    let outlines = text::outlined(svg, dejavu::sans::regular())?;
-    let tree = usvg::Tree::from_str(&outlines, &usvg::Options::default()).map_err(|e| e.to_string())?;
+    let tree = tree(svg)?;
     let size = tree.size().to_int_size().scale_by(PNG_SCALE).ok_or("the picture has no size")?;
     let mut pixels = tiny_skia::Pixmap::new(size.width(), size.height()).ok_or("the picture is too large")?;
     resvg::render(&tree, tiny_skia::Transform::from_scale(PNG_SCALE, PNG_SCALE), &mut pixels.as_mut());
     pixels.encode_png().map_err(|e| e.to_string())
+}
+
+/// Draws an SVG picture over opaque pixels of four bytes, red, green, blue and 255.
+///
+/// # Errors
+/// It is no SVG picture, or the pixels are not as many as the size says.
+#[cfg(feature = "png")]
+pub fn draw_over(svg: &str, rgba: &mut [u8], (width, height): (u32, u32)) -> Result<(), String> {
+    let tree = tree(svg)?;
+    let mut pixels =
+        tiny_skia::PixmapMut::from_bytes(rgba, width, height).ok_or("the pixels do not have this size")?;
+    resvg::render(&tree, tiny_skia::Transform::identity(), &mut pixels);
+    Ok(())
+}
+
+/// A picture with text as outlines, ready to be rendered.
+#[cfg(feature = "png")]
+fn tree(svg: &str) -> Result<usvg::Tree, String> {
+    let outlines = text::outlined(svg, dejavu::sans::regular())?;
+    usvg::Tree::from_str(&outlines, &usvg::Options::default()).map_err(|e| e.to_string())
 }
 
 #[cfg(not(feature = "png"))]

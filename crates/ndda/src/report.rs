@@ -5,14 +5,12 @@
 
 mod certificate;
 mod charts;
-mod colours;
 mod error;
 mod input;
 mod motion;
 mod packed;
 mod page;
 mod sections;
-mod surface;
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -18,6 +18,11 @@ pub const NEW: &str = "ndda.new/1";
 /// Schema of `ndda plot`.
 #[cfg(feature = "plots")]
 pub const PLOT: &str = "ndda.plot/1";
+/// Schema of `ndda stereonet`.
+pub const STEREONET: &str = "ndda.stereonet/1";
+/// Schema of `ndda picture`.
+#[cfg(feature = "plots")]
+pub const PICTURE: &str = "ndda.picture/1";
 /// Schema of `ndda report` and `ndda view`.
 #[cfg(feature = "report")]
 pub const REPORT: &str = "ndda.report/1";

@@ -1,14 +1,11 @@
 //! `ndda joint`: direct shear and closure of one joint of a scene.
 
-use std::path::Path;
-
 use ndda::build::friction::joint_law;
 use ndda::joint::{
     self, ClosureRow, ClosureTest, Comparison, Hold, JointError, NormalStiffness, Rows, ShearRow, ShearTest,
     Which,
 };
 use ndda_io::read::{self, LoadedScene};
-use ndda_io::{WriteError, atomic};
 use serde::Serialize;
 
 use crate::args::{JointArgs, JointTestKind, SceneArgs};
@@ -53,18 +50,19 @@ pub fn joint(args: &JointArgs) -> u8 {
         Ok(done) => done,
         Err(code) => return code,
     };
-    if let Some(Err(error)) = args.out.as_deref().map(|out| write(&done, out)) {
-        complain(&format!("error: {error}"));
-        return exit::of_write(&error);
-    }
-    if args.json {
-        say(&serde_json::to_string_pretty(&done).expect("a test has no NaN"));
-        return exit::DONE;
-    }
     let rows = match &done.rows {
         DoneRows::Shear(rows) => Rows::Shear(rows),
         DoneRows::Closure(rows) => Rows::Closure(rows),
     };
+    let json = serde_json::to_string_pretty(&done).expect("a test has no NaN");
+    if let Some(Err(error)) = args.out.as_deref().map(|out| joint::write(out, &rows, &done.title, &json)) {
+        complain(&format!("error: {error}"));
+        return exit::of_write(&error);
+    }
+    if args.json {
+        say(&json);
+        return exit::DONE;
+    }
     let files = args.out.as_ref().map_or(String::new(), |out| format!("results in {}", out.display()));
     say(format!("{}\n{}{files}", done.title, joint::text(&rows, &done.comparisons)).trim_end());
     exit::DONE
@@ -171,34 +169,4 @@ fn name(args: &JointArgs, loaded: &LoadedScene) -> String {
         (.., Some(_)) => "a joint".into(),
         _ => format!("all joints of `{}`", loaded.scene.title),
     }
-}
-
-/// Writes the table, all of it as JSON, and the picture.
-fn write(done: &Done, out: &Path) -> Result<(), WriteError> {
-    let io = |source| WriteError::Io { operation: "create", path: out.to_path_buf(), source };
-    std::fs::create_dir_all(out).map_err(io)?;
-    let table = match &done.rows {
-        DoneRows::Shear(rows) => joint::shear_csv(rows),
-        DoneRows::Closure(rows) => joint::closure_csv(rows),
-    };
-    atomic::write(&out.join("joint.csv"), table.as_bytes())?;
-    let json = serde_json::to_string_pretty(done).expect("a test has no NaN");
-    atomic::write(&out.join("joint.json"), json.as_bytes())?;
-    draw(done, out)
-}
-
-#[cfg(feature = "plots")]
-fn draw(done: &Done, out: &Path) -> Result<(), WriteError> {
-    ndda::picture::ENDINGS.iter().try_for_each(|ending| {
-        let file = out.join(format!("joint.{ending}"));
-        match &done.rows {
-            DoneRows::Shear(rows) => joint::draw_shear(rows, &done.title, &file),
-            DoneRows::Closure(rows) => joint::draw_closure(rows, &done.title, &file),
-        }
-    })
-}
-
-#[cfg(not(feature = "plots"))]
-fn draw(_: &Done, _: &Path) -> Result<(), WriteError> {
-    Ok(())
 }

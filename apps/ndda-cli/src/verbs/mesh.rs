@@ -5,17 +5,18 @@ use std::path::{Path, PathBuf};
 
 use ndda::build::{self, CutRock, Meshes};
 use ndda::forecast;
+use ndda::mesh_export;
 use ndda::mesh_report::MeshReport;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::folder::MESH_REPORT;
 use ndda_io::read::load;
 use ndda_io::scene::{FieldFormat, Scene};
 use ndda_io::vtu::{self, Frame, Topology};
-use ndda_io::{OutputFolder, WriteError, mesh_file, surface_file, vtk_file};
+use ndda_io::{OutputFolder, WriteError, mesh_file};
 use ndda_mesh::{BlockSet, MeshError, repair};
 use serde::Serialize;
 
-use crate::args::{Export, Fix, MeshArgs};
+use crate::args::{Fix, MeshArgs};
 use crate::terminal::console::say;
 use crate::terminal::events::{self, Events};
 use crate::{exit, input};
@@ -187,40 +188,10 @@ fn write(
     }
     let mut exported = String::new();
     for export in &args.also {
-        for name in written(folder, *export, input)? {
+        for name in mesh_export::write(folder, *export, &input.meshes, &input.rock)? {
             let _ = write!(exported, ", {name}");
         }
     }
     let picture = if cfg!(feature = "plots") { ", mesh.svg (histograms)" } else { "" };
     Ok(format!("{}: blocks.vtu (open it in ParaView), mesh.json{picture}{exported}", folder.display()))
-}
-
-/// Writes the blocks in another format; returns the names of the files.
-fn written(folder: &Path, export: Export, input: &Input) -> Result<Vec<String>, WriteError> {
-    let ending = match export {
-        Export::Gmsh => "msh",
-        Export::Abaqus => "inp",
-        Export::Tetgen => "ele",
-        Export::Vtu => "vtu",
-        Export::Polyhedra | Export::Obj => return parts(folder, export, input),
-    };
-    let name = format!("mesh.{ending}");
-    mesh_file::write(&folder.join(&name), &input.meshes)?;
-    Ok(vec![name])
-}
-
-/// Writes the convex parts of each rock.
-fn parts(folder: &Path, export: Export, input: &Input) -> Result<Vec<String>, WriteError> {
-    let mut names = Vec::new();
-    for CutRock { report, blocks } in &input.rock {
-        let is_obj = export == Export::Obj;
-        let name = format!("{}_parts.{}", report.name, if is_obj { "obj" } else { "vtu" });
-        if is_obj {
-            surface_file::write_blocks(&folder.join(&name), blocks)?;
-        } else {
-            vtk_file::write_polyhedra(&folder.join(&name), blocks)?;
-        }
-        names.push(name);
-    }
-    Ok(names)
 }

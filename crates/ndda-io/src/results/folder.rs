@@ -29,6 +29,8 @@ pub const LOG: &str = "run.log";
 pub const FIELDS_INDEX: &str = "fields.pvd";
 /// File of the report as a page.
 pub const REPORT: &str = "report.html";
+/// Files of `ndda picture`, if no other name is given.
+pub const PICTURES: [&str; 3] = ["picture.png", "picture.svg", "animation.png"];
 /// The newest checkpoint.
 pub const CHECKPOINT: &str = "checkpoint.ndda";
 /// The checkpoint before.
@@ -39,11 +41,14 @@ const WAITING: &str = "checkpoint.new.ndda";
 pub const FIELDS_FOLDER: &str = "fields";
 
 /// Files at the top of the folder, in the order in which an earlier run is deleted: an index before what it lists.
-const TOP_FILES: [&str; 13] = [
+const TOP_FILES: [&str; 16] = [
     CHECKPOINT,
     PREVIOUS,
     WAITING,
     REPORT,
+    PICTURES[0],
+    PICTURES[1],
+    PICTURES[2],
     FIELDS_INDEX,
     HISTORY,
     CONTACTS,

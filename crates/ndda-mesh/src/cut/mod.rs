@@ -25,7 +25,7 @@ pub use blocks::{Blocks, CutReport, Sliver};
 pub use domain::{Axis, Domain, DomainFace};
 pub use error::CutError;
 pub use joints::{Disc, DiscRule, Discontinuity, JointSet, OrientationScatter, SpacingScatter};
-pub use plane::Plane;
+pub use plane::{Plane, dip_normal, sin_cos};
 pub use polyhedron::{Face, Polyhedron};
 pub(crate) use random::frame as plane_frame;
 pub use split::{Split, Tolerance, split};

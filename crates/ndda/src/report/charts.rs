@@ -3,7 +3,7 @@
 use ndda_io::results::Table;
 use serde::Serialize;
 
-use super::colours::split_unit;
+use crate::field::split_unit;
 
 /// Rows of a history that a page holds; longer ones are thinned.
 const MOST_ROWS: usize = 2000;

@@ -5,10 +5,10 @@ use ndda_mesh::Vec3;
 use ndda_mesh::geometry::Aabb;
 use serde::Serialize;
 
-use super::colours::{Field, Place, fields};
 use super::error::ReportError;
 use super::packed::{Codes, Packed, PackedArray};
-use super::surface::Surface;
+use crate::field::{Field, Place, fields};
+use crate::surface::Surface;
 
 /// Codes of all frames before compression [bytes]; runs with more are thinned.
 const MOST_BYTES: usize = 40_000_000;

@@ -3,7 +3,7 @@
 use ndda_io::results::{Array, FieldFrame};
 use ndda_io::vtu::von_mises_pa;
 
-use super::surface::{BLOCK_ID, Surface};
+use crate::surface::{BLOCK_ID, Surface};
 
 /// Arrays that the page shows otherwise: displacement is known from where blocks are.
 const SHOWN_OTHERWISE: [&str; 2] = [BLOCK_ID, "displacement_m"];

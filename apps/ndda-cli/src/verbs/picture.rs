@@ -1,0 +1,67 @@
+//! `ndda picture`: blocks in 3D as a picture or an animation, without a browser.
+
+use std::path::{Path, PathBuf};
+
+use ndda::view3d::{self, Frames, Look, Request, ViewError};
+use serde::Serialize;
+
+use crate::args::PictureArgs;
+use crate::exit;
+use crate::terminal::console::say;
+use crate::terminal::events::{self, Events};
+
+#[derive(Serialize)]
+struct Finished<'a> {
+    exit_code: u8,
+    picture: &'a Path,
+}
+
+/// Runs `ndda picture`; returns the exit code.
+pub fn picture(args: &PictureArgs) -> u8 {
+    let events = Events::new(args.json, events::PICTURE);
+    let out = args.out.clone().unwrap_or_else(|| default_file(args));
+    match view3d::draw(&request(args), &out) {
+        Ok(written) => {
+            events.emit("written", &written);
+            events.emit("finished", &Finished { exit_code: exit::DONE, picture: &out });
+            if !args.json {
+                say(&written.to_string());
+            }
+            exit::DONE
+        }
+        Err(ViewError::Scene(errors)) => events.refuse(&errors),
+        Err(error @ (ViewError::Write(_) | ViewError::Encode { .. } | ViewError::Ffmpeg { .. })) => {
+            events.fail(exit::INPUT_OUTPUT, &error.to_string())
+        }
+        Err(error) => events.fail(exit::BAD_INPUT, &error.to_string()),
+    }
+}
+
+fn request(args: &PictureArgs) -> Request {
+    let size = args.size.unwrap_or(if args.animate { (800, 560) } else { (1200, 800) });
+    Request {
+        input: args.input.clone(),
+        overrides: args.overrides.clone(),
+        frames: if args.animate { Frames::Most(args.frames.into()) } else { Frames::One(args.frame) },
+        colour: args.color.clone(),
+        look: Look {
+            view: args.view,
+            resting: args.resting,
+            whole: args.whole,
+            magnify: args.magnify,
+            outlines: !args.no_outlines,
+            dark: args.dark,
+            size,
+        },
+        per_second: args.fps,
+    }
+}
+
+/// In the folder of a run, or in the present one with the name of the scene; without the feature `png` an SVG picture.
+fn default_file(args: &PictureArgs) -> PathBuf {
+    let ending = if cfg!(feature = "png") { "png" } else { "svg" };
+    match args.input.is_dir() {
+        true => args.input.join(if args.animate { "animation" } else { "picture" }).with_extension(ending),
+        false => Path::new(args.input.file_stem().unwrap_or("scene".as_ref())).with_extension(ending),
+    }
+}

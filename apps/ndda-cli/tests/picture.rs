@@ -1,0 +1,167 @@
+//! `ndda picture` draws runs and scenes, and says what is wrong with what it cannot draw.
+#![cfg(feature = "png")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+mod common;
+
+use common::{exit, ndda};
+
+/// A block that falls beside one that is fixed.
+const SCENE: &str = r#"(title: "A fall", time: (step_s: 1e-3, end_s: 0.1), gravity_m_s2: (0, 0, -9.8), contact: Off,
+    materials: [(name: "granite", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2650)],
+    blocks: [
+        (name: "falling", material: "granite", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+        (name: "wall", material: "granite", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (2, 0, 0)),
+    ], output: (frames: FRAMES))"#;
+
+fn scene_in(folder: &Path, frames: u32) -> PathBuf {
+    let scene = folder.join("fall.ron");
+    fs::write(&scene, SCENE.replace("FRAMES", &frames.to_string())).unwrap();
+    scene
+}
+
+fn run_in(folder: &Path, frames: u32) -> PathBuf {
+    let out = folder.join("out");
+    let mut command = ndda();
+    command.arg("run").arg(scene_in(folder, frames)).arg("--out").arg(&out).args(["--force", "--quiet"]);
+    assert!(command.output().unwrap().status.success());
+    out
+}
+
+/// Exit code, standard output and error of a call.
+fn picture(input: &Path, words: &[&str]) -> (i32, String, String) {
+    let folder = input.parent().unwrap();
+    let done = ndda().arg("picture").arg(input).args(words).current_dir(folder).output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (done.status.code().unwrap(), text(done.stdout), text(done.stderr))
+}
+
+fn number(bytes: &[u8]) -> u32 {
+    u32::from_be_bytes(bytes[..4].try_into().unwrap())
+}
+
+/// Width, height, and frames of an animation.
+fn measured(file: &Path) -> (u32, u32, Option<u32>) {
+    let bytes = fs::read(file).unwrap();
+    assert!(bytes.starts_with(b"\x89PNG"), "{}", file.display());
+    let control = bytes.windows(4).position(|w| w == b"acTL");
+    (number(&bytes[16..]), number(&bytes[20..]), control.map(|at| number(&bytes[at + 4..])))
+}
+
+#[test]
+fn a_run_is_drawn_as_a_picture_of_the_size_that_was_asked_for_and_as_an_animation() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = run_in(folder.path(), 10);
+    let (code, said, _) = picture(&out, &[]);
+    assert!(code == exit::DONE && said.contains("2 blocks, of which 1 move"), "{said}");
+    assert_eq!(measured(&out.join("picture.png")), (1200, 800, None));
+    let (code, said, _) = picture(
+        &out,
+        &[
+            "--frame", "0.05s", "--color", "velocity", "--view", "20,-10", "--size", "300x200", "-o",
+            "a.png", "--json",
+        ],
+    );
+    assert!(
+        code == exit::DONE
+            && said.contains("\"size\":[300,200]")
+            && said.contains("\"schema\":\"ndda.picture/1\"")
+    );
+    assert_eq!(measured(&folder.path().join("a.png")), (300, 200, None));
+    assert_eq!(picture(&out, &["--animate", "--frames", "4", "--size", "200x160"]).0, exit::DONE);
+    assert_eq!(measured(&out.join("animation.png")), (200, 160, Some(4)));
+    assert_eq!(picture(&out, &["-o", "a.svg", "--dark"]).0, exit::DONE);
+    let svg = fs::read_to_string(folder.path().join("a.svg")).unwrap();
+    // ½ g t² of a tenth of a second is 49 mm.
+    assert!(
+        svg.starts_with("<svg")
+            && svg.contains("\n49\n")
+            && svg.contains("[mm]")
+            && svg.contains("\nA fall\n")
+    );
+    // A run anew leaves no picture of the one before.
+    run_in(folder.path(), 10);
+    assert!(!out.join("picture.png").exists() && !out.join("animation.png").exists());
+}
+
+#[test]
+fn a_scene_is_drawn_before_it_has_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), 0);
+    for colour in ["block", "material"] {
+        assert_eq!(picture(&scene, &["--color", colour]).0, exit::DONE);
+        assert_eq!(measured(&folder.path().join("fall.png")), (1200, 800, None));
+    }
+    for (words, reason) in [
+        (["--color", "stress"], "a scene has no results before it is run"),
+        (["--animate", "--fps=5"], "does not move"),
+        (["--set", "materials.granite.poisson=0.7"], "poisson"),
+    ] {
+        let (code, _, said) = picture(&scene, &words);
+        assert!(code == exit::BAD_INPUT && said.contains(reason), "{said}");
+    }
+}
+
+#[test]
+fn a_run_of_one_frame_or_none_is_drawn_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = run_in(folder.path(), 1);
+    for words in [&["--frame", "first"][..], &["--animate"]] {
+        assert_eq!(picture(&out, words).0, exit::DONE);
+    }
+    let index = out.join("fields.pvd");
+    fs::write(&index, "<VTKFile><Collection></Collection></VTKFile>").unwrap();
+    let (code, _, said) = picture(&out, &[]);
+    assert!(code == exit::BAD_INPUT && said.contains("holds no frames of blocks"), "{said}");
+    fs::remove_file(&index).unwrap();
+    let (code, _, said) = picture(&out, &[]);
+    assert!(code == exit::BAD_INPUT && said.contains("output.frames above 0"), "{said}");
+}
+
+#[test]
+fn a_damaged_frame_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = run_in(folder.path(), 4);
+    let frame = out.join("fields/frame_000004.vtu");
+    let whole = fs::read(&frame).unwrap();
+    for part in [0, 1, 3, 7] {
+        fs::write(&frame, &whole[..whole.len() * part / 8]).unwrap();
+        let (code, _, said) = picture(&out, &[]);
+        assert!(code == exit::BAD_INPUT && said.contains("frame_000004.vtu"), "{said}");
+    }
+    // The frames before it are whole.
+    assert_eq!(picture(&out, &["--frame", "3"]).0, exit::DONE);
+    fs::remove_file(&frame).unwrap();
+    let (code, _, said) = picture(&out, &["--animate"]);
+    assert!(code == exit::BAD_INPUT && said.contains("frame_000004.vtu"), "{said}");
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_with_figures() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = run_in(folder.path(), 4);
+    for (words, reason) in [
+        (["--size", "10x10"], "160 to 16384 pixels"),
+        (["--size", "16000x16000"], "256.00 million"),
+        (["--size", "4000000000x2"], "16384 pixels"),
+        (["--frame", "5"], "5 frames, 0 to 4"),
+        (["--frame", "0.2s"], "0 s to 0.1 s"),
+        (["--color", "colour"], "there is displacement, block, velocity_m_s"),
+        (["--color", "material"], "add Material to output.fields"),
+        (["-o", "a.jpg"], ".png or .svg"),
+    ] {
+        let (code, _, said) = picture(&out, &words);
+        assert!(code == exit::BAD_INPUT && said.contains(reason), "{words:?}: {said}");
+    }
+    let (code, _, said) = picture(&folder.path().join("none"), &[]);
+    assert!(code == exit::BAD_INPUT && said.contains("there is no"), "{said}");
+    let (code, _, said) = picture(&out, &["-o", "no/such.png"]);
+    assert!(code == exit::INPUT_OUTPUT && said.contains("such.png"), "{said}");
+    for words in
+        [["--view", "up"], ["--size", "10"], ["--resting", "x"], ["--magnify", "inf"], ["--frame", "x"]]
+    {
+        assert_eq!(picture(&out, &words).0, 2, "{words:?}");
+    }
+}

@@ -1,0 +1,164 @@
+//! Planes of a scene or of a table.
+
+use std::path::Path;
+
+use ndda_io::read;
+use ndda_io::scene::{Discontinuity, Scene};
+
+use super::error::StereonetError;
+use super::orientation::Orientation;
+
+/// Most planes: every two of them may form a wedge.
+pub const MOST_PLANES: usize = 10_000;
+/// Set of planes for which a table names none.
+const NO_SET: &str = "all";
+
+/// Planes by set.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Planes {
+    /// Title of the scene, or name of the table.
+    pub title: String,
+    /// The planes.
+    pub planes: Vec<Orientation>,
+    /// Set of each, as an index in `sets`.
+    pub set_of: Vec<usize>,
+    /// Names of the sets, in the order in which they occur.
+    pub sets: Vec<String>,
+}
+
+impl Planes {
+    fn push(&mut self, plane: Orientation, set: &str) {
+        let known = self.sets.iter().position(|name| name == set);
+        let index = known.unwrap_or_else(|| {
+            self.sets.push(set.into());
+            self.sets.len() - 1
+        });
+        self.planes.push(plane);
+        self.set_of.push(index);
+    }
+
+    /// The planes of a set.
+    pub fn of_set(&self, set: usize) -> Vec<Orientation> {
+        let both = self.planes.iter().zip(&self.set_of);
+        both.filter(|(_, index)| **index == set).map(|(plane, _)| *plane).collect()
+    }
+}
+
+/// Reads the joints of a scene, or the planes of a table if the file ends in `.csv`.
+///
+/// # Errors
+/// [`StereonetError`] with the place of what cannot be used.
+pub fn read(file: &Path, overrides: &[String]) -> Result<Planes, StereonetError> {
+    let is_table = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
+    let planes = if is_table { table(file)? } else { scene(file, overrides)? };
+    match planes.planes.len() {
+        1..=MOST_PLANES => Ok(planes),
+        count => Err(StereonetError::Count { path: file.to_path_buf(), count, most: MOST_PLANES }),
+    }
+}
+
+fn scene(file: &Path, overrides: &[String]) -> Result<Planes, StereonetError> {
+    let loaded = read::load(file, overrides).map_err(|errors| StereonetError::Scene(Box::new(errors)))?;
+    let planes = joints(&loaded.scene);
+    if planes.planes.is_empty() { Err(StereonetError::NoJoints(file.to_path_buf())) } else { Ok(planes) }
+}
+
+/// The mean orientation of each joint set and the orientation of each plane and disc; those of one name are one set.
+fn joints(scene: &Scene) -> Planes {
+    let mut planes = Planes { title: scene.title.clone(), ..Planes::default() };
+    for joint in scene.rock.iter().flat_map(|rock| &rock.joints) {
+        let (Discontinuity::Set { name, dip_deg, dip_direction_deg, .. }
+        | Discontinuity::Plane { name, dip_deg, dip_direction_deg, .. }
+        | Discontinuity::Disc { name, dip_deg, dip_direction_deg, .. }) = joint;
+        planes.push(Orientation { dip_deg: *dip_deg, dip_direction_deg: *dip_direction_deg }, name);
+    }
+    planes
+}
+
+fn table(file: &Path) -> Result<Planes, StereonetError> {
+    let unreadable = |error: csv::Error| StereonetError::Unreadable {
+        path: file.to_path_buf(),
+        reason: error.to_string(),
+    };
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .comment(Some(b'#'))
+        .from_path(file)
+        .map_err(unreadable)?;
+    let header = reader.headers().map_err(unreadable)?.clone();
+    let column = |name: &str| header.iter().position(|known| known.trim_start_matches('\u{feff}') == name);
+    let needed = |name: &'static str| {
+        column(name).ok_or_else(|| StereonetError::NoColumn { path: file.to_path_buf(), column: name })
+    };
+    let (dip, direction, set) = (needed("dip_deg")?, needed("dip_direction_deg")?, column("set"));
+    let title = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+    let mut planes = Planes { title, ..Planes::default() };
+    for record in reader.records() {
+        let record = record.map_err(unreadable)?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let angle = |at: usize, column: &'static str, least: f64, most: f64, advice: &'static str| {
+            let value = record.get(at).unwrap_or("");
+            let wrong = || StereonetError::Value {
+                path: file.to_path_buf(),
+                line,
+                column,
+                value: value.into(),
+                advice,
+            };
+            value.parse().ok().filter(|angle: &f64| (least..=most).contains(angle)).ok_or_else(wrong)
+        };
+        let plane = Orientation {
+            dip_deg: angle(dip, "dip_deg", 0.0, 90.0, "an angle from 0 to 90")?,
+            dip_direction_deg: angle(
+                direction,
+                "dip_direction_deg",
+                -360.0,
+                360.0,
+                "an angle from -360 to 360",
+            )?,
+        };
+        let name = set.and_then(|at| record.get(at)).filter(|name| !name.is_empty());
+        planes.push(plane, name.unwrap_or(NO_SET));
+    }
+    Ok(planes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(text: &str) -> Result<Planes, StereonetError> {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("joints.csv");
+        std::fs::write(&file, text).unwrap();
+        read(&file, &[])
+    }
+
+    #[test]
+    fn a_table_gives_planes_by_set_in_any_order_of_columns() {
+        let planes = of(
+            "set,dip_direction_deg,remark,dip_deg\n# comment\na, 130 ,x,40\nb,220,,60\na,131,,41\n,5,,6\n",
+        )
+        .unwrap();
+        assert_eq!(planes.sets, ["a", "b", "all"]);
+        assert_eq!(planes.set_of, [0, 1, 0, 2]);
+        assert_eq!(planes.planes[1], Orientation { dip_deg: 60.0, dip_direction_deg: 220.0 });
+        assert_eq!(planes.of_set(0).len(), 2);
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_table_is_said_with_line_and_column() {
+        for (text, reason) in [
+            ("dip_deg,dip_direction_deg\n40,130\n95,220\n", "line 3: dip_deg is `95`"),
+            ("dip_deg,dip_direction_deg\n40,east\n", "line 2: dip_direction_deg is `east`"),
+            ("dip_deg,dip_direction_deg\n40,nan\n", "line 2: dip_direction_deg is `nan`"),
+            ("dip_deg,dip_direction_deg\n40\n", "joints.csv"),
+            ("dip,dip_direction_deg\n40,3\n", "no column dip_deg"),
+            ("dip_deg,dip_direction_deg\n", "0 planes"),
+            ("", "no column dip_deg"),
+        ] {
+            let error = of(text).unwrap_err().to_string();
+            assert!(error.contains(reason), "{error}");
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Pictures of blocks in three dimensions, drawn by the program itself: no browser, no graphics card, the same bits on any machine.
+//!
+//! | module | contents |
+//! |---|---|
+//! | `camera` | parallel projection |
+//! | `film`, `from_run`, `from_scene` | blocks, their colours, and the moments of a run |
+//! | `stage` | what is in view, and which blocks are seen through |
+//! | `raster`, `paint` | triangles and edges as pixels; colours and light |
+//! | `overlay`, `numbers` | title, scale of colours, axes, scale bar |
+//! | `image`, `animation` | a picture, an animation |
+
+#[cfg(feature = "png")]
+mod animation;
+mod camera;
+mod error;
+mod film;
+mod from_run;
+mod from_scene;
+mod image;
+mod numbers;
+mod overlay;
+mod paint;
+mod raster;
+mod stage;
+#[cfg(test)]
+mod testing;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use serde::Serialize;
+
+pub use camera::View;
+pub use error::ViewError;
+use film::Film;
+pub use from_run::{FrameChoice, Frames};
+pub use image::Look;
+use image::{LARGEST_PX, MOST_PX, Picture, SMALLEST_PX};
+pub use stage::Resting;
+
+/// Quantity that blocks are coloured by.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Colour {
+    /// Distance from the first frame.
+    Displacement,
+    /// Speed.
+    Velocity,
+    /// Von Mises stress.
+    Stress,
+    /// A colour per block.
+    Block,
+    /// A colour per material.
+    Material,
+    /// An array of the frames, by its name or the beginning of it.
+    Field(String),
+}
+
+impl FromStr for Colour {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(match text {
+            "displacement" => Self::Displacement,
+            "velocity" => Self::Velocity,
+            "stress" => Self::Stress,
+            "block" => Self::Block,
+            "material" => Self::Material,
+            other => Self::Field(other.into()),
+        })
+    }
+}
+
+impl fmt::Display for Colour {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Displacement => "displacement",
+            Self::Velocity => "velocity",
+            Self::Stress => "stress",
+            Self::Block => "block",
+            Self::Material => "material",
+            Self::Field(name) => name,
+        })
+    }
+}
+
+/// A picture to draw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// Output folder of a run, or a scene file.
+    pub input: PathBuf,
+    /// Values of a scene that are replaced, `path=value`.
+    pub overrides: Vec<String>,
+    /// Frames of a run.
+    pub frames: Frames,
+    /// Colours; displacement of a run and blocks of a scene if none are requested.
+    pub colour: Option<Colour>,
+    /// How it looks.
+    pub look: Look,
+    /// Pictures of an animation in a second.
+    pub per_second: u16,
+}
+
+/// The file that was written.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Written {
+    /// The picture or animation.
+    pub picture: PathBuf,
+    /// Moments that it shows.
+    pub frames: usize,
+    /// Columns and rows [px].
+    pub size: (u32, u32),
+    /// Blocks.
+    pub blocks: usize,
+    /// Blocks that move, or in a scene may.
+    pub moving: usize,
+}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { picture, frames, size: (width, height), blocks, moving } = self;
+        write!(f, "{}: {width} x {height} pixels, ", picture.display())?;
+        if *frames > 1 {
+            write!(f, "{frames} frames, ")?;
+        }
+        write!(f, "{blocks} blocks, of which {moving} move")
+    }
+}
+
+/// Draws a picture, or an animation where there are [`Frames::Most`], to a file.
+///
+/// # Errors
+/// [`ViewError`] when the input cannot be used, the picture would be too large, or the file cannot be written.
+pub fn draw(request: &Request, out: &Path) -> Result<Written, ViewError> {
+    check_size(request.look.size)?;
+    let is_animation = matches!(request.frames, Frames::Most(_));
+    check_ending(out, is_animation)?;
+    let film = read(request)?;
+    match is_animation {
+        #[cfg(feature = "png")]
+        true => animation::write(&film, request.look, request.per_second, out)?,
+        _ => write_picture(&film, request.look, out)?,
+    }
+    Ok(Written {
+        picture: out.to_path_buf(),
+        frames: film.moments.len(),
+        size: request.look.size,
+        blocks: film.moves.len(),
+        moving: film.moves.iter().filter(|moves| **moves).count(),
+    })
+}
+
+/// Columns and rows, as `1200x800`.
+///
+/// # Errors
+/// An example, for another text.
+pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
+    let sides =
+        text.split_once('x').and_then(|(w, h)| Some((w.trim().parse().ok()?, h.trim().parse().ok()?)));
+    sides.ok_or_else(|| "write columns and rows with an x between them, as 1200x800".into())
+}
+
+/// A factor of displacements, a finite number.
+///
+/// # Errors
+/// An example, for another text.
+pub fn parse_factor(text: &str) -> Result<f64, String> {
+    let factor = text.parse().ok().filter(|factor: &f64| factor.is_finite());
+    factor.ok_or_else(|| "write a number, as 100".into())
+}
+
+fn read(request: &Request) -> Result<Film, ViewError> {
+    let Request { input, overrides, frames, colour, .. } = request;
+    match (input.is_dir(), input.is_file()) {
+        (true, _) => from_run::read(input, *frames, colour.as_ref().unwrap_or(&Colour::Displacement)),
+        (_, true) if matches!(frames, Frames::Most(_)) => Err(ViewError::Still),
+        (_, true) => from_scene::read(input, overrides, colour.as_ref().unwrap_or(&Colour::Block)),
+        _ => Err(ViewError::NoInput(input.clone())),
+    }
+}
+
+fn check_size((width, height): (u32, u32)) -> Result<(), ViewError> {
+    let sides = SMALLEST_PX..=LARGEST_PX;
+    let fits = sides.contains(&width) && sides.contains(&height) && width * height <= MOST_PX;
+    if fits { Ok(()) } else { Err(ViewError::Size { width, height }) }
+}
+
+fn check_ending(path: &Path, is_animation: bool) -> Result<(), ViewError> {
+    let path_buf = || path.to_path_buf();
+    match path.extension().and_then(|ending| ending.to_str()).unwrap_or("") {
+        "png" | "apng" | "webm" | "mp4" if !cfg!(feature = "png") => Err(ViewError::NoPng(path_buf())),
+        _ if is_animation && !cfg!(feature = "png") => Err(ViewError::NoPng(path_buf())),
+        #[cfg(feature = "png")]
+        _ if is_animation => Ok(()),
+        "svg" | "png" => Ok(()),
+        _ => Err(ViewError::Ending { path: path_buf(), what: "a picture", endings: ".png or .svg" }),
+    }
+}
+
+fn write_picture(film: &Film, look: Look, out: &Path) -> Result<(), ViewError> {
+    let picture = Picture::new(film, look);
+    let encode = |reason| ViewError::Encode { path: out.to_path_buf(), reason };
+    let moment = &film.moments[film.moments.len() - 1];
+    let bytes = match out.extension().is_some_and(|ending| ending == "svg") {
+        true => picture.svg(moment).map_err(encode)?.into_bytes(),
+        #[cfg(feature = "png")]
+        false => {
+            let rgba = picture.rgba(&picture.stage(1), moment).map_err(encode)?;
+            image::opaque_png(look.size, &rgba).map_err(encode)?
+        }
+        #[cfg(not(feature = "png"))]
+        false => return Err(ViewError::NoPng(out.to_path_buf())),
+    };
+    Ok(ndda_io::atomic::write(out, &bytes)?)
+}

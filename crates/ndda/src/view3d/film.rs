@@ -1,0 +1,176 @@
+//! Blocks as a picture shows them: surfaces, which of them move, their colours, and the moments of a run.
+
+use ndda_mesh::Vec3;
+
+use super::paint::{Theme, group_colour};
+use super::raster::Coat;
+use crate::surface::Surface;
+
+/// Blocks that move less than this part of the farthest motion are at rest, as in the report.
+const STILL: f64 = 0.01;
+/// A scale that begins below this part of its end begins at zero.
+const NEAR_ZERO: f64 = 0.2;
+/// Values that differ by less than this part of the largest are one value.
+const EQUAL: f64 = 0.1;
+
+/// Blocks at one time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moment {
+    /// Time [s]; none before a run.
+    pub time_s: Option<f64>,
+    /// Positions of the nodes of the surface [m].
+    pub positions: Vec<Vec3>,
+    /// Values on the scale of colours, one to a node or a triangle; none where colours are of groups.
+    pub values: Vec<f32>,
+}
+
+/// Meaning of the colours.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Colouring {
+    /// A quantity.
+    Scale {
+        /// Its name.
+        label: String,
+        /// Its unit; empty where it has none.
+        unit: &'static str,
+        /// Whether it has a value per node, or else per triangle.
+        of_nodes: bool,
+        /// Whether blocks at rest are coloured as well.
+        with_resting: bool,
+        /// Ends of the scale.
+        range: [f64; 2],
+    },
+    /// A group to each block.
+    Groups {
+        /// Names of the groups.
+        names: Vec<String>,
+        /// Word for several groups.
+        plural: &'static str,
+        /// Group of each block.
+        of_block: Vec<u32>,
+        /// Whether blocks at rest are coloured as well.
+        with_resting: bool,
+    },
+}
+
+/// Blocks at some moments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Film {
+    /// What it shows.
+    pub title: String,
+    /// Surfaces of all blocks.
+    pub surface: Surface,
+    /// Positions that motion counts from [m].
+    pub start: Vec<Vec3>,
+    /// Whether each block moves, or may.
+    pub moves: Vec<bool>,
+    /// Colours.
+    pub colouring: Colouring,
+    /// The moments, at least one.
+    pub moments: Vec<Moment>,
+}
+
+impl Film {
+    /// Block of each node of the surface.
+    pub fn block_of_node(&self) -> Vec<u32> {
+        let mut blocks = vec![0; self.surface.nodes.len()];
+        for (corners, &block) in self.surface.triangles.iter().zip(&self.surface.blocks) {
+            corners.iter().for_each(|&node| blocks[node as usize] = block);
+        }
+        blocks
+    }
+
+    /// Colour of a triangle at a moment.
+    pub fn coat(&self, moment: &Moment, triangle: usize, theme: &Theme) -> Coat {
+        let block = self.surface.blocks[triangle];
+        let is_coloured = |with_resting: bool| with_resting || self.moves[block as usize];
+        match &self.colouring {
+            Colouring::Scale { of_nodes, with_resting, range, .. } if is_coloured(*with_resting) => {
+                let part = |place: u32| part(f64::from(moment.values[place as usize]), *range);
+                match of_nodes {
+                    true => Coat::Scale(self.surface.triangles[triangle].map(part)),
+                    false => Coat::Scale([part(triangle as u32); 3]),
+                }
+            }
+            Colouring::Groups { of_block, with_resting, .. } if is_coloured(*with_resting) => {
+                Coat::Plain(group_colour(of_block[block as usize]))
+            }
+            _ => Coat::Plain(theme.resting),
+        }
+    }
+}
+
+/// Place of a value on a scale, 0 to 1.
+fn part(value: f64, [low, high]: [f64; 2]) -> f64 {
+    if high > low { (value - low) / (high - low) } else { 0.0 }
+}
+
+/// Whether each block has moved, by the farthest that a node of it was from its start at these moments; all of them where
+/// nothing has.
+pub fn moving(surface: &Surface, start: &[Vec3], moments: &[Moment]) -> Vec<bool> {
+    let mut farthest = vec![0.0; surface.block_count()];
+    for moment in moments {
+        for (corners, &block) in surface.triangles.iter().zip(&surface.blocks) {
+            for &node in corners {
+                let moved = (moment.positions[node as usize] - start[node as usize]).norm();
+                farthest[block as usize] = f64::max(farthest[block as usize], moved);
+            }
+        }
+    }
+    let limit = STILL * farthest.iter().copied().fold(0.0, f64::max);
+    farthest.iter().map(|&moved| limit == 0.0 || moved >= limit).collect()
+}
+
+/// Ends of the scale: the least and the largest value that is drawn; zero in place of a least value near it, or of one that is
+/// nearly the largest.
+pub fn range(values: impl Iterator<Item = f32>) -> [f64; 2] {
+    let finite = values.map(f64::from).filter(|value| value.is_finite());
+    let (low, high) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+    match low <= high {
+        true if low > 0.0 && (low < NEAR_ZERO * high || high - low < EQUAL * high) => [0.0, high],
+        true => [low, high],
+        false => [0.0, 0.0],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scale_ends_at_the_least_and_the_largest_value() {
+        assert_eq!(range([3.0, -1.0, 2.5].into_iter()), [-1.0, 3.0]);
+        assert_eq!(range([2.0, 3.0, f32::NAN].into_iter()), [2.0, 3.0]);
+        assert_eq!(range([0.0, 0.0].into_iter()), [0.0, 0.0]);
+        assert_eq!(range(std::iter::empty()), [0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_scale_that_begins_near_zero_or_has_one_value_begins_at_zero() {
+        assert_eq!(range([0.5, 4.0].into_iter()), [0.0, 4.0]);
+        assert_eq!(range([4.0, 4.0].into_iter()), [0.0, 4.0]);
+        assert_eq!(range([3.9, 4.0].into_iter()), [0.0, 4.0]);
+    }
+
+    #[test]
+    fn a_block_moves_when_it_goes_a_hundredth_of_the_farthest() {
+        let surface = Surface {
+            nodes: (0..6).collect(),
+            triangles: vec![[0, 1, 2], [3, 4, 5]],
+            tets: vec![0, 1],
+            blocks: vec![0, 1],
+            edges: Vec::new(),
+        };
+        let start = vec![Vec3::zeros(); 6];
+        let moment = |far: f64| {
+            let x = |i: usize| Vec3::new(if i < 3 { 1.0 } else { far }, 0.0, 0.0);
+            Moment { time_s: None, positions: (0..6).map(x).collect(), values: Vec::new() }
+        };
+        assert_eq!(moving(&surface, &start, &[moment(0.009)]), [true, false]);
+        assert_eq!(moving(&surface, &start, &[moment(0.011)]), [true, true]);
+        // It counts that it was away, although it has come back.
+        assert_eq!(moving(&surface, &start, &[moment(1.0), moment(0.0)]), [true, true]);
+        let still = Moment { time_s: None, positions: start.clone(), values: Vec::new() };
+        assert_eq!(moving(&surface, &start, &[still]), [true, true]);
+    }
+}
