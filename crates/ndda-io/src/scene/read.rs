@@ -11,8 +11,10 @@ use crate::scene::Scene;
 use crate::scene::check;
 use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors, Severity};
+use crate::scene::include;
 use crate::scene::locate::{self, Node};
 use crate::scene::overrides;
+use crate::scene::parameters::Parameters;
 use crate::scene::renamed;
 pub use crate::scene::suggest::suggest;
 use crate::scene::units::{self, Resolved};
@@ -100,9 +102,14 @@ pub fn load_text(
     refuse_blank(text).map_err(|(text, refused)| fail(text, vec![refused]))?;
     let text = overrides::apply(text, overrides).map_err(|refused| fail(text, vec![refused]))?;
     let tree = locate::tree(&text);
-    let scene: Scene = parse(&text, &tree).map_err(|found| fail(&text, found))?;
+    let parameters = Parameters::read(&text, &tree).map_err(|found| fail(&text, found))?;
+    let mut scene: Scene = parse_with(&text, &tree, &parameters).map_err(|found| fail(&text, found))?;
+    let beside = folder.unwrap_or(Path::new("."));
+    let included = include::read(&mut scene, beside, (file, &text), &parameters)?;
     let mut found = check::problems(&scene, folder);
+    include::name_files(&mut found, &included);
     locate_all(&mut found, &text, &tree);
+    found.extend(parameters.unused());
     found.extend(renamed::warnings(&text, &tree, overrides));
     sort(&mut found);
     if found.iter().any(|d| d.severity == Severity::Error) {
@@ -125,21 +132,32 @@ pub(crate) fn refuse_blank(text: &str) -> Result<(), (&str, Diagnostic)> {
     Ok(())
 }
 
-/// Text to types, values in the units of their fields: numbers that are none all at once, grammar and types one at a time.
+/// Text of a scene, or of a file that it includes, to types: values in the units of their fields, expressions as numbers.
+/// Numbers that are none are found all at once, grammar and types one at a time.
+pub(crate) fn parse_with<T: DeserializeOwned>(
+    text: &str,
+    tree: &Node,
+    parameters: &Parameters,
+) -> Result<T, Vec<Diagnostic>> {
+    refuse_not_finite(tree, text)?;
+    types_of(&units::resolve(text, tree, parameters), text, tree)
+}
+
+/// Text of a study to types; the values that it sets stay as they are written, and are read with the scene.
 pub(crate) fn parse<T: DeserializeOwned>(text: &str, tree: &Node) -> Result<T, Vec<Diagnostic>> {
-    let numbers = not_finite(tree, text);
-    if !numbers.is_empty() {
-        return Err(numbers);
-    }
-    let plain = units::resolve(text, tree);
+    refuse_not_finite(tree, text)?;
+    types_of(&Resolved::unchanged(text), text, tree)
+}
+
+fn types_of<T: DeserializeOwned>(plain: &Resolved, text: &str, tree: &Node) -> Result<T, Vec<Diagnostic>> {
     let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
     match options.from_str(&plain.text) {
         Ok(value) if plain.errors.is_empty() => Ok(value),
         // In a field that does not exist, no unit is right.
         Err(e) if plain.errors.is_empty() || matches!(e.code, RonError::NoSuchStructField { .. }) => {
-            Err(vec![explain(&e, &plain, text, tree)])
+            Err(vec![explain(&e, plain, text, tree)])
         }
-        _ => Err(plain.errors),
+        _ => Err(plain.errors.clone()),
     }
 }
 
@@ -156,7 +174,7 @@ fn sort(found: &mut [Diagnostic]) {
 }
 
 /// Place of the value at a path, or of the nearest value around it that is written.
-fn place(tree: &Node, text: &str, path: &str) -> Option<Range<usize>> {
+pub(crate) fn place(tree: &Node, text: &str, path: &str) -> Option<Range<usize>> {
     let mut node = tree;
     for segment in locate::segments(path) {
         match node.child(text, segment) {
@@ -168,7 +186,7 @@ fn place(tree: &Node, text: &str, path: &str) -> Option<Range<usize>> {
 }
 
 /// Numbers that RON accepts and nothing can be computed with: NaN, infinities, and 1e400.
-fn not_finite(tree: &Node, text: &str) -> Vec<Diagnostic> {
+fn refuse_not_finite(tree: &Node, text: &str) -> Result<(), Vec<Diagnostic>> {
     let mut found = Vec::new();
     tree.for_each_leaf(&mut |leaf| {
         let word = &text[leaf.span.clone()];
@@ -183,7 +201,7 @@ fn not_finite(tree: &Node, text: &str) -> Vec<Diagnostic> {
             found.push(Diagnostic::error(Code::NotFinite, path, message, place).with_help(help));
         }
     });
-    found
+    if found.is_empty() { Ok(()) } else { Err(found) }
 }
 
 /// RON's complaint in the words of a scene, at the place in the source where a person would look.
