@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 pub use joint::{JointArgs, JointTestKind};
 pub use safety::{SafetyArgs, SafetyBy};
-pub use study::{Emit, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
+pub use study::{Emit, Spread, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 
 /// Rock blocks that slide, topple, collide and fall: 3D discontinuous deformation analysis with contact potential.

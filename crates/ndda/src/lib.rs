@@ -62,6 +62,7 @@ pub mod report;
 pub mod run;
 pub mod safety;
 pub mod study;
+pub mod sweep;
 pub mod templates;
 pub mod tune;
 
