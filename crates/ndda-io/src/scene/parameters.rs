@@ -128,7 +128,7 @@ impl Parameters {
                 at,
             );
             Diagnostic { severity: Severity::Warning, ..found }
-                .with_help(format!("write Calc({name}) where it stands for a number"))
+                .with_help(format!("write Calc({name}) in place of a number, or leave it out"))
         };
         unused.map(warn).collect()
     }

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use ndda_io::summary::Summary;
 use ndda_io::{folder, results, table};
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::certify::quantities::{BLOCK, TIME};
 use crate::safety::Bracket;
@@ -25,7 +26,19 @@ pub struct Values {
     /// Label of the run; none where there was no run.
     pub label: Option<String>,
     /// Numbers by name.
+    #[serde(serialize_with = "as_text", deserialize_with = "from_text")]
     pub numbers: Vec<(String, f64)>,
+}
+
+/// Numbers as text, since `serde_json` reads numbers with an error of the last digit.
+fn as_text<S: Serializer>(numbers: &[(String, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(numbers.iter().map(|(name, value)| (name, format!("{value:e}"))))
+}
+
+fn from_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(String, f64)>, D::Error> {
+    let texts = Vec::<(String, String)>::deserialize(deserializer)?;
+    let number = |(name, text): (String, String)| Ok((name, text.parse().map_err(D::Error::custom)?));
+    texts.into_iter().map(number).collect()
 }
 
 impl Values {
@@ -125,6 +138,15 @@ mod tests {
         assert_eq!(values.named("h"), [4]);
         assert_eq!(values.number("a.f"), Some(2.0));
         assert_eq!(values.number("a"), None);
+    }
+
+    #[test]
+    fn numbers_keep_their_bits_in_records() {
+        for value in [0.11151838014472873, 0.1 + 0.2, 5e-324, -1.7976931348623157e308] {
+            let values = Values { label: None, numbers: vec![("x".into(), value)] };
+            let text = serde_json::to_string(&values).unwrap();
+            assert_eq!(serde_json::from_str::<Values>(&text).unwrap(), values);
+        }
     }
 
     #[test]
