@@ -138,6 +138,11 @@ fn a_study_file_names_distributions_correlation_and_sensitivity() {
     // The way is v t, whatever gravity is.
     assert!((index(0, "total") - 1.0).abs() < 0.1 && index(1, "total") < 1e-12, "{results}");
     assert_eq!(results["cases"].as_array().unwrap().len(), 64 * 4);
+    for arguments in [&["study", "s.ron", "--emit", "list"][..], &["study", "collect", "s.ron"]] {
+        let refused = ndda(folder.path(), arguments);
+        assert_eq!(refused.status.code(), Some(3));
+        assert!(said(&refused).contains("runs it as a whole"), "{}", said(&refused));
+    }
     study("of: [\"m\"], correlations: [(between: (\"speed_m_s\", \"half_g\"), coefficient: 0.5)]");
     let refused = ndda(folder.path(), &["study", "s.ron"]);
     assert_eq!(refused.status.code(), Some(3));

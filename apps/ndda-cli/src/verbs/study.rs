@@ -63,7 +63,9 @@ fn ask(args: &StudyArgs) -> Ask {
 }
 
 fn run_all(study: &Path, args: &StudyArgs) -> Result<u8, StudyError> {
-    if let Some(sweep) = Sweep::open(study, &ask(args))? {
+    if args.emit.is_none()
+        && let Some(sweep) = Sweep::open(study, &ask(args))?
+    {
         return run_sweep(&sweep, args);
     }
     let opened = open(study, &args.how)?;

@@ -328,7 +328,7 @@ mod tests {
             ("atan(tan(dip_deg))", 30.0),
             ("asin(0.5) + acos(0.5)", 90.0),
             ("tan(45)", 1.0),
-            ("pi", 3.14159265358979),
+            ("pi", std::f64::consts::PI),
         ] {
             assert!((value(text).unwrap() - expected).abs() < 1e-13, "{text}");
         }

@@ -8,11 +8,9 @@ use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors, line_column};
 use crate::scene::locate::{self, Node};
 use crate::scene::parameters::Parameters;
-use crate::scene::read;
+use crate::scene::parse;
+use crate::scene::units::INCLUDE as FIELD;
 use crate::scene::{Material, Scene};
-
-/// Field of a scene, or of an included file, that names files.
-pub(crate) const FIELD: &str = "include";
 
 /// A file of materials; it may also be a bare list of them.
 #[derive(Deserialize)]
@@ -62,7 +60,7 @@ struct Place<'a> {
 
 impl Place<'_> {
     fn refuse(&self, code: Code, message: String, help: &str) -> SceneErrors {
-        let span = read::place(&locate::tree(self.text), self.text, &self.path);
+        let span = parse::place(&locate::tree(self.text), self.text, &self.path);
         let refused = Diagnostic::error(code, self.path.clone(), message, span).with_help(help);
         SceneErrors { file: self.file.into(), text: self.text.into(), diagnostics: vec![refused] }
     }
@@ -96,10 +94,10 @@ impl Reader<'_> {
         if self.done.contains(&known_as) {
             return Ok(());
         }
-        let text = read::text_of(&path)?;
+        let text = parse::text_of(&path)?;
         let file = path.display().to_string();
         let fail = |diagnostics| SceneErrors { file: file.clone(), text: text.clone(), diagnostics };
-        read::refuse_blank(&text).map_err(|(_, refused)| fail(vec![refused]))?;
+        parse::refuse_blank(&text).map_err(|(_, refused)| fail(vec![refused]))?;
         let tree = locate::tree(&text);
         let content = self.parse(&text, &tree).map_err(fail)?;
         let (first, count) = (self.scene.materials.len(), content.materials.len());
@@ -119,10 +117,10 @@ impl Reader<'_> {
 
     fn parse(&self, text: &str, tree: &Node) -> Result<MaterialFile, Vec<Diagnostic>> {
         if tree.opening == Some('[') {
-            let materials = read::parse_with(text, tree, self.parameters)?;
+            let materials = parse::parse_with(text, tree, self.parameters)?;
             return Ok(MaterialFile { include: Vec::new(), materials });
         }
-        read::parse_with(text, tree, self.parameters)
+        parse::parse_with(text, tree, self.parameters)
     }
 }
 
@@ -144,7 +142,7 @@ pub(crate) fn name_files(found: &mut Vec<Diagnostic>, included: &[Included]) {
         let list = if tree.opening == Some('[') { "" } else { "materials" };
         let path = format!("{list}[{}]{field}", i - file.first);
         let (line, column) =
-            read::place(&tree, &file.text, &path).map_or((1, 1), |span| line_column(&file.text, span.start));
+            parse::place(&tree, &file.text, &path).map_or((1, 1), |span| line_column(&file.text, span.start));
         d.message = format!("{}:{line}:{column}: {path}: {}", file.file, d.message);
         d.path = FIELD.into();
     }

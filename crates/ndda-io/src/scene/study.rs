@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors};
-use crate::scene::locate;
 use crate::scene::read::{self, LoadedScene};
+use crate::scene::{locate, parse};
 
 use check::{default_curves, lost_paths, problems};
 pub use distribution::Distribution;
@@ -309,9 +309,9 @@ pub fn load(path: &Path) -> Result<LoadedStudy, SceneErrors> {
         text: text.to_string(),
         diagnostics,
     };
-    read::refuse_blank(&text).map_err(|(text, refused)| fail(text, vec![refused]))?;
+    parse::refuse_blank(&text).map_err(|(text, refused)| fail(text, vec![refused]))?;
     let tree = locate::tree(&text);
-    let study: Study = read::parse(&text, &tree).map_err(|found| fail(&text, found))?;
+    let study: Study = parse::parse(&text, &tree).map_err(|found| fail(&text, found))?;
     let scene = path.parent().unwrap_or(Path::new(".")).join(&study.scene);
     let mut found = problems(&study);
     let scene_text = match read::text_of(&scene) {
@@ -330,7 +330,7 @@ pub fn load(path: &Path) -> Result<LoadedStudy, SceneErrors> {
             String::new()
         }
     };
-    read::locate_all(&mut found, &text, &tree);
+    parse::locate_all(&mut found, &text, &tree);
     if !found.is_empty() {
         return Err(fail(&text, found));
     }

@@ -10,7 +10,6 @@ use std::ops::Range;
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
-use crate::scene::include;
 use crate::scene::locate::Node;
 use crate::scene::parameters::{self, Parameters, number};
 use crate::scene::suggest::nearest;
@@ -19,6 +18,8 @@ pub use dimensions::{DIMENSIONS, Dimension, Unit, dimension_of};
 
 /// A choice whose value is a place [m], though its name does not end in it.
 const PLACE: &str = "Point";
+/// Field of a scene, or of a file of materials, that names files.
+pub(crate) const INCLUDE: &str = "include";
 /// An expression: `Calc(90 - dip_deg)`.
 const CALC: &str = "Calc";
 
@@ -118,7 +119,7 @@ impl Resolver<'_> {
         for child in &tree.children {
             if is(child, parameters::FIELD) {
                 self.edit(child.span.clone(), self.parameters.as_map());
-            } else if is(child, include::FIELD) {
+            } else if is(child, INCLUDE) {
                 if !has_materials {
                     self.edit(child.key_span.start..child.key_span.start, "materials: [], ".into());
                 }

@@ -62,6 +62,11 @@ pub enum StudyError {
     /// A run cannot be started.
     #[error("cannot start a run: {0}")]
     Start(std::io::Error),
+    /// A study without cases that a scheduler could run.
+    #[error(
+        "the study asks for quantities or has random axes: `ndda study STUDY --jobs N` runs it as a whole, and goes on where it was"
+    )]
+    IsSweep,
     /// A condition that cannot be judged.
     #[error(
         "the condition `{condition}` cannot be judged: {reason}; write a quantity, a comparison and a number, as `safety < 1`"

@@ -112,10 +112,10 @@ impl<'a> Evaluator<'a> {
                 failed => return Ok(failed),
             }
         }
-        if self.sweep.wants_safety() {
-            if let Some(failed) = self.safety(&case.case, &mut values)? {
-                return Ok(failed);
-            }
+        if self.sweep.wants_safety()
+            && let Some(failed) = self.safety(&case.case, &mut values)?
+        {
+            return Ok(failed);
         }
         Ok(SweepOutcome::Done(values))
     }
