@@ -75,9 +75,9 @@ fn a_grid_gives_a_table_of_quantities_and_a_picture() {
         (&"ndda.sweep/1".into(), &"kinetic_j".into())
     );
     let cases = results["cases"].as_array().unwrap();
-    for (case, (speed, half_g)) in cases.iter().zip([(1.0, 5.0), (1.0, 0.0), (2.0, 5.0), (2.0, 0.0f64)]) {
+    for (case, (speed, half_g)) in cases.iter().zip([(1.0, 5.0), (1.0, 0.0), (2.0, 5.0), (2.0, 0.0)]) {
         let gone = case["values"][0].as_f64().unwrap();
-        assert!((gone - (0.1 * speed as f64).hypot(0.01 * half_g)).abs() < 1e-12, "{case}");
+        assert!((gone - f64::hypot(0.1 * speed, 0.01 * half_g)).abs() < 1e-12, "{case}");
         let energy = case["values"][1].as_f64().unwrap();
         let exact = 0.5 * 2500.0 * (speed * speed + (2.0 * half_g * 0.1).powi(2));
         assert!((energy / exact - 1.0).abs() < 1e-9, "{case}");
