@@ -63,7 +63,7 @@ impl Parameters {
             let bare = source.trim().trim_start_matches('(').trim();
             let shown =
                 source.trim().strip_prefix('(').and_then(|s| s.strip_suffix(')')).unwrap_or(bare).trim();
-            let message = match mistake.message.contains(&format!("`{shown}`")) {
+            let message = match shown.is_empty() || mistake.message.contains(&format!("`{shown}`")) {
                 true => mistake.message,
                 false => format!("in `{shown}`: {}", mistake.message),
             };
