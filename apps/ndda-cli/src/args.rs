@@ -16,7 +16,7 @@ pub use joint::{JointArgs, JointTestKind};
 pub use picture::PictureArgs;
 pub use safety::{SafetyArgs, SafetyBy};
 pub use stereonet::StereonetArgs;
-pub use study::{Emit, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
+pub use study::{Emit, Spread, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 
 /// Rock blocks that slide, topple, collide and fall: 3D discontinuous deformation analysis with contact potential.

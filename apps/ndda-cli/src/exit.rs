@@ -39,6 +39,11 @@ pub fn of_study(error: &StudyError) -> u8 {
         | StudyError::NoReference(_)
         | StudyError::NoMonitor(..)
         | StudyError::NoCase(_)
+        | StudyError::IsSweep
+        | StudyError::Condition { .. }
+        | StudyError::Correlation(_)
+        | StudyError::Samples(_)
+        | StudyError::NoQuantity { .. }
         | StudyError::Difference { .. }
         | StudyError::NoProcessorTime => BAD_INPUT,
         StudyError::Reference { .. } => STOPPED,

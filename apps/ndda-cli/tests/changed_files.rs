@@ -11,12 +11,13 @@ const INPUT_OUTPUT: i32 = 5;
 
 /// A tetrahedron from a file that is shaken by a record.
 const SCENE: &str = "(title: \"t\", time: (step_s: 1e-3, end_s: 0.05),
-    materials: [(name: \"rock\", young_pa: 1e9, poisson: 0.2, density_kg_m3: 2500)],
+    include: \"rock.ron\",
     blocks: [(name: \"a\", material: \"rock\", shape: Mesh(file: \"a.ele\"), body: Fixed)],
     supports: [(block: \"a\", on: All, hold: Acceleration(file: \"quake.csv\", direction: (1, 0, 0)))],
     output: (frames: 10))";
-const FILES: [(&str, &str); 4] = [
+const FILES: [(&str, &str); 5] = [
     ("scene.ron", SCENE),
+    ("rock.ron", "[(name: \"rock\", young_pa: 1e9, poisson: 0.2, density_kg_m3: 2500)]"),
     ("a.node", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n"),
     ("a.ele", "1 4 0\n0 0 1 2 3\n"),
     ("quake.csv", "time_s,acceleration_m_s2\n0,0\n0.02,1\n0.05,-1\n"),
@@ -50,11 +51,11 @@ fn assert_says(output: &Output, code: i32, words: &[&str]) {
 }
 
 #[test]
-fn a_mesh_or_record_that_has_changed_or_gone_is_refused_by_its_name() {
+fn a_mesh_record_or_material_that_has_changed_or_gone_is_refused_by_its_name() {
     let place = place();
     let place = place.path();
     killed(place);
-    for name in ["a.node", "a.ele", "quake.csv"] {
+    for name in ["a.node", "a.ele", "quake.csv", "rock.ron"] {
         let path = place.join(name);
         let old = fs::read_to_string(&path).expect("a file");
         // As long as before, and as good a file.

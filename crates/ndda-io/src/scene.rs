@@ -5,6 +5,8 @@ pub(crate) mod check;
 pub mod code;
 mod contact;
 pub mod diagnostic;
+mod expression;
+mod include;
 mod load;
 pub mod locate;
 mod material;
@@ -12,6 +14,9 @@ mod monitor;
 mod output;
 pub mod outside_files;
 pub(crate) mod overrides;
+mod parameter_values;
+mod parameters;
+pub(crate) mod parse;
 pub mod read;
 pub mod record;
 mod reference;
@@ -26,6 +31,8 @@ mod support;
 mod time;
 pub mod units;
 mod water;
+
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
@@ -53,6 +60,10 @@ pub use water::{LinearPressure, Pressure, Water, Wet};
 pub struct Scene {
     /// One line that says what the scene shows.
     pub title: String,
+    /// Numbers with a name, from which others are computed: `parameters: (dip_deg: 35)`, and `Calc(90 - dip_deg)` where a number
+    /// stands. Default: none.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub parameters: BTreeMap<String, f64>,
     /// Step, end and integrator.
     pub time: Time,
     /// Acceleration of gravity [m/s²]. Default: none.
@@ -67,7 +78,10 @@ pub struct Scene {
     /// Brings the scene to rest before time begins. Default: it begins as it is written.
     #[serde(default)]
     pub settle: Option<Settle>,
-    /// Materials, referred to by name.
+    /// Files with more materials; their paths count from the scene, and one alone needs no brackets. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub include: Vec<String>,
+    /// Materials, referred to by name. Must be written unless there is `include`.
     pub materials: Vec<Material>,
     /// Blocks, in the order of the output. Default: none.
     #[serde(default)]

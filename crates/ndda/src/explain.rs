@@ -4,6 +4,8 @@
 
 mod text;
 
+use std::collections::BTreeMap;
+
 use ndda_contact::Part;
 use ndda_io::folder;
 use ndda_io::scene::{Scene, TableFormat};
@@ -27,6 +29,9 @@ pub struct Explanation {
     pub scene: String,
     /// Its title.
     pub title: String,
+    /// Its parameters by name.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub parameters: BTreeMap<String, f64>,
     /// Steps of the run.
     pub steps: u64,
     /// Δt [s].
@@ -58,6 +63,7 @@ pub fn explain(model: &mut Model) -> Explanation {
         schema: SCHEMA,
         scene: loaded.file.clone(),
         title: scene.title.clone(),
+        parameters: scene.parameters.clone(),
         steps: build::steps(&scene.time),
         step_s: simulation.step_s(),
         step_advice: advice(scene, simulation),

@@ -71,6 +71,7 @@ pub mod stereonet;
 pub mod study;
 #[cfg(any(feature = "plots", feature = "report"))]
 mod surface;
+pub mod sweep;
 pub mod templates;
 pub mod tune;
 #[cfg(feature = "plots")]

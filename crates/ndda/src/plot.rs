@@ -11,7 +11,7 @@ use serde::Serialize;
 use crate::picture::{self, Area, Drawn, colour, log_axis, log_range, range, short};
 
 /// Width and height of the picture [px].
-const SIZE: (u32, u32) = (1160, 600);
+pub(crate) const SIZE: (u32, u32) = (1160, 600);
 /// Width of the part of it that shows colours [px].
 const KEY: u32 = 230;
 /// Endings of columns that are units, the longer ones before those that they end in.

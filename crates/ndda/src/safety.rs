@@ -168,6 +168,21 @@ pub fn find(
     search::Search::new(loaded, (name, folder), plan, watch)?.answer()
 }
 
+/// Whether blocks stand at one factor, which costs a fraction of the search for the largest. With [`Question::Load`] and
+/// [`Question::Gravity`] the change comes at once, from rest, and blocks may swing beyond where they would rest.
+///
+/// # Errors
+/// [`SafetyError`].
+pub fn at(
+    loaded: &LoadedScene,
+    (name, folder): (&str, &Path),
+    factor: f64,
+    plan: &Plan,
+    watch: &Watch,
+) -> Result<State, SafetyError> {
+    search::Search::new(loaded, (name, folder), plan, watch)?.at(factor)
+}
+
 /// Folder of the run that shows how blocks fail.
 pub fn mechanism_folder(out: &Path) -> PathBuf {
     out.join("mechanism")

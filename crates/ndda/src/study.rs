@@ -49,6 +49,9 @@ impl Study {
     /// [`StudyError`] for what is wrong with it.
     pub fn open(study: &Path, out: Option<PathBuf>, overrides: &[String]) -> Result<Self, StudyError> {
         let loaded = study::load(study).map_err(StudyError::Scene)?;
+        if loaded.study.is_sweep() {
+            return Err(StudyError::IsSweep);
+        }
         let mut cases = case::cases(&loaded)?;
         case::set_first(&mut cases, overrides);
         let mut references = case::reference_cases(&loaded, &cases)?;

@@ -9,16 +9,20 @@ use clap::{Args, Subcommand, ValueEnum};
 #[command(
     args_conflicts_with_subcommands = true,
     subcommand_negates_reqs = true,
-    after_help = "Examples:\n  ndda study scenes/studies/bounce.ron\n  ndda study s.ron --emit slurm > job.sh\n  ndda study \
-                  collect s.ron"
+    after_help = "Examples:\n  ndda study scenes/studies/bounce.ron\n  ndda study scenes/bounce.ron --vary time.step_s=4e-4,2e-4 --of \
+                  cube\n  ndda study scenes/safety/plane_parameters.ron --vary \"parameters.friction_deg=Normal(35, 3)\" \
+                  --fails-when \"safety < 1\" --samples 200\n  ndda study s.ron --emit slurm > job.sh\n  ndda study collect s.ron"
 )]
 pub struct StudyArgs {
     /// Part of a study.
     #[command(subcommand)]
     pub part: Option<StudyPart>,
-    /// Study file (RON; see docs/guide/study.md).
+    /// Study file (RON; see docs/guide/study.md), or with --vary a scene.
     #[arg(required = true)]
     pub study: Option<PathBuf>,
+    /// Quantities over values or distributions.
+    #[command(flatten)]
+    pub sweep: SweepArgs,
     /// Where and how.
     #[command(flatten)]
     pub how: StudyHow,
@@ -26,11 +30,50 @@ pub struct StudyArgs {
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: u16,
     /// Run nothing: print what hands the cases to a scheduler.
-    #[arg(long, value_enum, value_name = "KIND")]
+    #[arg(long, value_enum, value_name = "KIND", conflicts_with_all = ["vary", "of", "fails_when"])]
     pub emit: Option<Emit>,
     /// Print the results as JSON.
     #[arg(long)]
     pub json: bool,
+}
+
+/// Quantities over values or distributions, without a reference.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Sweeps and probability")]
+pub struct SweepArgs {
+    /// Vary a value of the scene: path=a,b,c, or path=Normal(mean, deviation), LogNormal, Uniform or Triangular; may be repeated.
+    #[arg(long, value_name = "PATH=VALUES")]
+    pub vary: Vec<String>,
+    /// Quantities: label, safety, columns of history.csv, monitors or blocks, by name or its beginning [default: displacements].
+    #[arg(long, value_delimiter = ',', value_name = "NAME")]
+    pub of: Vec<String>,
+    /// Find the probability of a condition, such as "safety < 1".
+    #[arg(long, value_name = "CONDITION")]
+    pub fails_when: Option<String>,
+    /// Samples of what has a distribution [default: 100].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    pub samples: Option<u32>,
+    /// How samples are spread [default: lhs].
+    #[arg(long, value_enum, value_name = "KIND")]
+    pub sampling: Option<Spread>,
+    /// Seed of the samples [default: 0].
+    #[arg(long, value_name = "SEED")]
+    pub seed: Option<u64>,
+    /// Correlate two random axes: a,b=-0.5; may be repeated.
+    #[arg(long, value_name = "A,B=R", allow_hyphen_values = true)]
+    pub correlate: Vec<String>,
+    /// Find how much each random axis matters (Sobol' indices): samples times the number of axes and two.
+    #[arg(long)]
+    pub sensitivity: bool,
+}
+
+/// How samples are spread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Spread {
+    /// A Latin hypercube: one sample in each stratum of each axis.
+    Lhs,
+    /// Points of a Sobol' sequence.
+    Sobol,
 }
 
 /// Parts of a study, for schedulers.

@@ -5,9 +5,11 @@ use std::path::Path;
 use ndda::study::emit::{self, Plan};
 use ndda::study::error::StudyError;
 use ndda::study::{Study, make_folder, table};
+use ndda::sweep::{self, Ask, How, Sweep};
+use ndda_io::study::Sampling;
 
 use super::processes::{Processes, refuse};
-use crate::args::{Emit, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
+use crate::args::{Emit, Spread, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
 use crate::exit;
 use crate::terminal::console::{complain_unless, say};
 use crate::terminal::interrupt;
@@ -30,7 +32,42 @@ fn open(study: &Path, how: &StudyHow) -> Result<Study, StudyError> {
     Study::open(study, how.out.clone(), &how.overrides)
 }
 
+/// Quantities over values and distributions.
+fn run_sweep(sweep: &Sweep, args: &StudyArgs) -> Result<u8, StudyError> {
+    let stop = interrupt::watch();
+    let (runner, say_line) = (Processes { stop: stop.clone() }, complain_unless(args.how.quiet));
+    let how = How { runner: &runner, stop, say: &say_line, jobs: args.jobs, threads: args.how.threads };
+    let (results, json) = sweep.run(&how)?;
+    let text = format!("{}results in {}", sweep::text::text(&results), sweep.out.display());
+    say(if args.json { &json } else { &text });
+    Ok(if results.has_values() { exit::DONE } else { exit::FAILED })
+}
+
+fn ask(args: &StudyArgs) -> Ask {
+    let sweep = &args.sweep;
+    Ask {
+        vary: sweep.vary.clone(),
+        of: sweep.of.clone(),
+        samples: sweep.samples,
+        sampling: sweep.sampling.map(|spread| match spread {
+            Spread::Lhs => Sampling::LatinHypercube,
+            Spread::Sobol => Sampling::Sobol,
+        }),
+        seed: sweep.seed,
+        correlate: sweep.correlate.clone(),
+        fails_when: sweep.fails_when.clone(),
+        sensitivity: sweep.sensitivity,
+        overrides: args.how.overrides.clone(),
+        out: args.how.out.clone(),
+    }
+}
+
 fn run_all(study: &Path, args: &StudyArgs) -> Result<u8, StudyError> {
+    if args.emit.is_none()
+        && let Some(sweep) = Sweep::open(study, &ask(args))?
+    {
+        return run_sweep(&sweep, args);
+    }
     let opened = open(study, &args.how)?;
     let StudyHow { threads, quiet, overrides, .. } = &args.how;
     if let Some(kind) = args.emit {

@@ -33,6 +33,15 @@ pub fn write_parquet(folder: &OutputFolder, output: &Output) -> Result<(), Write
     Ok(())
 }
 
+/// Copies a table of numbers with a header, a CSV file, as Parquet.
+///
+/// # Errors
+/// [`WriteError`] when the table cannot be read or the file not be written.
+#[cfg(feature = "parquet")]
+pub fn copy_as_parquet(csv: &std::path::Path, parquet: &std::path::Path) -> Result<(), WriteError> {
+    crate::results::table::parquet::from_csv(csv, parquet)
+}
+
 /// Removes the text of tables that are wanted as Parquet only; after the summary, as a run that lacks it is resumed.
 ///
 /// # Errors

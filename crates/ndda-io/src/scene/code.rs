@@ -27,6 +27,8 @@ pub enum Code {
     NotFinite,
     /// Not a unit of the field.
     Unit,
+    /// An expression without a value.
+    Expression,
     /// `--set` leads nowhere.
     Override,
     /// A value outside of what is allowed.
@@ -57,7 +59,7 @@ pub enum Code {
 
 impl Code {
     /// All codes.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::Unreadable,
         Self::Syntax,
         Self::Truncated,
@@ -69,6 +71,7 @@ impl Code {
         Self::WrongType,
         Self::NotFinite,
         Self::Unit,
+        Self::Expression,
         Self::Override,
         Self::OutOfRange,
         Self::NoDirection,

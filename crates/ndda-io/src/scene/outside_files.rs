@@ -62,7 +62,7 @@ pub fn verify(files: &[OutsideFile], folder: &Path) -> Result<(), OutsideFileErr
     Ok(())
 }
 
-/// Meshes, surfaces and records.
+/// Meshes, surfaces, records and materials.
 fn names(scene: &Scene) -> Vec<&str> {
     let shapes = scene.blocks.iter().filter_map(|block| match &block.shape {
         Shape::Surface { file, .. } | Shape::Mesh { file, .. } => Some(file.as_str()),
@@ -76,7 +76,8 @@ fn names(scene: &Scene) -> Vec<&str> {
         Hold::Acceleration { file, .. } => Some(file.as_str()),
         _ => None,
     });
-    shapes.chain(domains).chain(records).collect()
+    let materials = scene.include.iter().map(String::as_str);
+    shapes.chain(domains).chain(records).chain(materials).collect()
 }
 
 /// Adds a file once, and what is read along with it: the other files of a TetGen mesh, and what a Gmsh script names in

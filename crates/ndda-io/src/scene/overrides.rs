@@ -3,6 +3,8 @@
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::locate::{self, Node, current_segments};
+use crate::scene::parameters;
+use crate::scene::suggest::suggest;
 
 /// Keys whose value is a choice: what is inside cannot be written without saying which.
 const CHOICES: [&str; 6] = ["integrator", "contact", "reference", "shape", "on", "hold"];
@@ -40,6 +42,9 @@ fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
         return Ok(out);
     }
     let missing = &names[known..];
+    if names[0] == parameters::FIELD && names.len() > 1 {
+        return Err(refuse(no_parameter(node, known, missing[0])));
+    }
     if node.opening != Some('(') || missing.iter().any(|name| name.parse::<usize>().is_ok()) {
         return Err(refuse(lost(text, node, missing[0])));
     }
@@ -47,6 +52,15 @@ fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
         return Err(refuse(format!("`{choice}` is not written in the scene: write which one it is first")));
     }
     Ok(insert(text, node, missing, value))
+}
+
+/// That there is no such parameter: one that nothing is computed from would be of no use.
+fn no_parameter(node: &Node, known: usize, name: &str) -> String {
+    if known == 0 {
+        return "the scene has no parameters".into();
+    }
+    let names: Vec<&str> = node.children.iter().filter_map(|child| child.key.as_deref()).collect();
+    format!("there is no parameter `{name}`; {}", suggest(name, &names))
 }
 
 /// Why a path leads nowhere.

@@ -1,16 +1,23 @@
 //! The study file: a scene, what to vary in it, and what to compare the results with.
 
-use std::collections::{BTreeMap, HashSet};
+mod check;
+mod distribution;
+mod vary;
+
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use ron::value::RawValue;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors};
 use crate::scene::read::{self, LoadedScene};
-use crate::scene::suggest;
-use crate::scene::{locate, overrides};
+use crate::scene::{locate, parse};
+
+use check::{default_curves, lost_paths, problems};
+pub use distribution::Distribution;
+pub use vary::vary;
 
 /// A study, as it is written.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -38,6 +45,50 @@ pub struct Study {
     /// The results that cases are compared with. Default: `ClosedForm`.
     #[serde(default)]
     pub reference: Reference,
+    /// Quantities of a sweep: nothing is compared with a reference then. Default: none.
+    #[serde(default)]
+    pub of: Vec<String>,
+    /// Samples of what is random. Default: 100.
+    #[serde(default = "hundred")]
+    pub samples: u32,
+    /// How samples are spread. Default: `LatinHypercube`.
+    #[serde(default)]
+    pub sampling: Sampling,
+    /// Seed of the samples. Default: 0.
+    #[serde(default)]
+    pub seed: u64,
+    /// Correlations between random axes. Default: none.
+    #[serde(default)]
+    pub correlations: Vec<Correlation>,
+    /// A condition on a quantity, such as `safety < 1`, whose probability is wanted. Default: none.
+    #[serde(default)]
+    pub fails_when: Option<String>,
+    /// Whether to find how much each random axis matters, which takes samples times the number of such axes and two. Default: false.
+    #[serde(default)]
+    pub sensitivity: bool,
+    /// Relative width of the bracket of factors of safety. Default: 0.01.
+    #[serde(default = "hundredth")]
+    pub safety_error: f64,
+}
+
+/// How samples are spread.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Sampling {
+    /// One sample in each of as many strata of each axis.
+    #[default]
+    LatinHypercube,
+    /// Points of a Sobol' sequence, shifted by the seed.
+    Sobol,
+}
+
+/// Correlation of two random axes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Correlation {
+    /// Names of the axes.
+    pub between: (String, String),
+    /// Coefficient of correlation of the normal numbers that the samples come from, between −1 and 1.
+    pub coefficient: f64,
 }
 
 /// Values as text, by their paths in the scene.
@@ -53,6 +104,19 @@ pub enum Axis {
         path: String,
         /// Its values.
         values: Vec<Box<RawValue>>,
+        /// Name of the axis. Default: the last part of the path.
+        #[serde(default)]
+        name: Option<String>,
+    },
+    /// One value of the scene, drawn from a distribution.
+    Random {
+        /// Its path, as in `--set`; the last part of it names the axis.
+        path: String,
+        /// Its distribution.
+        distribution: Distribution,
+        /// Name of the axis. Default: the last part of the path.
+        #[serde(default)]
+        name: Option<String>,
     },
     /// Several values that change together, or one whose choices need labels.
     Choose {
@@ -113,19 +177,61 @@ fn sixteen() -> u32 {
     16
 }
 
+fn hundred() -> u32 {
+    100
+}
+
+fn hundredth() -> f64 {
+    0.01
+}
+
+impl Study {
+    /// A study of a scene in which nothing varies yet.
+    pub fn of_scene(scene: PathBuf) -> Self {
+        Self {
+            title: String::new(),
+            scene,
+            set: Values::new(),
+            axes: Vec::new(),
+            curves: None,
+            repeats: 1,
+            clock: Clock::Wall,
+            reference: Reference::ClosedForm,
+            of: Vec::new(),
+            samples: hundred(),
+            sampling: Sampling::default(),
+            seed: 0,
+            correlations: Vec::new(),
+            fails_when: None,
+            sensitivity: false,
+            safety_error: hundredth(),
+        }
+    }
+
+    /// Whether it asks for quantities of the scene, and compares nothing with a reference.
+    pub fn is_sweep(&self) -> bool {
+        let is_random = |axis: &Axis| matches!(axis, Axis::Random { .. });
+        !self.of.is_empty() || self.fails_when.is_some() || self.axes.iter().any(is_random)
+    }
+}
+
 impl Axis {
     /// Name in tables.
     pub fn name(&self) -> &str {
         match self {
-            Self::Vary { path, .. } => locate::segments(path).last().copied().unwrap_or(path),
+            Self::Vary { name: Some(name), .. } | Self::Random { name: Some(name), .. } => name,
+            Self::Vary { path, .. } | Self::Random { path, .. } => {
+                locate::segments(path).last().copied().unwrap_or(path)
+            }
             Self::Choose { name, .. } => name,
         }
     }
 
-    /// Label and overrides of each choice.
+    /// Label and overrides of each choice; none of a distribution.
     pub fn choices(&self) -> Vec<(String, Vec<String>)> {
         match self {
-            Self::Vary { path, values } => {
+            Self::Random { .. } => Vec::new(),
+            Self::Vary { path, values, .. } => {
                 let texts = values.iter().map(|value| value.get_ron().trim());
                 texts.map(|text| (text.to_string(), vec![format!("{path}={text}")])).collect()
             }
@@ -138,7 +244,7 @@ impl Axis {
     /// Whether it varies the value at a path.
     pub(crate) fn varies(&self, path: &str) -> bool {
         match self {
-            Self::Vary { path: own, .. } => own == path,
+            Self::Vary { path: own, .. } | Self::Random { path: own, .. } => own == path,
             Self::Choose { choices, .. } => choices.iter().any(|choice| choice.set.contains_key(path)),
         }
     }
@@ -165,17 +271,21 @@ pub struct LoadedStudy {
 impl LoadedStudy {
     /// A study in which nothing varies: a scene that is run over and over with values of the caller.
     pub fn of_scene(scene: PathBuf, scene_text: String) -> Self {
-        let study = Study {
-            title: String::new(),
-            scene: scene.clone(),
-            set: Values::new(),
-            axes: Vec::new(),
-            curves: None,
-            repeats: 1,
-            clock: Clock::Wall,
-            reference: Reference::ClosedForm,
-        };
-        Self { study, curves: Vec::new(), scene, scene_text }
+        Self { study: Study::of_scene(scene.clone()), curves: Vec::new(), scene, scene_text }
+    }
+
+    /// A study of a scene that is not from a file.
+    ///
+    /// # Errors
+    /// What is wrong with it, by the names of its fields.
+    pub fn checked(study: Study, scene: PathBuf, scene_text: String) -> Result<Self, SceneErrors> {
+        let mut diagnostics = problems(&study);
+        diagnostics.extend(lost_paths(&study, &scene_text));
+        if !diagnostics.is_empty() {
+            return Err(SceneErrors { file: scene.display().to_string(), text: String::new(), diagnostics });
+        }
+        let curves = default_curves(&study);
+        Ok(Self { study, curves, scene, scene_text })
     }
 
     /// The scene with `overrides` in it.
@@ -199,9 +309,9 @@ pub fn load(path: &Path) -> Result<LoadedStudy, SceneErrors> {
         text: text.to_string(),
         diagnostics,
     };
-    read::refuse_blank(&text).map_err(|(text, refused)| fail(text, vec![refused]))?;
+    parse::refuse_blank(&text).map_err(|(text, refused)| fail(text, vec![refused]))?;
     let tree = locate::tree(&text);
-    let study: Study = read::parse(&text, &tree).map_err(|found| fail(&text, found))?;
+    let study: Study = parse::parse(&text, &tree).map_err(|found| fail(&text, found))?;
     let scene = path.parent().unwrap_or(Path::new(".")).join(&study.scene);
     let mut found = problems(&study);
     let scene_text = match read::text_of(&scene) {
@@ -220,83 +330,12 @@ pub fn load(path: &Path) -> Result<LoadedStudy, SceneErrors> {
             String::new()
         }
     };
-    read::locate_all(&mut found, &text, &tree);
+    parse::locate_all(&mut found, &text, &tree);
     if !found.is_empty() {
         return Err(fail(&text, found));
     }
     let curves = study.curves.clone().unwrap_or_else(|| default_curves(&study));
     Ok(LoadedStudy { study, curves, scene, scene_text })
-}
-
-fn default_curves(study: &Study) -> Vec<String> {
-    let others = study.axes.iter().filter(|axis| !axis.varies("time.step_s"));
-    others.map(|axis| axis.name().to_string()).collect()
-}
-
-/// Errors of a study that do not depend on the scene.
-fn problems(study: &Study) -> Vec<Diagnostic> {
-    let mut found = Vec::new();
-    let mut refuse =
-        |path: String, message: String| found.push(Diagnostic::error(Code::OutOfRange, path, message, None));
-    if study.repeats == 0 {
-        refuse("repeats".into(), "0: must be at least 1".into());
-    }
-    if let Reference::Runs { divisor: 0, .. } = study.reference {
-        refuse("reference.divisor".into(), "0: must be at least 1".into());
-    }
-    if study.axes.is_empty() {
-        refuse("axes".into(), "nothing varies: write at least one axis".into());
-    }
-    let mut names = HashSet::new();
-    for (i, axis) in study.axes.iter().enumerate() {
-        if axis.name().is_empty() || !names.insert(axis.name()) {
-            refuse(format!("axes[{i}]"), format!("the name `{}` is empty or taken: use Choose", axis.name()));
-        }
-        let (choices, mut labels) = (axis.choices(), HashSet::new());
-        if choices.is_empty() {
-            refuse(format!("axes[{i}]"), "has no values".into());
-        }
-        if let Some((label, _)) = choices.iter().find(|(label, _)| !labels.insert(label)) {
-            refuse(format!("axes[{i}]"), format!("`{label}` is there twice"));
-        }
-    }
-    for (i, curve) in study.curves.iter().flatten().enumerate() {
-        if !names.contains(curve.as_str()) {
-            let known = study.axes.iter().map(Axis::name).collect::<Vec<_>>();
-            refuse(
-                format!("curves[{i}]"),
-                format!("no axis is called `{curve}`; {}", suggest::suggest(curve, &known)),
-            );
-        }
-    }
-    found
-}
-
-/// Paths that lead nowhere in the scene. What values mean is found when a case runs.
-fn lost_paths(study: &Study, scene_text: &str) -> Vec<Diagnostic> {
-    let refused = |text: &str, overrides: &[String]| overrides::apply(text, overrides).err();
-    let common = as_overrides(&study.set);
-    let lost = |path: String, d: Diagnostic| {
-        Diagnostic::error(Code::Override, path, format!("{}: {}", d.path, d.message), None)
-    };
-    let text = match overrides::apply(scene_text, &common) {
-        Ok(text) => text,
-        Err(d) => return vec![lost("set".into(), d)],
-    };
-    let mut found = Vec::new();
-    for (i, axis) in study.axes.iter().enumerate() {
-        let part = if matches!(axis, Axis::Vary { .. }) { "values" } else { "choices" };
-        for (j, (_, overrides)) in axis.choices().iter().enumerate() {
-            found.extend(refused(&text, overrides).map(|d| lost(format!("axes[{i}].{part}[{j}]"), d)));
-        }
-    }
-    if let Reference::Runs { first, second, .. } = &study.reference {
-        for (name, values) in [("first", first), ("second", second)] {
-            let d = refused(&text, &as_overrides(values));
-            found.extend(d.map(|d| lost(format!("reference.{name}"), d)));
-        }
-    }
-    found
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 //! Values with a unit: `Megapascal(20)` in a field `…_pa` is 20e6.
 //!
 //! The unit of a field is the end of its name. A value in another unit of the same dimension is turned into it in the text,
-//! before types are read, and former names of fields into current ones; what is found wrong later is mapped back to the text as it was written.
+//! before types are read, expressions into their values, and former names of fields into current ones; what is found wrong later
+//! is mapped back to the text as it was written.
 
 mod dimensions;
 
@@ -10,12 +11,17 @@ use std::ops::Range;
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::locate::Node;
+use crate::scene::parameters::{self, Parameters, number};
 use crate::scene::suggest::nearest;
 
 pub use dimensions::{DIMENSIONS, Dimension, Unit, dimension_of};
 
 /// A choice whose value is a place [m], though its name does not end in it.
 const PLACE: &str = "Point";
+/// Field of a scene, or of a file of materials, that names files.
+pub(crate) const INCLUDE: &str = "include";
+/// An expression: `Calc(90 - dip_deg)`.
+const CALC: &str = "Calc";
 
 /// A text in which every value is in the unit of its field.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -34,23 +40,51 @@ struct Edit {
     with: String,
 }
 
-/// Turns every value of a text into the unit of its field.
-pub(crate) fn resolve(text: &str, tree: &Node) -> Resolved {
-    let mut resolver = Resolver { text, tree, edits: Vec::new(), errors: Vec::new() };
-    resolver.visit(tree, None);
+/// Turns every value of a text into a number in the unit of its field.
+pub(crate) fn resolve(text: &str, tree: &Node, parameters: &Parameters) -> Resolved {
+    let mut resolver = Resolver { text, tree, parameters, edits: Vec::new(), errors: Vec::new() };
+    resolver.visit_fields();
     let Resolver { edits, errors, .. } = resolver;
-    let mut out = String::with_capacity(text.len());
-    let mut from = 0;
-    for edit in &edits {
+    Resolved { text: edited(text, &edits, 0..text.len()), errors, edits }
+}
+
+/// One value in the unit of its field.
+///
+/// # Errors
+/// Those of its units and expressions.
+pub(crate) fn resolve_value(
+    text: &str,
+    tree: &Node,
+    node: &Node,
+    parameters: &Parameters,
+) -> Result<String, Vec<Diagnostic>> {
+    let mut resolver = Resolver { text, tree, parameters, edits: Vec::new(), errors: Vec::new() };
+    resolver.visit(node, None);
+    match resolver.errors.is_empty() {
+        true => Ok(edited(text, &resolver.edits, node.span.clone())),
+        false => Err(resolver.errors),
+    }
+}
+
+/// Part of a text with edits in it.
+fn edited(text: &str, edits: &[Edit], part: Range<usize>) -> String {
+    let mut out = String::with_capacity(part.len());
+    let mut from = part.start;
+    for edit in edits {
         out.push_str(&text[from..edit.at.start]);
         out.push_str(&edit.with);
         from = edit.at.end;
     }
-    out.push_str(&text[from..]);
-    Resolved { text: out, errors, edits }
+    out.push_str(&text[from..part.end]);
+    out
 }
 
 impl Resolved {
+    /// A text as it is written.
+    pub(crate) fn unchanged(text: &str) -> Self {
+        Self { text: text.to_string(), ..Self::default() }
+    }
+
     /// Byte of the source that a byte of the text comes from.
     pub(crate) fn source(&self, offset: usize) -> usize {
         let (mut in_source, mut in_text) = (0, 0);
@@ -71,11 +105,36 @@ impl Resolved {
 struct Resolver<'a> {
     text: &'a str,
     tree: &'a Node,
+    parameters: &'a Parameters,
     edits: Vec<Edit>,
     errors: Vec<Diagnostic>,
 }
 
 impl Resolver<'_> {
+    /// Looks through the fields of a scene or of an included file.
+    fn visit_fields(&mut self) {
+        let tree = self.tree;
+        let is = |child: &Node, field: &str| child.key.as_deref() == Some(field);
+        let has_materials = tree.children.iter().any(|child| is(child, "materials"));
+        for child in &tree.children {
+            if is(child, parameters::FIELD) {
+                self.edit(child.span.clone(), self.parameters.as_map());
+            } else if is(child, INCLUDE) {
+                if !has_materials {
+                    self.edit(child.key_span.start..child.key_span.start, "materials: [], ".into());
+                }
+                // One file may stand without the brackets of a list.
+                let alone = child.opening.is_none();
+                let mut bracket =
+                    |at: usize, with: &str| self.edit(at..at, if alone { with } else { "" }.into());
+                bracket(child.span.start, "[");
+                bracket(child.span.end, "]");
+            } else {
+                self.visit(child, None);
+            }
+        }
+    }
+
     /// Looks for units in a value; items and components of a quantity are of its dimension.
     fn visit(&mut self, node: &Node, outer: Option<&'static Dimension>) {
         if let Some(key) = node.key.as_deref().filter(|key| **key != self.text[node.key_span.clone()]) {
@@ -83,6 +142,10 @@ impl Resolver<'_> {
         }
         let own = node.key.as_deref().and_then(dimension_of).or(outer);
         let word = node.word(self.text);
+        if word == CALC {
+            let value = self.calculate(node);
+            return self.edit(node.span.clone(), value.map_or(String::new(), number));
+        }
         if DIMENSIONS.iter().any(|d| d.unit(word).is_some()) {
             return self.convert(node, word, own);
         }
@@ -128,8 +191,15 @@ impl Resolver<'_> {
     }
 
     fn convert_numbers(&mut self, node: &Node, unit: &Unit) {
-        if node.opening.is_none() {
-            match unit.in_field(&self.text[node.span.clone()]) {
+        let calculated = match node.word(self.text) {
+            CALC => match self.calculate(node) {
+                Some(value) => Some(number(value)),
+                None => return,
+            },
+            _ => None,
+        };
+        if node.opening.is_none() || calculated.is_some() {
+            match unit.in_field(calculated.as_deref().unwrap_or(&self.text[node.span.clone()])) {
                 Some(number) => self.edit(node.span.clone(), number),
                 None => {
                     self.refuse(node, "is no number that has a unit", "write a plain number in the brackets")
@@ -140,6 +210,12 @@ impl Resolver<'_> {
         } else {
             node.children.iter().for_each(|child| self.convert_numbers(child, unit));
         }
+    }
+
+    /// Value of `Calc(…)`; the brackets are part of the expression.
+    fn calculate(&mut self, node: &Node) -> Option<f64> {
+        let value = self.parameters.calculate(self.text, self.tree, node, node.span.start + CALC.len());
+        value.map_err(|refused| self.errors.push(refused)).ok()
     }
 
     fn edit(&mut self, at: Range<usize>, with: String) {
@@ -164,7 +240,7 @@ mod tests {
     use crate::scene::locate;
 
     fn resolved(text: &str) -> Resolved {
-        resolve(text, &locate::tree(text))
+        resolve(text, &locate::tree(text), &Parameters::default())
     }
 
     fn number(field: &str, value: &str) -> f64 {

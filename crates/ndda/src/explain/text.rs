@@ -7,6 +7,10 @@ use super::Explanation;
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         writeln!(f, "{}: {}\n{} steps of {} s", self.scene, self.title, self.steps, self.step_s)?;
+        if !self.parameters.is_empty() {
+            let named = self.parameters.iter().map(|(name, value)| format!("{name} = {value}"));
+            writeln!(f, "parameters: {}", named.collect::<Vec<_>>().join(", "))?;
+        }
         if let Some(advice) = &self.step_advice {
             writeln!(f, "{advice}")?;
         }

@@ -109,6 +109,11 @@ impl<'a> Search<'a> {
         Ok(answer)
     }
 
+    /// Whether blocks stand at one factor on the strength.
+    pub fn at(&self, factor: f64) -> Result<State, SafetyError> {
+        Ok(self.try_factor(factor, &self.start.snapshot, 0.0)?.0)
+    }
+
     /// Trials side by side, outwards until there is a bracket and inwards until it is narrow, all from the same start.
     fn bisect(&self, before_s: f64) -> Result<Snapshot, SafetyError> {
         loop {

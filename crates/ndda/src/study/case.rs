@@ -114,7 +114,8 @@ pub fn plain(text: &str) -> String {
 /// # Errors
 /// Errors of the scene.
 pub fn fingerprint(loaded: &LoadedStudy, case: &Case) -> Result<String, SceneErrors> {
-    let text = loaded.scene_with(&case.overrides)?.text;
+    let read = loaded.scene_with(&case.overrides)?;
+    let text = read.text;
     let mut bytes = text.clone().into_bytes();
     let folder = loaded.scene.parent().unwrap_or(Path::new("."));
     locate::tree(&text).for_each_leaf(&mut |leaf| {
@@ -125,6 +126,10 @@ pub fn fingerprint(loaded: &LoadedStudy, case: &Case) -> Result<String, SceneErr
             bytes.extend(std::fs::read(&file).unwrap_or_default());
         }
     });
+    // Files of materials may name others.
+    for file in &read.scene.include {
+        bytes.extend(std::fs::read(folder.join(file)).unwrap_or_default());
+    }
     Ok(format!("{:08x}-{}", checkpoint::fingerprint(&bytes), bytes.len()))
 }
 

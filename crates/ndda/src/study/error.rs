@@ -62,6 +62,37 @@ pub enum StudyError {
     /// A run cannot be started.
     #[error("cannot start a run: {0}")]
     Start(std::io::Error),
+    /// A study without cases that a scheduler could run.
+    #[error(
+        "the study asks for quantities or has random axes: `ndda study STUDY --jobs N` runs it as a whole, and goes on where it was"
+    )]
+    IsSweep,
+    /// A condition that cannot be judged.
+    #[error(
+        "the condition `{condition}` cannot be judged: {reason}; write a quantity, a comparison and a number, as `safety < 1`"
+    )]
+    Condition {
+        /// The condition.
+        condition: String,
+        /// Why.
+        reason: &'static str,
+    },
+    /// A correlation that cannot be read.
+    #[error(
+        "`{0}` is no correlation: write the names of two axes and a number, as friction_deg,cohesion_pa=-0.5"
+    )]
+    Correlation(String),
+    /// Samples that cannot be drawn.
+    #[error("samples cannot be drawn: {0}")]
+    Samples(String),
+    /// No case has a quantity.
+    #[error("no run has a quantity `{name}`: there is {known}, label, safety")]
+    NoQuantity {
+        /// Its name.
+        name: String,
+        /// The quantities that there are.
+        known: String,
+    },
     /// Somebody asked it to end.
     #[error("interrupted: the same command goes on from here")]
     Interrupted,

@@ -120,6 +120,7 @@ fn value(schema: &Value, links: bool) -> String {
         "string" => "\"text\"".into(),
         "integer" => "whole number".into(),
         "array" => list(schema, links),
+        "object" => format!("(name: {}, …)", value(&schema["additionalProperties"], links)),
         other => other.into(),
     }
 }

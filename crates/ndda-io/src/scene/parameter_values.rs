@@ -1,0 +1,125 @@
+//! Reading the parameters of a scene.
+
+use crate::scene::code::Code;
+use crate::scene::diagnostic::Diagnostic;
+use crate::scene::locate::Node;
+use crate::scene::parameters::{FIELD, Parameters};
+use crate::scene::units;
+
+/// Reads the parameters of a scene; each may be computed from those before it.
+///
+/// # Errors
+/// Everything that is wrong with them.
+pub(crate) fn read(text: &str, tree: &Node) -> Result<Parameters, Vec<Diagnostic>> {
+    let mut read = Parameters::default();
+    let Some(node) = tree.children.iter().find(|child| child.key.as_deref() == Some(FIELD)) else {
+        return Ok(read);
+    };
+    let mut found = Vec::new();
+    if node.opening != Some('(') || node.children.iter().any(|child| child.key.is_none()) {
+        let refused =
+            Diagnostic::error(Code::WrongType, FIELD, "are no names with values", Some(node.span.clone()));
+        return Err(vec![refused.with_help("write parameters: (height_m: 10, dip_deg: 35)")]);
+    }
+    for child in &node.children {
+        let name = child.key.clone().unwrap_or_default();
+        let name_refused = read.refuse_name(&name, child.key_span.clone());
+        match (name_refused, value(text, tree, child, &read)) {
+            (None, Ok(value)) => {
+                read.add(name, value, child.key_span.clone());
+            }
+            (refused, value) => {
+                found.extend(refused);
+                found.extend(value.err().into_iter().flatten());
+            }
+        }
+    }
+    if found.is_empty() { Ok(read) } else { Err(found) }
+}
+
+/// Value of one parameter: a number, one with a unit, or one that is computed.
+fn value(text: &str, tree: &Node, node: &Node, earlier: &Parameters) -> Result<f64, Vec<Diagnostic>> {
+    let plain = units::resolve_value(text, tree, node, earlier)?;
+    plain.replace('_', "").trim().parse().map_err(|_| {
+        let path = tree.path_at(node.span.start);
+        let refused =
+            Diagnostic::error(Code::WrongType, path, "a parameter is one number", Some(node.span.clone()));
+        vec![refused.with_help("write a number, one with its unit, or Calc(…) of the parameters before it")]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::read::load_text;
+
+    fn scene(parameters: &str, dip: &str) -> String {
+        format!(
+            "(title: \"t\", {parameters} time: (step_s: 1e-3, end_s: 1),
+              materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: Gigapascal(Calc(10 * 2)), poisson: 0.25)],
+              blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, Calc(1 + 1), 1)), 
+                turns: [(axis: (0, 1, 0), angle_deg: {dip})])])"
+        )
+    }
+
+    #[test]
+    fn parameters_are_computed_from_earlier_ones_in_units_and_counts() {
+        let text =
+            scene("parameters: (dip_deg: Radians(0.5), rise_deg: Calc(90 - dip_deg)),", "Calc(-rise_deg)");
+        let scene = load_text("s.ron", &text, &[], None).unwrap().scene;
+        assert_eq!(scene.blocks[0].turns[0].angle_deg, -(90.0 - 0.5f64.to_degrees()));
+        assert_eq!(scene.materials[0].young_pa, 20e9);
+        assert_eq!(scene.parameters["rise_deg"], 90.0 - 0.5f64.to_degrees());
+        assert!(matches!(&scene.blocks[0].shape, crate::scene::Shape::Box { cells: [1, 2, 1], .. }));
+    }
+
+    #[test]
+    fn a_scene_with_an_expression_is_that_with_its_value() {
+        let with = load_text("s.ron", &scene("parameters: (dip_deg: 35),", "Calc(90 - dip_deg)"), &[], None);
+        let mut with = with.unwrap().scene;
+        let plain = load_text("s.ron", &scene("", "55"), &[], None).unwrap().scene;
+        with.parameters.clear();
+        assert_eq!(with, plain);
+    }
+
+    #[test]
+    fn a_parameter_is_set_by_its_name() {
+        let text = scene("parameters: (dip_deg: 35),", "Calc(dip_deg)");
+        let turned = |set: &str| load_text("s.ron", &text, &[set.to_string()], None);
+        assert_eq!(turned("parameters.dip_deg=40").unwrap().scene.blocks[0].turns[0].angle_deg, 40.0);
+        assert_eq!(
+            turned("parameters.dip_deg=Calc(2 * 40)").unwrap().scene.blocks[0].turns[0].angle_deg,
+            80.0
+        );
+        let refused = turned("parameters.dpi_deg=40").unwrap_err().render(false);
+        assert!(refused.contains("did you mean `dip_deg`"), "{refused}");
+        let bare = load_text("s.ron", &scene("", "1"), &["parameters.dip_deg=40".into()], None);
+        assert!(bare.unwrap_err().render(false).contains("has no parameters"));
+    }
+
+    #[test]
+    fn mistakes_come_with_file_line_column_and_expression() {
+        for (parameters, dip, place, words) in [
+            ("parameters: (dip_deg: 35),", "90 - Calc(dip_deg)", "s.ron:4:", ""),
+            (
+                "parameters: (dip_deg: 35),",
+                "Calc(90 - dpi_deg)",
+                "s.ron:4:64",
+                "in `90 - dpi_deg`: there is no",
+            ),
+            ("parameters: (a: 0),", "Calc(1 / a)", "s.ron:4:59", "`1 / a` divides by zero"),
+            ("parameters: (a: Calc(b), b: 1),", "Calc(a)", "s.ron:1:35", "no parameter `b`"),
+            ("parameters: (pi: 3),", "1", "s.ron:1:27", "have already"),
+            ("parameters: (a: 3, a: 4),", "1", "s.ron:1:33", "twice"),
+            ("parameters: (a: (1, 2)),", "1", "s.ron:1:30", "one number"),
+            ("parameters: (a_m: Degrees(2)),", "1", "s.ron:1:32", "no unit of a length"),
+            ("parameters: [3],", "1", "s.ron:1:26", "height_m"),
+            ("parameters: (dip_deg: 35),", "1", "s.ron:1:27: warning[no-effect]", "nothing is computed"),
+        ] {
+            let said = match load_text("s.ron", &scene(parameters, dip), &[], None) {
+                Ok(loaded) => loaded.errors(loaded.warnings.clone()).render(false),
+                Err(errors) => errors.render(false),
+            };
+            assert!(said.contains(place) && said.contains(words), "{parameters} {dip}: {said}");
+        }
+    }
+}

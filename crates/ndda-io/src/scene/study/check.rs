@@ -1,0 +1,121 @@
+//! Checks of studies.
+
+use std::collections::HashSet;
+
+use super::{Axis, Reference, Study, as_overrides};
+use crate::scene::code::Code;
+use crate::scene::diagnostic::Diagnostic;
+use crate::scene::overrides;
+use crate::scene::suggest;
+
+pub(super) fn default_curves(study: &Study) -> Vec<String> {
+    let others = study.axes.iter().filter(|axis| !axis.varies("time.step_s"));
+    others.map(|axis| axis.name().to_string()).collect()
+}
+
+/// Errors of a study that do not depend on the scene.
+pub(super) fn problems(study: &Study) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    let mut refuse =
+        |path: String, message: String| found.push(Diagnostic::error(Code::OutOfRange, path, message, None));
+    if study.repeats == 0 {
+        refuse("repeats".into(), "0: must be at least 1".into());
+    }
+    if let Reference::Runs { divisor: 0, .. } = study.reference {
+        refuse("reference.divisor".into(), "0: must be at least 1".into());
+    }
+    if study.axes.is_empty() {
+        refuse("axes".into(), "nothing varies: write at least one axis".into());
+    }
+    if study.samples == 0 {
+        refuse("samples".into(), "0: must be at least 1".into());
+    }
+    if !(study.safety_error > 0.0 && study.safety_error < 1.0) {
+        refuse("safety_error".into(), format!("{}: must lie between 0 and 1", study.safety_error));
+    }
+    let mut names = HashSet::new();
+    for (i, axis) in study.axes.iter().enumerate() {
+        if axis.name().is_empty() || !names.insert(axis.name()) {
+            refuse(format!("axes[{i}]"), format!("the name `{}` is empty or taken: use Choose", axis.name()));
+        }
+        let (choices, mut labels) = (axis.choices(), HashSet::new());
+        if let Axis::Random { distribution, .. } = axis {
+            if let Err(reason) = distribution.check() {
+                refuse(format!("axes[{i}].distribution"), reason);
+            }
+        } else if choices.is_empty() {
+            refuse(format!("axes[{i}]"), "has no values".into());
+        }
+        if let Some((label, _)) = choices.iter().find(|(label, _)| !labels.insert(label)) {
+            refuse(format!("axes[{i}]"), format!("`{label}` is there twice"));
+        }
+    }
+    for (i, curve) in study.curves.iter().flatten().enumerate() {
+        if !names.contains(curve.as_str()) {
+            let known = study.axes.iter().map(Axis::name).collect::<Vec<_>>();
+            refuse(
+                format!("curves[{i}]"),
+                format!("no axis is called `{curve}`; {}", suggest::suggest(curve, &known)),
+            );
+        }
+    }
+    found.extend(correlation_problems(study));
+    found
+}
+
+/// Correlations that are none, or of what is not random.
+fn correlation_problems(study: &Study) -> Vec<Diagnostic> {
+    let random = study.axes.iter().filter(|axis| matches!(axis, Axis::Random { .. }));
+    let random: Vec<&str> = random.map(Axis::name).collect();
+    let mut found = Vec::new();
+    let mut refuse =
+        |path: String, message: String| found.push(Diagnostic::error(Code::OutOfRange, path, message, None));
+    for (i, correlation) in study.correlations.iter().enumerate() {
+        let (a, b) = &correlation.between;
+        let path = format!("correlations[{i}]");
+        for name in [a, b].into_iter().filter(|name| !random.contains(&name.as_str())) {
+            let help = suggest::suggest(name, &random);
+            refuse(path.clone(), format!("no random axis is called `{name}`; {help}"));
+        }
+        if a == b || correlation.coefficient.is_nan() || correlation.coefficient.abs() >= 1.0 {
+            refuse(path, "two axes have a coefficient between −1 and 1".into());
+        }
+    }
+    if study.sensitivity && !study.correlations.is_empty() {
+        refuse("sensitivity".into(), "is of independent axes: leave out the correlations".into());
+    }
+    if study.sensitivity && random.is_empty() {
+        refuse("sensitivity".into(), "is of random axes: give one a distribution".into());
+    }
+    found
+}
+
+/// Paths that lead nowhere in the scene. What values mean is found when a case runs.
+pub(super) fn lost_paths(study: &Study, scene_text: &str) -> Vec<Diagnostic> {
+    let refused = |text: &str, overrides: &[String]| overrides::apply(text, overrides).err();
+    let common = as_overrides(&study.set);
+    let lost = |path: String, d: Diagnostic| {
+        Diagnostic::error(Code::Override, path, format!("{}: {}", d.path, d.message), None)
+    };
+    let text = match overrides::apply(scene_text, &common) {
+        Ok(text) => text,
+        Err(d) => return vec![lost("set".into(), d)],
+    };
+    let mut found = Vec::new();
+    for (i, axis) in study.axes.iter().enumerate() {
+        if let Axis::Random { path, .. } = axis {
+            found.extend(refused(&text, &[format!("{path}=0")]).map(|d| lost(format!("axes[{i}]"), d)));
+        }
+        let part = if matches!(axis, Axis::Vary { .. }) { "values" } else { "choices" };
+        for (j, (_, overrides)) in axis.choices().iter().enumerate() {
+            found.extend(refused(&text, overrides).map(|d| lost(format!("axes[{i}].{part}[{j}]"), d)));
+        }
+    }
+    if let Reference::Runs { first, second, .. } = &study.reference {
+        for (name, values) in [("first", first), ("second", second)] {
+            let d = refused(&text, &as_overrides(values));
+            found.extend(d.map(|d| lost(format!("reference.{name}"), d)));
+        }
+    }
+    found
+}

@@ -1,0 +1,93 @@
+//! Distributions of what varies: `Normal(30, 2)`.
+
+use serde::{Deserialize, Serialize};
+
+/// A distribution of one number of a scene, in the unit of its field.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Distribution {
+    /// Mean and standard deviation.
+    Normal(f64, f64),
+    /// Mean and standard deviation of the number itself, not of its logarithm.
+    LogNormal(f64, f64),
+    /// Least and largest value.
+    Uniform(f64, f64),
+    /// Least, most likely and largest value.
+    Triangular(f64, f64, f64),
+}
+
+/// Names of the distributions.
+const NAMES: [&str; 4] = ["Normal", "LogNormal", "Uniform", "Triangular"];
+
+impl Distribution {
+    /// A distribution as it is written; none if the text is something else.
+    ///
+    /// # Errors
+    /// What is wrong with a text that begins with the name of a distribution.
+    pub fn parse(text: &str) -> Option<Result<Self, String>> {
+        let name = text.split('(').next().unwrap_or_default().trim();
+        if !NAMES.contains(&name) {
+            return None;
+        }
+        let read = ron::from_str::<Self>(text).map_err(|error| {
+            format!("`{text}`: {error}; write Normal(mean, deviation), LogNormal(mean, deviation), Uniform(least, largest) or \
+                     Triangular(least, likeliest, largest)")
+        });
+        Some(read.and_then(|read| read.check().map(|()| read)))
+    }
+
+    /// Whether its parameters make sense.
+    ///
+    /// # Errors
+    /// The one that does not, and what to write.
+    pub fn check(&self) -> Result<(), String> {
+        let numbers = match *self {
+            Self::Normal(a, b) | Self::LogNormal(a, b) | Self::Uniform(a, b) => [a, b, b],
+            Self::Triangular(a, b, c) => [a, b, c],
+        };
+        let refuse = |reason: &str| Err(format!("{self:?}: {reason}"));
+        if numbers.iter().any(|number| !number.is_finite()) {
+            return refuse("its numbers must be finite");
+        }
+        match *self {
+            Self::Normal(_, deviation) | Self::LogNormal(_, deviation) if deviation <= 0.0 => {
+                refuse("the standard deviation must be above 0")
+            }
+            Self::LogNormal(mean, _) if mean <= 0.0 => refuse("the mean must be above 0"),
+            Self::Uniform(least, largest) if least >= largest => {
+                refuse("the least value comes first, and is less than the largest")
+            }
+            Self::Triangular(least, likeliest, largest)
+                if !(least <= likeliest && likeliest <= largest && least < largest) =>
+            {
+                refuse("write the least, the likeliest and the largest value in this order")
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distributions_are_read_and_wrong_ones_refused() {
+        assert_eq!(Distribution::parse("Normal(30, 2)"), Some(Ok(Distribution::Normal(30.0, 2.0))));
+        assert_eq!(
+            Distribution::parse("Triangular(1,1,4)"),
+            Some(Ok(Distribution::Triangular(1.0, 1.0, 4.0)))
+        );
+        assert_eq!(Distribution::parse("Newmark()"), None);
+        for (text, word) in [
+            ("Normal(30)", "Normal(mean"),
+            ("Normal(30, -2)", "above 0"),
+            ("LogNormal(-1, 2)", "mean must be above 0"),
+            ("Uniform(2, 1)", "least value comes first"),
+            ("Triangular(1, 5, 4)", "order"),
+            ("Normal(inf, 1)", "finite"),
+        ] {
+            let said = Distribution::parse(text).expect("a distribution").unwrap_err();
+            assert!(said.contains(word), "{said}");
+        }
+    }
+}

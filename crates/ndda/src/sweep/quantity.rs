@@ -1,0 +1,161 @@
+//! Quantities of a run, by the names that histories and `ndda certify --of` have for them.
+
+use std::path::Path;
+
+use ndda_io::summary::Summary;
+use ndda_io::{folder, results, table};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+use crate::certify::quantities::{BLOCK, TIME};
+use crate::safety::Bracket;
+use crate::study::error::StudyError;
+
+/// Name of the label.
+pub const LABEL: &str = "label";
+/// Name of the factor of safety: the middle of its bracket, whose ends are `safety_lower` and `safety_upper`.
+pub const SAFETY: &str = "safety";
+/// Largest factor at which blocks stand.
+pub const SAFETY_LOWER: &str = "safety_lower";
+/// Smallest factor at which they fail.
+pub const SAFETY_UPPER: &str = "safety_upper";
+
+/// Quantities of one case.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Values {
+    /// Label of the run; none where there was no run.
+    pub label: Option<String>,
+    /// Numbers by name.
+    #[serde(serialize_with = "as_text", deserialize_with = "from_text")]
+    pub numbers: Vec<(String, f64)>,
+}
+
+/// Numbers as text, since `serde_json` reads numbers with an error of the last digit.
+fn as_text<S: Serializer>(numbers: &[(String, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(numbers.iter().map(|(name, value)| (name, format!("{value:e}"))))
+}
+
+fn from_text<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<(String, f64)>, D::Error> {
+    let texts = Vec::<(String, String)>::deserialize(deserializer)?;
+    let number = |(name, text): (String, String)| Ok((name, text.parse().map_err(D::Error::custom)?));
+    texts.into_iter().map(number).collect()
+}
+
+impl Values {
+    /// A number by its full name, or the only one whose name begins so.
+    pub fn number(&self, name: &str) -> Option<f64> {
+        match self.named(name)[..] {
+            [only] => Some(self.numbers[only].1),
+            _ => None,
+        }
+    }
+
+    /// Numbers that a name stands for: that of this very name, or all whose names, or those of whose blocks, begin so.
+    pub fn named(&self, name: &str) -> Vec<usize> {
+        let names = || self.numbers.iter().map(|(known, _)| known.as_str()).enumerate();
+        if let Some((i, _)) = names().find(|(_, known)| *known == name) {
+            return vec![i];
+        }
+        let begins = |known: &str| {
+            known.starts_with(name) || known.strip_prefix(BLOCK).is_some_and(|block| block.starts_with(name))
+        };
+        names().filter(|(_, known)| begins(known)).map(|(i, _)| i).collect()
+    }
+
+    /// Adds a factor of safety.
+    pub fn add_safety(&mut self, bracket: Bracket) {
+        let middle = match (bracket.lower, bracket.upper) {
+            (Some(lower), Some(upper)) => Some(0.5 * (lower + upper)),
+            (one, other) => one.or(other),
+        };
+        self.numbers.extend(middle.map(|value| (SAFETY.to_string(), value)));
+        self.add_ends(bracket);
+    }
+
+    /// Adds the ends of its bracket alone, of which a trial at one factor gives one.
+    pub fn add_ends(&mut self, bracket: Bracket) {
+        let ends = [(SAFETY_LOWER, bracket.lower), (SAFETY_UPPER, bracket.upper)];
+        self.numbers.extend(ends.into_iter().filter_map(|(name, value)| Some((name.to_string(), value?))));
+    }
+}
+
+/// The quantities in the folder of a run: label, monitors, blocks, and the last row of the history.
+///
+/// # Errors
+/// [`StudyError`] when its summary or history cannot be read.
+pub fn of_run(run: &Path) -> Result<Values, StudyError> {
+    let file = run.join(folder::SUMMARY);
+    let broken = |reason: String| StudyError::Record { file: file.clone(), reason };
+    let text = std::fs::read_to_string(&file).map_err(|error| broken(error.to_string()))?;
+    let summary: Summary = serde_json::from_str(&text).map_err(|error| broken(error.to_string()))?;
+    let mut values = of_summary(&summary);
+    if let Some(history) = results::history_file(run) {
+        let history = table::read(&history)?;
+        let last = history.names.iter().zip(&history.columns).filter(|(name, _)| *name != TIME);
+        values.numbers.extend(last.filter_map(|(name, column)| Some((name.clone(), *column.last()?))));
+    }
+    values.numbers.retain(|(_, value)| value.is_finite());
+    Ok(values)
+}
+
+fn of_summary(summary: &Summary) -> Values {
+    let size = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let mut numbers = Vec::new();
+    for (name, end) in &summary.monitors.0 {
+        numbers.push((format!("{name}.displacement_m"), size(end.displacement)));
+        numbers.push((format!("{name}.velocity_m_s"), size(end.velocity)));
+    }
+    for (name, end) in &summary.blocks.0 {
+        let mut add = |quantity: &str, value: f64| numbers.push((format!("{BLOCK}{name}.{quantity}"), value));
+        add("displacement_m", size(end.motion.displacement_m));
+        for (axis, value) in ["x", "y", "z"].into_iter().zip(end.motion.displacement_m) {
+            add(&format!("displacement_{axis}_m"), value);
+        }
+        add("farthest_m", end.motion.farthest_m);
+        add("largest_m", end.motion.largest_m);
+        add("rotation_deg", end.motion.rotation_deg);
+        add("velocity_m_s", size(end.velocity));
+    }
+    if let Some(reference) = &summary.reference {
+        numbers.push(("error_end".into(), reference.error_end));
+        numbers.push(("error_max".into(), reference.error_max));
+    }
+    Values { label: Some(summary.label.word.as_str().into()), numbers }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stand_for_one_number_or_for_all_that_begin_so() {
+        let names =
+            ["m.displacement_m", "block a.displacement_m", "block a.farthest_m", "block ab.farthest_m", "h"];
+        let numbers = names.iter().zip(0..).map(|(name, i)| (name.to_string(), f64::from(i))).collect();
+        let values = Values { label: None, numbers };
+        assert_eq!(values.named("a"), [1, 2, 3]);
+        assert_eq!(values.named("block a."), [1, 2]);
+        assert_eq!(values.named("h"), [4]);
+        assert_eq!(values.number("a.f"), Some(2.0));
+        assert_eq!(values.number("a"), None);
+    }
+
+    #[test]
+    fn numbers_keep_their_bits_in_records() {
+        for value in [0.11151838014472873, 0.1 + 0.2, 5e-324, -1.7976931348623157e308] {
+            let values = Values { label: None, numbers: vec![("x".into(), value)] };
+            let text = serde_json::to_string(&values).unwrap();
+            assert_eq!(serde_json::from_str::<Values>(&text).unwrap(), values);
+        }
+    }
+
+    #[test]
+    fn the_factor_of_safety_is_the_middle_of_its_bracket() {
+        let mut values = Values::default();
+        values.add_safety(Bracket { lower: Some(1.0), upper: Some(1.5) });
+        assert_eq!((values.number("safety"), values.number("safety_upper")), (Some(1.25), Some(1.5)));
+        let mut open = Values::default();
+        open.add_safety(Bracket { lower: Some(100.0), upper: None });
+        assert_eq!((open.number("safety"), open.number("safety_upper")), (Some(100.0), None));
+    }
+}
