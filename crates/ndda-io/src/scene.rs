@@ -82,6 +82,7 @@ pub struct Scene {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub include: Vec<String>,
     /// Materials, referred to by name. Must be written unless there is `include`.
+    #[cfg_attr(feature = "schema", schemars(default))]
     pub materials: Vec<Material>,
     /// Blocks, in the order of the output. Default: none.
     #[serde(default)]
