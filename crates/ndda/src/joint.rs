@@ -16,6 +16,7 @@ mod closure;
 mod compare;
 mod files;
 mod normal;
+mod outcome;
 mod path;
 #[cfg(feature = "plots")]
 mod picture;
@@ -29,6 +30,7 @@ pub use closure::{ClosureRow, ClosureTest, comparisons as closure_comparisons};
 pub use compare::Comparison;
 pub use files::write;
 pub use normal::NormalStiffness;
+pub use outcome::{SCENE_OF_A_LAW, TestOutcome};
 pub use path::path;
 pub use report::{Rows, text};
 pub use select::{SelectError, Which, friction, normal_stiffness};
