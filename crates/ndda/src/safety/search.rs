@@ -23,9 +23,8 @@ use crate::Model;
 const STRIDE: f64 = 1.5;
 /// Trials inside a bracket that run side by side.
 const INSIDE: usize = 3;
-/// Factors on the strength with which the scene is brought to rest, until it does. So strong, joints do not slip on the way to rest; where they
-/// did, friction would rest at its limit, and any trial below that strength would move blocks.
-const STRENGTHS: [f64; 4] = [32.0, 8.0, 2.0, 1.0];
+/// Factors on the strength with which the scene is brought to rest, until it does.
+const STRENGTHS: [f64; 8] = [1.0, 1.5, 2.25, 3.375, 5.0, 8.0, 16.0, 32.0];
 
 /// First stride under changed loads.
 const FIRST_STRIDE: f64 = 1.25;
@@ -62,7 +61,7 @@ impl<'a> Search<'a> {
         if !matches!(loaded.scene.contact, Some(Contact::Potential { .. })) {
             return Err(SafetyError::NoContact);
         }
-        let start = settled(&loaded, folder, watch)?;
+        let (start, strength) = settled(&loaded, folder, watch)?;
         let by = plan.by.on(&loaded.scene, &start.normals)?;
         let mut answer = Safety {
             schema: SCHEMA.into(),
@@ -82,6 +81,18 @@ impl<'a> Search<'a> {
             remarks: Vec::new(),
             wall_s: 0.0,
         };
+        if strength > 1.0 {
+            answer.remarks.push(format!(
+                "the scene comes to rest with {strength} times its strength only; trials begin from there"
+            ));
+        }
+        if start.slipped > 1.0 {
+            answer.remarks.push(format!(
+                "joints slipped while the scene came to rest: friction took {:.1} times the elastic energy at rest, and may be at its limit there; \
+                 the answer depends on how the scene came to rest, so compare it with gravity tilted (--by gravity) and with a run",
+                start.slipped
+            ));
+        }
         let mut known = Vec::new();
         if let Some(earlier) = watch.out.and_then(|out| earlier(out, &answer)) {
             (known, answer.wall_s) = (earlier.trials, earlier.wall_s);
@@ -238,8 +249,8 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The scene at rest, with joints so strong that they do not slip.
-fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<Start, SafetyError> {
+/// The scene at rest, and with how many times its strength it came to rest.
+fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start, f64), SafetyError> {
     let mut failed = None;
     for strength in STRENGTHS {
         let mut changed = loaded.clone();
@@ -247,7 +258,7 @@ fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<Start, 
         let softest = changes::shear_stiffness_pa_m(&mut changed.scene);
         let settle = changed.scene.settle.unwrap_or_default();
         let gravity_m_s2 = Vec3::from(changed.scene.gravity_m_s2).norm();
-        let most_steps = if strength > STRENGTHS[STRENGTHS.len() - 1] {
+        let most_steps = if strength < STRENGTHS[STRENGTHS.len() - 1] {
             settle.most_steps.min(most_steps(&changed.scene))
         } else {
             settle.most_steps
@@ -260,10 +271,11 @@ fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<Start, 
         match rest(&mut simulation, &settle, watch) {
             Ok(true) => {
                 let start = Start::new(&mut simulation, gravity_m_s2, softest);
-                return start.map_err(|source| SafetyError::NotSettled { strength, source });
+                let start = start.map_err(|source| SafetyError::NotSettled { strength, source })?;
+                return Ok((start, strength));
             }
             Ok(false) => return Err(SafetyError::Interrupted),
-            Err(source) => drop(failed.get_or_insert(SafetyError::NotSettled { strength, source })),
+            Err(source) => failed = Some(SafetyError::NotSettled { strength, source }),
         }
     }
     Err(failed.expect("there are strengths"))
