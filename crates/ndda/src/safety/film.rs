@@ -2,12 +2,12 @@
 
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use ndda_io::OutputFolder;
 use ndda_io::scene::Output;
 
-use super::free_blocks::free;
+use super::free_blocks::{free, gone_m};
 use super::trial::Trial;
 use super::{SafetyError, mechanism_folder};
 use crate::run::motion::radius_m;
@@ -15,8 +15,9 @@ use crate::{Model, Run, RunError};
 
 /// How far blocks go, over the size of the smallest one.
 const VISIBLE: f64 = 0.5;
-/// Longest film over the trial.
-const LONGEST: f64 = 50.0;
+/// Longest film over the trial, and its most steps.
+const LONGEST: u64 = 50;
+const MOST_STEPS: u64 = 200_000;
 const FRAMES: u32 = 24;
 
 /// Records a failing trial in the folder `mechanism`; a film that stops early shows what there was.
@@ -26,17 +27,10 @@ pub fn record(
     out: &Path,
     stop: &Arc<AtomicBool>,
 ) -> Result<(), SafetyError> {
-    let ([first_s, _], [last_s, gone_m]) = (trial.history[0], trial.history[trial.history.len() - 1]);
-    // A trial that fails while it is brought to rest has no history of free motion.
-    let trial_s =
-        if last_s > first_s { last_s - first_s } else { trial.steps as f64 * model.simulation.step_s() };
-    let simulation = &model.simulation;
-    let sizes = free(simulation).map(|block| radius_m(&simulation.shape(block).operator));
-    let visible_m = VISIBLE * sizes.fold(f64::INFINITY, f64::min);
-    // A constant acceleration goes as the square of time.
-    let longer = if gone_m > 0.0 { (visible_m / gone_m).sqrt().clamp(1.0, LONGEST) } else { 1.0 };
+    let most_steps = (trial.steps.max(1) * LONGEST).min(MOST_STEPS);
+    let steps = visible_after(&mut model, most_steps, stop).ok_or(SafetyError::Interrupted)?;
     let scene = &mut model.loaded.scene;
-    scene.time.end_s = (trial_s * longer / scene.time.step_s).ceil().max(1.0) * scene.time.step_s;
+    scene.time.end_s = steps as f64 * scene.time.step_s;
     scene.settle = None;
     let file = Path::new(&model.loaded.file).to_path_buf();
     model.loaded.scene.output = Output { frames: FRAMES, ..Output::default() };
@@ -46,4 +40,26 @@ pub fn record(
         Err(RunError::InterruptedWhileSettling) => Err(SafetyError::Interrupted),
         Err(RunError::Write(error)) => Err(error.into()),
     }
+}
+
+/// Steps after which a block has gone a visible way from the state of the model, at most so many; none if somebody asked to end.
+fn visible_after(model: &mut Model, most_steps: u64, stop: &AtomicBool) -> Option<u64> {
+    let simulation = &mut model.simulation;
+    let sizes = free(simulation).map(|block| radius_m(&simulation.shape(block).operator));
+    let visible_m = VISIBLE * sizes.fold(f64::INFINITY, f64::min);
+    let (begun, start) = (simulation.snapshot(), simulation.state().position.clone());
+    let mut steps = 0;
+    while steps < most_steps {
+        if stop.load(Ordering::Relaxed) {
+            return None;
+        }
+        // The film shows a step that fails, too, with its reason.
+        let failed = simulation.step().is_err();
+        steps += 1;
+        if failed || gone_m(simulation, &start).iter().any(|(_, gone_m)| *gone_m >= visible_m) {
+            break;
+        }
+    }
+    simulation.restore(begun).expect("the blocks are the same");
+    Some(steps)
 }
