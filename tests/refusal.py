@@ -4,7 +4,7 @@
 Usage: refusal.py NDDA SCENE...        (exit 0: all well, 1: not)
 
 An undamaged scene must pass with exit 0. A damaged copy must be refused with exit 3 and `file:line:column`;
-a misspelt key or a number that is none must be reported on the very line where it stands.
+a misspelt key or a number that is none must be reported on the very line where it stands, and a misspelt parameter where it is used.
 """
 
 import os
@@ -18,6 +18,7 @@ from pathlib import Path
 BAD_INPUT = 3
 KEY = re.compile(r"\b([a-z][a-z0-9_]*)(?=\s*:)")
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d[\d_]*(?:\.\d*)?(?:[eE][-+]?\d+)?(?![\w.])")
+PARAMETERS = re.compile(r"\bparameters\s*:\s*\(")
 COMMENT_OR_STRING = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\])*"', re.DOTALL)
 
 
@@ -30,11 +31,12 @@ def damages(text):
     """Name, damaged text and damaged line (None where any line will do) of every copy to be refused."""
     code = blanked(text)
     line_of = lambda place: text.count("\n", 0, place) + 1
-    seen = set()
+    names, seen = parameters(code), set()
     for key in KEY.finditer(code):
         if key.group() not in seen:
             seen.add(key.group())
-            yield f"key {key.group()}x", text[: key.end()] + "x" + text[key.end() :], line_of(key.start())
+            line = None if key.start() in names else line_of(key.start())
+            yield f"key {key.group()}x", text[: key.end()] + "x" + text[key.end() :], line
     for number in NUMBER.finditer(code):
         for word in ("NaN", "-inf", "1e400"):
             damaged = text[: number.start()] + word + text[number.end() :]
@@ -44,6 +46,18 @@ def damages(text):
     for part in (0.0, 0.25, 0.5, 0.75, 1.0):
         cut = int(part * end)
         yield f"truncated to {cut} characters", text[:cut], None
+
+
+def parameters(code):
+    """Places between the brackets of `parameters: (…)`."""
+    found = PARAMETERS.search(code)
+    if not found:
+        return range(0)
+    depth, place = 1, found.end()
+    while depth > 0 and place < len(code):
+        depth += {"(": 1, ")": -1}.get(code[place], 0)
+        place += 1
+    return range(found.end(), place)
 
 
 def check(ndda, scene):

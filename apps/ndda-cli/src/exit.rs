@@ -44,6 +44,7 @@ pub fn of_study(error: &StudyError) -> u8 {
         | StudyError::Correlation(_)
         | StudyError::Samples(_)
         | StudyError::NoQuantity { .. }
+        | StudyError::AmbiguousCondition { .. }
         | StudyError::Difference { .. }
         | StudyError::NoProcessorTime => BAD_INPUT,
         StudyError::Reference { .. } => STOPPED,

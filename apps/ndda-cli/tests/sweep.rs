@@ -159,6 +159,7 @@ fn what_cannot_be_swept_is_refused_with_what_to_write() {
         (vec!["--vary", "parameters.speed_m_s=Normal(1, -1)"], "above 0"),
         ([&vary[..], &["--of", "kinetik_j"]].concat(), "no run has a quantity `kinetik_j`"),
         ([&vary[..], &["--fails-when", "kinetic_j"]].concat(), "safety < 1"),
+        ([&vary[..], &["--fails-when", "m.displacement > 1"]].concat(), "may be on any of m.displacement_"),
         ([&vary[..], &["--correlate", "a"]].concat(), "no correlation"),
         ([&vary[..], &["--sensitivity"]].concat(), "give one a distribution"),
     ] {
@@ -166,4 +167,14 @@ fn what_cannot_be_swept_is_refused_with_what_to_write() {
         assert_eq!(refused.status.code(), Some(3), "{arguments:?}: {}", said(&refused));
         assert!(said(&refused).contains(word), "{arguments:?}: {}", said(&refused));
     }
+}
+
+#[test]
+fn a_probability_of_samples_without_a_value_is_unknown() {
+    let folder = folder();
+    let vary = ["study", "fall.ron", "--vary", "time.step_s=Uniform(-2, -1)", "--samples", "3"];
+    let output = ndda(folder.path(), &[&vary[..], &["--fails-when", "kinetic_j > 1", "--quiet"]].concat());
+    assert!(said(&output).contains("unknown, no sample has a value"), "{}", said(&output));
+    let result = json(&folder.path().join("out/fall_study/sweep.json"));
+    assert!(result["groups"][0]["failure"].is_null(), "{result}");
 }

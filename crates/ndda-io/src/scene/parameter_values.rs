@@ -40,10 +40,11 @@ pub(crate) fn read(text: &str, tree: &Node) -> Result<Parameters, Vec<Diagnostic
 /// Value of one parameter: a number, one with a unit, or one that is computed.
 fn value(text: &str, tree: &Node, node: &Node, earlier: &Parameters) -> Result<f64, Vec<Diagnostic>> {
     let plain = units::resolve_value(text, tree, node, earlier)?;
-    plain.replace('_', "").trim().parse().map_err(|_| {
+    let number = plain.replace('_', "").trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    number.ok_or_else(|| {
         let path = tree.path_at(node.span.start);
-        let refused =
-            Diagnostic::error(Code::WrongType, path, "a parameter is one number", Some(node.span.clone()));
+        let message = "a parameter is one finite number";
+        let refused = Diagnostic::error(Code::WrongType, path, message, Some(node.span.clone()));
         vec![refused.with_help("write a number, one with its unit, or Calc(…) of the parameters before it")]
     })
 }
@@ -110,7 +111,9 @@ mod tests {
             ("parameters: (a: Calc(b), b: 1),", "Calc(a)", "s.ron:1:35", "no parameter `b`"),
             ("parameters: (pi: 3),", "1", "s.ron:1:27", "have already"),
             ("parameters: (a: 3, a: 4),", "1", "s.ron:1:33", "twice"),
-            ("parameters: (a: (1, 2)),", "1", "s.ron:1:30", "one number"),
+            ("parameters: (a: (1, 2)),", "1", "s.ron:1:30", "one finite number"),
+            ("parameters: (a: NaN),", "1", "s.ron:1:30", "one finite number"),
+            ("parameters: (a: -1e400),", "1", "s.ron:1:30", "one finite number"),
             ("parameters: (a_m: Degrees(2)),", "1", "s.ron:1:32", "no unit of a length"),
             ("parameters: [3],", "1", "s.ron:1:26", "height_m"),
             ("parameters: (dip_deg: 35),", "1", "s.ron:1:27: warning[no-effect]", "nothing is computed"),

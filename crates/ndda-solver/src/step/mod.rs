@@ -119,6 +119,14 @@ impl Simulation {
     /// # Errors
     /// [`StepError`] naming time, block and element; the state is then not to be used.
     pub fn step(&mut self) -> Result<StepReport, StepError> {
+        // Called from outside the thread pool, each parallel loop of contact would wake it and wait for it by itself.
+        if self.contact.is_some() && rayon::current_thread_index().is_none() {
+            return rayon::scope(|_| self.whole_step());
+        }
+        self.whole_step()
+    }
+
+    fn whole_step(&mut self) -> Result<StepReport, StepError> {
         let Some(mut control) = self.control.take() else { return self.part_step() };
         let report = self.controlled_step(&mut control);
         self.control = Some(control);

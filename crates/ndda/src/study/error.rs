@@ -93,6 +93,14 @@ pub enum StudyError {
         /// The quantities that there are.
         known: String,
     },
+    /// A condition names a quantity by a beginning that several have.
+    #[error("the condition `{condition}` may be on any of {known}: write one of them")]
+    AmbiguousCondition {
+        /// The condition.
+        condition: String,
+        /// The quantities.
+        known: String,
+    },
     /// Somebody asked it to end.
     #[error("interrupted: the same command goes on from here")]
     Interrupted,

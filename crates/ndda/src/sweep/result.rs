@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use super::Sweep;
 use super::cases::{self, Role};
-use super::quantity::{LABEL, Values};
+use super::condition::Condition;
+use super::quantity::{LABEL, SAFETY, Values};
 use super::record::SweepOutcome;
 use super::statistics::{Index, Moments, Part, indices};
 use crate::study::error::StudyError;
@@ -79,7 +80,7 @@ pub struct Group {
     pub labels: Vec<(String, String)>,
     /// Moments of each quantity that has values.
     pub moments: Vec<(String, Moments)>,
-    /// Samples for which the condition holds.
+    /// Samples for which the condition holds; none where no sample has a value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub failure: Option<Part>,
     /// Samples without a value: their scene is wrong, or their run stopped.
@@ -95,10 +96,14 @@ impl Results {
     /// Puts outcomes together, in the order of the cases.
     ///
     /// # Errors
-    /// [`StudyError::NoQuantity`] when no case has a quantity that is asked for.
+    /// [`StudyError::NoQuantity`] when no case has a quantity that is asked for, [`StudyError::AmbiguousCondition`] when the condition may
+    /// be on several.
     pub fn new(sweep: &Sweep, outcomes: Vec<SweepOutcome>) -> Result<Self, StudyError> {
         let study = &sweep.loaded.study;
         let (quantities, has_label) = quantities(sweep, &outcomes)?;
+        if let Some(condition) = &sweep.fails_when {
+            unambiguous(condition, &outcomes, study.fails_when.as_deref().unwrap_or_default())?;
+        }
         let row = |(case, outcome): (&cases::SweepCase, SweepOutcome)| {
             let (values, reason) = match outcome {
                 SweepOutcome::Done(values) => (values, None),
@@ -188,6 +193,19 @@ fn quantities(sweep: &Sweep, outcomes: &[SweepOutcome]) -> Result<(Vec<String>, 
     Ok((names, has_label))
 }
 
+/// A condition is on one quantity.
+fn unambiguous(condition: &Condition, outcomes: &[SweepOutcome], text: &str) -> Result<(), StudyError> {
+    for outcome in outcomes {
+        let SweepOutcome::Done(values) = outcome else { continue };
+        let named = values.named(&condition.quantity);
+        if named.len() > 1 && condition.quantity != SAFETY {
+            let known: Vec<&str> = named.iter().map(|&i| values.numbers[i].0.as_str()).collect();
+            return Err(StudyError::AmbiguousCondition { condition: text.into(), known: known.join(", ") });
+        }
+    }
+    Ok(())
+}
+
 fn groups(sweep: &Sweep, quantities: &[String], rows: &[Row]) -> Vec<Group> {
     let grid = cases::grid(&sweep.loaded).into_iter().enumerate();
     let group = |(point, (labels, _)): (usize, (Vec<(String, String)>, _))| {
@@ -205,7 +223,7 @@ fn groups(sweep: &Sweep, quantities: &[String], rows: &[Row]) -> Vec<Group> {
         Group {
             labels,
             moments: moments.collect(),
-            failure: sweep.fails_when.as_ref().map(|_| Part::new(failed, judged)),
+            failure: (sweep.fails_when.is_some() && judged > 0).then(|| Part::new(failed, judged)),
             undecided: samples.len() - decided,
             sensitivity: sensitivity(sweep, quantities, &here),
         }

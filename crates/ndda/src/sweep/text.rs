@@ -69,15 +69,16 @@ fn samples(text: &mut String, results: &Results, group: &Group) {
     if !group.moments.is_empty() {
         let _ = writeln!(text, "{}", columns(header.to_vec(), group.moments.iter().map(row).collect()));
     }
-    if let Some(part) = &group.failure {
-        let condition =
-            results.drawn.as_ref().and_then(|drawn| drawn.fails_when.as_deref()).unwrap_or_default();
+    let condition = results.drawn.as_ref().and_then(|drawn| drawn.fails_when.as_deref());
+    if let (Some(condition), Some(part)) = (condition, &group.failure) {
         let [low, high] = part.interval95;
         let _ = writeln!(
             text,
             "probability of failure ({condition}): {:.4e}, {} of {} samples; 95 % interval {low:.4e} to {high:.4e} (Wilson)",
             part.probability, part.count, part.of
         );
+    } else if let Some(condition) = condition {
+        let _ = writeln!(text, "probability of failure ({condition}): unknown, no sample has a value");
     }
     if group.undecided > 0 {
         let _ = writeln!(text, "without a value: {} samples, which count neither way", group.undecided);
