@@ -39,6 +39,8 @@ pub struct Search<'a> {
     watch: &'a Watch<'a>,
     by: By,
     start: Start,
+    /// How many times its strength the scene came to rest with.
+    strength: f64,
     begun: Instant,
     /// Trials of an earlier call that was interrupted.
     earlier: Vec<Trial>,
@@ -86,19 +88,23 @@ impl<'a> Search<'a> {
                 "the scene comes to rest with {strength} times its strength only; trials begin from there"
             ));
         }
-        if start.slipped > 1.0 {
-            answer.remarks.push(format!(
-                "joints slipped while the scene came to rest: friction took {:.1} times the elastic energy at rest, and may be at its limit there; \
-                 the answer depends on how the scene came to rest, so compare it with gravity tilted (--by gravity) and with a run",
-                start.slipped
-            ));
-        }
         let mut known = Vec::new();
         if let Some(earlier) = watch.out.and_then(|out| earlier(out, &answer)) {
             (known, answer.wall_s) = (earlier.trials, earlier.wall_s);
         }
         let folder = folder.to_path_buf();
-        Ok(Self { loaded, folder, plan, watch, by, start, begun, earlier: known, answer: Mutex::new(answer) })
+        Ok(Self {
+            loaded,
+            folder,
+            plan,
+            watch,
+            by,
+            start,
+            strength,
+            begun,
+            earlier: known,
+            answer: Mutex::new(answer),
+        })
     }
 
     /// Runs trials until the bracket is as narrow as is asked for.
@@ -109,6 +115,14 @@ impl<'a> Search<'a> {
         let mut answer = self.answer.into_inner().expect("no trial panics");
         (answer.mechanism, answer.moving_blocks) = (mechanism, moving);
         answer.remarks.extend(remarks(&answer));
+        // Joints that slipped on the way to rest keep their friction at its limit.
+        if answer.factor_of_safety.upper.is_some_and(|upper| upper * self.strength <= 1.0 + self.plan.error) {
+            answer.remarks.push(
+                "blocks fail at the very strength with which they came to rest: where joints slipped on the way, the answer depends on that way; \
+                 compare it with --by gravity and with a run"
+                    .into(),
+            );
+        }
         answer.wall_s = before_s + self.begun.elapsed().as_secs_f64();
         if let Some(out) = self.watch.out {
             write(out, &answer)?;

@@ -73,8 +73,6 @@ pub struct Start {
     pub position: Vec<Vec3>,
     /// Elastic displacement u [m].
     pub elastic_m: f64,
-    /// Energy that friction took on the way to rest over the elastic energy at rest.
-    pub slipped: f64,
     /// Gravity or, where there is none, contact forces over the mass that they hold [m/s²].
     pub gravity_m_s2: f64,
     /// Normals into free blocks of the faces of fixed ones that they rest on.
@@ -103,7 +101,6 @@ impl Start {
         // Both sides of a contact are in the list.
         let force_n = 0.5 * contacts.iter().map(|contact| contact.push_n.norm()).sum::<f64>();
         let stored_j = sample.contact_j.abs() + sample.strain_j.abs();
-        let slipped = if stored_j > 0.0 { sample.friction_work_j.abs() / stored_j } else { 0.0 };
         let normal_m = if force_n > 0.0 { 2.0 * stored_j / force_n } else { 0.0 };
         let shear_pa = contacts
             .iter()
@@ -119,7 +116,7 @@ impl Start {
         let normals = super::mechanism::normals(simulation);
         let rest: Vec<[f64; 3]> = simulation.blocks().rest_position.iter().map(|x| (*x).into()).collect();
         let blocks_crc32 = ndda_io::checkpoint::fingerprint(&rest);
-        Ok(Self { snapshot, position, elastic_m, slipped, gravity_m_s2, normals, blocks_crc32 })
+        Ok(Self { snapshot, position, elastic_m, gravity_m_s2, normals, blocks_crc32 })
     }
 }
 
