@@ -32,10 +32,12 @@
 //! | [`judge`] | closed forms, verdicts, the label `accurate` or `inaccurate`, the summary |
 //! | [`explain`] | what a run will do, what it leaves out and why |
 //! | [`study`] | many runs of one scene: error against time |
+//! | [`sweep`] | quantities over values and distributions of parameters: tables, probability of failure |
 //! | [`certify`] | every result as value ± error |
 //! | [`safety`] | the factor of safety of a slope, and how its blocks fail |
 //! | [`joint`] | direct shear and closure of one joint, without blocks |
 //! | [`stereonet`] | orientations of joints, and kinematic checks of a slope |
+//! | [`stereonet`] | orientations of joints on a net, and kinematic checks of a slope |
 //! | [`tune`] | the cheapest settings that reach an error |
 //! | [`examples`], [`templates`] | scenes that come with the program |
 //! | `report` | a run as a page of HTML (feature `report`) |
@@ -45,12 +47,15 @@
 pub mod build;
 pub mod certify;
 pub mod columns;
+mod documents;
 pub mod driver;
 pub mod examples;
 pub mod explain;
 #[cfg(any(feature = "plots", feature = "report"))]
 mod field;
 pub mod forecast;
+#[cfg(any(feature = "plots", feature = "report"))]
+mod frames;
 pub mod joint;
 pub mod judge;
 pub mod machine;

@@ -16,11 +16,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use ndda_io::WriteError;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::read::LoadedScene;
-use ndda_io::{WriteError, atomic};
 use ndda_solver::StepError;
 use serde::{Deserialize, Serialize};
+
+use crate::documents::write_json;
 
 pub use changes::{By, Question};
 pub use mechanism::{Kind, Mechanism, MovingBlock, Plane};
@@ -194,9 +196,5 @@ pub fn file(out: &Path) -> PathBuf {
 }
 
 fn write(out: &Path, safety: &Safety) -> Result<(), WriteError> {
-    let path = file(out);
-    let encode = |e: serde_json::Error| WriteError::Encode { path: path.clone(), reason: e.to_string() };
-    let mut text = serde_json::to_string_pretty(safety).map_err(encode)?;
-    text.push('\n');
-    atomic::write(&path, text.as_bytes())
+    write_json(&file(out), safety).map(drop)
 }

@@ -35,7 +35,7 @@ use evaluate::Evaluator;
 use quantity::{LABEL, SAFETY};
 use result::Results;
 
-/// What a command line asks for; it goes before what a study file says.
+/// Options of the command line; they take precedence over the study file.
 #[derive(Clone, Debug, Default)]
 pub struct Ask {
     /// `path=a,b,c` or `path=Normal(30, 2)`: the file is a scene then, and no study.

@@ -20,11 +20,11 @@ pub struct PictureArgs {
     /// safety` found the first at which motion is seen.
     #[arg(long, value_name = "FRAME", default_value = "auto")]
     pub frame: FrameChoice,
-    /// Where the viewer stands: iso, top, front (in the south), side (in the east), or AZIMUTH,ELEVATION in degrees, clockwise from
+    /// Direction from which the blocks are seen: iso, top, front (in the south), side (in the east), or AZIMUTH,ELEVATION in degrees, clockwise from
     /// north and above the horizontal.
     #[arg(long, value_name = "VIEW", default_value = "iso", allow_hyphen_values = true)]
     pub view: View,
-    /// What colours mean: displacement, velocity, stress (von Mises), block, material, or the name of an array of the frames
+    /// Quantity shown by colours: displacement, velocity, stress (von Mises), block, material, or the name of an array of the frames
     /// [default: displacement of a run, blocks of a scene].
     #[arg(long, visible_alias = "colour", value_name = "QUANTITY")]
     pub color: Option<Colour>,

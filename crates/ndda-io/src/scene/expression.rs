@@ -5,6 +5,8 @@
 
 use std::ops::Range;
 
+use ndda_mesh::cut::sin_cos;
+
 use crate::scene::suggest::suggest;
 
 /// Brackets, signs and powers inside one another; more than this is no expression that a person writes.
@@ -244,9 +246,9 @@ impl<'a> Parser<'a> {
         }
         let x = values[0];
         let value = match name {
-            "sin" => sin_cos_deg(x).0,
-            "cos" => sin_cos_deg(x).1,
-            "tan" => sin_cos_deg(x).0 / sin_cos_deg(x).1,
+            "sin" => sin_cos(x).0,
+            "cos" => sin_cos(x).1,
+            "tan" => sin_cos(x).0 / sin_cos(x).1,
             "asin" => x.asin().to_degrees(),
             "acos" => x.acos().to_degrees(),
             "atan" => x.atan().to_degrees(),
@@ -256,18 +258,6 @@ impl<'a> Parser<'a> {
             _ => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         };
         self.finite(value, at.start)
-    }
-}
-
-/// Sine and cosine of an angle [°], exact where they are 0 or ±1.
-fn sin_cos_deg(angle_deg: f64) -> (f64, f64) {
-    let quarter = (angle_deg / 90.0).round();
-    let (sin, cos) = (angle_deg - 90.0 * quarter).to_radians().sin_cos();
-    match quarter.rem_euclid(4.0) as u8 {
-        0 => (sin, cos),
-        1 => (cos, -sin),
-        2 => (-sin, -cos),
-        _ => (-cos, sin),
     }
 }
 

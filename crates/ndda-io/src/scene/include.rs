@@ -35,7 +35,7 @@ pub(crate) struct Included {
 /// Adds the materials of all files that a scene names to its own, and the files that these name to `scene.include`.
 ///
 /// # Errors
-/// What is wrong with one of the files, or with the scene where it names none.
+/// A file is missing, includes itself or has errors.
 pub(crate) fn read(
     scene: &mut Scene,
     folder: &Path,

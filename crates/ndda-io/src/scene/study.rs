@@ -277,7 +277,7 @@ impl LoadedStudy {
     /// A study of a scene that is not from a file.
     ///
     /// # Errors
-    /// What is wrong with it, by the names of its fields.
+    /// Errors of its fields, by their names.
     pub fn checked(study: Study, scene: PathBuf, scene_text: String) -> Result<Self, SceneErrors> {
         let mut diagnostics = problems(&study);
         diagnostics.extend(lost_paths(&study, &scene_text));

@@ -51,7 +51,7 @@ pub(crate) fn resolve(text: &str, tree: &Node, parameters: &Parameters) -> Resol
 /// One value in the unit of its field.
 ///
 /// # Errors
-/// Those of its units and expressions.
+/// Errors of its units and expressions.
 pub(crate) fn resolve_value(
     text: &str,
     tree: &Node,

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use ndda_io::WriteError;
 use ndda_io::table::Table;
-use ndda_io::{WriteError, atomic};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -13,6 +13,7 @@ use super::plan::{FINER, STIFFER};
 use super::quantities::{
     Kind, Quantity, common_rows, last_fifth, quantities, rounding, scales, unresolved_energy_j, values,
 };
+use crate::documents::write_json;
 
 /// The file of a certificate.
 pub const FILE: &str = "certificate.json";
@@ -322,10 +323,7 @@ impl Certificate {
                 return Err(WriteError::Encode { path, reason });
             }
         }
-        let text = serde_json::to_string_pretty(self)
-            .map_err(|e| WriteError::Encode { path: path.clone(), reason: e.to_string() })?;
-        atomic::write(&path, format!("{text}\n").as_bytes())?;
-        Ok(text)
+        write_json(&path, self)
     }
 
     /// Reads the certificate in a folder; none where there is none, or it has another form.

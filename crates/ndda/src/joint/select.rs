@@ -66,7 +66,7 @@ pub fn friction<'a>(scene: &'a Scene, which: &Which) -> Result<&'a Friction, Sel
     }
 }
 
-/// All that has a law, in words.
+/// Joints and pairs that have a law, as options of the command line.
 fn known(scene: &Scene) -> String {
     let Some(Contact::Potential { friction, material_pairs, rock_joints, .. }) = &scene.contact else {
         return "none".into();

@@ -6,6 +6,8 @@ use ndda_io::WriteError;
 use ndda_io::mesh_file::MeshFileError;
 use ndda_io::results::ResultsError;
 
+use crate::frames::OtherBlocks;
+
 /// Why a report cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
@@ -30,17 +32,8 @@ pub enum ReportError {
     #[error(transparent)]
     Frame(#[from] MeshFileError),
     /// A frame that does not fit the first.
-    #[error("{} holds {found} {what} and the first frame {needed}: they are of two runs, run the scene again", path.display())]
-    OtherBlocks {
-        /// The frame.
-        path: PathBuf,
-        /// Points, tetrahedra or entries of an array.
-        what: String,
-        /// How many it holds.
-        found: usize,
-        /// How many the first holds.
-        needed: usize,
-    },
+    #[error(transparent)]
+    OtherBlocks(#[from] OtherBlocks),
     /// The page cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),

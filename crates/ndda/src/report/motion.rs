@@ -1,6 +1,6 @@
 //! The frames of a run, as far as a page shows them.
 
-use ndda_io::results::{self, FieldFrame, ListedFrame};
+use ndda_io::results::{self, ListedFrame};
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::Aabb;
 use serde::Serialize;
@@ -8,12 +8,11 @@ use serde::Serialize;
 use super::error::ReportError;
 use super::packed::{Codes, Packed, PackedArray};
 use crate::field::{Field, Place, fields};
+use crate::frames::{STILL, same_blocks, thinned};
 use crate::surface::Surface;
 
 /// Codes of all frames before compression [bytes]; runs with more are thinned.
 const MOST_BYTES: usize = 40_000_000;
-/// Blocks that move less than this part of the farthest motion are drawn as supports.
-const STILL: f64 = 0.01;
 /// Part of all values that the colours resolve where a few are far above the others.
 const USUAL: f64 = 0.995;
 
@@ -84,7 +83,7 @@ impl Motion {
         for index in shown {
             let ListedFrame { time_s, path } = &listed[index];
             let frame = results::frame(path)?;
-            compare(path, &first, &frame, &fields)?;
+            same_blocks(path, &first, &frame, &fields)?;
             let now = surface.nodes.iter().map(|&n| frame.points[n as usize]);
             now.clone().for_each(|x| extent.grow(&x));
             moved.push(
@@ -164,55 +163,9 @@ fn entries(place: Place, surface: &Surface) -> usize {
     }
 }
 
-/// At most `most` of `count` frames, evenly, the first and the last among them; at least one.
-fn thinned(count: usize, most: usize) -> Vec<usize> {
-    if most >= count {
-        return (0..count).collect();
-    }
-    match most {
-        0 | 1 => vec![count - 1],
-        _ => (0..most).map(|i| (i * (count - 1) + (most - 1) / 2) / (most - 1)).collect(),
-    }
-}
-
-/// Whether a frame has the points, tetrahedra and arrays of the first.
-fn compare(
-    path: &std::path::Path,
-    first: &FieldFrame,
-    frame: &FieldFrame,
-    fields: &[Field],
-) -> Result<(), ReportError> {
-    let length =
-        |frame: &FieldFrame, field: &Field| field.array_of(frame).map_or(0, |array| array.values.len());
-    let mut counts = vec![
-        ("points".to_string(), frame.points.len(), first.points.len()),
-        ("tetrahedra".to_string(), frame.tets.len(), first.tets.len()),
-    ];
-    counts.extend(
-        fields.iter().map(|f| (format!("numbers in {}", f.array), length(frame, f), length(first, f))),
-    );
-    match counts.into_iter().find(|(_, found, needed)| found != needed) {
-        None => Ok(()),
-        Some((what, found, needed)) => {
-            Err(ReportError::OtherBlocks { path: path.to_path_buf(), what, found, needed })
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn thinned_frames_are_even_and_keep_both_ends() {
-        assert_eq!(thinned(5, 9), [0, 1, 2, 3, 4]);
-        assert_eq!(thinned(11, 3), [0, 5, 10]);
-        assert_eq!(thinned(11, 2), [0, 10]);
-        assert_eq!((thinned(11, 1), thinned(1, 1)), (vec![10], vec![0]));
-        let many = thinned(1000, 37);
-        assert_eq!((many.len(), many[0], many[36]), (37, 0, 999));
-        assert!(many.windows(2).all(|w| (27..=28).contains(&(w[1] - w[0]))), "{many:?}");
-    }
 
     #[test]
     fn a_few_values_far_above_the_others_do_not_spoil_the_colours() {

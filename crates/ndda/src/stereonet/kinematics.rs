@@ -22,12 +22,12 @@ pub struct Slope {
     pub toppling_lateral_deg: f64,
 }
 
-/// How many of how many.
+/// Planes or lines that meet a criterion, out of all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Count {
-    /// Those that meet the criterion.
+    /// Number that meets the criterion.
     pub critical: usize,
-    /// All.
+    /// Number of all.
     pub of: usize,
 }
 

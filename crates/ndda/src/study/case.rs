@@ -5,12 +5,12 @@ use std::path::Path;
 use ndda_io::checkpoint;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::locate;
-use ndda_io::study::{LoadedStudy, Reference, as_overrides};
+use ndda_io::study::{Axis, LoadedStudy, Reference, as_overrides};
 
 use super::error::StudyError;
 
 /// Names of cases become names of folders.
-const LONGEST_NAME: usize = 200;
+pub const LONGEST_NAME: usize = 200;
 /// Rows of a reference run's history over those of a case, so that reading between them costs no digits.
 const REFERENCE_ROWS: u32 = 10;
 
@@ -27,16 +27,15 @@ pub struct Case {
     pub repeats: u32,
 }
 
-/// All cases that are plotted.
-///
-/// # Errors
-/// [`StudyError::Names`] when two cases would have one folder.
-pub fn cases(loaded: &LoadedStudy) -> Result<Vec<Case>, StudyError> {
-    let common = as_overrides(&loaded.study.set);
-    let mut all = vec![(Vec::new(), common)];
-    for axis in &loaded.study.axes {
+/// Axes and choices of a point, and its overrides.
+type Point = (Vec<(String, String)>, Vec<String>);
+
+/// Every choice of one axis with every one of the others; random axes have none.
+pub fn grid(loaded: &LoadedStudy) -> Vec<Point> {
+    let mut all = vec![(Vec::new(), as_overrides(&loaded.study.set))];
+    for axis in loaded.study.axes.iter().filter(|axis| !matches!(axis, Axis::Random { .. })) {
         let choices = axis.choices();
-        let with = |(labels, overrides): &(Vec<(String, String)>, Vec<String>)| {
+        let with = |(labels, overrides): &Point| {
             let one = |(label, own): &(String, Vec<String>)| {
                 let mut labels = labels.clone();
                 labels.push((axis.name().to_string(), label.clone()));
@@ -46,9 +45,21 @@ pub fn cases(loaded: &LoadedStudy) -> Result<Vec<Case>, StudyError> {
         };
         all = all.iter().flat_map(with).collect();
     }
+    all
+}
+
+/// All cases that are plotted.
+///
+/// # Errors
+/// [`StudyError::Names`] when two cases would have one folder.
+pub fn cases(loaded: &LoadedStudy) -> Result<Vec<Case>, StudyError> {
     let repeats = loaded.study.repeats;
-    let cases =
-        all.into_iter().map(|(labels, overrides)| Case { name: name(&labels), labels, overrides, repeats });
+    let cases = grid(loaded).into_iter().map(|(labels, overrides)| Case {
+        name: name(&labels),
+        labels,
+        overrides,
+        repeats,
+    });
     let cases: Vec<Case> = cases.collect();
     for (i, case) in cases.iter().enumerate() {
         if case.name.len() > LONGEST_NAME || cases[..i].iter().any(|other| other.name == case.name) {
@@ -98,7 +109,7 @@ pub fn set_first(cases: &mut [Case], overrides: &[String]) {
 }
 
 /// `axis=choice__axis=choice`, with nothing in it that a file system or a shell could mistake.
-fn name(labels: &[(String, String)]) -> String {
+pub fn name(labels: &[(String, String)]) -> String {
     let part = |(axis, label): &(String, String)| format!("{}={}", plain(axis), plain(label));
     labels.iter().map(part).collect::<Vec<_>>().join("__")
 }

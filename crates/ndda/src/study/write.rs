@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use ndda_io::{WriteError, atomic};
+use ndda_io::WriteError;
 use serde::Serialize;
 
 use super::result::{CasePoint, Compared, Results};
 use super::table::{self, Row};
+use crate::documents::{write_csv, write_json};
 
 /// Schema of `study.json`; it changes when a key does.
 const SCHEMA: &str = "ndda.study/1";
@@ -52,22 +53,10 @@ pub fn all(out: &Path, results: &Results) -> Result<String, WriteError> {
         not_run: &results.missing,
         time_to_error_s,
     };
-    let path = out.join("study.json");
-    let encode = |reason: String| WriteError::Encode { path: path.clone(), reason };
-    let json = serde_json::to_string_pretty(&document).map_err(|e| encode(e.to_string()))?;
-    atomic::write(&path, format!("{json}\n").as_bytes())?;
-    csv(&out.join("study.csv"), &cases(results))?;
-    csv(&out.join("time_to_error.csv"), &times)?;
+    let json = write_json(&out.join("study.json"), &document)?;
+    write_csv(&out.join("study.csv"), &cases(results))?;
+    write_csv(&out.join("time_to_error.csv"), &times)?;
     Ok(json)
-}
-
-fn csv(path: &Path, rows: &[Vec<String>]) -> Result<(), WriteError> {
-    let encode = |e: csv::Error| WriteError::Encode { path: path.to_path_buf(), reason: e.to_string() };
-    let mut bytes = Vec::new();
-    let mut writer = csv::Writer::from_writer(&mut bytes);
-    rows.iter().try_for_each(|row| writer.write_record(row)).map_err(encode)?;
-    drop(writer);
-    atomic::write(path, &bytes)
 }
 
 /// Header and one row per case.

@@ -1,13 +1,13 @@
 //! Cases of a sweep: each sample at each point of the grid.
 
-use ndda_io::study::{Axis, LoadedStudy, as_overrides};
+use ndda_io::study::{Axis, LoadedStudy};
 
 use super::distribution::{correlated, factor, quantile};
 use super::points::{MOST_DIMENSIONS, points};
-use crate::study::case::{Case, plain, set_first};
+use crate::study::case::{Case, LONGEST_NAME, grid, name, set_first};
 use crate::study::error::StudyError;
 
-/// What a case is for.
+/// Part of a case in the statistics.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// A point of the grid, where nothing is random.
@@ -27,7 +27,7 @@ pub struct SweepCase {
     pub case: Case,
     /// Number of its point of the grid.
     pub point: usize,
-    /// What it is for.
+    /// Its part in the statistics.
     pub role: Role,
 }
 
@@ -38,25 +38,24 @@ pub struct SweepCase {
 pub fn cases(loaded: &LoadedStudy, overrides: &[String]) -> Result<Vec<SweepCase>, StudyError> {
     let samples = samples(loaded)?;
     let mut all = Vec::new();
-    let grid = grid(loaded);
-    for (point, (labels, own)) in grid.iter().enumerate() {
-        let parts = labels.iter().map(|(axis, label)| format!("{}={}", plain(axis), plain(label)));
-        let parts: Vec<String> = parts.collect();
+    for (point, (labels, own)) in grid(loaded).iter().enumerate() {
+        let of_point = name(labels);
         for (role, values) in &samples {
-            let (mut name, mut labels, mut own) = (parts.clone(), labels.clone(), own.clone());
-            name.extend(role_name(*role));
+            let (mut labels, mut own) = (labels.clone(), own.clone());
+            let parts = [Some(of_point.clone()), role_name(*role)].into_iter().flatten();
+            let parts: Vec<String> = parts.filter(|part| !part.is_empty()).collect();
             for (axis, value) in random(loaded).zip(values) {
                 let Axis::Random { path, .. } = axis else { continue };
                 labels.push((axis.name().to_string(), format!("{value:e}")));
                 own.push(format!("{path}={value:e}"));
             }
-            let case = Case { name: name.join("__"), labels, overrides: own, repeats: 1 };
+            let case = Case { name: parts.join("__"), labels, overrides: own, repeats: 1 };
             all.push(SweepCase { case, point, role: *role });
         }
     }
     let mut names = std::collections::HashSet::new();
     for case in &all {
-        if case.case.name.len() > 200 || !names.insert(case.case.name.clone()) {
+        if case.case.name.len() > LONGEST_NAME || !names.insert(case.case.name.clone()) {
             return Err(StudyError::Names(case.case.name.clone()));
         }
     }
@@ -68,27 +67,6 @@ pub fn cases(loaded: &LoadedStudy, overrides: &[String]) -> Result<Vec<SweepCase
 
 fn random(loaded: &LoadedStudy) -> impl Iterator<Item = &Axis> {
     loaded.study.axes.iter().filter(|axis| matches!(axis, Axis::Random { .. }))
-}
-
-/// Axes and choices of a point, and its overrides.
-type Point = (Vec<(String, String)>, Vec<String>);
-
-/// Every choice of one axis with every one of the others.
-pub fn grid(loaded: &LoadedStudy) -> Vec<Point> {
-    let mut all = vec![(Vec::new(), as_overrides(&loaded.study.set))];
-    for axis in loaded.study.axes.iter().filter(|axis| !matches!(axis, Axis::Random { .. })) {
-        let choices = axis.choices();
-        let with = |(labels, overrides): &Point| {
-            let one = |(label, own): &(String, Vec<String>)| {
-                let mut labels = labels.clone();
-                labels.push((axis.name().to_string(), label.clone()));
-                (labels, overrides.iter().chain(own).cloned().collect())
-            };
-            choices.iter().map(one).collect::<Vec<_>>()
-        };
-        all = all.iter().flat_map(with).collect();
-    }
-    all
 }
 
 fn role_name(role: Role) -> Option<String> {

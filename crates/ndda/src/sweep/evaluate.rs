@@ -136,7 +136,7 @@ impl<'a> Evaluator<'a> {
             None => SweepOutcome::Done(quantity::of_run(&results)?),
         };
         if case.role != Role::Point {
-            // What is left is replaced by another run of this case, if there is one.
+            // If some of its files cannot be removed, the next run of this case replaces them.
             let _ = std::fs::remove_dir_all(&beside);
         }
         Ok(outcome)

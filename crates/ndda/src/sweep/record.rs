@@ -1,4 +1,4 @@
-//! What has been computed, a line of JSON per case in `cases.jsonl`.
+//! Records of the cases that have been computed, a line of JSON for each in `cases.jsonl`.
 
 use std::collections::HashMap;
 use std::fs::{File, OpenOptions};

@@ -1,4 +1,4 @@
-//! Results of a sweep: a table of all cases, and what samples say at each point of the grid.
+//! Results of a sweep: a table of all cases, and the statistics of the samples at each point of the grid.
 
 use ndda_io::study::{Axis, Sampling};
 use serde::Serialize;
@@ -9,6 +9,7 @@ use super::condition::Condition;
 use super::quantity::{LABEL, SAFETY, Values};
 use super::record::SweepOutcome;
 use super::statistics::{Index, Moments, Part, indices};
+use crate::study::case::grid;
 use crate::study::error::StudyError;
 
 /// Results of a sweep.
@@ -31,7 +32,7 @@ pub struct Results {
     pub has_label: bool,
     /// All cases, in order.
     pub cases: Vec<Row>,
-    /// Points of the grid with what samples say there; none where nothing is random.
+    /// Statistics of the samples at each point of the grid; none where nothing is random.
     pub groups: Vec<Group>,
 }
 
@@ -73,7 +74,7 @@ pub struct Row {
     role: Option<Role>,
 }
 
-/// What samples say at one point of the grid.
+/// Statistics of the samples at one point of the grid.
 #[derive(Clone, Debug, Serialize)]
 pub struct Group {
     /// Axes and values of the point; empty where there is no grid.
@@ -207,7 +208,7 @@ fn unambiguous(condition: &Condition, outcomes: &[SweepOutcome], text: &str) -> 
 }
 
 fn groups(sweep: &Sweep, quantities: &[String], rows: &[Row]) -> Vec<Group> {
-    let grid = cases::grid(&sweep.loaded).into_iter().enumerate();
+    let grid = grid(&sweep.loaded).into_iter().enumerate();
     let group = |(point, (labels, _)): (usize, (Vec<(String, String)>, _))| {
         let here: Vec<&Row> = rows.iter().filter(|row| row.point == point).collect();
         let samples: Vec<&Row> = here.iter().copied().filter(|row| row.is_sample()).collect();

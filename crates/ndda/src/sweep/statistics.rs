@@ -1,4 +1,4 @@
-//! What samples say: moments, the part that fails with its confidence interval, and how much each parameter matters.
+//! Statistics of samples: moments, the probability of failure with its confidence interval, and Sobol' indices.
 
 use serde::Serialize;
 

@@ -2,32 +2,21 @@
 
 use std::path::Path;
 
-use ndda_io::{WriteError, atomic};
+use ndda_io::WriteError;
 
 use super::result::Results;
+use crate::documents::{write_csv, write_json};
 
 /// Writes all files; returns the JSON.
 ///
 /// # Errors
 /// [`WriteError`] when one of them cannot be written.
 pub(super) fn all(out: &Path, results: &Results) -> Result<String, WriteError> {
-    let path = out.join("sweep.json");
-    let encode = |reason: String| WriteError::Encode { path: path.clone(), reason };
-    let json = serde_json::to_string_pretty(results).map_err(|e| encode(e.to_string()))?;
-    atomic::write(&path, format!("{json}\n").as_bytes())?;
-    csv(&out.join("sweep.csv"), &table(results))?;
+    let json = write_json(&out.join("sweep.json"), results)?;
+    write_csv(&out.join("sweep.csv"), &table(results))?;
     #[cfg(feature = "parquet")]
     parquet(out, results)?;
     Ok(json)
-}
-
-fn csv(path: &Path, rows: &[Vec<String>]) -> Result<(), WriteError> {
-    let encode = |e: csv::Error| WriteError::Encode { path: path.to_path_buf(), reason: e.to_string() };
-    let mut bytes = Vec::new();
-    let mut writer = csv::Writer::from_writer(&mut bytes);
-    rows.iter().try_for_each(|row| writer.write_record(row)).map_err(encode)?;
-    drop(writer);
-    atomic::write(path, &bytes)
 }
 
 /// Header and one row per case.
@@ -62,7 +51,7 @@ fn parquet(out: &Path, results: &Results) -> Result<(), WriteError> {
         return Ok(());
     }
     let numbers = out.join("sweep_numbers.csv");
-    csv(&numbers, &rows)?;
+    write_csv(&numbers, &rows)?;
     ndda_io::results::tables::copy_as_parquet(&numbers, &out.join("sweep.parquet"))?;
     std::fs::remove_file(&numbers).map_err(|source| WriteError::Io {
         operation: "remove",

@@ -3,10 +3,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use ndda_io::{WriteError, atomic};
+use ndda_io::WriteError;
 use serde::Serialize;
 
 use crate::columns::columns;
+use crate::documents::write_json;
 use crate::study::emit::quoted;
 
 /// Schema of `tune.json`; it changes when a key does.
@@ -64,11 +65,7 @@ impl Tuned {
     /// # Errors
     /// [`WriteError`] when it cannot be written.
     pub fn write(&self, folder: &Path) -> Result<String, WriteError> {
-        let path = folder.join("tune.json");
-        let text = serde_json::to_string_pretty(self)
-            .map_err(|e| WriteError::Encode { path: path.clone(), reason: e.to_string() })?;
-        atomic::write(&path, format!("{text}\n").as_bytes())?;
-        Ok(text)
+        write_json(&folder.join("tune.json"), self)
     }
 
     /// The result as text.

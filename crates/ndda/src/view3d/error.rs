@@ -7,6 +7,7 @@ use ndda_io::diagnostic::SceneErrors;
 use ndda_io::mesh_file::MeshFileError;
 
 use super::image::{LARGEST_PX, MOST_PX, SMALLEST_PX};
+use crate::frames::OtherBlocks;
 
 /// Why blocks cannot be drawn.
 #[derive(Debug, thiserror::Error)]
@@ -31,17 +32,8 @@ pub enum ViewError {
     #[error("{0}; run the scene again")]
     Frame(#[from] MeshFileError),
     /// A frame that does not fit the first.
-    #[error("{} holds {found} {what} and the first frame {needed}: they are of two runs, run the scene again", path.display())]
-    OtherBlocks {
-        /// The frame.
-        path: PathBuf,
-        /// Points, tetrahedra or entries of an array.
-        what: String,
-        /// How many it holds.
-        found: usize,
-        /// How many the first holds.
-        needed: usize,
-    },
+    #[error(transparent)]
+    OtherBlocks(#[from] OtherBlocks),
     /// A frame with a position that is not finite.
     #[error("{}: node {node} is at no finite place; the frame is damaged, run the scene again", path.display())]
     NotFinite {

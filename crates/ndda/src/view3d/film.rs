@@ -4,10 +4,9 @@ use ndda_mesh::Vec3;
 
 use super::paint::{Theme, group_colour};
 use super::raster::Coat;
+use crate::frames::STILL;
 use crate::surface::Surface;
 
-/// Blocks that move less than this part of the farthest motion are at rest, as in the report.
-const STILL: f64 = 0.01;
 /// A scale that begins below this part of its end begins at zero.
 const NEAR_ZERO: f64 = 0.2;
 /// Values that differ by less than this part of the largest are one value.
@@ -56,7 +55,7 @@ pub enum Colouring {
 /// Blocks at some moments.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Film {
-    /// What it shows.
+    /// Title of the picture.
     pub title: String,
     /// Surfaces of all blocks.
     pub surface: Surface,

@@ -12,6 +12,7 @@ use super::Colour;
 use super::error::ViewError;
 use super::film::{Colouring, Film, Moment, moving, range};
 use crate::field::{Field, Place, fields};
+use crate::frames::{OtherBlocks, same_blocks, thinned};
 use crate::surface::Surface;
 
 /// Folder of the failing run in the output folder of `ndda safety`.
@@ -92,7 +93,7 @@ pub fn read(folder: &Path, frames: Frames, colour: &Colour) -> Result<Film, View
     for index in shown {
         let ListedFrame { time_s, path } = &listed[index];
         let frame = results::frame(path)?;
-        compare(path, &first, &frame)?;
+        same_blocks(path, &first, &frame, &[])?;
         let positions = positions(&frame, &surface, path)?;
         let values = source.values(path, &frame, &surface, [&start, &positions])?;
         moments.push(Moment { time_s: Some(*time_s), positions, values });
@@ -123,7 +124,7 @@ fn chosen(frames: Frames, listed: &[ListedFrame]) -> Result<Vec<usize>, ViewErro
     let last = listed.len() - 1;
     let distance = |frame: &ListedFrame, time_s: f64| (frame.time_s - time_s).abs();
     match frames {
-        Frames::Most(most) => Ok(evenly(listed.len(), most)),
+        Frames::Most(most) => Ok(thinned(listed.len(), most)),
         Frames::One(FrameChoice::Last | FrameChoice::Auto) => Ok(vec![last]),
         Frames::One(FrameChoice::Number(number)) if number <= last => Ok(vec![number]),
         Frames::One(FrameChoice::Time(time_s))
@@ -151,7 +152,7 @@ fn seen(listed: &[ListedFrame], first: &FieldFrame, surface: &Surface) -> Result
     }
     for (index, ListedFrame { path, .. }) in listed.iter().enumerate() {
         let frame = results::frame(path)?;
-        compare(path, first, &frame)?;
+        same_blocks(path, first, &frame, &[])?;
         let now = positions(&frame, surface, path)?;
         let has_gone = |(corners, &block): (&[u32; 3], &u32)| {
             let moved = (now[corners[0] as usize] - start[corners[0] as usize]).norm();
@@ -164,33 +165,11 @@ fn seen(listed: &[ListedFrame], first: &FieldFrame, surface: &Surface) -> Result
     Ok(listed.len() - 1)
 }
 
-/// At most `most` of `count` frames, at least one.
-fn evenly(count: usize, most: usize) -> Vec<usize> {
-    match most.min(count) {
-        0 | 1 => vec![count - 1],
-        shown => (0..shown).map(|i| (i * (count - 1) + (shown - 1) / 2) / (shown - 1)).collect(),
-    }
-}
-
 fn positions(frame: &FieldFrame, surface: &Surface, path: &Path) -> Result<Vec<Vec3>, ViewError> {
     let bad = surface.nodes.iter().find(|&&n| frame.points[n as usize].iter().any(|x| !x.is_finite()));
     match bad {
         Some(&node) => Err(ViewError::NotFinite { path: path.to_path_buf(), node: node as usize }),
         None => Ok(surface.nodes.iter().map(|&n| frame.points[n as usize]).collect()),
-    }
-}
-
-fn compare(path: &Path, first: &FieldFrame, frame: &FieldFrame) -> Result<(), ViewError> {
-    let counts = |frame: &FieldFrame| [frame.points.len(), frame.tets.len()];
-    let (found, needed) = (counts(frame), counts(first));
-    match (0..2).find(|&i| found[i] != needed[i]) {
-        None => Ok(()),
-        Some(i) => Err(ViewError::OtherBlocks {
-            path: path.to_path_buf(),
-            what: ["points", "tetrahedra"][i].into(),
-            found: found[i],
-            needed: needed[i],
-        }),
     }
 }
 
@@ -256,12 +235,13 @@ impl Source {
             Self::Displacement => Ok(now.iter().zip(start).map(|(x, x0)| (x - x0).norm() as f32).collect()),
             Self::Array { field, numbers, .. } => match field.array_of(frame) {
                 Some(array) if array.values.len() == *numbers => Ok(field.values(array, surface)),
-                other => Err(ViewError::OtherBlocks {
+                other => Err(OtherBlocks {
                     path: path.to_path_buf(),
                     what: format!("numbers in {}", field.array),
                     found: other.map_or(0, |array| array.values.len()),
                     needed: *numbers,
-                }),
+                }
+                .into()),
             },
         }
     }
@@ -317,18 +297,6 @@ mod tests {
         }
         for text in ["", "x", "0.5", "-1", "infs", "s"] {
             assert!(text.parse::<FrameChoice>().unwrap_err().contains("0.35s"), "{text}");
-        }
-    }
-
-    #[test]
-    fn an_animation_has_as_many_frames_as_were_asked_for_with_both_ends() {
-        assert_eq!(evenly(11, 3), [0, 5, 10]);
-        assert_eq!(evenly(4, 100), [0, 1, 2, 3]);
-        assert_eq!((evenly(1, 5), evenly(7, 1)), (vec![0], vec![6]));
-        for most in 2..60 {
-            let frames = evenly(60, most);
-            assert!(frames.len() == most && frames[0] == 0 && frames[most - 1] == 59);
-            assert!(frames.windows(2).all(|pair| pair[0] < pair[1]));
         }
     }
 }

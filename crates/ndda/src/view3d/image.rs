@@ -93,7 +93,7 @@ impl<'a> Picture<'a> {
     /// A moment as pixels of four bytes: red, green, blue and opaque.
     ///
     /// # Errors
-    /// What is beside the blocks cannot be drawn.
+    /// The legend, axes or title cannot be drawn.
     #[cfg(feature = "png")]
     pub fn rgba(&self, stage: &Stage, moment: &Moment) -> Result<Vec<u8>, String> {
         let [width, height] = self.layout.size;

@@ -22,7 +22,7 @@ impl Distribution {
     /// A distribution as it is written; none if the text is something else.
     ///
     /// # Errors
-    /// What is wrong with a text that begins with the name of a distribution.
+    /// A text that begins with the name of a distribution, and has wrong parameters.
     pub fn parse(text: &str) -> Option<Result<Self, String>> {
         let name = text.split('(').next().unwrap_or_default().trim();
         if !NAMES.contains(&name) {
