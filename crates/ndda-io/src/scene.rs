@@ -50,7 +50,7 @@ pub use rock::{Axis, DiscRule, Discontinuity, Domain, OrientationScatter};
 pub use rock::{Rock, Slivers, SpacingScatter, Voronoi, Whereabouts};
 pub use shape::{Fill, Grading, Pattern, Shape, Towards};
 pub use support::{By, Hold, MotionRow, Region, Support};
-pub use time::{ContactAt, Integrator, Mass, Settle, Solver, Step, Time};
+pub use time::{ContactAt, Integrator, Mass, Settle, SettleDamping, Solver, Step, Time};
 pub use water::{LinearPressure, Pressure, Water, Wet};
 
 /// A complete scene.

@@ -3,7 +3,7 @@
 use ndda_contact::FacetContact;
 use ndda_io::checkpoint;
 use ndda_io::summary::Label;
-use ndda_solver::{DriveError, RestoreError, Sample, Settle, Simulation, Snapshot, StepError};
+use ndda_solver::{DriveError, RestoreError, Sample, Simulation, Snapshot, StepError};
 
 pub use ndda_mesh::{BlockId, Vec3};
 
@@ -79,7 +79,7 @@ impl Driver {
         let scene = &model.loaded.scene;
         let rows = u64::from(scene.output.history_rows);
         if let Some(settle) = scene.settle {
-            let settle = Settle { tolerance: settle.tolerance, most_steps: settle.most_steps };
+            let settle = crate::build::settle(settle);
             model.simulation.settle_watched(&settle, &mut |_| std::ops::ControlFlow::Continue(()))?;
         }
         model.simulation.sample()?;

@@ -76,8 +76,7 @@ impl Merging {
                 (glued[a as usize], glued[b as usize]) = (true, true);
             }
         }
-        let mut merging =
-            Self { sliver_width_m, blocks: Vec::new(), shared, glued, thin: BTreeSet::new() };
+        let mut merging = Self { sliver_width_m, blocks: Vec::new(), shared, glued, thin: BTreeSet::new() };
         merging.blocks = blocks.blocks.iter().cloned().map(Some).collect();
         for sliver in &blocks.report.slivers {
             merging.note(sliver.block);

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use ndda_io::scene::{self, Rock, Scene, Slivers, Whereabouts};
 use ndda_mesh::cut::{
-    self, Axis, Blocks, CutOptions, Disc, DiscRule, Discontinuity, Domain, JointSet, Merged, OrientationScatter,
-    Plane, SpacingScatter, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
+    self, Axis, Blocks, CutOptions, Disc, DiscRule, Discontinuity, Domain, JointSet, Merged,
+    OrientationScatter, Plane, SpacingScatter, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
 };
 use ndda_mesh::geometry::tet_volume;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
