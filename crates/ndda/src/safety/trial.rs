@@ -4,6 +4,7 @@
 //! is beyond the limit. A trial lasts until an acceleration of 2 % of the wanted error times gravity would have moved a block by 10 u.
 //! It *fails* as soon as a block has gone 30 u and farther in each third of what it went since than in the one before; it *stands*
 //! if at its end no block has gone so far, and none is faster than that acceleration would have made it; else it is *undecided*.
+//! It ends early where all blocks have come to rest.
 //!
 //! Steps are damped locally, since undamped contact of rigid blocks vibrates for ever, and blocks that hardly stand slip a little in each
 //! vibration. Friction makes equilibrium ambiguous: a wedge whose friction points across its line stands where one that slides does not. Blocks
@@ -38,8 +39,11 @@ const FEWEST_STEPS: u64 = 400;
 const WINDOWS: u64 = 24;
 /// Windows that are compared with each other.
 const SPAN: usize = 2;
-/// Window after which blocks are pushed.
+/// Window after which blocks are pushed at the latest.
 const PUSH: u64 = 8;
+/// Blocks rest that are slower, at the ends of so many windows, than this part of what no acceleration would make of them in a window.
+const SLOW: f64 = 0.1;
+const RESTING: u32 = 2;
 /// Elastic displacements that a push moves blocks by which half the wanted error times gravity slows down.
 const PUSHED: f64 = 5.0;
 /// Local damping of trials.
@@ -200,7 +204,9 @@ impl Course<'_> {
             Err(error) => return Some(Err(error)),
         }
         let (first, steps) = (simulation.state().step, self.steps(simulation.step_s()));
+        let window_s = simulation.step_s() * (steps / WINDOWS) as f64;
         let mut damping = LocalDamping::new(DAMPING);
+        let (mut pushed, mut resting) = (self.failing.is_empty(), 0);
         for window in 1..=WINDOWS {
             while simulation.state().step - first < window * steps / WINDOWS {
                 if self.stop.load(Ordering::Relaxed) {
@@ -217,9 +223,14 @@ impl Course<'_> {
                 let reason = format!("block `{name}` has gone {gone_m:.2e} m and accelerates");
                 return Some(Ok((State::Fails, reason)));
             }
-            if window == PUSH && !self.failing.is_empty() {
+            let slow_m_s = SLOW * self.threshold_m_s2() * window_s;
+            resting = if fastest_m_s(simulation) < slow_m_s { resting + 1 } else { 0 };
+            if !pushed && (resting == RESTING || window == PUSH) {
                 self.push(simulation);
                 watched.pushed();
+                (pushed, resting) = (true, 0);
+            } else if resting == RESTING {
+                break;
             }
         }
         Some(Ok(self.at_the_end(simulation, watched, &far_m)))
@@ -290,6 +301,16 @@ impl Course<'_> {
             (State::Stands, reason)
         }
     }
+}
+
+/// Largest speed of a block, by its kinetic energy [m/s].
+fn fastest_m_s(simulation: &Simulation) -> f64 {
+    let speed_m_s = |block: BlockId| {
+        let operator = &simulation.shape(block).operator;
+        let velocity = &simulation.state().velocity[simulation.blocks().nodes_of(block)];
+        (2.0 * operator.kinetic_energy_j(velocity) / operator.mass_kg).sqrt()
+    };
+    free(simulation).map(speed_m_s).fold(0.0, f64::max)
 }
 
 /// Observed quantities of a trial.
@@ -376,7 +397,7 @@ impl Watched {
     /// Largest mean speed over the last quarter [m/s].
     fn speed_m_s(&self) -> f64 {
         let last = self.gone_m.len() - 1;
-        let first = last - last / 4;
+        let first = last - (last / 4).max(1);
         let time_s = self.times_s[last] - self.times_s[first];
         let speed = |block: usize| (self.gone_m[last][block] - self.gone_m[first][block]).abs() / time_s;
         (0..self.blocks.len()).map(speed).fold(0.0, f64::max)
