@@ -232,6 +232,7 @@ pub(crate) fn contact_model(
                 scene::Memory::Body => Memory::Body,
                 scene::Memory::Element => Memory::Element,
             };
+            table.tolerance = choices.friction_tolerance.unwrap_or(table.tolerance);
             // Without friction, no shear spring and no memory is made.
             if table.have_laws() {
                 model = model.with_law_table(table);

@@ -24,6 +24,8 @@ pub struct Choices {
     pub potential: Option<Box<dyn ContactPotential>>,
     /// A friction law instead of `contact.friction`; those of single joints and pairs of materials stay.
     pub friction: Option<Box<dyn FrictionLaw>>,
+    /// Tolerance of friction on velocities, as a part of μN; 1e-7 unless it is given.
+    pub friction_tolerance: Option<f64>,
     /// The search for pairs that may touch.
     pub broad_phase: Option<Box<dyn BroadPhase>>,
     /// A time integrator instead of `time.integrator`.

@@ -18,9 +18,12 @@ use super::{
     film, mechanism, write,
 };
 use crate::Model;
+use crate::build::Choices;
 
 /// Factor between the trials that look for a bracket.
 const STRIDE: f64 = 1.5;
+/// Tolerance of friction in trials, as a part of μN: small against the narrowest bracket.
+const FRICTION_TOLERANCE: f64 = 1e-4;
 /// Trials inside a bracket that run side by side.
 const INSIDE: usize = 3;
 /// Factors on the strength with which the scene is brought to rest, until it does.
@@ -238,7 +241,8 @@ impl<'a> Search<'a> {
     fn model(&self, factor: f64, from: &Snapshot) -> Result<Model, SafetyError> {
         let mut loaded = self.loaded.clone();
         self.by.change(&mut loaded.scene, factor);
-        let mut model = Model::resuming(loaded, &self.folder)?;
+
+        let mut model = Model::resuming_with(loaded, &self.folder, choices())?;
         model.simulation.restore(from.clone()).expect("the blocks are the same");
         Ok(model)
     }
@@ -293,7 +297,7 @@ fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start,
         } else {
             settle.most_steps
         };
-        let mut simulation = Model::new(changed, folder)?.simulation;
+        let mut simulation = Model::with(changed, folder, choices())?.simulation;
         if free(&simulation).next().is_none() {
             return Err(SafetyError::NothingFree);
         }
@@ -410,4 +414,9 @@ fn remarks(answer: &Safety) -> Vec<String> {
         ));
     }
     remarks
+}
+
+/// Friction as exact as trials need it.
+fn choices() -> Choices {
+    Choices { friction_tolerance: Some(FRICTION_TOLERANCE), ..Choices::default() }
 }

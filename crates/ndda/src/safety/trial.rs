@@ -36,11 +36,11 @@ const TO_REST: u32 = 5;
 /// Fewest steps of a trial.
 const FEWEST_STEPS: u64 = 400;
 /// Windows in which displacements are looked at.
-const WINDOWS: u64 = 24;
+const WINDOWS: u64 = 48;
 /// Windows that are compared with each other.
 const SPAN: usize = 2;
 /// Window after which blocks are pushed at the latest.
-const PUSH: u64 = 8;
+const PUSH: u64 = 12;
 /// Blocks rest that are slower, at the ends of so many windows, than this part of what no acceleration would make of them in a window.
 const SLOW: f64 = 0.1;
 const RESTING: u32 = 2;
