@@ -27,6 +27,7 @@ mod hertz;
 mod joint_friction;
 mod joint_laws;
 mod jointed_column;
+mod jointed_slope;
 mod large_strain;
 mod loads_over_time;
 mod lumped_mass;

@@ -1,7 +1,7 @@
 //! A scene that settles first starts in equilibrium: penetration, stress and rest.
 
 use ndda_mesh::{BlockId, Vec3};
-use ndda_solver::Settle;
+use ndda_solver::{Damping, Settle, StepError};
 
 use crate::evidence::Answer::{AtMost, Within};
 use crate::evidence::row;
@@ -19,8 +19,14 @@ const SCENE: &str = "(title: \"stack\", time: (step_s: 1e-3, end_s: 1), gravity_
 
 #[test]
 fn a_stack_that_has_settled_lies_as_deep_as_its_weight_asks_for_and_stays() {
+    for (way, damping) in [("kinetic", Damping::Kinetic), ("local", Damping::Local { factor: 0.8 })] {
+        settles_as_deep_as_its_weight_asks_for(way, damping);
+    }
+}
+
+fn settles_as_deep_as_its_weight_asks_for(way: &str, damping: Damping) {
     let mut simulation = simulation(SCENE);
-    let settled = simulation.settle(&Settle::new(1e-6, 100_000)).unwrap();
+    let settled = simulation.settle(&Settle { damping, ..Settle::new(1e-6, 100_000) }).unwrap();
     assert!(settled.steps > 10 && settled.speed_ratio <= 1e-6, "{settled:?}");
     // p = 2 k_n h/L₀ under the weight of what is above.
     let sunk = |block: u32| {
@@ -31,7 +37,12 @@ fn a_stack_that_has_settled_lies_as_deep_as_its_weight_asks_for_and_stays() {
     };
     let pressure = 2500.0 * 9.8 * 1.5;
     let expected = pressure / (2.0 * 2e8);
-    row("settling", "depth of a stack that has settled [m]", sunk(1), Within(expected, 1e-2));
+    row(
+        "settling",
+        &format!("depth of a stack that has settled, {way} damping [m]"),
+        sunk(1),
+        Within(expected, 1e-2),
+    );
 
     assert_eq!(simulation.time_s(), 0.0);
     simulation.sample().unwrap();
@@ -40,7 +51,30 @@ fn a_stack_that_has_settled_lies_as_deep_as_its_weight_asks_for_and_stays() {
     }
     let moved = simulation.state().position.iter().zip(simulation.start_position());
     let furthest = moved.map(|(x, start)| (x - start).norm()).fold(0.0, f64::max);
-    row("settling", "motion afterwards over that depth", furthest / expected, AtMost(1e-4));
+    row(
+        "settling",
+        &format!("motion afterwards over that depth, {way} damping"),
+        furthest / expected,
+        AtMost(1e-4),
+    );
     let sample = simulation.sample().unwrap();
     assert!(sample.load_j.abs() < 1e-4 * 2500.0 * 9.8 * 1.5 * expected, "{sample:?}");
+}
+
+/// A block on a steep plane: the answer is which block goes, and where to.
+#[test]
+fn a_scene_that_cannot_come_to_rest_names_the_block_that_moves() {
+    let scene =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/safety/plane_dry.ron")).unwrap();
+    for damping in [Damping::Kinetic, Damping::Local { factor: 0.8 }] {
+        let mut simulation = crate::simulation(&scene.replace("friction_deg: 40", "friction_deg: 10"));
+        let error = simulation.settle(&Settle { damping, ..Settle::new(1e-4, 3000) }).unwrap_err();
+        let StepError::NotSettled { towards, others, gone_m, .. } = error else { panic!("{error}") };
+        assert!(others == 0 && gone_m > 0.0);
+        // The plane is level and gravity tilted by 30°.
+        let gravity = Vec3::new(4.905, 0.0, -8.495709211125344);
+        let slope_deg = Vec3::from(towards).angle(&gravity).to_degrees();
+        let what = format!("a block that slides: its direction against gravity, {damping:?} [°]");
+        row("settling", &what, slope_deg, Within(60.0, 0.02));
+    }
 }
