@@ -42,13 +42,14 @@ const OTHERS: [&str; 2] = ["sticking_30_phi35", "sticking_30_phi35_spring"];
 const STICK_STAGE: [(&str, f64); 2] = [("sliding_30_phi25_spring", 1e-3), ("sliding_45_phi35_spring", 1e-3)];
 
 /// Scenes without a closed form that take up to minutes: here only their first moments [s].
-const SHORT: [(&str, f64); 10] = [
+const SHORT: [(&str, f64); 11] = [
     ("arch", 4e-3),
     ("bounce", 0.15),
     ("column_phi0", 2e-3),
     ("column_phi5", 4e-3),
     ("column_phi10", 2e-3),
     ("dominoes", 5e-3),
+    ("fractured_slope", 2e-3),
     ("pile_1000", 1e-3),
     ("pile_125", 5e-3),
     ("slope_toppling", 5e-3),

@@ -7,6 +7,7 @@ mod contact;
 pub mod diagnostic;
 mod expression;
 mod include;
+pub mod joint_table;
 mod load;
 pub mod locate;
 mod material;

@@ -18,7 +18,7 @@ use ndda_contact::{
 };
 use ndda_fem::Table;
 use ndda_io::scene::{self, At, Contact, Integrator, Scene};
-use ndda_mesh::{BlockId, BlockSet, Vec3};
+use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
 use ndda_solver::{
     AutoStep, ConjugateGradients, Direct, GeneralizedAlpha, ImplicitContact, LinearSolver, Mass, Midpoint,
     Newmark, Setup, SetupError, Simulation, TimeIntegrator,
@@ -84,6 +84,14 @@ pub fn meshes(scene: &Scene, folder: &Path) -> Result<(Meshes, Vec<CutRock>), Ve
         }
     }
     if faults.is_empty() { Ok((meshes, rocks)) } else { Err(faults) }
+}
+
+/// The body under the closed surface in a file, filled with as few tetrahedra as there can be; coordinates as in the file.
+///
+/// # Errors
+/// What is wrong with the file or the surface.
+pub fn body_in_surface(path: &Path) -> Result<BlockMesh, String> {
+    solid::filled(&solid::of_file(path, 1.0)?, solid::ROUNDED, &scene::Fill::Fewest)
 }
 
 /// Where in the scene a block comes from.

@@ -18,8 +18,8 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::WriteError;
 use ndda_io::study::{self, LoadedStudy, Reference};
+use ndda_io::{OutputFolder, WriteError};
 
 use case::Case;
 use error::StudyError;
@@ -114,11 +114,12 @@ impl Study {
 /// Makes the folder of a study, which may hold an earlier part of it.
 ///
 /// # Errors
-/// [`StudyError::Write`] when it cannot be made.
+/// [`StudyError::Write`] when it cannot be made, or is the folder of a run.
 pub fn make_folder(out: &Path) -> Result<(), StudyError> {
     if out.is_file() {
         return Err(WriteError::IsFile { path: out.to_path_buf() }.into());
     }
+    OutputFolder::refuse_run(out)?;
     let refused = |source| WriteError::Io { operation: "create the folder", path: out.to_path_buf(), source };
     Ok(std::fs::create_dir_all(out.join("cases")).map_err(refused)?)
 }

@@ -13,7 +13,7 @@ use crate::scene::parameter_values;
 pub use crate::scene::parse::text_of;
 use crate::scene::parse::{locate_all, parse_with, place, refuse_blank, sort};
 use crate::scene::renamed;
-pub use crate::scene::suggest::suggest;
+pub use crate::scene::suggest::{nearest, suggest};
 
 /// A scene that parsed and passed its checks.
 #[derive(Clone, Debug)]
@@ -66,10 +66,9 @@ pub fn load_text(
     overrides: &[String],
     folder: Option<&Path>,
 ) -> Result<LoadedScene, SceneErrors> {
-    let fail = |text: &str, diagnostics: Vec<Diagnostic>| SceneErrors {
-        file: file.to_string(),
-        text: text.to_string(),
-        diagnostics,
+    let fail = |text: &str, mut diagnostics: Vec<Diagnostic>| {
+        overrides::blame(&mut diagnostics, text, overrides);
+        SceneErrors { file: file.to_string(), text: text.to_string(), diagnostics }
     };
     refuse_blank(text).map_err(|(text, refused)| fail(text, vec![refused]))?;
     let text = overrides::apply(text, overrides).map_err(|refused| fail(text, vec![refused]))?;

@@ -86,10 +86,14 @@ pub enum StudyError {
     #[error("samples cannot be drawn: {0}")]
     Samples(String),
     /// No case has a quantity.
-    #[error("no run has a quantity `{name}`: there is {known}, label, safety")]
+    #[error(
+        "no run has a quantity `{name}`{near}; there are {known}; the beginning of a name stands for all that begin so"
+    )]
     NoQuantity {
         /// Its name.
         name: String,
+        /// Names that it may have been meant for, as a question.
+        near: String,
         /// The quantities that there are.
         known: String,
     },

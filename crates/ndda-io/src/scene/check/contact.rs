@@ -1,8 +1,8 @@
 //! Checks of contact.
 
-use super::{CELLS, Check};
+use super::Check;
 use crate::scene::code::Code;
-use crate::scene::{Contact, JointLaw, MaterialPair, Potential, matches};
+use crate::scene::{Contact, JointLaw, MaterialPair, Potential};
 
 impl Check<'_> {
     pub(super) fn contact(&mut self) {
@@ -82,14 +82,8 @@ impl Check<'_> {
     }
 
     fn rock_joints(&mut self, laws: &[JointLaw]) {
-        let scene = self.scene;
-        let mut names: Vec<&str> =
-            scene.rock.iter().flat_map(|rock| &rock.joints).map(|j| j.name()).collect();
-        names.extend(scene.rock.iter().filter(|rock| rock.voronoi.is_some()).map(|_| CELLS));
         for (i, law) in laws.iter().enumerate() {
-            if !names.iter().any(|name| matches(&law.joint, name)) {
-                self.known(format!("contact.rock_joints[{i}].joint"), "joint", &law.joint, &names);
-            }
+            self.known_joint(format!("contact.rock_joints[{i}].joint"), &law.joint);
             if let Some(friction) = &law.friction {
                 self.friction(&format!("contact.rock_joints[{i}].friction"), friction);
             }
