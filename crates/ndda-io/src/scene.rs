@@ -124,6 +124,16 @@ pub fn matches(pattern: &str, name: &str) -> bool {
     rest.char_indices().map(|(i, _)| i).chain([rest.len()]).any(|i| matches(tail, &rest[i..]))
 }
 
+/// The value of a field that is left out, and chosen before a run.
+fn unset() -> f64 {
+    f64::NAN
+}
+
+/// Whether a field is left out.
+pub fn is_unset(value: &f64) -> bool {
+    value.is_nan()
+}
+
 fn one() -> f64 {
     1.0
 }

@@ -224,7 +224,15 @@ pub(crate) fn contact_model(
     }
     match &scene.contact {
         None | Some(Contact::Off) => Ok(None),
-        Some(Contact::Potential { penalty_pa, potential, friction, material_pairs, rock_joints, memory }) => {
+        Some(Contact::Potential {
+            penalty_pa,
+            potential,
+            friction,
+            material_pairs,
+            rock_joints,
+            memory,
+            ..
+        }) => {
             let potential = choices.potential.take().unwrap_or_else(|| contact_potential(potential));
             potential.field(blocks).map_err(|e| Fault::new("contact.potential", e))?;
             let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);

@@ -46,6 +46,7 @@
 
 pub mod build;
 pub mod certify;
+pub mod choose;
 pub mod columns;
 mod documents;
 pub mod driver;

@@ -7,6 +7,7 @@ use ndda_io::read::{self, LoadedScene};
 use ndda_solver::Simulation;
 
 use crate::build::{self, Choices, Fault, overlaps};
+use crate::choose;
 use crate::forecast::{admit, creep, lumped, rounding};
 use crate::judge::reference::Comparison;
 use crate::run::monitor::Monitor;
@@ -72,11 +73,8 @@ impl Model {
     ///
     /// # Errors
     /// As [`resuming`](Self::resuming).
-    pub fn resuming_with(
-        mut loaded: LoadedScene,
-        folder: &Path,
-        choices: Choices,
-    ) -> Result<Self, SceneErrors> {
+    pub fn resuming_with(loaded: LoadedScene, folder: &Path, choices: Choices) -> Result<Self, SceneErrors> {
+        let mut loaded = choose::complete(loaded, folder)?;
         let located = |faults: Vec<Fault>| {
             let diagnostics: Vec<Diagnostic> =
                 faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();

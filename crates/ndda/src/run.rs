@@ -218,6 +218,7 @@ impl Run {
         let ending = Ending {
             scene,
             name: &name,
+            chosen: loaded.chosen.clone(),
             stopped_by,
             interrupted: simulation.state().step < steps,
             wall_s: earlier_s + started.elapsed().as_secs_f64(),

@@ -21,6 +21,7 @@ use std::path::{Path, PathBuf};
 use ndda_io::study::{self, LoadedStudy, Reference};
 use ndda_io::{OutputFolder, WriteError};
 
+use crate::choose;
 use case::Case;
 use error::StudyError;
 use launch::Launch;
@@ -52,6 +53,7 @@ impl Study {
         if loaded.study.is_sweep() {
             return Err(StudyError::IsSweep);
         }
+        let overrides = &pinned(&loaded, overrides);
         let mut cases = case::cases(&loaded)?;
         case::set_first(&mut cases, overrides);
         let mut references = case::reference_cases(&loaded, &cases)?;
@@ -109,6 +111,16 @@ impl Study {
         pictures::all(&self.out, &results)?;
         Ok((results, json))
     }
+}
+
+/// Overrides of all cases of a study: those that are asked for, and what is chosen for the base scene where it leaves out the penalty or
+/// the step, so that all cases share it.
+pub(crate) fn pinned(loaded: &LoadedStudy, overrides: &[String]) -> Vec<String> {
+    let base = loaded.scene_with(overrides).ok().filter(|base| !base.is_complete());
+    let folder = loaded.scene.parent().unwrap_or(Path::new("."));
+    let chosen =
+        base.and_then(|base| choose::complete(base, folder).ok()).map_or(Vec::new(), |base| base.chosen);
+    [overrides.to_vec(), choose::as_overrides(&chosen)].concat()
 }
 
 /// Makes the folder of a study, which may hold an earlier part of it.

@@ -28,8 +28,8 @@ use ndda_io::study::{self, Axis, Correlation, LoadedStudy, Sampling, Study};
 
 use crate::Model;
 use crate::study::error::StudyError;
-use crate::study::make_folder;
 use crate::study::runner::CaseRunner;
+use crate::study::{make_folder, pinned};
 use cases::SweepCase;
 use condition::Condition;
 use evaluate::Evaluator;
@@ -128,7 +128,7 @@ impl Sweep {
         }
         let mut seen = std::collections::HashSet::new();
         of.retain(|name| seen.insert(name.clone()));
-        let cases = cases::cases(&loaded, &ask.overrides)?;
+        let cases = cases::cases(&loaded, &pinned(&loaded, &ask.overrides))?;
         let name = file.file_stem().map_or_else(|| "study".into(), |s| s.to_string_lossy().into_owned());
         let out = ask.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_study")));
         Ok(Some(Self { loaded, name, cases, of, fails_when, trial, out }))

@@ -7,14 +7,14 @@ use ndda::build::{self, CutRock, Meshes};
 use ndda::forecast;
 use ndda::mesh_export;
 use ndda::mesh_input::{self, Repair};
-use ndda::mesh_report::MeshReport;
+use ndda::mesh_report::{self, MeshReport};
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::folder::MESH_REPORT;
 use ndda_io::read::load;
 use ndda_io::scene::{FieldFormat, Scene};
 use ndda_io::vtu::{self, Frame, Topology};
 use ndda_io::{OutputFolder, WriteError};
-use ndda_mesh::{BlockSet, MeshError};
+use ndda_mesh::BlockSet;
 use serde::Serialize;
 
 use crate::args::{Fix, MeshArgs};
@@ -80,7 +80,7 @@ pub fn mesh(args: &MeshArgs) -> u8 {
             if !args.json {
                 say(&measured.to_string());
             }
-            events.fail(exit::BAD_INPUT, &refusal(&args.input, &error))
+            events.fail(exit::BAD_INPUT, &mesh_report::refusal(&args.input, &error))
         }
     }
 }
@@ -98,15 +98,6 @@ struct Finished<'a> {
 
 fn is_scene(path: &Path) -> bool {
     path.extension().is_none_or(|ending| ending.eq_ignore_ascii_case("ron"))
-}
-
-/// All defects, and what may cure them.
-fn refusal(input: &Path, error: &MeshError) -> String {
-    let mut text = format!("{} is not fit to run:", input.display());
-    for (block, problem) in &error.problems {
-        let _ = write!(text, "\n  {block}: {problem}");
-    }
-    text + "\n  --fix orient turns inverted tetrahedra round, --fix merge joins coincident nodes"
 }
 
 fn from_scene(args: &MeshArgs) -> Result<Input, Refused> {

@@ -34,6 +34,9 @@ pub struct Summary {
     pub steps: u64,
     /// Step Δt \[s\].
     pub step_s: f64,
+    /// Values that the scene leaves out and that were chosen for it. Left out where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub chosen: Vec<Chosen>,
     /// Simulated time reached \[s\].
     pub end_s: f64,
     /// CRC-32 of the final state, hexadecimal: runs that end in the same bits have the same.
@@ -63,6 +66,24 @@ pub struct Summary {
     pub reference: Option<ReferenceError>,
     /// Warnings to read before using the result.
     pub warnings: Vec<String>,
+}
+
+/// A value that a scene leaves out and that was chosen for it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Chosen {
+    /// Its path in the scene, as `time.step_s`.
+    pub path: String,
+    /// The value, in the unit of its field.
+    pub value: f64,
+    /// Why it was chosen.
+    pub reason: String,
+}
+
+impl std::fmt::Display for Chosen {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let Self { path, value, reason } = self;
+        write!(f, "chosen: {path} = {value:e} ({reason})")
+    }
 }
 
 /// How a run ended.
@@ -269,6 +290,7 @@ mod tests {
             label: Label { word: LabelWord::Inaccurate, reasons: vec!["too deep".into()] },
             steps: 10_000,
             step_s: 1e-4,
+            chosen: Vec::new(),
             end_s: 1.0,
             state_crc32: "0123abcd".into(),
             wall_s: 2.5,

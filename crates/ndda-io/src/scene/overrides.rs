@@ -33,6 +33,15 @@ fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
     locate::one_value(value).map_err(|reason| {
         refuse(format!("`{value}` {reason}")).with_help("write one value, and --set again for the next")
     })?;
+    put(text, path, value).map_err(refuse)
+}
+
+/// Puts a value, which may have a comment, at a path.
+///
+/// # Errors
+/// Why the path leads nowhere.
+pub(crate) fn put(text: &str, path: &str, value: &str) -> Result<String, String> {
+    let names = current_segments(path);
     let tree = locate::tree(text);
     // The longest part of the path that is there.
     let mut node = &tree;
@@ -48,13 +57,13 @@ fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
     }
     let missing = &names[known..];
     if names[0] == parameters::FIELD && names.len() > 1 {
-        return Err(refuse(no_parameter(node, known, missing[0])));
+        return Err(no_parameter(node, known, missing[0]));
     }
     if node.opening != Some('(') || missing.iter().any(|name| name.parse::<usize>().is_ok()) {
-        return Err(refuse(lost(text, node, missing[0])));
+        return Err(lost(text, node, missing[0]));
     }
     if let Some(choice) = missing[..missing.len() - 1].iter().find(|name| CHOICES.contains(name)) {
-        return Err(refuse(format!("`{choice}` is not written in the scene: write which one it is first")));
+        return Err(format!("`{choice}` is not written in the scene: write which one it is first"));
     }
     Ok(insert(text, node, missing, value))
 }
