@@ -1,5 +1,6 @@
 //! The summary: what a run did, what it cost and whether it can be trusted, as `summary.json`.
 
+mod chosen;
 mod motion;
 mod named;
 
@@ -11,6 +12,7 @@ use serde_json::Value;
 use crate::atomic;
 use crate::write_error::WriteError;
 
+pub use chosen::Chosen;
 pub use motion::{BlockEnd, BlockMotion, Course, MonitorEnd, Motion};
 pub use named::Named;
 
@@ -66,24 +68,6 @@ pub struct Summary {
     pub reference: Option<ReferenceError>,
     /// Warnings to read before using the result.
     pub warnings: Vec<String>,
-}
-
-/// A value that a scene leaves out and that was chosen for it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Chosen {
-    /// Its path in the scene, as `time.step_s`.
-    pub path: String,
-    /// The value, in the unit of its field.
-    pub value: f64,
-    /// Why it was chosen.
-    pub reason: String,
-}
-
-impl std::fmt::Display for Chosen {
-    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let Self { path, value, reason } = self;
-        write!(f, "chosen: {path} = {value:e} ({reason})")
-    }
 }
 
 /// How a run ended.

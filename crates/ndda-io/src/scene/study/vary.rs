@@ -97,12 +97,8 @@ mod tests {
 
     #[test]
     fn units_and_choices_are_values() {
-        for text in [
-            "a_m=Millimetre(1, 2, 3)",
-            "a=Degrees(30),Degrees(2)",
-            "a=Calc(2 * b)",
-            "a=Newmark(alpha: 0.5, delta: 1)",
-        ] {
+        for text in ["a_m=Millimetre(1, 2, 3)", "a=Degrees(30),Degrees(2)", "a=Newmark(alpha: 0.5, delta: 1)"]
+        {
             assert!(matches!(read(&[text]).unwrap()[0], Axis::Vary { .. }), "{text}");
         }
     }
