@@ -42,14 +42,13 @@ const OTHERS: [&str; 2] = ["sticking_30_phi35", "sticking_30_phi35_spring"];
 const STICK_STAGE: [(&str, f64); 2] = [("sliding_30_phi25_spring", 1e-3), ("sliding_45_phi35_spring", 1e-3)];
 
 /// Scenes without a closed form that take up to minutes: here only their first moments [s].
-const SHORT: [(&str, f64); 11] = [
+const SHORT: [(&str, f64); 10] = [
     ("arch", 4e-3),
     ("bounce", 0.15),
     ("column_phi0", 2e-3),
     ("column_phi5", 4e-3),
     ("column_phi10", 2e-3),
     ("dominoes", 5e-3),
-    ("fractured_slope", 2e-3),
     ("pile_1000", 1e-3),
     ("pile_125", 5e-3),
     ("slope_toppling", 5e-3),
@@ -89,7 +88,7 @@ fn every_scene_has_a_criterion() {
 /// Scenes that are no examples of the program: tests and scripts run them.
 fn other_scenes() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folders = ["scenes/extreme", "scenes/failures", "scenes/safety"];
+    let folders = ["scenes/extreme", "scenes/failures", "scenes/joints", "scenes/safety"];
     let files = folders.into_iter().flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap());
     files.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "ron")).collect()
 }

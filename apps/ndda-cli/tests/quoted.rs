@@ -35,7 +35,8 @@ fn pages() -> Vec<PathBuf> {
     };
     let mut pages = vec![root().join("README.md")];
     pages.extend(["docs/guide", "docs/reference"].iter().flat_map(|folder| listed(folder, "md")));
-    pages.extend(["scenes", "scenes/safety"].iter().flat_map(|folder| listed(folder, "ron")));
+    pages
+        .extend(["scenes", "scenes/joints", "scenes/safety"].iter().flat_map(|folder| listed(folder, "ron")));
     pages.sort();
     pages
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndda_io::mesh_file;
+use ndda_io::mesh_file::{self, FileProblem, MeshFileError};
 use ndda_mesh::repair;
 
 use crate::build::{self, Meshes};
@@ -30,7 +30,7 @@ pub fn read(path: &Path, repairs: &[Repair]) -> Result<(Meshes, Vec<String>), St
             let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             vec![(name, build::body_in_surface(path)?)]
         }
-        false => mesh_file::read(path).map_err(|error| error.to_string())?.bodies,
+        false => mesh_file::read(path).map_err(|error| with_surfaces(&error))?.bodies,
     };
     let mut done = Vec::new();
     for repair in repairs {
@@ -49,4 +49,14 @@ pub fn read(path: &Path, repairs: &[Repair]) -> Result<(Meshes, Vec<String>), St
         }
     }
     Ok((meshes, done))
+}
+
+/// The words of an error, with what else can be measured where the ending of a file is unknown.
+fn with_surfaces(error: &MeshFileError) -> String {
+    match error {
+        MeshFileError::File { problem: FileProblem::Extension { .. }, .. } => {
+            format!("{error}; a closed surface, .stl, .obj or .vtp; or a scene, .ron")
+        }
+        other => other.to_string(),
+    }
 }

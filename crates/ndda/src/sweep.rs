@@ -152,9 +152,8 @@ impl Sweep {
 
     /// Refuses names of no quantity before anything is computed, as far as a scene of the sweep can be built.
     fn check_names(&self) -> Result<(), StudyError> {
-        let fixed = [LABEL, SAFETY, quantity::SAFETY_LOWER, quantity::SAFETY_UPPER];
         let condition = self.fails_when.as_ref().map(|condition| &condition.quantity);
-        if self.of.iter().chain(condition).all(|name| fixed.contains(&name.as_str())) {
+        if self.of.iter().chain(condition).all(|name| quantity::FIXED.contains(&name.as_str())) {
             return Ok(());
         }
         let beside = self.loaded.scene.parent().unwrap_or(Path::new("."));
@@ -201,9 +200,7 @@ fn refuse_idle(study: &Study, ask: &Ask) -> Result<(), StudyError> {
     ];
     let is_random = study.axes.iter().any(|axis| matches!(axis, Axis::Random { .. }));
     match options.into_iter().find(|(_, is_there)| *is_there && !is_random) {
-        Some((option, _)) => Err(StudyError::Samples(format!(
-            "--{option} has no effect, since nothing is random: give a value a distribution, as --vary \"PATH=Normal(30, 2)\""
-        ))),
+        Some((option, _)) => Err(StudyError::Idle(option)),
         None => Ok(()),
     }
 }

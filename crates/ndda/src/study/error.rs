@@ -82,6 +82,11 @@ pub enum StudyError {
         "`{0}` is no correlation: write the names of two axes and a number, as friction_deg,cohesion_pa=-0.5"
     )]
     Correlation(String),
+    /// An option of samples where nothing is random.
+    #[error(
+        "--{0} has no effect, since nothing is random: give a value a distribution, as --vary \"PATH=Normal(30, 2)\""
+    )]
+    Idle(&'static str),
     /// Samples that cannot be drawn.
     #[error("samples cannot be drawn: {0}")]
     Samples(String),

@@ -35,6 +35,8 @@ const OF_BLOCK: [&str; 8] = [
     "rotation_deg",
     "velocity_m_s",
 ];
+/// Names that are there whatever the scene.
+pub const FIXED: [&str; 4] = [LABEL, SAFETY, SAFETY_LOWER, SAFETY_UPPER];
 /// Most names that a question lists.
 const MOST_NEAR: usize = 3;
 
@@ -117,32 +119,39 @@ pub fn of_model(model: &Model) -> Values {
     Values { label: None, numbers: known.into_iter().map(|name| (name, 0.0)).collect() }
 }
 
-/// Names for a message: those of one block for those of all, and a few of them.
+/// Names for a message, quantities of blocks and reactions of supports for the first block that has them.
 pub fn listed(numbers: &[(String, f64)]) -> String {
-    let block = |name: &str| name.strip_prefix(BLOCK)?.rsplit_once('.').map(|(block, _)| block.to_string());
-    let mut blocks: Vec<String> = numbers.iter().filter_map(|(name, _)| block(name)).collect();
-    blocks.dedup();
-    let shown = |name: &&String| block(name).is_none_or(|block| blocks.first() == Some(&block));
-    let mut names: Vec<String> = [LABEL, SAFETY, SAFETY_LOWER, SAFETY_UPPER].map(String::from).to_vec();
-    for name in numbers.iter().map(|(name, _)| name).filter(shown) {
-        if !names.contains(name) {
+    let mut names: Vec<String> = FIXED.map(String::from).to_vec();
+    let (mut shown, mut others) = (Vec::new(), false);
+    for (name, _) in numbers {
+        let (of, quantity) = name.rsplit_once('.').unwrap_or(("", name));
+        let is_of_block = of.starts_with(BLOCK) || quantity.starts_with("reaction_");
+        if names.contains(name) {
+            continue;
+        } else if is_of_block && shown.contains(&quantity) {
+            others = true;
+        } else {
+            shown.push(quantity);
             names.push(name.clone());
         }
     }
-    let others = match blocks.len() {
-        0 | 1 => String::new(),
-        count => format!(", and those of the other {} blocks likewise", count - 1),
-    };
-    format!("{}{others}", names.join(", "))
+    format!("{}{}", names.join(", "), if others { ", and those of the other blocks likewise" } else { "" })
 }
 
 /// Names that one of no quantity may have been meant for, as a question; empty where none is like it.
 pub fn near(name: &str, numbers: &[(String, f64)]) -> String {
-    let fixed = [LABEL, SAFETY, SAFETY_LOWER, SAFETY_UPPER];
-    let known: Vec<&str> = fixed.into_iter().chain(numbers.iter().map(|(name, _)| name.as_str())).collect();
+    let known: Vec<&str> = FIXED.into_iter().chain(numbers.iter().map(|(name, _)| name.as_str())).collect();
     let within: Vec<&str> =
         known.iter().copied().filter(|known| known.contains(name)).take(MOST_NEAR).collect();
-    let found = if within.is_empty() { read::nearest(name, &known).into_iter().collect() } else { within };
+    // Whole names, or the part behind a block or monitor.
+    let quantity = |known: &&'_ str| known.rsplit('.').next().unwrap_or_default().to_string();
+    let quantities: Vec<String> = known.iter().map(quantity).collect();
+    let quantities: Vec<&str> = quantities.iter().map(String::as_str).collect();
+    let like = read::nearest(name, &known).or_else(|| {
+        let like = read::nearest(name, &quantities)?;
+        known.iter().copied().find(|known| known.rsplit('.').next() == Some(like))
+    });
+    let found = if within.is_empty() { like.into_iter().collect() } else { within };
     match found.is_empty() {
         true => String::new(),
         false => format!(": did you mean `{}`?", found.join("`, `")),
@@ -206,6 +215,26 @@ mod tests {
         assert_eq!(values.named("h"), [4]);
         assert_eq!(values.number("a.f"), Some(2.0));
         assert_eq!(values.number("a"), None);
+    }
+
+    #[test]
+    fn names_are_listed_once_for_all_blocks_and_found_by_their_quantity() {
+        let names = [
+            "m.displacement_x_m",
+            "block a.rotation_deg",
+            "block b.rotation_deg",
+            "h",
+            "a.reaction_x_n",
+            "b.reaction_x_n",
+        ];
+        let numbers: Vec<(String, f64)> = names.iter().map(|name| (name.to_string(), 0.0)).collect();
+        let text = listed(&numbers);
+        assert!(
+            text.contains("m.displacement_x_m, block a.rotation_deg, h, a.reaction_x_n, and those"),
+            "{text}"
+        );
+        assert_eq!(near("rotatoin", &numbers), ": did you mean `block a.rotation_deg`?");
+        assert_eq!(near("zzz", &numbers), "");
     }
 
     #[test]

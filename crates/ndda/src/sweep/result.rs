@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::Sweep;
 use super::cases::{self, Role};
 use super::condition::Condition;
-use super::quantity::{self, LABEL, SAFETY, SAFETY_LOWER, SAFETY_UPPER, Values};
+use super::quantity::{self, FIXED, LABEL, SAFETY, Values};
 use super::record::SweepOutcome;
 use super::statistics::{Index, Moments, Part, indices};
 use crate::study::case::grid;
@@ -203,10 +203,9 @@ fn no_quantity(name: &str, of: &Values) -> StudyError {
 /// # Errors
 /// As [`Results::new`].
 pub fn check_names(sweep: &Sweep, known: Values) -> Result<(), StudyError> {
-    let fixed = [LABEL, SAFETY, SAFETY_LOWER, SAFETY_UPPER];
     let text = sweep.loaded.study.fails_when.as_deref().unwrap_or_default();
     let condition = sweep.fails_when.as_ref().map(|condition| &condition.quantity);
-    for name in sweep.of.iter().chain(condition).filter(|name| !fixed.contains(&name.as_str())) {
+    for name in sweep.of.iter().chain(condition).filter(|name| !FIXED.contains(&name.as_str())) {
         if known.named(name).is_empty() {
             return Err(no_quantity(name, &known));
         }

@@ -73,7 +73,8 @@ pub enum ViewError {
     HasRun(PathBuf),
     /// Displacements so large that nothing is seen of the blocks.
     #[error(
-        "--magnify {asked}: displacements so long leave nothing of the blocks to be seen; write a number above 0, here up to {}",
+        "--magnify {}: displacements so long leave nothing of the blocks to be seen; write a number above 0, here up to {}",
+        three_digits(*asked),
         three_digits(*most)
     )]
     Magnify {
