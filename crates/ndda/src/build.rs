@@ -53,10 +53,20 @@ impl Fault {
 /// # Errors
 /// All shapes that cannot be built, and all defects of their meshes.
 pub fn blocks(scene: &Scene, folder: &Path) -> Result<BlockSet, Vec<Fault>> {
-    BlockSet::new(meshes(scene, folder)?.0).map_err(|error| {
+    blocks_and_rock(scene, folder).map(|(blocks, _)| blocks)
+}
+
+/// The blocks of a scene, and what each rock was cut into.
+///
+/// # Errors
+/// As [`blocks`].
+pub fn blocks_and_rock(scene: &Scene, folder: &Path) -> Result<(BlockSet, Vec<RockReport>), Vec<Fault>> {
+    let (meshes, rock) = meshes(scene, folder)?;
+    let blocks = BlockSet::new(meshes).map_err(|error| -> Vec<Fault> {
         let fault = |(name, problem): (String, _)| Fault::new(path_of(scene, &name, ".shape"), problem);
         error.problems.into_iter().map(fault).collect()
-    })
+    })?;
+    Ok((blocks, rock.into_iter().map(|rock| rock.report).collect()))
 }
 
 /// The meshes of a scene before they are checked, and what each rock was cut into.

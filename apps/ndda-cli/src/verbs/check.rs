@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
+use ndda::build::RockReport;
 use ndda::choose;
 use ndda::forecast::cost::{self, Guess};
 use ndda::forecast::doubts;
@@ -31,6 +32,7 @@ struct Checked<'a> {
     contact_stability: Option<&'a Advice>,
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     chosen: &'a [Chosen],
+    rock: &'a [RockReport],
     guess: Option<Guess>,
 }
 
@@ -68,6 +70,7 @@ pub fn check(args: &CheckArgs) -> u8 {
         advised_step_s: advice.as_ref().map(|advice| advice.step_s),
         contact_stability: advice.as_ref(),
         chosen: &loaded.chosen,
+        rock: &model.rock,
         guess: guess.ok(),
     };
     if args.write
@@ -95,6 +98,7 @@ impl fmt::Display for Checked<'_> {
             f,
             "{blocks} block(s), {nodes} nodes, {tets} tets, {unknowns} unknowns, {factors} factor(s); {steps} steps"
         )?;
+        self.rock.iter().try_for_each(|rock| write!(f, "\n{rock}"))?;
         self.chosen.iter().try_for_each(|chosen| write!(f, "\n{chosen}"))?;
         self.guess.as_ref().map_or(Ok(()), |guess| write!(f, "\n{guess}"))
     }

@@ -4,10 +4,9 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use ndda::build::{self, CutRock, Meshes};
-use ndda::forecast;
-use ndda::mesh_export;
 use ndda::mesh_input::{self, Repair};
 use ndda::mesh_report::{self, MeshReport};
+use ndda::{forecast, mesh_export};
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::folder::MESH_REPORT;
 use ndda_io::read::load;
