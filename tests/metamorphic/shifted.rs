@@ -35,6 +35,8 @@ fn shifted(scene: &Scene, shift: [f64; 3]) -> Scene {
                 ndda_io::scene::Discontinuity::Set { origin_m, .. } => add(origin_m),
                 ndda_io::scene::Discontinuity::Plane { point_m, .. } => add(point_m),
                 ndda_io::scene::Discontinuity::Disc { center_m, .. } => add(center_m),
+                // Scenes here have no tables.
+                ndda_io::scene::Discontinuity::Discs { .. } => {}
             }
         }
     }

@@ -317,6 +317,9 @@ pub struct CheckArgs {
     /// The scene.
     #[command(flatten)]
     pub input: SceneArgs,
+    /// Write the penalty and the step that were chosen, where the scene leaves them out, into its file.
+    #[arg(long, conflicts_with = "example")]
+    pub write: bool,
     /// Print what is found as JSON, one object per line (see docs/reference/json.md).
     #[arg(long)]
     pub json: bool,

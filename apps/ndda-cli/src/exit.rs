@@ -43,6 +43,7 @@ pub fn of_study(error: &StudyError) -> u8 {
         | StudyError::Condition { .. }
         | StudyError::Correlation(_)
         | StudyError::Samples(_)
+        | StudyError::Idle(_)
         | StudyError::NoQuantity { .. }
         | StudyError::AmbiguousCondition { .. }
         | StudyError::Difference { .. }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda::{Model, examples, forecast};
+use ndda::{Model, choose, examples, forecast};
 use ndda_io::read::{self, LoadedScene};
 
 use crate::args::SceneArgs;
@@ -28,7 +28,7 @@ pub fn model(args: &SceneArgs, events: Events) -> Result<Model, u8> {
     Model::new(loaded, folder).map_err(|errors| events.refuse(&errors))
 }
 
-/// Reads and checks a scene without building it.
+/// Reads and checks a scene; it is built only where its penalty or step is to be chosen.
 ///
 /// # Errors
 /// As [`model`].
@@ -40,7 +40,9 @@ pub fn scene(args: &SceneArgs, events: Events) -> Result<LoadedScene, u8> {
             read::load_text(&file.display().to_string(), text(name, events)?, &args.overrides, None)
         }
     };
-    loaded.map_err(|errors| events.refuse(&errors))
+    let folder = if args.example.is_some() { None } else { file.parent() };
+    let complete = |loaded| choose::complete(loaded, folder.unwrap_or(Path::new(".")));
+    loaded.and_then(complete).map_err(|errors| events.refuse(&errors))
 }
 
 /// Says beforehand that building a scene takes long.

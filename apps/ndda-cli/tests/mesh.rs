@@ -51,6 +51,82 @@ fn a_scene_is_measured_and_drawn() {
     if cfg!(feature = "plots") {
         let picture = fs::read_to_string(out.join("mesh.svg")).unwrap();
         assert!(picture.starts_with("<svg") && picture.contains("volume of blocks"), "{picture}");
+        let drawn = out.join(if cfg!(feature = "png") { "blocks.png" } else { "blocks.svg" });
+        assert!(fs::metadata(drawn).unwrap().len() > 1000);
+    }
+}
+
+/// A tetrahedron of edges 2 m along the axes.
+const OBJ: &str = "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+#[test]
+fn a_closed_surface_is_measured_and_one_that_is_open_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let stl: String = OBJ
+        .lines()
+        .filter_map(|line| line.strip_prefix("f "))
+        .map(|face| {
+            let corner = |i: &str| ["0 0 0", "2 0 0", "0 2 0", "0 0 2"][i.parse::<usize>().unwrap() - 1];
+            let corners: String = face.split(' ').map(|i| format!("vertex {}\n", corner(i))).collect();
+            format!("facet normal 0 0 0\nouter loop\n{corners}endloop\nendfacet\n")
+        })
+        .collect();
+    for (name, text) in [("t.obj", OBJ.to_string()), ("t.stl", format!("solid t\n{stl}endsolid t\n"))] {
+        let file = written(folder.path(), name, &text);
+        assert_eq!(mesh(&file, &[]), exit::DONE, "{name}");
+        let report = fs::read_to_string(folder.path().join("t.out/mesh.json")).unwrap();
+        let report: Value = serde_json::from_str(&report).unwrap();
+        // 2³/6 m³.
+        assert!((report["volume_m3"].as_f64().unwrap() - 8.0 / 6.0).abs() < 1e-12, "{report}");
+    }
+    let open = written(folder.path(), "open.obj", OBJ.strip_suffix("f 2 3 4\n").unwrap());
+    assert_eq!(mesh(&open, &[]), exit::BAD_INPUT);
+}
+
+/// Columns of 1 m by 1 m by 4 m in a box of 2 m by 2 m, and discs from a table.
+const DISCS: &str = "(
+    title: \"t\", time: (step_s: 1e-4, end_s: 0.01),
+    materials: [(name: \"rock\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2650)],
+    rock: [(material: \"rock\", domain: Box(min_m: (0, 0, 0), max_m: (2, 2, 4)), joints: [
+        Set(name: \"a\", dip_deg: 90, dip_direction_deg: 90, spacing_m: 1),
+        Set(name: \"b\", dip_deg: 90, dip_direction_deg: 0, spacing_m: 1),
+        Discs(file: \"dfn.csv\"),
+    ])],
+    contact: Potential(penalty_pa: 1e8, rock_joints: [(joint: \"J1\", friction: (friction_deg: 30))]),
+)";
+
+#[test]
+fn discs_of_a_table_cut_blocks_in_the_order_of_their_size() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = written(folder.path(), "s.ron", DISCS);
+    let header = "dip_deg,dip_direction_deg,x_m,y_m,z_m,radius_m,set\n";
+    // The first covers all four columns, the second one of them, the third a quarter of one.
+    let rows = ["0,0,1,1,1,2,J1\n", "0,0,0.5,0.5,2,0.8,J1\n", "0,0,0.5,0.5,3,0.28,\n"];
+    let mut seen = Vec::new();
+    for order in [[0, 1, 2], [2, 0, 1], [1, 2, 0]] {
+        let table: String = order.iter().map(|&i| rows[i]).collect();
+        written(folder.path(), "dfn.csv", &format!("{header}{table}"));
+        assert_eq!(mesh(&scene, &[]), exit::DONE);
+        let report = fs::read_to_string(folder.path().join("s.out/mesh.json")).unwrap();
+        let report: Value = serde_json::from_str(&report).unwrap();
+        let discs = &report["rock"][0]["discs"];
+        let counts =
+            ["discs", "idle", "cuts", "ends_in_cut", "left_whole"].map(|key| discs[key].as_u64().unwrap());
+        // The second disc ends in the other three columns, of none of which it covers half, and the third in its own.
+        assert_eq!((report["blocks"].as_u64(), counts), (Some(9), [3, 1, 5, 0, 4]), "{report}");
+        assert!((discs["joint_m2"].as_f64().unwrap() - 5.0).abs() < 1e-12);
+        seen.push(report["rock"][0].to_string());
+    }
+    assert!(seen.iter().all(|one| *one == seen[0]));
+    for (text, words) in [
+        (format!("{header}0,0,1,1,1,-2,J1\n"), "dfn.csv, line 2, column 6: radius_m is `-2`"),
+        (format!("{header}0,0,1,1,1,2,J2\n"), "there is no joint `J1`"),
+        ("dip_deg\n3\n".to_string(), "there is no column dip_direction_deg"),
+    ] {
+        written(folder.path(), "dfn.csv", &text);
+        let done = ndda().arg("check").arg(&scene).output().unwrap();
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert!(done.status.code() == Some(exit::BAD_INPUT) && said.contains(words), "{said}");
     }
 }
 

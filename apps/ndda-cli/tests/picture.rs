@@ -55,7 +55,7 @@ fn a_run_is_drawn_as_a_picture_of_the_size_that_was_asked_for_and_as_an_animatio
     let folder = tempfile::tempdir().unwrap();
     let out = run_in(folder.path(), 10);
     let (code, said, _) = picture(&out, &[]);
-    assert!(code == exit::DONE && said.contains("2 blocks, of which 1 move"), "{said}");
+    assert!(code == exit::DONE && said.contains("1 of 2 blocks moved"), "{said}");
     assert_eq!(measured(&out.join("picture.png")), (1200, 800, None));
     let (code, said, _) = picture(
         &out,
@@ -84,6 +84,24 @@ fn a_run_is_drawn_as_a_picture_of_the_size_that_was_asked_for_and_as_an_animatio
     // A run anew leaves no picture of the one before.
     run_in(folder.path(), 10);
     assert!(!out.join("picture.png").exists() && !out.join("animation.png").exists());
+}
+
+#[test]
+fn the_first_frame_is_that_of_blocks_that_have_not_moved() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = run_in(folder.path(), 10);
+    let (code, said, _) = picture(&out, &["--frame", "first", "-o", "first.svg"]);
+    assert!(code == exit::DONE && said.contains("0 of 2 blocks moved"), "{said}");
+    // No colour has a meaning yet.
+    assert!(!fs::read_to_string(folder.path().join("first.svg")).unwrap().contains("displacement"));
+    for names in [["velocity", "velocity_m_s"], ["displacement", "displacement_m"]] {
+        let drawn = names.map(|name| {
+            let file = format!("{name}.svg");
+            assert_eq!(picture(&out, &["--color", name, "-o", &file]).0, exit::DONE, "{name}");
+            fs::read(folder.path().join(file)).unwrap()
+        });
+        assert_eq!(drawn[0], drawn[1], "{names:?}");
+    }
 }
 
 #[test]
@@ -151,6 +169,8 @@ fn what_cannot_be_drawn_is_refused_with_figures() {
         (["--color", "colour"], "there is displacement, block, velocity_m_s"),
         (["--color", "material"], "add Material to output.fields"),
         (["-o", "a.jpg"], ".png or .svg"),
+        (["--magnify", "1e30"], "here up to 2030"),
+        (["--set", "time.end_s=1"], "run it again with --set"),
     ] {
         let (code, _, said) = picture(&out, &words);
         assert!(code == exit::BAD_INPUT && said.contains(reason), "{words:?}: {said}");
@@ -159,9 +179,14 @@ fn what_cannot_be_drawn_is_refused_with_figures() {
     assert!(code == exit::BAD_INPUT && said.contains("there is no"), "{said}");
     let (code, _, said) = picture(&out, &["-o", "no/such.png"]);
     assert!(code == exit::INPUT_OUTPUT && said.contains("such.png"), "{said}");
-    for words in
-        [["--view", "up"], ["--size", "10"], ["--resting", "x"], ["--magnify", "inf"], ["--frame", "x"]]
-    {
+    for words in [
+        ["--view", "up"],
+        ["--size", "10"],
+        ["--resting", "x"],
+        ["--magnify", "inf"],
+        ["--magnify", "0"],
+        ["--frame", "x"],
+    ] {
         assert_eq!(picture(&out, &words).0, 2, "{words:?}");
     }
 }

@@ -56,13 +56,25 @@ fn a_table_of_planes_is_measured_set_by_set() {
 }
 
 #[test]
+fn a_slope_without_friction_is_checked_for_directions_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    // Of the three only the first dips out of the face 60/180, and less steeply.
+    let text = "dip_deg,dip_direction_deg\n10,180\n70,180\n10,0\n";
+    fs::write(folder.path().join("joints.csv"), text).unwrap();
+    let (code, said, _) = stereonet(folder.path(), "joints.csv", &["--slope", "60/180"]);
+    assert!(code == exit::DONE && said.contains("directions alone"), "{said}");
+    assert!(said.contains("plane sliding      1 of 3"), "{said}");
+}
+
+#[test]
 fn what_cannot_be_used_is_said_with_its_place() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("bad.csv"), "dip_deg,dip_direction_deg\n40,130\n99,0\n").unwrap();
     let scene = wedge();
     for (input, words, reason) in [
-        ("bad.csv", &[][..], "bad.csv, line 3: dip_deg is `99`"),
+        ("bad.csv", &[][..], "bad.csv, line 3, column 1: dip_deg is `99`"),
         ("none.csv", &[], "none.csv"),
+        ("bad.csv", &["--set", "a=1"], "change the table"),
         ("none.ron", &[], "none.ron"),
         (&scene, &["--friction", "95"], "--friction 95: write an angle from 0 to 90"),
         (&scene, &["--lateral", "NaN"], "--lateral NaN"),

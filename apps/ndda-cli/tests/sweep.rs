@@ -102,7 +102,7 @@ fn samples_are_the_same_for_any_number_of_jobs_and_after_an_interruption() {
     };
     let text = done(folder.path(), &args("a", "2"));
     // It goes 0.14 m at 1.4 m/s, above which lie 12 of the 20 strata of a Latin hypercube.
-    assert!(text.contains("(m.displacement_x_m > 0.14): 6.0000e-1, 12 of 20"), "{text}");
+    assert!(text.contains("(m.displacement_x_m > 0.14): 0.600 (0.387 to 0.781), 12 of 20"), "{text}");
     assert!(text.contains("Wilson"), "{text}");
     done(folder.path(), &args("b", "1"));
     let result = |out: &str| fs::read_to_string(folder.path().join(out).join("sweep.json")).unwrap();
@@ -157,7 +157,20 @@ fn what_cannot_be_swept_is_refused_with_what_to_write() {
         (vec!["--vary", "parameters.sped_m_s=1"], "did you mean `speed_m_s`"),
         (vec!["--vary", "parameters.speed_m_s=Normal(1)"], "Normal(mean, deviation)"),
         (vec!["--vary", "parameters.speed_m_s=Normal(1, -1)"], "above 0"),
-        ([&vary[..], &["--of", "kinetik_j"]].concat(), "no run has a quantity `kinetik_j`"),
+        (
+            [&vary[..], &["--of", "kinetik_j"]].concat(),
+            "no run has a quantity `kinetik_j`: did you mean `kinetic_j`",
+        ),
+        ([&vary[..], &["--of", "saf"]].concat(), "did you mean `safety`, `safety_lower`, `safety_upper`?"),
+        ([&vary[..], &["--of", "safetyy"]].concat(), "there are label, safety, "),
+        (
+            [&vary[..], &["--fails-when", "displacement_x > 1"]].concat(),
+            "did you mean `block b.displacement_x_m`",
+        ),
+        ([&vary[..], &["--samples", "5"]].concat(), "--samples has no effect"),
+        ([&vary[..], &["--seed", "5"]].concat(), "--seed has no effect"),
+        (vec!["--vary", "parameters.speed_m_s=Norml(1, 2)"], "did you mean `Normal`?"),
+        (vec!["--vary", "parameters.speed_m_s=1, 2)"], "`)` follows"),
         ([&vary[..], &["--fails-when", "kinetic_j"]].concat(), "safety < 1"),
         ([&vary[..], &["--fails-when", "m.displacement > 1"]].concat(), "may be on any of m.displacement_"),
         ([&vary[..], &["--correlate", "a"]].concat(), "no correlation"),
@@ -166,6 +179,41 @@ fn what_cannot_be_swept_is_refused_with_what_to_write() {
         let refused = ndda(folder.path(), &[&["study", "fall.ron", "--quiet"], &arguments[..]].concat());
         assert_eq!(refused.status.code(), Some(3), "{arguments:?}: {}", said(&refused));
         assert!(said(&refused).contains(word), "{arguments:?}: {}", said(&refused));
+    }
+    // Nothing has been computed, nor a folder made.
+    assert!(!folder.path().join("out").exists());
+    done(folder.path(), &["run", "fall.ron", "--out", "run", "--quiet"]);
+    let refused = ndda(folder.path(), &[&["study", "fall.ron", "--out", "run"], &vary[..]].concat());
+    assert!(said(&refused).contains("run holds the results of a run (summary.json)"), "{}", said(&refused));
+}
+
+#[test]
+fn a_value_that_is_set_is_blamed_for_what_is_wrong_with_it() {
+    let folder = folder();
+    for (set, word) in [
+        ("time.step_s=1e-3, end_s: 5", "`, end_s: 5` follows"),
+        ("time.step_s=(1, 2", "`(` is not closed"),
+        ("time.step_s=abc", "expected a number (set by --set time.step_s=abc)"),
+        ("time.step_s=-1", "must be positive (set by --set time.step_s=-1)"),
+        ("output.frames=Calc(5 / 2)", "the value 2.5 is no whole number (set by --set output.frames"),
+        ("output.frames=1.5", "the value 1.5 is no whole number"),
+        ("output.frames=Calc(-3)", "-3 is no count"),
+    ] {
+        let refused = ndda(folder.path(), &["check", "fall.ron", "--set", set]);
+        assert_eq!(refused.status.code(), Some(3), "{set}");
+        assert!(said(&refused).contains(word), "{set}: {}", said(&refused));
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn files_without_an_end_are_refused() {
+    let folder = folder();
+    let scene = SCENE.replace("\"rock.ron\"", "\"/dev/zero\"");
+    fs::write(folder.path().join("endless.ron"), scene).unwrap();
+    for arguments in [&["check", "endless.ron"][..], &["stereonet", "/dev/zero"], &["joint", "/dev/zero"]] {
+        let refused = ndda(folder.path(), arguments);
+        assert_eq!(refused.status.code(), Some(3), "{arguments:?}: {}", said(&refused));
     }
 }
 

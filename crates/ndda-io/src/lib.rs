@@ -24,10 +24,12 @@
 //! | [`mesh`] | meshes of tetrahedra and surfaces in the formats of Gmsh, TetGen, VTK, Abaqus, STL and OBJ |
 //! | [`results`] | fields, history, tables, summary and checkpoints: written, and read back |
 //! | [`atomic`] | whole files or none |
+//! | [`limited`] | files of somebody else, up to a limit of bytes |
 
 #![warn(unreachable_pub)]
 
 pub mod atomic;
+pub mod limited;
 pub mod mesh;
 pub mod results;
 pub mod scene;
@@ -39,7 +41,7 @@ pub use mesh::{self as mesh_file, gmsh_program, msh, surface_file, vtk_file};
 pub use results::{checkpoint, folder, summary, table, tables, vtu};
 #[cfg(feature = "schema")]
 pub use scene::schema;
-pub use scene::{code, diagnostic, locate, outside_files, read, record, study, units};
+pub use scene::{code, diagnostic, joint_table, locate, outside_files, read, record, study, units};
 
 pub use folder::OutputFolder;
 pub use results::history::History;

@@ -7,6 +7,7 @@ mod contact;
 pub mod diagnostic;
 mod expression;
 mod include;
+pub mod joint_table;
 mod load;
 pub mod locate;
 mod material;
@@ -121,6 +122,16 @@ pub fn matches(pattern: &str, name: &str) -> bool {
     let Some((head, tail)) = pattern.split_once('*') else { return pattern == name };
     let Some(rest) = name.strip_prefix(head) else { return false };
     rest.char_indices().map(|(i, _)| i).chain([rest.len()]).any(|i| matches(tail, &rest[i..]))
+}
+
+/// The value of a field that is left out, and chosen before a run.
+fn unset() -> f64 {
+    f64::NAN
+}
+
+/// Whether a field is left out.
+pub fn is_unset(value: &f64) -> bool {
+    value.is_nan()
 }
 
 fn one() -> f64 {

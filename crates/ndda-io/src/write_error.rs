@@ -92,6 +92,14 @@ pub enum WriteError {
         /// One of its files.
         found: String,
     },
+    /// The folder of several runs is that of one.
+    #[error("{} holds the results of a run ({found}): choose another folder with --out", path.display())]
+    RunFolder {
+        /// The folder.
+        path: PathBuf,
+        /// One of its files.
+        found: String,
+    },
     /// The output folder holds something that ndda did not write, and no results of an earlier run.
     #[error(
         "{} is not empty and holds something that ndda did not write ({found}): choose another folder with --out",

@@ -95,7 +95,7 @@ fn names_that_do_not_exist_are_pointed_at() {
 fn missing_fields_are_pointed_at_in_their_struct() {
     assert_refused(&[
         ("(\n    title: \"A block slides down a ramp\",\n", "@(\n"),
-        ("time: (step_s: 1e-4, ", "time: @("),
+        ("time: (step_s: 1e-4, end_s: 0.5", "time: @(step_s: 1e-4"),
         ("(name: \"rock\", young_pa: 20e9, ", "@(name: \"rock\", "),
         ("Box(size_m: (1, 1, 0.5), ", "@Box("),
         ("(friction_deg: 25, shear_penalty_pa_m: 2e9)", "@(shear_penalty_pa_m: 2e9)"),

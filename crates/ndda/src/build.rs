@@ -19,7 +19,7 @@ use ndda_contact::{
 };
 use ndda_fem::Table;
 use ndda_io::scene::{self, At, Contact, Integrator, Scene};
-use ndda_mesh::{BlockId, BlockSet, Vec3};
+use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
 use ndda_solver::{
     AutoStep, ConjugateGradients, Direct, GeneralizedAlpha, ImplicitContact, LinearSolver, Mass, Midpoint,
     Newmark, Setup, SetupError, Simulation, TimeIntegrator,
@@ -55,10 +55,20 @@ impl Fault {
 /// # Errors
 /// All shapes that cannot be built, and all defects of their meshes.
 pub fn blocks(scene: &Scene, folder: &Path) -> Result<BlockSet, Vec<Fault>> {
-    BlockSet::new(meshes(scene, folder)?.0).map_err(|error| {
+    blocks_and_rock(scene, folder).map(|(blocks, _)| blocks)
+}
+
+/// The blocks of a scene, and what each rock was cut into.
+///
+/// # Errors
+/// As [`blocks`].
+pub fn blocks_and_rock(scene: &Scene, folder: &Path) -> Result<(BlockSet, Vec<RockReport>), Vec<Fault>> {
+    let (meshes, rock) = meshes(scene, folder)?;
+    let blocks = BlockSet::new(meshes).map_err(|error| -> Vec<Fault> {
         let fault = |(name, problem): (String, _)| Fault::new(path_of(scene, &name, ".shape"), problem);
         error.problems.into_iter().map(fault).collect()
-    })
+    })?;
+    Ok((blocks, rock.into_iter().map(|rock| rock.report).collect()))
 }
 
 /// The meshes of a scene before they are checked, and what each rock was cut into.
@@ -86,6 +96,14 @@ pub fn meshes(scene: &Scene, folder: &Path) -> Result<(Meshes, Vec<CutRock>), Ve
         }
     }
     if faults.is_empty() { Ok((meshes, rocks)) } else { Err(faults) }
+}
+
+/// The body under the closed surface in a file, filled with as few tetrahedra as there can be; coordinates as in the file.
+///
+/// # Errors
+/// What is wrong with the file or the surface.
+pub fn body_in_surface(path: &Path) -> Result<BlockMesh, String> {
+    solid::filled(&solid::of_file(path, 1.0)?, solid::ROUNDED, &scene::Fill::Fewest)
 }
 
 /// Where in the scene a block comes from.
@@ -218,7 +236,15 @@ pub(crate) fn contact_model(
     }
     match &scene.contact {
         None | Some(Contact::Off) => Ok(None),
-        Some(Contact::Potential { penalty_pa, potential, friction, material_pairs, rock_joints, memory }) => {
+        Some(Contact::Potential {
+            penalty_pa,
+            potential,
+            friction,
+            material_pairs,
+            rock_joints,
+            memory,
+            ..
+        }) => {
             let potential = choices.potential.take().unwrap_or_else(|| contact_potential(potential));
             potential.field(blocks).map_err(|e| Fault::new("contact.potential", e))?;
             let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);

@@ -13,10 +13,10 @@ use std::path::PathBuf;
 
 use ndda_io::study::LoadedStudy;
 
-use crate::Model;
 use crate::study::launch::Launch;
 use crate::study::make_folder;
 use crate::study::runner::CaseRunner;
+use crate::{Model, choose};
 use error::CertifyError;
 use plan::Plan;
 
@@ -45,7 +45,9 @@ impl Trial {
         steps: u64,
     ) -> Result<Self, CertifyError> {
         make_folder(&out)?;
-        let plan = Plan::new(&model.loaded.scene, &model.simulation, overrides, steps);
+        // All runs have what was chosen for the scene as it is.
+        let overrides = [choose::as_overrides(&model.loaded.chosen), overrides.to_vec()].concat();
+        let plan = Plan::new(&model.loaded.scene, &model.simulation, &overrides, steps);
         let name =
             file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
         Ok(Self { loaded: LoadedStudy::of_scene(file, text), name, plan, out })

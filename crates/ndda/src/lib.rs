@@ -46,6 +46,7 @@
 
 pub mod build;
 pub mod certify;
+pub mod choose;
 pub mod columns;
 mod documents;
 pub mod driver;
@@ -60,6 +61,7 @@ pub mod joint;
 pub mod judge;
 pub mod machine;
 pub mod mesh_export;
+pub mod mesh_input;
 #[cfg(feature = "plots")]
 pub mod mesh_picture;
 pub mod mesh_report;

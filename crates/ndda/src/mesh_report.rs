@@ -1,11 +1,12 @@
 //! The report of a set of blocks.
 
 use std::fmt;
+use std::path::Path;
 
-use ndda_mesh::BlockMesh;
 use ndda_mesh::quality::{Histogram, QualityReport, quality};
 use ndda_mesh::stats::stats;
 use ndda_mesh::validate::problems;
+use ndda_mesh::{BlockMesh, MeshError};
 use serde::Serialize;
 
 use crate::build::RockReport;
@@ -13,6 +14,14 @@ use crate::forecast::step::AdvisedStep;
 
 /// Most bars of the histogram of volumes.
 const MOST_BARS: i32 = 24;
+
+/// All defects of blocks, and what may cure them.
+pub fn refusal(input: &Path, error: &MeshError) -> String {
+    let line = |(block, problem): &(String, _)| format!("\n  {block}: {problem}");
+    let lines: String = error.problems.iter().map(line).collect();
+    let cure = "\n  --fix orient turns inverted tetrahedra round, --fix merge joins coincident nodes";
+    format!("{} is not fit to run:{lines}{cure}", input.display())
+}
 
 /// Counts, sizes and quality of blocks.
 #[derive(Clone, Debug, PartialEq, Serialize)]

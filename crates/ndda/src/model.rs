@@ -6,7 +6,8 @@ use ndda_io::diagnostic::{Diagnostic, SceneErrors};
 use ndda_io::read::{self, LoadedScene};
 use ndda_solver::Simulation;
 
-use crate::build::{self, Choices, Fault, overlaps};
+use crate::build::{self, Choices, Fault, RockReport, overlaps};
+use crate::choose;
 use crate::forecast::{admit, creep, lumped, rounding};
 use crate::judge::reference::Comparison;
 use crate::run::monitor::Monitor;
@@ -19,6 +20,8 @@ pub struct Model {
     pub simulation: Simulation,
     /// Its monitors.
     pub monitors: Vec<Monitor>,
+    /// What its rock was cut into.
+    pub rock: Vec<RockReport>,
 }
 
 impl Model {
@@ -72,25 +75,22 @@ impl Model {
     ///
     /// # Errors
     /// As [`resuming`](Self::resuming).
-    pub fn resuming_with(
-        mut loaded: LoadedScene,
-        folder: &Path,
-        choices: Choices,
-    ) -> Result<Self, SceneErrors> {
+    pub fn resuming_with(loaded: LoadedScene, folder: &Path, choices: Choices) -> Result<Self, SceneErrors> {
+        let mut loaded = choose::complete(loaded, folder)?;
         let located = |faults: Vec<Fault>| {
             let diagnostics: Vec<Diagnostic> =
                 faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();
             loaded.errors(diagnostics)
         };
         admit::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
-        let blocks = build::blocks(&loaded.scene, folder).map_err(located)?;
+        let (blocks, rock) = build::blocks_and_rock(&loaded.scene, folder).map_err(located)?;
         let far = rounding::warning(&loaded, &blocks);
         let simulation = build::simulation_with(&loaded.scene, blocks, folder, choices).map_err(located)?;
         let monitors = build::monitors(&loaded.scene, &simulation).map_err(located)?;
         loaded.warnings.extend(far);
         loaded.warnings.extend(lumped::warning(&loaded, &simulation));
         loaded.warnings.extend(creep::warning(&loaded));
-        Ok(Self { loaded, simulation, monitors })
+        Ok(Self { loaded, simulation, monitors, rock })
     }
 
     /// The scene's closed form, bound to the blocks as they are now.

@@ -196,8 +196,9 @@ impl Run {
         settled_s: f64,
         observers: &mut [&mut dyn Sink],
     ) -> Result<Outcome, RunError> {
-        let Self { model: Model { loaded, mut simulation, monitors }, comparison, name, recording, .. } =
-            self;
+        let Self {
+            model: Model { loaded, mut simulation, monitors, .. }, comparison, name, recording, ..
+        } = self;
         let (scene, started) = (&loaded.scene, self.started);
         let (mut log, place) = match recording {
             Some(Recording { identity, folder, log, earlier }) => {
@@ -218,6 +219,7 @@ impl Run {
         let ending = Ending {
             scene,
             name: &name,
+            chosen: loaded.chosen.clone(),
             stopped_by,
             interrupted: simulation.state().step < steps,
             wall_s: earlier_s + started.elapsed().as_secs_f64(),

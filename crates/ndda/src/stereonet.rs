@@ -35,6 +35,9 @@ pub const SLIDING_LATERAL_DEG: f64 = 20.0;
 /// Planes topple within this angle of the direction opposite to it [°] (Goodman 1989).
 const TOPPLING_LATERAL_DEG: f64 = 30.0;
 
+/// Most sets that a table and a picture list.
+const MOST_LISTED: usize = 12;
+
 /// A stereonet to make.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Request {
@@ -95,6 +98,21 @@ pub struct Stereonet {
     pub wedges: Vec<Wedge>,
     /// Checks of all planes; wedges are those of two planes of different sets, or of any two if there is one set.
     pub checks: Option<Checks>,
+    /// Whether friction was given; without it the checks are of directions alone.
+    #[serde(skip)]
+    pub has_friction: bool,
+}
+
+impl Stereonet {
+    /// The sets that a table and a picture list, those of most planes first and then as they occur: all, where they are few.
+    pub fn listed(&self) -> Vec<usize> {
+        let mut sets: Vec<usize> = (0..self.sets.len()).collect();
+        if sets.len() > MOST_LISTED {
+            sets.sort_by_key(|&set| std::cmp::Reverse(self.sets[set].fisher.planes));
+            sets.truncate(MOST_LISTED);
+        }
+        sets
+    }
 }
 
 /// An orientation as `DIP/DIP_DIRECTION`, degrees.
@@ -118,14 +136,19 @@ pub fn parse_orientation(text: &str) -> Result<Orientation, String> {
 pub fn make(request: &Request) -> Result<Stereonet, StereonetError> {
     check_angle("friction", request.friction_deg.unwrap_or(0.0), 90.0)?;
     check_angle("lateral", request.lateral_deg, 180.0)?;
+    if input::is_table(&request.input) && !request.overrides.is_empty() {
+        return Err(StereonetError::SetOfTable(request.input.clone()));
+    }
     let planes = input::read(&request.input, &request.overrides)?;
-    let slope = request.slope.zip(request.friction_deg).map(|(face, friction_deg)| Slope {
+    // Without friction the checks are of directions alone, as if joints had none.
+    let slope = request.slope.map(|face| Slope {
         face,
-        friction_deg,
+        friction_deg: request.friction_deg.unwrap_or(0.0),
         sliding_lateral_deg: request.lateral_deg,
         toppling_lateral_deg: TOPPLING_LATERAL_DEG,
     });
     let mut stereonet = measure(&planes, slope);
+    stereonet.has_friction = request.friction_deg.is_some();
     stereonet.net = request.net;
     #[cfg(feature = "plots")]
     {
@@ -168,6 +191,7 @@ fn measure(planes: &Planes, slope: Option<Slope>) -> Stereonet {
         sets: sets.collect(),
         wedges,
         checks: slope.map(|slope| slope.checks(&planes.planes, set_of)),
+        has_friction: true,
     }
 }
 
@@ -205,6 +229,24 @@ mod tests {
         assert!((found.wedges[0].line.plunge_deg - 37.06).abs() < 0.05, "{:?}", found.wedges);
         assert_eq!(found.checks.unwrap().wedge_sliding, Count { critical: 9, of: 9 });
         assert_eq!(found.sets[1].fisher.planes, 3);
+    }
+
+    #[test]
+    fn of_many_sets_those_of_most_planes_are_listed() {
+        let mut planes = Planes::default();
+        for set in 0..200 {
+            let count = if set == 150 { 3 } else { 1 };
+            planes.sets.push(format!("set {set}"));
+            for _ in 0..count {
+                planes.planes.push(Orientation { dip_deg: 30.0, dip_direction_deg: f64::from(set) });
+                planes.set_of.push(set as usize);
+            }
+        }
+        let found = measure(&planes, None);
+        assert_eq!(found.listed(), [vec![150], (0..11).collect()].concat());
+        let text = found.to_string();
+        assert!(text.contains("all alike") && text.contains("188 more sets"), "{text}");
+        assert!(text.lines().count() < 50, "{text}");
     }
 
     #[test]

@@ -18,9 +18,10 @@ mod write;
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::WriteError;
 use ndda_io::study::{self, LoadedStudy, Reference};
+use ndda_io::{OutputFolder, WriteError};
 
+use crate::choose;
 use case::Case;
 use error::StudyError;
 use launch::Launch;
@@ -52,6 +53,7 @@ impl Study {
         if loaded.study.is_sweep() {
             return Err(StudyError::IsSweep);
         }
+        let overrides = &pinned(&loaded, overrides);
         let mut cases = case::cases(&loaded)?;
         case::set_first(&mut cases, overrides);
         let mut references = case::reference_cases(&loaded, &cases)?;
@@ -111,14 +113,25 @@ impl Study {
     }
 }
 
+/// Overrides of all cases of a study: those that are asked for, and what is chosen for the base scene where it leaves out the penalty or
+/// the step, so that all cases share it.
+pub(crate) fn pinned(loaded: &LoadedStudy, overrides: &[String]) -> Vec<String> {
+    let base = loaded.scene_with(overrides).ok().filter(|base| !base.is_complete());
+    let folder = loaded.scene.parent().unwrap_or(Path::new("."));
+    let chosen =
+        base.and_then(|base| choose::complete(base, folder).ok()).map_or(Vec::new(), |base| base.chosen);
+    [overrides.to_vec(), choose::as_overrides(&chosen)].concat()
+}
+
 /// Makes the folder of a study, which may hold an earlier part of it.
 ///
 /// # Errors
-/// [`StudyError::Write`] when it cannot be made.
+/// [`StudyError::Write`] when it cannot be made, or is the folder of a run.
 pub fn make_folder(out: &Path) -> Result<(), StudyError> {
     if out.is_file() {
         return Err(WriteError::IsFile { path: out.to_path_buf() }.into());
     }
+    OutputFolder::refuse_run(out)?;
     let refused = |source| WriteError::Io { operation: "create the folder", path: out.to_path_buf(), source };
     Ok(std::fs::create_dir_all(out.join("cases")).map_err(refused)?)
 }

@@ -24,11 +24,12 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use ndda_io::read;
-use ndda_io::study::{self, Correlation, LoadedStudy, Sampling, Study};
+use ndda_io::study::{self, Axis, Correlation, LoadedStudy, Sampling, Study};
 
+use crate::Model;
 use crate::study::error::StudyError;
-use crate::study::make_folder;
 use crate::study::runner::CaseRunner;
+use crate::study::{make_folder, pinned};
 use cases::SweepCase;
 use condition::Condition;
 use evaluate::Evaluator;
@@ -108,6 +109,7 @@ impl Sweep {
             }
         };
         apply(&mut loaded.study, ask)?;
+        refuse_idle(&loaded.study, ask)?;
         if ask.vary.is_empty() && !loaded.study.is_sweep() {
             return Ok(None);
         }
@@ -126,7 +128,7 @@ impl Sweep {
         }
         let mut seen = std::collections::HashSet::new();
         of.retain(|name| seen.insert(name.clone()));
-        let cases = cases::cases(&loaded, &ask.overrides)?;
+        let cases = cases::cases(&loaded, &pinned(&loaded, &ask.overrides))?;
         let name = file.file_stem().map_or_else(|| "study".into(), |s| s.to_string_lossy().into_owned());
         let out = ask.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_study")));
         Ok(Some(Self { loaded, name, cases, of, fails_when, trial, out }))
@@ -137,6 +139,7 @@ impl Sweep {
     /// # Errors
     /// [`StudyError`] when a case cannot be started or recorded, a result not be written, or somebody asks to end.
     pub fn run(&self, how: &How) -> Result<(Results, String), StudyError> {
+        self.check_names()?;
         make_folder(&self.out)?;
         let evaluator = Evaluator::new(self, how);
         let records = evaluator.all()?;
@@ -145,6 +148,18 @@ impl Sweep {
         #[cfg(feature = "plots")]
         pictures::all(&self.out, &results)?;
         Ok((results, json))
+    }
+
+    /// Refuses names of no quantity before anything is computed, as far as a scene of the sweep can be built.
+    fn check_names(&self) -> Result<(), StudyError> {
+        let condition = self.fails_when.as_ref().map(|condition| &condition.quantity);
+        if self.of.iter().chain(condition).all(|name| quantity::FIXED.contains(&name.as_str())) {
+            return Ok(());
+        }
+        let beside = self.loaded.scene.parent().unwrap_or(Path::new("."));
+        let loaded = self.cases.iter().find_map(|case| self.loaded.scene_with(&case.case.overrides).ok());
+        let model = loaded.and_then(|loaded| Model::new(loaded, beside).ok());
+        model.map_or(Ok(()), |model| result::check_names(self, quantity::of_model(&model)))
     }
 
     /// Whether factors of safety are wanted.
@@ -174,6 +189,20 @@ fn apply(study: &mut Study, ask: &Ask) -> Result<(), StudyError> {
         study.correlations.push(correlation(text)?);
     }
     Ok(())
+}
+
+/// Refuses options of samples where nothing is random.
+fn refuse_idle(study: &Study, ask: &Ask) -> Result<(), StudyError> {
+    let options = [
+        ("samples", ask.samples.is_some()),
+        ("sampling", ask.sampling.is_some()),
+        ("seed", ask.seed.is_some()),
+    ];
+    let is_random = study.axes.iter().any(|axis| matches!(axis, Axis::Random { .. }));
+    match options.into_iter().find(|(_, is_there)| *is_there && !is_random) {
+        Some((option, _)) => Err(StudyError::Idle(option)),
+        None => Ok(()),
+    }
 }
 
 /// `a,b=-0.5`

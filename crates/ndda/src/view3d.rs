@@ -29,6 +29,8 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use ndda_io::WriteError;
+use ndda_mesh::BlockSet;
 use serde::Serialize;
 
 pub use camera::View;
@@ -61,7 +63,7 @@ impl FromStr for Colour {
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         Ok(match text {
-            "displacement" => Self::Displacement,
+            "displacement" | "displacement_m" => Self::Displacement,
             "velocity" => Self::Velocity,
             "stress" => Self::Stress,
             "block" => Self::Block,
@@ -112,18 +114,21 @@ pub struct Written {
     pub size: (u32, u32),
     /// Blocks.
     pub blocks: usize,
-    /// Blocks that move, or in a scene may.
+    /// Blocks that have moved, or in a scene may.
     pub moving: usize,
+    /// Whether it is of a scene before its run.
+    #[serde(skip)]
+    pub is_scene: bool,
 }
 
 impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { picture, frames, size: (width, height), blocks, moving } = self;
+        let Self { picture, frames, size: (width, height), blocks, moving, is_scene } = self;
         write!(f, "{}: {width} x {height} pixels, ", picture.display())?;
         if *frames > 1 {
             write!(f, "{frames} frames, ")?;
         }
-        write!(f, "{blocks} blocks, of which {moving} move")
+        write!(f, "{moving} of {blocks} blocks {}", if *is_scene { "may move" } else { "moved" })
     }
 }
 
@@ -136,6 +141,10 @@ pub fn draw(request: &Request, out: &Path) -> Result<Written, ViewError> {
     let is_animation = matches!(request.frames, Frames::Most(_));
     check_ending(out, is_animation)?;
     let film = read(request)?;
+    let (asked, most) = (request.look.magnify, film.largest_factor());
+    if asked > most && asked > 1.0 {
+        return Err(ViewError::Magnify { asked, most });
+    }
     match is_animation {
         #[cfg(feature = "png")]
         true => animation::write(&film, request.look, request.per_second, out)?,
@@ -147,6 +156,18 @@ pub fn draw(request: &Request, out: &Path) -> Result<Written, ViewError> {
         size: request.look.size,
         blocks: film.moves.len(),
         moving: film.moves.iter().filter(|moves| **moves).count(),
+        is_scene: film.moments[0].time_s.is_none(),
+    })
+}
+
+/// Draws blocks of no run, in a colour each.
+///
+/// # Errors
+/// [`WriteError`] when the picture cannot be drawn or written.
+pub fn draw_blocks(title: &str, blocks: &BlockSet, out: &Path) -> Result<(), WriteError> {
+    write_picture(&from_scene::of_blocks(title, blocks), Look::default(), out).map_err(|error| match error {
+        ViewError::Write(error) => error,
+        other => WriteError::Encode { path: out.to_path_buf(), reason: other.to_string() },
     })
 }
 
@@ -160,18 +181,19 @@ pub fn parse_size(text: &str) -> Result<(u32, u32), String> {
     sides.ok_or_else(|| "write columns and rows with an x between them, as 1200x800".into())
 }
 
-/// A factor of displacements, a finite number.
+/// A factor of displacements, a finite number above 0.
 ///
 /// # Errors
 /// An example, for another text.
 pub fn parse_factor(text: &str) -> Result<f64, String> {
-    let factor = text.parse().ok().filter(|factor: &f64| factor.is_finite());
-    factor.ok_or_else(|| "write a number, as 100".into())
+    let factor = text.parse().ok().filter(|factor: &f64| factor.is_finite() && *factor > 0.0);
+    factor.ok_or_else(|| "write a number above 0, as 100".into())
 }
 
 fn read(request: &Request) -> Result<Film, ViewError> {
     let Request { input, overrides, frames, colour, .. } = request;
     match (input.is_dir(), input.is_file()) {
+        (true, _) if !overrides.is_empty() => Err(ViewError::HasRun(input.clone())),
         (true, _) => from_run::read(input, *frames, colour.as_ref().unwrap_or(&Colour::Displacement)),
         (_, true) if matches!(frames, Frames::Most(_)) => Err(ViewError::Still),
         (_, true) => from_scene::read(input, overrides, colour.as_ref().unwrap_or(&Colour::Block)),

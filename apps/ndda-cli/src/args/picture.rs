@@ -35,7 +35,7 @@ pub struct PictureArgs {
     #[arg(long)]
     pub whole: bool,
     /// Draw displacements so many times as large as they are.
-    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = view3d::parse_factor)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = view3d::parse_factor, allow_hyphen_values = true)]
     pub magnify: f64,
     /// Leave out the outlines of where blocks began, which are drawn where few move.
     #[arg(long)]

@@ -29,6 +29,9 @@ pub struct SafetyArgs {
     /// Output folder [default: out/ and the name of the scene with _safety].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Begin anew, without the trials of an earlier call.
+    #[arg(long)]
+    pub force: bool,
     /// Threads, which run trials side by side; the answer does not depend on it [default: all cores].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,

@@ -18,10 +18,10 @@ pub struct StereonetArgs {
     /// Projection: area (equal area, Schmidt) or angle (equal angle, Wulff).
     #[arg(long, value_name = "NET", default_value = "area")]
     pub net: Net,
-    /// Face of a slope, dip and dip direction in degrees, as 65/150: drawn, and with --friction checked.
+    /// Face of a slope, dip and dip direction in degrees, as 65/150: drawn, and checked for sliding and toppling.
     #[arg(long, value_name = "DIP/DIRECTION", value_parser = parse_orientation)]
     pub slope: Option<Orientation>,
-    /// Friction of the joints in degrees: planes and wedges slide if they are steeper.
+    /// Friction of the joints in degrees: planes and wedges slide if they are steeper [default: checks of directions alone].
     #[arg(long, value_name = "DEGREES")]
     pub friction: Option<f64>,
     /// Planes slide if they dip within this angle of the slope's dip direction.

@@ -3,9 +3,12 @@
 use std::fmt;
 use std::path::Path;
 
+use ndda::build::RockReport;
+use ndda::choose;
 use ndda::forecast::cost::{self, Guess};
 use ndda::forecast::doubts;
 use ndda::forecast::step::{self, Advice};
+use ndda_io::summary::Chosen;
 use serde::Serialize;
 
 use crate::args::CheckArgs;
@@ -27,6 +30,9 @@ struct Checked<'a> {
     steps: u64,
     advised_step_s: Option<f64>,
     contact_stability: Option<&'a Advice>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    chosen: &'a [Chosen],
+    rock: &'a [RockReport],
     guess: Option<Guess>,
 }
 
@@ -63,8 +69,15 @@ pub fn check(args: &CheckArgs) -> u8 {
         steps: model.steps(),
         advised_step_s: advice.as_ref().map(|advice| advice.step_s),
         contact_stability: advice.as_ref(),
+        chosen: &loaded.chosen,
+        rock: &model.rock,
         guess: guess.ok(),
     };
+    if args.write
+        && let Err(reason) = choose::write(&file, &loaded.chosen)
+    {
+        return events.fail(exit::INPUT_OUTPUT, &reason);
+    }
     events.emit("finished", &checked);
     let stable = advice.as_ref().filter(|advice| advice.worst().h <= advice.bound);
     if !args.json {
@@ -85,6 +98,8 @@ impl fmt::Display for Checked<'_> {
             f,
             "{blocks} block(s), {nodes} nodes, {tets} tets, {unknowns} unknowns, {factors} factor(s); {steps} steps"
         )?;
+        self.rock.iter().try_for_each(|rock| write!(f, "\n{rock}"))?;
+        self.chosen.iter().try_for_each(|chosen| write!(f, "\n{chosen}"))?;
         self.guess.as_ref().map_or(Ok(()), |guess| write!(f, "\n{guess}"))
     }
 }

@@ -4,22 +4,25 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use ndda::build::{self, CutRock, Meshes};
-use ndda::forecast;
-use ndda::mesh_export;
-use ndda::mesh_report::MeshReport;
+use ndda::mesh_input::{self, Repair};
+use ndda::mesh_report::{self, MeshReport};
+use ndda::{forecast, mesh_export};
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::folder::MESH_REPORT;
 use ndda_io::read::load;
 use ndda_io::scene::{FieldFormat, Scene};
 use ndda_io::vtu::{self, Frame, Topology};
-use ndda_io::{OutputFolder, WriteError, mesh_file};
-use ndda_mesh::{BlockSet, MeshError, repair};
+use ndda_io::{OutputFolder, WriteError};
+use ndda_mesh::BlockSet;
 use serde::Serialize;
 
 use crate::args::{Fix, MeshArgs};
 use crate::terminal::console::say;
 use crate::terminal::events::{self, Events};
 use crate::{exit, input};
+
+/// Picture of the blocks.
+const DRAWN: &str = if cfg!(feature = "png") { "blocks.png" } else { "blocks.svg" };
 
 /// Blocks before they are checked.
 struct Input {
@@ -76,7 +79,7 @@ pub fn mesh(args: &MeshArgs) -> u8 {
             if !args.json {
                 say(&measured.to_string());
             }
-            events.fail(exit::BAD_INPUT, &refusal(&args.input, &error))
+            events.fail(exit::BAD_INPUT, &mesh_report::refusal(&args.input, &error))
         }
     }
 }
@@ -94,15 +97,6 @@ struct Finished<'a> {
 
 fn is_scene(path: &Path) -> bool {
     path.extension().is_none_or(|ending| ending.eq_ignore_ascii_case("ron"))
-}
-
-/// All defects, and what may cure them.
-fn refusal(input: &Path, error: &MeshError) -> String {
-    let mut text = format!("{} is not fit to run:", input.display());
-    for (block, problem) in &error.problems {
-        let _ = write!(text, "\n  {block}: {problem}");
-    }
-    text + "\n  --fix orient turns inverted tetrahedra round, --fix merge joins coincident nodes"
 }
 
 fn from_scene(args: &MeshArgs) -> Result<Input, Refused> {
@@ -125,25 +119,11 @@ fn from_file(args: &MeshArgs) -> Result<Input, Refused> {
         return Err(bad_input("--set is for scenes"));
     }
     forecast::admit::admit_file(&args.input).map_err(|message| Refused::Message(exit::RESOURCE, message))?;
-    let mut meshes = mesh_file::read(&args.input).map_err(|e| bad_input(e.to_string()))?.bodies;
-    let mut fixes = Vec::new();
-    for fix in &args.fix {
-        for (name, mesh) in &mut meshes {
-            let done = match fix {
-                Fix::Orient => format!("{} tetrahedra turned round", repair::orient(mesh).flipped.len()),
-                Fix::Merge => {
-                    let merged = repair::merge(mesh, args.within)
-                        .map_err(|e| bad_input(format!("body `{name}`: {e}")))?;
-                    let (nodes, tets) = (merged.nodes.len(), merged.dropped_tets.len());
-                    format!(
-                        "{nodes} nodes merged within {:e} m, {tets} flat tetrahedra dropped",
-                        merged.tolerance_m
-                    )
-                }
-            };
-            fixes.push(format!("{name}: {done}"));
-        }
-    }
+    let repairs = args.fix.iter().map(|fix| match fix {
+        Fix::Orient => Repair::Orient,
+        Fix::Merge => Repair::Merge(args.within),
+    });
+    let (meshes, fixes) = mesh_input::read(&args.input, &repairs.collect::<Vec<_>>()).map_err(bad_input)?;
     Ok(Input { meshes, scene: None, rock: Vec::new(), fixes })
 }
 
@@ -182,9 +162,10 @@ fn write(
     ndda_io::atomic::write(&folder.join(MESH_REPORT), measured.json().as_bytes())?;
     #[cfg(feature = "plots")]
     {
-        use ndda::{mesh_picture, picture};
+        use ndda::{mesh_picture, picture, view3d};
         let draw = |root: &picture::Area| mesh_picture::draw(measured, root);
         picture::write(&folder.join("mesh.svg"), mesh_picture::SIZE, draw)?;
+        view3d::draw_blocks(&args.input.display().to_string(), blocks, &folder.join(DRAWN))?;
     }
     let mut exported = String::new();
     for export in &args.also {
@@ -192,6 +173,7 @@ fn write(
             let _ = write!(exported, ", {name}");
         }
     }
-    let picture = if cfg!(feature = "plots") { ", mesh.svg (histograms)" } else { "" };
-    Ok(format!("{}: blocks.vtu (open it in ParaView), mesh.json{picture}{exported}", folder.display()))
+    let pictures = format!(", {DRAWN} (blocks), mesh.svg (histograms)");
+    let pictures = if cfg!(feature = "plots") { &pictures } else { "" };
+    Ok(format!("{}: blocks.vtu (open it in ParaView), mesh.json{pictures}{exported}", folder.display()))
 }

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use ndda::safety::{self, Plan, Question, SafetyError, Watch};
-use ndda_io::diagnostic::{Diagnostic, SceneErrors};
 
 use crate::args::{SafetyArgs, SafetyBy};
 use crate::terminal::console::{complain, complain_unless, say};
@@ -30,14 +29,15 @@ fn find(args: &SafetyArgs) -> u8 {
         Ok(loaded) => loaded,
         Err(code) => return code,
     };
-    let warnings: Vec<Diagnostic> = loaded.warnings.clone();
-    if !warnings.is_empty() && !args.quiet {
-        events.doubt(&loaded.errors(warnings));
+    if !loaded.warnings.is_empty() && !args.quiet {
+        events.doubt(&loaded.errors(loaded.warnings.clone()));
     }
     let file = input::file(&args.input);
     let name = file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
     let out = args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_safety")));
-    if let Err(error) = std::fs::create_dir_all(&out) {
+    // An empty file is no earlier answer to go on from.
+    let forget = || if args.force { std::fs::write(safety::file(&out), "") } else { Ok(()) };
+    if let Err(error) = std::fs::create_dir_all(&out).and_then(|()| forget()) {
         complain(&format!("error: cannot make the folder {}: {error}", out.display()));
         return exit::INPUT_OUTPUT;
     }
@@ -64,14 +64,10 @@ fn find(args: &SafetyArgs) -> u8 {
             say(&format!("{}results in {}{next}", safety::text(&found), safety::file(&out).display()));
             exit::DONE
         }
-        Err(SafetyError::Scene(errors)) => refuse(&errors, events),
+        Err(SafetyError::Scene(errors)) => events.refuse(&errors),
         Err(error) => {
             complain(&format!("error: {error}"));
             exit::of_safety(&error)
         }
     }
-}
-
-fn refuse(errors: &SceneErrors, events: Events) -> u8 {
-    events.refuse(errors)
 }

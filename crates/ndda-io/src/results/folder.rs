@@ -104,6 +104,16 @@ impl OutputFolder {
         Ok(Self { path: path.to_path_buf() })
     }
 
+    /// Checks that a folder of other results is not that of a run.
+    ///
+    /// # Errors
+    /// [`WriteError::RunFolder`] when it is.
+    pub fn refuse_run(path: &Path) -> Result<(), WriteError> {
+        let found = [SUMMARY, LOG, HISTORY, CHECKPOINT].into_iter().find(|name| path.join(name).is_file());
+        let refuse = |found: &str| WriteError::RunFolder { path: path.to_path_buf(), found: found.into() };
+        found.map_or(Ok(()), |found| Err(refuse(found)))
+    }
+
     /// The folder.
     pub fn path(&self) -> &Path {
         &self.path

@@ -1,5 +1,6 @@
 //! The summary: what a run did, what it cost and whether it can be trusted, as `summary.json`.
 
+mod chosen;
 mod motion;
 mod named;
 
@@ -11,6 +12,7 @@ use serde_json::Value;
 use crate::atomic;
 use crate::write_error::WriteError;
 
+pub use chosen::Chosen;
 pub use motion::{BlockEnd, BlockMotion, Course, MonitorEnd, Motion};
 pub use named::Named;
 
@@ -34,6 +36,9 @@ pub struct Summary {
     pub steps: u64,
     /// Step Δt \[s\].
     pub step_s: f64,
+    /// Values that the scene leaves out and that were chosen for it. Left out where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub chosen: Vec<Chosen>,
     /// Simulated time reached \[s\].
     pub end_s: f64,
     /// CRC-32 of the final state, hexadecimal: runs that end in the same bits have the same.
@@ -269,6 +274,7 @@ mod tests {
             label: Label { word: LabelWord::Inaccurate, reasons: vec!["too deep".into()] },
             steps: 10_000,
             step_s: 1e-4,
+            chosen: Vec::new(),
             end_s: 1.0,
             state_crc32: "0123abcd".into(),
             wall_s: 2.5,

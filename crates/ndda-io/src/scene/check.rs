@@ -33,7 +33,7 @@ const LIGHT_M_S: f64 = 299_792_458.0;
 
 /// Everything that is wrong or odd about a scene; `folder` is where its meshes should be. Places are not yet known.
 pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> {
-    let mut check = Check { scene, found: Vec::new() };
+    let mut check = Check { scene, found: Vec::new(), joints: rock::joint_names(scene, folder) };
     check.time();
     check.numbers("gravity_m_s2", &scene.gravity_m_s2);
     check.materials();
@@ -51,6 +51,8 @@ pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> 
 struct Check<'a> {
     scene: &'a Scene,
     found: Vec<Diagnostic>,
+    /// Names of the joints of all rock; none where they are in a table that cannot be read.
+    joints: Option<Vec<String>>,
 }
 
 impl Check<'_> {

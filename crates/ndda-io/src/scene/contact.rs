@@ -13,8 +13,13 @@ pub enum Contact {
     /// A contact potential: energy of the volume that blocks share.
     Potential {
         /// Normal penalty k_n [Pa]. With `Smooth`, contact is as compliant as E L₀/(2 k_n) of rock. The error of settlements and waves is about
-        /// that length relative to the block size; sliding and rebound are almost unaffected.
+        /// that length relative to the block size; sliding and rebound are almost unaffected. Default: chosen from the size of blocks, their loads and
+        /// speeds so that contact is at most `depth_ratio` deep, and said with its reason.
+        #[serde(default = "super::unset", skip_serializing_if = "super::is_unset")]
         penalty_pa: f64,
+        /// Depth of contact at rest over the size of small blocks, from which `penalty_pa` is chosen where it is left out. Default: 1e-4.
+        #[serde(default = "depth_ratio")]
+        depth_ratio: f64,
         /// The contact potential inside a block. Default: `Element`, the paper's.
         #[serde(default)]
         potential: Potential,
@@ -207,6 +212,10 @@ fn sample_length() -> f64 {
 
 fn one() -> f64 {
     1.0
+}
+
+fn depth_ratio() -> f64 {
+    1e-4
 }
 
 fn one_metre() -> f64 {

@@ -87,6 +87,10 @@ impl Reader<'_> {
                 help,
             ));
         };
+        if !known_as.is_file() {
+            let message = format!("{} is a folder, a pipe or a device", path.display());
+            return Err(place.refuse(Code::MissingFile, message, "name a file of materials"));
+        }
         if above.contains(&known_as) {
             let message = format!("{} includes itself", path.display());
             return Err(place.refuse(Code::DoesNotFit, message, "leave this one out"));
@@ -209,6 +213,7 @@ mod tests {
             ("e_gpa: 20", "e_gpa: 20, unused: 1", "scene.ron:1:", "nothing is computed"),
             ("\"granite.ron\"]", "\"../rocks/all.ron\"]", "all.ron:1:12", "includes itself"),
             ("\"shale\"", "\"granite\"", "granite.ron:2:", "granite"),
+            ("rocks/all.ron", "rocks", "scene.ron:1:", "is a folder"),
             ("// One rock.", "", "", ""),
         ] {
             let [scene, all, granite] = [SCENE, ALL, GRANITE].map(|text| text.replacen(old, new, 1));

@@ -25,6 +25,8 @@ pub struct Node {
     pub opening: Option<char>,
     /// Fields or items.
     pub children: Vec<Node>,
+    /// Whether the bracket that opens it is closed.
+    is_bracket_closed: bool,
 }
 
 /// Reads the shape of a text; fields that have been renamed go by their current keys.
@@ -37,6 +39,23 @@ pub fn tree(text: &str) -> Node {
     let mut tree = scanner.value(0).unwrap_or_default();
     rename(&mut tree);
     tree
+}
+
+/// Whether a text is one value and nothing else.
+///
+/// # Errors
+/// The reason, in words that follow the text.
+pub(crate) fn one_value(text: &str) -> Result<(), String> {
+    let mut scanner = Scanner { text, at: 0 };
+    let Some(node) = scanner.value(0) else { return Err("is no value".into()) };
+    let rest = text[node.span.end..].trim();
+    if !rest.is_empty() && node.is_closed(text) {
+        return Err(format!("is more than one value: `{rest}` follows"));
+    }
+    match node.unclosed(text) {
+        Some(open) => Err(format!("is not whole: `{open}` is not closed")),
+        None => Ok(()),
+    }
 }
 
 /// Gives the fields in the tree of a scene their current keys; their places in the text stay.
@@ -83,6 +102,24 @@ impl Node {
     pub(crate) fn word<'a>(&self, text: &'a str) -> &'a str {
         let Some('(') = self.opening else { return "" };
         text[self.span.clone()].split(|c: char| "(/".contains(c) || c.is_whitespace()).next().unwrap_or("")
+    }
+
+    /// Whether its bracket or its quotes are closed.
+    fn is_closed(&self, text: &str) -> bool {
+        let own = &text[self.span.clone()];
+        match self.opening {
+            Some(_) => self.is_bracket_closed,
+            None if own.starts_with(['"', '\'']) => own.len() > 1 && own.ends_with(&own[..1]),
+            None => true,
+        }
+    }
+
+    /// The first bracket or quote in it that is not closed.
+    fn unclosed(&self, text: &str) -> Option<char> {
+        let inside = self.children.iter().find_map(|child| child.unclosed(text));
+        let quote = || text[self.span.start..].chars().next();
+        let own = self.opening.or_else(quote).filter(|_| !self.is_closed(text));
+        own.or(inside)
     }
 
     /// Path of the innermost value around or before a byte.
@@ -265,6 +302,7 @@ impl<'a> Scanner<'a> {
             match self.peek() {
                 Some(c) if c == closing => {
                     self.bump();
+                    node.is_bracket_closed = true;
                     break;
                 }
                 Some(',') => self.bump(),

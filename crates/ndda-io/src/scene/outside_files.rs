@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::scene::{Domain, Hold, Scene, Shape};
+use crate::limited;
+use crate::scene::{Discontinuity, Domain, Hold, Scene, Shape};
 
 /// Bytes read at a time.
 const CHUNK: usize = 1 << 16;
@@ -62,7 +63,7 @@ pub fn verify(files: &[OutsideFile], folder: &Path) -> Result<(), OutsideFileErr
     Ok(())
 }
 
-/// Meshes, surfaces, records and materials.
+/// Meshes, surfaces, tables of discs, records and materials.
 fn names(scene: &Scene) -> Vec<&str> {
     let shapes = scene.blocks.iter().filter_map(|block| match &block.shape {
         Shape::Surface { file, .. } | Shape::Mesh { file, .. } => Some(file.as_str()),
@@ -72,12 +73,16 @@ fn names(scene: &Scene) -> Vec<&str> {
         Domain::File { file, .. } => Some(file.as_str()),
         _ => None,
     });
+    let discs = scene.rock.iter().flat_map(|rock| &rock.joints).filter_map(|joint| match joint {
+        Discontinuity::Discs { file, .. } => Some(file.as_str()),
+        _ => None,
+    });
     let records = scene.supports.iter().filter_map(|support| match &support.hold {
         Hold::Acceleration { file, .. } => Some(file.as_str()),
         _ => None,
     });
     let materials = scene.include.iter().map(String::as_str);
-    shapes.chain(domains).chain(records).chain(materials).collect()
+    shapes.chain(domains).chain(discs).chain(records).chain(materials).collect()
 }
 
 /// Adds a file once, and what is read along with it: the other files of a TetGen mesh, and what a Gmsh script names in
@@ -98,7 +103,7 @@ fn add_with_companions(paths: &mut Vec<PathBuf>, folder: &Path, path: PathBuf) {
             }
         }
         "geo" => {
-            let text = std::fs::read(folder.join(&path)).unwrap_or_default();
+            let text = limited::file(&folder.join(&path)).unwrap_or_default();
             let beside = path.parent().unwrap_or(Path::new("")).to_path_buf();
             // Every second piece between quotation marks is a word in them.
             for word in String::from_utf8_lossy(&text).split('"').skip(1).step_by(2) {
@@ -112,9 +117,9 @@ fn add_with_companions(paths: &mut Vec<PathBuf>, folder: &Path, path: PathBuf) {
     }
 }
 
-/// Length and CRC-32 of a file; none if it cannot be read.
+/// Length and CRC-32 of a file; none if it cannot be read, or is a device, which may have no end.
 fn content(path: &Path) -> Option<(u64, u32)> {
-    let mut file = File::open(path).ok()?;
+    let mut file = File::open(path).ok().filter(|file| file.metadata().is_ok_and(|known| known.is_file()))?;
     let (mut hasher, mut length, mut chunk) = (crc32fast::Hasher::new(), 0, vec![0; CHUNK]);
     loop {
         match file.read(&mut chunk).ok()? {

@@ -1,5 +1,7 @@
 //! `--set path=value`: the scene's text with other values in it.
 
+use std::ops::Range;
+
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::locate::{self, Node, current_segments};
@@ -28,6 +30,18 @@ fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
     if names.is_empty() || value.is_empty() {
         return Err(refuse("needs a path and a value; write --set time.step_s=1e-3".into()));
     }
+    locate::one_value(value).map_err(|reason| {
+        refuse(format!("`{value}` {reason}")).with_help("write one value, and --set again for the next")
+    })?;
+    put(text, path, value).map_err(refuse)
+}
+
+/// Puts a value, which may have a comment, at a path.
+///
+/// # Errors
+/// Why the path leads nowhere.
+pub(crate) fn put(text: &str, path: &str, value: &str) -> Result<String, String> {
+    let names = current_segments(path);
     let tree = locate::tree(text);
     // The longest part of the path that is there.
     let mut node = &tree;
@@ -43,15 +57,35 @@ fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
     }
     let missing = &names[known..];
     if names[0] == parameters::FIELD && names.len() > 1 {
-        return Err(refuse(no_parameter(node, known, missing[0])));
+        return Err(no_parameter(node, known, missing[0]));
     }
     if node.opening != Some('(') || missing.iter().any(|name| name.parse::<usize>().is_ok()) {
-        return Err(refuse(lost(text, node, missing[0])));
+        return Err(lost(text, node, missing[0]));
     }
     if let Some(choice) = missing[..missing.len() - 1].iter().find(|name| CHOICES.contains(name)) {
-        return Err(refuse(format!("`{choice}` is not written in the scene: write which one it is first")));
+        return Err(format!("`{choice}` is not written in the scene: write which one it is first"));
     }
     Ok(insert(text, node, missing, value))
+}
+
+/// Says of each message about a value that an override has put there which one it was.
+pub(crate) fn blame(found: &mut [Diagnostic], text: &str, overrides: &[String]) {
+    let tree = locate::tree(text);
+    for diagnostic in found {
+        let names = locate::segments(&diagnostic.path);
+        let put = overrides.iter().rev().find(|one| {
+            let path = one.split('=').next().unwrap_or_default();
+            let own = current_segments(path.trim());
+            let node = own.iter().try_fold(&tree, |node, name| node.child(text, name));
+            let is_within = |at: &Range<usize>| {
+                node.is_some_and(|node| node.span.start <= at.start && at.end <= node.span.end)
+            };
+            names.starts_with(&own) || diagnostic.span.as_ref().is_some_and(is_within)
+        });
+        if let Some(one) = put.filter(|one| diagnostic.path != format!("--set {one}")) {
+            diagnostic.message = format!("{} (set by --set {one})", diagnostic.message);
+        }
+    }
 }
 
 /// That there is no such parameter: one that nothing is computed from would be of no use.
@@ -111,6 +145,31 @@ mod tests {
     fn a_field_with_a_default_is_added() {
         assert!(set("blocks[0].velocity_m_s=(1,0,0)").contains("(1, 2, 3), velocity_m_s: (1,0,0))"));
         assert!(set("output.frames=5").ends_with("], output: (frames: 5))"));
+    }
+
+    #[test]
+    fn what_is_not_one_value_is_refused_before_it_is_put_anywhere() {
+        for (value, word) in [
+            ("1e-3, end_s: 5", "`, end_s: 5` follows"),
+            ("1 2", "`2` follows"),
+            ("1)", "`)` follows"),
+            ("(1, 2", "`(` is not closed"),
+            ("(1, 2]", "`(` is not closed"),
+            ("\"a", "`\"` is not closed"),
+            ("Newmark(alpha: 0.5", "`(` is not closed"),
+            (")", "is no value"),
+            ("1 // more", "`// more` follows"),
+            ("(1 // )", "`(` is not closed"),
+            ("1 /*", "`/*` follows"),
+        ] {
+            let said = set(&format!("time.step_s={value}"));
+            assert!(said.starts_with("--set time.step_s=") && said.contains(word), "{value}: {said}");
+        }
+        for value in
+            ["Newmark(alpha: 0.5, delta: 1)", "Calc(90 - (2 + dip_deg))", "\"a, (b\"", "[(1, 2), (3, 4)]"]
+        {
+            assert!(set(&format!("time.step_s={value}")).contains(&format!("step_s: {value}")), "{value}");
+        }
     }
 
     #[test]

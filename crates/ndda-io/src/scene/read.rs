@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use crate::scene::Scene;
 use crate::scene::check;
 use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors, Severity};
@@ -13,7 +12,9 @@ use crate::scene::parameter_values;
 pub use crate::scene::parse::text_of;
 use crate::scene::parse::{locate_all, parse_with, place, refuse_blank, sort};
 use crate::scene::renamed;
-pub use crate::scene::suggest::suggest;
+pub use crate::scene::suggest::{nearest, suggest};
+use crate::scene::{Contact, Scene, is_unset};
+use crate::summary::Chosen;
 
 /// A scene that parsed and passed its checks.
 #[derive(Clone, Debug)]
@@ -26,9 +27,30 @@ pub struct LoadedScene {
     pub file: String,
     /// Entries that are probably not meant.
     pub warnings: Vec<Diagnostic>,
+    /// Values that were left out and have been chosen.
+    pub chosen: Vec<Chosen>,
 }
 
 impl LoadedScene {
+    /// Whether it leaves out a value that is chosen before a run.
+    pub fn is_complete(&self) -> bool {
+        let penalty = match &self.scene.contact {
+            Some(Contact::Potential { penalty_pa, .. }) => is_unset(penalty_pa),
+            _ => false,
+        };
+        !penalty && !is_unset(&self.scene.time.step_s)
+    }
+
+    /// The scene with values that were chosen for it, also in its text.
+    ///
+    /// # Errors
+    /// Errors of the scene with these values.
+    pub fn with_chosen(&self, chosen: Vec<Chosen>, folder: &Path) -> Result<Self, SceneErrors> {
+        let text = with_values(&self.text, &chosen).map_err(|refused| self.errors(vec![refused]))?;
+        let loaded = load_text(&self.file, &text, &[], Some(folder))?;
+        Ok(Self { chosen, ..loaded })
+    }
+
     /// An error about the value at `path`, with its place in the text.
     pub fn diagnose(&self, path: &str, message: String) -> Diagnostic {
         let found = self.diagnose_as(Code::CannotBuild, path, message);
@@ -44,6 +66,17 @@ impl LoadedScene {
     pub fn errors(&self, diagnostics: Vec<Diagnostic>) -> SceneErrors {
         SceneErrors { file: self.file.clone(), text: self.text.clone(), diagnostics }
     }
+}
+
+/// The text of a scene with values that were chosen for it, and their reasons as comments.
+///
+/// # Errors
+/// The text has no place for one.
+pub fn with_values(text: &str, chosen: &[Chosen]) -> Result<String, Diagnostic> {
+    chosen.iter().try_fold(text.to_string(), |text, Chosen { path, value, reason }| {
+        let put = overrides::put(&text, path, &format!("{value:e} /* {} */", reason.replace("*/", "")));
+        put.map_err(|reason| Diagnostic::error(Code::Override, path.as_str(), reason, None))
+    })
 }
 
 /// Reads and checks a scene file.
@@ -66,10 +99,9 @@ pub fn load_text(
     overrides: &[String],
     folder: Option<&Path>,
 ) -> Result<LoadedScene, SceneErrors> {
-    let fail = |text: &str, diagnostics: Vec<Diagnostic>| SceneErrors {
-        file: file.to_string(),
-        text: text.to_string(),
-        diagnostics,
+    let fail = |text: &str, mut diagnostics: Vec<Diagnostic>| {
+        overrides::blame(&mut diagnostics, text, overrides);
+        SceneErrors { file: file.to_string(), text: text.to_string(), diagnostics }
     };
     refuse_blank(text).map_err(|(text, refused)| fail(text, vec![refused]))?;
     let text = overrides::apply(text, overrides).map_err(|refused| fail(text, vec![refused]))?;
@@ -87,5 +119,5 @@ pub fn load_text(
     if found.iter().any(|d| d.severity == Severity::Error) {
         return Err(fail(&text, found));
     }
-    Ok(LoadedScene { scene, text, file: file.to_string(), warnings: found })
+    Ok(LoadedScene { scene, text, file: file.to_string(), warnings: found, chosen: Vec::new() })
 }

@@ -4,16 +4,26 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use crate::limited;
+
 /// Why a record cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
-    /// The file cannot be read, or a row of it is not two numbers.
+    /// A row is not two numbers.
     #[error("{}: {source}", file.display())]
     Csv {
         /// The file.
         file: PathBuf,
         /// The problem, with its line.
         source: csv::Error,
+    },
+    /// The file cannot be read.
+    #[error("{} cannot be read: {source}", file.display())]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// The problem.
+        source: std::io::Error,
     },
     /// Values that are no record.
     #[error("{}, row {row}: {reason}", file.display())]
@@ -42,8 +52,10 @@ struct Row {
 /// [`RecordError`] naming file and row.
 pub fn read(file: &Path) -> Result<Vec<(f64, f64)>, RecordError> {
     let broken = |source| RecordError::Csv { file: file.to_path_buf(), source };
+    let unreadable = |source| RecordError::Unreadable { file: file.to_path_buf(), source };
+    let bytes = limited::file(file).map_err(unreadable)?;
     let mut reader =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_path(file).map_err(broken)?;
+        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(bytes.as_slice());
     let mut rows: Vec<(f64, f64)> = Vec::new();
     let wrong = |row: usize, reason| RecordError::Row { file: file.to_path_buf(), row, reason };
     for row in reader.deserialize() {

@@ -181,7 +181,7 @@ pub enum Discontinuity {
         /// A point of it [m].
         point_m: [f64; 3],
     },
-    /// A disc, which cuts blocks through and through.
+    /// A disc. A block is cut through and through or not at all, by the rule.
     Disc {
         /// Name of the node sets on it.
         name: String,
@@ -193,7 +193,20 @@ pub enum Discontinuity {
         center_m: [f64; 3],
         /// Radius [m].
         radius_m: f64,
-        /// Which blocks it cuts. Default: `Meets`.
+        /// Which blocks it cuts. Default: `Share(0.5)`.
+        #[serde(default)]
+        rule: DiscRule,
+    },
+    /// Discs from a table, a discrete fracture network (DFN). They cut in the order of their radius, largest first, whatever the
+    /// order of the rows.
+    Discs {
+        /// Name of the node sets on discs whose row names no set; those of others go by their set. Default: `discs`.
+        #[serde(default = "discs")]
+        name: String,
+        /// CSV file with the columns `dip_deg`, `dip_direction_deg`, `x_m`, `y_m`, `z_m`, `radius_m` and `set`, which may be left out;
+        /// its path is relative to the scene file.
+        file: String,
+        /// Which blocks they cut. Default: `Share(0.5)`.
         #[serde(default)]
         rule: DiscRule,
     },
@@ -246,15 +259,22 @@ pub enum SpacingScatter {
     Exponential,
 }
 
-/// Which blocks a disc cuts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// Which blocks a disc cuts. Its plane cuts a block in a section, of which the disc covers a part.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum DiscRule {
-    /// Blocks that the section meets.
-    #[default]
+    /// Blocks of whose section the disc covers at least this part of the area, 0 to 1.
+    Share(f64),
+    /// Blocks that the disc meets, however little of the section it covers.
     Meets,
-    /// Blocks that the section covers.
+    /// Blocks of which it covers the whole section: no cut is larger than the disc.
     Covers,
+}
+
+impl Default for DiscRule {
+    fn default() -> Self {
+        Self::Share(0.5)
+    }
 }
 
 /// Voronoi cells of random points.
@@ -299,12 +319,29 @@ impl Rock {
 }
 
 impl Discontinuity {
-    /// Its name.
+    /// Its name; of discs from a table that of those without a set.
     pub fn name(&self) -> &str {
         match self {
-            Self::Set { name, .. } | Self::Plane { name, .. } | Self::Disc { name, .. } => name,
+            Self::Set { name, .. }
+            | Self::Plane { name, .. }
+            | Self::Disc { name, .. }
+            | Self::Discs { name, .. } => name,
         }
     }
+
+    /// Dip and dip direction [°], of a set the mean ones; none of discs from a table.
+    pub fn orientation_deg(&self) -> Option<[f64; 2]> {
+        match self {
+            Self::Set { dip_deg, dip_direction_deg, .. }
+            | Self::Plane { dip_deg, dip_direction_deg, .. }
+            | Self::Disc { dip_deg, dip_direction_deg, .. } => Some([*dip_deg, *dip_direction_deg]),
+            Self::Discs { .. } => None,
+        }
+    }
+}
+
+fn discs() -> String {
+    "discs".into()
 }
 
 fn rock() -> String {

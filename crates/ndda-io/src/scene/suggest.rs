@@ -16,7 +16,7 @@ pub fn suggest(found: &str, expected: &[&str]) -> String {
 }
 
 /// The name most like `found`, if any is like it.
-pub(crate) fn nearest<'a>(found: &str, expected: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a>(found: &str, expected: &[&'a str]) -> Option<&'a str> {
     let likeness = |name: &&str| strsim::jaro_winkler(found, name);
     let best = expected.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
     (likeness(best) >= ALIKE).then_some(*best)

@@ -7,7 +7,8 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Time {
-    /// Time step Δt [s].
+    /// Time step Δt [s]. Default: chosen from the stability of contact, speeds and loads, and said with its reason.
+    #[serde(default = "super::unset", skip_serializing_if = "super::is_unset")]
     pub step_s: f64,
     /// End of the run [s]; rounded to a whole number of steps.
     pub end_s: f64,

@@ -1,5 +1,6 @@
 //! The result of a cut: blocks, what made their faces, who meets whom.
 
+use super::discs::DiscReport;
 use super::neighbours::neighbours;
 use super::polyhedron::{Face, Polyhedron};
 use super::surfaces::{Neighbour, Surface};
@@ -24,6 +25,8 @@ pub struct CutReport {
     pub refused: Vec<(u32, usize)>,
     /// Cuts left out by persistence.
     pub bridged: usize,
+    /// What discs cut.
+    pub discs: DiscReport,
     /// Blocks thinner than `sliver_width_m`, or smaller than a cube of that width, thinnest first.
     pub slivers: Vec<Sliver>,
     /// Volume of all blocks [m³].

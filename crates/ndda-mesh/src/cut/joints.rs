@@ -1,6 +1,7 @@
 //! Discontinuities that cut rock: joint sets, single planes and discs.
 
 use super::CutError;
+use super::discs::{DiscRule, DiscShape};
 use super::plane::{Plane, check_dip, dip_normal};
 use super::random::{Stream, frame};
 use crate::Vec3;
@@ -91,16 +92,6 @@ impl JointSet {
     }
 }
 
-/// Which blocks a disc of finite size cuts. It cuts them through, as block codes do; it never ends inside a block.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum DiscRule {
-    /// Blocks of which the disc meets the section (Boon, Houlsby & Utili 2015).
-    #[default]
-    Meets,
-    /// Blocks of which the disc covers the whole section: no cut is longer than the disc.
-    Covers,
-}
-
 /// A circular discontinuity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Disc {
@@ -140,7 +131,7 @@ pub(super) struct CuttingPlane {
     pub plane: Plane,
     pub number: u32,
     pub persistence: f64,
-    pub disc: Option<(Vec3, f64, DiscRule)>,
+    pub disc: Option<DiscShape>,
 }
 
 impl Discontinuity {
@@ -151,6 +142,11 @@ impl Discontinuity {
             Self::Plane { name, .. } => name,
             Self::Disc(disc) => &disc.name,
         }
+    }
+
+    /// Whether it is a disc.
+    pub(super) fn is_disc(&self) -> bool {
+        matches!(self, Self::Disc(_))
     }
 
     /// Its planes that come near the domain.
@@ -167,8 +163,12 @@ impl Discontinuity {
             }
             Self::Disc(disc) => {
                 check(&disc.name, "radius", disc.radius_m, disc.radius_m > 0.0, "a length above 0 m")?;
+                if let DiscRule::Share(share) = disc.rule {
+                    check(&disc.name, "share", share, (0.0..=1.0).contains(&share), "a part from 0 to 1")?;
+                }
                 let plane = Plane::dipping(disc.dip_deg, disc.dip_direction_deg, disc.center_m)?;
-                let disc = Some((disc.center_m, disc.radius_m, disc.rule));
+                let disc =
+                    Some(DiscShape { center_m: disc.center_m, radius_m: disc.radius_m, rule: disc.rule });
                 Ok(vec![CuttingPlane { plane, number: 0, persistence: 1.0, disc }])
             }
         }

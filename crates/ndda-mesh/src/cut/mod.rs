@@ -8,6 +8,7 @@
 
 mod blocks;
 mod decompose;
+mod discs;
 mod domain;
 mod error;
 mod joints;
@@ -23,9 +24,10 @@ mod terrain;
 mod voronoi;
 
 pub use blocks::{Blocks, CutReport, Sliver};
+pub use discs::{DiscReport, DiscRule};
 pub use domain::{Axis, Domain, DomainFace};
 pub use error::CutError;
-pub use joints::{Disc, DiscRule, Discontinuity, JointSet, OrientationScatter, SpacingScatter};
+pub use joints::{Disc, Discontinuity, JointSet, OrientationScatter, SpacingScatter};
 pub use merge::Merged;
 pub use plane::{Plane, dip_normal, sin_cos};
 pub use polyhedron::{Face, Polyhedron};

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 
 use super::CutError;
 use super::blocks::{Blocks, CutReport};
+use super::discs::DiscCounts;
 use super::domain::Domain;
-use super::joints::{CuttingPlane, DiscRule, Discontinuity};
-use super::polyhedron::{Face, Polyhedron};
+use super::joints::{CuttingPlane, Discontinuity};
+use super::polyhedron::Polyhedron;
 use super::random::{Stream, key};
 use super::split::{Split, Tolerance, split};
 use super::surfaces::index_of;
 use super::surfaces::{Surface, SurfaceKind};
-use crate::Vec3;
 
 /// Choices of a cut.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -60,6 +60,7 @@ pub fn cut_blocks(
         tolerance: domain.tolerance(),
         blocks: Vec::new(),
         refused: BTreeMap::new(),
+        discs: DiscCounts::default(),
         report: CutReport { domain_m3: domain.volume_m3(), ..CutReport::default() },
     };
     // Glued parts start with one history, so that persistence treats them alike where it can.
@@ -68,6 +69,7 @@ pub fn cut_blocks(
     }
     let mut report = carving.report;
     report.refused = carving.refused.into_iter().collect();
+    report.discs = carving.discs.report(discontinuities.iter().filter(|joint| joint.is_disc()).count());
     let blocks = Blocks { blocks: carving.blocks, surfaces, names, neighbours: Vec::new(), report };
     Ok(blocks.finish(domain.tolerance().least_depth_m, options.sliver_width_m))
 }
@@ -80,6 +82,7 @@ struct Carving {
     tolerance: Tolerance,
     blocks: Vec<Polyhedron>,
     refused: BTreeMap<u32, usize>,
+    discs: DiscCounts,
     report: CutReport,
 }
 
@@ -113,7 +116,10 @@ impl Carving {
 
     fn piece(&self, block: Polyhedron, history: u64, cutting_planes: &[u32]) -> Piece {
         let bounds = block.bounds();
-        let touches = |&&k: &&u32| self.cutting_planes[k as usize].1.plane.touches(&bounds, 0.0);
+        let touches = |&&k: &&u32| {
+            let CuttingPlane { plane, disc, .. } = &self.cutting_planes[k as usize].1;
+            plane.touches(&bounds, 0.0) && disc.is_none_or(|disc| disc.touches(&bounds))
+        };
         let cutting_planes = cutting_planes.iter().filter(touches).copied().collect();
         Piece { block, history, cutting_planes }
     }
@@ -126,7 +132,7 @@ impl Carving {
                 Split::Above | Split::Below => {}
                 Split::Refused => *self.refused.entry(surface).or_default() += 1,
                 Split::Both { above, below } => {
-                    if !reaches(&cutting_plane, &above) {
+                    if cutting_plane.disc.is_some_and(|disc| !self.discs.decide(k, &disc, &above)) {
                         continue;
                     }
                     let draw = || Stream::new(self.seed, &[piece.history, u64::from(k)]).uniform();
@@ -143,37 +149,12 @@ impl Carving {
     }
 }
 
-/// Whether a plane without end, or a disc by its rule, cuts where the section (the last face) is.
-fn reaches(cutting_plane: &CuttingPlane, part: &Polyhedron) -> bool {
-    let (Some((center, radius, rule)), Some(section)) = (cutting_plane.disc, part.faces.last()) else {
-        return true;
-    };
-    match rule {
-        DiscRule::Covers => part.ring(section).all(|x| (x - center).norm() <= radius),
-        DiscRule::Meets => distance(part, section, &center) < radius,
-    }
-}
-
-/// Distance of a point of its plane from a convex face; 0 inside.
-fn distance(part: &Polyhedron, face: &Face, point: &Vec3) -> f64 {
-    let ring: Vec<Vec3> = part.ring(face).collect();
-    let normal = part.area_vector(face);
-    let mut is_inside = true;
-    let mut nearest = f64::INFINITY;
-    for (i, a) in ring.iter().enumerate() {
-        let edge = ring[(i + 1) % ring.len()] - a;
-        let to_point = point - a;
-        is_inside &= normal.dot(&edge.cross(&to_point)) >= 0.0;
-        let along = (edge.dot(&to_point) / edge.norm_squared()).clamp(0.0, 1.0);
-        nearest = nearest.min((to_point - edge * along).norm());
-    }
-    if is_inside { 0.0 } else { nearest }
-}
-
 #[cfg(test)]
 mod tests {
+    use crate::Vec3;
     use proptest::prelude::*;
 
+    use super::super::discs::DiscRule;
     use super::super::joints::{Disc, JointSet, OrientationScatter, SpacingScatter};
     use super::super::plane::Plane;
     use super::*;
@@ -240,6 +221,63 @@ mod tests {
         assert_eq!(disc(0.1, DiscRule::Covers), 1);
         assert_eq!(disc(0.7, DiscRule::Covers), 1);
         assert_eq!(disc(0.71, DiscRule::Covers), 2);
+        // π r² covers half of the unit square from r = √(1/2π) = 0.39894 on.
+        assert_eq!((disc(0.3989, DiscRule::Share(0.5)), disc(0.399, DiscRule::Share(0.5))), (1, 2));
+        assert_eq!((disc(0.71, DiscRule::Share(1.0)), disc(0.01, DiscRule::Share(0.0))), (2, 2));
+    }
+
+    fn level_disc(center_m: [f64; 3], radius_m: f64) -> Discontinuity {
+        let (name, rule) = ("disc".into(), DiscRule::Share(0.5));
+        Discontinuity::Disc(Disc {
+            name,
+            dip_deg: 0.0,
+            dip_direction_deg: 0.0,
+            center_m: center_m.into(),
+            radius_m,
+            rule,
+        })
+    }
+
+    #[test]
+    fn a_disc_that_ends_in_blocks_cuts_those_of_which_it_covers_half() {
+        // Four columns of 0.5 m by 0.5 m. A disc about the corner of one, of radius 0.5, covers a quarter of a circle in it, which is
+        // π/4 of its section, and nothing of the others.
+        let columns = [set(90.0, 90.0, 0.5), set(90.0, 0.0, 0.5)];
+        let cut_by = |disc: Discontinuity| cut(&[columns.to_vec(), vec![disc]].concat());
+        let corner = cut_by(level_disc([0.0, 0.0, 0.3], 0.5)).report.discs;
+        assert_eq!((corner.cuts, corner.ends_in_cut, corner.left_whole, corner.idle), (1, 1, 0, 0));
+        assert!((corner.disc_m2 - 0.25 * std::f64::consts::PI * 0.25).abs() < 1e-14);
+        assert!((corner.joint_m2 - 0.25).abs() < 1e-14);
+        // About the middle, a quarter of the circle in each: 0.35 covers 0.3848 of a column, 0.4 covers 0.5027.
+        let quarter = |radius_m: f64| 0.25 * std::f64::consts::PI * radius_m * radius_m;
+        let small = cut_by(level_disc([0.5, 0.5, 0.3], 0.35));
+        assert_eq!((small.blocks.len(), small.report.discs.left_whole, small.report.discs.idle), (4, 4, 1));
+        assert!((small.report.discs.disc_m2 - 4.0 * quarter(0.35)).abs() < 1e-14);
+        let large = cut_by(level_disc([0.5, 0.5, 0.3], 0.4));
+        assert_eq!((large.blocks.len(), large.report.discs.cuts, large.report.discs.ends_in_cut), (8, 4, 4));
+        assert!((large.report.discs.joint_m2 - 1.0).abs() < 1e-14);
+        // One that covers the rock ends in no block.
+        let all = cut_by(level_disc([0.5, 0.5, 0.3], 2.0)).report.discs;
+        assert_eq!((all.cuts, all.ends_in_cut, all.left_whole), (4, 0, 0));
+        assert!((all.disc_m2 - 1.0).abs() < 1e-14);
+        let away = cut_by(level_disc([3.0, 0.5, 0.3], 1.0)).report.discs;
+        assert_eq!((away.cuts, away.left_whole, away.idle), (0, 0, 1));
+    }
+
+    #[test]
+    fn discs_that_do_not_meet_cut_the_same_in_any_order() {
+        let discs: Vec<Discontinuity> =
+            (1..8).map(|i| level_disc([0.5, 0.5, f64::from(i) / 8.0], 0.1 * f64::from(i))).collect();
+        let forth = cut(&discs);
+        let back = cut(&discs.iter().rev().cloned().collect::<Vec<_>>());
+        // Those of radius 0.4 and more cover half of the section.
+        assert_eq!((forth.blocks.len(), back.blocks.len()), (5, 5));
+        let volumes = |blocks: &Blocks| {
+            let mut volumes: Vec<f64> = blocks.blocks.iter().map(Polyhedron::volume_m3).collect();
+            volumes.sort_by(f64::total_cmp);
+            volumes
+        };
+        assert_eq!(volumes(&forth), volumes(&back));
     }
 
     #[test]

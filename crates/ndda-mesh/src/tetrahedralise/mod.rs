@@ -84,7 +84,7 @@ pub enum FillError {
     },
     /// Parts of a concave block that touch over parts of their faces.
     #[error(
-        "the {parts} parts of block {block} do not meet face to face: cut them by planes without persistence or discs"
+        "the {parts} parts of block {block} do not meet face to face: discs, and joints of a persistence below 1, cut convex rock only (cut the rest off by a Plane and list it in `removed`)"
     )]
     NotFaceToFace {
         /// Index of the first part.

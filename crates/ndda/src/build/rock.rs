@@ -1,12 +1,13 @@
 //! Rock of a scene as blocks.
 
+mod joints;
+
 use std::fmt;
 use std::path::Path;
 
 use ndda_io::scene::{self, Rock, Scene, Slivers, Whereabouts};
 use ndda_mesh::cut::{
-    self, Axis, Blocks, CutOptions, Disc, DiscRule, Discontinuity, Domain, JointSet, Merged,
-    OrientationScatter, Plane, SpacingScatter, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
+    Axis, Blocks, CutOptions, Domain, Merged, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
 };
 use ndda_mesh::geometry::tet_volume;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
@@ -15,6 +16,7 @@ use serde::Serialize;
 
 use super::{Fault, solid, vec3};
 use crate::forecast::admit;
+use joints::Discs;
 
 /// Blocks that a rock was cut into, and what was left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -35,11 +37,14 @@ pub struct RockReport {
     pub removed: (usize, f64),
     /// Cuts that would have left a needle thinner than rounding, and were not made.
     pub refused: usize,
+    /// What discs cut; left out where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub discs: Option<Discs>,
 }
 
 impl fmt::Display for RockReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, blocks, domain_m3, merged, slivers, thin, removed, refused } = self;
+        let Self { name, blocks, domain_m3, merged, slivers, thin, removed, refused, discs } = self;
         write!(f, "rock {name}: {domain_m3:.6e} m³ in {blocks} block(s)")?;
         let counts = [
             ("sliver(s) united with neighbours", merged),
@@ -54,7 +59,10 @@ impl fmt::Display for RockReport {
         if *thin > 0 {
             write!(f, ", {thin} sliver(s) kept")?;
         }
-        if *refused > 0 { write!(f, ", {refused} cut(s) refused as needles") } else { Ok(()) }
+        if *refused > 0 {
+            write!(f, ", {refused} cut(s) refused as needles")?;
+        }
+        discs.as_ref().map_or(Ok(()), |discs| write!(f, "\n  {discs}"))
     }
 }
 
@@ -79,7 +87,7 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     let at = |field: &str| format!("rock[{index}]{field}");
     let domain = domain(&rock.domain, folder).map_err(|m| vec![Fault::new(at(".domain"), m)])?;
     let cut_field = if rock.voronoi.is_some() { ".voronoi" } else { ".joints" };
-    let mut blocks = cut(rock, &domain).map_err(|m| vec![Fault::new(at(cut_field), m)])?;
+    let mut blocks = cut(rock, &domain, folder).map_err(|m| vec![Fault::new(at(cut_field), m)])?;
     let refused = blocks.report.refused.iter().map(|(_, count)| count).sum();
     let (merged, slivers) = match rock.slivers {
         _ if rock.sliver_width_m == 0.0 => (Merged::default(), Vec::new()),
@@ -100,6 +108,7 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
         thin,
         removed: (removed.len(), removed_m3),
         refused,
+        discs: Discs::new(&blocks.report.discs),
     };
     let mut faults = Vec::new();
     let groups = blocks.groups();
@@ -221,73 +230,15 @@ fn terrain(
     Domain::terrain(&vertices, &triangles, base_m).map_err(|e| e.to_string())
 }
 
-fn cut(rock: &Rock, domain: &Domain) -> Result<Blocks, String> {
+fn cut(rock: &Rock, domain: &Domain, folder: &Path) -> Result<Blocks, String> {
     if let Some(voronoi) = rock.voronoi {
         let seeds = random_seeds(domain, voronoi.count as usize, voronoi.least_distance_m, rock.seed);
         let options = VoronoiOptions { sliver_width_m: rock.sliver_width_m };
         return voronoi_blocks(domain, &seeds, &options).map_err(|e| e.to_string());
     }
-    let joints =
-        rock.joints.iter().map(discontinuity).collect::<Result<Vec<_>, _>>().map_err(|e| e.to_string())?;
+    let joints = joints::discontinuities(rock, folder)?;
     // The number of blocks is known only while rock is cut, since spacings scatter.
     let most_blocks = admit::most_blocks(CutOptions::default().most_blocks);
     let options = CutOptions { seed: rock.seed, sliver_width_m: rock.sliver_width_m, most_blocks };
     cut_blocks(domain, &joints, &options).map_err(|e| e.to_string())
-}
-
-fn discontinuity(joint: &scene::Discontinuity) -> Result<Discontinuity, cut::CutError> {
-    match joint {
-        scene::Discontinuity::Set {
-            name,
-            dip_deg,
-            dip_direction_deg,
-            spacing_m,
-            origin_m,
-            persistence,
-            orientation_scatter,
-            spacing_scatter,
-        } => Ok(Discontinuity::Set(JointSet {
-            origin_m: vec3(*origin_m),
-            persistence: *persistence,
-            orientation: orientation(*orientation_scatter),
-            spacing: spacing(*spacing_scatter),
-            ..JointSet::new(name.as_str(), *dip_deg, *dip_direction_deg, *spacing_m)
-        })),
-        scene::Discontinuity::Plane { name, dip_deg, dip_direction_deg, point_m } => {
-            let plane = Plane::dipping(*dip_deg, *dip_direction_deg, vec3(*point_m))?;
-            Ok(Discontinuity::Plane { name: name.clone(), plane })
-        }
-        scene::Discontinuity::Disc { name, dip_deg, dip_direction_deg, center_m, radius_m, rule } => {
-            let rule = match rule {
-                scene::DiscRule::Meets => DiscRule::Meets,
-                scene::DiscRule::Covers => DiscRule::Covers,
-            };
-            Ok(Discontinuity::Disc(Disc {
-                name: name.clone(),
-                dip_deg: *dip_deg,
-                dip_direction_deg: *dip_direction_deg,
-                center_m: vec3(*center_m),
-                radius_m: *radius_m,
-                rule,
-            }))
-        }
-    }
-}
-
-fn orientation(scatter: scene::OrientationScatter) -> OrientationScatter {
-    match scatter {
-        scene::OrientationScatter::None => OrientationScatter::None,
-        scene::OrientationScatter::Normal { deviation_deg } => OrientationScatter::Normal { deviation_deg },
-        scene::OrientationScatter::Fisher { kappa } => OrientationScatter::Fisher { kappa },
-        scene::OrientationScatter::Uniform { within_deg } => OrientationScatter::Uniform { within_deg },
-    }
-}
-
-fn spacing(scatter: scene::SpacingScatter) -> SpacingScatter {
-    match scatter {
-        scene::SpacingScatter::None => SpacingScatter::None,
-        scene::SpacingScatter::Uniform { half_width_m } => SpacingScatter::Uniform { half_width_m },
-        scene::SpacingScatter::Normal { deviation_m } => SpacingScatter::Normal { deviation_m },
-        scene::SpacingScatter::Exponential => SpacingScatter::Exponential,
-    }
 }

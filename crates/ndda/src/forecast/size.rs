@@ -252,7 +252,7 @@ fn sets(rock: &Rock) -> Vec<(Vec3, f64)> {
             let normal = Vec3::new(dip.sin() * azimuth.sin(), dip.sin() * azimuth.cos(), dip.cos());
             Some((normal, persistence / spacing_m))
         }
-        Discontinuity::Plane { .. } | Discontinuity::Disc { .. } => None,
+        _ => None,
     };
     rock.joints.iter().filter_map(set).collect()
 }

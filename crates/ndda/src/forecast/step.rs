@@ -9,7 +9,7 @@ use std::fmt;
 
 use ndda_contact::affine::BlockFaces;
 use ndda_contact::{ContactHistory, ContactInput, ContactOutput};
-use ndda_io::scene::{Body, Contact, ContactAt, Scene};
+use ndda_io::scene::{Body, Contact, ContactAt, Scene, is_unset};
 use ndda_mesh::geometry::{tet_volume, triangle_area_vector};
 use ndda_mesh::stats::stats;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Mat3, Vec3};
@@ -200,6 +200,9 @@ pub fn advise_materials(scene: &Scene, blocks: &BlockSet) -> Vec<AdvisedStep> {
     let (Some(bound), Some(Contact::Potential { penalty_pa, .. })) = (bound, &scene.contact) else {
         return Vec::new();
     };
+    if is_unset(penalty_pa) {
+        return Vec::new();
+    }
     let moving = build::moving(scene, blocks);
     let mut advised = Vec::new();
     for (index, material) in scene.materials.iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Which joint of a scene is tested.
 
-use ndda_io::scene::{Contact, Friction, Potential, Scene, matches};
+use ndda_io::scene::{Contact, Friction, Potential, Scene, is_unset, matches};
 
 use super::NormalStiffness;
 
@@ -82,6 +82,8 @@ fn known(scene: &Scene) -> String {
 /// Normal stiffness of flat joints of a scene, both sides together; rigid where it depends on the mesh.
 pub fn normal_stiffness(scene: &Scene) -> NormalStiffness {
     match &scene.contact {
+        // It is chosen with blocks, which are of no concern here.
+        Some(Contact::Potential { penalty_pa, .. }) if is_unset(penalty_pa) => NormalStiffness::Rigid,
         Some(Contact::Potential { penalty_pa, potential: Potential::Smooth { reference_m }, .. }) => {
             NormalStiffness::Linear { stiffness_pa_m: 2.0 * penalty_pa / reference_m }
         }

@@ -3,7 +3,8 @@
 use ndda_fem::stress::volume_m3;
 use ndda_io::scene::{Integrator, Scene};
 use ndda_io::summary::{
-    BlockEnd, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError, Status, Summary,
+    BlockEnd, Chosen, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError, Status,
+    Summary,
 };
 use ndda_mesh::Vec3;
 use ndda_solver::{Simulation, StepCounts};
@@ -19,6 +20,8 @@ pub struct Ending<'a> {
     pub scene: &'a Scene,
     /// Its name: the file without its ending.
     pub name: &'a str,
+    /// Values that were chosen for it.
+    pub chosen: Vec<Chosen>,
     /// Why the run stopped early.
     pub stopped_by: Option<String>,
     /// Whether it ended before its end because somebody asked it to.
@@ -61,6 +64,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
         label,
         steps: simulation.state().step,
         step_s: simulation.step_s(),
+        chosen: ending.chosen,
         end_s: simulation.time_s(),
         state_crc32: format!("{:08x}", ending.state_crc32),
         wall_s: ending.wall_s,

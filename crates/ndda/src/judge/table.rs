@@ -15,6 +15,7 @@ pub fn ending(summary: &Summary) -> String {
         (LabelWord::Inaccurate, reasons) => format!("inaccurate:\n  {}\n", reasons.join("\n  ")),
         (LabelWord::Stopped, _) => format!("stopped at t = {} s\n", time(summary.end_s)),
     };
+    text.extend(summary.chosen.iter().map(|chosen| format!("{chosen}\n")));
     text.extend(summary.motion.as_ref().map(moved));
     text.push_str(&error(summary));
     let failed =

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use ndda_io::joint_table::{self, PlaneRow};
 use ndda_io::read;
 use ndda_io::scene::{Discontinuity, Scene};
 
@@ -37,6 +38,11 @@ impl Planes {
         self.set_of.push(index);
     }
 
+    fn push_row(&mut self, row: PlaneRow, no_set: &str) {
+        let PlaneRow { dip_deg, dip_direction_deg, set } = row;
+        self.push(Orientation { dip_deg, dip_direction_deg }, set.as_deref().unwrap_or(no_set));
+    }
+
     /// The planes of a set.
     pub fn of_set(&self, set: usize) -> Vec<Orientation> {
         let both = self.planes.iter().zip(&self.set_of);
@@ -44,13 +50,17 @@ impl Planes {
     }
 }
 
+/// Whether a file is a table by its ending.
+pub fn is_table(file: &Path) -> bool {
+    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"))
+}
+
 /// Reads the joints of a scene, or the planes of a table if the file ends in `.csv`.
 ///
 /// # Errors
 /// [`StereonetError`] with the place of what cannot be used.
 pub fn read(file: &Path, overrides: &[String]) -> Result<Planes, StereonetError> {
-    let is_table = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv"));
-    let planes = if is_table { table(file)? } else { scene(file, overrides)? };
+    let planes = if is_table(file) { table(file)? } else { scene(file, overrides)? };
     match planes.planes.len() {
         1..=MOST_PLANES => Ok(planes),
         count => Err(StereonetError::Count { path: file.to_path_buf(), count, most: MOST_PLANES }),
@@ -59,67 +69,29 @@ pub fn read(file: &Path, overrides: &[String]) -> Result<Planes, StereonetError>
 
 fn scene(file: &Path, overrides: &[String]) -> Result<Planes, StereonetError> {
     let loaded = read::load(file, overrides).map_err(|errors| StereonetError::Scene(Box::new(errors)))?;
-    let planes = joints(&loaded.scene);
+    let planes = joints(&loaded.scene, file.parent().unwrap_or(Path::new(".")))?;
     if planes.planes.is_empty() { Err(StereonetError::NoJoints(file.to_path_buf())) } else { Ok(planes) }
 }
 
 /// The mean orientation of each joint set and the orientation of each plane and disc; those of one name are one set.
-fn joints(scene: &Scene) -> Planes {
+fn joints(scene: &Scene, folder: &Path) -> Result<Planes, StereonetError> {
     let mut planes = Planes { title: scene.title.clone(), ..Planes::default() };
     for joint in scene.rock.iter().flat_map(|rock| &rock.joints) {
-        let (Discontinuity::Set { name, dip_deg, dip_direction_deg, .. }
-        | Discontinuity::Plane { name, dip_deg, dip_direction_deg, .. }
-        | Discontinuity::Disc { name, dip_deg, dip_direction_deg, .. }) = joint;
-        planes.push(Orientation { dip_deg: *dip_deg, dip_direction_deg: *dip_direction_deg }, name);
+        if let Some([dip_deg, dip_direction_deg]) = joint.orientation_deg() {
+            planes.push(Orientation { dip_deg, dip_direction_deg }, joint.name());
+        }
+        if let Discontinuity::Discs { file, .. } = joint {
+            let rows = joint_table::discs(&folder.join(file))?;
+            rows.into_iter().for_each(|row| planes.push_row(row.plane, joint.name()));
+        }
     }
-    planes
+    Ok(planes)
 }
 
 fn table(file: &Path) -> Result<Planes, StereonetError> {
-    let unreadable = |error: csv::Error| StereonetError::Unreadable {
-        path: file.to_path_buf(),
-        reason: error.to_string(),
-    };
-    let mut reader = csv::ReaderBuilder::new()
-        .trim(csv::Trim::All)
-        .comment(Some(b'#'))
-        .from_path(file)
-        .map_err(unreadable)?;
-    let header = reader.headers().map_err(unreadable)?.clone();
-    let column = |name: &str| header.iter().position(|known| known.trim_start_matches('\u{feff}') == name);
-    let needed = |name: &'static str| {
-        column(name).ok_or_else(|| StereonetError::NoColumn { path: file.to_path_buf(), column: name })
-    };
-    let (dip, direction, set) = (needed("dip_deg")?, needed("dip_direction_deg")?, column("set"));
     let title = file.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
     let mut planes = Planes { title, ..Planes::default() };
-    for record in reader.records() {
-        let record = record.map_err(unreadable)?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let angle = |at: usize, column: &'static str, least: f64, most: f64, advice: &'static str| {
-            let value = record.get(at).unwrap_or("");
-            let wrong = || StereonetError::Value {
-                path: file.to_path_buf(),
-                line,
-                column,
-                value: value.into(),
-                advice,
-            };
-            value.parse().ok().filter(|angle: &f64| (least..=most).contains(angle)).ok_or_else(wrong)
-        };
-        let plane = Orientation {
-            dip_deg: angle(dip, "dip_deg", 0.0, 90.0, "an angle from 0 to 90")?,
-            dip_direction_deg: angle(
-                direction,
-                "dip_direction_deg",
-                -360.0,
-                360.0,
-                "an angle from -360 to 360",
-            )?,
-        };
-        let name = set.and_then(|at| record.get(at)).filter(|name| !name.is_empty());
-        planes.push(plane, name.unwrap_or(NO_SET));
-    }
+    joint_table::planes(file)?.into_iter().for_each(|row| planes.push_row(row, NO_SET));
     Ok(planes)
 }
 
@@ -149,12 +121,12 @@ mod tests {
     #[test]
     fn what_is_wrong_with_a_table_is_said_with_line_and_column() {
         for (text, reason) in [
-            ("dip_deg,dip_direction_deg\n40,130\n95,220\n", "line 3: dip_deg is `95`"),
-            ("dip_deg,dip_direction_deg\n40,east\n", "line 2: dip_direction_deg is `east`"),
-            ("dip_deg,dip_direction_deg\n40,nan\n", "line 2: dip_direction_deg is `nan`"),
+            ("dip_deg,dip_direction_deg\n40,130\n95,220\n", "line 3, column 1: dip_deg is `95`"),
+            ("dip_deg,dip_direction_deg\n40,east\n", "line 2, column 2: dip_direction_deg is `east`"),
+            ("dip_deg,dip_direction_deg\n40,nan\n", "line 2, column 2: dip_direction_deg is `nan`"),
             ("dip_deg,dip_direction_deg\n40\n", "joints.csv"),
             ("dip,dip_direction_deg\n40,3\n", "no column dip_deg"),
-            ("dip_deg,dip_direction_deg\n", "0 planes"),
+            ("dip_deg,dip_direction_deg\n", "has no joints"),
             ("", "no column dip_deg"),
         ] {
             let error = of(text).unwrap_err().to_string();

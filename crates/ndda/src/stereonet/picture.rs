@@ -23,8 +23,8 @@ const KEY: [f64; 2] = [650.0, 84.0];
 const LINE: f64 = 22.0;
 /// Room of words in the key [px].
 const ROOM: f64 = 290.0;
-/// Most sets that the key lists.
-const MOST_SETS: usize = 10;
+/// Colour of the planes of sets that are not listed.
+const OTHERS: Rgb = [160, 160, 166];
 
 /// Draws a stereonet; the face and friction are drawn whether or not there is a check.
 pub fn draw(
@@ -52,18 +52,34 @@ pub fn draw(
         svg.ring(CENTRE, RADIUS * net.radius(90.0 - friction_deg), 1.8, GREY, "");
         svg.ring(CENTRE, RADIUS * net.radius(friction_deg), 1.8, GREY, "7 5");
     }
-    for (index, set) in stereonet.sets.iter().enumerate() {
-        circle(&mut svg, net, &set.fisher.mean, 1.4, colour(index));
+    let colours = Colours::new(stereonet);
+    for (set, colour) in &colours.listed {
+        circle(&mut svg, net, &stereonet.sets[*set].fisher.mean, 1.4, *colour);
     }
-    poles(&mut svg, planes, stereonet);
-    marks(&mut svg, stereonet);
-    key(&mut svg, stereonet, face, friction_deg);
+    poles(&mut svg, planes, stereonet, &colours);
+    marks(&mut svg, stereonet, &colours);
+    key(&mut svg, stereonet, &colours, face, friction_deg);
     svg.finish()
 }
 
-fn colour(set: usize) -> Rgb {
-    let plotters::style::RGBColor(r, g, b) = picture::colour(set);
-    [r, g, b]
+/// The sets that are listed with their colours; all others share one.
+struct Colours {
+    listed: Vec<(usize, Rgb)>,
+}
+
+impl Colours {
+    fn new(stereonet: &Stereonet) -> Self {
+        let colour = |(place, set)| {
+            let plotters::style::RGBColor(r, g, b) = picture::colour(place);
+            (set, [r, g, b])
+        };
+        Self { listed: stereonet.listed().into_iter().enumerate().map(colour).collect() }
+    }
+
+    /// Colour of a set, if it is listed.
+    fn find(&self, set: usize) -> Option<Rgb> {
+        self.listed.iter().find(|(listed, _)| *listed == set).map(|(_, colour)| *colour)
+    }
 }
 
 fn place(net: Net, line: &Line) -> [f64; 2] {
@@ -96,11 +112,11 @@ fn circle(svg: &mut Svg, net: Net, plane: &Orientation, width: f64, colour: Rgb)
 }
 
 /// Poles in the colours of their sets; those of planes that may slide or topple with a ring.
-fn poles(svg: &mut Svg, planes: &Planes, stereonet: &Stereonet) {
+fn poles(svg: &mut Svg, planes: &Planes, stereonet: &Stereonet, colours: &Colours) {
     let radius = if planes.planes.len() > 300 { 2.6 } else { 4.2 };
     for (plane, &set) in planes.planes.iter().zip(&planes.set_of) {
         let at = place(stereonet.net, &plane.pole());
-        svg.circle(at, radius, colour(set));
+        svg.circle(at, radius, colours.find(set).unwrap_or(OTHERS));
         let is_critical = stereonet.slope.is_some_and(|slope| slope.slides(plane) || slope.topples(plane));
         if is_critical {
             svg.ring(at, radius + 2.6, 1.6, FACE, "");
@@ -109,11 +125,15 @@ fn poles(svg: &mut Svg, planes: &Planes, stereonet: &Stereonet) {
 }
 
 /// Means of sets as squares, and intersections of mean planes as triangles.
-fn marks(svg: &mut Svg, stereonet: &Stereonet) {
-    for (index, set) in stereonet.sets.iter().enumerate().filter(|(_, set)| set.fisher.planes > 1) {
-        square(svg, place(stereonet.net, &set.fisher.mean.pole()), colour(index));
+fn marks(svg: &mut Svg, stereonet: &Stereonet, colours: &Colours) {
+    for (set, colour) in &colours.listed {
+        let fisher = &stereonet.sets[*set].fisher;
+        if fisher.planes > 1 {
+            square(svg, place(stereonet.net, &fisher.mean.pole()), *colour);
+        }
     }
-    for wedge in &stereonet.wedges {
+    let is_listed = |name: &String| colours.listed.iter().any(|(set, _)| stereonet.sets[*set].name == *name);
+    for wedge in stereonet.wedges.iter().filter(|wedge| wedge.sets.iter().all(is_listed)) {
         triangle(
             svg,
             place(stereonet.net, &wedge.line),
@@ -132,18 +152,25 @@ fn triangle(svg: &mut Svg, [x, y]: [f64; 2], colour: Rgb) {
 }
 
 /// Sets with their means, and the meaning of lines and marks.
-fn key(svg: &mut Svg, stereonet: &Stereonet, face: Option<Orientation>, friction_deg: Option<f64>) {
+fn key(
+    svg: &mut Svg,
+    stereonet: &Stereonet,
+    colours: &Colours,
+    face: Option<Orientation>,
+    friction_deg: Option<f64>,
+) {
     let mut y = KEY[1];
     let mut line = |svg: &mut Svg, mark: &dyn Fn(&mut Svg, [f64; 2]), words: &str| {
         mark(svg, [KEY[0] + 12.0, y]);
         svg.words([KEY[0] + 34.0, y], 13.0, Anchor::Start, INK, ROOM, words);
         y += LINE;
     };
-    for (index, set) in stereonet.sets.iter().enumerate().take(MOST_SETS) {
-        line(svg, &|svg, at| svg.circle(at, 5.0, colour(index)), &words_of(set));
+    for (set, colour) in &colours.listed {
+        line(svg, &|svg, at| svg.circle(at, 5.0, *colour), &words_of(&stereonet.sets[*set]));
     }
-    if stereonet.sets.len() > MOST_SETS {
-        line(svg, &|_, _| (), &format!("and {} more sets", stereonet.sets.len() - MOST_SETS));
+    let others = stereonet.sets.len() - colours.listed.len();
+    if others > 0 {
+        line(svg, &|svg, at| svg.circle(at, 5.0, OTHERS), &format!("{others} other sets"));
     }
     line(svg, &|_, _| (), "");
     if stereonet.sets.iter().any(|set| set.fisher.planes > 1) {
@@ -187,7 +214,8 @@ fn key(svg: &mut Svg, stereonet: &Stereonet, face: Option<Orientation>, friction
 }
 
 fn words_of(set: &Set) -> String {
-    let k = set.fisher.k.map_or(String::new(), |k| format!(", K = {k:.0}"));
+    let alike = if set.fisher.planes > 1 { ", all alike" } else { "" };
+    let k = set.fisher.k.map_or(alike.to_string(), |k| format!(", K = {k:.0}"));
     let count =
         if set.fisher.planes > 1 { format!("{} planes, mean ", set.fisher.planes) } else { String::new() };
     format!("{}: {count}{}{k}", set.name, set.fisher.mean)

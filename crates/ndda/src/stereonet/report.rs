@@ -4,8 +4,11 @@ use std::fmt;
 
 use super::kinematics::Count;
 use super::orientation::Orientation;
-use super::{Set, Stereonet};
+use super::{Set, Stereonet, Wedge};
 use crate::columns::columns;
+
+/// Most intersections that are listed.
+const MOST_WEDGES: usize = 15;
 
 impl fmt::Display for Orientation {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -23,32 +26,21 @@ impl fmt::Display for Count {
 
 impl fmt::Display for Stereonet {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let optional =
-            |value: Option<f64>, digits: usize| value.map_or("–".into(), |v| format!("{v:.digits$}"));
+        let listed = self.listed();
         let header = ["set", "planes", "mean dip/direction", "K", "95 % cone [°]"].map(String::from);
-        let row = |set: &Set| {
-            vec![
-                set.name.clone(),
-                set.fisher.planes.to_string(),
-                set.fisher.mean.to_string(),
-                optional(set.fisher.k, 1),
-                optional(set.fisher.confidence_95_deg, 1),
-            ]
-        };
-        writeln!(f, "{}", columns(header.to_vec(), self.sets.iter().map(row).collect()))?;
-        for wedge in &self.wedges {
-            let word = match wedge.critical {
-                Some(true) => ": a wedge may slide along it",
-                Some(false) => ": no wedge slides along it",
-                None => "",
-            };
-            let [a, b] = &wedge.sets;
-            let (trend, plunge) = (wedge.line.trend_deg, wedge.line.plunge_deg);
-            writeln!(f, "{a} and {b} meet in a line of trend {trend:.1}°, plunge {plunge:.1}°{word}")?;
+        let rows = listed.iter().map(|&set| row(&self.sets[set])).collect();
+        writeln!(f, "{}", columns(header.to_vec(), rows))?;
+        if self.sets.len() > listed.len() {
+            let more = self.sets.len() - listed.len();
+            writeln!(f, "and {more} more sets of fewer planes or as many, which --json lists")?;
         }
+        self.wedges_in_words(f)?;
         if let (Some(slope), Some(checks)) = (&self.slope, &self.checks) {
-            let face = slope.face;
-            writeln!(f, "slope {face}, friction {}°: directions that allow", slope.friction_deg)?;
+            let friction = match self.has_friction {
+                true => format!("friction {}°", slope.friction_deg),
+                false => "no --friction given, so of directions alone".into(),
+            };
+            writeln!(f, "slope {}, {friction}: directions that allow", slope.face)?;
             writeln!(f, "  plane sliding      {} planes", checks.plane_sliding)?;
             writeln!(f, "  wedge sliding      {} intersections", checks.wedge_sliding)?;
             writeln!(f, "  flexural toppling  {} planes", checks.flexural_toppling)?;
@@ -58,4 +50,43 @@ impl fmt::Display for Stereonet {
             None => write!(f, "no picture: this program was built without the feature `plots`"),
         }
     }
+}
+
+impl Stereonet {
+    /// Intersections of mean planes, where they are many those along which wedges may slide first.
+    fn wedges_in_words(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let mut wedges: Vec<&Wedge> = self.wedges.iter().collect();
+        if wedges.len() > MOST_WEDGES {
+            wedges.sort_by_key(|wedge| wedge.critical != Some(true));
+            wedges.truncate(MOST_WEDGES);
+        }
+        for wedge in &wedges {
+            let word = match wedge.critical {
+                Some(true) => ": a wedge may slide along it",
+                Some(false) => ": no wedge slides along it",
+                None => "",
+            };
+            let [a, b] = &wedge.sets;
+            let (trend, plunge) = (wedge.line.trend_deg, wedge.line.plunge_deg);
+            writeln!(f, "{a} and {b} meet in a line of trend {trend:.1}°, plunge {plunge:.1}°{word}")?;
+        }
+        match self.wedges.len() - wedges.len() {
+            0 => Ok(()),
+            more => writeln!(f, "and {more} more intersections, which --json lists"),
+        }
+    }
+}
+
+/// A set as a row of the table.
+fn row(set: &Set) -> Vec<String> {
+    let fisher = &set.fisher;
+    let alike = fisher.planes > 1 && fisher.k.is_none();
+    let or = |value: Option<f64>, other: &str| value.map_or(other.to_string(), |v| format!("{v:.1}"));
+    vec![
+        set.name.clone(),
+        fisher.planes.to_string(),
+        fisher.mean.to_string(),
+        or(fisher.k, if alike { "all alike" } else { "–" }),
+        or(fisher.confidence_95_deg, if alike { "0" } else { "–" }),
+    ]
 }

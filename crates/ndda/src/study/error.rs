@@ -82,14 +82,23 @@ pub enum StudyError {
         "`{0}` is no correlation: write the names of two axes and a number, as friction_deg,cohesion_pa=-0.5"
     )]
     Correlation(String),
+    /// An option of samples where nothing is random.
+    #[error(
+        "--{0} has no effect, since nothing is random: give a value a distribution, as --vary \"PATH=Normal(30, 2)\""
+    )]
+    Idle(&'static str),
     /// Samples that cannot be drawn.
     #[error("samples cannot be drawn: {0}")]
     Samples(String),
     /// No case has a quantity.
-    #[error("no run has a quantity `{name}`: there is {known}, label, safety")]
+    #[error(
+        "no run has a quantity `{name}`{near}; there are {known}; the beginning of a name stands for all that begin so"
+    )]
     NoQuantity {
         /// Its name.
         name: String,
+        /// Names that it may have been meant for, as a question.
+        near: String,
         /// The quantities that there are.
         known: String,
     },

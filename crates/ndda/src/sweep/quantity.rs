@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use ndda_io::summary::Summary;
-use ndda_io::{folder, results, table};
+use ndda_io::{folder, read, results, table};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use crate::Model;
 use crate::certify::quantities::{BLOCK, TIME};
+use crate::run::recorder;
 use crate::safety::Bracket;
 use crate::study::error::StudyError;
 
@@ -19,6 +21,24 @@ pub const SAFETY: &str = "safety";
 pub const SAFETY_LOWER: &str = "safety_lower";
 /// Smallest factor at which they fail.
 pub const SAFETY_UPPER: &str = "safety_upper";
+
+/// Quantities of a monitor at the end of a run.
+const OF_MONITOR: [&str; 2] = ["displacement_m", "velocity_m_s"];
+/// Quantities of a block at the end of a run.
+const OF_BLOCK: [&str; 8] = [
+    "displacement_m",
+    "displacement_x_m",
+    "displacement_y_m",
+    "displacement_z_m",
+    "farthest_m",
+    "largest_m",
+    "rotation_deg",
+    "velocity_m_s",
+];
+/// Names that are there whatever the scene.
+pub const FIXED: [&str; 4] = [LABEL, SAFETY, SAFETY_LOWER, SAFETY_UPPER];
+/// Most names that a question lists.
+const MOST_NEAR: usize = 3;
 
 /// Quantities of one case.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -79,6 +99,65 @@ impl Values {
     }
 }
 
+/// Names of the numbers that a run of a scene has, before it is run: all are zero here.
+pub fn of_model(model: &Model) -> Values {
+    let blocks = model.simulation.blocks();
+    let names = || model.monitors.iter().map(|monitor| monitor.name.as_str());
+    let mut known: Vec<String> = Vec::new();
+    for name in names().filter(|name| !name.starts_with(BLOCK)) {
+        known.extend(OF_MONITOR.map(|quantity| format!("{name}.{quantity}")));
+    }
+    for name in &blocks.names {
+        known.extend(OF_BLOCK.map(|quantity| format!("{BLOCK}{name}.{quantity}")));
+    }
+    let compared = model.loaded.scene.reference.is_some();
+    if compared {
+        known.extend(["error_end", "error_max"].map(String::from));
+    }
+    let held = recorder::held_blocks(&model.simulation);
+    known.extend(recorder::columns(names(), &held, compared).into_iter().filter(|name| name != TIME));
+    Values { label: None, numbers: known.into_iter().map(|name| (name, 0.0)).collect() }
+}
+
+/// Names for a message, quantities of blocks and reactions of supports for the first block that has them.
+pub fn listed(numbers: &[(String, f64)]) -> String {
+    let mut names: Vec<String> = FIXED.map(String::from).to_vec();
+    let (mut shown, mut others) = (Vec::new(), false);
+    for (name, _) in numbers {
+        let (of, quantity) = name.rsplit_once('.').unwrap_or(("", name));
+        let is_of_block = of.starts_with(BLOCK) || quantity.starts_with("reaction_");
+        if names.contains(name) {
+            continue;
+        } else if is_of_block && shown.contains(&quantity) {
+            others = true;
+        } else {
+            shown.push(quantity);
+            names.push(name.clone());
+        }
+    }
+    format!("{}{}", names.join(", "), if others { ", and those of the other blocks likewise" } else { "" })
+}
+
+/// Names that one of no quantity may have been meant for, as a question; empty where none is like it.
+pub fn near(name: &str, numbers: &[(String, f64)]) -> String {
+    let known: Vec<&str> = FIXED.into_iter().chain(numbers.iter().map(|(name, _)| name.as_str())).collect();
+    let within: Vec<&str> =
+        known.iter().copied().filter(|known| known.contains(name)).take(MOST_NEAR).collect();
+    // Whole names, or the part behind a block or monitor.
+    let quantity = |known: &&'_ str| known.rsplit('.').next().unwrap_or_default().to_string();
+    let quantities: Vec<String> = known.iter().map(quantity).collect();
+    let quantities: Vec<&str> = quantities.iter().map(String::as_str).collect();
+    let like = read::nearest(name, &known).or_else(|| {
+        let like = read::nearest(name, &quantities)?;
+        known.iter().copied().find(|known| known.rsplit('.').next() == Some(like))
+    });
+    let found = if within.is_empty() { like.into_iter().collect() } else { within };
+    match found.is_empty() {
+        true => String::new(),
+        false => format!(": did you mean `{}`?", found.join("`, `")),
+    }
+}
+
 /// The quantities in the folder of a run: label, monitors, blocks, and the last row of the history.
 ///
 /// # Errors
@@ -102,19 +181,17 @@ fn of_summary(summary: &Summary) -> Values {
     let size = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
     let mut numbers = Vec::new();
     for (name, end) in &summary.monitors.0 {
-        numbers.push((format!("{name}.displacement_m"), size(end.displacement)));
-        numbers.push((format!("{name}.velocity_m_s"), size(end.velocity)));
+        let values = [size(end.displacement), size(end.velocity)];
+        numbers.extend(OF_MONITOR.iter().zip(values).map(|(quantity, v)| (format!("{name}.{quantity}"), v)));
     }
     for (name, end) in &summary.blocks.0 {
-        let mut add = |quantity: &str, value: f64| numbers.push((format!("{BLOCK}{name}.{quantity}"), value));
-        add("displacement_m", size(end.motion.displacement_m));
-        for (axis, value) in ["x", "y", "z"].into_iter().zip(end.motion.displacement_m) {
-            add(&format!("displacement_{axis}_m"), value);
-        }
-        add("farthest_m", end.motion.farthest_m);
-        add("largest_m", end.motion.largest_m);
-        add("rotation_deg", end.motion.rotation_deg);
-        add("velocity_m_s", size(end.velocity));
+        let [x, y, z] = end.motion.displacement_m;
+        let gone_m = size(end.motion.displacement_m);
+        let motion = &end.motion;
+        let values =
+            [gone_m, x, y, z, motion.farthest_m, motion.largest_m, motion.rotation_deg, size(end.velocity)];
+        let named = OF_BLOCK.iter().zip(values);
+        numbers.extend(named.map(|(quantity, v)| (format!("{BLOCK}{name}.{quantity}"), v)));
     }
     if let Some(reference) = &summary.reference {
         numbers.push(("error_end".into(), reference.error_end));
@@ -138,6 +215,26 @@ mod tests {
         assert_eq!(values.named("h"), [4]);
         assert_eq!(values.number("a.f"), Some(2.0));
         assert_eq!(values.number("a"), None);
+    }
+
+    #[test]
+    fn names_are_listed_once_for_all_blocks_and_found_by_their_quantity() {
+        let names = [
+            "m.displacement_x_m",
+            "block a.rotation_deg",
+            "block b.rotation_deg",
+            "h",
+            "a.reaction_x_n",
+            "b.reaction_x_n",
+        ];
+        let numbers: Vec<(String, f64)> = names.iter().map(|name| (name.to_string(), 0.0)).collect();
+        let text = listed(&numbers);
+        assert!(
+            text.contains("m.displacement_x_m, block a.rotation_deg, h, a.reaction_x_n, and those"),
+            "{text}"
+        );
+        assert_eq!(near("rotatoin", &numbers), ": did you mean `block a.rotation_deg`?");
+        assert_eq!(near("zzz", &numbers), "");
     }
 
     #[test]

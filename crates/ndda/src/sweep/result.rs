@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::Sweep;
 use super::cases::{self, Role};
 use super::condition::Condition;
-use super::quantity::{LABEL, SAFETY, Values};
+use super::quantity::{self, FIXED, LABEL, SAFETY, Values};
 use super::record::SweepOutcome;
 use super::statistics::{Index, Moments, Part, indices};
 use crate::study::case::grid;
@@ -187,11 +187,31 @@ fn quantities(sweep: &Sweep, outcomes: &[SweepOutcome]) -> Result<(Vec<String>, 
             }
         }
         if let (false, Some(first)) = (is_there, done().next()) {
-            let known = first.numbers.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>().join(", ");
-            return Err(StudyError::NoQuantity { name: wanted.clone(), known });
+            return Err(no_quantity(wanted, first));
         }
     }
     Ok((names, has_label))
+}
+
+fn no_quantity(name: &str, of: &Values) -> StudyError {
+    let (near, known) = (quantity::near(name, &of.numbers), quantity::listed(&of.numbers));
+    StudyError::NoQuantity { name: name.into(), near, known }
+}
+
+/// Checks the names that are asked for against those that there will be.
+///
+/// # Errors
+/// As [`Results::new`].
+pub fn check_names(sweep: &Sweep, known: Values) -> Result<(), StudyError> {
+    let text = sweep.loaded.study.fails_when.as_deref().unwrap_or_default();
+    let condition = sweep.fails_when.as_ref().map(|condition| &condition.quantity);
+    for name in sweep.of.iter().chain(condition).filter(|name| !FIXED.contains(&name.as_str())) {
+        if known.named(name).is_empty() {
+            return Err(no_quantity(name, &known));
+        }
+    }
+    let known = [SweepOutcome::Done(known)];
+    sweep.fails_when.as_ref().map_or(Ok(()), |condition| unambiguous(condition, &known, text))
 }
 
 /// A condition is on one quantity.

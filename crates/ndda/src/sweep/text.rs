@@ -74,8 +74,12 @@ fn samples(text: &mut String, results: &Results, group: &Group) {
         let [low, high] = part.interval95;
         let _ = writeln!(
             text,
-            "probability of failure ({condition}): {:.4e}, {} of {} samples; 95 % interval {low:.4e} to {high:.4e} (Wilson)",
-            part.probability, part.count, part.of
+            "probability of failure ({condition}): {} ({} to {}), {} of {} samples; in brackets the 95 % interval (Wilson)",
+            probability(part.probability),
+            probability(low),
+            probability(high),
+            part.count,
+            part.of
         );
     } else if let Some(condition) = condition {
         let _ = writeln!(text, "probability of failure ({condition}): unknown, no sample has a value");
@@ -95,6 +99,18 @@ fn samples(text: &mut String, results: &Results, group: &Group) {
     }
 }
 
+/// Three decimals, or three digits where the number is small.
+fn probability(value: f64) -> String {
+    match value {
+        0.0 => "0".into(),
+        1.0 => "1".into(),
+        small if small < 1e-4 => format!("{small:.2e}"),
+        small if small < 0.1 => format!("{small:.digits$}", digits = (2.0 - small.log10().floor()) as usize),
+        large if large > 0.9995 => format!("{large:.6}"),
+        large => format!("{large:.3}"),
+    }
+}
+
 /// Six digits, with an exponent where the number is large or small.
 fn number(value: f64) -> String {
     match value.abs() {
@@ -111,6 +127,20 @@ fn number(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn probabilities_have_three_digits() {
+        for (value, text) in [
+            (0.0, "0"),
+            (0.3, "0.300"),
+            (0.24721, "0.247"),
+            (0.03333, "0.0333"),
+            (1.234e-5, "1.23e-5"),
+            (1.0, "1"),
+        ] {
+            assert_eq!(probability(value), text);
+        }
+    }
 
     #[test]
     fn numbers_have_six_digits() {

@@ -7,6 +7,7 @@ use ndda_io::diagnostic::SceneErrors;
 use ndda_io::mesh_file::MeshFileError;
 
 use super::image::{LARGEST_PX, MOST_PX, SMALLEST_PX};
+use super::numbers::three_digits;
 use crate::frames::OtherBlocks;
 
 /// Why blocks cannot be drawn.
@@ -67,6 +68,21 @@ pub enum ViewError {
         "--color {0}: a scene has no results before it is run: choose block or material, or name the output folder of a run"
     )]
     NoResults(String),
+    /// Values of a scene are set in one that has run.
+    #[error("--set changes a scene before its run, and {} holds a run: name the scene, or run it again with --set", .0.display())]
+    HasRun(PathBuf),
+    /// Displacements so large that nothing is seen of the blocks.
+    #[error(
+        "--magnify {}: displacements so long leave nothing of the blocks to be seen; write a number above 0, here up to {}",
+        three_digits(*asked),
+        three_digits(*most)
+    )]
+    Magnify {
+        /// The factor that was requested.
+        asked: f64,
+        /// The largest that can be drawn.
+        most: f64,
+    },
     /// A scene before its run does not move.
     #[error("--animate is for the output folder of a run: a scene that has not run does not move")]
     Still,

@@ -1,6 +1,7 @@
 //! Blocks as a picture shows them: surfaces, which of them move, their colours, and the moments of a run.
 
 use ndda_mesh::Vec3;
+use ndda_mesh::geometry::Aabb;
 
 use super::paint::{Theme, group_colour};
 use super::raster::Coat;
@@ -11,6 +12,9 @@ use crate::surface::Surface;
 const NEAR_ZERO: f64 = 0.2;
 /// Values that differ by less than this part of the largest are one value.
 const EQUAL: f64 = 0.1;
+
+/// Displacements longer than so many diagonals of all blocks leave nothing of these to be seen.
+const MOST_DIAGONALS: f64 = 30.0;
 
 /// Blocks at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +74,17 @@ pub struct Film {
 }
 
 impl Film {
+    /// Largest factor of displacements at which blocks are still seen: the farthest is drawn as long as so many diagonals of all
+    /// blocks.
+    pub fn largest_factor(&self) -> f64 {
+        let diagonal_m = Aabb::around(&self.start).diagonal();
+        let gone = |moment: &Moment| {
+            let lengths = moment.positions.iter().zip(&self.start).map(|(x, x0)| (x - x0).norm());
+            lengths.fold(0.0, f64::max)
+        };
+        MOST_DIAGONALS * diagonal_m / self.moments.iter().map(gone).fold(0.0, f64::max)
+    }
+
     /// Block of each node of the surface.
     pub fn block_of_node(&self) -> Vec<u32> {
         let mut blocks = vec![0; self.surface.nodes.len()];
@@ -104,8 +119,7 @@ fn part(value: f64, [low, high]: [f64; 2]) -> f64 {
     if high > low { (value - low) / (high - low) } else { 0.0 }
 }
 
-/// Whether each block has moved, by the farthest that a node of it was from its start at these moments; all of them where
-/// nothing has.
+/// Whether each block has moved, by the farthest that a node of it was from its start at these moments.
 pub fn moving(surface: &Surface, start: &[Vec3], moments: &[Moment]) -> Vec<bool> {
     let mut farthest = vec![0.0; surface.block_count()];
     for moment in moments {
@@ -117,7 +131,7 @@ pub fn moving(surface: &Surface, start: &[Vec3], moments: &[Moment]) -> Vec<bool
         }
     }
     let limit = STILL * farthest.iter().copied().fold(0.0, f64::max);
-    farthest.iter().map(|&moved| limit == 0.0 || moved >= limit).collect()
+    farthest.iter().map(|&moved| limit > 0.0 && moved >= limit).collect()
 }
 
 /// Ends of the scale: the least and the largest value that is drawn; zero in place of a least value near it, or of one that is
@@ -170,6 +184,6 @@ mod tests {
         // It counts that it was away, although it has come back.
         assert_eq!(moving(&surface, &start, &[moment(1.0), moment(0.0)]), [true, true]);
         let still = Moment { time_s: None, positions: start.clone(), values: Vec::new() };
-        assert_eq!(moving(&surface, &start, &[still]), [true, true]);
+        assert_eq!(moving(&surface, &start, &[still]), [false, false]);
     }
 }

@@ -17,6 +17,8 @@ use crate::surface::Surface;
 
 /// Folder of the failing run in the output folder of `ndda safety`.
 const MECHANISM: &str = "mechanism";
+/// Array of velocities, in which blocks at rest have no colour.
+const VELOCITY: &str = "velocity_m_s";
 /// A mechanism is seen when a block has gone this part of its size.
 const SEEN: f64 = 0.1;
 
@@ -182,24 +184,21 @@ enum Source {
 
 impl Source {
     fn find(colour: &Colour, frame: &FieldFrame, surface: &Surface) -> Result<Self, ViewError> {
-        let of_array = |name: &str, advice: &'static str, with_resting: bool| {
+        let of_array = |name: &str, advice: &'static str| {
             let fields = fields(frame);
             let begins = |field: &&Field| field.array.starts_with(name) || field.label.starts_with(name);
             let names = || fields.iter().map(|field| field.array.clone()).collect();
             let no_field = || ViewError::NoField { asked: colour.to_string(), advice, names: names() };
             let field = fields.iter().find(begins).cloned().ok_or_else(no_field)?;
             let numbers = field.array_of(frame).map_or(0, |array| array.values.len());
+            let with_resting = field.array != VELOCITY;
             Ok(Self::Array { field, numbers, with_resting })
         };
         match colour {
             Colour::Displacement => Ok(Self::Displacement),
-            Colour::Velocity => {
-                of_array("velocity_m_s", ": add Velocity to output.fields of the scene", false)
-            }
-            Colour::Stress => {
-                of_array("von Mises", ": add VonMises or Stress to output.fields of the scene", true)
-            }
-            Colour::Field(name) => of_array(name, "", true),
+            Colour::Velocity => of_array(VELOCITY, ": add Velocity to output.fields of the scene"),
+            Colour::Stress => of_array("von Mises", ": add VonMises or Stress to output.fields of the scene"),
+            Colour::Field(name) => of_array(name, ""),
             Colour::Block => {
                 let of_block = (0..surface.block_count() as u32).collect();
                 Ok(Self::Groups { of_block, plural: "blocks", with_resting: false })
@@ -246,8 +245,13 @@ impl Source {
         }
     }
 
-    /// Colours with the range of what is drawn in them.
-    fn colouring(self, surface: &Surface, moves: &[bool], moments: &[Moment]) -> Colouring {
+    /// Colours with the range of what is drawn in them. Where nothing has moved all blocks have the colour of their value.
+    fn colouring(mut self, surface: &Surface, moves: &[bool], moments: &[Moment]) -> Colouring {
+        if let (false, Self::Array { with_resting, .. } | Self::Groups { with_resting, .. }) =
+            (moves.contains(&true), &mut self)
+        {
+            *with_resting = true;
+        }
         let (label, unit, of_nodes, with_resting) = match self {
             Self::Groups { of_block, plural, with_resting } => {
                 let count = of_block.iter().max().map_or(0, |&last| last as usize + 1);

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use ndda_io::read;
 use ndda_io::results::{Array, FieldFrame};
-use ndda_io::scene::Scene;
 use ndda_mesh::BlockSet;
 
 use super::Colour;
@@ -25,34 +24,39 @@ pub fn read(file: &Path, overrides: &[String], colour: &Colour) -> Result<Film, 
         let diagnostics = faults.into_iter().map(|f| loaded.diagnose(&f.path, f.message)).collect();
         loaded.errors(diagnostics)
     })?;
-    of_blocks(&loaded.scene, &blocks, colour)
-}
-
-fn of_blocks(scene: &Scene, blocks: &BlockSet, colour: &Colour) -> Result<Film, ViewError> {
+    let scene = &loaded.scene;
     let colouring = match colour {
-        Colour::Block => Colouring::Groups {
-            names: blocks.names.clone(),
-            plural: "blocks",
-            of_block: (0..blocks.names.len() as u32).collect(),
-            with_resting: false,
-        },
+        Colour::Block => by_block(&blocks, false),
         Colour::Material => Colouring::Groups {
             names: scene.materials.iter().map(|material| material.name.clone()).collect(),
             plural: "materials",
-            of_block: build::materials_of(scene, blocks),
+            of_block: build::materials_of(scene, &blocks),
             with_resting: true,
         },
         other => return Err(ViewError::NoResults(other.to_string())),
     };
-    let mut moves: Vec<bool> = build::moving(scene, blocks).iter().map(Option::is_some).collect();
+    let mut moves: Vec<bool> = build::moving(scene, &blocks).iter().map(Option::is_some).collect();
     if !moves.contains(&true) {
         moves.fill(true);
     }
+    Ok(film(scene.title.clone(), &blocks, colouring, moves))
+}
+
+/// Blocks of no scene, in a colour each.
+pub fn of_blocks(title: &str, blocks: &BlockSet) -> Film {
+    film(title.into(), blocks, by_block(blocks, true), vec![true; blocks.len()])
+}
+
+fn by_block(blocks: &BlockSet, with_resting: bool) -> Colouring {
+    let of_block = (0..blocks.names.len() as u32).collect();
+    Colouring::Groups { names: blocks.names.clone(), plural: "blocks", of_block, with_resting }
+}
+
+fn film(title: String, blocks: &BlockSet, colouring: Colouring, moves: Vec<bool>) -> Film {
     let surface = Surface::new(&frame(blocks));
     let positions: Vec<_> = surface.nodes.iter().map(|&n| blocks.rest_position[n as usize]).collect();
     let moment = Moment { time_s: None, positions: positions.clone(), values: Vec::new() };
-    let title = scene.title.clone();
-    Ok(Film { title, surface, start: positions, moves, colouring, moments: vec![moment] })
+    Film { title, surface, start: positions, moves, colouring, moments: vec![moment] }
 }
 
 /// Blocks as a frame of a run holds them.

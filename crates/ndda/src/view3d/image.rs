@@ -43,6 +43,20 @@ pub struct Look {
     pub size: (u32, u32),
 }
 
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            view: View::default(),
+            resting: Resting::default(),
+            whole: false,
+            magnify: 1.0,
+            outlines: true,
+            dark: false,
+            size: (1200, 800),
+        }
+    }
+}
+
 /// A film as it is to be drawn.
 pub struct Picture<'a> {
     film: &'a Film,

@@ -59,6 +59,8 @@ pub fn title(svg: &mut Svg, layout: &Layout, theme: &Theme, film: &Film, below: 
 pub fn legend(svg: &mut Svg, layout: &Layout, theme: &Theme, film: &Film) {
     let x = layout.pane.x + layout.pane.width + 22.0 * layout.unit;
     match &film.colouring {
+        // Nothing has a colour of the scale where nothing has moved.
+        Colouring::Scale { with_resting: false, .. } if !film.moves.contains(&true) => {}
         Colouring::Scale { label, unit, range, .. } => scale(svg, layout, theme, x, (label, unit), *range),
         Colouring::Groups { names, plural, of_block, with_resting } => {
             let shown = |b: &usize| *with_resting || film.moves[*b];

@@ -97,6 +97,10 @@ impl<'a> Stage<'a> {
         let style =
             Style { theme, edge_px: setting.edge_px, edge_weight: edge_weight(film, &camera), veil: VEIL };
         let mut stage = Self { film, theme, setting, camera, size, style, resting: setting.resting };
+        if !film.moves.contains(&true) {
+            // Nothing is hidden or seen through where nothing moves.
+            stage.resting = Resting::Solid;
+        }
         if stage.resting == Resting::Auto {
             stage.resting = if stage.hides_motion() { Resting::Clear } else { Resting::Solid };
         }
@@ -192,7 +196,7 @@ fn in_view(film: &Film, setting: &Setting, axes: &Axes) -> Bounds {
         for (x, &block) in places.iter().zip(&blocks) {
             let (point, _) = axes.plane(x);
             let is_moving = film.moves[block as usize];
-            if is_moving || setting.resting != Resting::Hidden {
+            if is_moving || setting.resting != Resting::Hidden || !film.moves.contains(&true) {
                 all.grow(point);
             }
             if is_moving {

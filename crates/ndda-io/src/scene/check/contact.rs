@@ -1,8 +1,9 @@
 //! Checks of contact.
 
-use super::{CELLS, Check};
+use super::Check;
 use crate::scene::code::Code;
-use crate::scene::{Contact, JointLaw, MaterialPair, Potential, matches};
+use crate::scene::is_unset;
+use crate::scene::{Contact, JointLaw, MaterialPair, Potential};
 
 impl Check<'_> {
     pub(super) fn contact(&mut self) {
@@ -13,9 +14,15 @@ impl Check<'_> {
                 self.misfit("contact", "more than one block, and no word on contact", help);
             }
             Some(Contact::Potential {
-                penalty_pa, potential, friction, material_pairs, rock_joints, ..
+                penalty_pa,
+                depth_ratio,
+                potential,
+                friction,
+                material_pairs,
+                rock_joints,
+                ..
             }) => {
-                self.positive("contact.penalty_pa".into(), *penalty_pa, "Pa");
+                self.penalty(*penalty_pa, *depth_ratio, potential);
                 self.potential(potential);
                 if let Some(friction) = friction {
                     self.friction("contact.friction", friction);
@@ -81,15 +88,27 @@ impl Check<'_> {
         }
     }
 
+    fn penalty(&mut self, penalty_pa: f64, depth_ratio: f64, potential: &Potential) {
+        if !is_unset(&penalty_pa) {
+            self.positive("contact.penalty_pa".into(), penalty_pa, "Pa");
+        } else if let Potential::Volume { .. } = potential {
+            let help = "its pressure depends on the volume that blocks share, of which little is known before: write penalty_pa";
+            self.report(
+                Code::MissingField,
+                "contact",
+                "the penalty of the potential `Volume` is not chosen",
+                help,
+            );
+        }
+        if !(1e-9..=0.1).contains(&depth_ratio) {
+            let message = format!("{depth_ratio:e}: must be from 1e-9 to 0.1");
+            self.error("contact.depth_ratio", message, "1e-4 is a tenth of a millimetre for blocks of 1 m");
+        }
+    }
+
     fn rock_joints(&mut self, laws: &[JointLaw]) {
-        let scene = self.scene;
-        let mut names: Vec<&str> =
-            scene.rock.iter().flat_map(|rock| &rock.joints).map(|j| j.name()).collect();
-        names.extend(scene.rock.iter().filter(|rock| rock.voronoi.is_some()).map(|_| CELLS));
         for (i, law) in laws.iter().enumerate() {
-            if !names.iter().any(|name| matches(&law.joint, name)) {
-                self.known(format!("contact.rock_joints[{i}].joint"), "joint", &law.joint, &names);
-            }
+            self.known_joint(format!("contact.rock_joints[{i}].joint"), &law.joint);
             if let Some(friction) = &law.friction {
                 self.friction(&format!("contact.rock_joints[{i}].friction"), friction);
             }

@@ -1,15 +1,46 @@
 //! Checks of rock that is cut. What it is cut into is found when it is.
 
+use std::collections::HashSet;
 use std::path::Path;
 
-use super::Check;
+use super::{CELLS, Check};
 use crate::scene::code::Code;
-use crate::scene::{Discontinuity, Domain, OrientationScatter, Rock, SpacingScatter, Whereabouts};
+use crate::scene::joint_table;
+use crate::scene::{DiscRule, Discontinuity, Domain, OrientationScatter, Rock, Scene};
+use crate::scene::{SpacingScatter, Whereabouts, matches};
 
 /// More points of Voronoi cells than this are a slip of the keyboard.
 const MOST_CELLS: u32 = 10_000_000;
+/// How a table of discs is written.
+const DISC_COLUMNS: &str =
+    "a table of discs has the columns dip_deg, dip_direction_deg, x_m, y_m, z_m, radius_m and perhaps set";
+
+/// Names of the joints of all rock; none where they are in a table that cannot be read.
+pub(super) fn joint_names(scene: &Scene, folder: Option<&Path>) -> Option<Vec<String>> {
+    let mut names = Vec::new();
+    for joint in scene.rock.iter().flat_map(|rock| &rock.joints) {
+        if let Discontinuity::Discs { file, .. } = joint {
+            let rows = joint_table::discs(&folder?.join(file)).ok()?;
+            names.extend(rows.into_iter().filter_map(|row| row.plane.set));
+        }
+        names.push(joint.name().to_string());
+    }
+    names.extend(scene.rock.iter().filter(|rock| rock.voronoi.is_some()).map(|_| CELLS.to_string()));
+    let mut seen = HashSet::new();
+    names.retain(|name| seen.insert(name.clone()));
+    Some(names)
+}
 
 impl Check<'_> {
+    /// The name of a joint, or a pattern of such names.
+    pub(super) fn known_joint(&mut self, path: String, name: &str) {
+        let Some(names) = self.joints.take() else { return };
+        if !names.iter().any(|known| matches(name, known)) {
+            self.known(path, "joint", name, &names.iter().map(String::as_str).collect::<Vec<_>>());
+        }
+        self.joints = Some(names);
+    }
+
     pub(super) fn rock(&mut self, folder: Option<&Path>) {
         let scene = self.scene;
         self.names("rock", &scene.rock.iter().map(|rock| rock.name.as_str()).collect::<Vec<_>>());
@@ -18,7 +49,7 @@ impl Check<'_> {
             let path = |field: &str| format!("rock[{i}].{field}");
             self.known(path("material"), "material", &rock.material, &materials);
             self.domain(&path("domain"), &rock.domain, folder);
-            self.joints_of(&format!("rock[{i}]"), rock);
+            self.joints_of(&format!("rock[{i}]"), rock, folder);
             self.fill(&path("fill"), &rock.fill);
             if !(rock.sliver_width_m >= 0.0 && rock.sliver_width_m.is_finite()) {
                 let message = format!("{} m: must not be negative", rock.sliver_width_m);
@@ -94,7 +125,7 @@ impl Check<'_> {
         }
     }
 
-    fn joints_of(&mut self, path: &str, rock: &Rock) {
+    fn joints_of(&mut self, path: &str, rock: &Rock, folder: Option<&Path>) {
         if let Some(voronoi) = rock.voronoi {
             if !rock.joints.is_empty() {
                 let help = "leave out one of the two";
@@ -111,23 +142,21 @@ impl Check<'_> {
             self.numbers(&format!("{path}.voronoi.least_distance_m"), &[voronoi.least_distance_m]);
         }
         for (k, joint) in rock.joints.iter().enumerate() {
-            self.joint(&format!("{path}.joints[{k}]"), joint);
+            self.joint(&format!("{path}.joints[{k}]"), joint, folder);
         }
     }
 
-    fn joint(&mut self, path: &str, joint: &Discontinuity) {
+    fn joint(&mut self, path: &str, joint: &Discontinuity, folder: Option<&Path>) {
         let field = |name: &str| format!("{path}.{name}");
-        let (Discontinuity::Set { name, dip_deg, dip_direction_deg, .. }
-        | Discontinuity::Plane { name, dip_deg, dip_direction_deg, .. }
-        | Discontinuity::Disc { name, dip_deg, dip_direction_deg, .. }) = joint;
-        if name.trim().is_empty() {
+        if joint.name().trim().is_empty() {
             self.report(Code::BadName, field("name"), "a joint has a name", "node sets go by it");
         }
-        if !(0.0..=90.0).contains(dip_deg) {
+        let [dip_deg, dip_direction_deg] = joint.orientation_deg().unwrap_or_default();
+        if !(0.0..=90.0).contains(&dip_deg) {
             let message = format!("{dip_deg}°: must be from 0 to 90");
             self.error(field("dip_deg"), message, "0 is level, 90 upright");
         }
-        if !(-360.0..=360.0).contains(dip_direction_deg) {
+        if !(-360.0..=360.0).contains(&dip_direction_deg) {
             let message = format!("{dip_direction_deg}°: must be from -360 to 360");
             self.error(field("dip_direction_deg"), message, "0 is north (y), 90 east (x)");
         }
@@ -149,10 +178,29 @@ impl Check<'_> {
                 self.scatter(path, *spacing_m, *orientation_scatter, *spacing_scatter);
             }
             Discontinuity::Plane { point_m, .. } => self.numbers(&field("point_m"), point_m),
-            Discontinuity::Disc { center_m, radius_m, .. } => {
+            Discontinuity::Disc { center_m, radius_m, rule, .. } => {
                 self.numbers(&field("center_m"), center_m);
                 self.positive(field("radius_m"), *radius_m, "m");
+                self.disc_rule(field("rule"), *rule);
             }
+            Discontinuity::Discs { file, rule, .. } => {
+                self.disc_rule(field("rule"), *rule);
+                let before = self.found.len();
+                self.file(field("file"), file, folder);
+                let table = folder.filter(|_| before == self.found.len());
+                if let Some(Err(error)) = table.map(|folder| joint_table::discs(&folder.join(file))) {
+                    self.report(Code::OutOfRange, field("file"), error.to_string(), DISC_COLUMNS);
+                }
+            }
+        }
+    }
+
+    fn disc_rule(&mut self, path: String, rule: DiscRule) {
+        if let DiscRule::Share(share) = rule
+            && !(0.0..=1.0).contains(&share)
+        {
+            let message = format!("{share}: must be from 0 to 1");
+            self.error(path, message, "Share(0.5) cuts blocks of whose section the disc covers half");
         }
     }
 

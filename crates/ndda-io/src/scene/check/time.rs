@@ -2,12 +2,15 @@
 
 use super::{Check, MOST_STEPS};
 use crate::scene::code::Code;
+use crate::scene::is_unset;
 use crate::scene::{ContactAt, Integrator, Solver, Step};
 
 impl Check<'_> {
     pub(super) fn time(&mut self) {
         let time = &self.scene.time;
-        self.positive("time.step_s".into(), time.step_s, "s");
+        if !is_unset(&time.step_s) {
+            self.positive("time.step_s".into(), time.step_s, "s");
+        }
         self.positive("time.end_s".into(), time.end_s, "s");
         if time.step_s > 0.0 && time.end_s > 0.0 {
             if time.end_s < time.step_s {

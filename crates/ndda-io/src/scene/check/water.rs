@@ -1,8 +1,8 @@
 //! Checks of water.
 
-use super::{CELLS, Check};
+use super::Check;
 use crate::scene::code::Code;
-use crate::scene::{Pressure, Wet, matches};
+use crate::scene::{Pressure, Wet};
 
 impl Check<'_> {
     pub(super) fn water(&mut self) {
@@ -22,13 +22,7 @@ impl Check<'_> {
     }
 
     fn wet_joint(&mut self, path: String, name: &str) {
-        let scene = self.scene;
-        let mut names: Vec<&str> =
-            scene.rock.iter().flat_map(|rock| &rock.joints).map(|joint| joint.name()).collect();
-        names.extend(scene.rock.iter().filter(|rock| rock.voronoi.is_some()).map(|_| CELLS));
-        if !names.iter().any(|known| matches(name, known)) {
-            self.known(path, "joint", name, &names);
-        }
+        self.known_joint(path, name);
     }
 
     fn pressure(&mut self, path: &str, pressure: &Pressure) {

@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::scene::suggest::nearest;
+use crate::scene::units::DIMENSIONS;
+
 /// A distribution of one number of a scene, in the unit of its field.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Distribution {
@@ -33,6 +36,23 @@ impl Distribution {
                      Triangular(least, likeliest, largest)")
         });
         Some(read.and_then(|read| read.check().map(|()| read)))
+    }
+
+    /// Why a text that looks like a distribution is none: numbers in the brackets of a name that is no unit.
+    pub(super) fn misspelt(text: &str) -> Option<String> {
+        let (name, inside) = text.strip_suffix(')')?.split_once('(')?;
+        let name = name.trim();
+        let numbers = inside.split(',').map(|part| part.trim().parse::<f64>());
+        let count = numbers.collect::<Result<Vec<f64>, _>>().ok()?.len();
+        if name.is_empty() || DIMENSIONS.iter().any(|dimension| dimension.unit(name).is_some()) {
+            return None;
+        }
+        // One number may have a unit that is misspelt.
+        match nearest(name, &NAMES) {
+            Some(near) => Some(format!("`{name}` is no distribution: did you mean `{near}`?")),
+            None if count > 1 => Some(format!("`{name}` is no distribution; there is {}", NAMES.join(", "))),
+            None => None,
+        }
     }
 
     /// Whether its parameters make sense.

@@ -39,7 +39,12 @@ fn axis(text: &str) -> Result<Axis, SceneErrors> {
         let distribution = read.map_err(|reason| refuse(reason, help))?;
         return Ok(Axis::Random { path, distribution, name: None });
     }
+    if let Some(reason) = Distribution::misspelt(values) {
+        return Err(refuse(reason, help));
+    }
     let raw = |value: &str| {
+        locate::one_value(value.trim())
+            .map_err(|reason| refuse(format!("`{}` {reason}", value.trim()), help))?;
         RawValue::from_boxed_ron(value.trim().into())
             .map_err(|error| refuse(format!("`{}` is no value: {error}", value.trim()), help))
     };
@@ -91,6 +96,14 @@ mod tests {
     }
 
     #[test]
+    fn units_and_choices_are_values() {
+        for text in ["a_m=Millimetre(1, 2, 3)", "a=Degrees(30),Degrees(2)", "a=Newmark(alpha: 0.5, delta: 1)"]
+        {
+            assert!(matches!(read(&[text]).unwrap()[0], Axis::Vary { .. }), "{text}");
+        }
+    }
+
+    #[test]
     fn axes_of_one_name_go_by_their_paths() {
         let axes = read(&["a.phi=1,2", "b.phi=3"]).unwrap();
         assert_eq!([axes[0].name(), axes[1].name()], ["a.phi", "b.phi"]);
@@ -103,7 +116,11 @@ mod tests {
             ("=3", "needs a path"),
             ("a=1,,2", "no value"),
             ("a=Normal(3)", "Normal(mean"),
-            ("a=(1", "no value"),
+            ("a=(1", "`(` is not closed"),
+            ("a=Norml(30, 2)", "did you mean `Normal`?"),
+            ("a=normal(30, 2)", "did you mean `Normal`?"),
+            ("a=Trianglar(1, 2, 3)", "did you mean `Triangular`?"),
+            ("a=Gauss(30, 2)", "`Gauss` is no distribution"),
         ] {
             let said = read(&[text]).unwrap_err();
             assert!(said.contains(word) && said.contains("--vary"), "{said}");

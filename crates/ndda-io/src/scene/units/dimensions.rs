@@ -143,7 +143,7 @@ impl Dimension {
     }
 
     /// The unit of this name.
-    pub(super) fn unit(&self, name: &str) -> Option<&'static Unit> {
+    pub(crate) fn unit(&self, name: &str) -> Option<&'static Unit> {
         self.units.iter().find(|unit| unit.name == name)
     }
 }

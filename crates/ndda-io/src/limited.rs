@@ -1,0 +1,59 @@
+//! Reading files that somebody else has made: never more than a limit, and no devices, which may have no end.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// Most bytes of a scene or table: 256 MiB.
+pub const MOST_BYTES: u64 = 1 << 28;
+
+/// The bytes of a regular file of at most [`MOST_BYTES`].
+///
+/// # Errors
+/// It cannot be read, is a folder, a pipe or a device, or is larger.
+pub fn file(path: &Path) -> io::Result<Vec<u8>> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::other("it is a folder, a pipe or a device: name a file"));
+    }
+    stream(path)
+}
+
+/// As [`file`], but what is no folder may also be a pipe.
+///
+/// # Errors
+/// It cannot be read, or is larger.
+pub fn stream(path: &Path) -> io::Result<Vec<u8>> {
+    at_most(File::open(path)?, MOST_BYTES)
+}
+
+fn at_most(source: impl Read, most: u64) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    source.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        return Err(io::Error::other(format!("it has more than {most} bytes, the most that are read")));
+    }
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_read_up_to_the_limit_and_not_beyond() {
+        assert_eq!(at_most(&b"abcd"[..], 4).unwrap(), b"abcd");
+        assert!(at_most(&b"abcde"[..], 4).unwrap_err().to_string().contains("more than 4 bytes"));
+        assert!(at_most(io::repeat(0), 1000).is_err());
+    }
+
+    #[test]
+    fn folders_and_devices_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(file(folder.path()).unwrap_err().to_string().contains("name a file"));
+        if Path::new("/dev/zero").exists() {
+            assert!(file(Path::new("/dev/zero")).unwrap_err().to_string().contains("device"));
+        }
+        std::fs::write(folder.path().join("a"), "x").unwrap();
+        assert_eq!(file(&folder.path().join("a")).unwrap(), b"x");
+    }
+}

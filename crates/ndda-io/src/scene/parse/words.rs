@@ -1,0 +1,233 @@
+//! What the parser of RON complains of, in the words of a scene.
+
+use ron::error::{Error as RonError, Position, SpannedError};
+
+use crate::scene::code::Code;
+use crate::scene::diagnostic::Diagnostic;
+use crate::scene::locate::Node;
+use crate::scene::suggest::suggest;
+use crate::scene::units::Resolved;
+
+/// Counts, in words.
+const COUNTS: &str = "counts are whole numbers from 0 to 4294967295";
+/// Where fields and choices are listed.
+const REFERENCE: &str = "docs/reference/scene.md lists the fields and their choices";
+
+/// RON's complaint in the words of a scene, at the place in the source where a person would look.
+pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: &Node) -> Diagnostic {
+    let begins = offset(&plain.text, &error.span.start);
+    let byte = |offset: usize| plain.source(offset).min(text.len());
+    // RON stops before the blank in front of what it does not like.
+    let stops = byte(begins);
+    let blank = text[stops..].len() - text[stops..].trim_start().len();
+    let start = if stops + blank < text.len() { stops + blank } else { stops };
+    let span = start..byte(offset(&plain.text, &error.span.end)).max(start);
+    let path = tree.path_at(start);
+    let at = |code: Code, message: String| Diagnostic::error(code, path.clone(), message, Some(span.clone()));
+    // The name of a choice is said where it is written: `Box(…)`, but not that of `time: (…)`.
+    let of = |outer: &Option<String>| {
+        let word = tree.innermost(start).map_or("", |node| node.word(text));
+        outer.as_ref().filter(|name| *name == word).map_or(String::new(), |name| format!(" of `{name}`"))
+    };
+    match &error.code {
+        RonError::NoSuchStructField { expected, found, outer } => {
+            at(Code::UnknownField, format!("there is no field `{found}`{}", of(outer)))
+                .with_help(suggest(found, expected))
+        }
+        RonError::NoSuchEnumVariant { expected, found, .. } => {
+            let field = path.rsplit('.').next().filter(|field| !field.is_empty() && !field.ends_with(']'));
+            let field = field.map_or("here".to_string(), |field| format!("of `{field}`"));
+            at(Code::UnknownChoice, format!("`{found}` is no choice {field}"))
+                .with_help(suggest(found, expected))
+        }
+        RonError::MissingStructField { field, outer } => {
+            // RON points at the closing bracket; the struct is what lacks the field.
+            let inside = start.saturating_sub(1);
+            let span = tree.innermost(inside).map_or(span.clone(), |node| node.span.clone());
+            let path = tree.path_at(span.start);
+            let message = format!("the field `{field}`{} is missing", of(outer));
+            Diagnostic::error(Code::MissingField, path, message, Some(span))
+                .with_help(format!("write `{field}: …,` (see docs/reference/scene.md)"))
+        }
+        RonError::DuplicateStructField { field, outer } => {
+            at(Code::DuplicateField, format!("the field `{field}`{} is written twice", of(outer)))
+                .with_help("keep one of them")
+        }
+        RonError::Eof => at(Code::Truncated, "the file ends before the scene does".into())
+            .with_help("a closing bracket is missing, or the file was cut off"),
+        RonError::InvalidValueForType { expected, found } => {
+            let message = format!("expected {}, found {}", plain_words(expected), plain_words(found));
+            at(Code::WrongType, message).with_help(REFERENCE)
+        }
+        code => {
+            let (kind, message, help) = no_count(code, &plain.text, begins)
+                .map(|message| (Code::WrongType, message, COUNTS))
+                .unwrap_or_else(|| grammar(code, text, start));
+            at(kind, message).with_help(help)
+        }
+    }
+}
+
+/// That the number around a byte is no count: RON stops at its point, its exponent, or its sign.
+fn no_count(error: &RonError, plain: &str, at: usize) -> Option<String> {
+    let is_inside = match error {
+        RonError::ExpectedComma => true,
+        RonError::ExpectedInteger | RonError::IntegerOutOfBounds => false,
+        _ => return None,
+    };
+    let of_number = |c: &u8| c.is_ascii_digit() || b"._eE+-".contains(c);
+    let bytes = plain.as_bytes();
+    let begins = at - bytes[..at].iter().rev().take_while(|c| of_number(c)).count();
+    let ends = at + bytes[at..].iter().take_while(|c| of_number(c)).count();
+    if is_inside && !(begins < at && at < ends) {
+        return None;
+    }
+    let number = plain[begins..ends].replace('_', "");
+    let value = number.parse::<f64>().ok().filter(|_| number.contains(|c: char| c.is_ascii_digit()))?;
+    Some(match value.fract() == 0.0 {
+        true => format!("{value} is no count that can be used"),
+        false => format!("the value {value} is no whole number"),
+    })
+}
+
+/// Diagnosis of the character that stands where a comma should.
+fn comma(text: &str, at: usize) -> (Code, &'static str, &'static str) {
+    let after_number = text[..at].ends_with(|c: char| c.is_ascii_digit());
+    // At the end, RON shows the bracket before it.
+    let rest = text[at..].trim_start_matches([')', ']']).trim_start();
+    match text[at..].chars().next() {
+        _ if rest.is_empty() => (
+            Code::Truncated,
+            "the file ends before the scene does",
+            "a closing bracket is missing, or the file was cut off",
+        ),
+        Some(c) if after_number && c.is_alphabetic() => (
+            Code::Syntax,
+            "a number has no unit after it",
+            "it is in the unit of the field's name; another one is written around it: Millisecond(0.1)",
+        ),
+        _ => (
+            Code::Syntax,
+            "expected a comma",
+            "a comma is missing before this, a bracket is one too many, or a text above is not closed",
+        ),
+    }
+}
+
+/// What a scene has in the place of what serde calls by other names.
+fn plain_words(text: &str) -> String {
+    let words = [
+        ("the floating point number", "the number"),
+        ("the unsigned integer", "the number"),
+        ("the signed integer", "the number"),
+        ("the boolean", "the word"),
+        ("the string", "the text"),
+        ("the UTF-8 character", "the letter"),
+        ("a unit value", "empty brackets"),
+        ("an optional value", "a value"),
+        ("a sequence", "a list"),
+        ("a map", "values with names"),
+        ("an enum", "a choice"),
+        ("an array of length", "a vector of length"),
+        ("a tuple of size", "a vector of length"),
+        ("a string", "a text in quotes"),
+        ("f64", "a number"),
+        ("u32", "a whole number"),
+        ("u64", "a whole number"),
+        ("usize", "a whole number"),
+    ];
+    let replaced = words.iter().find(|(theirs, _)| text.starts_with(theirs));
+    replaced.map_or(text.to_string(), |(theirs, ours)| text.replacen(theirs, ours, 1))
+}
+
+/// RON's words for what it expected, in those of a scene.
+fn in_words(error: &RonError) -> String {
+    let words = match error {
+        RonError::ExpectedFloat => "expected a number",
+        RonError::ExpectedInteger | RonError::IntegerOutOfBounds => "expected a whole number",
+        RonError::ExpectedString => "expected a text in quotes",
+        RonError::ExpectedIdentifier => "expected one of the choices by its name",
+        RonError::ExpectedBoolean => "expected true or false",
+        RonError::ExpectedArray => "expected a list, which begins with `[`",
+        RonError::ExpectedArrayEnd => "expected a comma, or the `]` that ends the list",
+        RonError::ExpectedMap => "expected values with names, which begin with `{`",
+        RonError::ExpectedMapEnd => "expected a comma, or the `}` at the end",
+        RonError::ExpectedMapColon => "expected a colon after the name of the field",
+        RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_) => {
+            "expected a vector or several fields in round brackets"
+        }
+        RonError::ExpectedStructLikeEnd | RonError::ExpectedOptionEnd => {
+            "one value too many, or a comma or `)` that is missing"
+        }
+        RonError::ExpectedStructName(_) | RonError::ExpectedDifferentStructName { .. } => {
+            "a name before the bracket that does not belong there"
+        }
+        RonError::ExpectedStringEnd => "a text is not closed",
+        RonError::UnclosedBlockComment => "a comment is not closed",
+        RonError::UnclosedLineComment => "the last line is a comment without an end of line",
+        RonError::TrailingCharacters => "something stands after the end of the scene",
+        RonError::ExceededRecursionLimit => "brackets are nested too deeply",
+        RonError::FloatUnderscore | RonError::UnderscoreAtBeginning => {
+            "an underscore in a number stands between two digits"
+        }
+        RonError::ExpectedDifferentLength { expected, found } => {
+            let expected = plain_words(expected);
+            return format!("expected {expected}, found {found} value{}", if *found == 1 { "" } else { "s" });
+        }
+        RonError::UnexpectedChar(c) => return format!("`{c}` does not belong here"),
+        RonError::InvalidIdentifier(name) => return format!("`{name}` is no name of a field or a choice"),
+        RonError::InvalidIntegerDigit { digit, .. } => return format!("`{digit}` is no digit of a number"),
+        other => return lowercase_first(&other.to_string()),
+    };
+    words.into()
+}
+
+/// Kind of a syntax error, what is wrong, and its remedy.
+fn grammar(error: &RonError, text: &str, at: usize) -> (Code, String, &'static str) {
+    let (kind, help) = match error {
+        RonError::ExpectedComma => {
+            let (kind, message, help) = comma(text, at);
+            return (kind, message.into(), help);
+        }
+        RonError::ExpectedMapColon => (Code::Syntax, "a field is `name: value`"),
+        RonError::ExpectedArrayEnd => (Code::Syntax, "a comma or `]` is missing before this"),
+        RonError::ExpectedStructLikeEnd => {
+            (Code::WrongType, "a vector has three numbers; docs/reference/scene.md lists the fields")
+        }
+        RonError::TrailingCharacters => (Code::Syntax, "a bracket before this closes the scene too early"),
+        RonError::ExpectedString => (Code::WrongType, "write the text between quotes: \"text\""),
+        RonError::ExpectedInteger | RonError::IntegerOutOfBounds => (Code::WrongType, COUNTS),
+        RonError::ExpectedFloat => (
+            Code::WrongType,
+            "write a number, such as 1.5 or 20e9, or one with its unit, such as Megapascal(20)",
+        ),
+        RonError::ExpectedIdentifier | RonError::ExpectedDifferentLength { .. } => {
+            (Code::WrongType, REFERENCE)
+        }
+        RonError::ExpectedArray => (Code::WrongType, "a list is written as [first, second]"),
+        RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_) => {
+            (Code::WrongType, "write a vector as (0, 0, -9.8), and fields as (name: value, name: value)")
+        }
+        RonError::ExpectedDifferentStructName { .. } => {
+            (Code::WrongType, "leave the name before the bracket out")
+        }
+        RonError::UnclosedBlockComment => (Code::Truncated, "close it with */"),
+        RonError::ExpectedStringEnd => (Code::Truncated, "close the text with a quote"),
+        _ => (Code::Syntax, REFERENCE),
+    };
+    (kind, in_words(error), help)
+}
+
+fn lowercase_first(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or(String::new(), |first| first.to_lowercase().chain(letters).collect())
+}
+
+/// Byte of a line and column, both from 1 and in characters.
+fn offset(text: &str, position: &Position) -> usize {
+    let line_start =
+        text.split_inclusive('\n').take(position.line.saturating_sub(1)).map(str::len).sum::<usize>();
+    let line = &text[line_start.min(text.len())..];
+    let inside = line.char_indices().nth(position.col.saturating_sub(1)).map_or(line.len(), |(i, _)| i);
+    line_start.min(text.len()) + inside
+}

@@ -1,0 +1,289 @@
+//! Values that a scene leaves out: the penalty from the size of blocks, their loads and speeds, the step from the stability of contact.
+//!
+//! **Penalty.** Contact at rest under a pressure σ lies σ L/(2 k_n) deep, where L is L₀ for `Smooth` and `Closure` and a quarter of the
+//! smallest height of a tetrahedron for `Element`. A block of size s that hits another at the speed v goes v √(ρ s L/(2 k_n)) deep. With
+//! k_n = L (ρ (v² + 2 g H) + 2 σ_l)/(2 ε s) the first is at most ε s, and the second √ε s: ρ is the largest density, g gravity, H the height
+//! of the scene along it, v the largest initial speed, σ_l the largest pressure of loads, ε the `depth_ratio` of the scene. s is the size that
+//! blocks of a twentieth of the volume are below, so that a sliver does not decide. The result is rounded up to 1, 2 or 5 times a power of ten.
+//!
+//! **Step.** The smallest of these, rounded down in the same way: a quarter of what the contact stability number allows (half of the step that `forecast::step` advises), a
+//! hundredth of the run, a tenth of the ramp of gravity and of the shortest time between rows of loads, a tenth of the height of a
+//! tetrahedron at the largest initial speed, and a twentieth of a radian of rotation.
+
+use std::path::Path;
+
+use ndda_io::diagnostic::{Diagnostic, SceneErrors};
+use ndda_io::read::{self, LoadedScene};
+use ndda_io::scene::{Contact, FactorRow, Potential, Scene, Stress, is_unset};
+use ndda_io::summary::Chosen;
+use ndda_mesh::geometry::{Aabb, tet_volume, triangle_area_vector};
+use ndda_mesh::{BlockSet, Vec3};
+
+use crate::build::{self, Fault};
+use crate::forecast::{admit, step};
+
+/// Part of the volume that is in blocks smaller than the size that counts.
+const SMALL: f64 = 0.05;
+/// Penalty of rock without loads or speeds, over Young's modulus, for a potential of the size of a block.
+const OF_YOUNG: f64 = 1e-3;
+/// Steps of a run, at least.
+const FEWEST_STEPS: f64 = 100.0;
+/// Steps in which gravity grows, or a load goes from row to row.
+const STEPS_OF_LOADS: f64 = 10.0;
+/// Part of the step that is advised for contact: half of it is stable, and not always accurate.
+const OF_ADVISED: f64 = 0.5;
+/// Way in a step over the smallest height of a tetrahedron.
+const WAY: f64 = 0.1;
+/// Rotation in a step.
+const TURN: f64 = 0.05;
+
+/// The scene with all values that it leaves out; the scene itself where it leaves out none.
+///
+/// # Errors
+/// Errors of its blocks, and of the scene with what was chosen.
+pub fn complete(loaded: LoadedScene, folder: &Path) -> Result<LoadedScene, SceneErrors> {
+    if loaded.is_complete() {
+        return Ok(loaded);
+    }
+    let located = |faults: Vec<Fault>| {
+        let diagnostics: Vec<Diagnostic> =
+            faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect();
+        loaded.errors(diagnostics)
+    };
+    admit::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
+    let blocks = build::blocks(&loaded.scene, folder).map_err(located)?;
+    let mut scene = loaded.scene.clone();
+    let sizes = Sizes::new(&scene, &blocks);
+    let mut chosen = Vec::new();
+    if let Some(choice) = penalty(&mut scene, &sizes) {
+        chosen.push(choice);
+    }
+    if is_unset(&scene.time.step_s) {
+        chosen.push(step_of(&mut scene, &sizes, blocks, folder).map_err(located)?);
+    }
+    loaded.with_chosen(chosen, folder)
+}
+
+/// The values that were chosen, as `path=value`.
+pub fn as_overrides(chosen: &[Chosen]) -> Vec<String> {
+    chosen.iter().map(|choice| format!("{}={:e}", choice.path, choice.value)).collect()
+}
+
+/// Writes values that were chosen into the file of a scene, with their reasons as comments.
+///
+/// # Errors
+/// Why the file cannot be read or written, or has no place for a value.
+pub fn write(file: &Path, chosen: &[Chosen]) -> Result<(), String> {
+    if chosen.is_empty() {
+        return Ok(());
+    }
+    let text = read::text_of(file).map_err(|errors| errors.render(false))?;
+    let text = read::with_values(&text, chosen).map_err(|refused| refused.message)?;
+    ndda_io::atomic::write(file, text.as_bytes()).map_err(|error| error.to_string())
+}
+
+/// What the blocks of a scene and their loads amount to.
+struct Sizes {
+    /// Size that blocks of a twentieth of the volume are below [m].
+    block_m: f64,
+    /// Smallest height of a tetrahedron of blocks that move [m].
+    height_m: f64,
+    /// Extent of all blocks along gravity [m].
+    fall_m: f64,
+    gravity_m_s2: f64,
+    density_kg_m3: f64,
+    young_pa: f64,
+    /// Largest initial speed [m/s] and spin [rad/s].
+    speed_m_s: f64,
+    spin_rad_s: f64,
+    /// Largest pressure of loads [Pa].
+    load_pa: f64,
+}
+
+impl Sizes {
+    fn new(scene: &Scene, blocks: &BlockSet) -> Self {
+        let moving = build::moving(scene, blocks);
+        let (mut volumes, mut height_m, mut materials) = (Vec::new(), f64::INFINITY, Vec::new());
+        for (block, moves) in blocks.ids().zip(&moving) {
+            let Some((material, _)) = moves else { continue };
+            materials.push(&scene.materials[*material]);
+            let mut volume = 0.0;
+            for tet in blocks.tets_of(block) {
+                let corners = blocks.tets[tet].map(|n| blocks.rest_position[n.index()]);
+                let own = tet_volume(&corners);
+                volume += own;
+                height_m = height_m.min(height(&corners, own));
+            }
+            volumes.push(volume);
+        }
+        let gravity = Vec3::from(scene.gravity_m_s2);
+        let extent = Aabb::around(&blocks.rest_position);
+        let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let norm = |v: [f64; 3]| Vec3::from(v).norm();
+        let block_m = small(volumes).cbrt();
+        Self {
+            block_m,
+            height_m,
+            fall_m: gravity.abs().dot(&(extent.max - extent.min)) / gravity.norm().max(f64::MIN_POSITIVE),
+            gravity_m_s2: gravity.norm(),
+            density_kg_m3: most(&mut materials.iter().map(|material| material.density_kg_m3)),
+            young_pa: most(&mut materials.iter().map(|material| material.young_pa)),
+            speed_m_s: most(&mut scene.blocks.iter().map(|block| norm(block.velocity_m_s))),
+            spin_rad_s: most(&mut scene.blocks.iter().map(|block| norm(block.spin_rad_s))),
+            load_pa: loads_pa(scene, block_m),
+        }
+    }
+}
+
+/// Largest pressure of tractions, forces on a face of a block, and stress in the ground [Pa].
+fn loads_pa(scene: &Scene, block_m: f64) -> f64 {
+    let norm = |v: [f64; 3]| Vec3::from(v).norm();
+    let factor = |rows: &[FactorRow]| match rows.is_empty() {
+        true => 1.0,
+        false => rows.iter().map(|row| row.factor.abs()).fold(0.0, f64::max),
+    };
+    let tractions = scene.tractions.iter().map(|load| norm(load.traction_pa) * factor(&load.factor));
+    let forces = scene.forces.iter().map(|load| norm(load.force_n) * factor(&load.factor) / block_m.powi(2));
+    let largest =
+        |s: &Stress| [s.xx, s.yy, s.zz, s.xy, s.yz, s.zx].into_iter().map(f64::abs).fold(0.0, f64::max);
+    let stress = scene.in_situ.iter().map(|stress| largest(&stress.stress_pa));
+    tractions.chain(forces).chain(stress).fold(0.0, f64::max)
+}
+
+/// Smallest height of a tetrahedron [m].
+fn height(corners: &[Vec3; 4], volume_m3: f64) -> f64 {
+    let faces = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
+    let area = |face: [usize; 3]| triangle_area_vector(&face.map(|i| corners[i])).norm();
+    3.0 * volume_m3 / faces.into_iter().map(area).fold(0.0, f64::max)
+}
+
+/// The volume of the block below which lies a twentieth of all; 1 m³ where nothing moves.
+fn small(mut volumes: Vec<f64>) -> f64 {
+    volumes.sort_by(f64::total_cmp);
+    let limit = SMALL * volumes.iter().sum::<f64>();
+    let mut below = 0.0;
+    for volume in volumes {
+        below += volume;
+        if below >= limit {
+            return volume;
+        }
+    }
+    1.0
+}
+
+/// Chooses the penalty where it is left out.
+fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
+    let Some(Contact::Potential { penalty_pa, potential, depth_ratio, .. }) = &mut scene.contact else {
+        return None;
+    };
+    if !is_unset(penalty_pa) {
+        return None;
+    }
+    let length_m = match potential {
+        Potential::Smooth { reference_m } | Potential::Closure { reference_m, .. } => *reference_m,
+        Potential::Element | Potential::Volume { .. } => 0.25 * sizes.height_m,
+    };
+    let Sizes { block_m, fall_m, gravity_m_s2: g, density_kg_m3: rho, speed_m_s: v, load_pa, .. } = *sizes;
+    let pressure_pa = rho * (v * v + 2.0 * g * fall_m) + 2.0 * load_pa;
+    let (value, why) = match pressure_pa > 0.0 {
+        true => (
+            length_m * pressure_pa / (2.0 * *depth_ratio * block_m),
+            format!(
+                "blocks of {} at rest under what lies {} above them are at most {depth_ratio:e} of their size in each other",
+                metres(block_m),
+                metres(fall_m)
+            ),
+        ),
+        false => (
+            OF_YOUNG * sizes.young_pa * length_m / block_m,
+            format!(
+                "no loads and no speeds: {OF_YOUNG:e} of Young's modulus for blocks of {}",
+                metres(block_m)
+            ),
+        ),
+    };
+    *penalty_pa = rounded_up(value);
+    Some(Chosen { path: "contact.penalty_pa".into(), value: *penalty_pa, reason: why })
+}
+
+/// Chooses the step.
+fn step_of(scene: &mut Scene, sizes: &Sizes, blocks: BlockSet, folder: &Path) -> Result<Chosen, Vec<Fault>> {
+    let end_s = scene.time.end_s;
+    let mut limits = vec![(end_s / FEWEST_STEPS, "a hundredth of the run".to_string())];
+    if scene.gravity_ramp_s > 0.0 {
+        limits.push((scene.gravity_ramp_s / STEPS_OF_LOADS, "a tenth of gravity_ramp_s".into()));
+    }
+    let rows =
+        scene.tractions.iter().map(|load| &load.factor).chain(scene.forces.iter().map(|load| &load.factor));
+    let gaps = rows.flat_map(|rows| rows.windows(2).map(|pair| pair[1].time_s - pair[0].time_s));
+    if let Some(gap_s) = gaps.filter(|gap| *gap > 0.0).reduce(f64::min) {
+        limits.push((gap_s / STEPS_OF_LOADS, "a tenth of the time between two rows of a load".into()));
+    }
+    if sizes.speed_m_s > 0.0 && sizes.height_m.is_finite() {
+        let way_s = WAY * sizes.height_m / sizes.speed_m_s;
+        limits.push((way_s, "blocks go a tenth of the height of a tetrahedron in it".into()));
+    }
+    if sizes.spin_rad_s > 0.0 {
+        limits.push((TURN / sizes.spin_rad_s, "blocks turn by 0.05 rad in it".into()));
+    }
+    // Any step serves to ask for the stability of contact, which does not depend on it.
+    scene.time.step_s = limits[0].0;
+    let mut simulation = build::simulation(scene, blocks, folder)?;
+    if let Some(advice) = step::advise(scene, &mut simulation) {
+        let block = &advice.worst().block;
+        limits.push((
+            OF_ADVISED * advice.step_s,
+            format!("a quarter of what contact is stable at, for block `{block}`"),
+        ));
+    }
+    let least = limits.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a });
+    let (step_s, reason) = least.expect("there is one limit at least");
+    scene.time.step_s = rounded_down(step_s);
+    Ok(Chosen { path: "time.step_s".into(), value: scene.time.step_s, reason })
+}
+
+/// A length in metres with two digits.
+fn metres(length_m: f64) -> String {
+    if (0.01..1e4).contains(&length_m) { format!("{length_m:.2} m") } else { format!("{length_m:.1e} m") }
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is not above a value.
+fn rounded_down(value: f64) -> f64 {
+    let exponent = value.log10().floor() as i32;
+    let digits = (1.0 + 1e-12) * value / 10f64.powi(exponent);
+    let digit = [5, 2, 1].into_iter().find(|digit| f64::from(*digit) <= digits).unwrap_or(1);
+    // Read from its digits, so that it is the number that a person would write.
+    format!("{digit}e{exponent}").parse().unwrap_or(value)
+}
+
+/// The smallest of 1, 2 and 5 times a power of ten that is not below a value.
+fn rounded_up(value: f64) -> f64 {
+    let below = rounded_down(value);
+    if below >= value * (1.0 - 1e-12) { below } else { rounded_down(2.6 * below) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_rounded_to_what_a_person_would_write() {
+        for (value, down, up) in [
+            (1.0, 1.0, 1.0),
+            (1.9e-5, 1e-5, 2e-5),
+            (2e-5, 2e-5, 2e-5),
+            (4.9e9, 2e9, 5e9),
+            (5.1e9, 5e9, 1e10),
+            (9.99e-3, 5e-3, 1e-2),
+        ] {
+            assert_eq!((rounded_down(value), rounded_up(value)), (down, up), "{value}");
+        }
+    }
+
+    #[test]
+    fn a_sliver_does_not_decide_on_the_size_of_blocks() {
+        assert_eq!(small(vec![1e-9, 1.0, 1.0, 1.0]), 1.0);
+        assert_eq!(small(vec![0.5, 1.0, 1.0]), 0.5);
+        assert_eq!(small(Vec::new()), 1.0);
+    }
+}
