@@ -1,18 +1,25 @@
 //! A simulation that Python steps.
 
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use ndda::driver::{BlockId, Driver, DriverSnapshot, Vec3};
-use ndda_solver::{Sample, StepError};
-use numpy::{PyArray2, PyReadwriteArray2};
-use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use ndda::driver::{
+    BlockId, ChangeError, Driver, DriverRestoreError, DriverSnapshot, LoadError, Parts, Vec3,
+};
+use ndda_solver::{Sample, Settled, StepError};
+use numpy::{PyArray1, PyArray2, PyReadwriteArray2};
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use pyo3::types::{PyBytes, PyDict};
+use rayon::ThreadPool;
 
 use crate::arrays;
 use crate::errors::{scene_error, stop_error};
-use crate::scene::Scene;
+use crate::law::{self, Raised};
+use crate::scene::{Scene, warnings};
+use crate::watched::{pool, watched, within};
 
 /// How long steps go on before Ctrl-C is looked for.
 const SLICE: Duration = Duration::from_millis(50);
@@ -23,19 +30,13 @@ pub struct Simulation {
     driver: Driver,
     /// Threads of its own, where a number of them was requested.
     pool: Option<ThreadPool>,
+    /// The exception of a law in Python.
+    raised: Raised,
 }
 
 /// A copy of all that changes in a simulation; `Simulation.restore` takes it.
 #[pyclass(frozen, module = "ndda")]
 pub struct Snapshot(DriverSnapshot);
-
-/// Does work on the threads of a pool, or of the process.
-fn within<R: Send>(pool: Option<&ThreadPool>, work: impl FnOnce() -> R + Send) -> R {
-    match pool {
-        Some(pool) => pool.install(work),
-        None => work(),
-    }
-}
 
 /// Steps until `left` is zero or the slice of time is over.
 fn slice(driver: &mut Driver, left: &mut u64) -> Result<(), StepError> {
@@ -50,9 +51,9 @@ fn slice(driver: &mut Driver, left: &mut u64) -> Result<(), StepError> {
     Ok(())
 }
 
-fn energies<'py>(py: Python<'py>, sample: &Sample) -> PyResult<Bound<'py, PyDict>> {
-    let dict = PyDict::new(py);
-    for (name, value) in [
+/// Energies and works with their names [J].
+fn energies(sample: &Sample) -> [(&'static str, f64); 11] {
+    [
         ("kinetic_j", sample.kinetic_j),
         ("strain_j", sample.strain_j),
         ("contact_j", sample.contact_j),
@@ -64,42 +65,99 @@ fn energies<'py>(py: Python<'py>, sample: &Sample) -> PyResult<Bound<'py, PyDict
         ("load_work_j", sample.load_work_j),
         ("damping_work_j", sample.damping_work_j),
         ("balance_j", sample.balance_j),
-    ] {
-        dict.set_item(name, value)?;
-    }
-    Ok(dict)
+    ]
+}
+
+/// The exception of a law in Python, where there is one.
+fn own_or(raised: &Raised, other: impl FnOnce() -> PyErr) -> PyErr {
+    raised.lock().ok().and_then(|mut raised| raised.take()).unwrap_or_else(other)
+}
+
+/// A driver at the start of a scene.
+fn begun(
+    py: Python<'_>,
+    scene: &Scene,
+    pool: Option<&ThreadPool>,
+    parts: Option<Parts>,
+    raised: &Raised,
+) -> PyResult<Driver> {
+    let driver = watched(py, |watch| {
+        let mut settling = |_: &Settled| match watch.stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
+        within(pool, || {
+            scene.model(parts.as_ref()).map(|model| Driver::with_parts(model, parts, &mut settling))
+        })
+    })?;
+    let driver = driver.map_err(|errors| scene_error(py, &errors))?;
+    driver.map_err(|stop| own_or(raised, || stop_error(py, &stop)))
+}
+
+/// A driver that goes on from what `Simulation.save` wrote, or from a run in a folder.
+fn saved(py: Python<'_>, path: &Path, pool: Option<&ThreadPool>, parts: Option<Parts>) -> PyResult<Driver> {
+    let loaded = py.detach(|| within(pool, || Driver::load(path, parts)));
+    loaded.map_err(|error| match &error {
+        LoadError::Scene(errors) => scene_error(py, errors),
+        other => PyValueError::new_err(other.to_string()),
+    })
 }
 
 #[pymethods]
 impl Simulation {
+    /// A scene at its start, or where a saved simulation was.
     #[new]
-    #[pyo3(signature = (scene, *, threads=None, contacts=false))]
-    fn new(py: Python<'_>, scene: &Scene, threads: Option<usize>, contacts: bool) -> PyResult<Self> {
-        if threads == Some(0) {
-            return Err(PyValueError::new_err("threads is 0: give at least 1, or None for all processors"));
-        }
-        let pool = threads.map(|count| ThreadPoolBuilder::new().num_threads(count).build()).transpose();
-        let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-        let model = py.detach(|| within(pool.as_ref(), || scene.model())).map_err(|e| scene_error(py, &e))?;
-        let driver = py.detach(|| within(pool.as_ref(), || Driver::new(model)));
-        let mut driver = driver.map_err(|stop| stop_error(py, &stop))?;
+    #[pyo3(signature = (source, *, threads=None, contacts=false, law=None, law_state=0, law_stiffness=0.0))]
+    fn new(
+        py: Python<'_>,
+        source: &Bound<'_, PyAny>,
+        threads: Option<usize>,
+        contacts: bool,
+        law: Option<&Bound<'_, PyAny>>,
+        law_state: usize,
+        law_stiffness: f64,
+    ) -> PyResult<Self> {
+        let pool = pool(threads)?;
+        let (parts, raised) = law.map(|law| law::parts(law, law_state, law_stiffness)).unzip();
+        let raised = raised.unwrap_or_default();
+        let mut driver = match source.cast::<Scene>() {
+            Ok(scene) => begun(py, scene.get(), pool.as_ref(), parts, &raised)?,
+            Err(_) => saved(py, &source.extract::<PathBuf>()?, pool.as_ref(), parts)?,
+        };
         driver.watch_contacts(contacts);
-        Ok(Self { driver, pool })
+        Ok(Self { driver, pool, raised })
     }
 
     /// Takes `n` steps; other Python threads run meanwhile, and Ctrl-C ends it after a step.
     #[pyo3(signature = (n=1))]
     fn step(&mut self, py: Python<'_>, n: u64) -> PyResult<()> {
-        let Self { driver, pool } = self;
         let mut left = n;
         loop {
-            let done = py.detach(|| within(pool.as_ref(), || slice(driver, &mut left)));
-            done.map_err(|stop| stop_error(py, &stop))?;
+            self.some_steps(py, &mut left)?;
             if left == 0 {
                 return Ok(());
             }
             py.check_signals()?;
         }
+    }
+
+    /// Takes at most `n` steps, as many as there is time for between two looks at the clock; returns how many are left.
+    fn _some_steps(&mut self, py: Python<'_>, n: u64) -> PyResult<u64> {
+        let mut left = n;
+        self.some_steps(py, &mut left)?;
+        py.check_signals().map(|()| left)
+    }
+
+    /// Scene, changes included.
+    #[getter]
+    fn scene(&self) -> Scene {
+        let model = self.driver.model();
+        Scene { loaded: model.loaded.clone(), folder: model.folder.clone() }
+    }
+
+    /// Warnings of the scene.
+    fn _warnings<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        warnings(py, &self.driver.model().loaded)
     }
 
     /// Steps done.
@@ -137,6 +195,25 @@ impl Simulation {
         self.driver.simulation().blocks().node_starts().to_vec()
     }
 
+    /// Mass centre of each block [m].
+    fn _centers<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.usable(py)?;
+        let simulation = self.driver.simulation();
+        let (blocks, position) = (simulation.blocks(), &simulation.state().position);
+        let center = |block| {
+            let own = &position[blocks.nodes_of(block)];
+            (simulation.shape(block).operator.center(own) + blocks.origin_m).into()
+        };
+        arrays::rows(py, blocks.ids().map(center).collect())
+    }
+
+    /// Mass of each block [kg].
+    fn _masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let simulation = self.driver.simulation();
+        let masses = simulation.blocks().ids().map(|block| simulation.shape(block).operator.mass_kg);
+        PyArray1::from_vec(py, masses.collect())
+    }
+
     /// A quantity of the nodes, in a new read-only array, or in `out`.
     fn _nodes<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.usable(py)?;
@@ -168,7 +245,9 @@ impl Simulation {
     #[getter]
     fn energies<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let sample = self.driver.sample().map_err(|stop| stop_error(py, &stop))?;
-        energies(py, &sample)
+        let dict = PyDict::new(py);
+        energies(&sample).into_iter().try_for_each(|(name, value)| dict.set_item(name, value))?;
+        Ok(dict)
     }
 
     /// The label: `accurate`, `inaccurate` or `stopped`.
@@ -209,18 +288,63 @@ impl Simulation {
         done.map_err(|error| PyValueError::new_err(error.to_string()))
     }
 
+    /// Changes values of the scene from now on.
+    fn _change(&mut self, py: Python<'_>, overrides: Vec<String>) -> PyResult<()> {
+        let Self { driver, pool, raised } = self;
+        let done = py.detach(|| within(pool.as_ref(), || driver.change(&overrides)));
+        done.map_err(|error| match &error {
+            ChangeError::Scene(errors) => scene_error(py, errors),
+            ChangeError::Stopped(stop) => stop_error(py, stop),
+            other => own_or(raised, || PyValueError::new_err(other.to_string())),
+        })
+    }
+
+    /// Writes scene and state to a file.
+    fn save(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
+        self.usable(py)?;
+        self.driver.save(&file).map_err(|error| PyOSError::new_err(error.to_string()))
+    }
+
+    /// A frame of the present state as the content of a VTK file.
+    fn _frame<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        self.usable(py)?;
+        let frame = self.driver.frame().map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        Ok(PyBytes::new(py, &frame))
+    }
+
+    /// Samples of the energies so far, as rows of numbers.
+    fn _history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rows = self.driver.history().iter().map(|sample| {
+            let energies = energies(sample).map(|(_, value)| value);
+            let mut row = [sample.time_s; 12];
+            row[1..].copy_from_slice(&energies);
+            row
+        });
+        arrays::rows(py, rows.collect())
+    }
+
     /// A copy of all that changes.
     fn snapshot(&self) -> Snapshot {
         Snapshot(self.driver.snapshot())
     }
 
     /// Goes on from a snapshot of the same scene, bit for bit.
-    fn restore(&mut self, snapshot: &Snapshot) -> PyResult<()> {
-        self.driver.restore(&snapshot.0).map_err(|error| PyValueError::new_err(error.to_string()))
+    fn restore(&mut self, py: Python<'_>, snapshot: &Snapshot) -> PyResult<()> {
+        self.driver.restore(&snapshot.0).map_err(|error| match &error {
+            DriverRestoreError::Scene(errors) => scene_error(py, errors),
+            other => PyValueError::new_err(other.to_string()),
+        })
     }
 }
 
 impl Simulation {
+    /// Takes steps for a slice of time.
+    fn some_steps(&mut self, py: Python<'_>, left: &mut u64) -> PyResult<()> {
+        let Self { driver, pool, raised } = self;
+        let done = py.detach(|| within(pool.as_ref(), || slice(driver, left)));
+        done.map_err(|stop| own_or(raised, || stop_error(py, &stop)))
+    }
+
     /// Refuses to show a state that a step left half done.
     fn usable(&self, py: Python<'_>) -> PyResult<()> {
         self.driver.stopped().map_or(Ok(()), |stop| Err(stop_error(py, stop)))

@@ -54,7 +54,7 @@ pub struct Explanation {
 
 /// The plan of a scene that is ready to run.
 pub fn explain(model: &mut Model) -> Explanation {
-    let Model { loaded, simulation, monitors } = model;
+    let Model { loaded, simulation, monitors, .. } = model;
     let scene = &loaded.scene;
     let Plan { kinds, factors, mut parts } = simulation.plan();
     parts.extend(phases(scene));

@@ -196,8 +196,9 @@ impl Run {
         settled_s: f64,
         observers: &mut [&mut dyn Sink],
     ) -> Result<Outcome, RunError> {
-        let Self { model: Model { loaded, mut simulation, monitors }, comparison, name, recording, .. } =
-            self;
+        let Self {
+            model: Model { loaded, mut simulation, monitors, .. }, comparison, name, recording, ..
+        } = self;
         let (scene, started) = (&loaded.scene, self.started);
         let (mut log, place) = match recording {
             Some(Recording { identity, folder, log, earlier }) => {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use ndda::safety::{self, Plan, Question, SafetyError, Watch};
-use ndda_io::diagnostic::{Diagnostic, SceneErrors};
+use ndda_io::diagnostic::Diagnostic;
 
 use crate::args::{SafetyArgs, SafetyBy};
 use crate::terminal::console::{complain, complain_unless, say};
@@ -64,14 +64,10 @@ fn find(args: &SafetyArgs) -> u8 {
             say(&format!("{}results in {}{next}", safety::text(&found), safety::file(&out).display()));
             exit::DONE
         }
-        Err(SafetyError::Scene(errors)) => refuse(&errors, events),
+        Err(SafetyError::Scene(errors)) => events.refuse(&errors),
         Err(error) => {
             complain(&format!("error: {error}"));
             exit::of_safety(&error)
         }
     }
-}
-
-fn refuse(errors: &SceneErrors, events: Events) -> u8 {
-    events.refuse(errors)
 }
