@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import sys
 import time
+from importlib.util import find_spec
 from types import TracebackType
 from typing import Any
 
@@ -24,13 +26,18 @@ class Progress:
             self._bar.update(done - self._bar.n)
 
     def _begin(self, done: int) -> None:
+        in_notebook = "ipykernel" in sys.modules
         try:
-            from tqdm.auto import tqdm
+            if in_notebook and find_spec("ipywidgets"):
+                from tqdm.notebook import tqdm
+            else:
+                from tqdm import tqdm
         except ImportError:
             self._wanted = False
             return
         # None: nothing is drawn where nobody looks, as in a log.
-        self._bar = tqdm(total=self._steps, initial=done, unit="step", leave=False, disable=None)
+        disable = False if in_notebook else None
+        self._bar = tqdm(total=self._steps, initial=done, unit="step", leave=False, disable=disable)
 
     def __enter__(self) -> Progress:
         return self
