@@ -14,6 +14,12 @@ use crate::errors::{diagnostic, scene_error, stop_error};
 use crate::watched::{pool, watched, within};
 
 /// A scene that has been read and checked; `ndda.load` and `ndda.parse` make it.
+///
+/// Examples
+/// --------
+/// >>> import ndda
+/// >>> ndda.parse(ndda.EXAMPLE)
+/// <ndda.Scene "A block falls for a second", 100 steps of 0.01 s>
 #[pyclass(frozen, module = "ndda")]
 pub struct Scene {
     pub loaded: LoadedScene,
@@ -39,48 +45,96 @@ impl Scene {
     }
 
     /// Title of the scene.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).title
+    /// 'A block falls for a second'
     #[getter]
     fn title(&self) -> &str {
         &self.loaded.scene.title
     }
 
     /// Text of the scene in RON, overrides included.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).text == ndda.EXAMPLE
+    /// True
     #[getter]
     fn text(&self) -> &str {
         &self.loaded.text
     }
 
     /// The file that it was read from, or `scene.ron` of a text.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).file
+    /// 'scene.ron'
     #[getter]
     fn file(&self) -> &str {
         &self.loaded.file
     }
 
     /// Folder that the file names of the scene are relative to.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> str(ndda.parse(ndda.EXAMPLE).folder)
+    /// '.'
     #[getter]
     fn folder(&self) -> PathBuf {
         self.folder.clone()
     }
 
     /// Time step [s].
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).step_s
+    /// 0.01
     #[getter]
     fn step_s(&self) -> f64 {
         self.loaded.scene.time.step_s
     }
 
     /// Time at which a run of the scene ends [s].
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).end_s
+    /// 1.0
     #[getter]
     fn end_s(&self) -> f64 {
         self.loaded.scene.time.end_s
     }
 
     /// Steps to the end of the scene.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).steps
+    /// 100
     #[getter]
     fn steps(&self) -> u64 {
         ndda::build::steps(&self.loaded.scene.time)
     }
 
     /// Builds the scene and returns its warnings, as dictionaries like those of `SceneError.diagnostics`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).check()
+    /// []
     fn check<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let model = py.detach(|| self.model(None)).map_err(|e| scene_error(py, &e))?;
         warnings(py, &model.loaded)
@@ -92,6 +146,12 @@ impl Scene {
     }
 
     /// The scene as objects of `ndda.builders`, with all that it leaves out.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).to_builder().time.integrator
+    /// Integrator.Midpoint(theta=0.5)
     fn to_builder<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let dictionary = py.import("json")?.call_method1("loads", (self._json()?,))?;
         py.import("ndda.builders")?.getattr("Scene")?.call_method1("from_dict", (dictionary,))

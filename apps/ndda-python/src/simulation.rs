@@ -35,6 +35,12 @@ pub struct Simulation {
 }
 
 /// A copy of all that changes in a simulation; `Simulation.restore` takes it.
+///
+/// Examples
+/// --------
+/// >>> import ndda
+/// >>> isinstance(ndda.Simulation(ndda.parse(ndda.EXAMPLE)).snapshot(), ndda.Snapshot)
+/// True
 #[pyclass(frozen, module = "ndda")]
 pub struct Snapshot(DriverSnapshot);
 
@@ -129,6 +135,14 @@ impl Simulation {
     }
 
     /// Takes `n` steps; other Python threads run meanwhile, and Ctrl-C ends it after a step.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.step(3)
+    /// >>> simulation.step_count
+    /// 3
     #[pyo3(signature = (n=1))]
     fn step(&mut self, py: Python<'_>, n: u64) -> PyResult<()> {
         let mut left = n;
@@ -149,6 +163,13 @@ impl Simulation {
     }
 
     /// Scene, changes included.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.scene.title
+    /// 'A block falls for a second'
     #[getter]
     fn scene(&self) -> Scene {
         let model = self.driver.model();
@@ -161,30 +182,66 @@ impl Simulation {
     }
 
     /// Steps done.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.step_count
+    /// 0
     #[getter]
     fn step_count(&self) -> u64 {
         self.driver.simulation().state().step
     }
 
     /// Steps to the end of the scene.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.steps
+    /// 100
     #[getter]
     fn steps(&self) -> u64 {
         self.driver.steps()
     }
 
     /// Time step [s].
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.step_s
+    /// 0.01
     #[getter]
     fn step_s(&self) -> f64 {
         self.driver.simulation().step_s()
     }
 
     /// Time [s].
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.step(5)
+    /// >>> simulation.time_s
+    /// 0.05
     #[getter]
     fn time_s(&self) -> f64 {
         self.driver.simulation().time_s()
     }
 
     /// Names of the blocks, in the order of the scene.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.block_names
+    /// ['block']
     #[getter]
     fn block_names(&self) -> Vec<String> {
         self.driver.simulation().blocks().names.clone()
@@ -228,7 +285,14 @@ impl Simulation {
         arrays::fill(self.driver.simulation(), name, &mut out)
     }
 
-    /// Cauchy stress xx, yy, zz, xy, yz, zx of each tetrahedron [Pa].
+    /// Cauchy stress xx, yy, zz, xy, yz, zx of each tetrahedron [Pa], shape (tetrahedra, 6), a read-only copy.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.stress.shape
+    /// (6, 6)
     #[getter]
     fn stress<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let stress = self.driver.stress_pa().map_err(|stop| stop_error(py, &stop))?;
@@ -242,6 +306,14 @@ impl Simulation {
     }
 
     /// Energies and works now [J].
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.run()
+    /// >>> round(simulation.energies["kinetic_j"])
+    /// 125107
     #[getter]
     fn energies<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let sample = self.driver.sample().map_err(|stop| stop_error(py, &stop))?;
@@ -251,18 +323,40 @@ impl Simulation {
     }
 
     /// The label: `accurate`, `inaccurate` or `stopped`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.label
+    /// 'accurate'
     #[getter]
     fn label(&mut self) -> &'static str {
         self.driver.label().word.as_str()
     }
 
     /// Why the label is not `accurate`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.reasons
+    /// []
     #[getter]
     fn reasons(&mut self) -> Vec<String> {
         self.driver.label().reasons
     }
 
     /// CRC-32 of the state, as in `summary.json`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.run()
+    /// >>> simulation.state_crc32 == ndda.run(simulation.scene)["state_crc32"]
+    /// True
     #[getter]
     fn state_crc32(&self) -> String {
         self.driver.state_crc32()
@@ -299,7 +393,14 @@ impl Simulation {
         })
     }
 
-    /// Writes scene and state to a file.
+    /// Writes scene and state to a file, whole or not at all; `ndda.resume` goes on from it.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import pathlib, tempfile
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.save(pathlib.Path(tempfile.mkdtemp()) / "state")
     fn save(&self, py: Python<'_>, file: PathBuf) -> PyResult<()> {
         self.usable(py)?;
         self.driver.save(&file).map_err(|error| PyOSError::new_err(error.to_string()))
@@ -324,11 +425,27 @@ impl Simulation {
     }
 
     /// A copy of all that changes.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> kept = simulation.snapshot()
+    /// >>> simulation.step(10)
+    /// >>> simulation.restore(kept)
+    /// >>> simulation.step_count
+    /// 0
     fn snapshot(&self) -> Snapshot {
         Snapshot(self.driver.snapshot())
     }
 
     /// Goes on from a snapshot of the same scene, bit for bit.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+    /// >>> simulation.restore(simulation.snapshot())
     fn restore(&mut self, py: Python<'_>, snapshot: &Snapshot) -> PyResult<()> {
         self.driver.restore(&snapshot.0).map_err(|error| match &error {
             DriverRestoreError::Scene(errors) => scene_error(py, errors),

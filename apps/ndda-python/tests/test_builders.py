@@ -1,6 +1,7 @@
 """Scenes as objects: to RON and back, for every scene of the repository."""
 
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -29,10 +30,11 @@ def test_a_scene_survives_objects_and_back(name: str) -> None:
     assert here == there
 
 
+@pytest.mark.skipif("NDDA_FULL" not in os.environ, reason="NDDA_FULL names no program with `ndda schema`")
 def test_the_builders_are_those_of_the_schema(tmp_path: pathlib.Path) -> None:
-    command = [sys.executable, "-m", "ndda", "schema"]
     schema = tmp_path / "schema.json"
-    schema.write_bytes(subprocess.run(command, check=True, capture_output=True).stdout)
+    said = subprocess.run([os.environ["NDDA_FULL"], "schema"], check=True, capture_output=True)
+    schema.write_bytes(said.stdout)
     command = [sys.executable, str(HERE / "write_builders.py"), str(schema)]
     written = subprocess.run(command, check=True, capture_output=True, text=True, encoding="utf-8").stdout
     assert written == pathlib.Path(builders.__file__).read_text(encoding="utf-8"), "run write_builders.py"

@@ -31,7 +31,15 @@ class Blocks:
         return BlockSelection(self._simulation, pattern)
 
     def __iter__(self) -> Iterator[str]:
-        """Names in the order of the scene."""
+        """Names in the order of the scene.
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> list(simulation.blocks)
+        ['block']
+        """
         return iter(self._simulation.block_names)
 
     def __len__(self) -> int:
@@ -61,46 +69,116 @@ class BlockSelection:
 
     @property
     def names(self) -> list[str]:
-        """Names in the order of the scene."""
+        """Names in the order of the scene.
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.blocks["b*"].names
+        ['block']
+        """
         names = self._simulation.block_names
         return [names[i] for i in self._indices]
 
     @property
     def nodes(self) -> npt.NDArray[np.int64]:
-        """Rows of their nodes in the arrays of nodes."""
+        """Rows of their nodes in the arrays of nodes.
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.blocks["b*"].nodes.tolist()
+        [0, 1, 2, 3, 4, 5, 6, 7]
+        """
         return self._simulation.nodes(self._pattern)
 
     @property
     def position(self) -> npt.NDArray[np.float64]:
-        """Position of their nodes [m], shape (nodes, 3)."""
+        """Position of their nodes [m], shape (nodes, 3).
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.blocks["b*"].position.shape
+        (8, 3)
+        """
         return self._simulation.position[self.nodes]
 
     @property
     def displacement(self) -> npt.NDArray[np.float64]:
-        """Displacement of their nodes since the start [m], shape (nodes, 3)."""
+        """Displacement of their nodes since the start [m], shape (nodes, 3).
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.blocks["b*"].displacement.shape
+        (8, 3)
+        """
         return self._simulation.displacement[self.nodes]
 
     @property
     def velocity(self) -> npt.NDArray[np.float64]:
-        """Velocity of their nodes [m/s], shape (nodes, 3)."""
+        """Velocity of their nodes [m/s], shape (nodes, 3).
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.blocks["b*"].velocity.shape
+        (8, 3)
+        """
         return self._simulation.velocity[self.nodes]
 
     @property
     def center(self) -> npt.NDArray[np.float64]:
-        """Mass centre of each [m], shape (blocks, 3)."""
+        """Mass centre of each [m], shape (blocks, 3).
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.blocks["b*"].center.tolist()
+        [[0.5, 0.5, 0.5]]
+        """
         return self._simulation._centers()[self._indices]
 
     @property
     def mass(self) -> npt.NDArray[np.float64]:
-        """Mass of each [kg], shape (blocks,)."""
+        """Mass of each [kg], shape (blocks,).
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.blocks["b*"].mass.round(6).tolist()
+        [2600.0]
+        """
         return self._simulation._masses()[self._indices]
 
     def set_force(self, force: Sequence[float]) -> None:
-        """Let a force [N] act on each from now on, as `Simulation.set_force`."""
+        """Let a force [N] act on each from now on, as `Simulation.set_force`.
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.blocks["b*"].set_force((0, 0, 100.0))
+        """
         self._simulation.set_force(self._pattern, force)
 
     def set_velocity(self, velocity: Sequence[float], spin: Sequence[float] = (0.0, 0.0, 0.0)) -> None:
-        """Give each a velocity [m/s] and a spin [rad/s] now, as `Simulation.set_velocity`."""
+        """Give each a velocity [m/s] and a spin [rad/s] now, as `Simulation.set_velocity`.
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE))
+        >>> simulation.blocks["b*"].set_velocity((1.0, 0, 0))
+        """
         self._simulation.set_velocity(self._pattern, velocity, spin)
 
     def __len__(self) -> int:
