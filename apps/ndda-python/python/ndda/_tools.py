@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from ndda import _core
@@ -24,6 +22,8 @@ def _folder(out: PathLike | None) -> Iterator[str]:
     if out is not None:
         yield os.fspath(out)
         return
+    import tempfile
+
     with tempfile.TemporaryDirectory(prefix="ndda") as folder:
         yield os.path.join(folder, "out")
 
@@ -125,6 +125,9 @@ def _file(scene: PathLike | _core.Scene) -> Iterator[str]:
     if not isinstance(scene, _core.Scene):
         yield os.fspath(scene)
         return
+    import tempfile
+    from pathlib import Path
+
     file = Path(scene.file)
     if file.is_file() and file.read_text(encoding="utf-8") == scene.text:
         yield scene.file
@@ -290,6 +293,8 @@ def stereonet(
     >>> found["sets"][0]["name"], picture
     ('bedding', <ndda.Picture, svg>)
     """
+    import tempfile
+
     from ndda._view import Picture
 
     options = {"net": net, "slope": slope, "friction_deg": friction_deg, "lateral_deg": lateral_deg}
@@ -356,6 +361,8 @@ def picture(
     >>> ndda.picture(ndda.parse(ndda.EXAMPLE), size=(300, 200))
     <ndda.Picture, png>
     """
+    import tempfile
+
     from ndda._view import Picture
 
     options = {
