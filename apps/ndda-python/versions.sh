@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs the wheel in an empty environment of every Python from 3.10 on that is there, and runs the tests and the notebook beside the peers.
-# Usage: apps/ndda-python/tests/versions.sh
+# Usage: apps/ndda-python/versions.sh
 set -euo pipefail
-cd "$(dirname "$0")/../../.."
+cd "$(dirname "$0")/../.."
 target="${CARGO_TARGET_DIR:-$PWD/target}"
 tools="$target/python-tools"
 [[ -x "$tools/bin/maturin" ]] || { python3 -m venv "$tools" && "$tools/bin/python" -m pip install --quiet 'maturin>=1.9,<2'; }
@@ -34,4 +34,4 @@ venv="$target/peers-venv"
 [[ -x "$venv/bin/python" ]] || python3 -m venv "$venv"
 "$venv/bin/python" -m pip install --quiet --disable-pip-version-check 'mujoco==4.0.0' nbclient ipykernel pandas matplotlib
 "$venv/bin/python" -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps "$target"/wheels/ndda-*.whl
-JUPYTER_PATH="$venv/share/jupyter" "$venv/bin/python" apps/ndda-python/tests/run_notebooks.py benches/peers/beside.ipynb
+JUPYTER_PATH="$venv/share/jupyter" "$venv/bin/python" apps/ndda-python/run_notebooks.py benches/peers/beside.ipynb
