@@ -123,7 +123,8 @@ impl Simulation {
         law_state: usize,
         law_stiffness: f64,
     ) -> PyResult<Self> {
-        let pool = pool(threads)?;
+        // A law is called in a thread of the pool, where Ctrl-C does not break a step off.
+        let pool = pool(threads.or(law.map(|_| rayon::current_num_threads())))?;
         let (parts, raised) = law.map(|law| law::parts(law, law_state, law_stiffness)).unzip();
         let raised = raised.unwrap_or_default();
         let mut driver = match source.cast::<Scene>() {

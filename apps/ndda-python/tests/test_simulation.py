@@ -6,6 +6,7 @@ import pathlib
 import signal
 import subprocess
 import threading
+import tracemalloc
 
 import ndda
 import numpy as np
@@ -130,6 +131,21 @@ def test_arrays_of_the_caller_are_filled(fall: ndda.Simulation) -> None:
         fall.array("velocity", out=np.empty((7, 3)))
     with pytest.raises(ValueError, match="choose one of"):
         fall.array("speed")
+
+
+def test_filling_an_array_allocates_none() -> None:
+    cells = "shape: Box(size_m: (1, 1, 1), cells: (9, 9, 9))"
+    text = ndda.EXAMPLE.replace("shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))", cells)
+    simulation = ndda.Simulation(ndda.parse(text))
+    room = np.empty((1000, 3))
+    simulation.array("position", out=room)
+    tracemalloc.start()
+    for _ in range(100):
+        simulation.array("position", out=room)
+    most = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    # A copy would be 24 kB.
+    assert most < 2000
 
 
 def test_a_cube_in_its_impact_pushes_on_its_plate() -> None:
