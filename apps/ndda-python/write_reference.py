@@ -48,23 +48,26 @@ def items(text):
 
 
 def signature_of(thing):
-    try:
-        found = str(inspect.signature(thing))
-    except (TypeError, ValueError):
-        return "(…)"
-    # Types are in the list of parameters.
-    found = re.sub(r": '[^']*'|: [^=,)]*(?=[=,)])", "", found)
-    return re.sub(r" -> .*$", "", found).replace("self, ", "").replace("(self)", "()").replace(" = ", "=")
+    """The signature without types, which are in the list of parameters."""
+    found = inspect.signature(thing)
+    plain = inspect.Parameter.POSITIONAL_OR_KEYWORD
+    kept = []
+    for one in found.parameters.values():
+        kind = plain if one.kind is inspect.Parameter.POSITIONAL_ONLY else one.kind
+        if one.name not in ("self", "cls"):
+            kept.append(one.replace(annotation=inspect.Parameter.empty, kind=kind))
+    return str(found.replace(parameters=kept, return_annotation=inspect.Signature.empty))
 
 
 def of_class(name, kind, names):
-    out = [entry(2, name, "" if kind.__init__ is object.__init__ else signature_of(kind), kind.__doc__)]
+    # The others are made by functions.
+    out = [entry(2, name, signature_of(kind) if kind is ndda.Simulation else "", kind.__doc__)]
     for member in names:
         found = inspect.getattr_static(kind, member)
         if isinstance(found, property) or inspect.isgetsetdescriptor(found):
             out.append(entry(3, f"{name}.{member}", "", found.__doc__))
         else:
-            out.append(entry(3, f"{name}.{member}", signature_of(found), found.__doc__))
+            out.append(entry(3, f"{name}.{member}", signature_of(getattr(kind, member)), found.__doc__))
     return out
 
 

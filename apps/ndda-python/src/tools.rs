@@ -41,8 +41,9 @@ pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(_record, module)?)
 }
 
+/// The words of the command line, whose options are arguments here.
 fn value_error(error: impl Display) -> PyErr {
-    PyValueError::new_err(error.to_string())
+    PyValueError::new_err(error.to_string().replace("--", ""))
 }
 
 fn study_error(py: Python<'_>, error: &StudyError) -> PyErr {
