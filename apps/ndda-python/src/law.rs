@@ -101,3 +101,8 @@ impl PyLaw {
         Ok(())
     }
 }
+
+/// The exception of a law in Python, where there is one.
+pub fn own_or(raised: &Raised, other: impl FnOnce() -> PyErr) -> PyErr {
+    raised.lock().ok().and_then(|mut raised| raised.take()).unwrap_or_else(other)
+}

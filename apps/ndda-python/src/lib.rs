@@ -3,6 +3,7 @@
 //! Conveniences that are shorter in Python (patterns of names, loops with callbacks, builders, pictures) are in `python/ndda`.
 
 mod arrays;
+mod begin;
 mod errors;
 mod law;
 mod scene;

@@ -1,14 +1,8 @@
 //! A simulation that Python steps.
 
-use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
-use std::sync::atomic::Ordering;
-use std::time::{Duration, Instant};
+use std::path::PathBuf;
 
-use ndda::driver::{
-    BlockId, ChangeError, Driver, DriverRestoreError, DriverSnapshot, LoadError, Parts, Vec3,
-};
-use ndda_solver::{Sample, Settled, StepError};
+use ndda::driver::{BlockId, ChangeError, Driver, DriverRestoreError, DriverSnapshot, Vec3};
 use numpy::{PyArray1, PyArray2, PyReadwriteArray2};
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -16,13 +10,11 @@ use pyo3::types::{PyBytes, PyDict};
 use rayon::ThreadPool;
 
 use crate::arrays;
+use crate::begin::{begun, saved};
 use crate::errors::{scene_error, stop_error};
-use crate::law::{self, Raised};
+use crate::law::{self, Raised, own_or};
 use crate::scene::{Scene, warnings};
-use crate::watched::{pool, watched, within};
-
-/// How long steps go on before Ctrl-C is looked for.
-const SLICE: Duration = Duration::from_millis(50);
+use crate::watched::{pool, slice, within};
 
 /// A scene on its way through time; `ndda.Simulation` wraps it.
 #[pyclass(subclass, module = "ndda._core")]
@@ -43,71 +35,6 @@ pub struct Simulation {
 /// True
 #[pyclass(frozen, module = "ndda")]
 pub struct Snapshot(DriverSnapshot);
-
-/// Steps until `left` is zero or the slice of time is over.
-fn slice(driver: &mut Driver, left: &mut u64) -> Result<(), StepError> {
-    let began = Instant::now();
-    while *left > 0 {
-        driver.step(1)?;
-        *left -= 1;
-        if began.elapsed() >= SLICE {
-            break;
-        }
-    }
-    Ok(())
-}
-
-/// Energies and works with their names [J].
-fn energies(sample: &Sample) -> [(&'static str, f64); 11] {
-    [
-        ("kinetic_j", sample.kinetic_j),
-        ("strain_j", sample.strain_j),
-        ("contact_j", sample.contact_j),
-        ("load_j", sample.load_j),
-        ("spring_j", sample.spring_j),
-        ("total_j", sample.total_j()),
-        ("friction_work_j", sample.friction_work_j),
-        ("motion_work_j", sample.motion_work_j),
-        ("load_work_j", sample.load_work_j),
-        ("damping_work_j", sample.damping_work_j),
-        ("balance_j", sample.balance_j),
-    ]
-}
-
-/// The exception of a law in Python, where there is one.
-fn own_or(raised: &Raised, other: impl FnOnce() -> PyErr) -> PyErr {
-    raised.lock().ok().and_then(|mut raised| raised.take()).unwrap_or_else(other)
-}
-
-/// A driver at the start of a scene.
-fn begun(
-    py: Python<'_>,
-    scene: &Scene,
-    pool: Option<&ThreadPool>,
-    parts: Option<Parts>,
-    raised: &Raised,
-) -> PyResult<Driver> {
-    let driver = watched(py, |watch| {
-        let mut settling = |_: &Settled| match watch.stop.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        };
-        within(pool, || {
-            scene.model(parts.as_ref()).map(|model| Driver::with_parts(model, parts, &mut settling))
-        })
-    })?;
-    let driver = driver.map_err(|errors| scene_error(py, &errors))?;
-    driver.map_err(|stop| own_or(raised, || stop_error(py, &stop)))
-}
-
-/// A driver that goes on from what `Simulation.save` wrote, or from a run in a folder.
-fn saved(py: Python<'_>, path: &Path, pool: Option<&ThreadPool>, parts: Option<Parts>) -> PyResult<Driver> {
-    let loaded = py.detach(|| within(pool, || Driver::load(path, parts)));
-    loaded.map_err(|error| match &error {
-        LoadError::Scene(errors) => scene_error(py, errors),
-        other => PyValueError::new_err(other.to_string()),
-    })
-}
 
 #[pymethods]
 impl Simulation {
@@ -319,7 +246,7 @@ impl Simulation {
     fn energies<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let sample = self.driver.sample().map_err(|stop| stop_error(py, &stop))?;
         let dict = PyDict::new(py);
-        energies(&sample).into_iter().try_for_each(|(name, value)| dict.set_item(name, value))?;
+        arrays::energies(&sample).into_iter().try_for_each(|(name, value)| dict.set_item(name, value))?;
         Ok(dict)
     }
 
@@ -416,13 +343,7 @@ impl Simulation {
 
     /// Samples of the energies so far, as rows of numbers.
     fn _history<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rows = self.driver.history().iter().map(|sample| {
-            let energies = energies(sample).map(|(_, value)| value);
-            let mut row = [sample.time_s; 12];
-            row[1..].copy_from_slice(&energies);
-            row
-        });
-        arrays::rows(py, rows.collect())
+        arrays::rows(py, self.driver.history().iter().map(arrays::sample_row).collect())
     }
 
     /// A copy of all that changes.

@@ -4,14 +4,19 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Arc, Mutex};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
+use ndda::driver::Driver;
+use ndda_solver::StepError;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// How often Ctrl-C is looked for.
 const LOOK: Duration = Duration::from_millis(50);
+
+/// How long steps go on before Ctrl-C is looked for.
+const SLICE: Duration = Duration::from_millis(50);
 
 /// What work is given: a flag that is raised when it is to end, and a listener for lines.
 pub struct Watch<'a> {
@@ -80,4 +85,17 @@ pub fn within<R: Send>(pool: Option<&ThreadPool>, work: impl FnOnce() -> R + Sen
         Some(pool) => pool.install(work),
         None => work(),
     }
+}
+
+/// Steps until `left` is zero or the slice of time is over.
+pub fn slice(driver: &mut Driver, left: &mut u64) -> Result<(), StepError> {
+    let began = Instant::now();
+    while *left > 0 {
+        driver.step(1)?;
+        *left -= 1;
+        if began.elapsed() >= SLICE {
+            break;
+        }
+    }
+    Ok(())
 }
