@@ -24,6 +24,11 @@ for interpreter in $(interpreters); do
   "$interpreter" -m venv "$venv"
   "$venv/bin/python" -m pip install --quiet --disable-pip-version-check "$target"/wheels/ndda-*.whl 'pytest>=8,<10'
   "$venv/bin/python" --version
+  # States are compared with those of the program, scene by scene.
+  if [[ -z "${NDDA:-}" ]]; then
+    cargo build --release --locked
+    export NDDA="$target/release/ndda" NDDA_LONGEST_S=2
+  fi
   passed="$(cd "$venv" && bin/python -m pytest -q --doctest-modules --pyargs ndda "$OLDPWD/apps/ndda-python/tests" | tee /dev/stderr | grep -oE '[0-9]+ passed' | grep -oE '[0-9]+')"
   # As cargo says it, for .ci/nightly.
   echo "test result: ok. $passed passed"
