@@ -11,6 +11,7 @@ import sys
 import threading
 
 import ndda
+import numpy as np
 import pytest
 
 SCENES = pathlib.Path(__file__).resolve().parents[3] / "scenes"
@@ -113,6 +114,30 @@ def test_results_are_tables_and_meshes(tmp_path: pathlib.Path) -> None:
     mesh = results.mesh(0.5)
     assert isinstance(mesh, meshio.Mesh)
     assert mesh.point_data["displacement_m"][:, 2] == pytest.approx(-0.5 * 9.81 * 0.25, rel=1e-6)
+
+
+def test_arguments_that_make_no_sense_are_refused_in_words() -> None:
+    simulation = ndda.Simulation(fall())
+    for until in (math.nan, math.inf):
+        with pytest.raises(ValueError, match="give a time"):
+            simulation.run(until=until)
+    with pytest.raises(ValueError, match="at least 0"):
+        simulation.run(frames=-1)
+    with pytest.raises(TypeError, match="is no scene"):
+        ndda.Simulation(3)
+    with pytest.raises(TypeError, match="function of facets"):
+        ndda.Simulation(fall(), law=3)
+    with pytest.raises(ValueError, match="nothing varies"):
+        ndda.study(fall())
+    with pytest.raises(ndda.SceneError, match="unreadable"):
+        ndda.certify("no_such_scene.ron")
+
+
+def test_rows_of_arrays_are_vectors_of_a_scene() -> None:
+    simulation = ndda.Simulation(fall(gravity_m_s2=np.array([0.0, 0.0, -1.0])))
+    simulation.run()
+    simulation.change(**{"time.end_s": np.float64(2.0)})
+    assert simulation.velocity[:, 2] == pytest.approx(-1.0, rel=1e-9) and simulation.steps == 200
 
 
 def test_runs_are_not_replaced_unless_told(tmp_path: pathlib.Path) -> None:

@@ -64,6 +64,8 @@ class Law(Protocol):
 
 def adapted_law(law: Law) -> dict[str, Any]:
     """What the native simulation takes: a function of arrays, and two numbers of the law."""
+    if not callable(law):
+        raise TypeError(f"law is {law!r}: give a function of facets")
 
     def call(given: dict[str, Any]) -> npt.NDArray[np.float64]:
         facets = Facets(**given)

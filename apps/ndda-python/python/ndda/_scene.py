@@ -24,6 +24,10 @@ EXAMPLE = """Scene(
 
 def value_in_ron(value: object) -> str:
     """Write a value in RON; a string is RON already, and builders write themselves."""
+    if hasattr(value, "tolist"):
+        # A row of an array is a vector.
+        value = value.tolist()
+        value = tuple(value) if isinstance(value, list) else value
     if isinstance(value, bool):
         return "true" if value else "false"
     if value is None:
@@ -115,6 +119,8 @@ def parse(
         from ndda.builders import Scene as SceneBuilder
 
         built = SceneBuilder.from_dict(scene) if isinstance(scene, Mapping) else scene
+        if not isinstance(built, SceneBuilder):
+            raise TypeError(f"{built!r} is no scene: give a text, a dictionary, or a builders.Scene; `load` reads files")
         text = built.to_ron()
     return Scene._parse(text, overrides_of(overrides), os.fspath(folder))
 
@@ -166,6 +172,11 @@ def run(
         text = _core._record(scene, os.fspath(out), name_of(scene), force, threads)
     summary: dict[str, Any] = json.loads(text)
     return summary
+
+
+def scene_of(scene: Scene | str | os.PathLike[str]) -> Scene:
+    """The scene itself, or the one in a file."""
+    return scene if isinstance(scene, Scene) else load(scene)
 
 
 def name_of(scene: Scene) -> str:

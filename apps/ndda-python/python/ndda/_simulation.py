@@ -138,7 +138,7 @@ class Simulation(_core.Simulation):
         StopError
             A step would have given a wrong number.
         ValueError
-            `until` lies in the past, or `every` is no number of steps.
+            `until` lies in the past or is no time, or `every` or `frames` is no number.
 
         Examples
         --------
@@ -150,6 +150,10 @@ class Simulation(_core.Simulation):
         """
         if every is not None and every < 1:
             raise ValueError(f"every is {every}: give at least 1 step")
+        if frames < 0:
+            raise ValueError(f"frames is {frames}: give at least 0")
+        if until is not None and not abs(until) < float("inf"):
+            raise ValueError(f"until is {until}: give a time [s]")
         last = self.steps if until is None else round(until / self.step_s)
         first = self.step_count
         if last < first:

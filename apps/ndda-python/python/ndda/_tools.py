@@ -8,7 +8,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Literal
 
 from ndda import _core
-from ndda._scene import name_of, overrides_of
+from ndda._scene import name_of, overrides_of, scene_of
 
 if TYPE_CHECKING:
     from ndda._view import Picture
@@ -96,6 +96,8 @@ def study(
     >>> [round(case["values"][0], 6) for case in found["cases"]]
     [4.905, 4.905]
     """
+    if isinstance(scene, _core.Scene) and not vary:
+        raise ValueError("nothing varies: give `vary`, or name the file of a study")
     options = {
         "vary": [f"{path}={_choices(values)}" for path, values in (vary or {}).items()],
         "of": list(of),
@@ -139,7 +141,7 @@ def _file(scene: PathLike | _core.Scene) -> Iterator[str]:
 
 
 def certify(
-    scene: _core.Scene,
+    scene: PathLike | _core.Scene,
     *,
     of: Sequence[str] = (),
     mesh: int = 0,
@@ -152,7 +154,7 @@ def certify(
 
     Parameters
     ----------
-    scene : Scene
+    scene : path or Scene
     of : sequence of str
         More quantities: columns of the history or blocks, by name or its beginning.
     mesh, penalty : int
@@ -181,13 +183,14 @@ def certify(
     >>> certificate["schema"].startswith("ndda.certificate")
     True
     """
+    scene = scene_of(scene)
     options = {"of": list(of), "mesh": mesh, "penalty": penalty, "jobs": jobs, "threads": threads}
     with _folder(out) as folder:
         return _read(_core._certify(scene, name_of(scene), folder, options))
 
 
 def safety(
-    scene: _core.Scene,
+    scene: PathLike | _core.Scene,
     *,
     by: Literal["strength", "load", "gravity"] = "strength",
     towards: Sequence[float] | None = None,
@@ -199,7 +202,7 @@ def safety(
 
     Parameters
     ----------
-    scene : Scene
+    scene : path or Scene
     by : {"strength", "load", "gravity"}
         Quantity that is changed until blocks fail.
     towards : sequence of 3 floats, optional
@@ -240,6 +243,7 @@ def safety(
         "error": error,
         "threads": threads,
     }
+    scene = scene_of(scene)
     folder = None if out is None else os.fspath(out)
     if folder is not None:
         os.makedirs(folder, exist_ok=True)
