@@ -86,6 +86,19 @@ def test_what_cannot_change_is_refused_in_words_and_nothing_has_changed(change: 
     simulation.step()
 
 
+def test_laws_that_keep_other_numbers_are_refused_and_nothing_has_changed() -> None:
+    simulation = ndda.Simulation(ndda.load(RAMP, **{"time.end_s": 0.02, "reference": None}))
+    simulation.run(until=0.01)
+    before = simulation.state_crc32
+    residual = "(friction_deg: 35, shear_penalty_pa_m: 2e10, residual: (friction_deg: 20, over_m: 0.001))"
+    with pytest.raises(ValueError, match="numbers per facet"):
+        simulation.change(**{"contact.friction": residual})
+    assert simulation.state_crc32 == before
+    simulation.change(**{"contact.friction": "(friction_deg: 20)"})
+    simulation.run()
+    assert simulation.label == "accurate"
+
+
 def test_a_saved_simulation_goes_on_with_all_bits(tmp_path: pathlib.Path) -> None:
     simulation = bounce()
     simulation.run(until=0.11)

@@ -26,7 +26,7 @@ pub enum TakeOverError {
     /// Blocks, integrator or contact at the end of steps differ.
     #[error("it is another problem: {0}")]
     OtherProblem(#[from] RestoreError),
-    /// The state cannot be sampled under the changed loads or laws.
+    /// The state cannot be sampled under the changed loads or laws, or these keep other numbers of each facet.
     #[error(transparent)]
     Step(#[from] StepError),
 }
@@ -51,7 +51,13 @@ impl Simulation {
             return Err(TakeOverError::RemembersAccelerations);
         }
         let old = before.totals()?;
-        self.restore(before.snapshot())?;
+        let snapshot = before.snapshot();
+        self.restore(snapshot.clone())?;
+        if self.has_contact() {
+            // Laws that keep other numbers of each facet refuse the history here, and not in the next step.
+            self.contacts_at_start()?;
+            self.restore(snapshot)?;
+        }
         let new = self.totals()?;
         self.audit.ledger.add_work(0.0, 0.0, new.energy_j - old.energy_j, 0.0);
         self.audit
