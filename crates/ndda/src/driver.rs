@@ -25,6 +25,9 @@ use crate::run::contact_rows::{COLUMNS, contact_rows};
 use crate::run::fields::FieldWriter;
 use crate::run::schedule::is_due;
 
+/// Rows of a history that there is room for from the start.
+const ORDINARY_ROWS: u64 = 10_000;
+
 /// A simulation that is stepped from outside and judged as [`Run`](crate::Run) judges it.
 ///
 /// Energies are sampled at the steps at which a run of the same scene samples them, whatever the caller looks at, so that state
@@ -128,8 +131,8 @@ impl Driver {
     fn around(model: Model, origin: Arc<str>, parts: Option<Parts>) -> Self {
         let rows = u64::from(model.loaded.scene.output.history_rows);
         let steps = model.steps();
-        // Room for all rows: a step allocates nothing.
-        let history = Vec::with_capacity(rows.min(steps) as usize + 2);
+        // Room for all rows of an ordinary run: a step allocates nothing.
+        let history = Vec::with_capacity(rows.min(steps).min(ORDINARY_ROWS) as usize + 2);
         let (stopped, facets, watches_contacts) = (None, Vec::new(), false);
         Self { model, steps, rows, stopped, facets, history, watches_contacts, origin, parts }
     }
