@@ -38,7 +38,7 @@ fn fate((height_m, friction_deg): (f64, f64), penalty_pa: f64, time_s: f64, sett
     ));
     let block = simulation.blocks().nodes_of(BlockId(1));
     if settles {
-        simulation.settle(&Settle { tolerance: 1e-4, most_steps: 20_000 }).unwrap();
+        simulation.settle(&Settle::new(1e-4, 20_000)).unwrap();
     }
     let rest: Vec<Vec3> = simulation.state().position[block.clone()].to_vec();
     for _ in 0..(time_s / step_s) as u32 {

@@ -115,7 +115,7 @@ fn a_push_beyond_friction_moves_a_slab_and_one_below_does_not() {
               settle: (tolerance: 1e-3),
               contact: Potential(penalty_pa: 1e8, friction: (friction_deg: 30)))",
         );
-        simulation.settle(&Settle { tolerance: 1e-3, most_steps: 100_000 }).unwrap();
+        simulation.settle(&Settle::new(1e-3, 100_000)).unwrap();
         let slab = BlockId(1);
         let lower_face_m = |simulation: &Simulation| {
             let nodes = simulation.blocks().nodes_of(slab);

@@ -52,7 +52,7 @@ fn stiff_contact_converges_at_long_steps_without_gaining_energy_and_rests_as_dee
             simulation.sample().unwrap();
             let worst = simulation.invariants();
             simulation
-                .settle(&Settle { tolerance: 1e-3, most_steps: 50_000 })
+                .settle(&Settle::new(1e-3, 50_000))
                 .unwrap_or_else(|error| panic!("{body}, {ratio}: {error}"));
             // The lowest face of the cube: two fields of slope one over a metre meet, p = 2 k h.
             let cube = simulation.blocks().nodes_of(BlockId(1));

@@ -51,7 +51,7 @@ fn a_column_in_lithostatic_stress_does_not_move() {
 #[test]
 fn a_column_that_settles_comes_to_the_confined_stress_of_its_weight() {
     let mut simulation = column("(2, 2, 8)", "");
-    simulation.settle(&ndda_solver::Settle { tolerance: 1e-4, most_steps: 20_000 }).unwrap();
+    simulation.settle(&ndda_solver::Settle::new(1e-4, 20_000)).unwrap();
     let mut stress = vec![[0.0; 6]; simulation.blocks().tets.len()];
     simulation.recover_stress(&mut stress).unwrap();
     // σ_zz = −ρ g (H − z), σ_xx = ν/(1 − ν) σ_zz; on average half of that at the foot.

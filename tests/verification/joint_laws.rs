@@ -130,7 +130,7 @@ fn a_block_closes_the_joint_that_it_stands_on_by_the_hyperbola() {
           ],
           contact: Potential(penalty_pa: 10e9, potential: Closure(max_closure_m: 0.3e-3), friction: (friction_deg: 30)))",
     );
-    settled.settle(&Settle { tolerance: 1e-8, most_steps: 200_000 }).unwrap();
+    settled.settle(&Settle::new(1e-8, 200_000)).unwrap();
     let block = settled.blocks().nodes_of(BlockId(1));
     let sunk_m =
         -displacements(&settled)[block.clone()].iter().map(|u| u.z).sum::<f64>() / block.len() as f64;

@@ -81,7 +81,7 @@ fn a_cube_at_rest_for_ten_seconds_does_not_tilt() {
           ],
           contact: Potential(penalty_pa: 1e7, friction: (friction_deg: 30)))",
     );
-    simulation.settle(&Settle { tolerance: 1e-6, most_steps: 100_000 }).unwrap();
+    simulation.settle(&Settle::new(1e-6, 100_000)).unwrap();
     let early = second_of(&mut simulation);
     advance(&mut simulation, 16_000);
     let late = second_of(&mut simulation);

@@ -20,7 +20,7 @@ const SCENE: &str = "(title: \"stack\", time: (step_s: 1e-3, end_s: 1), gravity_
 #[test]
 fn a_stack_that_has_settled_lies_as_deep_as_its_weight_asks_for_and_stays() {
     let mut simulation = simulation(SCENE);
-    let settled = simulation.settle(&Settle { tolerance: 1e-6, most_steps: 100_000 }).unwrap();
+    let settled = simulation.settle(&Settle::new(1e-6, 100_000)).unwrap();
     assert!(settled.steps > 10 && settled.speed_ratio <= 1e-6, "{settled:?}");
     // p = 2 k_n h/L₀ under the weight of what is above.
     let sunk = |block: u32| {

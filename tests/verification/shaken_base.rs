@@ -65,7 +65,7 @@ fn a_block_on_a_shaken_base_slips_as_newmarks_sliding_block() {
         let loaded = ndda_io::read::load_text("case.ron", &text, &[], None).unwrap_or_else(|e| panic!("{e}"));
         let blocks = ndda::build::blocks(&loaded.scene, folder.path()).unwrap();
         let mut simulation = ndda::build::simulation(&loaded.scene, blocks, folder.path()).unwrap();
-        simulation.settle(&ndda_solver::Settle { tolerance: 1e-3, most_steps: 20_000 }).unwrap();
+        simulation.settle(&ndda_solver::Settle::new(1e-3, 20_000)).unwrap();
         let start = simulation.start_position().to_vec();
         let mut error = 0.0f64;
         for exact in &exact {

@@ -105,9 +105,7 @@ fn a_ringing_stack_on_shear_springs_creeps_as_two_masses_with_sliders_do() {
 fn a_stack_that_starts_at_rest_does_not_creep() {
     let step_s = 1e-4;
     let mut simulation = stack(0.1, step_s, 30.0, 1e9);
-    simulation
-        .settle(&Settle { tolerance: 1e-6, most_steps: 1_000_000 })
-        .expect("a stack that comes to rest");
+    simulation.settle(&Settle::new(1e-6, 1_000_000)).expect("a stack that comes to rest");
     let second = (1.0 / step_s) as u64;
     advance(&mut simulation, second);
     let early = slips(&simulation);
@@ -163,7 +161,7 @@ fn a_stack_that_is_held_or_slides_is_accurate() {
     for (friction_deg, settles, step_s) in [(30.0, true, 1e-4), (10.0, false, 2e-5), (5.0, false, 2e-5)] {
         let mut simulation = stack(0.1, step_s, friction_deg, 1e9);
         if settles {
-            let settle = Settle { tolerance: 1e-6, most_steps: 1_000_000 };
+            let settle = Settle::new(1e-6, 1_000_000);
             simulation.settle(&settle).expect("a stack that comes to rest");
         }
         let (word, reasons) = labelled(&mut simulation, step_s, 0.5);

@@ -90,7 +90,7 @@ fn the_limit_equilibrium_is_the_published_one() {
 
 #[test]
 fn the_slope_stands_above_its_limit_friction_and_topples_below_it() {
-    let settle = Settle { tolerance: 1e-3, most_steps: 6000 };
+    let settle = Settle::new(1e-3, 6000);
     let limit = limit_deg();
     let mut stands = simulation(&scene(limit + 0.5));
     let settled = stands.settle(&settle).unwrap();

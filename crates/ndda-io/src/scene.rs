@@ -47,10 +47,10 @@ pub use monitor::{At, Monitor};
 pub use output::{Field, FieldFormat, Output, Precision, TableFormat};
 pub use reference::Reference;
 pub use rock::{Axis, DiscRule, Discontinuity, Domain, OrientationScatter};
-pub use rock::{Rock, SpacingScatter, Voronoi, Whereabouts};
+pub use rock::{Rock, Slivers, SpacingScatter, Voronoi, Whereabouts};
 pub use shape::{Fill, Grading, Pattern, Shape, Towards};
 pub use support::{By, Hold, MotionRow, Region, Support};
-pub use time::{ContactAt, Integrator, Mass, Settle, Solver, Step, Time};
+pub use time::{ContactAt, Integrator, Mass, Settle, SettleDamping, Solver, Step, Time};
 pub use water::{LinearPressure, Pressure, Water, Wet};
 
 /// A complete scene.

@@ -79,14 +79,24 @@ pub enum StepError {
     },
     /// A scene that was to settle first does not.
     #[error(
-        "the scene has not settled in {steps} steps (speed {speed_ratio:e} of the largest): raise settle.most_steps or \
-         settle.tolerance, or see whether anything holds it"
+        "the scene has not come to rest in {steps} steps (speed {speed_ratio:.1e} of the largest). Block `{block}` has gone {gone_m:.2e} m \
+         towards ({:.2}, {:.2}, {:.2}), and {others} other(s) at least half as far: see whether anything holds them, \
+         or raise settle.most_steps",
+        towards[0], towards[1], towards[2]
     )]
     NotSettled {
         /// Steps done.
         steps: u64,
         /// Speed left over the largest speed.
         speed_ratio: f64,
+        /// Name of the block that has gone farthest.
+        block: String,
+        /// How far its centre has gone [m].
+        gone_m: f64,
+        /// The direction in which, of length 1.
+        towards: [f64; 3],
+        /// Number of other blocks that have gone at least half as far.
+        others: usize,
     },
     /// An element is inside out.
     #[error(

@@ -6,6 +6,7 @@ pub mod friction;
 pub mod overlaps;
 mod regions;
 mod rock;
+mod settle;
 mod shapes;
 mod solid;
 mod water;
@@ -29,6 +30,7 @@ pub use choices::Choices;
 use friction::friction_law;
 use regions::{find, find_all};
 pub use rock::{CutRock, Meshes, RockReport};
+pub(crate) use settle::settle;
 
 /// A node is on a plane when it is nearer than this part of its block's size.
 const ON_PLANE: f64 = 1e-6;
@@ -233,6 +235,7 @@ pub(crate) fn contact_model(
                 scene::Memory::Body => Memory::Body,
                 scene::Memory::Element => Memory::Element,
             };
+            table.tolerance = choices.friction_tolerance.unwrap_or(table.tolerance);
             // Without friction, no shear spring and no memory is made.
             if table.have_laws() {
                 model = model.with_law_table(table);

@@ -10,9 +10,7 @@ use ndda_contact::FacetContact;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::summary::Label;
 use ndda_io::{checkpoint, read};
-use ndda_solver::{
-    DriveError, RestoreError, Sample, Settle, Settled, Simulation, SinkError, Snapshot, StepError,
-};
+use ndda_solver::{DriveError, RestoreError, Sample, Settled, Simulation, SinkError, Snapshot, StepError};
 
 pub use change::ChangeError;
 pub use ndda_mesh::{BlockId, Vec3};
@@ -118,8 +116,7 @@ impl Driver {
         settling: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<Self, StepError> {
         if let Some(settle) = model.loaded.scene.settle {
-            let settle = Settle { tolerance: settle.tolerance, most_steps: settle.most_steps };
-            model.simulation.settle_watched(&settle, settling)?;
+            model.simulation.settle_watched(&crate::build::settle(settle), settling)?;
         }
         let start = model.simulation.sample()?;
         let origin = model.loaded.text.as_str().into();

@@ -22,7 +22,7 @@ use std::time::Instant;
 use ndda_io::summary::{MonitorEnd, Status, Summary};
 use ndda_io::table::Table;
 use ndda_io::{OutputFolder, WriteError, checkpoint, summary, tables};
-use ndda_solver::{Settle, Settled, Simulation, Sink};
+use ndda_solver::{Settled, Simulation, Sink};
 
 use crate::Model;
 use crate::judge::reference::Comparison;
@@ -174,7 +174,7 @@ impl Run {
     /// Brings the scene to rest, if it is to settle and has not yet.
     fn settle(&mut self, settling: &mut dyn FnMut(&Settled)) -> Result<(), RunError> {
         let Some(settle) = self.model.loaded.scene.settle.filter(|_| !self.goes_on()) else { return Ok(()) };
-        let settle = Settle { tolerance: settle.tolerance, most_steps: settle.most_steps };
+        let settle = crate::build::settle(settle);
         let stop = self.stop.clone();
         let mut watch = |settled: &Settled| {
             settling(settled);

@@ -5,6 +5,7 @@
 //! smallest at which they fail are the answer: a bracket from runs, and no limit equilibrium (`search.rs`).
 
 mod changes;
+mod failing;
 mod film;
 mod free_blocks;
 mod mechanism;
@@ -25,6 +26,7 @@ use serde::{Deserialize, Serialize};
 use crate::documents::write_json;
 
 pub use changes::{By, Question};
+pub use failing::BlockVelocity;
 pub use mechanism::{Kind, Mechanism, MovingBlock, Plane};
 pub use report::text;
 pub use trial::{State, Trial};

@@ -10,7 +10,7 @@ use crate::evidence::row;
 #[test]
 fn a_concave_block_bears_what_rests_in_it_and_all_of_it_rests() {
     let mut simulation = extreme("concave", &[]).simulation;
-    simulation.settle(&Settle { tolerance: 1e-3, most_steps: 1_000_000 }).unwrap();
+    simulation.settle(&Settle::new(1e-3, 1_000_000)).unwrap();
     let base = block(&simulation, "base");
     let (mut force, steps) = (0.0, 1000);
     for _ in 0..steps {

@@ -39,7 +39,7 @@ fn blocks_that_overlap_come_to_rest_on_request() {
     for depth in ["0.01", "0.9"] {
         let mut ready =
             Model::open(&path, &[sunk(depth), "settle=()".into(), "time.step_s=5e-4".into()]).unwrap();
-        ready.simulation.settle(&Settle { tolerance: 1e-4, most_steps: 1_000_000 }).unwrap();
+        ready.simulation.settle(&Settle::new(1e-4, 1_000_000)).unwrap();
         let cube = ready.simulation.blocks().find("cube").unwrap();
         let nodes = ready.simulation.blocks().nodes_of(cube);
         let positions = &ready.simulation.state().position[nodes];

@@ -23,7 +23,7 @@ fn a_plate_at_the_limit_of_friction_and_far_beyond_it_does_not_creep() {
     for (name, friction_deg) in [("tan α", "30"), ("1000", "89.94270423958")] {
         let mut ready =
             extreme("ramp_at_its_limit", &[&format!("contact.friction.friction_deg={friction_deg}")]);
-        ready.simulation.settle(&Settle { tolerance: 1e-5, most_steps: 1_000_000 }).unwrap();
+        ready.simulation.settle(&Settle::new(1e-5, 1_000_000)).unwrap();
         let early = second(&mut ready);
         advance(&mut ready.simulation, 8000);
         let rate = (second(&mut ready) - early).norm() / 9.0;

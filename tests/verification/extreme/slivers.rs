@@ -42,7 +42,7 @@ fn a_sheet_of_slivers_bears_a_block() {
         let size = format!("blocks.plate.shape.size_m=(1,1,{thickness})");
         let place = format!("blocks.block.at_m=(0,0,{thickness})");
         let mut simulation = extreme("slivers", &[&size, &place]).simulation;
-        simulation.settle(&Settle { tolerance: 1e-3, most_steps: 100_000 }).unwrap();
+        simulation.settle(&Settle::new(1e-3, 100_000)).unwrap();
         let base = block(&simulation, "base");
         // Two periods of what is left of its bounce.
         let (mut force, steps) = (0.0, 200);

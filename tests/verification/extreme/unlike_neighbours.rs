@@ -41,7 +41,7 @@ fn a_slab_of_a_million_times_the_mass_sinks_as_deep_as_statics_says() {
 #[test]
 fn stiff_rock_on_soft_ground_bears_the_stress_of_springs_in_series() {
     let mut simulation = extreme("stiff_on_soft", &[]).simulation;
-    simulation.settle(&Settle { tolerance: 1e-5, most_steps: 100_000 }).unwrap();
+    simulation.settle(&Settle::new(1e-5, 100_000)).unwrap();
     let mut stress = vec![[0.0; 6]; simulation.blocks().tets.len()];
     simulation.recover_stress(&mut stress).unwrap();
     let series = 1e-3 / (1.0 / 200e9 + 1.0 / 200e3 + 1.0 / 2e6);

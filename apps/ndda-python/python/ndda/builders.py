@@ -1842,7 +1842,9 @@ class Rock(Builder):
     seed : int, optional
         Seed of scatter, persistence and cells: the same seed gives the same blocks. Default: 0.
     sliver_width_m : float, optional
-        Blocks thinner than this are left out [m]. Default: 0.
+        Blocks thinner than this, or smaller than a cube of this width, are slivers [m]. Default: 0.
+    slivers : SliversChoice, optional
+        What becomes of slivers. Default: `Merge`.
     fill : FillChoice, optional
         How blocks are filled with tetrahedra. Default: `Fewest`.
     body : BodyChoice, optional
@@ -1865,11 +1867,12 @@ class Rock(Builder):
     voronoi: Voronoi | None = None
     seed: int | None = None
     sliver_width_m: float | None = None
+    slivers: SliversChoice | None = None
     fill: FillChoice | None = None
     body: BodyChoice | None = None
     removed: list[WhereaboutsChoice] | None = None
     fixed: list[WhereaboutsChoice] | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "material": "str", "domain": "Domain", "joints": "[Discontinuity]", "voronoi": "Voronoi", "seed": "int", "sliver_width_m": "num", "fill": "Fill", "body": "Body", "removed": "[Whereabouts]", "fixed": "[Whereabouts]"}
+    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "material": "str", "domain": "Domain", "joints": "[Discontinuity]", "voronoi": "Voronoi", "seed": "int", "sliver_width_m": "num", "slivers": "Slivers", "fill": "Fill", "body": "Body", "removed": "[Whereabouts]", "fixed": "[Whereabouts]"}
 
 
 @dataclass(kw_only=True)
@@ -1996,6 +1999,8 @@ class Settle(Builder):
         Speed left over the largest speed on the way [-]. Default: 1e-4.
     most_steps : int, optional
         Steps after which it is given up. Default: 1000000.
+    damping : SettleDampingChoice, optional
+        What takes the energy. Default: `Kinetic`.
 
     Examples
     --------
@@ -2005,7 +2010,41 @@ class Settle(Builder):
 
     tolerance: float | None = None
     most_steps: int | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"tolerance": "num", "most_steps": "int"}
+    damping: SettleDampingChoice | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"tolerance": "num", "most_steps": "int", "damping": "SettleDamping"}
+
+
+class SettleDamping:
+    """What takes the energy of a scene that settles.
+
+    Examples
+    --------
+    >>> SettleDamping.Kinetic
+    'Kinetic'
+    """
+
+    # All blocks are stopped whenever the kinetic energy of the scene begins to fall.
+    Kinetic: ClassVar[Literal["Kinetic"]] = "Kinetic"
+
+    @dataclass(kw_only=True)
+    class Local(Builder):
+        """Each block loses a part of what a step has changed its velocity by, in proportion to its unbalanced
+        force (Cundall 1987).
+
+        Parameters
+        ----------
+        factor : float, optional
+            The part, above 0 and at most 1 [-]. Default: 0.8.
+
+        Examples
+        --------
+        >>> SettleDamping.Local().to_ron()
+        'Local()'
+        """
+
+        factor: float | None = None
+        _kinds: ClassVar[Mapping[str, str]] = {"factor": "num"}
+        _variant: ClassVar[str] = "Local"
 
 
 class Shape:
@@ -2260,6 +2299,22 @@ class Shape:
         finer: list[Grading] | None = None
         _kinds: ClassVar[Mapping[str, str]] = {"file": "str", "body": "str", "unit_m": "num", "size_m": "num", "finer": "[Grading]"}
         _variant: ClassVar[str] = "Mesh"
+
+
+class Slivers:
+    """What becomes of blocks that are slivers.
+
+    Examples
+    --------
+    >>> Slivers.Merge
+    'Merge'
+    """
+
+    # Each is united with the neighbour with which it shares the largest face, provided that both together are
+    # convex; others stay. No void is left; the joint between the two is closed there.
+    Merge: ClassVar[Literal["Merge"]] = "Merge"
+    # They are taken out, and leave voids, into which blocks may fall.
+    Remove: ClassVar[Literal["Remove"]] = "Remove"
 
 
 class Solver:
@@ -2811,7 +2866,9 @@ PrecisionChoice: TypeAlias = Literal["F32"] | Literal["F64"]
 PressureChoice: TypeAlias = Pressure.Level | Pressure.Linear | Pressure.Points | Pressure.Least
 ReferenceChoice: TypeAlias = Reference.SlidingBlock | Reference.Collision | Reference.FreeFall | Reference.FreeSpin | Reference.BarImpact | Reference.Displacement
 RegionChoice: TypeAlias = Literal["All"] | Region.Plane | Region.Set
+SettleDampingChoice: TypeAlias = Literal["Kinetic"] | SettleDamping.Local
 ShapeChoice: TypeAlias = Shape.Box | Shape.Prism | Shape.Hexahedron | Shape.Voussoir | Shape.Cylinder | Shape.Sphere | Shape.Polyhedron | Shape.Surface | Shape.Mesh
+SliversChoice: TypeAlias = Literal["Merge"] | Literal["Remove"]
 SolverChoice: TypeAlias = Literal["Cholesky"] | Solver.ConjugateGradients
 SpacingScatterChoice: TypeAlias = Literal["None"] | SpacingScatter.Uniform | SpacingScatter.Normal | Literal["Exponential"]
 StepChoice: TypeAlias = Literal["Fixed"] | Step.Auto
@@ -2867,7 +2924,9 @@ __all__ = [
     "Roughness",
     "Scene",
     "Settle",
+    "SettleDamping",
     "Shape",
+    "Slivers",
     "Solver",
     "SpacingScatter",
     "Step",

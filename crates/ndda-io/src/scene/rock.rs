@@ -45,9 +45,12 @@ pub struct Rock {
     /// Seed of scatter, persistence and cells: the same seed gives the same blocks. Default: 0.
     #[serde(default)]
     pub seed: u64,
-    /// Blocks thinner than this are left out [m]. Default: 0.
+    /// Blocks thinner than this, or smaller than a cube of this width, are slivers [m]. Default: 0.
     #[serde(default)]
     pub sliver_width_m: f64,
+    /// What becomes of slivers. Default: `Merge`.
+    #[serde(default)]
+    pub slivers: Slivers,
     /// How blocks are filled with tetrahedra. Default: `Fewest`.
     #[serde(default)]
     pub fill: Fill,
@@ -112,6 +115,18 @@ pub enum Domain {
         /// Height of the base [m].
         base_m: f64,
     },
+}
+
+/// What becomes of blocks that are slivers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub enum Slivers {
+    /// Each is united with the neighbour with which it shares the largest face, provided that both together are convex; others stay. No
+    /// void is left; the joint between the two is closed there.
+    #[default]
+    Merge,
+    /// They are taken out, and leave voids, into which blocks may fall.
+    Remove,
 }
 
 /// A coordinate axis.

@@ -38,12 +38,34 @@ pub struct Settle {
     pub tolerance: f64,
     /// Steps after which it is given up. Default: 1000000.
     pub most_steps: u64,
+    /// What takes the energy. Default: `Kinetic`.
+    pub damping: SettleDamping,
 }
 
 impl Default for Settle {
     fn default() -> Self {
-        Self { tolerance: 1e-4, most_steps: 1_000_000 }
+        Self { tolerance: 1e-4, most_steps: 1_000_000, damping: SettleDamping::Kinetic }
     }
+}
+
+/// What takes the energy of a scene that settles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub enum SettleDamping {
+    /// All blocks are stopped whenever the kinetic energy of the scene begins to fall.
+    #[default]
+    Kinetic,
+    /// Each block loses a part of what a step has changed its velocity by, in proportion to its unbalanced force (Cundall 1987).
+    Local {
+        /// The part, above 0 and at most 1 [-]. Default: 0.8.
+        #[serde(default = "local_factor")]
+        factor: f64,
+    },
+}
+
+fn local_factor() -> f64 {
+    0.8
 }
 
 /// How a block's equations are solved.

@@ -4,7 +4,7 @@ use super::neighbours::neighbours;
 use super::polyhedron::{Face, Polyhedron};
 use super::surfaces::{Neighbour, Surface};
 
-/// A block thinner than requested.
+/// A block thinner than requested, or smaller than a cube of that width.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sliver {
     /// Index of the block.
@@ -24,7 +24,7 @@ pub struct CutReport {
     pub refused: Vec<(u32, usize)>,
     /// Cuts left out by persistence.
     pub bridged: usize,
-    /// Blocks thinner than `sliver_width_m`, thinnest first.
+    /// Blocks thinner than `sliver_width_m`, or smaller than a cube of that width, thinnest first.
     pub slivers: Vec<Sliver>,
     /// Volume of all blocks [m³].
     pub volume_m3: f64,
@@ -91,21 +91,29 @@ impl Blocks {
     /// Finds neighbours and slivers of finished blocks and completes the report.
     pub(super) fn finish(mut self, tolerance_m: f64, sliver_width_m: f64) -> Self {
         self.neighbours = neighbours(&self.blocks, &self.surfaces, tolerance_m);
-        let mut slivers = Vec::new();
-        let mut volumes = Vec::with_capacity(self.blocks.len());
-        for (block, polyhedron) in (0..).zip(&self.blocks) {
-            let volume_m3 = polyhedron.volume_m3();
-            volumes.push(volume_m3);
-            let width_m = polyhedron.width_m();
-            if width_m < sliver_width_m {
-                slivers.push(Sliver { block, width_m, volume_m3 });
-            }
-        }
-        slivers.sort_by(|a, b| a.width_m.total_cmp(&b.width_m));
-        self.report.slivers = slivers;
+        self.report.slivers = slivers(&self.blocks, sliver_width_m);
+        let volumes: Vec<f64> = self.blocks.iter().map(Polyhedron::volume_m3).collect();
         self.report.volume_m3 = pairwise_sum(&volumes);
         self
     }
+}
+
+/// Blocks thinner than a width, or smaller than a cube of that width, thinnest first.
+pub(super) fn slivers(blocks: &[Polyhedron], sliver_width_m: f64) -> Vec<Sliver> {
+    let mut slivers = Vec::new();
+    for (block, polyhedron) in (0..).zip(blocks) {
+        let width_m = polyhedron.width_m();
+        if is_sliver(polyhedron, width_m, sliver_width_m) {
+            slivers.push(Sliver { block, width_m, volume_m3: polyhedron.volume_m3() });
+        }
+    }
+    slivers.sort_by(|a, b| a.width_m.total_cmp(&b.width_m));
+    slivers
+}
+
+/// Whether a block of a width is a sliver.
+pub(super) fn is_sliver(block: &Polyhedron, width_m: f64, sliver_width_m: f64) -> bool {
+    width_m < sliver_width_m || block.volume_m3() < sliver_width_m.powi(3)
 }
 
 /// Sum by halves: rounding grows with the logarithm of the number of terms, not with the number.

@@ -15,6 +15,7 @@ pub(crate) mod first_step;
 pub(crate) mod follower;
 pub(crate) mod implicit_contact;
 pub(crate) mod loads;
+pub(crate) mod local_damping;
 pub(crate) mod plan;
 pub(crate) mod queries;
 pub(crate) mod report;

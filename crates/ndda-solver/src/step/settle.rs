@@ -3,7 +3,8 @@
 //! Kinetic damping (Cundall 1976; Barnes 1999): the scene moves freely until its kinetic energy begins to fall, which is
 //! where its forces balance on the way; there it is stopped, and starts again from nearer to equilibrium. All blocks are
 //! stopped at once: each by itself, a stack of fifty would take 27 times the steps, since the quick oscillations of neighbours
-//! would stop the slow one of the whole again and again.
+//! would stop the slow one of the whole again and again. With local damping, each block is damped by itself, in proportion to its
+//! unbalanced force ([`LocalDamping`]).
 
 use std::ops::ControlFlow;
 
@@ -12,6 +13,20 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::StepError;
 use crate::step::Simulation;
+use crate::step::local_damping::LocalDamping;
+
+/// What takes the energy of a scene that settles.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Damping {
+    /// All blocks are stopped whenever the kinetic energy of the scene begins to fall.
+    #[default]
+    Kinetic,
+    /// Each block loses this part of what a step has changed its velocity by.
+    Local {
+        /// α, between 0 and 1.
+        factor: f64,
+    },
+}
 
 /// How far a scene is to settle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +36,15 @@ pub struct Settle {
     pub tolerance: f64,
     /// Steps after which it is given up.
     pub most_steps: u64,
+    /// What takes its energy.
+    pub damping: Damping,
+}
+
+impl Settle {
+    /// Settling with kinetic damping.
+    pub fn new(tolerance: f64, most_steps: u64) -> Self {
+        Self { tolerance, most_steps, damping: Damping::Kinetic }
+    }
 }
 
 /// How a scene settled.
@@ -105,26 +129,15 @@ impl Simulation {
         self.settling = true;
         let start = std::mem::take(&mut self.state.velocity);
         self.state.velocity = vec![Vec3::zeros(); start.len()];
-        let mut oscillation = Oscillation::default();
-        let (mut highest_j, mut settled) =
-            (self.load_energy_j(), Settled { speed_ratio: f64::INFINITY, ..Settled::default() });
+        let from = self.state.position.clone();
+        let mut progress = Progress::new(self, settle.damping);
+        let mut settled = Settled { speed_ratio: f64::INFINITY, ..Settled::default() };
         while settled.speed_ratio > settle.tolerance {
             if settled.steps == settle.most_steps {
-                return Err(StepError::NotSettled { steps: settled.steps, speed_ratio: settled.speed_ratio });
+                return Err(self.not_settled(&settled, &from));
             }
-            self.step()?;
+            settled.speed_ratio = progress.step(self)?;
             settled.steps += 1;
-            let mut total_j = 0.0;
-            for block in self.blocks().ids() {
-                let nodes = self.blocks().nodes_of(block);
-                total_j += self.shape(block).operator.kinetic_energy_j(&self.state.velocity[nodes]);
-            }
-            highest_j = highest_j.max(total_j);
-            if oscillation.is_past_peak(total_j) {
-                self.state.velocity.fill(Vec3::zeros());
-            }
-            settled.speed_ratio =
-                if highest_j > 0.0 { (oscillation.left_j() / highest_j).sqrt() } else { 0.0 };
             if watch(&settled).is_break() {
                 return Ok(settled);
             }
@@ -132,4 +145,90 @@ impl Simulation {
         self.begin_at_rest(start);
         Ok(settled)
     }
+
+    /// Which blocks have moved on the way, and where to.
+    fn not_settled(&self, settled: &Settled, from: &[Vec3]) -> StepError {
+        let gone = |block: BlockId| {
+            let (nodes, operator) = (self.blocks().nodes_of(block), &self.shape(block).operator);
+            operator.center(&self.state.position[nodes.clone()]) - operator.center(&from[nodes])
+        };
+        let mut moved: Vec<(f64, BlockId)> =
+            self.blocks().ids().map(|block| (gone(block).norm(), block)).collect();
+        moved.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let (gone_m, block) = moved[0];
+        let towards = if gone_m > 0.0 { gone(block) / gone_m } else { Vec3::zeros() };
+        StepError::NotSettled {
+            steps: settled.steps,
+            speed_ratio: settled.speed_ratio,
+            block: self.blocks().names[block.index()].clone(),
+            gone_m,
+            towards: towards.into(),
+            others: moved[1..].iter().filter(|(gone, _)| *gone >= 0.5 * gone_m && *gone > 0.0).count(),
+        }
+    }
+
+    fn kinetic_energy_j(&self) -> f64 {
+        let of_block = |block: BlockId| {
+            let nodes = self.blocks().nodes_of(block);
+            self.shape(block).operator.kinetic_energy_j(&self.state.velocity[nodes])
+        };
+        let mut total_j = 0.0;
+        for block in self.blocks().ids() {
+            total_j += of_block(block);
+        }
+        total_j
+    }
+}
+
+/// A scene on its way to rest.
+struct Progress {
+    damper: Damper,
+    /// What loads alone would bring in a step [J].
+    load_j: f64,
+    /// Largest kinetic energy on the way [J].
+    highest_j: f64,
+}
+
+enum Damper {
+    Kinetic(Oscillation),
+    Local(LocalDamping),
+}
+
+impl Progress {
+    fn new(simulation: &Simulation, damping: Damping) -> Self {
+        let damper = match damping {
+            Damping::Kinetic => Damper::Kinetic(Oscillation::default()),
+            Damping::Local { factor } => Damper::Local(LocalDamping::new(factor)),
+        };
+        let load_j = simulation.load_energy_j();
+        Self { damper, load_j, highest_j: load_j }
+    }
+
+    /// A step; gives the speed that is left over the largest.
+    fn step(&mut self, simulation: &mut Simulation) -> Result<f64, StepError> {
+        match &mut self.damper {
+            Damper::Kinetic(oscillation) => {
+                simulation.step()?;
+                let total_j = simulation.kinetic_energy_j();
+                self.highest_j = self.highest_j.max(total_j);
+                if oscillation.is_past_peak(total_j) {
+                    simulation.state.velocity.fill(Vec3::zeros());
+                }
+                Ok(ratio(oscillation.left_j(), self.highest_j))
+            }
+            Damper::Local(damping) => {
+                simulation.step_with_local_damping(damping)?;
+                let total_j = simulation.kinetic_energy_j();
+                self.highest_j = self.highest_j.max(total_j);
+                // Where an oscillation turns it is slow, and its forces are farthest from balance.
+                let unbalanced = ratio(damping.change_j(), self.load_j);
+                Ok(ratio(total_j, self.highest_j).max(unbalanced))
+            }
+        }
+    }
+}
+
+/// Speed of an energy over that of another.
+fn ratio(energy_j: f64, largest_j: f64) -> f64 {
+    if largest_j > 0.0 { (energy_j / largest_j).sqrt() } else { 0.0 }
 }

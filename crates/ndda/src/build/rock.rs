@@ -3,10 +3,10 @@
 use std::fmt;
 use std::path::Path;
 
-use ndda_io::scene::{self, Rock, Scene, Whereabouts};
+use ndda_io::scene::{self, Rock, Scene, Slivers, Whereabouts};
 use ndda_mesh::cut::{
-    self, Axis, Blocks, CutOptions, Disc, DiscRule, Discontinuity, Domain, JointSet, OrientationScatter,
-    Plane, SpacingScatter, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
+    self, Axis, Blocks, CutOptions, Disc, DiscRule, Discontinuity, Domain, JointSet, Merged,
+    OrientationScatter, Plane, SpacingScatter, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
 };
 use ndda_mesh::geometry::tet_volume;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
@@ -25,8 +25,12 @@ pub struct RockReport {
     pub blocks: usize,
     /// Volume of the rock before it was cut [m³].
     pub domain_m3: f64,
+    /// Slivers united with their neighbours, and their volume [m³].
+    pub merged: (usize, f64),
     /// Slivers left out, and their volume [m³].
     pub slivers: (usize, f64),
+    /// Slivers kept: parts of concave blocks, and those that are convex with none of their neighbours.
+    pub thin: usize,
     /// Parts taken out by `removed`, and their volume [m³].
     pub removed: (usize, f64),
     /// Cuts that would have left a needle thinner than rounding, and were not made.
@@ -35,12 +39,20 @@ pub struct RockReport {
 
 impl fmt::Display for RockReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, blocks, domain_m3, slivers, removed, refused } = self;
+        let Self { name, blocks, domain_m3, merged, slivers, thin, removed, refused } = self;
         write!(f, "rock {name}: {domain_m3:.6e} m³ in {blocks} block(s)")?;
-        for (what, (count, volume)) in [("sliver(s) left out", slivers), ("part(s) removed", removed)] {
+        let counts = [
+            ("sliver(s) united with neighbours", merged),
+            ("sliver(s) left out", slivers),
+            ("part(s) removed", removed),
+        ];
+        for (what, (count, volume)) in counts {
             if *count > 0 {
                 write!(f, ", {count} {what} ({volume:.3e} m³)")?;
             }
+        }
+        if *thin > 0 {
+            write!(f, ", {thin} sliver(s) kept")?;
         }
         if *refused > 0 { write!(f, ", {refused} cut(s) refused as needles") } else { Ok(()) }
     }
@@ -69,16 +81,23 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     let cut_field = if rock.voronoi.is_some() { ".voronoi" } else { ".joints" };
     let mut blocks = cut(rock, &domain).map_err(|m| vec![Fault::new(at(cut_field), m)])?;
     let refused = blocks.report.refused.iter().map(|(_, count)| count).sum();
-    let slivers = if rock.sliver_width_m > 0.0 { slivers(&blocks) } else { Vec::new() };
+    let (merged, slivers) = match rock.slivers {
+        _ if rock.sliver_width_m == 0.0 => (Merged::default(), Vec::new()),
+        Slivers::Merge => (blocks.merge_slivers(&domain, rock.sliver_width_m), Vec::new()),
+        Slivers::Remove => (Merged::default(), slivers(&blocks)),
+    };
     let sliver_m3 = blocks.remove(&slivers);
     let removed = chosen(&blocks, &rock.removed);
     let removed_m3 = blocks.remove(&removed);
+    let thin = blocks.report.slivers.len();
     let mut meshes = Meshes::new();
     let mut report = RockReport {
         name: rock.name.clone(),
         blocks: 0,
         domain_m3: domain.volume_m3(),
+        merged: (merged.count, merged.volume_m3),
         slivers: (slivers.len(), sliver_m3),
+        thin,
         removed: (removed.len(), removed_m3),
         refused,
     };
@@ -94,7 +113,7 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
             Err(error) => faults.push(Fault::new(
                 at(".fill"),
                 format!(
-                    "block {}_{number:04} cannot be filled: {error}; `sliver_width_m` leaves thin ones out",
+                    "block {}_{number:04} cannot be filled: {error}; a larger `sliver_width_m` unites thin ones with neighbours",
                     rock.name
                 ),
             )),

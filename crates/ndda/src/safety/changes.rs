@@ -82,6 +82,12 @@ pub fn has_springs_only(scene: &Scene) -> bool {
     self::frictions(frictions).iter().all(|friction| friction.shear_penalty_pa_m.is_some())
 }
 
+/// Whether some friction of a scene is by shear springs.
+pub fn has_springs(scene: &Scene) -> bool {
+    let frictions = &mut scene.clone();
+    self::frictions(frictions).iter().any(|friction| friction.shear_penalty_pa_m.is_some())
+}
+
 fn frictions(scene: &mut Scene) -> Vec<&mut Friction> {
     let Some(Contact::Potential { friction, material_pairs, rock_joints, .. }) = &mut scene.contact else {
         return Vec::new();

@@ -27,6 +27,7 @@ pub fn record(
     out: &Path,
     stop: &Arc<AtomicBool>,
 ) -> Result<(), SafetyError> {
+    push(&mut model, trial);
     let most_steps = (trial.steps.max(1) * LONGEST).min(MOST_STEPS);
     let steps = visible_after(&mut model, most_steps, stop).ok_or(SafetyError::Interrupted)?;
     let scene = &mut model.loaded.scene;
@@ -39,6 +40,20 @@ pub fn record(
         Ok(_) | Err(RunError::Settling(_)) => Ok(()),
         Err(RunError::InterruptedWhileSettling) => Err(SafetyError::Interrupted),
         Err(RunError::Write(error)) => Err(error.into()),
+    }
+}
+
+/// Starts the blocks with the velocities at which the trial ended: some hardly fail by themselves.
+fn push(model: &mut Model, trial: &Trial) {
+    let simulation = &mut model.simulation;
+    let blocks: Vec<_> = free(simulation).collect();
+    for block in blocks {
+        let name = &simulation.blocks().names[block.index()];
+        if let Some(velocity) = trial.velocities.iter().find(|velocity| velocity.block == *name) {
+            let (v, spin) = (velocity.velocity_m_s.into(), velocity.spin_rad_s.into());
+            // Blocks that are held somewhere start at rest.
+            let _ = simulation.set_velocity(block, v, spin);
+        }
     }
 }
 

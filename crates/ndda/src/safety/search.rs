@@ -14,13 +14,16 @@ use rayon::prelude::*;
 use super::free_blocks::free;
 use super::trial::{Course, Start, State, Trial};
 use super::{
-    Bracket, By, Mechanism, MovingBlock, Plan, SCHEMA, Safety, SafetyError, Watch, changes, film, mechanism,
-    write,
+    BlockVelocity, Bracket, By, Mechanism, MovingBlock, Plan, SCHEMA, Safety, SafetyError, Watch, changes,
+    film, mechanism, write,
 };
 use crate::Model;
+use crate::build::Choices;
 
 /// Factor between the trials that look for a bracket.
 const STRIDE: f64 = 1.5;
+/// Tolerance of friction in trials, as a part of μN: small against the narrowest bracket.
+const FRICTION_TOLERANCE: f64 = 1e-4;
 /// Trials inside a bracket that run side by side.
 const INSIDE: usize = 3;
 /// Factors on the strength with which the scene is brought to rest, until it does.
@@ -132,7 +135,7 @@ impl<'a> Search<'a> {
 
     /// Whether blocks stand at one factor on the strength.
     pub fn at(&self, factor: f64) -> Result<State, SafetyError> {
-        Ok(self.try_factor(factor, &self.start.snapshot, 0.0)?.0)
+        Ok(self.try_factor(factor, &self.start.snapshot, &[], 0.0)?.0)
     }
 
     /// Trials side by side, outwards until there is a bracket and inwards until it is narrow, all from the same start.
@@ -142,12 +145,13 @@ impl<'a> Search<'a> {
             if wanted.is_empty() {
                 return Ok(self.start.snapshot.clone());
             }
+            let failing = self.failing();
             let run = |&factor: &f64| match self.earlier.iter().find(|trial| trial.factor == factor) {
                 Some(known) => {
                     self.keep(known.clone());
                     Ok(())
                 }
-                None => self.try_factor(factor, &self.start.snapshot, before_s).map(drop),
+                None => self.try_factor(factor, &self.start.snapshot, &failing, before_s).map(drop),
             };
             wanted.par_iter().map(run).collect::<Result<Vec<()>, SafetyError>>()?;
         }
@@ -158,13 +162,13 @@ impl<'a> Search<'a> {
     fn march(&self, before_s: f64) -> Result<Snapshot, SafetyError> {
         let last = 1.0 + LAST_STRIDE * self.plan.error;
         let (mut stride, mut factor, mut state) = (FIRST_STRIDE, 1.0, self.start.snapshot.clone());
-        let (first, stood) = self.try_factor(factor, &state, before_s)?;
+        let (first, stood) = self.try_factor(factor, &state, &[], before_s)?;
         if first != State::Stands {
             return Ok(state);
         }
         state = stood;
         while factor < self.plan.most {
-            let (found, reached) = self.try_factor(factor * stride, &state, before_s)?;
+            let (found, reached) = self.try_factor(factor * stride, &state, &[], before_s)?;
             if found == State::Stands {
                 (factor, state) = (factor * stride, reached);
             } else if stride > last {
@@ -204,10 +208,12 @@ impl<'a> Search<'a> {
         &self,
         factor: f64,
         from: &Snapshot,
+        failing: &[BlockVelocity],
         before_s: f64,
     ) -> Result<(State, Snapshot), SafetyError> {
         let mut model = self.model(factor, from)?;
-        let trial = self.course().run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
+        let trial =
+            self.course(failing).run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
         (self.watch.tell)(&format!(
             "F = {factor:.4}: {}, {} ({} steps, {:.1} s)",
             super::report::state(trial.state),
@@ -235,17 +241,29 @@ impl<'a> Search<'a> {
     fn model(&self, factor: f64, from: &Snapshot) -> Result<Model, SafetyError> {
         let mut loaded = self.loaded.clone();
         self.by.change(&mut loaded.scene, factor);
-        let mut model = Model::resuming(loaded, &self.folder)?;
+
+        let mut model = Model::resuming_with(loaded, &self.folder, choices())?;
         model.simulation.restore(from.clone()).expect("the blocks are the same");
         Ok(model)
     }
 
-    fn course(&self) -> Course<'_> {
+    /// Velocities with which blocks fail at the smallest factor at which they do; none where joints have springs, whose cohesion a push
+    /// might break.
+    fn failing(&self) -> Vec<BlockVelocity> {
+        let answer = self.answer.lock().expect("no trial panics");
+        let fails = answer.trials.iter().find(|trial| trial.state == State::Fails);
+        match fails {
+            Some(trial) if !changes::has_springs(&self.loaded.scene) => trial.velocities.clone(),
+            _ => Vec::new(),
+        }
+    }
+
+    fn course<'b>(&'b self, failing: &'b [BlockVelocity]) -> Course<'b> {
         let (start, error, stop) = (&self.start, self.plan.error, self.watch.stop);
         let tolerance = self.loaded.scene.settle.unwrap_or_default().tolerance;
         let leans = self.by.changes_loads();
         let settle_tolerance = (leans || changes::has_springs_only(&self.loaded.scene)).then_some(tolerance);
-        Course { start, settle_tolerance, leans, error, stop }
+        Course { start, settle_tolerance, leans, error, failing, stop }
     }
 
     /// How blocks fail at the upper end of the bracket: that trial once more, with its contacts.
@@ -254,7 +272,9 @@ impl<'a> Search<'a> {
         let Some(factor) = upper else { return Ok((None, Vec::new())) };
         let mut model = self.model(factor, &from)?;
         model.simulation.watch_contacts(true);
-        let trial = self.course().run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
+        let failing = self.failing();
+        let trial =
+            self.course(&failing).run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
         let found = mechanism::of(&model.simulation, &self.start.position);
         if let Some(out) = self.watch.out {
             film::record(self.model(factor, &from)?, &trial, out, self.watch.stop)?;
@@ -277,11 +297,11 @@ fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start,
         } else {
             settle.most_steps
         };
-        let mut simulation = Model::new(changed, folder)?.simulation;
+        let mut simulation = Model::with(changed, folder, choices())?.simulation;
         if free(&simulation).next().is_none() {
             return Err(SafetyError::NothingFree);
         }
-        let settle = Settle { tolerance: settle.tolerance, most_steps };
+        let settle = Settle { most_steps, ..crate::build::settle(settle) };
         match rest(&mut simulation, &settle, watch) {
             Ok(true) => {
                 let start = Start::new(&mut simulation, gravity_m_s2, softest);
@@ -394,4 +414,9 @@ fn remarks(answer: &Safety) -> Vec<String> {
         ));
     }
     remarks
+}
+
+/// Friction as exact as trials need it.
+fn choices() -> Choices {
+    Choices { friction_tolerance: Some(FRICTION_TOLERANCE), ..Choices::default() }
 }

@@ -4,6 +4,11 @@
 //! is beyond the limit. A trial lasts until an acceleration of 2 % of the wanted error times gravity would have moved a block by 10 u.
 //! It *fails* as soon as a block has gone 30 u and farther in each third of what it went since than in the one before; it *stands*
 //! if at its end no block has gone so far, and none is faster than that acceleration would have made it; else it is *undecided*.
+//! It ends early where all blocks have come to rest.
+//!
+//! Steps are damped locally, since undamped contact of rigid blocks vibrates for ever, and blocks that hardly stand slip a little in each
+//! vibration. Friction makes equilibrium ambiguous: a wedge whose friction points across its line stands where one that slides does not. Blocks
+//! that stand are therefore pushed once, by the velocities with which they failed at a larger factor, and have to come to rest again.
 //! Changed loads act at once, and the scene is brought to rest under them first, with kinetic damping; a block that has gone 5 % of
 //! its radius then fails. Scenes whose friction has springs are brought to rest first, too.
 
@@ -11,9 +16,10 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
+use super::failing::{self, BlockVelocity};
 use super::free_blocks::{free, gone_m};
 use ndda_mesh::{BlockId, Vec3};
-use ndda_solver::{Settle, Simulation, Snapshot, StepError};
+use ndda_solver::{LocalDamping, Settle, Simulation, Snapshot, StepError};
 use serde::{Deserialize, Serialize};
 
 use crate::run::motion::radius_m;
@@ -30,9 +36,18 @@ const TO_REST: u32 = 5;
 /// Fewest steps of a trial.
 const FEWEST_STEPS: u64 = 400;
 /// Windows in which displacements are looked at.
-const WINDOWS: u64 = 24;
+const WINDOWS: u64 = 48;
 /// Windows that are compared with each other.
 const SPAN: usize = 2;
+/// Window after which blocks are pushed at the latest.
+const PUSH: u64 = 12;
+/// Blocks rest that are slower, at the ends of so many windows, than this part of what no acceleration would make of them in a window.
+const SLOW: f64 = 0.1;
+const RESTING: u32 = 2;
+/// Elastic displacements that a push moves blocks by which half the wanted error times gravity slows down.
+const PUSHED: f64 = 5.0;
+/// Local damping of trials.
+const DAMPING: f64 = 0.3;
 
 /// Final state of the blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -63,6 +78,9 @@ pub struct Trial {
     pub steps: u64,
     /// Wall-clock time [s].
     pub wall_s: f64,
+    /// Velocities at the end of blocks that fail.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub velocities: Vec<BlockVelocity>,
 }
 
 /// The scene at rest, from which trials begin.
@@ -132,6 +150,8 @@ pub struct Course<'a> {
     pub leans: bool,
     /// Relative width of the bracket that is asked for.
     pub error: f64,
+    /// Velocities with which blocks failed at a larger factor, to push them by; empty where they are not pushed.
+    pub failing: &'a [BlockVelocity],
     /// Raised when somebody asks to end.
     pub stop: &'a AtomicBool,
 }
@@ -158,8 +178,10 @@ impl Course<'_> {
             let state = if far { State::Fails } else { State::Undecided };
             (state, format!("the run stopped: {error}"))
         });
+        let velocities = if state == State::Fails { failing::velocities(simulation) } else { Vec::new() };
         Some(Trial {
             factor,
+            velocities,
             state,
             reason,
             block: watched.name(simulation),
@@ -182,12 +204,15 @@ impl Course<'_> {
             Err(error) => return Some(Err(error)),
         }
         let (first, steps) = (simulation.state().step, self.steps(simulation.step_s()));
+        let window_s = simulation.step_s() * (steps / WINDOWS) as f64;
+        let mut damping = LocalDamping::new(DAMPING);
+        let (mut pushed, mut resting) = (self.failing.is_empty(), 0);
         for window in 1..=WINDOWS {
             while simulation.state().step - first < window * steps / WINDOWS {
                 if self.stop.load(Ordering::Relaxed) {
                     return None;
                 }
-                if let Err(error) = simulation.step() {
+                if let Err(error) = simulation.step_with_local_damping(&mut damping) {
                     watched.look(simulation);
                     return Some(Err(error));
                 }
@@ -198,8 +223,25 @@ impl Course<'_> {
                 let reason = format!("block `{name}` has gone {gone_m:.2e} m and accelerates");
                 return Some(Ok((State::Fails, reason)));
             }
+            let slow_m_s = SLOW * self.threshold_m_s2() * window_s;
+            resting = if fastest_m_s(simulation) < slow_m_s { resting + 1 } else { 0 };
+            if !pushed && (resting == RESTING || window == PUSH) {
+                self.push(simulation);
+                watched.pushed();
+                (pushed, resting) = (true, 0);
+            } else if resting == RESTING {
+                break;
+            }
         }
         Some(Ok(self.at_the_end(simulation, watched, &far_m)))
+    }
+
+    /// Adds the velocities with which blocks failed, the fastest at a speed √(2 a d) that a = ½ error g stops after d = 5 u.
+    fn push(&self, simulation: &mut Simulation) {
+        let speed_m_s = (self.error * self.start.gravity_m_s2 * PUSHED * self.start.elastic_m).sqrt();
+        if let Some(field) = failing::field(simulation, self.failing, speed_m_s) {
+            simulation.push(&field);
+        }
     }
 
     /// Brings the scene to rest under loads of its own, in calls of more and more steps, until it rests or a block has gone far; the
@@ -217,7 +259,7 @@ impl Course<'_> {
         };
         let mut settled = Ok(());
         for doublings in 0..=TO_REST {
-            let settle = Settle { tolerance, most_steps: self.steps(simulation.step_s()) << doublings };
+            let settle = Settle::new(tolerance, self.steps(simulation.step_s()) << doublings);
             settled = simulation.settle_watched(&settle, &mut watch).map(drop);
             if self.stop.load(Ordering::Relaxed) {
                 return None;
@@ -261,6 +303,16 @@ impl Course<'_> {
     }
 }
 
+/// Largest speed of a block, by its kinetic energy [m/s].
+fn fastest_m_s(simulation: &Simulation) -> f64 {
+    let speed_m_s = |block: BlockId| {
+        let operator = &simulation.shape(block).operator;
+        let velocity = &simulation.state().velocity[simulation.blocks().nodes_of(block)];
+        (2.0 * operator.kinetic_energy_j(velocity) / operator.mass_kg).sqrt()
+    };
+    free(simulation).map(speed_m_s).fold(0.0, f64::max)
+}
+
 /// Observed quantities of a trial.
 struct Watched {
     start: Vec<Vec3>,
@@ -268,13 +320,20 @@ struct Watched {
     times_s: Vec<f64>,
     /// How far each free block has gone, per look [m].
     gone_m: Vec<Vec<f64>>,
+    /// Looks before the push.
+    before: usize,
 }
 
 impl Watched {
     fn new(simulation: &Simulation, start: &Start) -> Self {
         let blocks = free(simulation).collect();
-        let mut watched =
-            Self { start: start.position.clone(), blocks, times_s: Vec::new(), gone_m: Vec::new() };
+        let mut watched = Self {
+            start: start.position.clone(),
+            blocks,
+            times_s: Vec::new(),
+            gone_m: Vec::new(),
+            before: 0,
+        };
         watched.look(simulation);
         watched
     }
@@ -284,6 +343,11 @@ impl Watched {
         self.times_s.clear();
         self.gone_m.clear();
         self.look(simulation);
+    }
+
+    /// Compares later looks with each other only.
+    fn pushed(&mut self) {
+        self.before = self.gone_m.len() - 1;
     }
 
     fn look(&mut self, simulation: &Simulation) {
@@ -320,7 +384,7 @@ impl Watched {
     /// A block that has gone far, and in each of the last three spans farther than in the one before.
     fn accelerating(&self, far_m: &[f64]) -> Option<(BlockId, f64)> {
         let last = self.gone_m.len() - 1;
-        let first = last.checked_sub(3 * SPAN)?;
+        let first = last.checked_sub(3 * SPAN).filter(|first| *first >= self.before)?;
         let accelerates = |&block: &usize| {
             let at = |look: usize| self.gone_m[look][block];
             let [a, b, c] = [0, 1, 2].map(|k| at(first + (k + 1) * SPAN) - at(first + k * SPAN));
@@ -333,7 +397,7 @@ impl Watched {
     /// Largest mean speed over the last quarter [m/s].
     fn speed_m_s(&self) -> f64 {
         let last = self.gone_m.len() - 1;
-        let first = last - last / 4;
+        let first = last - (last / 4).max(1);
         let time_s = self.times_s[last] - self.times_s[first];
         let speed = |block: usize| (self.gone_m[last][block] - self.gone_m[first][block]).abs() / time_s;
         (0..self.blocks.len()).map(speed).fold(0.0, f64::max)

@@ -40,7 +40,12 @@ pub struct FrictionLawTable {
     on_surface: Vec<OnSurface>,
     /// Owner of the friction history.
     pub memory: Memory,
+    /// Part of μN to which friction on velocities is found for all patches together; 1e-7 unless it is set.
+    pub tolerance: f64,
 }
+
+/// Tolerance of friction on velocities.
+const TOLERANCE: f64 = 1e-7;
 
 impl FrictionLawTable {
     /// One law between all blocks.
@@ -54,7 +59,7 @@ impl FrictionLawTable {
     pub fn between(material: Vec<u32>, materials: usize) -> Self {
         let law_of = vec![None; materials * materials];
         let (laws, on_surface) = (Vec::new(), Vec::new());
-        Self { laws, material, materials, law_of, on_surface, memory: Memory::Body }
+        Self { laws, material, materials, law_of, on_surface, memory: Memory::Body, tolerance: TOLERANCE }
     }
 
     /// Sets the law between materials, whichever is contactor; the latest call counts.

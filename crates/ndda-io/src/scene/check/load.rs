@@ -1,8 +1,8 @@
 //! Checks of tractions and forces.
 
 use super::Check;
-use crate::scene::FactorRow;
 use crate::scene::Reference;
+use crate::scene::{FactorRow, SettleDamping};
 
 impl Check<'_> {
     pub(super) fn loads(&mut self) {
@@ -27,6 +27,12 @@ impl Check<'_> {
             if !(0.0 < settle.tolerance && settle.tolerance < 1.0) {
                 let message = format!("{}: must be between 0 and 1", settle.tolerance);
                 self.error("settle.tolerance", message, "1e-4 leaves a ten-thousandth of the largest speed");
+            }
+            if let SettleDamping::Local { factor } = settle.damping
+                && !(0.0 < factor && factor <= 1.0)
+            {
+                let message = format!("{factor}: must be above 0 and at most 1");
+                self.error("settle.damping.factor", message, "0.8 is usual");
             }
             if scene.gravity_ramp_s > 0.0 {
                 let help = "leave out one of the two";

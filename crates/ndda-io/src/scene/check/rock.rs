@@ -22,7 +22,7 @@ impl Check<'_> {
             self.fill(&path("fill"), &rock.fill);
             if !(rock.sliver_width_m >= 0.0 && rock.sliver_width_m.is_finite()) {
                 let message = format!("{} m: must not be negative", rock.sliver_width_m);
-                self.error(path("sliver_width_m"), message, "0 leaves nothing out");
+                self.error(path("sliver_width_m"), message, "0 keeps all blocks as they are");
             }
             for (list, places) in [("removed", &rock.removed), ("fixed", &rock.fixed)] {
                 for (k, place) in places.iter().enumerate() {

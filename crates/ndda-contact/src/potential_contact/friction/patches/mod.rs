@@ -284,6 +284,7 @@ impl FrictionPatches {
         self.ask_blocks(scene, forces);
         let Self { patches, bodies, coupled, nodal, sides, most_n, pushed, .. } = self;
         let ContactInput { blocks, velocity, bodies: start, dt_s, is_iterated, .. } = *scene.input;
+        let tolerance = scene.joints.tolerance;
         coupled.clear();
         for ((number, patch), sides) in (0..).zip(&*patches).zip(&*sides) {
             if patch.has_friction() {
@@ -291,7 +292,8 @@ impl FrictionPatches {
             }
         }
         coupled.iter().for_each(|patch| patch.push_nodes(nodal));
-        let mut motion = Motion { blocks, start: velocity, bodies, nodal, dt_s, is_iterated, most_n, pushed };
+        let mut motion =
+            Motion { blocks, start: velocity, bodies, nodal, dt_s, is_iterated, tolerance, most_n, pushed };
         solve::solve(coupled, start, &mut motion);
         for found in coupled.iter() {
             let patch = &mut patches[found.patch as usize];

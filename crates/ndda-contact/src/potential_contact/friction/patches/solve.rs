@@ -21,8 +21,6 @@ use crate::model::Body;
 
 /// γ of Alexander's method.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
-/// Friction is found when no patch changes its own by more than this part of μN, or of the largest on both of its blocks.
-const TOLERANCE: f64 = 1e-7;
 /// The same, and sweeps, where the solver compares forces of one evaluation with the next.
 const ITERATED_TOLERANCE: f64 = 1e-8;
 const ITERATED_SWEEPS: usize = 300;
@@ -179,6 +177,8 @@ pub(super) struct Motion<'a> {
     pub dt_s: f64,
     /// Whether the solver compares forces of one evaluation with the next.
     pub is_iterated: bool,
+    /// Friction is found when no patch changes its own by more than this part of μN, or of the largest on both of its blocks.
+    pub tolerance: f64,
     /// Largest friction that a patch of each block can carry [N].
     pub most_n: &'a mut Vec<f64>,
     /// When each block was pushed last by more than a tolerance.
@@ -206,7 +206,7 @@ impl Motion<'_> {
                 self.most_n[block] = self.most_n[block].max(patch.surface.most_n);
             }
         }
-        let tolerance = if self.is_iterated { ITERATED_TOLERANCE } else { TOLERANCE };
+        let tolerance = if self.is_iterated { ITERATED_TOLERANCE } else { self.tolerance };
         for patch in patches {
             let of = |block: BlockId| {
                 let is_held = self.bodies[block.index()].mass_kg.is_infinite();

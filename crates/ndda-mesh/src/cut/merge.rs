@@ -1,0 +1,221 @@
+//! Slivers united with their neighbours.
+//!
+//! A sliver goes to the neighbour with which it shares the largest face, provided that both together are convex: between the planes of a
+//! set that end nowhere they always are. Volume is kept, and no void is left. The joint between the two is closed over that face.
+
+use std::collections::BTreeSet;
+
+use super::blocks::{Blocks, is_sliver};
+use super::domain::Domain;
+use super::neighbours::neighbours;
+use super::polyhedron::Polyhedron;
+use super::split::{Split, Tolerance, split};
+use super::surfaces::Surface;
+use crate::geometry::Aabb;
+
+/// Marks faces of the box around two blocks; none is left of it.
+const OUTSIDE: u32 = u32::MAX;
+/// The union of two blocks has their volume to this fraction, or it is not convex.
+const SAME_VOLUME: f64 = 1e-9;
+
+/// Slivers that were united with neighbours.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Merged {
+    /// Their number.
+    pub count: usize,
+    /// Their volume [m³].
+    pub volume_m3: f64,
+}
+
+impl Blocks {
+    /// Unites blocks thinner than `sliver_width_m` with neighbours, thinnest first; those that have no neighbour with which
+    /// they are convex stay, and remain in the report. Parts of concave blocks are left alone. Later blocks move up. The blocks are those of
+    /// `domain`.
+    pub fn merge_slivers(&mut self, domain: &Domain, sliver_width_m: f64) -> Merged {
+        let tolerance = domain.tolerance();
+        let mut merging = Merging::new(self, sliver_width_m);
+        let merged = merging.run(&self.surfaces, tolerance);
+        if merged.count > 0 {
+            self.blocks = merging.blocks.into_iter().flatten().collect();
+            self.neighbours = neighbours(&self.blocks, &self.surfaces, tolerance.least_depth_m);
+            self.report.slivers = super::blocks::slivers(&self.blocks, sliver_width_m);
+        }
+        merged
+    }
+}
+
+/// A face that two blocks share: the other block, the surface, and the area [m²].
+#[derive(Clone, Copy, Debug)]
+struct Shared {
+    other: u32,
+    surface: u32,
+    area_m2: f64,
+}
+
+struct Merging {
+    sliver_width_m: f64,
+    /// Blocks; none where one has gone into another.
+    blocks: Vec<Option<Polyhedron>>,
+    shared: Vec<Vec<Shared>>,
+    /// Parts of concave blocks.
+    glued: Vec<bool>,
+    /// Slivers by the bits of their width, which order as positive numbers do.
+    thin: BTreeSet<(u64, u32)>,
+}
+
+impl Merging {
+    fn new(blocks: &Blocks, sliver_width_m: f64) -> Self {
+        let count = blocks.blocks.len();
+        let (mut shared, mut glued) = (vec![Vec::new(); count], vec![false; count]);
+        for neighbour in &blocks.neighbours {
+            let [a, b] = neighbour.blocks;
+            let (surface, area_m2) = (neighbour.surface, neighbour.area_m2);
+            shared[a as usize].push(Shared { other: b, surface, area_m2 });
+            shared[b as usize].push(Shared { other: a, surface, area_m2 });
+            if neighbour.glued {
+                (glued[a as usize], glued[b as usize]) = (true, true);
+            }
+        }
+        let mut merging = Self { sliver_width_m, blocks: Vec::new(), shared, glued, thin: BTreeSet::new() };
+        merging.blocks = blocks.blocks.iter().cloned().map(Some).collect();
+        for sliver in &blocks.report.slivers {
+            merging.note(sliver.block);
+        }
+        merging
+    }
+
+    /// Notes a block that is a sliver.
+    fn note(&mut self, block: u32) {
+        let Some(polyhedron) = &self.blocks[block as usize] else { return };
+        let width_m = polyhedron.width_m();
+        if !self.glued[block as usize] && is_sliver(polyhedron, width_m, self.sliver_width_m) {
+            self.thin.insert((width_m.to_bits(), block));
+        }
+    }
+
+    fn run(&mut self, surfaces: &[Surface], tolerance: Tolerance) -> Merged {
+        let mut merged = Merged::default();
+        while let Some((_, sliver)) = self.thin.pop_first() {
+            let Some((other, union)) = self.partner(sliver, surfaces, tolerance) else { continue };
+            merged.count += 1;
+            merged.volume_m3 += self.blocks[sliver as usize].as_ref().map_or(0.0, Polyhedron::volume_m3);
+            self.thin.retain(|(_, block)| *block != other);
+            self.unite(sliver, other, union);
+            self.note(other);
+        }
+        merged
+    }
+
+    /// The neighbour with the largest shared face with which a sliver is convex, and both together.
+    fn partner(&self, sliver: u32, surfaces: &[Surface], tolerance: Tolerance) -> Option<(u32, Polyhedron)> {
+        let mut candidates = self.shared[sliver as usize].clone();
+        candidates.retain(|shared| !self.glued[shared.other as usize]);
+        candidates.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2).then(a.other.cmp(&b.other)));
+        let own = self.blocks[sliver as usize].as_ref()?;
+        candidates.into_iter().find_map(|shared| {
+            let other = self.blocks[shared.other as usize].as_ref()?;
+            Some((shared.other, union(own, other, shared.surface, surfaces, tolerance)?))
+        })
+    }
+
+    /// Puts a sliver into another block.
+    fn unite(&mut self, sliver: u32, other: u32, union: Polyhedron) {
+        self.blocks[sliver as usize] = None;
+        self.blocks[other as usize] = Some(union);
+        let gone = std::mem::take(&mut self.shared[sliver as usize]);
+        self.shared[other as usize].retain(|shared| shared.other != sliver);
+        for shared in gone.into_iter().filter(|shared| shared.other != other) {
+            self.shared[shared.other as usize].retain(|back| back.other != sliver);
+            self.add(other, shared);
+            self.add(shared.other, Shared { other, ..shared });
+        }
+    }
+
+    fn add(&mut self, block: u32, new: Shared) {
+        let list = &mut self.shared[block as usize];
+        match list.iter_mut().find(|old| old.other == new.other && old.surface == new.surface) {
+            Some(old) => old.area_m2 += new.area_m2,
+            None => list.push(new),
+        }
+    }
+}
+
+/// Two blocks that meet on a surface as one, if it is convex: what the planes of all their other faces enclose.
+fn union(
+    a: &Polyhedron,
+    b: &Polyhedron,
+    between: u32,
+    surfaces: &[Surface],
+    tolerance: Tolerance,
+) -> Option<Polyhedron> {
+    let faces: BTreeSet<u32> =
+        a.faces.iter().chain(&b.faces).map(|face| face.surface).filter(|&s| s != between).collect();
+    let corners: Vec<_> = a.vertices.iter().chain(&b.vertices).copied().collect();
+    let bounds = Aabb::around(&corners);
+    let around = bounds.inflated(0.1 * bounds.diagonal());
+    let mut cell = Polyhedron::cuboid(around.min, around.max);
+    cell.faces.iter_mut().for_each(|face| face.surface = OUTSIDE);
+    let inside = corners.iter().sum::<crate::Vec3>() / corners.len() as f64;
+    for surface in faces {
+        let plane = &surfaces[surface as usize].plane;
+        if let Split::Both { above, below } = split(&cell, plane, surface, tolerance) {
+            cell = if plane.height_m(&inside) > 0.0 { above } else { below };
+        }
+    }
+    let volume_m3 = a.volume_m3() + b.volume_m3();
+    let is_closed = cell.faces.iter().all(|face| face.surface != OUTSIDE);
+    (is_closed && (cell.volume_m3() - volume_m3).abs() <= SAME_VOLUME * volume_m3).then_some(cell)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{CutOptions, Discontinuity, JointSet, cut_blocks};
+    use super::*;
+    use crate::Vec3;
+
+    fn slope(sliver_width_m: f64, persistence: f64) -> (Blocks, Domain) {
+        let domain = Domain::cuboid(Vec3::zeros(), Vec3::new(9.0, 7.0, 8.0)).unwrap();
+        let sets = [(38.0, 90.0, 1.4), (75.0, 270.0, 2.1), (83.0, 12.0, 1.7), (60.0, 200.0, 2.9)];
+        let sets = sets.map(|(dip, direction, spacing)| {
+            Discontinuity::Set(JointSet { persistence, ..JointSet::new("set", dip, direction, spacing) })
+        });
+        let options = CutOptions { sliver_width_m, seed: 3, ..CutOptions::default() };
+        (cut_blocks(&domain, &sets, &options).unwrap(), domain)
+    }
+
+    #[test]
+    fn slivers_between_planes_without_end_find_neighbours_and_volume_is_kept() {
+        let (mut blocks, domain) = slope(0.5, 1.0);
+        let (count, slivers) = (blocks.blocks.len(), blocks.report.slivers.len());
+        assert!(slivers > 50, "{slivers}");
+        let merged = blocks.merge_slivers(&domain, 0.5);
+        // Unions are no cells of the planes any longer: later slivers may find none with which they are convex.
+        assert!(20 * blocks.report.slivers.len() < slivers, "{:?}", blocks.report.slivers);
+        assert_eq!(blocks.blocks.len(), count - merged.count);
+        let volume: f64 = blocks.blocks.iter().map(Polyhedron::volume_m3).sum();
+        assert!((volume / domain.volume_m3() - 1.0).abs() < 1e-9);
+        let left: Vec<u32> = blocks.report.slivers.iter().map(|sliver| sliver.block).collect();
+        for (index, block) in (0..).zip(&blocks.blocks) {
+            assert_eq!(block.euler(), Some(2));
+            assert!(left.contains(&index) || block.width_m() >= 0.5 && block.volume_m3() >= 0.125);
+        }
+    }
+
+    /// Every face inside the domain is covered by neighbours, from both sides.
+    #[test]
+    fn merged_blocks_leave_no_void() {
+        for persistence in [1.0, 0.7] {
+            let (mut blocks, domain) = slope(0.3, persistence);
+            blocks.merge_slivers(&domain, 0.3);
+            let inner: f64 = blocks
+                .blocks
+                .iter()
+                .flat_map(|b| b.faces.iter().map(move |f| (b, f)))
+                .filter(|(_, f)| f.surface >= 6)
+                .map(|(b, f)| b.area_vector(f).norm())
+                .sum();
+            let met: f64 = blocks.neighbours.iter().map(|n| n.area_m2).sum();
+            assert!((inner - 2.0 * met).abs() < 1e-7 * inner, "{inner} {met}");
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! Local damping: what is out of balance is damped, and nothing else.
+
+use ndda_mesh::{BlockId, Vec3};
+
+use crate::bodies::kind::BodyKind;
+use crate::error::StepError;
+use crate::step::Simulation;
+use crate::step::report::StepReport;
+
+/// Local damping (Cundall 1987, "Distinct element models of rock and soil structure").
+///
+/// After a step the velocity v of each block loses α times the change Δv that the step made, and at most all of it:
+/// v ← v max(0, 1 − α ‖Δv‖/‖v‖), where ‖v‖² is twice the kinetic energy. Blocks at rest and blocks in steady motion are not damped, vibrations
+/// are, whatever their frequency; equilibrium is that of the scene without damping.
+#[derive(Clone, Debug)]
+pub struct LocalDamping {
+    factor: f64,
+    /// Velocities before the step, then what the step changed them by.
+    change: Vec<Vec3>,
+    /// Kinetic energy that the changes of the last step would be by themselves [J].
+    change_j: f64,
+}
+
+impl LocalDamping {
+    /// Damping by a factor α between 0 (none) and 1.
+    pub fn new(factor: f64) -> Self {
+        Self { factor: factor.clamp(0.0, 1.0), change: Vec::new(), change_j: 0.0 }
+    }
+
+    /// Kinetic energy that the last step's changes of velocity would be by themselves [J].
+    pub(crate) fn change_j(&self) -> f64 {
+        self.change_j
+    }
+}
+
+impl Simulation {
+    /// A step with local damping, for finding equilibrium: the energy that damping takes is not part of the balance.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub fn step_with_local_damping(&mut self, damping: &mut LocalDamping) -> Result<StepReport, StepError> {
+        damping.change.clone_from(&self.state.velocity);
+        let report = self.step()?;
+        damping.change_j = 0.0;
+        for block in self.problem.blocks.ids() {
+            self.damp_block(block, damping);
+        }
+        Ok(report)
+    }
+
+    /// Adds velocities, per node, to those of all blocks that are not fixed; not part of the balance either.
+    pub fn push(&mut self, velocity: &[Vec3]) {
+        for block in self.problem.blocks.ids() {
+            if self.shape(block).kind == BodyKind::Fixed {
+                continue;
+            }
+            for node in self.problem.blocks.nodes_of(block) {
+                self.state.velocity[node] += velocity[node];
+            }
+        }
+    }
+
+    fn damp_block(&mut self, block: BlockId, damping: &mut LocalDamping) {
+        let shape = &self.problem.shapes[self.bodies[block.index()].shape];
+        if shape.kind == BodyKind::Fixed {
+            return;
+        }
+        let nodes = self.problem.blocks.nodes_of(block);
+        let velocity = &mut self.state.velocity[nodes.clone()];
+        let change = &mut damping.change[nodes];
+        for (change, v) in change.iter_mut().zip(velocity.iter()) {
+            *change = v - *change;
+        }
+        let change_j = shape.operator.kinetic_energy_j(change);
+        damping.change_j += change_j;
+        let speed_j = shape.operator.kinetic_energy_j(velocity);
+        if speed_j > 0.0 {
+            let left = (1.0 - damping.factor * (change_j / speed_j).sqrt()).max(0.0);
+            velocity.iter_mut().for_each(|v| *v *= left);
+        }
+    }
+}

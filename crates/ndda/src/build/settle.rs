@@ -1,0 +1,13 @@
+//! How a scene settles, for the solver.
+
+use ndda_io::scene;
+use ndda_solver::{Damping, Settle};
+
+/// The scene's choice.
+pub(crate) fn settle(settle: scene::Settle) -> Settle {
+    let damping = match settle.damping {
+        scene::SettleDamping::Kinetic => Damping::Kinetic,
+        scene::SettleDamping::Local { factor } => Damping::Local { factor },
+    };
+    Settle { tolerance: settle.tolerance, most_steps: settle.most_steps, damping }
+}
