@@ -13,7 +13,7 @@ const ARROWS: [(&str, &[&str]); 8] = [
     ("crates/ndda-io", &["ndda-mesh"]),
     ("crates/ndda", &["ndda-mesh", "ndda-fem", "ndda-contact", "ndda-solver", "ndda-io"]),
     ("apps/ndda-cli", &["ndda-mesh", "ndda-fem", "ndda-contact", "ndda-solver", "ndda-io", "ndda"]),
-    ("apps/ndda-python", &["ndda", "ndda-io", "ndda-solver"]),
+    ("apps/ndda-python", &["ndda-mesh", "ndda-contact", "ndda-solver", "ndda-io", "ndda", "ndda-cli"]),
 ];
 
 fn root() -> &'static Path {

@@ -10,7 +10,7 @@ pub mod new;
 pub mod picture;
 #[cfg(feature = "plots")]
 pub mod plot;
-mod processes;
+pub mod processes;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod resume;

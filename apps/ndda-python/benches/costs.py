@@ -91,4 +91,4 @@ if __name__ == "__main__":
     new_s, filled_s, nodes = copies_s()
     print(f"a copy of {nodes} nodes: new {new_s * 1e6:.0f} µs, in place {filled_s * 1e6:.0f} µs")
     print(f"two threads over one: {two_threads():.2f}")
-    print(f"import numpy: {import_s('numpy') * 1e3:.0f} ms, numpy and ndda: {import_s('ndda') * 1e3:.0f} ms")
+    print(f"import numpy: {import_s('numpy') * 1e3:.0f} ms, ndda, which leaves numpy to its first array: {import_s('ndda') * 1e3:.0f} ms")

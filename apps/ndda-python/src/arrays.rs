@@ -1,6 +1,6 @@
 //! Copies of the state as arrays.
 
-use ndda_solver::Simulation;
+use ndda_solver::{Sample, Simulation};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadwriteArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -48,4 +48,28 @@ pub fn fill(simulation: &Simulation, name: &str, out: &mut PyReadwriteArray2<'_,
         )));
     }
     each_node(simulation, name, |i, value| (0..3).for_each(|axis| view[[i, axis]] = value[axis]))
+}
+
+/// Energies and works with their names [J].
+pub fn energies(sample: &Sample) -> [(&'static str, f64); 11] {
+    [
+        ("kinetic_j", sample.kinetic_j),
+        ("strain_j", sample.strain_j),
+        ("contact_j", sample.contact_j),
+        ("load_j", sample.load_j),
+        ("spring_j", sample.spring_j),
+        ("total_j", sample.total_j()),
+        ("friction_work_j", sample.friction_work_j),
+        ("motion_work_j", sample.motion_work_j),
+        ("load_work_j", sample.load_work_j),
+        ("damping_work_j", sample.damping_work_j),
+        ("balance_j", sample.balance_j),
+    ]
+}
+
+/// Time and energies of a sample.
+pub fn sample_row(sample: &Sample) -> [f64; 12] {
+    let mut row = [sample.time_s; 12];
+    row[1..].copy_from_slice(&energies(sample).map(|(_, value)| value));
+    row
 }

@@ -11,13 +11,13 @@ create_exception!(
     ndda,
     SceneError,
     PyValueError,
-    "A scene that cannot be used.\n\nThe text is that of the command line. `diagnostics` is a list of dictionaries with `severity`, `code`, `path`,\n`message`, `help`, `line` and `column`; the last three may be None."
+    "A scene that cannot be used.\n\nThe text is that of the command line. `diagnostics` is a list of dictionaries with `severity`, `code`, `path`,\n`message`, `help`, `line` and `column`; the last three may be None.\n\nExamples\n--------\n>>> import ndda\n>>> try:\n...     ndda.parse('(titel: \"x\")')\n... except ndda.SceneError as error:\n...     error.diagnostics[0]['code']\n'unknown-field'"
 );
 create_exception!(
     ndda,
     StopError,
     PyRuntimeError,
-    "A simulation that cannot go on without giving a wrong number.\n\n`code` is its section in docs/guide/troubleshooting.md."
+    "A simulation that cannot go on without giving a wrong number.\n\n`code` is its section in docs/guide/troubleshooting.md.\n\nExamples\n--------\n>>> import ndda\n>>> issubclass(ndda.StopError, RuntimeError)\nTrue"
 );
 
 /// A message as a dictionary.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use ndda::driver::Parts;
 use ndda::{Model, Run};
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::read::{self, LoadedScene};
@@ -10,13 +11,20 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::{diagnostic, scene_error, stop_error};
+use crate::watched::{pool, watched, within};
 
 /// A scene that has been read and checked; `ndda.load` and `ndda.parse` make it.
+///
+/// Examples
+/// --------
+/// >>> import ndda
+/// >>> ndda.parse(ndda.EXAMPLE)
+/// <ndda.Scene "A block falls for a second", 100 steps of 0.01 s>
 #[pyclass(frozen, module = "ndda")]
 pub struct Scene {
-    loaded: LoadedScene,
+    pub loaded: LoadedScene,
     /// Folder that the file names of the scene are relative to.
-    folder: PathBuf,
+    pub folder: PathBuf,
 }
 
 #[pymethods]
@@ -37,51 +45,134 @@ impl Scene {
     }
 
     /// Title of the scene.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).title
+    /// 'A block falls for a second'
     #[getter]
     fn title(&self) -> &str {
         &self.loaded.scene.title
     }
 
     /// Text of the scene in RON, overrides included.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).text == ndda.EXAMPLE
+    /// True
     #[getter]
     fn text(&self) -> &str {
         &self.loaded.text
     }
 
+    /// The file that it was read from, or `scene.ron` of a text.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).file
+    /// 'scene.ron'
+    #[getter]
+    fn file(&self) -> &str {
+        &self.loaded.file
+    }
+
+    /// Folder that the file names of the scene are relative to.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> str(ndda.parse(ndda.EXAMPLE).folder)
+    /// '.'
+    #[getter]
+    fn folder(&self) -> PathBuf {
+        self.folder.clone()
+    }
+
     /// Time step [s].
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).step_s
+    /// 0.01
     #[getter]
     fn step_s(&self) -> f64 {
         self.loaded.scene.time.step_s
     }
 
     /// Time at which a run of the scene ends [s].
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).end_s
+    /// 1.0
     #[getter]
     fn end_s(&self) -> f64 {
         self.loaded.scene.time.end_s
     }
 
     /// Steps to the end of the scene.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).steps
+    /// 100
     #[getter]
     fn steps(&self) -> u64 {
         ndda::build::steps(&self.loaded.scene.time)
     }
 
     /// Builds the scene and returns its warnings, as dictionaries like those of `SceneError.diagnostics`.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).check()
+    /// []
     fn check<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        let model = py.detach(|| self.model()).map_err(|e| scene_error(py, &e))?;
-        let loaded = &model.loaded;
-        loaded.warnings.iter().map(|found| diagnostic(py, &loaded.text, found)).collect()
+        let model = py.detach(|| self.model(None)).map_err(|e| scene_error(py, &e))?;
+        warnings(py, &model.loaded)
+    }
+
+    /// The scene with all that it leaves out, as JSON.
+    fn _json(&self) -> PyResult<String> {
+        serde_json::to_string(&self.loaded.scene).map_err(|error| PyRuntimeError::new_err(error.to_string()))
+    }
+
+    /// The scene as objects of `ndda.builders`, with all that it leaves out.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import ndda
+    /// >>> ndda.parse(ndda.EXAMPLE).to_builder().time.integrator
+    /// Integrator.Midpoint(theta=0.5)
+    fn to_builder<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let dictionary = py.import("json")?.call_method1("loads", (self._json()?,))?;
+        py.import("ndda.builders")?.getattr("Scene")?.call_method1("from_dict", (dictionary,))
     }
 
     /// Runs the scene to its end without files; the result is the text of `summary.json`.
-    fn _run(&self, py: Python<'_>) -> PyResult<String> {
-        let model = py.detach(|| self.model()).map_err(|e| scene_error(py, &e))?;
-        let outcome = py.detach(|| Run::new(model).finish(&mut []));
-        let outcome = outcome.map_err(|error| match &error {
+    #[pyo3(signature = (threads=None))]
+    fn _run(&self, py: Python<'_>, threads: Option<usize>) -> PyResult<String> {
+        let pool = pool(threads)?;
+        let outcome = watched(py, |watch| {
+            let run = within(pool.as_ref(), || self.model(None)).map(Run::new);
+            run.map(|run| {
+                let run = run.stop_when(watch.stop.clone());
+                within(pool.as_ref(), || run.finish(&mut []).map(|outcome| outcome.summary))
+            })
+        })?;
+        let summary = outcome.map_err(|e| scene_error(py, &e))?.map_err(|error| match &error {
             ndda::RunError::Settling(stop) => stop_error(py, stop),
             other => PyRuntimeError::new_err(other.to_string()),
         })?;
-        serde_json::to_string(&outcome.summary).map_err(|error| PyRuntimeError::new_err(error.to_string()))
+        serde_json::to_string(&summary).map_err(|error| PyRuntimeError::new_err(error.to_string()))
     }
 
     fn __repr__(&self) -> String {
@@ -91,7 +182,13 @@ impl Scene {
 
 impl Scene {
     /// The scene with its simulation at the start.
-    pub fn model(&self) -> Result<Model, SceneErrors> {
-        Model::new(self.loaded.clone(), &self.folder)
+    pub fn model(&self, parts: Option<&Parts>) -> Result<Model, SceneErrors> {
+        let choices = parts.map_or_else(Default::default, |make| make());
+        Model::with(self.loaded.clone(), &self.folder, choices)
     }
+}
+
+/// Warnings of a scene as dictionaries.
+pub fn warnings<'py>(py: Python<'py>, loaded: &LoadedScene) -> PyResult<Vec<Bound<'py, PyDict>>> {
+    loaded.warnings.iter().map(|found| diagnostic(py, &loaded.text, found)).collect()
 }

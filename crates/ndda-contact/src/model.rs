@@ -176,6 +176,9 @@ pub enum ContactError {
         /// Numbers that the laws expect.
         expected: usize,
     },
+    /// A friction law of the caller's own has failed.
+    #[error("the friction law failed: {0}")]
+    Law(String),
     /// The model cannot say how its forces change.
     #[error("this contact model has no stiffness to solve with: take contact at predicted positions")]
     NoTangent,

@@ -90,6 +90,7 @@ pub use linear::linear_solver::{
 pub use linear::supernodal::{Supernodal, SupernodalFactor};
 pub use sink::{RunError, Sink, SinkError, View, resume, run};
 pub use step::Simulation;
+pub use step::change::TakeOverError;
 pub use step::control::AutoStep;
 pub use step::drive::DriveError;
 pub use step::implicit_contact::ImplicitContact;

@@ -14,8 +14,8 @@ mod water;
 use std::path::Path;
 
 use ndda_contact::{
-    ClosurePotential, ContactModel, ContactPotential, ElementPotential, FrictionLaw, FrictionLawTable,
-    Memory, PotentialContact, SmoothPotential, VolumePotential,
+    BatchFriction, ClosurePotential, ContactModel, ContactPotential, ElementPotential, FrictionLaw,
+    FrictionLawTable, Memory, PotentialContact, SmoothPotential, VolumePotential,
 };
 use ndda_fem::Table;
 use ndda_io::scene::{self, At, Contact, Integrator, Scene};
@@ -250,6 +250,9 @@ pub(crate) fn contact_model(
             let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);
             if let Some(broad_phase) = choices.broad_phase.take() {
                 model = model.with_broad_phase(broad_phase);
+            }
+            if let Some(law) = choices.batch_law.take() {
+                return Ok(Some(Box::new(BatchFriction::new(model, law))));
             }
             let everywhere = choices.friction.take().or_else(|| friction.as_ref().and_then(friction_law));
             let mut table = between_materials(scene, blocks, everywhere, material_pairs);

@@ -1,16 +1,30 @@
 //! A simulation that somebody else steps: a script, a notebook, another program.
 
-use ndda_contact::FacetContact;
-use ndda_io::checkpoint;
-use ndda_io::summary::Label;
-use ndda_solver::{DriveError, RestoreError, Sample, Simulation, Snapshot, StepError};
+mod change;
+mod saved;
 
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use ndda_contact::FacetContact;
+use ndda_io::diagnostic::SceneErrors;
+use ndda_io::summary::Label;
+use ndda_io::{checkpoint, read};
+use ndda_solver::{DriveError, RestoreError, Sample, Settled, Simulation, SinkError, Snapshot, StepError};
+
+pub use change::ChangeError;
 pub use ndda_mesh::{BlockId, Vec3};
+pub use saved::{LoadError, SaveError};
 
 use crate::Model;
+use crate::build::Choices;
 use crate::judge::verdict;
 use crate::run::contact_rows::{COLUMNS, contact_rows};
+use crate::run::fields::FieldWriter;
 use crate::run::schedule::is_due;
+
+/// Rows of a history that there is room for from the start.
+const ORDINARY_ROWS: u64 = 10_000;
 
 /// A simulation that is stepped from outside and judged as [`Run`](crate::Run) judges it.
 ///
@@ -37,19 +51,29 @@ pub struct Driver {
     /// Why the simulation cannot go on; its state is then not to be used.
     stopped: Option<StepError>,
     facets: Vec<FacetContact>,
+    /// What was sampled so far.
+    history: Vec<Sample>,
+    watches_contacts: bool,
+    /// Text of the scene as it was at the start, before any [`change`](Driver::change).
+    origin: Arc<str>,
+    parts: Option<Parts>,
 }
+
+/// Parts of a program's own, made anew whenever a simulation is built.
+pub type Parts = Arc<dyn Fn() -> Choices + Send + Sync>;
 
 /// State of a [`Driver`]; it can be restored in any driver of the same scene.
 #[derive(Clone, Debug)]
 pub struct DriverSnapshot {
-    /// Text of the scene.
+    /// Text of the scene at the start, and now.
+    origin: Arc<str>,
     scene: String,
     snapshot: Snapshot,
     stopped: Option<StepError>,
 }
 
 /// Why a snapshot cannot be restored.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 pub enum DriverRestoreError {
     /// The snapshot is of another scene.
     #[error("the snapshot is of another scene: restore it in a simulation of the scene that it was taken of")]
@@ -57,6 +81,9 @@ pub enum DriverRestoreError {
     /// Meshes that the scene names have changed.
     #[error(transparent)]
     OtherProblem(#[from] RestoreError),
+    /// The scene as it was cannot be built any more.
+    #[error(transparent)]
+    Scene(#[from] SceneErrors),
 }
 
 /// Name and text of a scene for examples: a rigid block falls for a second.
@@ -75,15 +102,51 @@ impl Driver {
     ///
     /// # Errors
     /// [`StepError`] when the scene does not settle, or its start cannot be sampled.
-    pub fn new(mut model: Model) -> Result<Self, StepError> {
-        let scene = &model.loaded.scene;
-        let rows = u64::from(scene.output.history_rows);
-        if let Some(settle) = scene.settle {
-            let settle = crate::build::settle(settle);
-            model.simulation.settle_watched(&settle, &mut |_| std::ops::ControlFlow::Continue(()))?;
+    pub fn new(model: Model) -> Result<Self, StepError> {
+        Self::with_parts(model, None, &mut |_| ControlFlow::Continue(()))
+    }
+
+    /// Takes a model to its start that was built with `parts`; `settling` is shown how far a scene has settled, and may break it off.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn with_parts(
+        mut model: Model,
+        parts: Option<Parts>,
+        settling: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
+    ) -> Result<Self, StepError> {
+        if let Some(settle) = model.loaded.scene.settle {
+            model.simulation.settle_watched(&crate::build::settle(settle), settling)?;
         }
-        model.simulation.sample()?;
-        Ok(Self { steps: model.steps(), rows, model, stopped: None, facets: Vec::new() })
+        let start = model.simulation.sample()?;
+        let origin = model.loaded.text.as_str().into();
+        let mut driver = Self::around(model, origin, parts);
+        driver.history.push(start);
+        Ok(driver)
+    }
+
+    fn around(model: Model, origin: Arc<str>, parts: Option<Parts>) -> Self {
+        let rows = u64::from(model.loaded.scene.output.history_rows);
+        let steps = model.steps();
+        // Room for all rows of an ordinary run: a step allocates nothing.
+        let history = Vec::with_capacity(rows.min(steps).min(ORDINARY_ROWS) as usize + 2);
+        let (stopped, facets, watches_contacts) = (None, Vec::new(), false);
+        Self { model, steps, rows, stopped, facets, history, watches_contacts, origin, parts }
+    }
+
+    /// Builds a text of the scene with the parts that the driver was begun with.
+    fn build(&self, text: &str, overrides: &[String]) -> Result<Model, SceneErrors> {
+        let (file, folder) = (&self.model.loaded.file, self.model.folder.as_path());
+        let loaded = read::load_text(file, text, overrides, Some(folder))?;
+        Model::resuming_with(loaded, folder, choices(self.parts.as_ref()))
+    }
+
+    /// Puts another model in the place of the present one.
+    fn put(&mut self, model: Model) {
+        self.steps = model.steps();
+        self.rows = u64::from(model.loaded.scene.output.history_rows);
+        self.model = model;
+        self.model.simulation.watch_contacts(self.watches_contacts);
     }
 
     /// Takes so many steps.
@@ -101,7 +164,7 @@ impl Driver {
         let simulation = &mut self.model.simulation;
         let mut done = simulation.step().map(|_| ());
         if done.is_ok() && is_due(simulation.state().step, self.steps, self.rows) {
-            done = simulation.sample().map(|_| ());
+            done = simulation.sample().map(|sample| self.history.push(sample));
         }
         self.stopped = done.clone().err();
         done
@@ -116,6 +179,11 @@ impl Driver {
             return Err(error.clone());
         }
         self.model.simulation.sample().inspect_err(|error| self.stopped = Some(error.clone()))
+    }
+
+    /// Samples at the steps at which a run of the scene samples, the start included; a driver that was loaded begins anew.
+    pub fn history(&self) -> &[Sample] {
+        &self.history
     }
 
     /// The simulation's label so far: a sample is taken first, so that nothing since the last one is missed.
@@ -139,6 +207,7 @@ impl Driver {
 
     /// Whether contacts are kept from the next step on.
     pub fn watch_contacts(&mut self, wanted: bool) {
+        self.watches_contacts = wanted;
         self.model.simulation.watch_contacts(wanted);
     }
 
@@ -170,8 +239,9 @@ impl Driver {
 
     /// A copy of all that changes.
     pub fn snapshot(&self) -> DriverSnapshot {
-        let scene = self.model.loaded.text.clone();
-        DriverSnapshot { scene, snapshot: self.model.simulation.snapshot(), stopped: self.stopped.clone() }
+        let (origin, scene) = (self.origin.clone(), self.model.loaded.text.clone());
+        let (snapshot, stopped) = (self.model.simulation.snapshot(), self.stopped.clone());
+        DriverSnapshot { origin, scene, snapshot, stopped }
     }
 
     /// Goes on from a snapshot of the same scene, bit for bit.
@@ -179,12 +249,28 @@ impl Driver {
     /// # Errors
     /// [`DriverRestoreError`] when it is of another scene; nothing has changed then.
     pub fn restore(&mut self, snapshot: &DriverSnapshot) -> Result<(), DriverRestoreError> {
-        if snapshot.scene != self.model.loaded.text {
+        if snapshot.origin != self.origin {
             return Err(DriverRestoreError::OtherScene);
         }
-        self.model.simulation.restore(snapshot.snapshot.clone())?;
+        if snapshot.scene == self.model.loaded.text {
+            self.model.simulation.restore(snapshot.snapshot.clone())?;
+        } else {
+            let mut model = self.build(&snapshot.scene, &[])?;
+            model.simulation.restore(snapshot.snapshot.clone())?;
+            self.put(model);
+        }
         self.stopped.clone_from(&snapshot.stopped);
+        let step = self.simulation().state().step;
+        self.history.retain(|sample| sample.step <= step);
         Ok(())
+    }
+
+    /// A frame of the present state as a VTK file (`.vtu`), with the fields that the scene's `output` names.
+    ///
+    /// # Errors
+    /// [`SinkError`] when stresses cannot be recovered, or a number is not finite.
+    pub fn frame(&mut self) -> Result<Vec<u8>, SinkError> {
+        FieldWriter::encode(&self.model.loaded.scene, &mut self.model.simulation)
     }
 
     /// CRC-32 of the state in hexadecimal, as in the summary of a run.
@@ -211,6 +297,11 @@ impl Driver {
     pub fn steps(&self) -> u64 {
         self.steps
     }
+}
+
+/// Parts of a program's own, or none.
+fn choices(parts: Option<&Parts>) -> Choices {
+    parts.map_or_else(Choices::default, |make| make())
 }
 
 #[cfg(test)]
@@ -253,7 +344,7 @@ mod tests {
     fn a_snapshot_of_another_scene_is_refused() {
         let fall = Driver::new(Model::from_text(EXAMPLE.1).unwrap()).unwrap();
         let mut driver = Driver::new(bounce()).unwrap();
-        assert_eq!(driver.restore(&fall.snapshot()), Err(DriverRestoreError::OtherScene));
+        assert!(matches!(driver.restore(&fall.snapshot()), Err(DriverRestoreError::OtherScene)));
     }
 
     #[test]

@@ -36,8 +36,8 @@
 //! | [`certify`] | every result as value ± error |
 //! | [`safety`] | the factor of safety of a slope, and how its blocks fail |
 //! | [`joint`] | direct shear and closure of one joint, without blocks |
-//! | [`stereonet`] | orientations of joints, and kinematic checks of a slope |
 //! | [`stereonet`] | orientations of joints on a net, and kinematic checks of a slope |
+//! | [`numbers`] | numbers as command lines take them |
 //! | [`tune`] | the cheapest settings that reach an error |
 //! | [`examples`], [`templates`] | scenes that come with the program |
 //! | `report` | a run as a page of HTML (feature `report`) |
@@ -66,6 +66,7 @@ pub mod mesh_input;
 pub mod mesh_picture;
 pub mod mesh_report;
 mod model;
+pub mod numbers;
 #[cfg(feature = "plots")]
 pub mod picture;
 #[cfg(feature = "plots")]

@@ -1,6 +1,6 @@
 //! A scene that is ready to run.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ndda_io::diagnostic::{Diagnostic, SceneErrors};
 use ndda_io::read::{self, LoadedScene};
@@ -22,6 +22,8 @@ pub struct Model {
     pub monitors: Vec<Monitor>,
     /// What its rock was cut into.
     pub rock: Vec<RockReport>,
+    /// Where the files are that the scene names.
+    pub folder: PathBuf,
 }
 
 impl Model {
@@ -90,7 +92,7 @@ impl Model {
         loaded.warnings.extend(far);
         loaded.warnings.extend(lumped::warning(&loaded, &simulation));
         loaded.warnings.extend(creep::warning(&loaded));
-        Ok(Self { loaded, simulation, monitors, rock })
+        Ok(Self { loaded, simulation, monitors, rock, folder: folder.to_path_buf() })
     }
 
     /// The scene's closed form, bound to the blocks as they are now.

@@ -16,6 +16,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use ndda_io::folder::SUMMARY;
+use ndda_io::results::ListedFrame;
 use serde::Serialize;
 
 use crate::certify;
@@ -79,4 +80,17 @@ pub fn write(folder: &Path, file: &Path, frames: Option<u32>) -> Result<Written,
         blocks: input.summary.counts.blocks,
         triangles: motion.as_ref().map_or(0, |m| m.surface.triangles.len()),
     })
+}
+
+/// A page with nothing but the blocks of some frames, each with its time [s] and file, and their names.
+///
+/// # Errors
+/// [`ReportError`] when a frame is damaged, does not fit the first, or there is none.
+pub fn viewer(title: &str, block_names: &[String], frames: &[(f64, PathBuf)]) -> Result<String, ReportError> {
+    let listed: Vec<ListedFrame> =
+        frames.iter().map(|(time_s, path)| ListedFrame { time_s: *time_s, path: path.clone() }).collect();
+    if listed.is_empty() {
+        return Err(ReportError::NoFrames);
+    }
+    Ok(page::viewer(title, block_names, &Motion::read(&listed, None)?))
 }

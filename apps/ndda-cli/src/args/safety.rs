@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use ndda::numbers::{direction, relative_error};
 
 use super::SceneArgs;
-use super::trial::error_of_one;
 
 /// Arguments of `ndda safety`.
 #[derive(Debug, Args)]
@@ -24,7 +24,7 @@ pub struct SafetyArgs {
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub towards: Option<[f64; 3]>,
     /// Relative width of the bracket.
-    #[arg(long, value_name = "ERROR", default_value_t = 0.01, value_parser = error_of_one)]
+    #[arg(long, value_name = "ERROR", default_value_t = 0.01, value_parser = relative_error)]
     pub error: f64,
     /// Output folder [default: out/ and the name of the scene with _safety].
     #[arg(long, value_name = "DIR")]
@@ -52,13 +52,4 @@ pub enum SafetyBy {
     Gravity,
     /// Multiply forces and tractions.
     Load,
-}
-
-/// Three numbers with commas between them.
-fn direction(text: &str) -> Result<[f64; 3], String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse::<f64>()).collect();
-    match numbers.ok().and_then(|numbers| <[f64; 3]>::try_from(numbers).ok()) {
-        Some(numbers) if numbers.iter().all(|x| x.is_finite()) && numbers != [0.0; 3] => Ok(numbers),
-        _ => Err("write three numbers that are not all zero, as 1,0,0".into()),
-    }
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use ndda::numbers::{positive, relative_error};
 
 use super::SceneArgs;
 
@@ -41,7 +42,7 @@ pub struct TuneArgs {
     #[command(flatten)]
     pub input: SceneArgs,
     /// The largest relative error that is allowed.
-    #[arg(long, value_name = "ERROR", value_parser = error_of_one)]
+    #[arg(long, value_name = "ERROR", value_parser = relative_error)]
     pub error: f64,
     /// Results that have to be right: columns of history.csv or blocks, by name or its beginning [default: what the scene's closed
     /// form judges, else the displacements of all monitors and blocks].
@@ -56,18 +57,6 @@ pub struct TuneArgs {
     /// Where and how.
     #[command(flatten)]
     pub how: TrialHow,
-}
-
-/// A relative error, above 0 and below 1.
-pub(super) fn error_of_one(text: &str) -> Result<f64, String> {
-    let error = positive(text)?;
-    if error < 1.0 { Ok(error) } else { Err("a relative error lies between 0 and 1, as 1e-2".into()) }
-}
-
-/// A finite number above zero.
-fn positive(text: &str) -> Result<f64, String> {
-    let number: f64 = text.parse().map_err(|_| "write a number, as 1e-2".to_string())?;
-    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be finite and above zero".into()) }
 }
 
 /// How a scene is run over and over.

@@ -1,8 +1,9 @@
 //! Cases of a study as processes of their own, so that memory is measured per case and a crash ends one run, not all.
 
+use std::ffi::OsString;
 use std::process::{Command, Stdio};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use ndda::forecast::memory;
 use ndda::study::error::StudyError;
@@ -11,6 +12,9 @@ use ndda::study::runner::{CaseRun, CaseRunner};
 
 use crate::exit;
 use crate::terminal::console::{colour, complain};
+
+/// Words that start this program.
+pub static PROGRAM: OnceLock<Vec<OsString>> = OnceLock::new();
 
 /// Runs cases as processes of this program.
 pub struct Processes {
@@ -23,9 +27,9 @@ impl CaseRunner for Processes {
         if self.stop.load(Ordering::Relaxed) {
             return Err(StudyError::Interrupted);
         }
-        let program = std::env::current_exe().map_err(StudyError::Start)?;
-        let mut command = Command::new(program);
-        command.arg("run").arg(run.scene).arg("--out").arg(run.out);
+        let program = PROGRAM.get().map_or(&[][..], Vec::as_slice);
+        let mut command = Command::new(program.first().map_or("ndda".as_ref(), OsString::as_os_str));
+        command.args(program.iter().skip(1)).arg("run").arg(run.scene).arg("--out").arg(run.out);
         command.args(["--force", "--quiet", "--threads", &run.threads.to_string()]);
         if let Some(bytes) = memory::asked() {
             command.args(["--memory", &bytes.to_string()]);

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import os
-from typing import Any
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
 
+from ndda import _core
 from ndda._core import Scene
+
+if TYPE_CHECKING:
+    from ndda.builders import Scene as SceneBuilder
 
 EXAMPLE = """Scene(
     title: "A block falls for a second",
@@ -18,24 +22,31 @@ EXAMPLE = """Scene(
 """Text of a scene for examples: a rigid block falls for a second."""
 
 
-def _value(value: object) -> str:
-    """Write a value in RON; a string is RON already."""
+def value_in_ron(value: object) -> str:
+    """Write a value in RON; a string is RON already, and builders write themselves."""
+    if hasattr(value, "tolist"):
+        # A row of an array is a vector.
+        value = value.tolist()
+        value = tuple(value) if isinstance(value, list) else value
     if isinstance(value, bool):
         return "true" if value else "false"
     if value is None:
         return "None"
     if isinstance(value, (tuple, list)):
-        inner = ", ".join(_value(item) for item in value)
+        inner = ", ".join(value_in_ron(item) for item in value)
         return f"({inner})" if isinstance(value, tuple) else f"[{inner}]"
     if isinstance(value, str):
         return value
     if isinstance(value, int):
         return str(value)
+    if hasattr(value, "to_ron"):
+        return str(value.to_ron())
     return repr(float(value))  # type: ignore[arg-type]
 
 
-def _overrides(values: dict[str, object]) -> list[str]:
-    return [f"{path}={_value(value)}" for path, value in values.items()]
+def overrides_of(values: Mapping[str, object]) -> list[str]:
+    """Values by their path as `ndda run --set` takes them."""
+    return [f"{path}={value_in_ron(value)}" for path, value in values.items()]
 
 
 def load(file: str | os.PathLike[str], **overrides: object) -> Scene:
@@ -45,7 +56,7 @@ def load(file: str | os.PathLike[str], **overrides: object) -> Scene:
     ----------
     file : path
         The scene.
-    **overrides : number, bool, tuple, list, str or None
+    **overrides : number, bool, tuple, list, str, builder or None
         Values by their path in the scene; a string is RON, so that a text is quoted twice.
 
     Returns
@@ -65,16 +76,18 @@ def load(file: str | os.PathLike[str], **overrides: object) -> Scene:
     >>> load(file, **{"time.step_s": 0.02}).steps
     50
     """
-    return Scene._load(os.fspath(file), _overrides(overrides))
+    return Scene._load(os.fspath(file), overrides_of(overrides))
 
 
-def parse(text: str, folder: str | os.PathLike[str] = ".", **overrides: object) -> Scene:
-    """Read and check the text of a scene.
+def parse(
+    scene: str | Mapping[str, Any] | SceneBuilder, folder: str | os.PathLike[str] = ".", **overrides: object
+) -> Scene:
+    """Read and check a scene that is no file.
 
     Parameters
     ----------
-    text : str
-        The scene in RON.
+    scene : str, mapping or builders.Scene
+        The scene as text in RON, as a dictionary with the same fields, or built from objects.
     folder : path
         Where the files are that it names.
     **overrides
@@ -93,21 +106,48 @@ def parse(text: str, folder: str | os.PathLike[str] = ".", **overrides: object) 
     --------
     >>> parse(EXAMPLE).title
     'A block falls for a second'
+    >>> time = {"step_s": 0.1, "end_s": 1.0}
+    >>> rock = {"name": "rock", "density_kg_m3": 2600, "young_pa": 1e9, "poisson": 0.25}
+    >>> shape = {"Box": {"size_m": (1, 1, 1), "cells": (1, 1, 1)}}
+    >>> block = {"name": "block", "material": "rock", "shape": shape}
+    >>> parse({"title": "A block", "time": time, "materials": [rock], "blocks": [block]}).steps
+    10
     """
-    return Scene._parse(text, _overrides(overrides), os.fspath(folder))
+    if isinstance(scene, str):
+        text = scene
+    else:
+        from ndda.builders import Scene as SceneBuilder
+
+        built = SceneBuilder.from_dict(scene) if isinstance(scene, Mapping) else scene
+        if not isinstance(built, SceneBuilder):
+            raise TypeError(f"{built!r} is no scene: give a text, a dictionary, or a builders.Scene; `load` reads files")
+        text = built.to_ron()
+    return Scene._parse(text, overrides_of(overrides), os.fspath(folder))
 
 
-def run(scene: Scene) -> dict[str, Any]:
-    """Run a scene to its end and judge it, writing no files.
+def run(
+    scene: Scene,
+    out: str | os.PathLike[str] | None = None,
+    *,
+    force: bool = False,
+    threads: int | None = None,
+) -> dict[str, Any]:
+    """Run a scene to its end and judge it.
 
     Parameters
     ----------
     scene : Scene
+    out : path, optional
+        Folder for history, fields and summary, as `ndda run` writes them; no files without it. `read` reads it.
+    force : bool
+        Whether an earlier run in the folder is replaced.
+    threads : int, optional
+        Threads; all processors otherwise.
 
     Returns
     -------
     dict
-        What `summary.json` says after `ndda run`.
+        The content of `summary.json`.
 
     Raises
     ------
@@ -115,6 +155,8 @@ def run(scene: Scene) -> dict[str, Any]:
         The scene cannot be built.
     StopError
         The scene does not settle. A later stop is no exception: `status` is then ``"stopped"``.
+    OSError
+        Files cannot be written.
 
     Examples
     --------
@@ -122,5 +164,21 @@ def run(scene: Scene) -> dict[str, Any]:
     >>> summary["status"], summary["steps"], summary["label"]["word"]
     ('done', 100, 'accurate')
     """
-    summary: dict[str, Any] = json.loads(scene._run())
+    import json
+
+    if out is None:
+        text = scene._run(threads)
+    else:
+        text = _core._record(scene, os.fspath(out), name_of(scene), force, threads)
+    summary: dict[str, Any] = json.loads(text)
     return summary
+
+
+def scene_of(scene: Scene | str | os.PathLike[str]) -> Scene:
+    """The scene itself, or the one in a file."""
+    return scene if isinstance(scene, Scene) else load(scene)
+
+
+def name_of(scene: Scene) -> str:
+    """Name of a scene for files: that of its own file, or `scene`."""
+    return os.path.splitext(os.path.basename(scene.file))[0]

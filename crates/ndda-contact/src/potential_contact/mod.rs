@@ -3,6 +3,7 @@
 pub mod affine;
 pub mod assembly;
 mod audit;
+mod batch;
 pub mod broad_phase;
 mod contact_model;
 mod evaluation;
@@ -13,6 +14,7 @@ pub mod potential;
 pub mod reference;
 
 pub use {
+    batch::{BatchFacet, BatchFriction, BatchLaw},
     friction::barton_bandis::{BartonBandis, Roughness},
     friction::coulomb::Coulomb,
     friction::dilating::{Dilating, Dilation},

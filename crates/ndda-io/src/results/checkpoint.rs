@@ -83,21 +83,29 @@ pub fn size(value: &impl Serialize) -> u64 {
 /// [`WriteError`] when the value cannot be encoded or the file not be written; the files before are then as they were.
 pub fn write(folder: &OutputFolder, value: &impl Serialize) -> Result<(), WriteError> {
     let (path, previous) = (folder.checkpoint(), folder.previous_checkpoint());
+    let waiting = folder.waiting_checkpoint();
+    write_file(&waiting, value)?;
+    match fs::rename(&path, &previous) {
+        Err(e) if e.kind() != ErrorKind::NotFound => return Err(WriteError::io("rename", &path)(e)),
+        _ => {}
+    }
+    fs::rename(&waiting, &path).map_err(WriteError::io("rename the new checkpoint to", &path))
+}
+
+/// Writes a checkpoint to a file of its own, whole or not at all.
+///
+/// # Errors
+/// [`WriteError`] when the value cannot be encoded or the file not be written.
+pub fn write_file(path: &Path, value: &impl Serialize) -> Result<(), WriteError> {
     let content = postcard::to_stdvec(value)
-        .map_err(|e| WriteError::Encode { path: path.clone(), reason: e.to_string() })?;
+        .map_err(|e| WriteError::Encode { path: path.to_path_buf(), reason: e.to_string() })?;
     let mut bytes = Vec::with_capacity(HEADER + content.len() + TRAILER);
     bytes.extend_from_slice(MAGIC);
     bytes.extend_from_slice(&FORMAT.to_le_bytes());
     bytes.extend_from_slice(&(content.len() as u64).to_le_bytes());
     bytes.extend_from_slice(&content);
     bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
-    let waiting = folder.waiting_checkpoint();
-    atomic::write(&waiting, &bytes)?;
-    match fs::rename(&path, &previous) {
-        Err(e) if e.kind() != ErrorKind::NotFound => return Err(WriteError::io("rename", &path)(e)),
-        _ => {}
-    }
-    fs::rename(&waiting, &path).map_err(WriteError::io("rename the new checkpoint to", &path))
+    atomic::write(path, &bytes)
 }
 
 /// Reads the newest checkpoint of a folder that is whole and of its run, and says why a newer one was passed over;
@@ -134,7 +142,11 @@ pub fn go_back(folder: &OutputFolder) -> Result<(), WriteError> {
     fs::rename(&previous, folder.checkpoint()).map_err(WriteError::io("rename", &previous))
 }
 
-fn read_file<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, CheckpointError> {
+/// Reads a checkpoint from a file; none where there is no file.
+///
+/// # Errors
+/// [`CheckpointError`] when the file cannot be used.
+pub fn read_file<T: DeserializeOwned>(path: &Path) -> Result<Option<T>, CheckpointError> {
     let bytes = match fs::read(path) {
         Ok(bytes) => bytes,
         Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),

@@ -2,6 +2,7 @@
 
 pub(crate) mod account;
 pub(crate) mod blocks;
+pub(crate) mod change;
 pub(crate) mod clock;
 pub(crate) mod contact_fields;
 pub(crate) mod contact_forces;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use ndda_contact::broad_phase::BroadPhase;
-use ndda_contact::{ContactModel, ContactPotential, FrictionLaw};
+use ndda_contact::{BatchLaw, ContactModel, ContactPotential, FrictionLaw};
 use ndda_fem::Material;
 use ndda_solver::{LinearSolver, TimeIntegrator};
 
@@ -24,6 +24,8 @@ pub struct Choices {
     pub potential: Option<Box<dyn ContactPotential>>,
     /// A friction law instead of `contact.friction`; those of single joints and pairs of materials stay.
     pub friction: Option<Box<dyn FrictionLaw>>,
+    /// Friction of all facets at once instead of all friction that the scene names.
+    pub batch_law: Option<Box<dyn BatchLaw>>,
     /// Tolerance of friction on velocities, as a part of μN; 1e-7 unless it is given.
     pub friction_tolerance: Option<f64>,
     /// The search for pairs that may touch.

@@ -25,6 +25,9 @@ pub enum ReportError {
         /// The file that is missing.
         missing: &'static str,
     },
+    /// There is nothing to show.
+    #[error("there are no frames to show: keep one first")]
+    NoFrames,
     /// A file of the run cannot be used.
     #[error(transparent)]
     Results(#[from] ResultsError),

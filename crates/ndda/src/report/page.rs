@@ -42,14 +42,7 @@ pub fn page(input: &Input, motion: Option<&Motion>) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                title { (summary.title) " – ndda" }
-                @for style in STYLES { style { (PreEscaped(style)) } }
-            }
+            (head(&summary.title))
             body {
                 (sections::header(summary))
                 main {
@@ -64,17 +57,54 @@ pub fn page(input: &Input, motion: Option<&Motion>) -> String {
                     (sections::blocks(summary))
                 }
                 (sections::footer(summary))
-                script id="data" type="application/json" { (PreEscaped(data)) }
-                @if let Some(numbers) = numbers {
-                    script id="numbers" type="text/plain" { (PreEscaped(numbers)) }
-                    @for script in BLOCKS { script { (PreEscaped(script)) } }
-                }
-                @for script in DRAWING { script { (PreEscaped(script)) } }
-                script { (PreEscaped(MAIN)) }
+                (scripts(&data, numbers.as_deref()))
             }
         }
     };
     page.into_string()
+}
+
+/// A page with the blocks alone.
+pub fn viewer(title: &str, block_names: &[String], motion: &Motion) -> String {
+    let (description, numbers) = motion.describe();
+    let block_names = block_names.iter().map(String::as_str).collect();
+    let data = json(&Data { charts: &Charts::default(), motion: Some(description), block_names });
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            (head(title))
+            body {
+                main { (player(motion, motion.times_s.len())) }
+                (scripts(&data, Some(&numbers)))
+            }
+        }
+    };
+    page.into_string()
+}
+
+fn head(title: &str) -> Markup {
+    html! {
+        head {
+            meta charset="utf-8";
+            meta http-equiv="Content-Security-Policy" content=(POLICY);
+            meta name="viewport" content="width=device-width, initial-scale=1";
+            meta name="color-scheme" content="light dark";
+            title { (title) " – ndda" }
+            @for style in STYLES { style { (PreEscaped(style)) } }
+        }
+    }
+}
+
+fn scripts(data: &str, numbers: Option<&str>) -> Markup {
+    html! {
+        script id="data" type="application/json" { (PreEscaped(data)) }
+        @if let Some(numbers) = numbers {
+            script id="numbers" type="text/plain" { (PreEscaped(numbers)) }
+            @for script in BLOCKS { script { (PreEscaped(script)) } }
+        }
+        @for script in DRAWING { script { (PreEscaped(script)) } }
+        script { (PreEscaped(MAIN)) }
+    }
 }
 
 /// JSON that may stand in a script: nothing in it can end the script or begin a comment.
@@ -92,7 +122,12 @@ fn stage(input: &Input, motion: Option<&Motion>) -> Markup {
             }
         };
     };
-    let (shown, all) = (motion.times_s.len(), input.frames.len());
+    player(motion, input.frames.len())
+}
+
+/// The 3D view with its controls, of a run with so many frames.
+fn player(motion: &Motion, all: usize) -> Markup {
+    let shown = motion.times_s.len();
     html! {
         section.card.stage {
             div.tools {

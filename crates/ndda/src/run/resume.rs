@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::{OutputFolder, WriteError, checkpoint, outside_files, read};
+use ndda_solver::Snapshot;
 
+use super::identity::Identity;
 use super::outputs::SavedRun;
 use super::run_log;
 use super::{Run, stem};
@@ -72,6 +74,18 @@ impl Run {
         restored.map_err(|error| ResumeError::DoesNotFit(error.to_string()))?;
         let run = run.record_as(identity, folder, Some(earlier))?;
         Ok(Resumed { run, warnings })
+    }
+}
+
+impl Run {
+    /// Scene and state of the last checkpoint of the run in a folder.
+    ///
+    /// # Errors
+    /// [`ResumeError`] when there is none that can be used.
+    pub(crate) fn last_checkpoint(folder: &Path) -> Result<(Identity, Snapshot), ResumeError> {
+        let folder = OutputFolder::open(folder)?;
+        let SavedRun { identity, snapshot, .. } = last_checkpoint(&folder, &mut Vec::new())?;
+        Ok((identity, snapshot))
     }
 }
 

@@ -1,0 +1,83 @@
+"""A friction law in Python: arrays in, arrays out, once a step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+
+@dataclass(frozen=True)
+class Facets:
+    """All facets in contact in a step, as a friction law sees them; vectors are in global axes.
+
+    Attributes
+    ----------
+    dt : float
+        Time step [s].
+    first, second : array of int, shape (facets,)
+        Blocks of each facet and of what it is pressed into.
+    area : array, shape (facets,)
+        Area in contact [m²].
+    normal : array, shape (facets, 3)
+        Outward normal of the facet.
+    normal_force : array, shape (facets,)
+        Force on the facet against its normal [N].
+    slip : array, shape (facets, 3)
+        Slip of the facet on the other block in this step [m], along the facet.
+    shear : array, shape (facets, 3)
+        Shear force on the facet that the law gave in the last step [N], zero where contact begins.
+    state : array, shape (facets, law.state_len)
+        Numbers of the law's own, zero where contact begins; what it writes there is kept.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> none, vectors = np.zeros(0), np.zeros((0, 3))
+    >>> blocks = np.zeros(0, int)
+    >>> len(Facets(1e-3, blocks, blocks, none, vectors, none, vectors, vectors, np.zeros((0, 0))))
+    0
+    """
+
+    dt: float
+    first: npt.NDArray[np.int64]
+    second: npt.NDArray[np.int64]
+    area: npt.NDArray[np.float64]
+    normal: npt.NDArray[np.float64]
+    normal_force: npt.NDArray[np.float64]
+    slip: npt.NDArray[np.float64]
+    shear: npt.NDArray[np.float64]
+    state: npt.NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.area)
+
+
+class Law(Protocol):
+    """What `Simulation(law=…)` takes: gives the shear force on each facet [N], shape (facets, 3)."""
+
+    def __call__(self, facets: Facets, /) -> npt.NDArray[np.float64]:
+        """Shear force on each facet [N]."""
+
+
+def adapted_law(law: Law) -> dict[str, Any]:
+    """What the native simulation takes: a function of arrays, and two numbers of the law."""
+    if not callable(law):
+        raise TypeError(f"law is {law!r}: give a function of facets")
+
+    def call(given: dict[str, Any]) -> npt.NDArray[np.float64]:
+        facets = Facets(**given)
+        force = np.asarray(law(facets), dtype=np.float64)
+        if force.shape != (len(facets), 3):
+            raise ValueError(f"the law gave forces of shape {force.shape}: make it ({len(facets)}, 3)")
+        if not np.isfinite(force).all():
+            raise ValueError("the law gave a force that is not finite")
+        return np.ascontiguousarray(force)
+
+    return {
+        "law": call,
+        "law_state": int(getattr(law, "state_len", 0)),
+        "law_stiffness": float(getattr(law, "stiffness_pa_m", 0.0)),
+    }

@@ -1,0 +1,386 @@
+"""Studies, certificates, factors of safety, nets and pictures."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any, Literal
+
+from ndda import _core
+from ndda._scene import name_of, overrides_of, scene_of
+
+if TYPE_CHECKING:
+    from ndda._view import Picture
+
+    PathLike = str | os.PathLike[str]
+
+
+@contextmanager
+def _folder(out: PathLike | None) -> Iterator[str]:
+    """The folder of results, or one that is removed afterwards."""
+    if out is not None:
+        yield os.fspath(out)
+        return
+    import tempfile
+
+    with tempfile.TemporaryDirectory(prefix="ndda") as folder:
+        yield os.path.join(folder, "out")
+
+
+def _read(text: str) -> dict[str, Any]:
+    import json
+
+    found: dict[str, Any] = json.loads(text)
+    return found
+
+
+def study(
+    scene: PathLike | _core.Scene,
+    vary: Mapping[str, str | Sequence[object]] | None = None,
+    *,
+    of: Sequence[str] = (),
+    fails_when: str | None = None,
+    samples: int | None = None,
+    sampling: Literal["lhs", "sobol"] | None = None,
+    seed: int | None = None,
+    correlate: Sequence[str] = (),
+    sensitivity: bool = False,
+    out: PathLike | None = None,
+    jobs: int = 1,
+    threads: int = 1,
+    **overrides: object,
+) -> dict[str, Any]:
+    """Find quantities over values and distributions of parameters, or run a study file; lines go to `logging`.
+
+    Parameters
+    ----------
+    scene : path or Scene
+        A scene with `vary`, or the file of a study.
+    vary : mapping, optional
+        Values by their path: a list, or a distribution in RON such as ``"Normal(30, 2)"``.
+    of : sequence of str
+        Quantities: `label`, `safety`, columns of a history, monitors, blocks; displacements otherwise.
+    fails_when : str, optional
+        Condition whose probability is wanted, such as ``"safety < 1"``.
+    samples, sampling, seed
+        How many samples of what is random (100), how they are spread ("lhs"), and their seed (0).
+    correlate : sequence of str
+        Correlations of random axes, such as ``"parameters.a,parameters.b=-0.5"``.
+    sensitivity : bool
+        Whether to find how much each random axis matters.
+    out : path, optional
+        Folder of tables, pictures and runs; the same call goes on there where it was interrupted. None is kept otherwise.
+    jobs, threads : int
+        Runs at a time, and threads of each.
+    **overrides
+        Values of the scene, as those of `load`.
+
+    Returns
+    -------
+    dict
+        The content of `study.json`.
+
+    Raises
+    ------
+    SceneError
+        The scene or the study cannot be used.
+    ValueError
+        What is asked for is not there.
+
+    Examples
+    --------
+    >>> import ndda
+    >>> fall = ndda.parse(ndda.EXAMPLE)
+    >>> found = ndda.study(fall, {"time.step_s": [0.01, 0.02]}, of=["block block.displacement_m"])
+    >>> [round(case["values"][0], 6) for case in found["cases"]]
+    [4.905, 4.905]
+    """
+    if isinstance(scene, _core.Scene) and not vary:
+        raise ValueError("nothing varies: give `vary`, or name the file of a study")
+    options = {
+        "vary": [f"{path}={_choices(values)}" for path, values in (vary or {}).items()],
+        "of": list(of),
+        "fails_when": fails_when,
+        "samples": samples,
+        "sampling": sampling,
+        "seed": seed,
+        "correlate": list(correlate),
+        "sensitivity": sensitivity,
+        "overrides": overrides_of(overrides),
+        "jobs": jobs,
+        "threads": threads,
+    }
+    with _folder(out) as folder, _file(scene) as file:
+        return _read(_core._study(file, folder, options))
+
+
+def _choices(values: str | Sequence[object]) -> str:
+    from ndda._scene import value_in_ron
+
+    return values if isinstance(values, str) else ",".join(value_in_ron(value) for value in values)
+
+
+@contextmanager
+def _file(scene: PathLike | _core.Scene) -> Iterator[str]:
+    """The file of a scene; a changed one, or one of a text, is written for the time being."""
+    if not isinstance(scene, _core.Scene):
+        yield os.fspath(scene)
+        return
+    import tempfile
+    from pathlib import Path
+
+    file = Path(scene.file)
+    if file.is_file() and file.read_text(encoding="utf-8") == scene.text:
+        yield scene.file
+        return
+    with tempfile.TemporaryDirectory(prefix="ndda") as folder:
+        file = Path(folder) / f"{name_of(scene)}.ron"
+        file.write_text(scene.text, encoding="utf-8")
+        yield str(file)
+
+
+def certify(
+    scene: PathLike | _core.Scene,
+    *,
+    of: Sequence[str] = (),
+    mesh: int = 0,
+    penalty: int = 0,
+    out: PathLike | None = None,
+    jobs: int = 1,
+    threads: int = 1,
+) -> dict[str, Any]:
+    """Give every result of a scene an error bar, from runs with steps that halve; lines go to `logging`.
+
+    Parameters
+    ----------
+    scene : path or Scene
+    of : sequence of str
+        More quantities: columns of the history or blocks, by name or its beginning.
+    mesh, penalty : int
+        Finer meshes and stiffer contacts to run for their errors, 0 to 2 each.
+    out : path, optional
+        Folder of the certificate and its runs; none are kept otherwise.
+    jobs, threads : int
+        Runs at a time, and threads of each.
+
+    Returns
+    -------
+    dict
+        The content of `certificate.json`.
+
+    Raises
+    ------
+    SceneError
+        The scene cannot be used.
+    ValueError
+        Runs fail, or what is asked for is not there.
+
+    Examples
+    --------
+    >>> import ndda
+    >>> certificate = ndda.certify(ndda.parse(ndda.EXAMPLE))
+    >>> certificate["schema"].startswith("ndda.certificate")
+    True
+    """
+    scene = scene_of(scene)
+    options = {"of": list(of), "mesh": mesh, "penalty": penalty, "jobs": jobs, "threads": threads}
+    with _folder(out) as folder:
+        return _read(_core._certify(scene, name_of(scene), folder, options))
+
+
+def safety(
+    scene: PathLike | _core.Scene,
+    *,
+    by: Literal["strength", "load", "gravity"] = "strength",
+    towards: Sequence[float] | None = None,
+    error: float = 0.01,
+    out: PathLike | None = None,
+    threads: int | None = None,
+) -> dict[str, Any]:
+    """Find by how much the strength of joints may fall, loads grow or gravity tilt before blocks move.
+
+    Parameters
+    ----------
+    scene : path or Scene
+    by : {"strength", "load", "gravity"}
+        Quantity that is changed until blocks fail.
+    towards : sequence of 3 floats, optional
+        With ``by="gravity"``, where gravity is tilted to; down the steepest plane that blocks stand on otherwise.
+    error : float
+        Relative width of the bracket.
+    out : path, optional
+        Folder of `safety.json` and of a run that shows the failure; none are kept otherwise.
+    threads : int, optional
+        Threads, which run trials side by side; all processors otherwise. The answer does not depend on them.
+
+    Returns
+    -------
+    dict
+        The content of `safety.json`; ``["factor_of_safety"]`` has the largest factor at which blocks stand as `lower`,
+        and the smallest at which they fail as `upper`.
+
+    Raises
+    ------
+    SceneError
+        The scene cannot be used.
+    StopError
+        It does not come to rest.
+    ValueError
+        It has no strength, loads or slope that could be changed.
+
+    Examples
+    --------
+    >>> import ndda
+    >>> ndda.safety(ndda.parse(ndda.EXAMPLE))  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ...
+    ValueError: the scene has no friction, cohesion or tensile strength to reduce: ...
+    """
+    options = {
+        "by": by,
+        "towards": None if towards is None else [float(x) for x in towards],
+        "error": error,
+        "threads": threads,
+    }
+    scene = scene_of(scene)
+    folder = None if out is None else os.fspath(out)
+    if folder is not None:
+        os.makedirs(folder, exist_ok=True)
+    return _read(_core._safety(scene, name_of(scene), folder, options))
+
+
+def stereonet(
+    joints: PathLike | _core.Scene,
+    *,
+    net: Literal["area", "angle"] = "area",
+    slope: str | None = None,
+    friction_deg: float | None = None,
+    lateral_deg: float | None = None,
+    out: PathLike | None = None,
+) -> tuple[dict[str, Any], Picture]:
+    r"""Draw orientations of joints on the lower hemisphere, and check a slope kinematically.
+
+    Parameters
+    ----------
+    joints : path or Scene
+        A scene with joints, or a table of planes as CSV with the columns `dip_deg`, `dip_direction_deg` and `set`.
+    net : {"area", "angle"}
+        Projection: equal area (Schmidt) or equal angle (Wulff).
+    slope : str, optional
+        Face of a slope, dip and dip direction [°], such as ``"65/150"``.
+    friction_deg : float, optional
+        Friction of the joints [°], for the checks.
+    lateral_deg : float, optional
+        Planes slide if they dip within this angle of the slope's dip direction [°]; 20 otherwise.
+    out : path, optional
+        File of the picture, .svg or .png.
+
+    Returns
+    -------
+    dict
+        Statistics of the sets and the checks.
+    Picture
+        Shows itself in a notebook.
+
+    Raises
+    ------
+    ValueError
+        The table cannot be read, or an angle is out of range.
+
+    Examples
+    --------
+    >>> import ndda, pathlib, tempfile
+    >>> table = pathlib.Path(tempfile.mkdtemp()) / "joints.csv"
+    >>> _ = table.write_text("dip_deg,dip_direction_deg,set\n40,130,bedding\n44,134,bedding\n")
+    >>> found, picture = ndda.stereonet(table)
+    >>> found["sets"][0]["name"], picture
+    ('bedding', <ndda.Picture, svg>)
+    """
+    import tempfile
+
+    from ndda._view import Picture
+
+    options = {"net": net, "slope": slope, "friction_deg": friction_deg, "lateral_deg": lateral_deg}
+    with _file(joints) as file, tempfile.TemporaryDirectory(prefix="ndda") as folder:
+        target = os.path.join(folder, "stereonet.svg") if out is None else os.fspath(out)
+        found = _read(_core._stereonet(file, target, options))
+        return found, Picture.of_file(target)
+
+
+def picture(
+    run: PathLike | _core.Scene,
+    *,
+    frame: str = "auto",
+    color: str | None = None,
+    view: str = "iso",
+    resting: Literal["auto", "solid", "clear", "hidden"] = "auto",
+    whole: bool = False,
+    magnify: float = 1.0,
+    dark: bool = False,
+    size: tuple[int, int] | None = None,
+    animate: int | None = None,
+    out: PathLike | None = None,
+) -> Picture:
+    """Draw the blocks of a run or a scene in 3D, without a browser.
+
+    Parameters
+    ----------
+    run : path or Scene
+        Output folder of a run, or a scene.
+    frame : str
+        ``"first"``, ``"last"``, a number from 0, or a time such as ``"0.35s"``.
+    color : str, optional
+        ``"displacement"``, ``"velocity"``, ``"stress"``, ``"block"``, ``"material"`` or the name of a field.
+    view : str
+        ``"iso"``, ``"top"``, ``"front"``, ``"side"``, or azimuth and elevation [°] such as ``"150,30"``.
+    resting : {"auto", "solid", "clear", "hidden"}
+        How blocks at rest are drawn.
+    whole : bool
+        Whether all blocks are in view, in place of those that move.
+    magnify : float
+        Factor on displacements.
+    dark : bool
+        Light on dark.
+    size : tuple of 2 ints, optional
+        Columns and rows [px].
+    animate : int, optional
+        Most frames of an animation.
+    out : path, optional
+        File, .png or .svg.
+
+    Returns
+    -------
+    Picture
+        Shows itself in a notebook.
+
+    Raises
+    ------
+    SceneError, ValueError
+        The scene or the run cannot be used, or there is no such frame or field.
+
+    Examples
+    --------
+    >>> import ndda
+    >>> ndda.picture(ndda.parse(ndda.EXAMPLE), size=(300, 200))
+    <ndda.Picture, png>
+    """
+    import tempfile
+
+    from ndda._view import Picture
+
+    options = {
+        "frame": frame,
+        "color": color,
+        "view": view,
+        "resting": resting,
+        "whole": whole,
+        "magnify": magnify,
+        "dark": dark,
+        "size": size,
+        "animate": animate,
+    }
+    with _file(run) as file, tempfile.TemporaryDirectory(prefix="ndda") as folder:
+        target = os.path.join(folder, "picture.png") if out is None else os.fspath(out)
+        _core._picture(file, target, options)
+        return Picture.of_file(target)

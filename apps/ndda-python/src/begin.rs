@@ -1,0 +1,51 @@
+//! Where a simulation begins: at the start of its scene, or where a saved one was.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::atomic::Ordering;
+
+use ndda::driver::{Driver, LoadError, Parts};
+use ndda_solver::Settled;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rayon::ThreadPool;
+
+use crate::errors::{scene_error, stop_error};
+use crate::law::{Raised, own_or};
+use crate::scene::Scene;
+use crate::watched::{watched, within};
+
+/// A driver at the start of a scene.
+pub fn begun(
+    py: Python<'_>,
+    scene: &Scene,
+    pool: Option<&ThreadPool>,
+    parts: Option<Parts>,
+    raised: &Raised,
+) -> PyResult<Driver> {
+    let driver = watched(py, |watch| {
+        let mut settling = |_: &Settled| match watch.stop.load(Ordering::Relaxed) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        };
+        within(pool, || {
+            scene.model(parts.as_ref()).map(|model| Driver::with_parts(model, parts, &mut settling))
+        })
+    })?;
+    let driver = driver.map_err(|errors| scene_error(py, &errors))?;
+    driver.map_err(|stop| own_or(raised, || stop_error(py, &stop)))
+}
+
+/// A driver that goes on from what `Simulation.save` wrote, or from a run in a folder.
+pub fn saved(
+    py: Python<'_>,
+    path: &Path,
+    pool: Option<&ThreadPool>,
+    parts: Option<Parts>,
+) -> PyResult<Driver> {
+    let loaded = py.detach(|| within(pool, || Driver::load(path, parts)));
+    loaded.map_err(|error| match &error {
+        LoadError::Scene(errors) => scene_error(py, errors),
+        other => PyValueError::new_err(other.to_string()),
+    })
+}

@@ -1,0 +1,84 @@
+"""A friction law in Python."""
+
+import pathlib
+
+import ndda
+import numpy as np
+import pytest
+
+SCENES = pathlib.Path(__file__).resolve().parents[3] / "scenes"
+RAMP = SCENES / "sliding_45_phi35_spring.ron"
+
+
+class Spring:
+    """Coulomb friction behind a shear spring, per area."""
+
+    def __init__(self, friction_deg: float, stiffness_pa_m: float) -> None:
+        self.tangent, self.stiffness_pa_m = np.tan(np.radians(friction_deg)), stiffness_pa_m
+
+    def __call__(self, facets: ndda._law.Facets) -> np.ndarray:
+        trial = facets.shear - self.stiffness_pa_m * facets.area[:, None] * facets.slip
+        size = np.linalg.norm(trial, axis=1)
+        most = self.tangent * np.maximum(facets.normal_force, 0.0)
+        return trial * np.minimum(1.0, most / np.maximum(size, 1e-300))[:, None]
+
+
+def test_coulomb_in_python_slides_as_the_closed_form() -> None:
+    scene = ndda.load(RAMP, **{"time.end_s": 0.5})
+    friction = scene.to_builder().contact.friction
+    simulation = ndda.Simulation(scene, law=Spring(friction.friction_deg, friction.shear_penalty_pa_m))
+    assert not simulation.is_reproducible
+    block = simulation.block_names[-1]
+    simulation.run(until=0.3)
+    first = np.linalg.norm(simulation.blocks[block].velocity.mean(axis=0))
+    simulation.run(until=0.5)
+    second = np.linalg.norm(simulation.blocks[block].velocity.mean(axis=0))
+    gravity = np.linalg.norm(scene.to_builder().gravity_m_s2)
+    # Eq. (20): a = g (sin θ − cos θ tan φ).
+    expected = gravity * np.sqrt(0.5) * (1.0 - np.tan(np.radians(friction.friction_deg)))
+    assert (second - first) / 0.2 == pytest.approx(expected, rel=5e-3)
+    energies = simulation.energies
+    assert energies["friction_work_j"] < 0.0
+    assert abs(energies["balance_j"]) < 1e-2 * energies["kinetic_j"]
+
+
+def test_a_law_keeps_numbers_of_each_facet_in_snapshots() -> None:
+    class Counting(Spring):
+        state_len = 1
+        seen = 0.0
+
+        def __call__(self, facets: ndda._law.Facets) -> np.ndarray:
+            facets.state[:] += 1.0
+            self.seen = facets.state.max()
+            return super().__call__(facets)
+
+    law = Counting(35.0, 2e8)
+    simulation = ndda.Simulation(ndda.load(RAMP), law=law)
+    simulation.step(20)
+    kept, count = simulation.snapshot(), law.seen
+    simulation.step(5)
+    assert law.seen == count + 5
+    simulation.restore(kept)
+    simulation.step(1)
+    assert law.seen == count + 1
+
+
+def test_what_a_law_raises_comes_out_of_step() -> None:
+    def broken(facets: ndda._law.Facets) -> np.ndarray:
+        raise LookupError("no such rock")
+
+    simulation = ndda.Simulation(ndda.load(RAMP), law=broken)
+    with pytest.raises(LookupError, match="no such rock"):
+        simulation.run(until=0.1)
+    with pytest.raises(ndda.StopError, match="no such rock"):
+        simulation.step()
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [(lambda facets: np.zeros(3), "make it"), (lambda facets: np.full((len(facets), 3), np.nan), "not finite")],
+)
+def test_forces_that_cannot_be_used_are_refused(answer: object, words: str) -> None:
+    simulation = ndda.Simulation(ndda.load(RAMP), law=answer)
+    with pytest.raises(ValueError, match=words):
+        simulation.run(until=0.1)

@@ -1,0 +1,126 @@
+//! What of a scene may change between two steps.
+
+use ndda_io::diagnostic::SceneErrors;
+use ndda_io::scene::{Contact, Scene};
+use ndda_solver::{StepError, TakeOverError};
+
+use super::Driver;
+
+/// Why a scene cannot change between two steps.
+#[derive(Debug, thiserror::Error)]
+pub enum ChangeError {
+    /// The changed scene is none that can be used.
+    #[error("{}", .0.render(false))]
+    Scene(#[from] SceneErrors),
+    /// It is something that the state depends on.
+    #[error(
+        "{what} cannot change between steps: begin a new simulation. Gravity, forces, tractions, water, friction, monitors, output and \
+         time.end_s can change, and supports can be removed"
+    )]
+    Fixed {
+        /// The part of the scene.
+        what: &'static str,
+    },
+    /// The simulation cannot go on.
+    #[error("the simulation has stopped ({0}): restore a snapshot first")]
+    Stopped(StepError),
+    /// The simulation cannot take the state over.
+    #[error(transparent)]
+    TakeOver(#[from] TakeOverError),
+}
+
+impl Driver {
+    /// Changes values of the scene from now on, as `ndda run --set` takes them: gravity, loads, laws of friction, supports that are removed.
+    ///
+    /// The simulation is built anew and goes on from the present state ([`take_over`](ndda_solver::Simulation::take_over)): the
+    /// energy of what changes at once is in the balance as work of loads. Snapshots from before can still be restored.
+    ///
+    /// # Errors
+    /// [`ChangeError`]; nothing has changed then.
+    pub fn change(&mut self, overrides: &[String]) -> Result<(), ChangeError> {
+        if let Some(stop) = &self.stopped {
+            return Err(ChangeError::Stopped(stop.clone()));
+        }
+        let mut model = self.build(&self.model.loaded.text, overrides)?;
+        if let Some(what) = fixed_part(&self.model.loaded.scene, &model.loaded.scene) {
+            return Err(ChangeError::Fixed { what });
+        }
+        model.simulation.take_over(&mut self.model.simulation)?;
+        self.put(model);
+        Ok(())
+    }
+}
+
+/// The first part of a scene that differs though it may not change between steps.
+fn fixed_part(old: &Scene, new: &Scene) -> Option<&'static str> {
+    let mut time = old.time.clone();
+    time.end_s = new.time.end_s;
+    let parts = [
+        ("time", time != new.time),
+        ("gravity_ramp_s", old.gravity_ramp_s != new.gravity_ramp_s),
+        ("in_situ", old.in_situ != new.in_situ),
+        ("settle", old.settle != new.settle),
+        ("materials", old.materials != new.materials),
+        ("blocks", old.blocks != new.blocks),
+        ("rock", old.rock != new.rock),
+        ("contact, but for its friction,", without_friction(&old.contact) != without_friction(&new.contact)),
+    ];
+    parts.into_iter().find_map(|(what, differs)| differs.then_some(what))
+}
+
+/// Contact without its laws of friction.
+fn without_friction(contact: &Option<Contact>) -> Option<Contact> {
+    let mut contact = contact.clone();
+    if let Some(Contact::Potential { friction, material_pairs, rock_joints, .. }) = &mut contact {
+        *friction = None;
+        material_pairs.clear();
+        rock_joints.clear();
+    }
+    contact
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Model;
+    use crate::driver::EXAMPLE;
+
+    fn fall(more: &str) -> Driver {
+        let text = EXAMPLE.1.replace("contact: Off,", more).replace("body: Rigid, ", "");
+        Driver::new(Model::from_text(&text).unwrap()).unwrap()
+    }
+
+    /// Falls ½ g t² and is stopped by the opposite gravity after the same time; the work that the reversal books is 2 m g s.
+    #[test]
+    fn gravity_that_turns_round_is_work_of_loads() {
+        let mut driver = fall("contact: Off,");
+        driver.step(50).unwrap();
+        driver.change(&["gravity_m_s2=(0, 0, 9.81)".into()]).unwrap();
+        driver.step(50).unwrap();
+        let sample = driver.sample().unwrap();
+        let work_j = 2.0 * 2600.0 * 9.81 * (0.5 * 9.81 * 0.25);
+        assert!((sample.load_work_j - work_j).abs() < 1e-9 * work_j, "{}", sample.load_work_j);
+        assert!(sample.kinetic_j < 1e-12 * work_j && sample.balance_j.abs() < 1e-9 * work_j);
+        assert_eq!(driver.label().reasons, Vec::<String>::new());
+    }
+
+    #[test]
+    fn loads_of_an_integrator_that_remembers_accelerations_stay() {
+        let text = EXAMPLE.1.replace("end_s: 1.0", "end_s: 1.0, integrator: GeneralizedAlpha()");
+        let mut driver = Driver::new(Model::from_text(&text).unwrap()).unwrap();
+        let refused = driver.change(&["gravity_m_s2=(0, 0, 9.81)".into()]);
+        assert!(
+            matches!(refused, Err(ChangeError::TakeOver(TakeOverError::RemembersAccelerations))),
+            "{refused:?}"
+        );
+        driver.change(&["output.frames=3".into()]).unwrap();
+    }
+
+    #[test]
+    fn supports_are_taken_away_but_not_added() {
+        let mut driver =
+            fall("supports: [(block: \"block\", on: Set(\"z_min\"), hold: Fixed)], contact: Off,");
+        let refused = driver.change(&["supports=[(block: \"block\", on: All, hold: Fixed)]".into()]);
+        assert!(matches!(refused, Err(ChangeError::TakeOver(TakeOverError::Supports { .. }))), "{refused:?}");
+    }
+}

@@ -1,0 +1,31 @@
+//! Numbers as command lines take them.
+
+/// Reads a relative error, above 0 and below 1.
+///
+/// # Errors
+/// What to write instead.
+pub fn relative_error(text: &str) -> Result<f64, String> {
+    let error = positive(text)?;
+    if error < 1.0 { Ok(error) } else { Err("a relative error lies between 0 and 1, as 1e-2".into()) }
+}
+
+/// Reads a finite number above zero.
+///
+/// # Errors
+/// What to write instead.
+pub fn positive(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "write a number, as 1e-2".to_string())?;
+    if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be finite and above zero".into()) }
+}
+
+/// Reads three numbers with commas between them, not all zero.
+///
+/// # Errors
+/// What to write instead.
+pub fn direction(text: &str) -> Result<[f64; 3], String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse::<f64>()).collect();
+    match numbers.ok().and_then(|numbers| <[f64; 3]>::try_from(numbers).ok()) {
+        Some(numbers) if numbers.iter().all(|x| x.is_finite()) && numbers != [0.0; 3] => Ok(numbers),
+        _ => Err("write three numbers that are not all zero, as 1,0,0".into()),
+    }
+}
