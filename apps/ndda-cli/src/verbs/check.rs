@@ -79,13 +79,11 @@ pub fn check(args: &CheckArgs) -> u8 {
         return events.fail(exit::INPUT_OUTPUT, &reason);
     }
     events.emit("finished", &checked);
+    // A step that is not stable has been warned of.
     let stable = advice.as_ref().filter(|advice| advice.worst().h <= advice.bound);
     if !args.json {
-        say(&format!(
-            "{checked}{}",
-            // One that is not stable has been warned of.
-            stable.map_or_else(String::new, |advice| format!("\n{advice}"))
-        ));
+        let stable = stable.map_or_else(String::new, |advice| format!("\n{advice}"));
+        say(&format!("{checked}{stable}"));
     }
     checked.exit_code
 }
@@ -96,8 +94,9 @@ impl fmt::Display for Checked<'_> {
         writeln!(f, "{}: no errors, {warnings} warning(s)", self.scene.display())?;
         write!(
             f,
-            "{blocks} block(s), {nodes} nodes, {tets} tets, {unknowns} unknowns, {factors} factor(s); {steps} steps"
+            "{blocks} block(s), {nodes} nodes, {tets} tets, {unknowns} unknowns, {factors} factor(s); "
         )?;
+        write!(f, "{steps} steps")?;
         self.rock.iter().try_for_each(|rock| write!(f, "\n{rock}"))?;
         self.chosen.iter().try_for_each(|chosen| write!(f, "\n{chosen}"))?;
         self.guess.as_ref().map_or(Ok(()), |guess| write!(f, "\n{guess}"))
