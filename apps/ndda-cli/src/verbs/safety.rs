@@ -56,8 +56,10 @@ fn find(args: &SafetyArgs) -> u8 {
             exit::DONE
         }
         Ok(found) => {
-            let next = if found.mechanism.is_some() && cfg!(feature = "report") {
-                format!("; how blocks fail: ndda view {}", safety::mechanism_folder(&out).display())
+            let film = safety::mechanism_folder(&out);
+            let fails = found.mechanism.is_some() && cfg!(feature = "report");
+            let next = if fails {
+                format!("; how blocks fail: ndda view {}", film.display())
             } else {
                 String::new()
             };
