@@ -25,8 +25,7 @@ use verbs::{
 #[cfg(feature = "plots")]
 use verbs::{picture, plot};
 
-/// Does what a command line asks for, the name of the program first; returns the exit code. `program` is what starts this program again,
-/// for the runs of studies.
+/// Does what a command line asks for, its program first, and returns the exit code; `program` starts this program again, for studies.
 pub fn run_command(args: Vec<OsString>, program: Vec<OsString>) -> u8 {
     let _ = processes::PROGRAM.set(program);
     let Cli { memory, verb } = match Cli::try_parse_from(args) {

@@ -10,8 +10,10 @@ mod film;
 mod free_blocks;
 mod mechanism;
 mod report;
+mod rest;
 mod search;
 mod trial;
+mod watched;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

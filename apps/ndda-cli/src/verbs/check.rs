@@ -5,9 +5,7 @@ use std::path::Path;
 
 use ndda::build::RockReport;
 use ndda::choose;
-use ndda::forecast::cost::{self, Guess};
-use ndda::forecast::doubts;
-use ndda::forecast::step::{self, Advice};
+use ndda::forecast::{cost, cost::Guess, doubts, step, step::Advice};
 use ndda_io::summary::Chosen;
 use serde::Serialize;
 
@@ -53,9 +51,7 @@ pub fn check(args: &CheckArgs) -> u8 {
     let guess = cost::guess(&loaded.scene, &mut model.simulation);
     let file = input::file(&args.input);
     let stops = guess.as_ref().err().map(|error| format!("the first steps stop: {error}"));
-    if let Some(stops) = &stops {
-        events.warn(stops);
-    }
+    stops.iter().for_each(|stops| events.warn(stops));
     let (simulation, blocks) = (&model.simulation, model.simulation.blocks());
     let checked = Checked {
         exit_code: exit::DONE,

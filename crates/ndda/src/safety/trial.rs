@@ -17,7 +17,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::failing::{self, BlockVelocity};
-use super::free_blocks::{free, gone_m};
+use super::free_blocks::free;
+use super::watched::Watched;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{LocalDamping, Settle, Simulation, Snapshot, StepError};
 use serde::{Deserialize, Serialize};
@@ -37,8 +38,6 @@ const TO_REST: u32 = 5;
 const FEWEST_STEPS: u64 = 400;
 /// Windows in which displacements are looked at.
 const WINDOWS: u64 = 48;
-/// Windows that are compared with each other.
-const SPAN: usize = 2;
 /// Window after which blocks are pushed at the latest.
 const PUSH: u64 = 12;
 /// Blocks rest that are slower, at the ends of so many windows, than this part of what no acceleration would make of them in a window.
@@ -311,95 +310,4 @@ fn fastest_m_s(simulation: &Simulation) -> f64 {
         (2.0 * operator.kinetic_energy_j(velocity) / operator.mass_kg).sqrt()
     };
     free(simulation).map(speed_m_s).fold(0.0, f64::max)
-}
-
-/// Observed quantities of a trial.
-struct Watched {
-    start: Vec<Vec3>,
-    blocks: Vec<BlockId>,
-    times_s: Vec<f64>,
-    /// How far each free block has gone, per look [m].
-    gone_m: Vec<Vec<f64>>,
-    /// Looks before the push.
-    before: usize,
-}
-
-impl Watched {
-    fn new(simulation: &Simulation, start: &Start) -> Self {
-        let blocks = free(simulation).collect();
-        let mut watched = Self {
-            start: start.position.clone(),
-            blocks,
-            times_s: Vec::new(),
-            gone_m: Vec::new(),
-            before: 0,
-        };
-        watched.look(simulation);
-        watched
-    }
-
-    /// Forgets the times before.
-    fn begin(&mut self, simulation: &Simulation) {
-        self.times_s.clear();
-        self.gone_m.clear();
-        self.look(simulation);
-    }
-
-    /// Compares later looks with each other only.
-    fn pushed(&mut self) {
-        self.before = self.gone_m.len() - 1;
-    }
-
-    fn look(&mut self, simulation: &Simulation) {
-        self.times_s.push(simulation.time_s());
-        self.gone_m.push(gone_m(simulation, &self.start).into_iter().map(|(_, gone)| gone).collect());
-    }
-
-    /// Place of the block that has gone farthest.
-    fn farthest(&self) -> usize {
-        let last = self.gone_m.last().expect("the start is looked at");
-        (0..last.len()).max_by(|&a, &b| last[a].total_cmp(&last[b]).then(b.cmp(&a))).expect("a block is free")
-    }
-
-    fn farthest_m(&self) -> f64 {
-        self.gone_m.last().expect("the start is looked at")[self.farthest()]
-    }
-
-    fn name(&self, simulation: &Simulation) -> String {
-        simulation.blocks().names[self.blocks[self.farthest()].index()].clone()
-    }
-
-    fn history(&self) -> Vec<[f64; 2]> {
-        let farthest = self.farthest();
-        self.times_s.iter().zip(&self.gone_m).map(|(&time, gone)| [time, gone[farthest]]).collect()
-    }
-
-    /// A block that has gone far now.
-    fn beyond(&self, far_m: &[f64]) -> Option<(BlockId, f64)> {
-        let last = self.gone_m.last().expect("the start is looked at");
-        let block = (0..last.len()).find(|&block| last[block] > far_m[block])?;
-        Some((self.blocks[block], last[block]))
-    }
-
-    /// A block that has gone far, and in each of the last three spans farther than in the one before.
-    fn accelerating(&self, far_m: &[f64]) -> Option<(BlockId, f64)> {
-        let last = self.gone_m.len() - 1;
-        let first = last.checked_sub(3 * SPAN).filter(|first| *first >= self.before)?;
-        let accelerates = |&block: &usize| {
-            let at = |look: usize| self.gone_m[look][block];
-            let [a, b, c] = [0, 1, 2].map(|k| at(first + (k + 1) * SPAN) - at(first + k * SPAN));
-            at(last) > far_m[block] && c > b && b > a && a >= 0.0
-        };
-        let block = (0..self.blocks.len()).find(accelerates)?;
-        Some((self.blocks[block], self.gone_m[last][block]))
-    }
-
-    /// Largest mean speed over the last quarter [m/s].
-    fn speed_m_s(&self) -> f64 {
-        let last = self.gone_m.len() - 1;
-        let first = last - (last / 4).max(1);
-        let time_s = self.times_s[last] - self.times_s[first];
-        let speed = |block: usize| (self.gone_m[last][block] - self.gone_m[first][block]).abs() / time_s;
-        (0..self.blocks.len()).map(speed).fold(0.0, f64::max)
-    }
 }
