@@ -170,7 +170,7 @@ impl Course<'_> {
     /// Runs a trial at a factor; none if somebody asked to end.
     pub fn run(&self, simulation: &mut Simulation, factor: f64) -> Option<Trial> {
         let began = Instant::now();
-        let mut watched = Watched::new(simulation, self.start);
+        let mut watched = Watched::new(simulation, &self.start.position);
         let verdict = self.judge(simulation, &mut watched)?;
         let (state, reason) = verdict.unwrap_or_else(|error| {
             let far = watched.beyond(&self.far_m(simulation)).is_some();

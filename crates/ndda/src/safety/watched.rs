@@ -4,7 +4,6 @@ use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Simulation;
 
 use super::free_blocks::{free, gone_m};
-use super::trial::Start;
 
 /// Windows that are compared with each other.
 const SPAN: usize = 2;
@@ -21,15 +20,10 @@ pub struct Watched {
 }
 
 impl Watched {
-    pub fn new(simulation: &Simulation, start: &Start) -> Self {
+    pub fn new(simulation: &Simulation, start: &[Vec3]) -> Self {
         let blocks = free(simulation).collect();
-        let mut watched = Self {
-            start: start.position.clone(),
-            blocks,
-            times_s: Vec::new(),
-            gone_m: Vec::new(),
-            before: 0,
-        };
+        let mut watched =
+            Self { start: start.to_vec(), blocks, times_s: Vec::new(), gone_m: Vec::new(), before: 0 };
         watched.look(simulation);
         watched
     }
