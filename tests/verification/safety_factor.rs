@@ -61,6 +61,23 @@ fn a_cube_on_a_plane_has_the_factor_tan_phi_over_tan_alpha() {
     row("safety", "the same by tilting gravity: upper end [-]", upper, Within(exact, ERROR));
 }
 
+/// A block so tall that it rocks while it slides, and still too wide to topple: vibration must not hold it.
+#[test]
+fn a_tall_block_that_rocks_slides_at_the_factor_of_its_plane() {
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    let text = format!(
+        "(title: \"tall block\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: (0, 0, -9.81),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
+          rock: [(name: \"slope\", material: \"rock\", body: Rigid, domain: Box(min_m: (0, 0, 0), max_m: (20, 5, 18)),
+            joints: [Plane(name: \"p\", dip_deg: 30, dip_direction_deg: 90, point_m: (10, 0, 6))],
+            fixed: [Beyond(point_m: (10, 0, 6), normal: ({:?}, 0, {:?}))])],
+          contact: Potential(penalty_pa: 1e9, potential: Smooth(), friction: (friction_deg: 40)))",
+        -sin, -cos
+    );
+    let safety = found(&text, Question::Strength);
+    holds("block of 18 m on 30°, φ = 40°", &safety, 40f64.to_radians().tan() / 30f64.to_radians().tan());
+}
+
 /// F = tan φ / tan α + c / (ρ g h sin α cos α).
 #[test]
 fn a_slab_with_cohesion_that_it_keeps_has_the_factor_of_its_plane() {

@@ -19,12 +19,28 @@ pub struct LocalDamping {
     change: Vec<Vec3>,
     /// Kinetic energy that the changes of the last step would be by themselves [J].
     change_j: f64,
+    /// Steps over which velocities are averaged, and their averages; none where all of a velocity is damped.
+    steps: Option<f64>,
+    mean: Vec<Vec3>,
 }
 
 impl LocalDamping {
     /// Damping by a factor α between 0 (none) and 1.
     pub fn new(factor: f64) -> Self {
-        Self { factor: factor.clamp(0.0, 1.0), change: Vec::new(), change_j: 0.0 }
+        Self {
+            factor: factor.clamp(0.0, 1.0),
+            change: Vec::new(),
+            change_j: 0.0,
+            steps: None,
+            mean: Vec::new(),
+        }
+    }
+
+    /// Damping of what a velocity v is beside its mean v̄ over so many steps, v̄ ← v̄ + (v − v̄)/steps: a block that slides while it vibrates is
+    /// slowed down in its vibration, and not in its sliding. One that accelerates by a goes on to do so, by a/(1 + D), D being the steps times what a
+    /// step damps.
+    pub fn of_vibrations(factor: f64, steps: f64) -> Self {
+        Self { steps: Some(steps.max(1.0)), ..Self::new(factor) }
     }
 
     /// Kinetic energy that the last step's changes of velocity would be by themselves [J].
@@ -42,6 +58,9 @@ impl Simulation {
         damping.change.clone_from(&self.state.velocity);
         let report = self.step()?;
         damping.change_j = 0.0;
+        if damping.steps.is_some() {
+            damping.mean.resize(self.state.velocity.len(), Vec3::zeros());
+        }
         for block in self.problem.blocks.ids() {
             self.damp_block(block, damping);
         }
@@ -67,16 +86,30 @@ impl Simulation {
         }
         let nodes = self.problem.blocks.nodes_of(block);
         let velocity = &mut self.state.velocity[nodes.clone()];
-        let change = &mut damping.change[nodes];
+        let change = &mut damping.change[nodes.clone()];
         for (change, v) in change.iter_mut().zip(velocity.iter()) {
             *change = v - *change;
         }
         let change_j = shape.operator.kinetic_energy_j(change);
         damping.change_j += change_j;
-        let speed_j = shape.operator.kinetic_energy_j(velocity);
-        if speed_j > 0.0 {
-            let left = (1.0 - damping.factor * (change_j / speed_j).sqrt()).max(0.0);
+        let Some(steps) = damping.steps else {
+            let left = left(damping.factor, change_j, shape.operator.kinetic_energy_j(velocity));
             velocity.iter_mut().for_each(|v| *v *= left);
+            return;
+        };
+        let mean = &mut damping.mean[nodes];
+        for ((vibration, mean), v) in change.iter_mut().zip(mean.iter_mut()).zip(velocity.iter()) {
+            *mean += (v - *mean) / steps;
+            *vibration = v - *mean;
+        }
+        let left = left(damping.factor, change_j, shape.operator.kinetic_energy_j(change));
+        for (v, vibration) in velocity.iter_mut().zip(change.iter()) {
+            *v -= (1.0 - left) * vibration;
         }
     }
+}
+
+/// 1 − α ‖Δv‖/‖v‖, at least 0.
+fn left(factor: f64, change_j: f64, speed_j: f64) -> f64 {
+    if speed_j > 0.0 { (1.0 - factor * (change_j / speed_j).sqrt()).max(0.0) } else { 1.0 }
 }

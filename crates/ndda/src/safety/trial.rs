@@ -6,8 +6,8 @@
 //! if at its end no block has gone so far, and none is faster than that acceleration would have made it; else it is *undecided*.
 //! It ends early where all blocks have come to rest.
 //!
-//! Steps are damped locally, since undamped contact of rigid blocks vibrates for ever, and blocks that hardly stand slip a little in each
-//! vibration. Friction makes equilibrium ambiguous: a wedge whose friction points across its line stands where one that slides does not. Blocks
+//! Vibrations are damped locally, since undamped contact of rigid blocks vibrates for ever, and blocks that hardly stand slip a little in each
+//! vibration; their mean velocity is not, or a tall block that rocks on its way would be called stable. Friction makes equilibrium ambiguous: a wedge whose friction points across its line stands where one that slides does not. Blocks
 //! that stand are therefore pushed once, by the velocities with which they failed at a larger factor, and have to come to rest again.
 //! Changed loads act at once, and the scene is brought to rest under them first, with kinetic damping; a block that has gone 5 % of
 //! its radius then fails. Scenes whose friction has springs are brought to rest first, too.
@@ -45,8 +45,9 @@ const SLOW: f64 = 0.1;
 const RESTING: u32 = 2;
 /// Elastic displacements that a push moves blocks by which half the wanted error times gravity slows down.
 const PUSHED: f64 = 5.0;
-/// Local damping of trials.
-const DAMPING: f64 = 0.3;
+/// Local damping of vibrations in trials, and the steps over which velocities are averaged.
+const DAMPING: f64 = 0.8;
+const AVERAGED: f64 = 50.0;
 
 /// Final state of the blocks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -204,7 +205,7 @@ impl Course<'_> {
         }
         let (first, steps) = (simulation.state().step, self.steps(simulation.step_s()));
         let window_s = simulation.step_s() * (steps / WINDOWS) as f64;
-        let mut damping = LocalDamping::new(DAMPING);
+        let mut damping = LocalDamping::of_vibrations(DAMPING, AVERAGED);
         let (mut pushed, mut resting) = (self.failing.is_empty(), 0);
         for window in 1..=WINDOWS {
             while simulation.state().step - first < window * steps / WINDOWS {
