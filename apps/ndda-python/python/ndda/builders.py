@@ -228,10 +228,14 @@ class Contact:
 
         Parameters
         ----------
-        penalty_pa : float
+        penalty_pa : float, optional
             Normal penalty k_n [Pa]. With `Smooth`, contact is as compliant as E L₀/(2 k_n) of rock. The error
             of settlements and waves is about that length relative to the block size; sliding and rebound are
-            almost unaffected.
+            almost unaffected. Default: chosen from the size of blocks, their loads and speeds so that contact
+            is at most `depth_ratio` deep, and said with its reason.
+        depth_ratio : float, optional
+            Depth of contact at rest over the size of small blocks, from which `penalty_pa` is chosen where it
+            is left out. Default: 1e-4.
         potential : PotentialChoice, optional
             The contact potential inside a block. Default: `Element`, the paper's.
         friction : Friction, optional
@@ -247,17 +251,18 @@ class Contact:
 
         Examples
         --------
-        >>> Contact.Potential(penalty_pa=1.0).to_ron()
-        'Potential(penalty_pa: 1.0)'
+        >>> Contact.Potential().to_ron()
+        'Potential()'
         """
 
-        penalty_pa: float
+        penalty_pa: float | None = None
+        depth_ratio: float | None = None
         potential: PotentialChoice | None = None
         friction: Friction | None = None
         material_pairs: list[MaterialPair] | None = None
         rock_joints: list[JointLaw] | None = None
         memory: MemoryChoice | None = None
-        _kinds: ClassVar[Mapping[str, str]] = {"penalty_pa": "num", "potential": "Potential", "friction": "Friction", "material_pairs": "[MaterialPair]", "rock_joints": "[JointLaw]", "memory": "Memory"}
+        _kinds: ClassVar[Mapping[str, str]] = {"penalty_pa": "num", "depth_ratio": "num", "potential": "Potential", "friction": "Friction", "material_pairs": "[MaterialPair]", "rock_joints": "[JointLaw]", "memory": "Memory"}
         _variant: ClassVar[str] = "Potential"
 
 
@@ -344,15 +349,36 @@ class Dilation(Builder):
 class DiscRule:
     """Which blocks a disc cuts.
 
+    Its plane cuts a block in a section, of which the disc covers a part.
+
     Examples
     --------
-    >>> DiscRule.Meets
-    'Meets'
+    >>> DiscRule.Share(1.0).to_ron()
+    'Share(1.0)'
     """
 
-    # Blocks that the section meets.
+    @dataclass
+    class Share(Builder):
+        """Blocks of whose section the disc covers at least this part of the area, 0 to 1.
+
+        Parameters
+        ----------
+        value : float
+            Blocks of whose section the disc covers at least this part of the area, 0 to 1.
+
+        Examples
+        --------
+        >>> DiscRule.Share(1.0).to_ron()
+        'Share(1.0)'
+        """
+
+        value: float
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "num"}
+        _variant: ClassVar[str] = "Share"
+
+    # Blocks that the disc meets, however little of the section it covers.
     Meets: ClassVar[Literal["Meets"]] = "Meets"
-    # Blocks that the section covers.
+    # Blocks of which it covers the whole section: no cut is larger than the disc.
     Covers: ClassVar[Literal["Covers"]] = "Covers"
 
 
@@ -437,7 +463,9 @@ class Discontinuity:
 
     @dataclass(kw_only=True)
     class Disc(Builder):
-        """A disc, which cuts blocks through and through.
+        """A disc.
+
+        A block is cut through and through or not at all, by the rule.
 
         Parameters
         ----------
@@ -452,7 +480,7 @@ class Discontinuity:
         radius_m : float
             Radius [m].
         rule : DiscRuleChoice, optional
-            Which blocks it cuts. Default: `Meets`.
+            Which blocks it cuts. Default: `Share(0.5)`.
 
         Examples
         --------
@@ -468,6 +496,35 @@ class Discontinuity:
         rule: DiscRuleChoice | None = None
         _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "dip_deg": "num", "dip_direction_deg": "num", "center_m": "(num)", "radius_m": "num", "rule": "DiscRule"}
         _variant: ClassVar[str] = "Disc"
+
+    @dataclass(kw_only=True)
+    class Discs(Builder):
+        """Discs from a table, a discrete fracture network (DFN).
+
+        They cut in the order of their radius, largest first, whatever the order of the rows.
+
+        Parameters
+        ----------
+        file : str
+            CSV file with the columns `dip_deg`, `dip_direction_deg`, `x_m`, `y_m`, `z_m`, `radius_m` and
+            `set`, which may be left out; its path is relative to the scene file.
+        name : str, optional
+            Name of the node sets on discs whose row names no set; those of others go by their set. Default:
+            `discs`.
+        rule : DiscRuleChoice, optional
+            Which blocks they cut. Default: `Share(0.5)`.
+
+        Examples
+        --------
+        >>> Discontinuity.Discs(file="name").to_ron()
+        'Discs(file: "name")'
+        """
+
+        file: str
+        name: str | None = None
+        rule: DiscRuleChoice | None = None
+        _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "file": "str", "rule": "DiscRule"}
+        _variant: ClassVar[str] = "Discs"
 
 
 class Domain:
@@ -1962,8 +2019,8 @@ class Scene(Builder):
 
     Examples
     --------
-    >>> Scene(title="name", time=Time(step_s=1.0, end_s=1.0)).to_ron()
-    '(title: "name", time: (step_s: 1.0, end_s: 1.0))'
+    >>> Scene(title="name", time=Time(end_s=1.0)).to_ron()
+    '(title: "name", time: (end_s: 1.0))'
     """
 
     title: str
@@ -2551,10 +2608,11 @@ class Time(Builder):
 
     Parameters
     ----------
-    step_s : float
-        Time step Δt [s].
     end_s : float
         End of the run [s]; rounded to a whole number of steps.
+    step_s : float, optional
+        Time step Δt [s]. Default: chosen from the stability of contact, speeds and loads, and said with its
+        reason.
     integrator : IntegratorChoice, optional
         Time integrator. Default: `Midpoint(theta: 0.5)`.
     step : StepChoice, optional
@@ -2568,12 +2626,12 @@ class Time(Builder):
 
     Examples
     --------
-    >>> Time(step_s=1.0, end_s=1.0).to_ron()
-    '(step_s: 1.0, end_s: 1.0)'
+    >>> Time(end_s=1.0).to_ron()
+    '(end_s: 1.0)'
     """
 
-    step_s: float
     end_s: float
+    step_s: float | None = None
     integrator: IntegratorChoice | None = None
     step: StepChoice | None = None
     contact_at: ContactAtChoice | None = None
@@ -2849,8 +2907,8 @@ BodyChoice: TypeAlias = Literal["Elastic"] | Literal["Affine"] | Literal["Rigid"
 ByChoice: TypeAlias = Literal["Elimination"] | By.Springs
 ContactChoice: TypeAlias = Literal["Off"] | Contact.Potential
 ContactAtChoice: TypeAlias = Literal["Predicted"] | ContactAt.End
-DiscRuleChoice: TypeAlias = Literal["Meets"] | Literal["Covers"]
-DiscontinuityChoice: TypeAlias = Discontinuity.Set | Discontinuity.Plane | Discontinuity.Disc
+DiscRuleChoice: TypeAlias = DiscRule.Share | Literal["Meets"] | Literal["Covers"]
+DiscontinuityChoice: TypeAlias = Discontinuity.Set | Discontinuity.Plane | Discontinuity.Disc | Discontinuity.Discs
 DomainChoice: TypeAlias = Domain.Box | Domain.Column | Domain.Polyhedron | Domain.File | Domain.Terrain
 FieldChoice: TypeAlias = Literal["Displacement"] | Literal["Velocity"] | Literal["Acceleration"] | Literal["Stress"] | Literal["VonMises"] | Literal["ContactForce"] | Literal["ContactTraction"] | Literal["FrictionState"] | Literal["BlockId"] | Literal["Material"]
 FieldFormatChoice: TypeAlias = Literal["Compressed"] | Literal["Appended"] | Literal["Base64"]
