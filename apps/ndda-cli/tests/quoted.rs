@@ -14,7 +14,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// What stands for text that is left out.
+/// Mark of text that is left out.
 const LEFT_OUT: &str = "…";
 
 /// A command with the lines of its output that are quoted, and where these are in the page.
@@ -56,7 +56,7 @@ fn shell(folder: &Path, line: &str) -> Output {
     Command::new("sh").arg("-c").arg(line).env("PATH", path).current_dir(folder).output().unwrap()
 }
 
-/// What a command says: complaints first.
+/// Output of a command: complaints first.
 fn said(output: &Output) -> Vec<String> {
     let text =
         [&output.stderr, &output.stdout].map(|bytes| String::from_utf8_lossy(bytes).into_owned()).concat();
@@ -125,7 +125,7 @@ fn disagreement(quoted: &[String], found: &[String]) -> Option<String> {
         };
         let is_last = i + 1 == all.len();
         let mut starts = if *after_gap { at..found.len() + 1 } else { at..at + 1 };
-        // What comes last in a quote comes last in the output.
+        // The last line of a quote is the last line of the output.
         let ends =
             |start: usize| !is_last || part.is_empty() && *after_gap || start + part.len() == found.len();
         match starts.find(|&start| start <= found.len() && fits(start) && ends(start)) {
@@ -175,7 +175,7 @@ fn quotes(lines: &[String], block: std::ops::Range<usize>) -> Vec<Quote> {
 /// A page of text with blocks after markers, or the header of a scene.
 struct Page {
     lines: Vec<String>,
-    /// What was taken from the beginning of each line.
+    /// Prefix that was taken off each line.
     prefix: &'static str,
 }
 

@@ -180,7 +180,7 @@ fn what_cannot_be_swept_is_refused_with_what_to_write() {
         assert_eq!(refused.status.code(), Some(3), "{arguments:?}: {}", said(&refused));
         assert!(said(&refused).contains(word), "{arguments:?}: {}", said(&refused));
     }
-    // Nothing has been computed, nor a folder made.
+    // The refusal comes before any computation and before any folder is made.
     assert!(!folder.path().join("out").exists());
     done(folder.path(), &["run", "fall.ron", "--out", "run", "--quiet"]);
     let refused = ndda(folder.path(), &[&["study", "fall.ron", "--out", "run"], &vary[..]].concat());

@@ -1,4 +1,4 @@
-//! What the program can do beside stepping: studies, certificates, factors of safety, tests of joints, nets, pictures, pages.
+//! Tools of the program beside stepping: studies, certificates, factors of safety, joint tests, stereonets, pictures, reports.
 //!
 //! Each function gives the JSON text that the program writes, which `python/ndda` reads.
 

@@ -18,7 +18,7 @@ const LOOK: Duration = Duration::from_millis(50);
 /// How long steps go on before Ctrl-C is looked for.
 const SLICE: Duration = Duration::from_millis(50);
 
-/// What work is given: a flag that is raised when it is to end, and a listener for lines.
+/// Arguments of every tool: a flag that ends it when raised, and a listener for its lines of progress.
 pub struct Watch<'a> {
     /// Raised by Ctrl-C.
     pub stop: Arc<AtomicBool>,

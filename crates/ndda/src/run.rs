@@ -34,6 +34,11 @@ use outputs::{Course, Earlier, Outputs};
 pub use resume::{ResumeError, Resumed};
 use run_log::RunLog;
 
+/// Ends a loop when somebody has raised the flag.
+pub(crate) fn unless_stopped(stop: &AtomicBool) -> ControlFlow<()> {
+    if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
 /// A run that is about to begin, or to go on.
 pub struct Run {
     model: Model,
@@ -178,7 +183,7 @@ impl Run {
         let stop = self.stop.clone();
         let mut watch = |settled: &Settled| {
             settling(settled);
-            if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            unless_stopped(&stop)
         };
         let settled =
             self.model.simulation.settle_watched(&settle, &mut watch).map_err(RunError::Settling)?;

@@ -50,7 +50,7 @@ __all__ = [
     "study",
 ]
 
-# What is not always needed is imported when it is: `import ndda` stays short.
+# Modules that are rarely needed are imported on first use, to keep `import ndda` fast.
 _LATER = {
     "Page": "ndda._view",
     "Picture": "ndda._view",

@@ -1901,7 +1901,7 @@ class Rock(Builder):
     sliver_width_m : float, optional
         Blocks thinner than this, or smaller than a cube of this width, are slivers [m]. Default: 0.
     slivers : SliversChoice, optional
-        What becomes of slivers. Default: `Merge`.
+        Treatment of slivers. Default: `Merge`.
     fill : FillChoice, optional
         How blocks are filled with tetrahedra. Default: `Fewest`.
     body : BodyChoice, optional
@@ -2057,7 +2057,7 @@ class Settle(Builder):
     most_steps : int, optional
         Steps after which it is given up. Default: 1000000.
     damping : SettleDampingChoice, optional
-        What takes the energy. Default: `Kinetic`.
+        Damping on the way to rest. Default: `Kinetic`.
 
     Examples
     --------
@@ -2072,7 +2072,7 @@ class Settle(Builder):
 
 
 class SettleDamping:
-    """What takes the energy of a scene that settles.
+    """Damping on the way to rest.
 
     Examples
     --------
@@ -2359,7 +2359,7 @@ class Shape:
 
 
 class Slivers:
-    """What becomes of blocks that are slivers.
+    """Treatment of slivers.
 
     Examples
     --------

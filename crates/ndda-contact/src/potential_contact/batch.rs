@@ -186,7 +186,7 @@ fn element_at(blocks: &BlockSet, position: &[Vec3], block: BlockId, point: &Vec3
     best.1
 }
 
-/// What was kept of a facet and its target; the search begins where the one before ended, as both lists have the same order.
+/// Memory of a facet and its target. Both lists have the same order, so that the search begins where the one before ended.
 fn remembered<'a>(
     own: &'a [f64],
     stride: usize,

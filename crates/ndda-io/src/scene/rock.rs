@@ -48,7 +48,7 @@ pub struct Rock {
     /// Blocks thinner than this, or smaller than a cube of this width, are slivers [m]. Default: 0.
     #[serde(default)]
     pub sliver_width_m: f64,
-    /// What becomes of slivers. Default: `Merge`.
+    /// Treatment of slivers. Default: `Merge`.
     #[serde(default)]
     pub slivers: Slivers,
     /// How blocks are filled with tetrahedra. Default: `Fewest`.
@@ -117,7 +117,7 @@ pub enum Domain {
     },
 }
 
-/// What becomes of blocks that are slivers.
+/// Treatment of slivers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Slivers {

@@ -39,7 +39,7 @@ pub struct Settle {
     pub tolerance: f64,
     /// Steps after which it is given up. Default: 1000000.
     pub most_steps: u64,
-    /// What takes the energy. Default: `Kinetic`.
+    /// Damping on the way to rest. Default: `Kinetic`.
     pub damping: SettleDamping,
 }
 
@@ -49,7 +49,7 @@ impl Default for Settle {
     }
 }
 
-/// What takes the energy of a scene that settles.
+/// Damping on the way to rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

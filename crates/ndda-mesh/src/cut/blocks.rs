@@ -25,7 +25,7 @@ pub struct CutReport {
     pub refused: Vec<(u32, usize)>,
     /// Cuts left out by persistence.
     pub bridged: usize,
-    /// What discs cut.
+    /// Counts of the cuts by discs.
     pub discs: DiscReport,
     /// Blocks thinner than `sliver_width_m`, or smaller than a cube of that width, thinnest first.
     pub slivers: Vec<Sliver>,

@@ -22,8 +22,6 @@ const SAME_AREA: f64 = 1e-9;
 const MOST_PARTS: usize = 10_000;
 /// Rounds after which parts are left as they are, should rounding keep them from meeting face to face.
 const MOST_ROUNDS: usize = 20;
-/// Marks faces of the box around the domain; none survives in a closed surface.
-const OUTSIDE: u32 = u32::MAX;
 
 /// Triangles, later convex polygons, of the surface, with its index.
 type Polygon = (u32, Vec<Vec3>);
@@ -36,18 +34,15 @@ pub(super) fn convex_parts(
     tolerance: Tolerance,
 ) -> Result<Vec<Polyhedron>, CutError> {
     let surface_m3 = triangles.iter().map(|(_, t)| signed_volume(t, &bounds.min)).sum::<f64>();
-    let around = bounds.inflated(0.1 * bounds.diagonal());
-    let mut cell = Polyhedron::cuboid(around.min, around.max);
-    cell.faces.iter_mut().for_each(|face| face.surface = OUTSIDE);
     let mut parts = Vec::new();
-    let mut stack = vec![(cell, triangles.clone())];
+    let mut stack = vec![(Polyhedron::around(bounds), triangles.clone())];
     while let Some((cell, polygons)) = stack.pop() {
         if parts.len() + stack.len() > MOST_PARTS {
             return Err(CutError::TooManyParts { most: MOST_PARTS });
         }
         if polygons.is_empty() {
-            let is_closed = cell.faces.iter().all(|face| face.surface != OUTSIDE);
-            if is_closed && winding(&triangles, &cell.volume_and_centroid().1) > 0.5 {
+            // No face of the box survives in a closed surface.
+            if cell.is_within_surfaces() && winding(&triangles, &cell.volume_and_centroid().1) > 0.5 {
                 parts.push(cell);
             }
             continue;

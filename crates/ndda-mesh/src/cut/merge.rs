@@ -13,8 +13,6 @@ use super::split::{Split, Tolerance, split};
 use super::surfaces::Surface;
 use crate::geometry::Aabb;
 
-/// Marks faces of the box around two blocks; none is left of it.
-const OUTSIDE: u32 = u32::MAX;
 /// The union of two blocks has their volume to this fraction, or it is not convex.
 const SAME_VOLUME: f64 = 1e-9;
 
@@ -151,10 +149,7 @@ fn union(
     let faces: BTreeSet<u32> =
         a.faces.iter().chain(&b.faces).map(|face| face.surface).filter(|&s| s != between).collect();
     let corners: Vec<_> = a.vertices.iter().chain(&b.vertices).copied().collect();
-    let bounds = Aabb::around(&corners);
-    let around = bounds.inflated(0.1 * bounds.diagonal());
-    let mut cell = Polyhedron::cuboid(around.min, around.max);
-    cell.faces.iter_mut().for_each(|face| face.surface = OUTSIDE);
+    let mut cell = Polyhedron::around(&Aabb::around(&corners));
     let inside = corners.iter().sum::<crate::Vec3>() / corners.len() as f64;
     for surface in faces {
         let plane = &surfaces[surface as usize].plane;
@@ -163,8 +158,8 @@ fn union(
         }
     }
     let volume_m3 = a.volume_m3() + b.volume_m3();
-    let is_closed = cell.faces.iter().all(|face| face.surface != OUTSIDE);
-    (is_closed && (cell.volume_m3() - volume_m3).abs() <= SAME_VOLUME * volume_m3).then_some(cell)
+    (cell.is_within_surfaces() && (cell.volume_m3() - volume_m3).abs() <= SAME_VOLUME * volume_m3)
+        .then_some(cell)
 }
 
 #[cfg(test)]

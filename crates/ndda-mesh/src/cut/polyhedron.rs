@@ -3,6 +3,9 @@
 use crate::Vec3;
 use crate::geometry::Aabb;
 
+/// Surface of faces of a box that planes are still to cut.
+const NO_SURFACE: u32 = u32::MAX;
+
 /// A flat face of a [`Polyhedron`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Face {
@@ -30,6 +33,19 @@ impl Polyhedron {
         let faces =
             (0..).zip(rings).map(|(surface, ring)| Face { vertices: ring.to_vec(), surface }).collect();
         Self { vertices, faces }
+    }
+
+    /// A box with room around bounds, to be cut down to a block by planes; its faces have no surface.
+    pub(super) fn around(bounds: &Aabb) -> Self {
+        let around = bounds.inflated(0.1 * bounds.diagonal());
+        let mut cell = Self::cuboid(around.min, around.max);
+        cell.faces.iter_mut().for_each(|face| face.surface = NO_SURFACE);
+        cell
+    }
+
+    /// Whether planes have cut off all faces of the box that it was cut from.
+    pub(super) fn is_within_surfaces(&self) -> bool {
+        self.faces.iter().all(|face| face.surface != NO_SURFACE)
     }
 
     /// Positions around a face [m].

@@ -31,7 +31,7 @@ pub enum TakeOverError {
     Step(#[from] StepError),
 }
 
-/// What a change books.
+/// Totals before and after a change, whose difference is booked.
 struct Totals {
     energy_j: f64,
     momentum: Vec3,

@@ -10,8 +10,9 @@ use crate::step::report::StepReport;
 /// Local damping (Cundall 1987, "Distinct element models of rock and soil structure").
 ///
 /// After a step the velocity v of each block loses α times the change Δv that the step made, and at most all of it:
-/// v ← v max(0, 1 − α ‖Δv‖/‖v‖), where ‖v‖² is twice the kinetic energy. Blocks at rest and blocks in steady motion are not damped, vibrations
-/// are, whatever their frequency; equilibrium is that of the scene without damping.
+/// v ← v max(0, 1 − α ‖Δv‖/‖v‖), where ‖v‖² is twice the kinetic energy. Vibrations are damped whatever their frequency; blocks at rest and
+/// in steady motion are not, and equilibrium is that of the scene without damping. A block that vibrates while it slides is slowed down in its
+/// sliding, too: where it matters whether a block slides, use [`of_vibrations`](Self::of_vibrations).
 #[derive(Clone, Debug)]
 pub struct LocalDamping {
     factor: f64,
@@ -36,9 +37,9 @@ impl LocalDamping {
         }
     }
 
-    /// Damping of what a velocity v is beside its mean v̄ over so many steps, v̄ ← v̄ + (v − v̄)/steps: a block that slides while it vibrates is
-    /// slowed down in its vibration, and not in its sliding. One that accelerates by a goes on to do so, by a/(1 + D), D being the steps times what a
-    /// step damps.
+    /// Damping of the difference between a velocity v and its running mean v̄, which changes by (v − v̄)/steps in each step. A block that
+    /// slides while it vibrates goes on to slide. A block whose acceleration would be a accelerates by a/(1 + steps d), where d is the part of the
+    /// difference that is damped in a step.
     pub fn of_vibrations(factor: f64, steps: f64) -> Self {
         Self { steps: Some(steps.max(1.0)), ..Self::new(factor) }
     }

@@ -15,7 +15,7 @@ use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::local_damping::LocalDamping;
 
-/// What takes the energy of a scene that settles.
+/// Damping on the way to rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Damping {
     /// All blocks are stopped whenever the kinetic energy of the scene begins to fall.
@@ -36,7 +36,7 @@ pub struct Settle {
     pub tolerance: f64,
     /// Steps after which it is given up.
     pub most_steps: u64,
-    /// What takes its energy.
+    /// Damping on the way to rest.
     pub damping: Damping,
 }
 
@@ -183,7 +183,7 @@ impl Simulation {
 /// A scene on its way to rest.
 struct Progress {
     damper: Damper,
-    /// What loads alone would bring in a step [J].
+    /// Kinetic energy that loads alone would give free blocks in a step [J].
     load_j: f64,
     /// Largest kinetic energy on the way [J].
     highest_j: f64,

@@ -13,6 +13,7 @@ use super::trial::Start;
 use super::{SafetyError, Watch, changes};
 use crate::Model;
 use crate::build::Choices;
+use crate::run::unless_stopped;
 
 /// Factors on the strength with which the scene is brought to rest, until it does.
 const STRENGTHS: [f64; 8] = [1.0, 1.5, 2.25, 3.375, 5.0, 8.0, 16.0, 32.0];
@@ -59,11 +60,7 @@ fn most_steps(scene: &Scene) -> u64 {
 
 /// Brings a simulation to rest; false if somebody asked to end.
 fn rest(simulation: &mut Simulation, settle: &Settle, watch: &Watch) -> Result<bool, StepError> {
-    let mut look = |_: &_| match watch.stop.load(Ordering::Relaxed) {
-        true => std::ops::ControlFlow::Break(()),
-        false => std::ops::ControlFlow::Continue(()),
-    };
-    simulation.settle_watched(settle, &mut look)?;
+    simulation.settle_watched(settle, &mut |_| unless_stopped(watch.stop))?;
     Ok(!watch.stop.load(Ordering::Relaxed))
 }
 

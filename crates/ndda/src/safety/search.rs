@@ -234,7 +234,6 @@ impl<'a> Search<'a> {
     fn model(&self, factor: f64, from: &Snapshot) -> Result<Model, SafetyError> {
         let mut loaded = self.loaded.clone();
         self.by.change(&mut loaded.scene, factor);
-
         let mut model = Model::resuming_with(loaded, &self.folder, choices())?;
         model.simulation.restore(from.clone()).expect("the blocks are the same");
         Ok(model)

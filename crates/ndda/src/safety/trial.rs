@@ -7,12 +7,14 @@
 //! It ends early where all blocks have come to rest.
 //!
 //! Vibrations are damped locally, since undamped contact of rigid blocks vibrates for ever, and blocks that hardly stand slip a little in each
-//! vibration; their mean velocity is not, or a tall block that rocks on its way would be called stable. Friction makes equilibrium ambiguous: a wedge whose friction points across its line stands where one that slides does not. Blocks
-//! that stand are therefore pushed once, by the velocities with which they failed at a larger factor, and have to come to rest again.
+//! vibration. Their mean velocity is not damped, or a tall block that rocks while it slides would be called stable.
+//!
+//! Friction makes equilibrium ambiguous: a wedge whose friction points across its line stands where one that slides does not. Blocks that
+//! stand are therefore pushed once, by the velocities with which they failed at a larger factor, and have to come to rest again.
+//!
 //! Changed loads act at once, and the scene is brought to rest under them first, with kinetic damping; a block that has gone 5 % of
 //! its radius then fails. Scenes whose friction has springs are brought to rest first, too.
 
-use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
@@ -24,6 +26,7 @@ use ndda_solver::{LocalDamping, Settle, Simulation, Snapshot, StepError};
 use serde::{Deserialize, Serialize};
 
 use crate::run::motion::radius_m;
+use crate::run::unless_stopped;
 
 /// Part of the wanted error times gravity that counts as no acceleration.
 const NO_ACCELERATION: f64 = 0.02;
@@ -205,6 +208,7 @@ impl Course<'_> {
         }
         let (first, steps) = (simulation.state().step, self.steps(simulation.step_s()));
         let window_s = simulation.step_s() * (steps / WINDOWS) as f64;
+        let slow_m_s = SLOW * self.threshold_m_s2() * window_s;
         let mut damping = LocalDamping::of_vibrations(DAMPING, AVERAGED);
         let (mut pushed, mut resting) = (self.failing.is_empty(), 0);
         for window in 1..=WINDOWS {
@@ -223,7 +227,6 @@ impl Course<'_> {
                 let reason = format!("block `{name}` has gone {gone_m:.2e} m and accelerates");
                 return Some(Ok((State::Fails, reason)));
             }
-            let slow_m_s = SLOW * self.threshold_m_s2() * window_s;
             resting = if fastest_m_s(simulation) < slow_m_s { resting + 1 } else { 0 };
             if !pushed && (resting == RESTING || window == PUSH) {
                 self.push(simulation);
@@ -253,14 +256,10 @@ impl Course<'_> {
         far_m: &[f64],
     ) -> Option<Result<Option<(State, String)>, StepError>> {
         let Some(tolerance) = self.settle_tolerance else { return Some(Ok(None)) };
-        let mut watch = |_: &_| match self.stop.load(Ordering::Relaxed) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        };
         let mut settled = Ok(());
         for doublings in 0..=TO_REST {
             let settle = Settle::new(tolerance, self.steps(simulation.step_s()) << doublings);
-            settled = simulation.settle_watched(&settle, &mut watch).map(drop);
+            settled = simulation.settle_watched(&settle, &mut |_| unless_stopped(self.stop)).map(drop);
             if self.stop.load(Ordering::Relaxed) {
                 return None;
             }

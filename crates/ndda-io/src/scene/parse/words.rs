@@ -1,4 +1,4 @@
-//! What the parser of RON complains of, in the words of a scene.
+//! Errors of the RON parser in terms of a scene.
 
 use ron::error::{Error as RonError, Position, SpannedError};
 
@@ -114,7 +114,7 @@ fn comma(text: &str, at: usize) -> (Code, &'static str, &'static str) {
     }
 }
 
-/// What a scene has in the place of what serde calls by other names.
+/// Terms of a scene for the terms of serde.
 fn plain_words(text: &str) -> String {
     let words = [
         ("the floating point number", "the number"),
