@@ -143,3 +143,23 @@ def test_blocks_by_pattern_have_centres_and_masses() -> None:
 def test_supports_that_do_not_exist_are_not_released() -> None:
     with pytest.raises(KeyError, match="no support"):
         bounce().release("cube")
+
+
+def test_a_block_that_is_held_stops_where_it_is_and_falls_again_when_released() -> None:
+    simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE.replace("Rigid", "Elastic")))
+    simulation.run(until=0.25)
+    simulation.hold("block")
+    simulation.run(until=0.5)
+    # ½ g t² of the time in which it was free.
+    np.testing.assert_allclose(simulation.displacement[:, 2], -0.5 * 9.81 * 0.25**2, rtol=1e-9)
+    simulation.release("block")
+    simulation.run(until=0.75)
+    np.testing.assert_allclose(simulation.displacement[:, 2], -9.81 * 0.25**2, rtol=1e-9)
+
+
+def test_a_block_that_has_turned_is_not_held_without_turning() -> None:
+    simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE.replace("Rigid", "Elastic")))
+    simulation.set_velocity("block", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    simulation.run(until=0.25)
+    with pytest.raises(ValueError, match="has turned by"):
+        simulation.hold("block", ndda.builders.Region.Set("z_min"))

@@ -29,6 +29,7 @@
 #![warn(unreachable_pub)]
 
 pub mod atomic;
+mod csv_text;
 pub mod limited;
 pub mod mesh;
 pub mod results;

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from ndda._law import Law
     from ndda._view import Page
+    from ndda.builders import HoldChoice, RegionChoice
     from ndda.builders import Scene as SceneBuilder
 
 _FORCES = ("force", "friction", "center", "moment")
@@ -454,6 +455,43 @@ class Simulation(_core.Simulation):
         (0.0, 'accurate')
         """
         self._change(overrides_of(overrides))
+
+    def hold(self, pattern: str, on: RegionChoice = "All", hold: HoldChoice = "Fixed") -> None:
+        """Hold blocks where they are from now on.
+
+        Nodes that move stop at once: their momentum and kinetic energy are in the balances, as impulse and work of loads.
+
+        Parameters
+        ----------
+        pattern : str
+            Name of a block, or a pattern such as ``"prop_*"``.
+        on : str or Region.Plane or Region.Set
+            Which part of them, such as ``ndda.builders.Region.Set("z_min")``.
+        hold : str or Hold.Direction
+            ``"Fixed"``, all three components, or ``"Normal"``, the component along the normal of the region's plane.
+
+        Raises
+        ------
+        SceneError
+            No block has such a name, or it has no such part.
+        ValueError
+            The support would count from where the block was at the start, the block has turned too far, or the integrator
+            remembers accelerations.
+
+        Examples
+        --------
+        >>> import ndda
+        >>> simulation = Simulation(ndda.parse(ndda.EXAMPLE.replace("Rigid", "Elastic")))
+        >>> simulation.run(until=0.5)
+        >>> simulation.hold("block")
+        >>> simulation.run()
+        >>> round(float(simulation.displacement[0, 2]), 6)
+        -1.22625
+        """
+        from ndda.builders import Support
+
+        supports = self.scene.to_builder().supports or []
+        self.change(supports=[*supports, Support(block=pattern, on=on, hold=hold)])
 
     def release(self, pattern: str) -> None:
         """Take away the supports of blocks.

@@ -87,7 +87,7 @@ mod tests {
     fn a_damaged_row_is_named() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");
-        for (bad, place) in [("0.0,1.0\n0.1,x\n", "row 2"), ("0.0,1.0\n0.1\n", "line: 3")] {
+        for (bad, place) in [("0.0,1.0\n0.1,x\n", "row 2"), ("0.0,1.0\n0.1\n", "line 3 has 1 value")] {
             std::fs::write(&path, format!("time_s,a\n{bad}")).unwrap();
             let error = history(&path).unwrap_err().to_string();
             assert!(error.contains(place) && error.contains("run the scene again"), "{error}");

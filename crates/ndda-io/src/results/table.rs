@@ -55,8 +55,10 @@ pub fn read(file: &Path) -> Result<Table, TableError> {
     if file.extension().is_some_and(|ending| ending == "parquet") {
         return columns(file);
     }
-    let broken =
-        |error: csv::Error| TableError::Unreadable { file: file.to_path_buf(), reason: error.to_string() };
+    let broken = |error: csv::Error| TableError::Unreadable {
+        file: file.to_path_buf(),
+        reason: crate::csv_text::in_words(&error),
+    };
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(file).map_err(broken)?;
     let names: Vec<String> = reader.headers().map_err(broken)?.iter().map(String::from).collect();
     let mut columns = vec![Vec::new(); names.len()];

@@ -5,13 +5,13 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::limited;
+use crate::{csv_text, limited};
 
 /// Why a table of joints cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum JointTableError {
-    /// The file cannot be read.
-    #[error("cannot read {}: {reason}", path.display())]
+    /// The file cannot be read, or is no table.
+    #[error("{}: {reason}", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -91,10 +91,11 @@ pub fn planes(path: &Path) -> Result<Vec<PlaneRow>, JointTableError> {
 /// # Errors
 /// [`JointTableError`] with the place of what cannot be used.
 pub fn discs(path: &Path) -> Result<Vec<DiscRow>, JointTableError> {
-    let advice = "a coordinate in metres";
+    let advice = "a coordinate in metres, from -1e50 to 1e50";
     let places = |row: &Row| {
         let at = |column| row.number(column, [-HUGE, HUGE], advice);
-        let radius_m = row.number("radius_m", [1.0 / HUGE, HUGE], "a length above 0 m")?;
+        let radius_m =
+            row.number("radius_m", [1.0 / HUGE, HUGE], "a length in metres, above 0 and at most 1e50")?;
         Ok(([at("x_m")?, at("y_m")?, at("z_m")?], radius_m))
     };
     read(path, OF_DISCS, places, |plane, (center_m, radius_m)| DiscRow { plane, center_m, radius_m })
@@ -149,7 +150,16 @@ impl Row<'_> {
 }
 
 fn position(header: &csv::StringRecord, column: &str) -> Option<usize> {
-    header.iter().position(|known| known.trim_start_matches('\u{feff}') == column)
+    header.iter().position(|known| known == column)
+}
+
+/// A column that is left out by a slip of its name would be taken for one that is not read.
+fn misspelt_set(header: &csv::StringRecord) -> Option<String> {
+    let meant = |name: &&str| {
+        *name != "set" && ["set", "sets", "joint_set", "jointset"].contains(&name.to_lowercase().as_str())
+    };
+    let name = header.iter().find(meant).filter(|_| position(header, "set").is_none())?;
+    Some(format!("its first line names the column `{name}`: write `set` for the names of joint sets"))
 }
 
 fn read<P, T>(
@@ -160,9 +170,12 @@ fn read<P, T>(
 ) -> Result<Vec<T>, JointTableError> {
     let unreadable = |reason: String| JointTableError::Unreadable { path: path.to_path_buf(), reason };
     let bytes = limited::file(path).map_err(|error| unreadable(error.to_string()))?;
-    let mut reader =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(bytes.as_slice());
-    let header = reader.headers().map_err(|error| unreadable(error.to_string()))?.clone();
+    let mut reader = csv_text::reader(&bytes);
+    let words = |error: csv::Error| unreadable(csv_text::in_words(&error));
+    let header = reader.headers().map_err(words)?.clone();
+    if let Some(fault) = csv_text::fault_of_header(&header).or_else(|| misspelt_set(&header)) {
+        return Err(unreadable(fault));
+    }
     // A table without lines below its header is told which column it lacks, too.
     for column in columns.split(',').filter(|column| *column != "set") {
         if position(&header, column).is_none() {
@@ -171,7 +184,7 @@ fn read<P, T>(
     }
     let mut rows = Vec::new();
     for cells in reader.into_records() {
-        let cells = cells.map_err(|error| unreadable(error.to_string()))?;
+        let cells = cells.map_err(words)?;
         let line = Row { path, header: &header, cells, columns };
         rows.push(row(line.plane()?, more(&line)?));
     }
@@ -210,7 +223,7 @@ mod tests {
             ("91,130,0,0,0,1\n", "joints.csv, line 2, column 1: dip_deg is `91`"),
             ("40,nan,0,0,0,1\n", "joints.csv, line 2, column 2: dip_direction_deg is `nan`"),
             ("40,130,0,0,inf,1\n", "joints.csv, line 2, column 5: z_m is `inf`"),
-            ("40,130\n", "joints.csv"),
+            ("40,130\n", "joints.csv: line 2 has 2 values, and the first line names 6 columns"),
             ("", "has no joints"),
         ] {
             let said = of(&format!("{header}\n{lines}")).unwrap_err();
@@ -218,5 +231,6 @@ mod tests {
         }
         assert!(of("dip_deg,dip_direction_deg\n40,130\n").unwrap_err().contains("no column x_m"));
         assert!(of("").unwrap_err().contains("no column dip_deg"));
+        assert!(of("dip_deg,dip_direction_deg,Set\n40,130,a\n").unwrap_err().contains("write `set`"));
     }
 }

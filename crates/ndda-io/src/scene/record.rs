@@ -4,18 +4,18 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::limited;
+use crate::{csv_text, limited};
 
 /// Why a record cannot be used.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
-    /// A row is not two numbers.
-    #[error("{}: {source}", file.display())]
-    Csv {
+    /// It is no table, or a row is not two numbers.
+    #[error("{}: {fault}", file.display())]
+    Table {
         /// The file.
         file: PathBuf,
         /// The problem, with its line.
-        source: csv::Error,
+        fault: String,
     },
     /// The file cannot be read.
     #[error("{} cannot be read: {source}", file.display())]
@@ -51,11 +51,13 @@ struct Row {
 /// # Errors
 /// [`RecordError`] naming file and row.
 pub fn read(file: &Path) -> Result<Vec<(f64, f64)>, RecordError> {
-    let broken = |source| RecordError::Csv { file: file.to_path_buf(), source };
+    let broken = |error| RecordError::Table { file: file.to_path_buf(), fault: csv_text::in_words(&error) };
     let unreadable = |source| RecordError::Unreadable { file: file.to_path_buf(), source };
     let bytes = limited::file(file).map_err(unreadable)?;
-    let mut reader =
-        csv::ReaderBuilder::new().trim(csv::Trim::All).comment(Some(b'#')).from_reader(bytes.as_slice());
+    let mut reader = csv_text::reader(&bytes);
+    if let Some(fault) = csv_text::fault_of_header(reader.headers().map_err(&broken)?) {
+        return Err(RecordError::Table { file: file.to_path_buf(), fault });
+    }
     let mut rows: Vec<(f64, f64)> = Vec::new();
     let wrong = |row: usize, reason| RecordError::Row { file: file.to_path_buf(), row, reason };
     for row in reader.deserialize() {

@@ -261,6 +261,20 @@ impl Prototype {
         if self.supports.frame == Frame::Held { 0.0 } else { self.inertia_error }
     }
 
+    /// Takes out of nodal velocities what supports do not let through; R is the rotation of the block's frame.
+    pub(crate) fn stop_held(&self, rotation: &Mat3, velocity: &mut [Vec3]) {
+        if self.kind == BodyKind::Affine && !self.is_free() {
+            velocity.iter_mut().for_each(|v| *v = rotation.tr_mul(v));
+            self.unknowns.restrict(&self.operator.node_mass, velocity);
+            velocity.iter_mut().for_each(|v| *v = rotation * *v);
+            return;
+        }
+        for held in &self.supports.held {
+            let v = &mut velocity[held.node as usize];
+            held.held.iter().for_each(|n| *v -= n * n.dot(v));
+        }
+    }
+
     /// Inverse of the inertia of a rigid block at these positions [1/(kg m²)]; lumped masses would make that of a coarse mesh several times too large.
     pub(crate) fn rigid_inverse_inertia(
         &self,

@@ -1,22 +1,39 @@
 //! Loads, supports and laws that change between two steps.
 
-use ndda_mesh::Vec3;
+use nalgebra::Rotation3;
+use ndda_fem::supports::{BlockSupports, HeldNode, Spring};
+use ndda_mesh::{BlockId, Vec3};
 
+use crate::bodies::kind::BodyKind;
 use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::snapshot::RestoreError;
 
+/// A block that has turned by more [rad] than this cannot be held in a way that stops its turning: its strains would be measured without the
+/// turn, which changes them by half its square, 5e-7.
+const TURNED_RAD: f64 = 1e-3;
+
 /// Why a simulation cannot take over from another.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TakeOverError {
-    /// A support is new, or not the one that it was.
+    /// A new support pulls to where its nodes were when time began.
     #[error(
-        "the supports of block {block} differ: between steps they can be removed, but not added or changed, as blocks are held where they \
-         were at the start"
+        "block {block} gets a spring or a prescribed motion, which count from where the block was at the start: between steps, supports that \
+         hold nodes where they are (Fixed, Roller) can be added, and any can be removed"
     )]
     Supports {
         /// Its name.
         block: String,
+    },
+    /// A new support stops the turning of a block that has turned.
+    #[error(
+        "block {block} has turned by {turn_deg:.3}°, too far to be held without any turning (0.057° at most): hold fewer of its nodes, or hold it earlier"
+    )]
+    Turned {
+        /// Its name.
+        block: String,
+        /// Turn that the new supports would take out of its strains [°].
+        turn_deg: f64,
     },
     /// The integrator remembers accelerations, which changed loads and supports contradict.
     #[error(
@@ -41,7 +58,8 @@ struct Totals {
 impl Simulation {
     /// Continues from the state of another simulation of the same blocks under the loads, supports and friction laws of this one.
     ///
-    /// The potential energy of loads that jumps is booked as their work, so that the balances of energy and momentum hold across the change.
+    /// Nodes that are held from now on stop where they are. What changes at once, the potential energy of loads and the kinetic energy and
+    /// momentum of nodes that stop, is booked as work and impulse of loads, so that the balances hold across the change.
     ///
     /// # Errors
     /// [`TakeOverError`]; this simulation is then not to be used.
@@ -58,6 +76,7 @@ impl Simulation {
             self.contacts_at_start()?;
             self.restore(snapshot)?;
         }
+        self.stop_held_nodes(before);
         let new = self.totals()?;
         self.audit.ledger.add_work(0.0, 0.0, new.energy_j - old.energy_j, 0.0);
         self.audit
@@ -67,15 +86,52 @@ impl Simulation {
     }
 
     fn refuse_other_supports(&self, before: &Self) -> Result<(), TakeOverError> {
-        let differs = |block: &ndda_mesh::BlockId| {
-            let (new, old) = (&self.shape(*block).supports, &before.shape(*block).supports);
-            let is_released = new.held.is_empty() && new.springs.is_empty() && new.motions.is_empty();
-            new != old && !is_released
+        for block in self.held_anew(before) {
+            let (new, old) = (&self.shape(block).supports, &before.shape(block).supports);
+            let name = || self.problem.blocks.names[block.index()].clone();
+            if !is_known(new, old) {
+                return Err(TakeOverError::Supports { block: name() });
+            }
+            let turn_rad = self.turn_between_frames(before, block);
+            if turn_rad > TURNED_RAD {
+                return Err(TakeOverError::Turned { block: name(), turn_deg: turn_rad.to_degrees() });
+            }
+        }
+        Ok(())
+    }
+
+    /// Blocks that deform and whose supports are others than before.
+    fn held_anew(&self, before: &Self) -> Vec<BlockId> {
+        let is_other = |block: &BlockId| {
+            let shape = self.shape(*block);
+            shape.kind != BodyKind::Fixed && shape.supports != before.shape(*block).supports
         };
-        let names = &self.problem.blocks.names;
-        match self.problem.blocks.ids().take(before.problem.blocks.len()).find(differs) {
-            Some(block) => Err(TakeOverError::Supports { block: names[block.index()].clone() }),
-            None => Ok(()),
+        self.problem.blocks.ids().take(before.problem.blocks.len()).filter(is_other).collect()
+    }
+
+    /// Angle between the frames that the supports of now and of before give a block where it is [rad].
+    fn turn_between_frames(&self, before: &Self, block: BlockId) -> f64 {
+        let shape = self.shape(block);
+        let position = &before.state.position[self.problem.blocks.nodes_of(block)];
+        let center = shape.operator.center(position);
+        let [new, old] = [&shape.supports, &before.shape(block).supports]
+            .map(|supports| supports.frame.rotation(&shape.operator, position, &center));
+        match (new, old) {
+            (Ok(new), Ok(old)) => Rotation3::from_matrix_unchecked(new.transpose() * old).angle(),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Velocities that new supports leave.
+    fn stop_held_nodes(&mut self, before: &Self) {
+        for block in self.held_anew(before) {
+            let nodes = self.problem.blocks.nodes_of(block);
+            let shape = &self.problem.shapes[self.bodies[block.index()].shape];
+            let position = &self.state.position[nodes.clone()];
+            let center = shape.operator.center(position);
+            let rotation = shape.supports.frame.rotation(&shape.operator, position, &center);
+            let rotation = rotation.expect("its turn was compared before");
+            shape.stop_held(&rotation, &mut self.state.velocity[nodes]);
         }
     }
 
@@ -99,4 +155,20 @@ impl Simulation {
             angular_momentum: sample.angular_momentum,
         })
     }
+}
+
+/// Whether springs and prescribed motions of a block are some of those that it had before.
+fn is_known(new: &BlockSupports, old: &BlockSupports) -> bool {
+    let moved = |supports: &BlockSupports, held: &HeldNode| held.motion.map(|m| supports.motions[m].clone());
+    let had = |held: &HeldNode| {
+        let same = old.held.iter().find(|one| one.node == held.node);
+        same.is_some_and(|one| moved(old, one) == moved(new, held))
+    };
+    let sprung = |spring: &Spring| (spring.node, spring.along, spring.stiffness_n_m.to_bits());
+    let pulled = |one: &Spring, other: &Spring| {
+        sprung(one) == sprung(other)
+            && one.motion.map(|m| &new.motions[m]) == other.motion.map(|m| &old.motions[m])
+    };
+    new.held.iter().filter(|held| held.motion.is_some()).all(had)
+        && new.springs.iter().all(|spring| old.springs.iter().any(|other| pulled(spring, other)))
 }

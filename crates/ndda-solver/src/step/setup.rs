@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use ndda_contact::ContactModel;
 use ndda_fem::Table;
 use ndda_fem::loads::{add_gravity, add_traction};
-use ndda_mesh::{BlockId, BlockSet, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::bodies::batch::{Batch, ENOUGH_TOGETHER};
 use crate::bodies::body::{Body, Motion};
@@ -211,17 +211,8 @@ impl Simulation {
             self.state.velocity[nodes].fill(shape.velocity_as_a_whole(0.0));
             return;
         }
-        if shape.kind == BodyKind::Affine && !shape.is_free() {
-            let velocity = &mut self.state.velocity[self.problem.blocks.nodes_of(block)];
-            shape.unknowns.restrict(&shape.operator.node_mass, velocity);
-            return;
-        }
-        for held in &shape.supports.held {
-            let v = &mut self.state.velocity[self.problem.blocks.nodes_of(block).start + held.node as usize];
-            for n in &held.held {
-                *v -= n * n.dot(v);
-            }
-        }
+        let nodes = self.problem.blocks.nodes_of(block);
+        shape.stop_held(&Mat3::identity(), &mut self.state.velocity[nodes]);
     }
 
     /// Gathers gravity, tractions, forces and pressures: those that vary each by itself, the others in one sum.

@@ -15,7 +15,7 @@ pub enum ChangeError {
     /// It is something that the state depends on.
     #[error(
         "{what} cannot change between steps: begin a new simulation. Gravity, forces, tractions, water, friction, monitors, output and \
-         time.end_s can change, and supports can be removed"
+         time.end_s can change, and supports can be added and removed"
     )]
     Fixed {
         /// The part of the scene.
@@ -30,7 +30,7 @@ pub enum ChangeError {
 }
 
 impl Driver {
-    /// Changes values of the scene from now on, as `ndda run --set` takes them: gravity, loads, laws of friction, supports that are removed.
+    /// Changes values of the scene from now on, as `ndda run --set` takes them: gravity, loads, laws of friction, supports.
     ///
     /// The simulation is built anew and goes on from the present state ([`take_over`](ndda_solver::Simulation::take_over)): the
     /// energy of what changes at once is in the balance as work of loads. Snapshots from before can still be restored.
@@ -116,11 +116,60 @@ mod tests {
         driver.change(&["output.frames=3".into()]).unwrap();
     }
 
+    const HOLD: &str = "supports=[(block: \"block\", on: Set(\"z_min\"), hold: Fixed)]";
+
+    /// A block that falls has ½ m v² and m v, which supports take in two steps: a face that stops, then all nodes.
     #[test]
-    fn supports_are_taken_away_but_not_added() {
-        let mut driver =
-            fall("supports: [(block: \"block\", on: Set(\"z_min\"), hold: Fixed)], contact: Off,");
-        let refused = driver.change(&["supports=[(block: \"block\", on: All, hold: Fixed)]".into()]);
+    fn a_block_that_is_held_in_its_fall_stops() {
+        for body in ["Elastic", "Affine"] {
+            let text = EXAMPLE.1.replace("body: Rigid", &format!("body: {body}")).replace("0.01", "0.0001");
+            let mut driver = Driver::new(Model::from_text(&text).unwrap()).unwrap();
+            driver.step(5000).unwrap();
+            let falling = driver.sample().unwrap();
+            driver.change(&[HOLD.into()]).unwrap();
+            let held = driver.sample().unwrap();
+            assert!(held.kinetic_j < 0.9 * falling.kinetic_j, "{body}: {} J", held.kinetic_j);
+            driver.change(&[HOLD.replace("Set(\"z_min\")", "All")]).unwrap();
+            driver.step(10).unwrap();
+            let stopped = driver.sample().unwrap();
+            assert!(stopped.kinetic_j < 1e-20 * falling.kinetic_j, "{body}: {} J", stopped.kinetic_j);
+            assert!(stopped.balance_j.abs() < 1e-9 * falling.kinetic_j, "{body}: {} J", stopped.balance_j);
+            assert_eq!(driver.label().reasons, Vec::<String>::new(), "{body}");
+        }
+    }
+
+    #[test]
+    fn a_corner_that_is_held_from_now_on_stays_where_it_is_then() {
+        let corner =
+            "supports=[(block: \"block\", on: Plane(point_m: (0, 0, 0), normal: (1, 1, 1)), hold: Fixed)]";
+        let text = EXAMPLE.1.replace("body: Rigid", "body: Affine").replace("0.01", "0.0001");
+        let mut driver = Driver::new(Model::from_text(&text).unwrap()).unwrap();
+        driver.step(3000).unwrap();
+        driver.change(&[corner.into()]).unwrap();
+        let there = driver.simulation().state().position[0];
+        driver.step(1000).unwrap();
+        let sample = driver.sample().unwrap();
+        let moved_m = (driver.simulation().state().position[0] - there).norm();
+        assert!(moved_m < 1e-12, "{moved_m} m");
+        assert!(
+            sample.balance_j.abs() < 1e-3 * sample.kinetic_j,
+            "{} of {} J",
+            sample.balance_j,
+            sample.kinetic_j
+        );
+    }
+
+    #[test]
+    fn a_spring_between_steps_and_the_turning_of_a_turned_block_are_refused() {
+        let mut driver = fall("contact: Off,");
+        let spring = HOLD.replace("hold: Fixed", "hold: Fixed, by: Springs()");
+        let refused = driver.change(&[spring]);
         assert!(matches!(refused, Err(ChangeError::TakeOver(TakeOverError::Supports { .. }))), "{refused:?}");
+        let block = ndda_mesh::BlockId(0);
+        let (still, spin) = (ndda_mesh::Vec3::zeros(), ndda_mesh::Vec3::new(0.0, 0.0, 1.0));
+        driver.set_velocity(block, still, spin).unwrap();
+        driver.step(30).unwrap();
+        let refused = driver.change(&[HOLD.into()]);
+        assert!(matches!(refused, Err(ChangeError::TakeOver(TakeOverError::Turned { .. }))), "{refused:?}");
     }
 }
