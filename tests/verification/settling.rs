@@ -79,3 +79,17 @@ fn a_scene_that_cannot_come_to_rest_names_the_block_that_moves() {
         row("settling", &what, slope_deg, Within(60.0, 0.02));
     }
 }
+
+/// A block that nothing holds is given up when it has fallen by the extent of the scene: n steps of free fall with s = ½ g (n Δt)² just above it.
+#[test]
+fn settling_ends_when_a_block_leaves_the_scene() {
+    let scene = "(title: \"fall\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: (0, 0, -9.81), contact: Off,
+        materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2500)],
+        blocks: [(name: \"block\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))])";
+    let mut simulation = simulation(scene);
+    let error = simulation.settle(&Settle::new(1e-4, 1_000_000)).unwrap_err();
+    let StepError::NotSettled { steps, gone_m, .. } = error else { panic!("{error}") };
+    let extent_m = 3f64.sqrt();
+    let steps_to_fall = (2.0 * extent_m / 9.81).sqrt() / 1e-3;
+    assert!(gone_m > extent_m && (steps as f64) < steps_to_fall + 100.0, "{gone_m} m in {steps} steps");
+}

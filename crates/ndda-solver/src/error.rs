@@ -80,8 +80,8 @@ pub enum StepError {
     /// A scene that was to settle first does not.
     #[error(
         "the scene has not come to rest in {steps} steps (speed {speed_ratio:.1e} of the largest). Block `{block}` has gone {gone_m:.2e} m \
-         towards ({:.2}, {:.2}, {:.2}), and {others} other(s) at least half as far: see whether anything holds them, \
-         or raise settle.most_steps",
+         towards ({:.2}, {:.2}, {:.2}), and {others} other(s) at least half as far: see whether anything holds them. \
+         Settling ends after settle.most_steps, or when a block has gone farther than all blocks extend",
         towards[0], towards[1], towards[2]
     )]
     NotSettled {

@@ -184,8 +184,13 @@ impl Check<'_> {
         if let Some(folder) = folder
             && !folder.join(file).is_file()
         {
-            let message = format!("there is no file {}", folder.join(file).display());
-            self.report(Code::MissingFile, path, message, "the path counts from the scene file");
+            let place = folder.join(file);
+            let message = match place.is_dir() {
+                _ if file.trim().is_empty() => "names no file".into(),
+                true => format!("{} is a folder", place.display()),
+                false => format!("there is no file {}", place.display()),
+            };
+            self.report(Code::MissingFile, path, message, "name a file; its path counts from the scene file");
         }
     }
 

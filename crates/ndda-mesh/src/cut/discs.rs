@@ -39,7 +39,7 @@ pub struct DiscReport {
     pub cuts: usize,
     /// Of these, blocks in which the disc ends: their joint is larger than the disc.
     pub ends_in_cut: usize,
-    /// Blocks that a disc ends in, and that stay whole.
+    /// How often a disc ends in a block and leaves it whole; a block counts once for each such disc.
     pub left_whole: usize,
     /// Area of the discs in the rock [m²].
     pub disc_m2: f64,

@@ -8,6 +8,7 @@
 
 use std::ops::ControlFlow;
 
+use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -67,6 +68,9 @@ struct Oscillation {
     between: u64,
 }
 
+/// Steps between looks at how far blocks have gone.
+const LOOK: u64 = 100;
+
 /// Weight of the previous peak one oscillation later: a small one may be chance, many in a row are not.
 const REMEMBERED: f64 = 0.7;
 
@@ -112,7 +116,7 @@ impl Simulation {
     /// velocities come after it. What contact remembers stays; loads and prescribed motions are those of the start.
     ///
     /// # Errors
-    /// [`StepError::NotSettled`] when the steps do not suffice, or as [`step`](Self::step).
+    /// [`StepError::NotSettled`] when the steps do not suffice or a block has gone farther than all blocks extend, or as [`step`](Self::step).
     pub fn settle(&mut self, settle: &Settle) -> Result<Settled, StepError> {
         self.settle_watched(settle, &mut |_| ControlFlow::Continue(()))
     }
@@ -130,10 +134,12 @@ impl Simulation {
         let start = std::mem::take(&mut self.state.velocity);
         self.state.velocity = vec![Vec3::zeros(); start.len()];
         let from = self.state.position.clone();
+        let extent_m = Aabb::around(&from).diagonal();
         let mut progress = Progress::new(self, settle.damping);
         let mut settled = Settled { speed_ratio: f64::INFINITY, ..Settled::default() };
         while settled.speed_ratio > settle.tolerance {
-            if settled.steps == settle.most_steps {
+            let looks = settled.steps % LOOK == LOOK - 1;
+            if settled.steps == settle.most_steps || looks && self.farthest(&from)[0].0 > extent_m {
                 return Err(self.not_settled(&settled, &from));
             }
             settled.speed_ratio = progress.step(self)?;
@@ -146,17 +152,24 @@ impl Simulation {
         Ok(settled)
     }
 
+    /// How far the centre of each block has gone [m], the farthest first.
+    fn farthest(&self, from: &[Vec3]) -> Vec<(f64, BlockId)> {
+        let mut moved: Vec<(f64, BlockId)> =
+            self.blocks().ids().map(|block| (self.way(from, block).norm(), block)).collect();
+        moved.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        moved
+    }
+
+    fn way(&self, from: &[Vec3], block: BlockId) -> Vec3 {
+        let (nodes, operator) = (self.blocks().nodes_of(block), &self.shape(block).operator);
+        operator.center(&self.state.position[nodes.clone()]) - operator.center(&from[nodes])
+    }
+
     /// Which blocks have moved on the way, and where to.
     fn not_settled(&self, settled: &Settled, from: &[Vec3]) -> StepError {
-        let gone = |block: BlockId| {
-            let (nodes, operator) = (self.blocks().nodes_of(block), &self.shape(block).operator);
-            operator.center(&self.state.position[nodes.clone()]) - operator.center(&from[nodes])
-        };
-        let mut moved: Vec<(f64, BlockId)> =
-            self.blocks().ids().map(|block| (gone(block).norm(), block)).collect();
-        moved.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        let moved = self.farthest(from);
         let (gone_m, block) = moved[0];
-        let towards = if gone_m > 0.0 { gone(block) / gone_m } else { Vec3::zeros() };
+        let towards = if gone_m > 0.0 { self.way(from, block) / gone_m } else { Vec3::zeros() };
         StepError::NotSettled {
             steps: settled.steps,
             speed_ratio: settled.speed_ratio,

@@ -88,6 +88,14 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     let domain = domain(&rock.domain, folder).map_err(|m| vec![Fault::new(at(".domain"), m)])?;
     let cut_field = if rock.voronoi.is_some() { ".voronoi" } else { ".joints" };
     let mut blocks = cut(rock, &domain, folder).map_err(|m| vec![Fault::new(at(cut_field), m)])?;
+    if rock.sliver_width_m.powi(3) >= domain.volume_m3() {
+        let message = format!(
+            "{} m: a cube of this width is larger than the rock of {:.3e} m³, so that all of it is slivers",
+            rock.sliver_width_m,
+            domain.volume_m3()
+        );
+        return Err(vec![Fault::new(at(".sliver_width_m"), message)]);
+    }
     let refused = blocks.report.refused.iter().map(|(_, count)| count).sum();
     let (merged, slivers) = match rock.slivers {
         _ if rock.sliver_width_m == 0.0 => (Merged::default(), Vec::new()),
@@ -97,6 +105,12 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     let sliver_m3 = blocks.remove(&slivers);
     let removed = chosen(&blocks, &rock.removed);
     let removed_m3 = blocks.remove(&removed);
+    if let Some(k) =
+        rock.fixed.iter().position(|place| chosen(&blocks, std::slice::from_ref(place)).is_empty())
+    {
+        let message = "holds no block: no centroid lies in it; check its signs, or leave it out";
+        return Err(vec![Fault::new(at(&format!(".fixed[{k}]")), message)]);
+    }
     let thin = blocks.report.slivers.len();
     let mut meshes = Meshes::new();
     let mut report = RockReport {

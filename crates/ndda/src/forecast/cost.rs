@@ -18,6 +18,9 @@ use crate::{build, machine};
 /// Steps are timed this long, but at least a few of them: a check of a small scene is to be felt as instant.
 const TIMED: Duration = Duration::from_millis(10);
 const FEWEST_STEPS: u64 = 3;
+/// A run that takes longer than this [s] is timed for `TIMED_LONGER`, and by its later steps: contacts and the rounds of friction grow.
+const LONG_S: f64 = 10.0;
+const TIMED_LONGER: Duration = Duration::from_secs(1);
 /// A number in a table and its comma, on average [B].
 const NUMBER_BYTES: u64 = 20;
 
@@ -57,12 +60,16 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
     // The first one makes lists that the others keep.
     simulation.step()?;
     let first_s = started.elapsed().as_secs_f64();
-    let started = Instant::now();
-    while timed_steps + 1 < steps && (timed_steps < FEWEST_STEPS || started.elapsed() < TIMED) {
-        simulation.step()?;
-        timed_steps += 1;
+    let (timed, mut step_s) = timed_steps_of(simulation, steps.saturating_sub(1), TIMED)?;
+    timed_steps += timed;
+    if steps as f64 * step_s > LONG_S {
+        for _ in 0..2 {
+            let left = steps.saturating_sub(1 + timed_steps);
+            let (timed, later_s) = timed_steps_of(simulation, left, TIMED_LONGER / 2)?;
+            timed_steps += timed;
+            step_s = if timed > 0 { later_s } else { step_s };
+        }
     }
-    let step_s = started.elapsed().as_secs_f64() / timed_steps.max(1) as f64;
     let started = Instant::now();
     simulation.sample()?;
     let row_s = started.elapsed().as_secs_f64();
@@ -74,6 +81,17 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
     let run_s = first_s + steps as f64 * step_s + rows as f64 * row_s + frames as f64 * frame_s;
     let files = files(scene, simulation, (rows, frames), frame.len() as u64);
     Ok(Guess { timed_steps, run_s, memory_bytes: machine::peak_memory_bytes(), files })
+}
+
+/// Does steps for so long, at least a few and at most `most`; gives how many, and the time of one [s].
+fn timed_steps_of(simulation: &mut Simulation, most: u64, long: Duration) -> Result<(u64, f64), SinkError> {
+    let started = Instant::now();
+    let mut done = 0;
+    while done < most && (done < FEWEST_STEPS || started.elapsed() < long) {
+        simulation.step()?;
+        done += 1;
+    }
+    Ok((done, started.elapsed().as_secs_f64() / done.max(1) as f64))
 }
 
 /// Frames of a run, that of the start among them.

@@ -28,6 +28,10 @@ impl Check<'_> {
                 let message = format!("{}: must be between 0 and 1", settle.tolerance);
                 self.error("settle.tolerance", message, "1e-4 leaves a ten-thousandth of the largest speed");
             }
+            if settle.most_steps == 0 {
+                let help = "1000000 is the default; leave `settle` out for a run that begins without rest";
+                self.error("settle.most_steps", "0 steps bring nothing to rest", help);
+            }
             if let SettleDamping::Local { factor } = settle.damping
                 && !(0.0 < factor && factor <= 1.0)
             {

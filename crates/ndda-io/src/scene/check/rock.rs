@@ -7,7 +7,7 @@ use super::{CELLS, Check};
 use crate::scene::code::Code;
 use crate::scene::joint_table;
 use crate::scene::{DiscRule, Discontinuity, Domain, OrientationScatter, Rock, Scene};
-use crate::scene::{SpacingScatter, Whereabouts, matches};
+use crate::scene::{Slivers, SpacingScatter, Whereabouts, matches};
 
 /// More points of Voronoi cells than this are a slip of the keyboard.
 const MOST_CELLS: u32 = 10_000_000;
@@ -51,6 +51,10 @@ impl Check<'_> {
             self.domain(&path("domain"), &rock.domain, folder);
             self.joints_of(&format!("rock[{i}]"), rock, folder);
             self.fill(&path("fill"), &rock.fill);
+            if rock.slivers == Slivers::Remove && rock.sliver_width_m == 0.0 {
+                let help = "give sliver_width_m, the width below which a block is taken out";
+                self.misfit(path("slivers"), "no block is thinner than a sliver_width_m of 0", help);
+            }
             if !(rock.sliver_width_m >= 0.0 && rock.sliver_width_m.is_finite()) {
                 let message = format!("{} m: must not be negative", rock.sliver_width_m);
                 self.error(path("sliver_width_m"), message, "0 keeps all blocks as they are");

@@ -60,11 +60,46 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
             at(Code::WrongType, message).with_help(REFERENCE)
         }
         code => {
+            if let Some((message, help)) = brackets_of_choice(code, text, start) {
+                return at(Code::WrongType, message).with_help(help);
+            }
             let (kind, message, help) = no_count(code, &plain.text, begins)
                 .map(|message| (Code::WrongType, message, COUNTS))
                 .unwrap_or_else(|| grammar(code, text, start));
             at(kind, message).with_help(help)
         }
+    }
+}
+
+/// That a choice lacks its brackets, has some where it has no fields, or has values without names; with the remedy.
+fn brackets_of_choice(error: &RonError, text: &str, at: usize) -> Option<(String, String)> {
+    let before = text[..at].trim_end();
+    let inside = before.strip_suffix('(').map(str::trim_end);
+    let opens = text[at..].starts_with('(');
+    let choice = |text: &str| {
+        let word = text.rsplit(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default();
+        Some(word.to_string()).filter(|word| word.starts_with(|c: char| c.is_uppercase()))
+    };
+    match error {
+        RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_) if !opens => {
+            let name = choice(before)?;
+            Some((
+                format!("`{name}` is written with brackets"),
+                format!("write {name}(), or {name}(field: value); docs/reference/scene.md lists its fields"),
+            ))
+        }
+        RonError::ExpectedComma if opens => {
+            let name = choice(before)?;
+            Some((format!("`{name}` has no fields"), format!("write {name} without brackets")))
+        }
+        RonError::ExpectedIdentifier | RonError::InvalidIdentifier(_) | RonError::SuggestRawIdentifier(_) => {
+            let name = choice(inside?)?;
+            Some((
+                format!("the fields of `{name}` are written with their names"),
+                format!("write {name}(field: value); docs/reference/scene.md lists its fields"),
+            ))
+        }
+        _ => None,
     }
 }
 

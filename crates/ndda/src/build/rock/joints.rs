@@ -23,7 +23,7 @@ pub struct Discs {
     pub cuts: usize,
     /// Of these, blocks in which the disc ends: their joint is larger than the disc.
     pub ends_in_cut: usize,
-    /// Blocks that a disc ends in, and that stay whole.
+    /// How often a disc ends in a block and leaves it whole; a block counts once for each such disc.
     pub left_whole: usize,
     /// Area of the discs in the rock [m²].
     pub disc_m2: f64,
@@ -45,7 +45,7 @@ impl fmt::Display for Discs {
         write!(
             f,
             "{discs} disc(s), {idle} of which cut nothing: {cuts} cut(s), {ends_in_cut} of them larger than the disc, which ends in the \
-             block; {left_whole} block(s) that a disc ends in stay whole; {disc_m2:.4e} m² of discs in the rock, {joint_m2:.4e} m² of \
+             block; {left_whole} time(s) a disc ends in a block and leaves it whole; {disc_m2:.4e} m² of discs in the rock, {joint_m2:.4e} m² of \
              joints"
         )
     }
