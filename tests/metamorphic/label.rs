@@ -1,16 +1,17 @@
 //! Whether the label tells the truth: a run against the same scene with a 16 times finer step.
 //!
-//! Promised is that speeds are right to 1 % of the largest and places to a tenth of the height of a tetrahedron. An error is
+//! Promised is that speeds are right to 1 % of the largest, or of 0.01 √(g h) where blocks hardly move, and places to a tenth of the height of a tetrahedron. An error is
 //! the larger of the two over what is promised, at the end of the run; a speed may be that of one step before or after. The
 //! judges are runs with Δt/8 and Δt/16, or Δt/32 where these leave a doubt: twice their difference is what the finer one may
 //! be off by. A motion is sensitive where a push of a hundredth of what is promised grows thirtyfold.
 
 use ndda::Model;
 use ndda::{build, judge::verdict};
+use ndda_io::scene::Contact;
 use ndda_io::summary::LabelWord;
 use ndda_mesh::geometry::tet_heights;
 use ndda_mesh::{BlockId, TetId, Vec3};
-use ndda_solver::Simulation;
+use ndda_solver::{BodyKind, Simulation};
 
 use crate::generator::{Case, Wanted, build, case};
 use crate::motion::{disturb, run};
@@ -41,12 +42,15 @@ struct End {
 
 /// Sizes of the blocks.
 struct Sizes {
+    /// Speed below which blocks hardly move.
+    slow_m_s: f64,
     radius_m: Vec<f64>,
     height_m: Vec<f64>,
     first_node: Vec<usize>,
 }
 
-fn sizes(simulation: &Simulation) -> Sizes {
+fn sizes(model: &Model) -> Sizes {
+    let (scene, simulation) = (&model.loaded.scene, &model.simulation);
     let blocks = simulation.blocks();
     let rest = &blocks.rest_position;
     let radius = |block: BlockId| {
@@ -61,7 +65,14 @@ fn sizes(simulation: &Simulation) -> Sizes {
         heights.sort_by(f64::total_cmp);
         heights[heights.len() / 2]
     };
+    let moves = |block: &BlockId| simulation.shape(*block).kind != BodyKind::Fixed;
+    let heights = blocks.ids().filter(moves).flat_map(|block| blocks.tets_of(block));
+    let heights = heights.map(|t| smallest(blocks.tet_corners(TetId(t as u32), rest)));
+    let lowest_m = heights.fold(f64::INFINITY, f64::min);
+    let touch = !matches!(scene.contact, None | Some(Contact::Off)) && lowest_m.is_finite();
+    let gravity_m_s2 = Vec3::from(scene.gravity_m_s2).norm();
     Sizes {
+        slow_m_s: if touch { 0.01 * (gravity_m_s2 * lowest_m).sqrt() } else { 0.0 },
         radius_m: blocks.ids().map(radius).collect(),
         height_m: blocks.ids().map(height).collect(),
         first_node: blocks.node_starts().iter().map(|&n| n as usize).collect(),
@@ -125,7 +136,7 @@ fn error(position: &[Vec3], course: &[Course], judge: &End, sizes: &Sizes) -> (f
             (own.velocity - other.velocity).norm().max(spin)
         };
         let least = judge.courses.iter().map(|all| off(&all[block])).fold(f64::INFINITY, f64::min);
-        speeds = speeds.max(least / (SPEED * judge.speed_m_s));
+        speeds = speeds.max(least / (SPEED * judge.speed_m_s.max(sizes.slow_m_s)));
         let nodes = sizes.first_node[block]..sizes.first_node[block + 1];
         let off = nodes.map(|n| (position[n] - judge.position[n]).norm()).fold(0.0, f64::max);
         places = places.max(off / (PLACE * sizes.height_m[block]));
@@ -170,7 +181,7 @@ fn truth(case: &Case, ready: &Model, sizes: &Sizes) -> (f64, f64, f64, Result<bo
         return found;
     }
     let Some(judge_16) = judge(case, 16, 0.0) else { return found };
-    let push_m_s = PUSH * SPEED * judge_16.speed_m_s;
+    let push_m_s = PUSH * SPEED * judge_16.speed_m_s.max(sizes.slow_m_s);
     let sensitive = judge(case, 16, push_m_s).is_none_or(|pushed| between(&pushed, &judge_16, sizes) > GROWN);
     if sensitive {
         found.3 = Err("undecided: sensitive motion");
@@ -188,7 +199,7 @@ fn record(case: &Case) -> Record {
     };
     let mut record = Record::new(case, word, &label.reasons);
     if stopped.is_none() {
-        let (speeds, places, doubt, right) = truth(case, &ready, &sizes(&ready.simulation));
+        let (speeds, places, doubt, right) = truth(case, &ready, &sizes(&ready));
         record.judged(speeds, places, doubt, right);
     }
     record

@@ -148,7 +148,7 @@ fn what_is_judged_as_creep_is_what_two_masses_with_sliders_slip() {
         assert_eq!(word, LabelWord::Inaccurate, "{reasons}");
         let [lower, upper] = oscillators(30.0, shear_pa_m);
         let worst = simulation.invariants();
-        let speed_m_s = worst.creep_speed.value * simulation.largest_speed_m_s();
+        let speed_m_s = worst.creep_speed.value * simulation.speed_scale_m_s();
         let what = format!("mean speed of creep that the label sees, k_s = {shear_pa_m:e} Pa/m [m/s]");
         // The first swing and an unfinished one do not count.
         row("creep", &what, speed_m_s, Within(lower.max(upper - lower) / END_S, 0.1));

@@ -290,6 +290,9 @@ pub struct HowArgs {
     /// Exit with code 1 when a run is not accurate by its own label, or an invariant is beyond its limit.
     #[arg(long)]
     pub strict: bool,
+    /// When a twin that begins hardly different is run after the run, to see whether the motion is sensitive; it doubles the time.
+    #[arg(long, value_enum, value_name = "WHEN", default_value_t)]
+    pub sensitivity: Twin,
     /// Print nothing but errors.
     #[arg(long, short)]
     pub quiet: bool,
@@ -299,6 +302,18 @@ pub struct HowArgs {
     /// Print events and results as JSON, one object per line (see docs/reference/json.md).
     #[arg(long)]
     pub json: bool,
+}
+
+/// When a run has a twin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Twin {
+    /// After accurate runs in which three or more blocks move.
+    #[default]
+    Auto,
+    /// After all accurate runs with contact.
+    Always,
+    /// After none.
+    Never,
 }
 
 /// Arguments of `ndda resume`.

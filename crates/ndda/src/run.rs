@@ -12,6 +12,7 @@ pub mod recorder;
 mod resume;
 pub mod run_log;
 pub mod schedule;
+mod twin;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -19,10 +20,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-use ndda_io::summary::{MonitorEnd, Status, Summary};
+use ndda_io::summary::{LabelWord, MonitorEnd, Status, Summary};
 use ndda_io::table::Table;
 use ndda_io::{OutputFolder, WriteError, checkpoint, summary, tables};
-use ndda_solver::{Settled, Simulation, Sink};
+use ndda_solver::{Settled, Simulation, Sink, Snapshot};
 
 use crate::Model;
 use crate::judge::reference::Comparison;
@@ -33,6 +34,7 @@ pub use identity::Identity;
 use outputs::{Course, Earlier, Outputs};
 pub use resume::{ResumeError, Resumed};
 use run_log::RunLog;
+pub use twin::Sensitivity;
 
 /// Ends a loop when somebody has raised the flag.
 pub(crate) fn unless_stopped(stop: &AtomicBool) -> ControlFlow<()> {
@@ -47,6 +49,10 @@ pub struct Run {
     name: String,
     recording: Option<Recording>,
     strict: bool,
+    sensitivity: Sensitivity,
+    /// The simulation as it was built, from which a twin begins; taken late in a run that is new.
+    built: Option<Snapshot>,
+    tell: Box<dyn Fn(&str) + Send>,
     started: Instant,
     stop: Arc<AtomicBool>,
 }
@@ -83,7 +89,9 @@ impl Run {
         let comparison = model.comparison();
         let name = stem(Path::new(&model.loaded.file));
         let (started, stop) = (Instant::now(), Arc::default());
-        Self { model, comparison, name, recording: None, strict: false, started, stop }
+        let (recording, strict, sensitivity, built) = (None, false, Sensitivity::default(), None);
+        let tell = Box::new(|_: &str| {});
+        Self { model, comparison, name, recording, strict, sensitivity, built, tell, started, stop }
     }
 
     /// Records the run in a folder: history, fields, contacts, checkpoints, log and summary, as the scene's `output` asks.
@@ -116,6 +124,12 @@ impl Run {
     /// Whether a limit that is passed makes the run's status `failed`.
     pub fn strict(mut self, strict: bool) -> Self {
         self.strict = strict;
+        self
+    }
+
+    /// When a twin of the run shows whether its motion is sensitive; `tell` is told before it begins.
+    pub fn sensitivity(mut self, sensitivity: Sensitivity, tell: Box<dyn Fn(&str) + Send>) -> Self {
+        (self.sensitivity, self.tell) = (sensitivity, tell);
         self
     }
 
@@ -159,6 +173,9 @@ impl Run {
         settling: &mut dyn FnMut(&Settled),
     ) -> Result<Outcome, RunError> {
         let began = Instant::now();
+        if self.sensitivity != Sensitivity::Never && self.built.is_none() {
+            self.built = Some(self.model.simulation.snapshot());
+        }
         if let Err(error) = self.settle(settling) {
             self.log_line(&error.to_string())?;
             return Err(error);
@@ -204,6 +221,7 @@ impl Run {
         let Self {
             model: Model { loaded, mut simulation, monitors, .. }, comparison, name, recording, ..
         } = self;
+        let twin = (self.sensitivity, self.built, self.tell, self.stop.clone());
         let (scene, started) = (&loaded.scene, self.started);
         let (mut log, place) = match recording {
             Some(Recording { identity, folder, log, earlier }) => {
@@ -221,6 +239,10 @@ impl Run {
         let ended = go(&mut simulation, steps, &mut [&mut outputs]);
         let stopped_by = ended.map_or_else(|error| error::numerical_stop(error).map(Some), |()| Ok(None))?;
         outputs.flush()?;
+        if stopped_by.is_none() && simulation.unsampled_s() > 0.0 {
+            // Of a run that was interrupted between two rows, what it has come to is judged, too.
+            simulation.sample().ok();
+        }
         let ending = Ending {
             scene,
             name: &name,
@@ -234,13 +256,26 @@ impl Run {
             strict: self.strict,
             state_crc32: checkpoint::fingerprint(simulation.state()),
         };
-        let summary = summarise(&simulation, &outputs.recorder, ending);
+        let mut summary = summarise(&simulation, &outputs.recorder, ending);
         let (folder, history) = outputs.end();
+        let (sensitivity, built, tell, stop) = twin;
+        if let Some(built) = built.filter(|_| is_whole(&summary) && sensitivity.wants_twin(&simulation)) {
+            tell(
+                "a twin with other velocities, by 1e-4 of the largest speed, shows whether the motion is sensitive",
+            );
+            let settle = loaded.scene.settle.map(crate::build::settle);
+            twin::judge(&mut summary, &mut simulation, &built, settle.as_ref(), (&stop, self.strict));
+        }
         if let (Some(folder), Some(log)) = (folder, &mut log) {
             write_results(&folder, &loaded.scene.output, &summary, log)?;
         }
         Ok(Outcome { summary, history, simulation })
     }
+}
+
+/// Whether an accurate run has come to its end.
+fn is_whole(summary: &Summary) -> bool {
+    summary.label.word == LabelWord::Accurate && matches!(summary.status, Status::Done | Status::Failed)
 }
 
 /// Name of a file without its ending.

@@ -30,7 +30,7 @@ impl CaseRunner for Processes {
         let program = PROGRAM.get().map_or(&[][..], Vec::as_slice);
         let mut command = Command::new(program.first().map_or("ndda".as_ref(), OsString::as_os_str));
         command.args(program.iter().skip(1)).arg("run").arg(run.scene).arg("--out").arg(run.out);
-        command.args(["--force", "--quiet", "--threads", &run.threads.to_string()]);
+        command.args(["--force", "--quiet", "--sensitivity", "never", "--threads", &run.threads.to_string()]);
         if let Some(bytes) = memory::asked() {
             command.args(["--memory", &bytes.to_string()]);
         }

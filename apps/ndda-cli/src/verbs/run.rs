@@ -4,14 +4,15 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use ndda::judge::table;
+use ndda::run::Sensitivity;
 use ndda::{Run, RunError};
 use ndda_io::summary::{Judgement, LabelWord, Status, Summary};
 use ndda_io::{OutputFolder, WriteError};
 use ndda_solver::Settled;
 use serde::Serialize;
 
-use crate::args::{HowArgs, RunArgs};
-use crate::terminal::console::{complain, is_coloured, say};
+use crate::args::{HowArgs, RunArgs, Twin};
+use crate::terminal::console::{complain, complain_unless, is_coloured, say};
 use crate::terminal::events::{self, Events};
 use crate::terminal::interrupt;
 use crate::terminal::progress::Progress;
@@ -42,14 +43,21 @@ pub fn in_pool(how: &HowArgs, work: impl FnOnce(&Options) -> u8 + Send) -> u8 {
     };
     // Everything runs inside the pool: a step handed in from outside would allocate.
     let quiet = how.quiet || how.json;
-    let verbose = how.verbose;
-    pool.install(|| work(&Options { strict: how.strict, quiet, verbose, events, started }))
+    let (strict, verbose) = (how.strict, how.verbose);
+    let sensitivity = match how.sensitivity {
+        Twin::Auto => Sensitivity::Auto,
+        Twin::Always => Sensitivity::Always,
+        Twin::Never => Sensitivity::Never,
+    };
+    pool.install(|| work(&Options { strict, sensitivity, quiet, verbose, events, started }))
 }
 
 /// How to run, whatever the scene.
 pub struct Options {
     /// Whether a limit that is passed fails the run.
     pub strict: bool,
+    /// When a twin shows whether the motion is sensitive.
+    pub sensitivity: Sensitivity,
     /// No progress and no result.
     pub quiet: bool,
     /// All tables at the end.
@@ -102,6 +110,7 @@ struct Started<'a> {
 /// Runs to the end and reports; the result is the exit code.
 pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
     let run = run.strict(options.strict).stop_when(interrupt::watch());
+    let run = run.sensitivity(options.sensitivity, Box::new(complain_unless(options.quiet)));
     let (steps, simulation) = (run.model().steps(), &run.model().simulation);
     options.events.emit(
         "started",
@@ -170,7 +179,7 @@ fn say_result(summary: &Summary, folder: &Path, verbose: bool) {
 fn paint(text: &str, word: LabelWord) -> String {
     let colour = match word {
         LabelWord::Accurate => 32,
-        LabelWord::Inaccurate => 33,
+        LabelWord::Sensitive | LabelWord::Inaccurate => 33,
         LabelWord::Stopped => 31,
     };
     match text.strip_prefix(word.as_str()) {

@@ -32,6 +32,10 @@ pub struct Summary {
     pub stopped_by: Option<String>,
     /// The run's judgement of its own result.
     pub label: Label,
+    /// Error of speeds that an accurate label allows where blocks hardly move \[m/s\]: 1 % of the speed of a fall through 1/20 000 of the lowest
+    /// tetrahedron. Left out where 1 % of the largest speed is more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slow_error_m_s: Option<f64>,
     /// Steps done.
     pub steps: u64,
     /// Step Δt \[s\].
@@ -100,6 +104,8 @@ pub enum LabelWord {
     /// Speeds are right to 1 % of the largest, places to a tenth of the height of the tetrahedra in contact.
     #[default]
     Accurate,
+    /// The same holds, but a hardly different start ends elsewhere: only statistics of several runs mean something.
+    Sensitive,
     /// They may not be.
     Inaccurate,
     /// It ended before it could be wrong.
@@ -111,6 +117,7 @@ impl LabelWord {
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Accurate => "accurate",
+            Self::Sensitive => "sensitive",
             Self::Inaccurate => "inaccurate",
             Self::Stopped => "stopped",
         }
@@ -272,6 +279,7 @@ mod tests {
             status: Status::Done,
             stopped_by: None,
             label: Label { word: LabelWord::Inaccurate, reasons: vec!["too deep".into()] },
+            slow_error_m_s: None,
             steps: 10_000,
             step_s: 1e-4,
             chosen: Vec::new(),

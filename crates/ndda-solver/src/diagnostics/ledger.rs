@@ -41,6 +41,8 @@ pub struct Ledger {
     momentum_error: f64,
     angular_error: f64,
     largest_speed_m_s: f64,
+    /// Speed of blocks that hardly move: that of a fall through 1/20 000 of the lowest tetrahedron [m/s].
+    slow_m_s: f64,
     vibration: Vibration,
     unresolved_m_s: f64,
     damping_m_s: f64,
@@ -52,8 +54,8 @@ pub struct Ledger {
 
 impl Ledger {
     /// An empty ledger of some blocks; `start` is the force and torque from outside before the first step, zero unless the integrator remembers
-    /// accelerations [N, N m].
-    pub(crate) fn new(start: (Vec3, Vec3), blocks: BlockDiagnostics) -> Self {
+    /// accelerations [N, N m]; `slow_m_s` is the speed below which blocks hardly move.
+    pub(crate) fn new(start: (Vec3, Vec3), blocks: BlockDiagnostics, slow_m_s: f64) -> Self {
         let worst = Invariants {
             linear_momentum: 0.0,
             angular_momentum: 0.0,
@@ -111,6 +113,7 @@ impl Ledger {
             momentum_error: 0.0,
             angular_error: 0.0,
             largest_speed_m_s: 0.0,
+            slow_m_s,
             vibration: Vibration::default(),
             unresolved_m_s: 0.0,
             damping_m_s: 0.0,
@@ -210,6 +213,11 @@ impl Ledger {
         self.largest_speed_m_s
     }
 
+    /// Speed that errors of block velocities are held against [m/s]: the largest so far, or that of blocks that hardly move.
+    pub(crate) fn speed_scale_m_s(&self) -> f64 {
+        self.largest_speed_m_s.max(self.slow_m_s)
+    }
+
     /// Keeps vibrations that a step turns over: the worst, or the last where they die out.
     pub(crate) fn watch_vibration(&mut self, found: Vibration, die_out: bool) {
         let speed_m_s = self.largest_speed_m_s;
@@ -300,11 +308,12 @@ impl Ledger {
     pub(crate) fn invariants(&self) -> Invariants {
         let over = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
         let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
-        let (block_gain, block_loss) = self.blocks.lasting(self.largest_speed_m_s, self.rounding_j);
+        let scale_m_s = self.speed_scale_m_s();
+        let (block_gain, block_loss) = self.blocks.lasting(scale_m_s, self.rounding_j);
         let (lateral_drift_speed, lateral_drift_place) =
-            self.blocks.lateral_drift(self.largest_speed_m_s, self.rounding_j);
-        let (creep_speed, creep_place) = self.blocks.creep(self.largest_speed_m_s);
-        let (lumped_speed, lumped_place) = self.blocks.lumped(self.largest_speed_m_s, self.rounding_j);
+            self.blocks.lateral_drift(scale_m_s, self.rounding_j);
+        let (creep_speed, creep_place) = self.blocks.creep(scale_m_s);
+        let (lumped_speed, lumped_place) = self.blocks.lumped(scale_m_s, self.rounding_j);
         let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
         Invariants {
             linear_momentum: over(self.momentum_error, self.peak_momentum),
@@ -315,7 +324,7 @@ impl Ledger {
             lasting_loss: energy(self.lasting_loss_j),
             block_gain,
             block_loss,
-            unresolved_friction: self.blocks.unresolved_friction(self.largest_speed_m_s, self.rounding_j),
+            unresolved_friction: self.blocks.unresolved_friction(scale_m_s, self.rounding_j),
             lateral_drift_speed,
             lateral_drift_place,
             creep_speed,
@@ -323,8 +332,8 @@ impl Ledger {
             lumped_speed,
             lumped_place,
             turn_place: self.blocks.turned_over_height(),
-            turn_speed: speed(self.blocks.turned_m_s()),
-            ringing: self.blocks.ringing(self.largest_speed_m_s, self.rounding_j),
+            turn_speed: over(self.blocks.turned_m_s(), scale_m_s.max(self.blocks.turned_m_s())),
+            ringing: self.blocks.ringing(scale_m_s, self.rounding_j),
             vibration: self.vibration.over(self.largest_speed_m_s),
             unresolved_speed: speed(self.unresolved_m_s),
             damping_speed: speed(self.damping_m_s),
@@ -341,7 +350,7 @@ mod tests {
 
     #[test]
     fn energy_that_friction_took_is_not_a_loss() {
-        let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default());
+        let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default(), 0.0);
         ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
         ledger.add_work(-4.0, 0.0, 0.0, 0.0);
         let sample = ledger.balance(Sample { kinetic_j: 5.0, ..Sample::default() }, true);
@@ -352,7 +361,7 @@ mod tests {
 
     #[test]
     fn what_explicit_contact_holds_back_is_not_lost_but_what_is_gone_after_it_is() {
-        let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default());
+        let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default(), 0.0);
         ledger.balance(Sample { kinetic_j: 10.0, ..Sample::default() }, true);
         ledger.watch(&StepReport { h: 1.0, ..StepReport::default() });
         ledger.balance(Sample { contact_j: 8.0, ..Sample::default() }, true);
@@ -365,7 +374,7 @@ mod tests {
 
     #[test]
     fn an_impulse_from_outside_explains_momentum() {
-        let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default());
+        let mut ledger = Ledger::new(Default::default(), BlockDiagnostics::default(), 0.0);
         ledger.balance(Sample::default(), true);
         let weights = Midpoint { theta: 0.5 }.weights(0.5);
         ledger.add_impulse(0.5, &weights, Vec3::x(), Vec3::zeros());

@@ -80,6 +80,8 @@ pub(crate) struct Problem {
     pub(crate) integrator: Box<dyn TimeIntegrator>,
     /// Δt of a whole step.
     pub(crate) base_step_s: f64,
+    /// Gravity \[m/s²\].
+    pub(crate) gravity_m_s2: Vec3,
     /// Which blocks move by an affine map; empty without contact.
     pub(crate) affine: Vec<bool>,
     pub(crate) min_friction_coefficient: f64,

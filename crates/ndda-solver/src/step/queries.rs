@@ -99,6 +99,12 @@ impl Simulation {
         self.audit.ledger.largest_speed_m_s()
     }
 
+    /// Speed that errors of block velocities are held against [m/s]: the largest so far or, where that is less, that of a fall through 1/20 000 of
+    /// the lowest tetrahedron of blocks that move, 0.01 √(g h).
+    pub fn speed_scale_m_s(&self) -> f64 {
+        self.audit.ledger.speed_scale_m_s()
+    }
+
     /// Time since energies and momenta were measured by [`sample`](Self::sample) [s].
     pub fn unsampled_s(&self) -> f64 {
         self.audit.ledger.since_sample_s(self.time_s())

@@ -61,6 +61,9 @@ pub struct Setup {
     pub auto_step: Option<AutoStep>,
 }
 
+/// Blocks hardly move below this part of the speed √(g h).
+const HARDLY: f64 = 0.01;
+
 impl Simulation {
     /// Assembles, factors each distinct block once, and sets the state at t = 0.
     ///
@@ -124,7 +127,7 @@ impl Simulation {
                 ..Scratch::default()
             },
             audit: Audit {
-                ledger: Ledger::new(Default::default(), BlockDiagnostics::default()),
+                ledger: Ledger::new(Default::default(), BlockDiagnostics::default(), 0.0),
                 stages: StageTimes::default(),
                 travel: Travel::new(smallest_height_m),
                 contacts: None,
@@ -140,6 +143,7 @@ impl Simulation {
                 blocks,
                 shapes,
                 base_step_s: step_s,
+                gravity_m_s2,
                 integrator,
             },
             contact,
@@ -276,7 +280,16 @@ impl Simulation {
     /// An empty ledger; `start` is the force and torque from outside before the first step.
     pub(crate) fn new_ledger(&self, start: (Vec3, Vec3)) -> Ledger {
         let scales = self.problem.blocks.ids().map(|block| self.shape(block).scale()).collect();
-        Ledger::new(start, BlockDiagnostics::new(scales, self.newton.is_some()))
+        Ledger::new(start, BlockDiagnostics::new(scales, self.newton.is_some()), self.slow_m_s())
+    }
+
+    /// 0.01 √(g h): the speed of a fall through 1/20 000 of h, the lowest height of tetrahedra of blocks that move; zero without gravity or
+    /// contact [m/s].
+    fn slow_m_s(&self) -> f64 {
+        let moving = self.problem.shapes.iter().filter(|shape| shape.kind != BodyKind::Fixed);
+        let height_m = moving.map(|shape| shape.scale().height_m).fold(f64::INFINITY, f64::min);
+        let slow = self.contact.is_some() && height_m.is_finite();
+        if slow { HARDLY * (self.problem.gravity_m_s2.norm() * height_m).sqrt() } else { 0.0 }
     }
 
     /// Force and torque from outside at the start, as blocks report them: torques of loads about the mass centre of free blocks, all

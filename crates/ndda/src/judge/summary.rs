@@ -62,6 +62,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
         status,
         stopped_by: ending.stopped_by,
         label,
+        slow_error_m_s: verdict::slow_error_m_s(simulation),
         steps: simulation.state().step,
         step_s: simulation.step_s(),
         chosen: ending.chosen,

@@ -9,8 +9,13 @@ use crate::columns::columns;
 pub fn ending(summary: &Summary) -> String {
     let mut text = match (summary.label.word, summary.label.reasons.as_slice()) {
         (LabelWord::Accurate, _) => {
-            "accurate: speeds to 1 % of the largest, positions to a tenth of an element\n".into()
+            let speeds = match summary.slow_error_m_s {
+                Some(error_m_s) => format!("blocks hardly move; speeds to {}/s", length(error_m_s)),
+                None => "speeds to 1 % of the largest".into(),
+            };
+            format!("accurate: {speeds}, positions to a tenth of an element\n")
         }
+        (LabelWord::Sensitive, reasons) => format!("sensitive: {}\n", reasons.join("; ")),
         (LabelWord::Inaccurate, [reason]) => format!("inaccurate: {reason}\n"),
         (LabelWord::Inaccurate, reasons) => format!("inaccurate:\n  {}\n", reasons.join("\n  ")),
         (LabelWord::Stopped, _) => format!("stopped at t = {} s\n", time(summary.end_s)),
@@ -51,8 +56,8 @@ fn moved(motion: &Motion) -> String {
     let Motion { can_move, moved, farthest, farthest_m, speed_m_s, course } = motion;
     let course = match course {
         Course::AtRest => "at rest".to_string(),
-        Course::Moving => format!("moving at {speed_m_s:.3} m/s"),
-        Course::Accelerating => format!("still accelerating, {speed_m_s:.3} m/s"),
+        Course::Moving => format!("moving at {}/s", length(*speed_m_s)),
+        Course::Accelerating => format!("still accelerating, {}/s", length(*speed_m_s)),
     };
     format!(
         "{moved} of {can_move} blocks moved; farthest `{farthest}`: {} at the end, {course}\n",

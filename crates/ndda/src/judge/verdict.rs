@@ -60,6 +60,12 @@ pub fn label(simulation: &Simulation, stopped_by: Option<&str>) -> Label {
     Label { word, reasons }
 }
 
+/// Error of speeds that an accurate label allows where blocks hardly move; none where 1 % of the largest speed is more [m/s].
+pub fn slow_error_m_s(simulation: &Simulation) -> Option<f64> {
+    let scale_m_s = simulation.speed_scale_m_s();
+    (scale_m_s > simulation.largest_speed_m_s()).then_some(SPEED * scale_m_s)
+}
+
 fn entries(simulation: &Simulation) -> Vec<Entry> {
     let upright = simulation.invariants().smallest_volume_ratio;
     let sound = Verdict { value: None, limit: None, verdict: Judgement::Pass };

@@ -36,7 +36,7 @@ fn label(summary: &Summary) -> Markup {
     html! {
         @match word {
             LabelWord::Accurate => span.badge.pass { (word.as_str()) },
-            LabelWord::Inaccurate => span.badge.warn { (word.as_str()) },
+            LabelWord::Sensitive | LabelWord::Inaccurate => span.badge.warn { (word.as_str()) },
             LabelWord::Stopped => {},
         }
     }
@@ -56,7 +56,7 @@ fn status(summary: &Summary) -> Markup {
 pub fn warnings(summary: &Summary) -> Markup {
     html! {
         @if let Some(cause) = &summary.stopped_by { p.alert.fail { strong { "Stopped " } (cause) } }
-        @if summary.label.word == LabelWord::Inaccurate {
+        @if matches!(summary.label.word, LabelWord::Sensitive | LabelWord::Inaccurate) {
             @for reason in &summary.label.reasons { p.alert.warn { strong { "Inaccurate " } (reason) } }
         }
         @for warning in &summary.warnings { p.alert.warn { (warning) } }

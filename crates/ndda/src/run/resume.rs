@@ -70,6 +70,7 @@ impl Run {
         }
         let SavedRun { identity, snapshot, earlier } = saved;
         run.name = stem(&identity.file);
+        run.built = Some(run.model.simulation.snapshot());
         let restored = run.model.simulation.restore(snapshot);
         restored.map_err(|error| ResumeError::DoesNotFit(error.to_string()))?;
         let run = run.record_as(identity, folder, Some(earlier))?;

@@ -1,0 +1,197 @@
+//! Whether single positions of a run mean anything: a twin that begins with other velocities, by a ten-thousandth of the largest speed, and
+//! ends somewhere else where the motion is sensitive, as in heaps, falling columns and toppling slopes.
+
+use std::fmt;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use ndda_io::summary::{Label, LabelWord, Status, Summary};
+use ndda_mesh::geometry::tet_heights;
+use ndda_mesh::{BlockId, TetId, Vec3};
+use ndda_solver::{BodyKind, Settle, Simulation, Snapshot, StepError};
+
+use super::unless_stopped;
+
+/// Whether a twin of the run is run after it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Sensitivity {
+    /// Where three or more blocks have moved in an accurate run.
+    #[default]
+    Auto,
+    /// After each accurate run with contact.
+    Always,
+    /// Not at all.
+    Never,
+}
+
+/// Velocities of the twin differ by this part of the largest speed.
+const PUSH: f64 = 1e-4;
+/// Blocks of the twin may end this part of a tetrahedron's height away: a third of what an accurate label allows.
+const AWAY: f64 = 0.03;
+/// Without growth, a push shifts a block by its speed times the time of the run; this many times that is no growth.
+const DRIFTS: f64 = 3.0;
+/// So many blocks must move for their motions to disturb each other.
+const ENOUGH: usize = 3;
+
+/// Where a run and its twin part.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parted {
+    /// Name of the block that ends farthest from where it ends in the run, over its height.
+    pub block: String,
+    /// How far [m].
+    pub apart_m: f64,
+    /// How many blocks end farther away than allowed.
+    pub blocks: usize,
+}
+
+impl Sensitivity {
+    /// Whether the twin of an accurate run that ends here is to be run.
+    pub(super) fn wants_twin(self, simulation: &Simulation) -> bool {
+        let ids = || simulation.blocks().ids();
+        let moved = || {
+            ids().filter(|&block| {
+                let gone_m =
+                    farthest(simulation, block, simulation.start_position(), &simulation.state().position);
+                moves(simulation, block) && gone_m > 0.1 * height_m(simulation, block)
+            })
+        };
+        simulation.has_contact()
+            && match self {
+                Self::Never => false,
+                Self::Always => ids().any(|block| moves(simulation, block)),
+                Self::Auto => moved().take(ENOUGH).count() == ENOUGH,
+            }
+    }
+}
+
+/// Changes the label of an accurate run to sensitive if its twin ends elsewhere, and books the time that this takes.
+pub(super) fn judge(
+    summary: &mut Summary,
+    simulation: &mut Simulation,
+    start: &Snapshot,
+    settle: Option<&Settle>,
+    (stop, strict): (&AtomicBool, bool),
+) {
+    let began = Instant::now();
+    match part(simulation, start, settle, stop) {
+        Ok(None) if stop.load(Ordering::Relaxed) => {
+            summary
+                .warnings
+                .push("the twin was interrupted: whether the motion is sensitive is not known".into());
+        }
+        Ok(None) => {}
+        Ok(Some(parted)) => {
+            summary.label = Label { word: LabelWord::Sensitive, reasons: vec![parted.to_string()] };
+            summary.status = if strict { Status::Failed } else { summary.status };
+        }
+        Err(error) => {
+            let reason = format!("a twin with other velocities, by 1e-4 of the largest speed, stops {error}");
+            summary.label = Label { word: LabelWord::Sensitive, reasons: vec![reason] };
+            summary.status = if strict { Status::Failed } else { summary.status };
+        }
+    }
+    let spent_s = began.elapsed().as_secs_f64();
+    summary.wall_s += spent_s;
+    summary.stages_s.0.push(("sensitivity".into(), spent_s));
+}
+
+impl fmt::Display for Parted {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { block, apart_m, blocks } = self;
+        write!(
+            f,
+            "velocities that differ by 1e-4 of the largest speed at the start bring {blocks} block(s) elsewhere, `{block}` by {apart_m:.2e} m; \
+             use statistics of several runs (ndda certify), not the positions of single blocks"
+        )
+    }
+}
+
+/// Runs the twin of a simulation that has come to its end from `start`, and puts it back into its end. None where both stay together, or
+/// where somebody asks to end.
+///
+/// # Errors
+/// [`StepError`] that stops the twin; the end is put back then, too.
+pub(super) fn part(
+    simulation: &mut Simulation,
+    start: &Snapshot,
+    settle: Option<&Settle>,
+    stop: &AtomicBool,
+) -> Result<Option<Parted>, StepError> {
+    let end = simulation.snapshot();
+    let push_m_s = PUSH * simulation.speed_scale_m_s();
+    let time_s = simulation.time_s();
+    let outcome = run(simulation, start, (push_m_s, end.state.step), settle, stop);
+    let twin = simulation.state().position.clone();
+    simulation.restore(end).expect("it is of this simulation");
+    let whole = outcome?;
+    Ok(whole.then(|| compare(simulation, &twin, DRIFTS * push_m_s * time_s)).flatten())
+}
+
+/// Whether the twin came to its end.
+fn run(
+    simulation: &mut Simulation,
+    start: &Snapshot,
+    (push_m_s, steps): (f64, u64),
+    settle: Option<&Settle>,
+    stop: &AtomicBool,
+) -> Result<bool, StepError> {
+    let mut pushed = start.clone();
+    for block in simulation.blocks().ids().filter(|&block| moves(simulation, block)) {
+        let push = push_m_s * direction(block);
+        pushed.state.velocity[simulation.blocks().nodes_of(block)].iter_mut().for_each(|v| *v += push);
+    }
+    simulation.restore(pushed).expect("it is of this simulation");
+    if let Some(settle) = settle {
+        simulation.settle_watched(settle, &mut |_| unless_stopped(stop))?;
+    }
+    while simulation.state().step < steps {
+        if unless_stopped(stop) == ControlFlow::Break(()) {
+            return Ok(false);
+        }
+        simulation.step()?;
+    }
+    Ok(true)
+}
+
+fn compare(simulation: &Simulation, twin: &[Vec3], drift_m: f64) -> Option<Parted> {
+    let away = |block: &BlockId| {
+        let apart_m = farthest(simulation, *block, &simulation.state().position, twin);
+        (apart_m, apart_m / (AWAY * height_m(simulation, *block) + drift_m))
+    };
+    let blocks = || simulation.blocks().ids().map(|block| (block, away(&block)));
+    let (block, (apart_m, _)) = blocks().max_by(|a, b| a.1.1.total_cmp(&b.1.1)).filter(|b| b.1.1 > 1.0)?;
+    let count = blocks().filter(|(_, (_, over))| *over > 1.0).count();
+    Some(Parted { block: simulation.blocks().names[block.index()].clone(), apart_m, blocks: count })
+}
+
+/// Whether a block moves as forces ask.
+fn moves(simulation: &Simulation, block: BlockId) -> bool {
+    let shape = simulation.shape(block);
+    shape.kind != BodyKind::Fixed && shape.is_free()
+}
+
+/// Median of the smallest heights of a block's tetrahedra [m]: a sliver inside a block is not what touches.
+fn height_m(simulation: &Simulation, block: BlockId) -> f64 {
+    let blocks = simulation.blocks();
+    let heights = |tet| tet_heights(&blocks.tet_corners(TetId(tet as u32), &blocks.rest_position));
+    let lowest = blocks.tets_of(block).map(|tet| heights(tet).into_iter().fold(f64::INFINITY, f64::min));
+    let mut lowest: Vec<f64> = lowest.collect();
+    let middle = lowest.len() / 2;
+    *lowest.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// Largest distance of a node of a block in two states [m].
+fn farthest(simulation: &Simulation, block: BlockId, one: &[Vec3], other: &[Vec3]) -> f64 {
+    let nodes = simulation.blocks().nodes_of(block);
+    one[nodes.clone()].iter().zip(&other[nodes]).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
+}
+
+/// A direction for each block, spread over the sphere by the golden angle (Fibonacci's lattice).
+fn direction(block: BlockId) -> Vec3 {
+    let turns = 0.618_033_988_749_894_9 * (block.index() + 1) as f64;
+    let z = 2.0 * (0.754_877_666_246_692_7 * (block.index() + 1) as f64).fract() - 1.0;
+    let (sin, cos) = (std::f64::consts::TAU * turns.fract()).sin_cos();
+    let r = (1.0 - z * z).sqrt();
+    Vec3::new(r * cos, r * sin, z)
+}
