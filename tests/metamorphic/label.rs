@@ -8,7 +8,6 @@
 use ndda::Model;
 use ndda::{build, judge::verdict};
 use ndda_io::scene::Contact;
-use ndda_io::summary::LabelWord;
 use ndda_mesh::geometry::tet_heights;
 use ndda_mesh::{BlockId, TetId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
@@ -192,11 +191,7 @@ fn truth(case: &Case, ready: &Model, sizes: &Sizes) -> (f64, f64, f64, Result<bo
 fn record(case: &Case) -> Record {
     let (ready, stopped) = run(&case.text);
     let label = verdict::label(&ready.simulation, stopped.as_deref());
-    let word = match label.word {
-        LabelWord::Accurate => "accurate",
-        LabelWord::Inaccurate => "inaccurate",
-        LabelWord::Stopped => "stopped",
-    };
+    let word = label.word.as_str();
     let mut record = Record::new(case, word, &label.reasons);
     if stopped.is_none() {
         let (speeds, places, doubt, right) = truth(case, &ready, &sizes(&ready));

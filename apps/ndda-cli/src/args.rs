@@ -12,6 +12,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 pub use joint::{JointArgs, JointTestKind};
+use ndda::run::Sensitivity;
 #[cfg(feature = "plots")]
 pub use picture::PictureArgs;
 pub use safety::{SafetyArgs, SafetyBy};
@@ -282,7 +283,7 @@ pub struct RunArgs {
 }
 
 /// Settings of a run that do not depend on the scene.
-#[derive(Debug, Default, Args)]
+#[derive(Debug, Args)]
 pub struct HowArgs {
     /// Threads; results do not depend on it [default: all cores].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -290,9 +291,10 @@ pub struct HowArgs {
     /// Exit with code 1 when a run is not accurate by its own label, or an invariant is beyond its limit.
     #[arg(long)]
     pub strict: bool,
-    /// When a twin that begins hardly different is run after the run, to see whether the motion is sensitive; it doubles the time.
-    #[arg(long, value_enum, value_name = "WHEN", default_value_t)]
-    pub sensitivity: Twin,
+    /// Run a twin that begins hardly different after an accurate run, to see whether the motion is sensitive, which doubles the time: auto,
+    /// where three or more blocks move; always; or never.
+    #[arg(long, value_name = "WHEN", default_value = "auto")]
+    pub sensitivity: Sensitivity,
     /// Print nothing but errors.
     #[arg(long, short)]
     pub quiet: bool,
@@ -302,18 +304,6 @@ pub struct HowArgs {
     /// Print events and results as JSON, one object per line (see docs/reference/json.md).
     #[arg(long)]
     pub json: bool,
-}
-
-/// When a run has a twin.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
-pub enum Twin {
-    /// After accurate runs in which three or more blocks move.
-    #[default]
-    Auto,
-    /// After all accurate runs with contact.
-    Always,
-    /// After none.
-    Never,
 }
 
 /// Arguments of `ndda resume`.
@@ -333,7 +323,7 @@ pub struct CheckArgs {
     #[command(flatten)]
     pub input: SceneArgs,
     /// Write the penalty and the step that were chosen, where the scene leaves them out, into its file.
-    #[arg(long, conflicts_with = "example")]
+    #[arg(long, conflicts_with_all = ["example", "overrides"])]
     pub write: bool,
     /// Print what is found as JSON, one object per line (see docs/reference/json.md).
     #[arg(long)]

@@ -16,7 +16,7 @@ use ndda_io::study::LoadedStudy;
 use crate::study::launch::Launch;
 use crate::study::make_folder;
 use crate::study::runner::CaseRunner;
-use crate::{Model, choose};
+use crate::{Model, choose, places};
 use error::CertifyError;
 use plan::Plan;
 
@@ -48,8 +48,7 @@ impl Trial {
         // All runs have what was chosen for the scene as it is.
         let overrides = [choose::as_overrides(&model.loaded.chosen), overrides.to_vec()].concat();
         let plan = Plan::new(&model.loaded.scene, &model.simulation, &overrides, steps);
-        let name =
-            file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
+        let name = places::name_of(&file);
         Ok(Self { loaded: LoadedStudy::of_scene(file, text), name, plan, out })
     }
 

@@ -69,6 +69,7 @@ mod model;
 pub mod numbers;
 #[cfg(feature = "plots")]
 pub mod picture;
+pub mod places;
 #[cfg(feature = "plots")]
 pub mod plot;
 #[cfg(feature = "report")]

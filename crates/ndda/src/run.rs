@@ -29,6 +29,7 @@ use crate::Model;
 use crate::judge::reference::Comparison;
 use crate::judge::summary::{Ending, summarise};
 use crate::judge::table;
+use crate::places::name_of;
 pub use error::RunError;
 pub use identity::Identity;
 use outputs::{Course, Earlier, Outputs};
@@ -87,7 +88,7 @@ impl Run {
     /// A run that writes no files: its history is kept in memory.
     pub fn new(model: Model) -> Self {
         let comparison = model.comparison();
-        let name = stem(Path::new(&model.loaded.file));
+        let name = name_of(Path::new(&model.loaded.file));
         let (started, stop) = (Instant::now(), Arc::default());
         let (recording, strict, sensitivity, built) = (None, false, Sensitivity::default(), None);
         let tell = Box::new(|_: &str| {});
@@ -100,7 +101,7 @@ impl Run {
     /// # Errors
     /// [`WriteError`] when files cannot be made there, or another run writes to the folder.
     pub fn record(mut self, folder: OutputFolder, scene_file: PathBuf) -> Result<Self, WriteError> {
-        self.name = stem(&scene_file);
+        self.name = name_of(&scene_file);
         let loaded = &self.model.loaded;
         let identity = Identity::new(self.name.clone(), loaded.text.clone(), scene_file, &loaded.scene);
         self.record_as(identity, folder, None)
@@ -276,11 +277,6 @@ impl Run {
 /// Whether an accurate run has come to its end.
 fn is_whole(summary: &Summary) -> bool {
     summary.label.word == LabelWord::Accurate && matches!(summary.status, Status::Done | Status::Failed)
-}
-
-/// Name of a file without its ending.
-fn stem(file: &Path) -> String {
-    file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// Writes what is written at the end only.

@@ -199,6 +199,13 @@ pub fn file(out: &Path) -> PathBuf {
     out.join("safety.json")
 }
 
+/// Name of the scene whose answer is in a folder, if that is another one.
+pub fn other_scene(out: &Path, name: &str) -> Option<String> {
+    let text = std::fs::read_to_string(file(out)).ok()?;
+    let earlier: Safety = serde_json::from_str(&text).ok()?;
+    Some(earlier.scene).filter(|scene| scene != name)
+}
+
 fn write(out: &Path, safety: &Safety) -> Result<(), WriteError> {
     write_json(&file(out), safety).map(drop)
 }

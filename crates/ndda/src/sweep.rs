@@ -27,6 +27,7 @@ use ndda_io::read;
 use ndda_io::study::{self, Axis, Correlation, LoadedStudy, Sampling, Study};
 
 use crate::Model;
+use crate::places;
 use crate::study::error::StudyError;
 use crate::study::runner::CaseRunner;
 use crate::study::{make_folder, pinned};
@@ -129,8 +130,7 @@ impl Sweep {
         let mut seen = std::collections::HashSet::new();
         of.retain(|name| seen.insert(name.clone()));
         let cases = cases::cases(&loaded, &pinned(&loaded, &ask.overrides))?;
-        let name = file.file_stem().map_or_else(|| "study".into(), |s| s.to_string_lossy().into_owned());
-        let out = ask.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_study")));
+        let (name, out) = (places::name_of(file), places::folder_for(ask.out.as_deref(), file, "_study"));
         Ok(Some(Self { loaded, name, cases, of, fails_when, trial, out }))
     }
 

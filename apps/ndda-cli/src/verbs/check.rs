@@ -79,7 +79,12 @@ pub fn check(args: &CheckArgs) -> u8 {
     let stable = advice.as_ref().filter(|advice| advice.worst().h <= advice.bound);
     if !args.json {
         let stable = stable.map_or_else(String::new, |advice| format!("\n{advice}"));
-        say(&format!("{checked}{stable}"));
+        let written = if args.write && !checked.chosen.is_empty() {
+            format!("\nwritten into {}", file.display())
+        } else {
+            String::new()
+        };
+        say(&format!("{checked}{stable}{written}"));
     }
     checked.exit_code
 }

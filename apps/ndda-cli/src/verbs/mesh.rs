@@ -1,12 +1,12 @@
 //! `ndda mesh`: the blocks of a scene or of a mesh file, counted, measured and drawn without running anything.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use ndda::build::{self, CutRock, Meshes};
 use ndda::mesh_input::{self, Repair};
 use ndda::mesh_report::{self, MeshReport};
-use ndda::{forecast, mesh_export};
+use ndda::{forecast, mesh_export, places};
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::folder::MESH_REPORT;
 use ndda_io::read::load;
@@ -128,10 +128,7 @@ fn from_file(args: &MeshArgs) -> Result<Input, Refused> {
 }
 
 fn finish(args: &MeshArgs, events: Events, measured: &MeshReport, input: &Input, blocks: &BlockSet) -> u8 {
-    let folder = args.out.clone().unwrap_or_else(|| {
-        let stem = args.input.file_stem().map_or("mesh".into(), |stem| stem.to_string_lossy().into_owned());
-        PathBuf::from("out").join(stem + "_mesh")
-    });
+    let folder = places::folder_for(args.out.as_deref(), &args.input, "_mesh");
     match write(&folder, args, measured, input, blocks) {
         Ok(files) => {
             events.emit("measured", &Measured { report: measured });

@@ -1,17 +1,17 @@
 //! `ndda run`: a scene from its text to its files.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use ndda::judge::table;
 use ndda::run::Sensitivity;
-use ndda::{Run, RunError};
+use ndda::{Run, RunError, places};
 use ndda_io::summary::{Judgement, LabelWord, Status, Summary};
 use ndda_io::{OutputFolder, WriteError};
 use ndda_solver::Settled;
 use serde::Serialize;
 
-use crate::args::{HowArgs, RunArgs, Twin};
+use crate::args::{HowArgs, RunArgs};
 use crate::terminal::console::{complain, complain_unless, is_coloured, say};
 use crate::terminal::events::{self, Events};
 use crate::terminal::interrupt;
@@ -44,12 +44,7 @@ pub fn in_pool(how: &HowArgs, work: impl FnOnce(&Options) -> u8 + Send) -> u8 {
     // Everything runs inside the pool: a step handed in from outside would allocate.
     let quiet = how.quiet || how.json;
     let (strict, verbose) = (how.strict, how.verbose);
-    let sensitivity = match how.sensitivity {
-        Twin::Auto => Sensitivity::Auto,
-        Twin::Always => Sensitivity::Always,
-        Twin::Never => Sensitivity::Never,
-    };
-    pool.install(|| work(&Options { strict, sensitivity, quiet, verbose, events, started }))
+    pool.install(|| work(&Options { strict, sensitivity: how.sensitivity, quiet, verbose, events, started }))
 }
 
 /// How to run, whatever the scene.
@@ -77,11 +72,7 @@ fn run_here(args: &RunArgs, options: &Options) -> u8 {
         options.events.doubt(&model.loaded.errors(model.loaded.warnings.clone()));
     }
     let file = input::file(&args.input);
-    let folder = args.out.clone().unwrap_or_else(|| {
-        let stem =
-            file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
-        PathBuf::from("out").join(stem)
-    });
+    let folder = places::folder_for(args.out.as_deref(), &file, "");
     let file = std::path::absolute(&file).unwrap_or(file);
     let run = Run::new(model).started(options.started);
     let recorded = OutputFolder::create(&folder, args.force)
@@ -92,21 +83,6 @@ fn run_here(args: &RunArgs, options: &Options) -> u8 {
     }
 }
 
-#[derive(Serialize)]
-struct Started<'a> {
-    version: &'static str,
-    scene: &'a str,
-    title: &'a str,
-    folder: &'a Path,
-    threads: usize,
-    step: u64,
-    steps: u64,
-    step_s: f64,
-    blocks: usize,
-    tets: usize,
-    unknowns: usize,
-}
-
 /// Runs to the end and reports; the result is the exit code.
 pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
     let run = run.strict(options.strict).stop_when(interrupt::watch());
@@ -114,19 +90,19 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
     let (steps, simulation) = (run.model().steps(), &run.model().simulation);
     options.events.emit(
         "started",
-        &Started {
-            version: env!("CARGO_PKG_VERSION"),
-            scene: run.name(),
-            title: &run.model().loaded.scene.title,
-            folder,
-            threads: rayon::current_num_threads(),
-            step: simulation.state().step,
-            steps,
-            step_s: simulation.step_s(),
-            blocks: simulation.blocks().len(),
-            tets: simulation.blocks().tets.len(),
-            unknowns: simulation.unknowns(),
-        },
+        &serde_json::json!({
+            "version": env!("CARGO_PKG_VERSION"),
+            "scene": run.name(),
+            "title": run.model().loaded.scene.title,
+            "folder": folder,
+            "threads": rayon::current_num_threads(),
+            "step": simulation.state().step,
+            "steps": steps,
+            "step_s": simulation.step_s(),
+            "blocks": simulation.blocks().len(),
+            "tets": simulation.blocks().tets.len(),
+            "unknowns": simulation.unknowns(),
+        }),
     );
     let mut progress = Progress::new(simulation.state().step, steps, options.quiet, options.events);
     let until = run.model().loaded.scene.settle.map(|settle| settle.tolerance);

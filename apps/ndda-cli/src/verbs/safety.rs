@@ -1,7 +1,8 @@
 //! `ndda safety`: by how much the strength of joints may fall before blocks move.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use ndda::places;
 use ndda::safety::{self, Plan, Question, SafetyError, Watch};
 
 use crate::args::{SafetyArgs, SafetyBy};
@@ -33,13 +34,23 @@ fn find(args: &SafetyArgs) -> u8 {
         events.doubt(&loaded.errors(loaded.warnings.clone()));
     }
     let file = input::file(&args.input);
-    let name = file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
-    let out = args.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_safety")));
+    let (name, out) = (places::name_of(&file), places::folder_for(args.out.as_deref(), &file, "_safety"));
+    if let Some(other) = safety::other_scene(&out, &name).filter(|_| !args.force) {
+        complain(&format!(
+            "error: {} has the answer of the scene `{other}`: name another --out, or replace it by --force",
+            out.display()
+        ));
+        return exit::BAD_INPUT;
+    }
     // An empty file is no earlier answer to go on from.
     let forget = || if args.force { std::fs::write(safety::file(&out), "") } else { Ok(()) };
     if let Err(error) = std::fs::create_dir_all(&out).and_then(|()| forget()) {
         complain(&format!("error: cannot make the folder {}: {error}", out.display()));
         return exit::INPUT_OUTPUT;
+    }
+    if args.towards.is_some() && args.by != SafetyBy::Gravity {
+        complain("error: --towards is where gravity is tilted to: give --by gravity with it");
+        return exit::USAGE;
     }
     let by = match args.by {
         SafetyBy::Strength => Question::Strength,

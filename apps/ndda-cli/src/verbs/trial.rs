@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use ndda::certify::Trial;
 use ndda::certify::error::CertifyError;
-use ndda::{Model, examples};
+use ndda::{Model, examples, places};
 use ndda_io::scene::Scene;
 use ndda_io::{WriteError, atomic, read};
 
@@ -31,8 +31,7 @@ pub fn open(
         events.doubt(&model.loaded.errors(model.loaded.warnings.clone()));
     }
     let file = input::file(args);
-    let name = file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned());
-    let out = how.out.clone().unwrap_or_else(|| PathBuf::from("out").join(format!("{name}_{purpose}")));
+    let out = places::folder_for(how.out.as_deref(), &file, &format!("_{purpose}"));
     let text = match &args.example {
         None => read::text_of(&file).map_err(|errors| events.refuse(&errors))?,
         Some(example) => examples::find(example).unwrap_or_default().to_string(),

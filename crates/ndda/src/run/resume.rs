@@ -6,12 +6,13 @@ use ndda_io::diagnostic::SceneErrors;
 use ndda_io::{OutputFolder, WriteError, checkpoint, outside_files, read};
 use ndda_solver::Snapshot;
 
+use super::Run;
 use super::identity::Identity;
 use super::outputs::SavedRun;
 use super::run_log;
-use super::{Run, stem};
 use crate::Model;
 use crate::build::Choices;
+use crate::places::name_of;
 
 /// A run that goes on.
 pub struct Resumed {
@@ -69,7 +70,7 @@ impl Run {
             return Err(ResumeError::HasEnded(folder.path().to_path_buf()));
         }
         let SavedRun { identity, snapshot, earlier } = saved;
-        run.name = stem(&identity.file);
+        run.name = name_of(&identity.file);
         run.built = Some(run.model.simulation.snapshot());
         let restored = run.model.simulation.restore(snapshot);
         restored.map_err(|error| ResumeError::DoesNotFit(error.to_string()))?;
