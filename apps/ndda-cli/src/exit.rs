@@ -35,6 +35,7 @@ pub fn of_write(error: &WriteError) -> u8 {
 pub fn of_study(error: &StudyError) -> u8 {
     match error {
         StudyError::Scene(_)
+        | StudyError::SceneAlone(_)
         | StudyError::Names(_)
         | StudyError::NoReference(_)
         | StudyError::NoMonitor(..)

@@ -8,7 +8,7 @@ mod verbs;
 
 use std::ffi::OsString;
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 use ndda::forecast::memory as limits;
 
 use args::{Cli, Verb};
@@ -28,7 +28,10 @@ use verbs::{picture, plot};
 /// Does what a command line asks for, its program first, and returns the exit code; `program` starts this program again, for studies.
 pub fn run_command(args: Vec<OsString>, program: Vec<OsString>) -> u8 {
     let _ = processes::PROGRAM.set(program);
-    let Cli { memory, verb } = match Cli::try_parse_from(args) {
+    // A negative number is a value, not an option.
+    let command = Cli::command().mut_subcommands(|verb| verb.allow_negative_numbers(true));
+    let parsed = command.try_get_matches_from(args).and_then(|found| Cli::from_arg_matches(&found));
+    let Cli { memory, verb } = match parsed {
         Ok(cli) => cli,
         Err(refused) => {
             let _ = refused.print();

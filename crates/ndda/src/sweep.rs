@@ -101,7 +101,10 @@ impl Sweep {
     /// [`StudyError`] for what is wrong with it.
     pub fn open(file: &Path, ask: &Ask) -> Result<Option<Self>, StudyError> {
         let mut loaded = match ask.vary.is_empty() {
-            true => study::load(file).map_err(StudyError::Scene)?,
+            true => study::load(file).map_err(|errors| match read::load(file, &[]) {
+                Ok(_) => StudyError::SceneAlone(file.to_path_buf()),
+                Err(_) => StudyError::Scene(errors),
+            })?,
             false => {
                 let mut study = Study::of_scene(file.to_path_buf());
                 study.axes = study::vary(&ask.vary).map_err(StudyError::Scene)?;

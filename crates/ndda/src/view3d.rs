@@ -195,6 +195,7 @@ fn read(request: &Request) -> Result<Film, ViewError> {
     match (input.is_dir(), input.is_file()) {
         (true, _) if !overrides.is_empty() => Err(ViewError::HasRun(input.clone())),
         (true, _) => from_run::read(input, *frames, colour.as_ref().unwrap_or(&Colour::Displacement)),
+        (_, true) if crate::stereonet::is_table(input) => Err(ViewError::Table(input.clone())),
         (_, true) if matches!(frames, Frames::Most(_)) => Err(ViewError::Still),
         (_, true) => from_scene::read(input, overrides, colour.as_ref().unwrap_or(&Colour::Block)),
         _ => Err(ViewError::NoInput(input.clone())),

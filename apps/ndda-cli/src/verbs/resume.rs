@@ -4,7 +4,6 @@ use std::path::Path;
 
 use ndda::Run;
 use ndda::run::{ResumeError, Resumed};
-use serde::Serialize;
 
 use super::run::{Options, execute, in_pool};
 use crate::args::ResumeArgs;
@@ -14,11 +13,6 @@ use crate::terminal::console::say;
 /// Goes on with a run and reports; the result is the exit code.
 pub fn resume(args: &ResumeArgs) -> u8 {
     in_pool(&args.how, |options| resume_here(&args.folder, options))
-}
-
-#[derive(Serialize)]
-struct NothingToDo {
-    message: String,
 }
 
 fn resume_here(folder: &Path, options: &Options) -> u8 {
@@ -41,7 +35,7 @@ fn refuse(error: &ResumeError, options: &Options) -> u8 {
             if !options.events.are_read() {
                 say(&message);
             }
-            options.events.emit("nothing_to_do", &NothingToDo { message });
+            options.events.emit("nothing_to_do", &serde_json::json!({ "message": message }));
             exit::DONE
         }
         ResumeError::Scene(errors) => options.events.refuse(errors),

@@ -14,6 +14,11 @@ pub enum StudyError {
     /// Something is wrong with the study or its scene.
     #[error("{}", .0.render(false))]
     Scene(SceneErrors),
+    /// A scene in the place of a study.
+    #[error(
+        "{} is a scene, and no study: say what to vary in it, such as --vary time.step_s=1e-3,5e-4, or name a study file", .0.display()
+    )]
+    SceneAlone(PathBuf),
     /// Names of cases.
     #[error("the case name `{0}` is too long or there twice: give shorter or other labels with Choose")]
     Names(String),

@@ -19,6 +19,9 @@ pub enum ViewError {
     /// Neither a scene nor a folder.
     #[error("there is no {}: name the output folder of a run, as out/sliding_45, or a scene file", .0.display())]
     NoInput(PathBuf),
+    /// A table of joints.
+    #[error("{} is a table: `ndda stereonet {}` draws its planes", .0.display(), .0.display())]
+    Table(PathBuf),
     /// The folder has no frames.
     #[error(
         "{} holds no frames of blocks ({} is missing or empty): name the output folder of a run whose scene has output.frames above 0",

@@ -43,6 +43,9 @@ fn axis(text: &str) -> Result<Axis, SceneErrors> {
         return Err(refuse(reason, help));
     }
     let raw = |value: &str| {
+        if value.trim().parse().is_ok_and(|number: f64| !number.is_finite()) {
+            return Err(refuse(format!("`{}` is no finite number", value.trim()), help));
+        }
         locate::one_value(value.trim())
             .map_err(|reason| refuse(format!("`{}` {reason}", value.trim()), help))?;
         RawValue::from_boxed_ron(value.trim().into())
