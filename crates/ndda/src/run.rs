@@ -128,9 +128,15 @@ impl Run {
         self
     }
 
-    /// When a twin of the run shows whether its motion is sensitive; `tell` is told before it begins.
-    pub fn sensitivity(mut self, sensitivity: Sensitivity, tell: Box<dyn Fn(&str) + Send>) -> Self {
-        (self.sensitivity, self.tell) = (sensitivity, tell);
+    /// When a twin of the run shows whether its motion is sensitive.
+    pub fn sensitivity(mut self, sensitivity: Sensitivity) -> Self {
+        self.sensitivity = sensitivity;
+        self
+    }
+
+    /// Tells somebody of a twin that is about to begin, which takes as long as the run.
+    pub fn tell(mut self, tell: impl Fn(&str) + Send + 'static) -> Self {
+        self.tell = Box::new(tell);
         self
     }
 

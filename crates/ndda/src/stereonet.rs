@@ -26,6 +26,7 @@ pub use error::StereonetError;
 pub use fisher::Fisher;
 use fisher::fisher;
 use input::Planes;
+#[cfg(feature = "plots")]
 pub(crate) use input::is_table;
 pub use kinematics::{Checks, Count, Slope};
 pub use net::Net;

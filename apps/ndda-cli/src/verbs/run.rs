@@ -86,7 +86,7 @@ fn run_here(args: &RunArgs, options: &Options) -> u8 {
 /// Runs to the end and reports; the result is the exit code.
 pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
     let run = run.strict(options.strict).stop_when(interrupt::watch());
-    let run = run.sensitivity(options.sensitivity, Box::new(complain_unless(options.quiet)));
+    let run = run.sensitivity(options.sensitivity).tell(complain_unless(options.quiet));
     let (steps, simulation) = (run.model().steps(), &run.model().simulation);
     options.events.emit(
         "started",

@@ -209,3 +209,65 @@ fn direction(block: BlockId) -> Vec3 {
     let r = (1.0 - z * z).sqrt();
     Vec3::new(r * cos, r * sin, z)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Model, Run};
+
+    /// A floor, and blocks above it.
+    fn label(
+        gravity: &str,
+        (penalty_pa, step_s): (f64, f64),
+        blocks: &[&str],
+        sensitivity: Sensitivity,
+    ) -> Summary {
+        let block = |(name, more): (usize, &&str)| {
+            format!(
+                "(name: \"{name}\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), {more}),"
+            )
+        };
+        let blocks: String = blocks.iter().enumerate().map(block).collect();
+        let text = format!(
+            "(title: \"twins\", time: (step_s: {step_s:e}, end_s: 1.1), gravity_m_s2: {gravity},
+            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
+            blocks: [(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (40, 20, 1), cells: (1, 1, 1)),
+                at_m: (-10, -10, -1)), {blocks}],
+            contact: Potential(penalty_pa: {penalty_pa:e}, potential: Smooth(), friction: (friction_deg: 25)))"
+        );
+        Run::new(Model::from_text(&text).unwrap()).sensitivity(sensitivity).finish(&mut []).unwrap().summary
+    }
+
+    const TUMBLING: [&str; 4] = [
+        "at_m: (0, 0, 0.5), spin_rad_s: (0.5, 0.2, 0)",
+        "at_m: (0.6, 0.1, 1.8), spin_rad_s: (1, 0, 0.3)",
+        "at_m: (-0.3, 0.4, 3.2), spin_rad_s: (0, 0.7, 0)",
+        "at_m: (0.2, -0.3, 4.6)",
+    ];
+
+    #[test]
+    fn cubes_that_tumble_over_each_other_are_sensitive_and_the_run_keeps_its_bits() {
+        let [with, without] = [Sensitivity::Auto, Sensitivity::Never]
+            .map(|sensitivity| label("(0, 0, -9.81)", (1e10, 5e-5), &TUMBLING, sensitivity));
+        assert_eq!(without.label.word, LabelWord::Accurate, "{:?}", without.label.reasons);
+        assert_eq!(with.label.word, LabelWord::Sensitive, "{:?}", with.label.reasons);
+        assert_eq!((with.state_crc32, with.verdicts), (without.state_crc32, without.verdicts));
+    }
+
+    #[test]
+    fn cubes_that_slide_side_by_side_are_not_sensitive_though_they_part() {
+        let sliding = ["at_m: (0, 0, 0)", "at_m: (3, 0, 0)", "at_m: (0, 3, 0)"];
+        let summary = label("(5.5, 0, -8.1)", (2e9, 2e-4), &sliding, Sensitivity::Auto);
+        assert_eq!(summary.label.word, LabelWord::Accurate, "{:?}", summary.label.reasons);
+        assert!(summary.stages_s.0.iter().any(|(stage, _)| stage == "sensitivity"));
+    }
+
+    #[test]
+    fn two_blocks_have_no_twin_unless_one_is_asked_for() {
+        let sliding = ["at_m: (0, 0, 0)"];
+        for (sensitivity, has_twin) in [(Sensitivity::Auto, false), (Sensitivity::Always, true)] {
+            let summary = label("(5.5, 0, -8.1)", (2e9, 2e-4), &sliding, sensitivity);
+            assert_eq!(summary.stages_s.0.iter().any(|(stage, _)| stage == "sensitivity"), has_twin);
+        }
+    }
+}

@@ -10,6 +10,7 @@ use ndda_io::scene::Output;
 use super::free_blocks::{free, gone_m};
 use super::trial::Trial;
 use super::{SafetyError, mechanism_folder};
+use crate::run::Sensitivity;
 use crate::run::motion::radius_m;
 use crate::{Model, Run, RunError};
 
@@ -36,7 +37,8 @@ pub fn record(
     let file = Path::new(&model.loaded.file).to_path_buf();
     model.loaded.scene.output = Output { frames: FRAMES, ..Output::default() };
     let folder = OutputFolder::create(&mechanism_folder(out), true)?;
-    match Run::new(model).record(folder, file)?.stop_when(stop.clone()).finish(&mut []) {
+    let run = Run::new(model).sensitivity(Sensitivity::Never).record(folder, file)?;
+    match run.stop_when(stop.clone()).finish(&mut []) {
         Ok(_) | Err(RunError::Settling(_)) => Ok(()),
         Err(RunError::InterruptedWhileSettling) => Err(SafetyError::Interrupted),
         Err(RunError::Write(error)) => Err(error.into()),

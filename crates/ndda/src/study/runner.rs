@@ -9,6 +9,7 @@ use ndda_io::summary::Status;
 
 use super::error::StudyError;
 use super::record::Cause;
+use crate::run::Sensitivity;
 use crate::{Model, Run};
 
 /// A run of a case.
@@ -46,8 +47,10 @@ impl InProcess {
             Err(errors) => return Ok(Some((Cause::Scene, errors.render(false)))),
         };
         let folder = OutputFolder::create(run.out, true)?;
-        let recorded =
-            Run::new(model).stop_when(self.stop.clone()).record(folder, run.scene.to_path_buf())?;
+        let recorded = Run::new(model)
+            .sensitivity(Sensitivity::Never)
+            .stop_when(self.stop.clone())
+            .record(folder, run.scene.to_path_buf())?;
         let summary = match recorded.finish(&mut []) {
             Ok(outcome) => outcome.summary,
             Err(crate::RunError::Write(error)) => return Err(error.into()),
