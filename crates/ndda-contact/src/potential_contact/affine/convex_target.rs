@@ -66,6 +66,8 @@ pub struct ConvexBlocks {
     contactors: FaceContactors,
     /// Whether a face keeps the two blocks of a pair apart.
     are_apart: Vec<bool>,
+    /// Whether a block has a neighbour that no face keeps apart from it.
+    may_touch: Vec<bool>,
 }
 
 impl ConvexBlocks {
@@ -131,6 +133,17 @@ impl ConvexBlocks {
         let look = |(apart, &(a, b)): (&mut bool, &(BlockId, BlockId))| *apart = keeps(a, b) || keeps(b, a);
         are_apart.par_iter_mut().zip(pairs).with_min_len(GRAIN_PAIRS).for_each(look);
         self.are_apart = are_apart;
+        self.may_touch.clear();
+        self.may_touch.resize(blocks.len(), false);
+        for (&(a, b), _) in pairs.iter().zip(&self.are_apart).filter(|(_, apart)| !**apart) {
+            (self.may_touch[a.index()], self.may_touch[b.index()]) = (true, true);
+        }
+    }
+
+    /// Whether a block has a neighbour that no face keeps apart from it.
+    #[inline]
+    pub(crate) fn may_touch(&self, block: BlockId) -> bool {
+        self.may_touch[block.index()]
     }
 
     /// Whether a face keeps the k-th pair of blocks apart; touching is not overlap.

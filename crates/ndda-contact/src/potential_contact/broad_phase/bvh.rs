@@ -5,6 +5,8 @@
 //! as many leaves have moved as there are. Cells of a uniform grid find all pairs of boxes a few times quicker, but
 //! have to be filled anew when one box has moved.
 
+use std::sync::{Mutex, PoisonError};
+
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
@@ -14,6 +16,7 @@ use crate::affine::face_contactor::FaceContactor;
 use crate::affine::surface::BlockFaces;
 use crate::broad_phase::block_bvh::{BlockBvh, node_touches, to_parry};
 use crate::broad_phase::finder::{BroadPhase, BroadScene, FEW_NODES, Side, TriangleAt, shape_of};
+use crate::broad_phase::pair_lists::{Fresh, PairLists, PairRun};
 use crate::integration::capacity::MOST_CORNERS;
 
 /// Blocks below which a second thread costs more than it brings.
@@ -40,40 +43,12 @@ pub struct TreeBroadPhase {
     is_placed: Vec<bool>,
     /// Blocks whose elements are to be placed now.
     is_due: Vec<bool>,
-    found: Vec<Found>,
+    /// Whether the pairs of each block changed.
+    changed: Vec<bool>,
+    /// One for each thread.
+    fresh: Vec<Mutex<Fresh>>,
     /// Of the set that all this is about.
     shape: [usize; 4],
-}
-
-/// Room for so many more; where there is too little, for four times as many in all, so that blocks that come a bit nearer
-/// do not ask again.
-pub(crate) fn make_room<T>(list: &mut Vec<T>, more: usize) {
-    if list.capacity() < list.len() + more {
-        list.reserve_exact(3 * list.len() + 4 * more);
-    }
-}
-
-/// The pairs of the triangles of one block, sorted.
-#[derive(Default)]
-struct Found {
-    pairs: Vec<(TriangleId, TetId)>,
-    /// Pairs with a renewed block, on either side.
-    fresh: Vec<(TriangleId, TetId)>,
-    changed: bool,
-}
-
-impl Found {
-    /// Puts the fresh pairs in the place of those that `is_stale`.
-    fn merge(&mut self, is_stale: impl Fn(&(TriangleId, TetId)) -> bool) {
-        self.fresh.sort_unstable();
-        self.changed = !self.pairs.iter().filter(|pair| is_stale(pair)).eq(&self.fresh);
-        if self.changed {
-            self.pairs.retain(|pair| !is_stale(pair));
-            make_room(&mut self.pairs, self.fresh.len());
-            self.pairs.extend_from_slice(&self.fresh);
-            self.pairs.sort_unstable();
-        }
-    }
 }
 
 /// Boxes of everything, with the margin.
@@ -141,23 +116,17 @@ impl BroadPhase for TreeBroadPhase {
         let boxes = &self.boxes;
         let sides = boxes.sides.capacity() * size_of::<Side>();
         let boxes = boxes.blocks.capacity() + boxes.triangles.capacity() + boxes.tets.capacity();
-        let of_found = |found: &Found| found.pairs.capacity() + found.fresh.capacity();
-        let found = self.found.iter().map(of_found).sum::<usize>() * size_of::<(TriangleId, TetId)>();
-        let per_block = size_of::<Option<Box<BlockBvh>>>() + size_of::<Found>() + 5 * size_of::<bool>();
+        let per_block = size_of::<Option<Box<BlockBvh>>>() + 6 * size_of::<bool>();
         let tree = self.tree.heap_memory_size();
-        own + boxes * size_of::<Aabb>() + sides + found + per_block * self.found.capacity() + tree
+        own + boxes * size_of::<Aabb>() + sides + per_block * self.changed.capacity() + tree
     }
 
-    fn find_pairs(
-        &mut self,
-        scene: &BroadScene,
-        renewed: &[BlockId],
-        pairs: &mut Vec<(TriangleId, TetId)>,
-    ) -> bool {
+    fn find_pairs(&mut self, scene: &BroadScene, renewed: &[BlockId], pairs: &mut PairLists) -> bool {
         let begins = self.shape != shape_of(scene.blocks);
         if begins {
             assert_eq!(renewed.len(), scene.blocks.len(), "at first all blocks are new");
             self.begin(scene.blocks);
+            pairs.begin(scene.blocks.len());
         }
         self.is_renewed.fill(false);
         for block in renewed {
@@ -178,13 +147,7 @@ impl BroadPhase for TreeBroadPhase {
             self.mark_due();
             self.place(scene);
         }
-        let changed = self.search(scene);
-        if changed || begins {
-            pairs.clear();
-            make_room(pairs, self.found.iter().map(|found| found.pairs.len()).sum());
-            self.found.iter().for_each(|found| pairs.extend_from_slice(&found.pairs));
-        }
-        changed || begins
+        self.search(scene, pairs) || begins
     }
 }
 
@@ -197,8 +160,7 @@ impl TreeBroadPhase {
         self.is_near = vec![true; blocks.len()];
         self.is_placed = vec![false; blocks.len()];
         self.is_due = vec![false; blocks.len()];
-        self.found.clear();
-        self.found.resize_with(blocks.len(), Found::default);
+        self.changed = vec![false; blocks.len()];
         self.boxes = Boxes::new(blocks);
         let everywhere = to_parry(&Aabb::around(&blocks.rest_position));
         let leaves = blocks.ids().map(|id| (id.index(), everywhere));
@@ -273,27 +235,34 @@ impl TreeBroadPhase {
     }
 
     /// Brings the pairs of all blocks near renewed ones up to date, and says whether any changed.
-    fn search(&mut self, scene: &BroadScene) -> bool {
-        let (is_renewed, is_near, tree) = (&self.is_renewed, &self.is_near, &self.tree);
+    fn search(&mut self, scene: &BroadScene, pairs: &mut PairLists) -> bool {
+        let threads = rayon::current_num_threads().max(self.fresh.len());
+        self.fresh.resize_with(threads, Mutex::default);
+        let (is_renewed, is_near, tree, scratch) = (&self.is_renewed, &self.is_near, &self.tree, &self.fresh);
         let near = Near { scene, own: &self.own, boxes: &self.boxes };
-        let is_convex = &self.is_convex;
-        let search = |(index, found): (usize, &mut Found)| {
+        let (is_convex, by_element) = (&self.is_convex, pairs.by_element);
+        let search = |(index, (list, changed)): (usize, (&mut Vec<PairRun>, &mut bool))| {
+            *changed = false;
             if !is_near[index] {
                 return;
             }
-            found.fresh.clear();
+            let own = &scratch[rayon::current_thread_index().unwrap_or(0)];
+            let fresh = &mut *own.lock().unwrap_or_else(PoisonError::into_inner);
+            fresh.by_element = by_element;
+            fresh.runs.clear();
             for other in tree.leaves(|node| node_touches(node, &near.boxes.blocks[index])) {
                 let stale = is_renewed[index] || is_renewed[other as usize];
                 if stale && (other as usize != index || !is_convex[index]) {
-                    near.find(BlockId(index as u32), BlockId(other), &mut found.fresh);
+                    near.find(BlockId(index as u32), BlockId(other), fresh);
                 }
             }
-            found.merge(|pair| {
-                is_renewed[index] || is_renewed[scene.blocks.tet_block[pair.1.index()].index()]
+            *changed = fresh.merge_into(list, |run| {
+                is_renewed[index] || is_renewed[scene.blocks.tet_block[run.first().index()].index()]
             });
         };
-        self.found.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(search);
-        self.found.iter().zip(is_near).any(|(found, &near)| near && found.changed)
+        let lists = pairs.each_mut().par_iter_mut().zip(&mut self.changed).enumerate();
+        lists.with_min_len(GRAIN_BLOCKS).for_each(search);
+        self.changed.contains(&true)
     }
 }
 
@@ -306,7 +275,7 @@ struct Near<'a> {
 
 impl Near<'_> {
     /// Adds the pairs of triangles of `block` that reach into the box of `other` and its tetrahedra.
-    fn find(&self, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
+    fn find(&self, block: BlockId, other: BlockId, found: &mut Fresh) {
         if block != other && (self.is_apart(block, other) || self.is_apart(other, block)) {
             return;
         }
@@ -353,17 +322,17 @@ impl Near<'_> {
         triangle: &TriangleAt,
         corners: &[Vec3],
         (block, other): (BlockId, BlockId),
-        found: &mut Vec<(TriangleId, TetId)>,
+        found: &mut Fresh,
     ) {
         let scene = self.scene;
         let Some(whole) = scene.hulls.affine_target(other) else { return };
         let others = &scene.position[scene.blocks.nodes_of(other)];
         if !self.has_before(other, block, corners) && !triangle.are_on_one_side(others) {
-            found.push((id, whole.host));
+            found.runs.push(PairRun::one(id, whole.host));
         }
     }
 
-    fn find_tets(&self, i: usize, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
+    fn find_tets(&self, i: usize, block: BlockId, other: BlockId, found: &mut Fresh) {
         let (scene, bounds) = (self.scene, &self.boxes.triangles[i]);
         let triangle = scene.triangle_at(i, other);
         if scene.hulls.affine_target(other).is_some() {
@@ -378,7 +347,7 @@ impl Near<'_> {
             let others = || scene.blocks.tet_corners(TetId(j as u32), scene.position);
             let near = bounds.touches(&self.boxes.tets[j]) && !triangle.is_apart_from(&others());
             if near && !(block == other && scene.are_neighbours(i, j)) {
-                found.push((TriangleId(i as u32), TetId(j as u32)));
+                found.tets.push(TetId(j as u32));
             }
         };
         match &self.own[other.index()] {
@@ -388,5 +357,6 @@ impl Near<'_> {
                 near.for_each(|leaf| add(tets.start + leaf));
             }
         }
+        found.take_tets(TriangleId(i as u32));
     }
 }
