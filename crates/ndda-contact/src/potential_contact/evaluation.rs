@@ -189,26 +189,25 @@ pub(super) fn place_forces(
     let touching = integrals.touching();
     let state_len = scene.history.law_state_len as usize;
     forces.resize(touching.len(), FacetForce::default());
-    on_host.resize(touching.len(), OnTarget::default());
     state.resize(touching.len() * state_len, 0.0);
-    let place = |force: &mut FacetForce, on_host: &mut OnTarget, t: usize, state: &mut [f64]| {
+    let place = |force: &mut FacetForce, t: usize, state: &mut [f64]| {
         let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
         *force = scene.force(&touching[t], overlaps, sums, penalty_of_facet[t], state);
-        if hulls.affine_target(touching[t].target).is_some() {
-            *on_host = overlaps[0].on_target;
-        }
     };
     if state_len > 0 {
-        let entries = forces.par_iter_mut().zip(on_host).zip(0..touching.len());
-        let entries = entries.zip(state.par_chunks_mut(state_len)).with_min_len(GRAIN_FACETS / 2);
-        entries.for_each(|(((force, on_host), t), state)| place(force, on_host, t, state));
-    } else if touching.len() > GRAIN_FACETS {
-        let entries = forces.par_iter_mut().zip(on_host).zip(0..touching.len());
-        let entries = entries.with_min_len(GRAIN_FACETS / 2);
-        entries.for_each(|((force, on_host), t)| place(force, on_host, t, &mut []));
+        let entries = forces.par_iter_mut().zip(state.par_chunks_mut(state_len)).enumerate();
+        entries.with_min_len(GRAIN_FACETS / 2).for_each(|(t, (force, state))| place(force, t, state));
     } else {
-        let entries = forces.iter_mut().zip(on_host).zip(0..);
-        entries.for_each(|((force, on_host), t)| place(force, on_host, t, &mut []));
+        for_each_facet(forces, |(t, force)| place(force, t, &mut []));
+    }
+    on_host.clear();
+    if hulls.count_affine() > 0 {
+        on_host.resize(touching.len(), OnTarget::default());
+        for_each_facet(on_host, |(t, on_host)| {
+            if hulls.affine_target(touching[t].target).is_some() {
+                *on_host = integrals.overlaps_of(&touching[t])[0].on_target;
+            }
+        });
     }
 }
 

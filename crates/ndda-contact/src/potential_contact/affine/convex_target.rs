@@ -57,7 +57,9 @@ pub struct ConvexBlocks {
     faces: Vec<Face>,
     /// First face of each block; one that is concave or round has none.
     start: Vec<u32>,
-    whole: Vec<Option<AffineConvexTarget>>,
+    whole: Vec<Option<Box<AffineConvexTarget>>>,
+    /// How many blocks are affine convex targets.
+    affine: usize,
     /// The faces of each block once more, by rows, and where those of each row are.
     planes: Vec<Planes>,
     in_row: Vec<Range<usize>>,
@@ -100,7 +102,7 @@ impl ConvexBlocks {
             }
             self.start.push(self.faces.len() as u32);
             let own = &self.faces[self.places_of(block)];
-            let whole = phi_per_m.map(|_| AffineConvexTarget::new(blocks, block, own));
+            let whole = phi_per_m.map(|_| Box::new(AffineConvexTarget::new(blocks, block, own)));
             match &whole {
                 Some(whole) if !by_triangle => {
                     let host = TetFrame::new(&blocks.tet_corners(whole.host, &blocks.rest_position));
@@ -114,6 +116,7 @@ impl ConvexBlocks {
             self.row_start.push(self.in_row.len() as u32);
             self.whole.push(whole);
         }
+        self.affine = self.whole.iter().flatten().count();
     }
 
     /// Takes the faces to where the nodes are [m].
@@ -179,7 +182,7 @@ impl ConvexBlocks {
     /// A block that is an affine convex target.
     #[inline]
     pub(crate) fn affine_target(&self, block: BlockId) -> Option<&AffineConvexTarget> {
-        self.whole.get(block.index()).and_then(Option::as_ref)
+        self.whole.get(block.index()).and_then(Option::as_deref)
     }
 
     /// The faces of a block as contactors in another; none where it is put into that triangle by triangle.
@@ -202,7 +205,7 @@ impl ConvexBlocks {
 
     /// How many blocks are affine convex targets.
     pub(crate) fn count_affine(&self) -> usize {
-        self.whole.iter().flatten().count()
+        self.affine
     }
 
     /// Range of a block's faces in the list of all faces.

@@ -51,12 +51,10 @@ pub struct TreeBroadPhase {
     shape: [usize; 4],
 }
 
-/// Boxes of everything, with the margin.
+/// Boxes of the blocks, with the margin, and their sides.
 #[derive(Default)]
 struct Boxes {
     blocks: Vec<Aabb>,
-    triangles: Vec<Aabb>,
-    tets: Vec<Aabb>,
     /// One for each of [`ConvexBlocks::faces`](crate::affine::convex_target::ConvexBlocks::faces), without a margin.
     sides: Vec<Side>,
 }
@@ -77,29 +75,18 @@ fn place_due<T: Send>(
 
 impl Boxes {
     fn new(blocks: &BlockSet) -> Self {
-        let boxes = |count: usize| vec![Aabb::empty(); count];
-        Self {
-            blocks: boxes(blocks.len()),
-            triangles: boxes(blocks.triangles.len()),
-            tets: boxes(blocks.tets.len()),
-            sides: Vec::new(),
-        }
+        Self { blocks: vec![Aabb::empty(); blocks.len()], sides: Vec::new() }
     }
 
-    /// Elements and sides of all blocks that are due.
+    /// Sides of all blocks that are due.
     fn place_all(&mut self, scene: &BroadScene, is_due: &[bool]) {
-        let (blocks, faces) = (scene.blocks, scene.hulls.faces());
-        let is_due = |block: BlockId| is_due[block.index()];
+        let faces = scene.hulls.faces();
         self.sides.resize(faces.len(), Side::default());
-        place_due(&mut self.triangles, |i| is_due(blocks.triangle_block[i]), |i| scene.triangle_box(i));
-        place_due(&mut self.tets, |i| is_due(blocks.tet_block[i]), |i| scene.tet_box(i));
-        place_due(&mut self.sides, |i| is_due(faces[i].block), |i| Side::new(scene, &faces[i]));
+        place_due(&mut self.sides, |i| is_due[faces[i].block.index()], |i| Side::new(scene, &faces[i]));
     }
 
-    /// Elements and sides of one block.
+    /// Sides of one block.
     fn place(&mut self, scene: &BroadScene, block: BlockId) {
-        scene.blocks.triangles_of(block).for_each(|i| self.triangles[i] = scene.triangle_box(i));
-        scene.blocks.tets_of(block).for_each(|i| self.tets[i] = scene.tet_box(i));
         let sides = self.sides[scene.hulls.places_of(block)].iter_mut();
         sides.zip(scene.hulls.faces_of(block)).for_each(|(side, face)| *side = Side::new(scene, face));
     }
@@ -115,7 +102,7 @@ impl BroadPhase for TreeBroadPhase {
             self.own.iter().flatten().map(|own| size_of::<BlockBvh>() + own.heap_bytes()).sum::<usize>();
         let boxes = &self.boxes;
         let sides = boxes.sides.capacity() * size_of::<Side>();
-        let boxes = boxes.blocks.capacity() + boxes.triangles.capacity() + boxes.tets.capacity();
+        let boxes = boxes.blocks.capacity();
         let per_block = size_of::<Option<Box<BlockBvh>>>() + 6 * size_of::<bool>();
         let tree = self.tree.heap_memory_size();
         own + boxes * size_of::<Aabb>() + sides + per_block * self.changed.capacity() + tree
@@ -250,6 +237,7 @@ impl TreeBroadPhase {
             let fresh = &mut *own.lock().unwrap_or_else(PoisonError::into_inner);
             fresh.by_element = by_element;
             fresh.runs.clear();
+            near.place_triangles(BlockId(index as u32), fresh);
             for other in tree.leaves(|node| node_touches(node, &near.boxes.blocks[index])) {
                 let stale = is_renewed[index] || is_renewed[other as usize];
                 if stale && (other as usize != index || !is_convex[index]) {
@@ -274,6 +262,14 @@ struct Near<'a> {
 }
 
 impl Near<'_> {
+    /// Boxes of the triangles of a block without trees.
+    fn place_triangles(&self, block: BlockId, found: &mut Fresh) {
+        found.triangles.clear();
+        if self.own[block.index()].is_none() {
+            found.triangles.extend(self.scene.blocks.triangles_of(block).map(|i| self.scene.triangle_box(i)));
+        }
+    }
+
     /// Adds the pairs of triangles of `block` that reach into the box of `other` and its tetrahedra.
     fn find(&self, block: BlockId, other: BlockId, found: &mut Fresh) {
         if block != other && (self.is_apart(block, other) || self.is_apart(other, block)) {
@@ -291,15 +287,28 @@ impl Near<'_> {
             }
             return;
         }
-        let triangles = self.scene.blocks.triangles_of(block);
-        let reaches = |i: &usize| self.boxes.triangles[*i].touches(there);
+        found.boxes.clear();
+        if self.own[other.index()].is_none() && self.scene.hulls.affine_target(other).is_none() {
+            found.boxes.extend(self.scene.blocks.tets_of(other).map(|j| self.scene.tet_box(j)));
+        }
+        let first = self.scene.blocks.triangles_of(block).start;
         match &self.own[block.index()] {
-            None => triangles.filter(reaches).for_each(|i| self.find_tets(i, block, other, found)),
-            Some(own) => own
-                .triangles_near(there, self.scene.margin_m[block.index()])
-                .map(|leaf| triangles.start + leaf)
-                .filter(reaches)
-                .for_each(|i| self.find_tets(i, block, other, found)),
+            None => {
+                for k in 0..found.triangles.len() {
+                    let bounds = found.triangles[k];
+                    if bounds.touches(there) {
+                        self.find_tets((first + k, &bounds), (block, other), found);
+                    }
+                }
+            }
+            Some(own) => {
+                for leaf in own.triangles_near(there, self.scene.margin_m[block.index()]) {
+                    let bounds = self.scene.triangle_box(first + leaf);
+                    if bounds.touches(there) {
+                        self.find_tets((first + leaf, &bounds), (block, other), found);
+                    }
+                }
+            }
         }
     }
 
@@ -332,8 +341,9 @@ impl Near<'_> {
         }
     }
 
-    fn find_tets(&self, i: usize, block: BlockId, other: BlockId, found: &mut Fresh) {
-        let (scene, bounds) = (self.scene, &self.boxes.triangles[i]);
+    /// Adds the pairs of a triangle, in this box, with the tetrahedra of another block.
+    fn find_tets(&self, (i, bounds): (usize, &Aabb), (block, other): (BlockId, BlockId), found: &mut Fresh) {
+        let scene = self.scene;
         let triangle = scene.triangle_at(i, other);
         if scene.hulls.affine_target(other).is_some() {
             let id = TriangleId(i as u32);
@@ -343,18 +353,19 @@ impl Near<'_> {
             return;
         }
         let tets = scene.blocks.tets_of(other);
-        let mut add = |j: usize| {
+        let Fresh { boxes, tets: near, .. } = found;
+        let mut add = |j: usize, there: &Aabb| {
             let others = || scene.blocks.tet_corners(TetId(j as u32), scene.position);
-            let near = bounds.touches(&self.boxes.tets[j]) && !triangle.is_apart_from(&others());
-            if near && !(block == other && scene.are_neighbours(i, j)) {
-                found.tets.push(TetId(j as u32));
+            let is_near = bounds.touches(there) && !triangle.is_apart_from(&others());
+            if is_near && !(block == other && scene.are_neighbours(i, j)) {
+                near.push(TetId(j as u32));
             }
         };
         match &self.own[other.index()] {
-            None => tets.for_each(&mut add),
+            None => tets.zip(&*boxes).for_each(|(j, there)| add(j, there)),
             Some(own) => {
-                let near = own.tets_near_triangle(&triangle.corners, triangle.reach_m);
-                near.for_each(|leaf| add(tets.start + leaf));
+                let leaves = own.tets_near_triangle(&triangle.corners, triangle.reach_m);
+                leaves.map(|leaf| tets.start + leaf).for_each(|j| add(j, &scene.tet_box(j)));
             }
         }
         found.take_tets(TriangleId(i as u32));

@@ -1,5 +1,6 @@
 //! Pairs near contact, compact: a triangle and up to 32 tetrahedra of one block, found and kept block by block.
 
+use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId};
 
 /// Tetrahedra that one run can have.
@@ -150,6 +151,9 @@ pub(super) struct Fresh {
     /// Tetrahedra near one triangle.
     pub(super) tets: Vec<TetId>,
     pub(super) by_element: bool,
+    /// Boxes of the block's triangles, and of the tetrahedra of another one, where they have no trees.
+    pub(super) triangles: Vec<Aabb>,
+    pub(super) boxes: Vec<Aabb>,
 }
 
 impl Fresh {
