@@ -103,18 +103,18 @@ impl Looks {
         };
         let frames: Vec<TetFrame> = candidates.tets.iter().zip(&candidates.order).map(frame).collect();
         let mut looks = Self { frames, triangles: Vec::new(), hits: Vec::new(), rejects: Vec::new() };
-        for facet in &candidates.facets {
+        for facet in candidates.facets() {
             let corners = blocks.triangle_corners(facet.triangle, &state.position);
             let area_vector = triangle_area_vector(&corners);
             looks.triangles.push(corners);
-            for pair in &candidates.pairs[facet.pairs.clone()] {
-                let frame = &looks.frames[pair.tet as usize];
+            for slot in facet.tets().map(|tet| candidates.slot_of(tet)) {
+                let frame = &looks.frames[slot as usize];
                 match frame.lambda_inside(&corners) {
                     Some(lambda) => {
                         let slopes = frame.slopes(&area_vector.normalize());
                         looks.hits.push((lambda, slopes, area_vector.norm()));
                     }
-                    None => looks.rejects.push((looks.triangles.len() as u32 - 1, pair.tet)),
+                    None => looks.rejects.push((looks.triangles.len() as u32 - 1, slot)),
                 }
             }
         }

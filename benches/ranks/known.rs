@@ -21,8 +21,8 @@ impl Known {
     pub fn of(rank: usize, owners: &Owners, candidates: &Candidates, all: &BlockSet) -> Self {
         let own = |block: &BlockId| owners.of(*block).is_none_or(|owner| owner == rank);
         let mut known: BTreeSet<BlockId> = all.ids().filter(own).collect();
-        for facet in &candidates.facets {
-            let ends = [all.triangle_block[facet.triangle.index()], facet.target];
+        for facet in candidates.facets() {
+            let ends = [facet.owner, facet.target];
             if ends.iter().any(|end| owners.of(*end) == Some(rank)) {
                 known.extend(ends);
             }

@@ -69,18 +69,18 @@ impl Traffic {
         let mut traffic = Self {
             ranks: owners.ranks,
             blocks: (0..owners.ranks).map(|rank| owners.blocks_of(rank)).collect(),
-            pairs: candidates.pairs.len(),
+            pairs: candidates.pairs(),
             across: 0,
             hits_across: 0,
             messages: BTreeMap::new(),
             whole_bytes: 0,
         };
-        for facet in &candidates.facets {
-            let contactor = input.blocks.triangle_block[facet.triangle.index()];
+        for facet in candidates.facets() {
+            let contactor = facet.owner;
             let (Some(a), Some(b)) = (owners.of(contactor), owners.of(facet.target)) else { continue };
             if a != b {
                 let border = Border { contactor: (contactor, a), target: (facet.target, b) };
-                traffic.add(border, facet, candidates, input);
+                traffic.add(border, &facet, input);
             }
         }
         traffic.whole_bytes =
@@ -88,9 +88,9 @@ impl Traffic {
         traffic
     }
 
-    fn add(&mut self, border: Border, facet: &Facet, candidates: &Candidates, input: &ContactInput) {
+    fn add(&mut self, border: Border, facet: &Facet, input: &ContactInput) {
         let Border { contactor: (contactor, a), target: (target, b) } = border;
-        let tets: Vec<TetId> = facet.pairs.clone().map(|pair| candidates.tet_of(pair as u32)).collect();
+        let tets: Vec<TetId> = facet.tets().collect();
         let hits = tets.iter().filter(|tet| hits(facet, **tet, input)).count();
         self.across += tets.len();
         self.hits_across += hits;

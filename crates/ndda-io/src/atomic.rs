@@ -18,6 +18,17 @@ const AT_A_TIME: usize = 8;
 /// [`WriteError::Io`] with the step that failed; the temporary file is then removed and an older file at `path`
 /// is as it was.
 pub fn write(path: &Path, content: &[u8]) -> Result<(), WriteError> {
+    write_by(path, |file| file.write_all(content))
+}
+
+/// The same with content that is made while it is written: a large one need not be in memory.
+///
+/// # Errors
+/// As [`write`].
+pub(crate) fn write_by(
+    path: &Path,
+    content: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> Result<(), WriteError> {
     replace(path, content, true)?;
     sync_folder_of(path);
     Ok(())
@@ -29,7 +40,7 @@ pub fn write(path: &Path, content: &[u8]) -> Result<(), WriteError> {
 /// # Errors
 /// As [`write`].
 pub(crate) fn write_unsynced(path: &Path, content: &[u8]) -> Result<(), WriteError> {
-    replace(path, content, false)
+    replace(path, |file| file.write_all(content), false)
 }
 
 /// Waits until these files of one folder are on the disk, many at a time: a disk takes hardly longer for eight than for one.
@@ -51,7 +62,11 @@ pub(crate) fn sync(paths: &[PathBuf]) -> Result<(), WriteError> {
     Ok(())
 }
 
-fn replace(path: &Path, content: &[u8], waits: bool) -> Result<(), WriteError> {
+fn replace(
+    path: &Path,
+    content: impl FnOnce(&mut File) -> std::io::Result<()>,
+    waits: bool,
+) -> Result<(), WriteError> {
     let temporary = temporary_path(path);
     let done = write_all(&temporary, content, waits).and_then(|()| {
         fs::rename(&temporary, path).map_err(WriteError::io("rename the temporary file to", path))
@@ -63,9 +78,13 @@ fn replace(path: &Path, content: &[u8], waits: bool) -> Result<(), WriteError> {
     done
 }
 
-fn write_all(path: &Path, content: &[u8], waits: bool) -> Result<(), WriteError> {
+fn write_all(
+    path: &Path,
+    content: impl FnOnce(&mut File) -> std::io::Result<()>,
+    waits: bool,
+) -> Result<(), WriteError> {
     let mut file = File::create(path).map_err(WriteError::io("create", path))?;
-    file.write_all(content).map_err(WriteError::io("write", path))?;
+    content(&mut file).map_err(WriteError::io("write", path))?;
     if waits { file.sync_all().map_err(WriteError::io("sync", path)) } else { Ok(()) }
 }
 

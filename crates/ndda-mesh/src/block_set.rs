@@ -70,10 +70,25 @@ impl BlockSet {
             tet_start: vec![0],
             triangle_start: vec![0],
         };
+        set.make_room(&blocks);
         for (name, mesh) in blocks {
             set.push(name, &mesh);
         }
         Ok(set)
+    }
+
+    /// Room for these blocks, but for their boundary triangles, whose number is not known yet.
+    fn make_room(&mut self, blocks: &[(String, BlockMesh)]) {
+        let sum = |of: fn(&BlockMesh) -> usize| blocks.iter().map(|(_, mesh)| of(mesh)).sum::<usize>();
+        let (nodes, tets) = (sum(|mesh| mesh.nodes.len()), sum(|mesh| mesh.tets.len()));
+        self.rest_position.reserve_exact(nodes);
+        self.tets.reserve_exact(tets);
+        self.tet_block.reserve_exact(tets);
+        self.names.reserve_exact(blocks.len());
+        self.node_sets.reserve_exact(blocks.len());
+        for starts in [&mut self.node_start, &mut self.tet_start, &mut self.triangle_start] {
+            starts.reserve_exact(blocks.len());
+        }
     }
 
     fn push(&mut self, name: String, mesh: &BlockMesh) {

@@ -99,5 +99,5 @@ pub use step::plan::{FactorPlan, KindPlan, Plan};
 pub use step::report::{Iterations, StageTimes, StepCounts, StepReport};
 pub use step::settle::{Damping, Settle, Settled};
 pub use step::setup::Setup;
-pub use step::snapshot::{RestoreError, Snapshot};
+pub use step::snapshot::{RestoreError, Snapshot, SnapshotView};
 pub use step::state::State;

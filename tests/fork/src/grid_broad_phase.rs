@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use ndda_contact::broad_phase::{BroadPhase, BroadScene};
+use ndda_contact::broad_phase::{BroadPhase, BroadScene, PairLists};
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, TetId, TriangleId};
 
@@ -46,12 +46,7 @@ impl BroadPhase for Grid {
         "a grid"
     }
 
-    fn find_pairs(
-        &mut self,
-        scene: &BroadScene,
-        _renewed: &[BlockId],
-        pairs: &mut Vec<(TriangleId, TetId)>,
-    ) -> bool {
+    fn find_pairs(&mut self, scene: &BroadScene, _renewed: &[BlockId], pairs: &mut PairLists) -> bool {
         self.found.clear();
         for (own, target) in Self::neighbours(scene) {
             for triangle in scene.blocks.triangles_of(own) {
@@ -65,8 +60,8 @@ impl BroadPhase for Grid {
             }
         }
         self.found.sort_unstable();
-        let changed = self.found != *pairs;
-        pairs.clone_from(&self.found);
+        let changed = !pairs.pairs().eq(self.found.iter().copied());
+        pairs.set(scene.blocks, &self.found);
         changed
     }
 }
@@ -90,15 +85,12 @@ mod tests {
             "forgetful"
         }
 
-        fn find_pairs(
-            &mut self,
-            scene: &BroadScene,
-            renewed: &[BlockId],
-            pairs: &mut Vec<(TriangleId, TetId)>,
-        ) -> bool {
+        fn find_pairs(&mut self, scene: &BroadScene, renewed: &[BlockId], pairs: &mut PairLists) -> bool {
             let before = pairs.clone();
             self.0.find_pairs(scene, renewed, pairs);
-            pairs.pop();
+            let mut all: Vec<_> = pairs.pairs().collect();
+            all.pop();
+            pairs.set(scene.blocks, &all);
             before != *pairs
         }
     }

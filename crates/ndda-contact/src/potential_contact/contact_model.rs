@@ -38,10 +38,9 @@ impl ContactModel for PotentialContact {
         let blocks_of = |touch: &ActiveFacet| (touch.owner, touch.target);
         self.place_penalties(input);
         if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
-            let found = (&self.candidates, &self.integrals);
             report.bond_overload = bond::break_overloaded(
                 joints,
-                found,
+                &self.integrals,
                 &self.penalty_of_facet,
                 input,
                 (history, &mut self.new_state),
@@ -60,8 +59,7 @@ impl ContactModel for PotentialContact {
             on_host: &mut self.on_host,
             state: &mut self.state_of_facet,
         };
-        let facets =
-            FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
+        let facets = FacetScene { input, joints: self.joints.as_ref(), history };
         let place = || place_forces(rows, &facets, integrals, &self.penalty_of_facet, &self.hulls);
         join_if(integrals.touching().len() > GRAIN_FACETS, place, sort);
         if let Some(joints) = self.joints.as_ref().filter(|_| has_friction) {

@@ -48,7 +48,6 @@ impl PotentialContact {
             // Each facet has a history of its own.
             let by_triangle = self.joints.as_ref().is_some_and(|joints| !joints.act_on_faces_only());
             self.hulls.fit(input.blocks, &surfaces, phi_per_m, input.affine, by_triangle);
-            self.candidates.numbers_overlaps = field.as_ref().is_ok_and(PotentialField::is_element);
             if self.needs_bodies() {
                 self.faces.fit(input.blocks, &surfaces);
             }
@@ -57,7 +56,7 @@ impl PotentialContact {
         self.candidates.update(input, &self.hulls);
         let Self { candidates, hulls, frames, .. } = self;
         let place_hulls = || {
-            if !candidates.pairs.is_empty() {
+            if candidates.pairs() > 0 {
                 hulls.place(input.blocks, input.position);
                 hulls.separate(input.blocks, input.position, &candidates.neighbours);
             }
@@ -95,16 +94,15 @@ impl PotentialContact {
     pub(super) fn remember(&mut self, input: &ContactInput, history: &mut ContactHistory) {
         self.new_facets.clear();
         self.new_state.clear();
-        let scene = FacetScene { input, candidates: &self.candidates, joints: self.joints.as_ref(), history };
+        let scene = FacetScene { input, joints: self.joints.as_ref(), history };
         let len = history.law_state_len as usize;
         for (t, (touch, force)) in self.integrals.touching().iter().zip(&self.forces).enumerate() {
-            let facet = &self.candidates.facets[force.facet as usize];
             if let Some((shear_n, broken)) = force.memory {
                 self.new_state.extend_from_slice(&self.state_of_facet[t * len..(t + 1) * len]);
                 self.new_facets.push(FacetMemory {
-                    facet: facet.triangle,
-                    target: facet.target,
-                    element: scene.element_of(facet),
+                    facet: touch.triangle,
+                    target: touch.target,
+                    element: scene.element_of(self.integrals.overlaps_of(touch)),
                     shear_n,
                     area_m2: self.integrals.sums_of(touch).area,
                     broken,
@@ -137,7 +135,7 @@ impl PotentialContact {
                 (Some((_, PotentialField::Function(field))), None) => Target::Function(field, tet),
                 _ => Target::Element,
             };
-            let frame = &self.frames[self.candidates.pairs[overlap.pair as usize].tet as usize];
+            let frame = &self.frames[overlap.slot as usize];
             let triangle = &input.blocks.triangles[touch.triangle.index()];
             let mut pair = PairStiffness::new(triangle, &input.blocks.tets[tet.index()]);
             tangent::add_pair(&mut pair, &corners, frame, target, self.penalty_of_facet[t]);
@@ -191,26 +189,25 @@ pub(super) fn place_forces(
     let touching = integrals.touching();
     let state_len = scene.history.law_state_len as usize;
     forces.resize(touching.len(), FacetForce::default());
-    on_host.resize(touching.len(), OnTarget::default());
     state.resize(touching.len() * state_len, 0.0);
-    let place = |force: &mut FacetForce, on_host: &mut OnTarget, t: usize, state: &mut [f64]| {
+    let place = |force: &mut FacetForce, t: usize, state: &mut [f64]| {
         let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
         *force = scene.force(&touching[t], overlaps, sums, penalty_of_facet[t], state);
-        if hulls.affine_target(touching[t].target).is_some() {
-            *on_host = overlaps[0].on_target;
-        }
     };
     if state_len > 0 {
-        let entries = forces.par_iter_mut().zip(on_host).zip(0..touching.len());
-        let entries = entries.zip(state.par_chunks_mut(state_len)).with_min_len(GRAIN_FACETS / 2);
-        entries.for_each(|(((force, on_host), t), state)| place(force, on_host, t, state));
-    } else if touching.len() > GRAIN_FACETS {
-        let entries = forces.par_iter_mut().zip(on_host).zip(0..touching.len());
-        let entries = entries.with_min_len(GRAIN_FACETS / 2);
-        entries.for_each(|((force, on_host), t)| place(force, on_host, t, &mut []));
+        let entries = forces.par_iter_mut().zip(state.par_chunks_mut(state_len)).enumerate();
+        entries.with_min_len(GRAIN_FACETS / 2).for_each(|(t, (force, state))| place(force, t, state));
     } else {
-        let entries = forces.iter_mut().zip(on_host).zip(0..);
-        entries.for_each(|((force, on_host), t)| place(force, on_host, t, &mut []));
+        for_each_facet(forces, |(t, force)| place(force, t, &mut []));
+    }
+    on_host.clear();
+    if hulls.count_affine() > 0 {
+        on_host.resize(touching.len(), OnTarget::default());
+        for_each_facet(on_host, |(t, on_host)| {
+            if hulls.affine_target(touching[t].target).is_some() {
+                *on_host = integrals.overlaps_of(&touching[t])[0].on_target;
+            }
+        });
     }
 }
 

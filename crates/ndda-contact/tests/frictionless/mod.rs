@@ -36,7 +36,6 @@ impl Frictionless {
         output: &mut ContactOutput,
     ) -> ContactReport {
         let blocks = input.blocks;
-        self.candidates.numbers_overlaps = true;
         if self.candidates.update(input, &self.hulls) {
             self.hulls.fit(blocks, &BlockFaces::of_all(blocks), None, &[], true);
         }
@@ -52,7 +51,7 @@ impl Frictionless {
         let (candidates, frames, field) = (&self.candidates, &self.frames[..], &PotentialField::Element);
         let hulls = &self.hulls;
         self.integrals.update(&Scene { blocks, position: input.position, candidates, frames, field, hulls });
-        let (integrals, facets) = (&self.integrals, &candidates.facets);
+        let integrals = &self.integrals;
         let touching = integrals.touching();
         let report =
             self.reporter.report(input, candidates, integrals, frames, field).expect("finite forces");
@@ -60,8 +59,7 @@ impl Frictionless {
         let push = |(t, force): (usize, &mut FacetForce)| {
             *force = FacetForce::default();
             if integrals.overlaps_of(&touching[t]).iter().flat_map(|hit| hit.pressure).sum::<f64>() > 0.0 {
-                let corners =
-                    blocks.triangle_corners(facets[touching[t].facet as usize].triangle, input.position);
+                let corners = blocks.triangle_corners(touching[t].triangle, input.position);
                 force.push = -penalty_pa * triangle_area_vector(&corners).normalize();
                 force.touches = true;
             }

@@ -7,7 +7,7 @@
 //! Numbers are little-endian. The content is a value in the postcard encoding, whose floats keep their bits.
 
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -23,6 +23,8 @@ pub(crate) const FORMAT: u32 = 12;
 const MAGIC: &[u8; 16] = b"NDDA-CHECKPOINT\n";
 const HEADER: usize = 16 + 4 + 8;
 const TRAILER: usize = 4;
+/// Bytes that are written at a time.
+const PIECE: usize = 1 << 16;
 
 /// Why a checkpoint cannot be used.
 #[derive(Debug, thiserror::Error)]
@@ -69,12 +71,52 @@ pub enum CheckpointError {
 
 /// CRC-32 of a value's encoding: equal values, bit for bit, have equal ones.
 pub fn fingerprint(value: &impl Serialize) -> u32 {
-    crc32fast::hash(&postcard::to_stdvec(value).unwrap_or_default())
+    let mut encoding = Encoding::of(std::io::sink());
+    encoding.add(value).map_or(0, |()| encoding.crc.finalize())
 }
 
 /// Bytes of a value's encoding.
 pub fn size(value: &impl Serialize) -> u64 {
-    postcard::to_stdvec(value).map_or(0, |bytes| bytes.len() as u64)
+    let mut encoding = Encoding::of(std::io::sink());
+    encoding.add(value).map_or(0, |()| encoding.bytes)
+}
+
+/// Encoded values on their way to a file, never in memory as a whole.
+struct Encoding<W> {
+    to: W,
+    crc: crc32fast::Hasher,
+    bytes: u64,
+    /// Why the file cannot be written: the encoder would not say.
+    failed: Option<std::io::Error>,
+}
+
+impl<W: Write> Encoding<W> {
+    fn of(to: W) -> Self {
+        Self { to, crc: crc32fast::Hasher::new(), bytes: 0, failed: None }
+    }
+
+    fn add(&mut self, value: &impl Serialize) -> postcard::Result<()> {
+        let mut whole = BufWriter::with_capacity(PIECE, &mut *self);
+        postcard::to_io(value, &mut whole)?;
+        whole.flush().map_err(|_| postcard::Error::SerializeBufferFull)
+    }
+}
+
+impl<W: Write> Write for Encoding<W> {
+    fn write(&mut self, piece: &[u8]) -> std::io::Result<usize> {
+        if let Err(error) = self.to.write_all(piece) {
+            let kind = error.kind();
+            self.failed = Some(error);
+            return Err(kind.into());
+        }
+        self.crc.update(piece);
+        self.bytes += piece.len() as u64;
+        Ok(piece.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.to.flush()
+    }
 }
 
 /// Writes a checkpoint; the file that was there becomes the previous one.
@@ -97,15 +139,20 @@ pub fn write(folder: &OutputFolder, value: &impl Serialize) -> Result<(), WriteE
 /// # Errors
 /// [`WriteError`] when the value cannot be encoded or the file not be written.
 pub fn write_file(path: &Path, value: &impl Serialize) -> Result<(), WriteError> {
-    let content = postcard::to_stdvec(value)
-        .map_err(|e| WriteError::Encode { path: path.to_path_buf(), reason: e.to_string() })?;
-    let mut bytes = Vec::with_capacity(HEADER + content.len() + TRAILER);
-    bytes.extend_from_slice(MAGIC);
-    bytes.extend_from_slice(&FORMAT.to_le_bytes());
-    bytes.extend_from_slice(&(content.len() as u64).to_le_bytes());
-    bytes.extend_from_slice(&content);
-    bytes.extend_from_slice(&crc32fast::hash(&bytes).to_le_bytes());
-    atomic::write(path, &bytes)
+    let refused = |e: postcard::Error| WriteError::Encode { path: path.to_path_buf(), reason: e.to_string() };
+    let mut counted = Encoding::of(std::io::sink());
+    counted.add(value).map_err(refused)?;
+    atomic::write_by(path, |file| {
+        let mut encoding = Encoding::of(file);
+        encoding.write_all(MAGIC)?;
+        encoding.write_all(&FORMAT.to_le_bytes())?;
+        encoding.write_all(&counted.bytes.to_le_bytes())?;
+        if let Err(error) = encoding.add(value) {
+            return Err(encoding.failed.take().unwrap_or_else(|| std::io::Error::other(error)));
+        }
+        let crc = encoding.crc.clone().finalize();
+        encoding.to.write_all(&crc.to_le_bytes())
+    })
 }
 
 /// Reads the newest checkpoint of a folder that is whole and of its run, and says why a newer one was passed over;

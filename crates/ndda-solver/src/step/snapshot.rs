@@ -26,6 +26,16 @@ pub struct Snapshot {
     pub step_balance: Option<(u64, f64)>,
 }
 
+/// A snapshot that is written but not kept: all by reference. Its encoding is that of [`Snapshot`].
+#[derive(Clone, Debug, Serialize)]
+pub struct SnapshotView<'a> {
+    state: &'a State,
+    ledger: &'a Ledger,
+    stages: StageTimes,
+    contact_stiffness: &'a [f64],
+    step_balance: Option<(u64, f64)>,
+}
+
 /// A snapshot of another problem.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("it is of {found} nodes, the scene has {expected}: the scene or its meshes have changed")]
@@ -46,6 +56,18 @@ impl Simulation {
             ledger: self.audit.ledger.clone(),
             stages: self.audit.stages,
             contact_stiffness,
+            step_balance: self.control.as_ref().and_then(|control| control.balance()),
+        }
+    }
+
+    /// All that changes, to be written.
+    pub fn snapshot_view(&self) -> SnapshotView<'_> {
+        let acts = self.scratch.contact_has_acted;
+        SnapshotView {
+            state: &self.state,
+            ledger: &self.audit.ledger,
+            stages: self.audit.stages,
+            contact_stiffness: if acts { &self.scratch.contact_stiffness } else { &[] },
             step_balance: self.control.as_ref().and_then(|control| control.balance()),
         }
     }

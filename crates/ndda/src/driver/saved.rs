@@ -15,11 +15,11 @@ use crate::run::{Identity, ResumeError, Run};
 
 /// What a file holds, its kind first.
 #[derive(Serialize, Deserialize)]
-struct Saved {
+struct Saved<S = Snapshot> {
     kind: String,
     origin: String,
     identity: Identity,
-    snapshot: Snapshot,
+    snapshot: S,
 }
 
 const KIND: &str = "ndda.driver/1";
@@ -72,7 +72,7 @@ impl Driver {
         let name = Path::new(&loaded.file).file_name().unwrap_or("scene.ron".as_ref()).to_owned();
         let stem = Path::new(&name).file_stem().unwrap_or(&name).to_string_lossy().into_owned();
         let identity = Identity::new(stem, loaded.text.clone(), folder.join(name), &loaded.scene);
-        let snapshot = self.model.simulation.snapshot();
+        let snapshot = self.model.simulation.snapshot_view();
         let saved = Saved { kind: KIND.into(), origin: self.origin.to_string(), identity, snapshot };
         Ok(checkpoint::write_file(file, &saved)?)
     }

@@ -107,7 +107,7 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
     let monitors = scene.monitors.iter().map(|monitor| monitor.name.as_str());
     let columns = columns(monitors, &held, scene.reference.is_some()).len() as u64;
     // Of the scene, its text is kept.
-    let saved = checkpoint::size(&simulation.snapshot()) + checkpoint::size(scene);
+    let saved = checkpoint::size(&simulation.snapshot_view()) + checkpoint::size(scene);
     let blocks = simulation.blocks().len() as u64;
     let mut files = vec![
         file(folder::HISTORY, 1, rows * columns * NUMBER_BYTES),

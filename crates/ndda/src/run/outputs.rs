@@ -21,11 +21,11 @@ use crate::judge::reference::{self, Comparison};
 
 /// Everything that `ndda resume` needs.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct SavedRun {
+pub struct SavedRun<S = Snapshot> {
     /// The scene.
     pub identity: Identity,
     /// State and ledger.
-    pub snapshot: Snapshot,
+    pub snapshot: S,
     /// How far the outputs had come.
     pub earlier: Earlier,
 }
@@ -169,7 +169,7 @@ impl<'a, 'b> Outputs<'a, 'b> {
         let started = Instant::now();
         let saved = SavedRun {
             identity: files.identity.clone(),
-            snapshot: view.simulation.snapshot(),
+            snapshot: view.simulation.snapshot_view(),
             earlier: Earlier {
                 recorder: self.recorder.save()?,
                 fields: files.fields.as_mut().map(FieldWriter::save).transpose()?,

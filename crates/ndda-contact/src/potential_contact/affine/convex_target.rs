@@ -57,7 +57,9 @@ pub struct ConvexBlocks {
     faces: Vec<Face>,
     /// First face of each block; one that is concave or round has none.
     start: Vec<u32>,
-    whole: Vec<Option<AffineConvexTarget>>,
+    whole: Vec<Option<Box<AffineConvexTarget>>>,
+    /// How many blocks are affine convex targets.
+    affine: usize,
     /// The faces of each block once more, by rows, and where those of each row are.
     planes: Vec<Planes>,
     in_row: Vec<Range<usize>>,
@@ -66,6 +68,8 @@ pub struct ConvexBlocks {
     contactors: FaceContactors,
     /// Whether a face keeps the two blocks of a pair apart.
     are_apart: Vec<bool>,
+    /// Whether a block has a neighbour that no face keeps apart from it.
+    may_touch: Vec<bool>,
 }
 
 impl ConvexBlocks {
@@ -98,7 +102,7 @@ impl ConvexBlocks {
             }
             self.start.push(self.faces.len() as u32);
             let own = &self.faces[self.places_of(block)];
-            let whole = phi_per_m.map(|_| AffineConvexTarget::new(blocks, block, own));
+            let whole = phi_per_m.map(|_| Box::new(AffineConvexTarget::new(blocks, block, own)));
             match &whole {
                 Some(whole) if !by_triangle => {
                     let host = TetFrame::new(&blocks.tet_corners(whole.host, &blocks.rest_position));
@@ -112,6 +116,7 @@ impl ConvexBlocks {
             self.row_start.push(self.in_row.len() as u32);
             self.whole.push(whole);
         }
+        self.affine = self.whole.iter().flatten().count();
     }
 
     /// Takes the faces to where the nodes are [m].
@@ -131,6 +136,17 @@ impl ConvexBlocks {
         let look = |(apart, &(a, b)): (&mut bool, &(BlockId, BlockId))| *apart = keeps(a, b) || keeps(b, a);
         are_apart.par_iter_mut().zip(pairs).with_min_len(GRAIN_PAIRS).for_each(look);
         self.are_apart = are_apart;
+        self.may_touch.clear();
+        self.may_touch.resize(blocks.len(), false);
+        for (&(a, b), _) in pairs.iter().zip(&self.are_apart).filter(|(_, apart)| !**apart) {
+            (self.may_touch[a.index()], self.may_touch[b.index()]) = (true, true);
+        }
+    }
+
+    /// Whether a block has a neighbour that no face keeps apart from it.
+    #[inline]
+    pub(crate) fn may_touch(&self, block: BlockId) -> bool {
+        self.may_touch[block.index()]
     }
 
     /// Whether a face keeps the k-th pair of blocks apart; touching is not overlap.
@@ -166,7 +182,7 @@ impl ConvexBlocks {
     /// A block that is an affine convex target.
     #[inline]
     pub(crate) fn affine_target(&self, block: BlockId) -> Option<&AffineConvexTarget> {
-        self.whole.get(block.index()).and_then(Option::as_ref)
+        self.whole.get(block.index()).and_then(Option::as_deref)
     }
 
     /// The faces of a block as contactors in another; none where it is put into that triangle by triangle.
@@ -189,7 +205,7 @@ impl ConvexBlocks {
 
     /// How many blocks are affine convex targets.
     pub(crate) fn count_affine(&self) -> usize {
-        self.whole.iter().flatten().count()
+        self.affine
     }
 
     /// Range of a block's faces in the list of all faces.

@@ -10,10 +10,10 @@ use pulp::Arch;
 use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
-use crate::broad_phase::candidates::{Candidates, Pair};
+use crate::assembly::block_shares::{BlockShares, SHARE_BLOCKS};
+use crate::broad_phase::candidates::Candidates;
 use crate::integration::integrals::Integrals;
 use crate::integration::linear::Linear;
-use crate::integration::pair_moments::{has_centroid, pair_energy};
 use crate::integration::polyhedron::{EmbeddedPolyhedron, Polyhedron, faces_of};
 use crate::integration::tet_frame::TetFrame;
 use crate::model::ContactInput;
@@ -52,8 +52,7 @@ pub(crate) struct BlockOverlaps {
     /// Place in `pairs` of each facet that touches.
     pair_of_touch: Vec<u32>,
     origin: Vec<Option<Vec3>>,
-    per_pair: Vec<f64>,
-    per_tet: Vec<f64>,
+    shares: Vec<BlockShares>,
 }
 
 impl BlockOverlaps {
@@ -76,10 +75,10 @@ impl BlockOverlaps {
         self.pairs.binary_search(&(a.min(b), a.max(b))).ok()
     }
 
-    /// Makes room for these pairs of [`Candidates::neighbours`].
-    fn list(&mut self, candidates: &Candidates, pairs: impl Iterator<Item = u32>) {
+    /// Makes room for these pairs of blocks, (smaller, larger).
+    fn list(&mut self, pairs: impl Iterator<Item = (BlockId, BlockId)>) {
         self.pairs.clear();
-        self.pairs.extend(pairs.map(|k| candidates.neighbours[k as usize]));
+        self.pairs.extend(pairs);
         self.pairs.sort_unstable();
         self.pairs.dedup();
         self.overlap_m3.clear();
@@ -93,12 +92,12 @@ impl BlockOverlaps {
             (_, OverlapLaw::Power { .. }) => self.add_touching(input, parts),
             (PotentialField::Element, _) => self.add_pieces(input, candidates, frames),
             (PotentialField::Pieces(table), _) => {
-                let all = 0..candidates.neighbours.len() as u32;
-                self.list(candidates, all.filter(|&k| !hulls.are_apart(k)));
+                let near = (0..).zip(&candidates.neighbours).filter(|(k, _)| !hulls.are_apart(*k));
+                self.list(near.map(|(_, pair)| *pair));
                 self.add_cells(&Cells { input, table, function: None, hulls });
             }
             (PotentialField::Function(field), _) => {
-                self.list(candidates, 0..candidates.neighbours.len() as u32);
+                self.list(candidates.neighbours.iter().copied());
                 self.add_cells(&Cells { input, table: &field.regions, function: Some(field), hulls });
             }
         }
@@ -106,8 +105,8 @@ impl BlockOverlaps {
 
     /// U and ∫ φ dA of the pairs of blocks that touch.
     pub(crate) fn add_touching(&mut self, input: &ContactInput, parts: &OverlapParts) {
-        let OverlapParts { candidates, integrals, field, hulls, .. } = *parts;
-        self.list_touching(candidates, integrals);
+        let OverlapParts { integrals, field, hulls, .. } = *parts;
+        self.list_touching(integrals);
         match field {
             _ if field.uniform().is_some() => {
                 let twice_phi = 2.0 * field.uniform().unwrap_or(0.0);
@@ -126,9 +125,9 @@ impl BlockOverlaps {
     }
 
     /// Makes room for the pairs that touch, and adds up ∫ φ dA of both surfaces.
-    fn list_touching(&mut self, candidates: &Candidates, integrals: &Integrals) {
-        let facets = integrals.touching().iter().map(|touch| &candidates.facets[touch.facet as usize]);
-        self.list(candidates, facets.map(|facet| facet.neighbours));
+    fn list_touching(&mut self, integrals: &Integrals) {
+        let pairs = integrals.touching().iter();
+        self.list(pairs.map(|touch| (touch.owner.min(touch.target), touch.owner.max(touch.target))));
         self.pressure_m2.clear();
         self.pressure_m2.resize(self.pairs.len(), 0.0);
         self.pair_of_touch.clear();
@@ -154,31 +153,18 @@ impl BlockOverlaps {
 
     /// The element potential, from the flux through surface pieces.
     fn add_pieces(&mut self, input: &ContactInput, candidates: &Candidates, frames: &[TetFrame]) {
-        let blocks = input.blocks;
-        self.list(candidates, 0..candidates.neighbours.len() as u32);
-        self.per_pair.clear();
-        self.per_pair.resize(candidates.pairs.len(), 0.0);
-        let place = |(pair, integral): (&Pair, &mut f64)| {
-            let corners = blocks.triangle_corners(pair.triangle, input.position);
-            let frame = &frames[pair.tet as usize];
-            if frame.lambda_inside(&corners).is_some() {
-                *integral = pair_energy(&corners, &triangle_area_vector(&corners), frame);
-            }
+        self.list(candidates.neighbours.iter().copied());
+        self.shares.resize_with(candidates.blocks().div_ceil(SHARE_BLOCKS), BlockShares::default);
+        let place = |(number, shares): (usize, &mut BlockShares)| {
+            let first = number * SHARE_BLOCKS;
+            let last = (first + SHARE_BLOCKS).min(candidates.blocks());
+            shares.integrate(input, candidates, frames, first..last);
         };
-        let pairs = candidates.pairs.par_iter().with_min_len(GRAIN_PAIRS);
-        pairs.zip(&mut self.per_pair).for_each(place);
-        self.per_tet.clear();
-        self.per_tet.resize(candidates.overlaps.len(), 0.0);
-        for (pair, integral) in candidates.pairs.iter().zip(&self.per_pair) {
-            self.per_tet[pair.overlap as usize] += integral;
-        }
-        for (&(tet, block), &integral) in candidates.overlaps.iter().zip(&self.per_tet) {
-            let slot = candidates.tets.binary_search(&tet).expect("every overlap has its tet");
-            let volume_m3 = frames[slot].volume_m3;
-            // ∫ φ over the whole tetrahedron is V/4: that is what a contained centroid leaves out.
-            let missing = if has_centroid(integral, volume_m3) { 0.25 * volume_m3 } else { 0.0 };
-            let k = self.place(blocks.tet_block[tet.index()], block).expect("listed above");
-            self.overlap_m3[k] += integral + missing;
+        let share_pairs = candidates.pairs() / self.shares.len().max(1);
+        let grain = GRAIN_PAIRS.div_ceil(share_pairs.max(1));
+        self.shares.par_iter_mut().enumerate().with_min_len(grain).for_each(place);
+        for &(k, share_m3) in self.shares.iter().flat_map(|shares| &shares.of_pair) {
+            self.overlap_m3[k as usize] += share_m3;
         }
     }
 

@@ -1,6 +1,7 @@
 //! From integrals to forces on nodes, energies, stiffnesses and the report of a step.
 
 pub(crate) mod adjacency;
+mod block_shares;
 pub(crate) mod couples;
 pub(crate) mod energy;
 pub(crate) mod join_if;

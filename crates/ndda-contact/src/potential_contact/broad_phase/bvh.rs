@@ -5,6 +5,8 @@
 //! as many leaves have moved as there are. Cells of a uniform grid find all pairs of boxes a few times quicker, but
 //! have to be filled anew when one box has moved.
 
+use std::sync::{Mutex, PoisonError};
+
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
@@ -14,6 +16,7 @@ use crate::affine::face_contactor::FaceContactor;
 use crate::affine::surface::BlockFaces;
 use crate::broad_phase::block_bvh::{BlockBvh, node_touches, to_parry};
 use crate::broad_phase::finder::{BroadPhase, BroadScene, FEW_NODES, Side, TriangleAt, shape_of};
+use crate::broad_phase::pair_lists::{Fresh, PairLists, PairRun};
 use crate::integration::capacity::MOST_CORNERS;
 
 /// Blocks below which a second thread costs more than it brings.
@@ -40,48 +43,18 @@ pub struct TreeBroadPhase {
     is_placed: Vec<bool>,
     /// Blocks whose elements are to be placed now.
     is_due: Vec<bool>,
-    found: Vec<Found>,
+    /// Whether the pairs of each block changed.
+    changed: Vec<bool>,
+    /// One for each thread.
+    fresh: Vec<Mutex<Fresh>>,
     /// Of the set that all this is about.
     shape: [usize; 4],
 }
 
-/// Room for so many more; where there is too little, for four times as many in all, so that blocks that come a bit nearer
-/// do not ask again.
-pub(crate) fn make_room<T>(list: &mut Vec<T>, more: usize) {
-    if list.capacity() < list.len() + more {
-        list.reserve_exact(3 * list.len() + 4 * more);
-    }
-}
-
-/// The pairs of the triangles of one block, sorted.
-#[derive(Default)]
-struct Found {
-    pairs: Vec<(TriangleId, TetId)>,
-    /// Pairs with a renewed block, on either side.
-    fresh: Vec<(TriangleId, TetId)>,
-    changed: bool,
-}
-
-impl Found {
-    /// Puts the fresh pairs in the place of those that `is_stale`.
-    fn merge(&mut self, is_stale: impl Fn(&(TriangleId, TetId)) -> bool) {
-        self.fresh.sort_unstable();
-        self.changed = !self.pairs.iter().filter(|pair| is_stale(pair)).eq(&self.fresh);
-        if self.changed {
-            self.pairs.retain(|pair| !is_stale(pair));
-            make_room(&mut self.pairs, self.fresh.len());
-            self.pairs.extend_from_slice(&self.fresh);
-            self.pairs.sort_unstable();
-        }
-    }
-}
-
-/// Boxes of everything, with the margin.
+/// Boxes of the blocks, with the margin, and their sides.
 #[derive(Default)]
 struct Boxes {
     blocks: Vec<Aabb>,
-    triangles: Vec<Aabb>,
-    tets: Vec<Aabb>,
     /// One for each of [`ConvexBlocks::faces`](crate::affine::convex_target::ConvexBlocks::faces), without a margin.
     sides: Vec<Side>,
 }
@@ -102,29 +75,18 @@ fn place_due<T: Send>(
 
 impl Boxes {
     fn new(blocks: &BlockSet) -> Self {
-        let boxes = |count: usize| vec![Aabb::empty(); count];
-        Self {
-            blocks: boxes(blocks.len()),
-            triangles: boxes(blocks.triangles.len()),
-            tets: boxes(blocks.tets.len()),
-            sides: Vec::new(),
-        }
+        Self { blocks: vec![Aabb::empty(); blocks.len()], sides: Vec::new() }
     }
 
-    /// Elements and sides of all blocks that are due.
+    /// Sides of all blocks that are due.
     fn place_all(&mut self, scene: &BroadScene, is_due: &[bool]) {
-        let (blocks, faces) = (scene.blocks, scene.hulls.faces());
-        let is_due = |block: BlockId| is_due[block.index()];
+        let faces = scene.hulls.faces();
         self.sides.resize(faces.len(), Side::default());
-        place_due(&mut self.triangles, |i| is_due(blocks.triangle_block[i]), |i| scene.triangle_box(i));
-        place_due(&mut self.tets, |i| is_due(blocks.tet_block[i]), |i| scene.tet_box(i));
-        place_due(&mut self.sides, |i| is_due(faces[i].block), |i| Side::new(scene, &faces[i]));
+        place_due(&mut self.sides, |i| is_due[faces[i].block.index()], |i| Side::new(scene, &faces[i]));
     }
 
-    /// Elements and sides of one block.
+    /// Sides of one block.
     fn place(&mut self, scene: &BroadScene, block: BlockId) {
-        scene.blocks.triangles_of(block).for_each(|i| self.triangles[i] = scene.triangle_box(i));
-        scene.blocks.tets_of(block).for_each(|i| self.tets[i] = scene.tet_box(i));
         let sides = self.sides[scene.hulls.places_of(block)].iter_mut();
         sides.zip(scene.hulls.faces_of(block)).for_each(|(side, face)| *side = Side::new(scene, face));
     }
@@ -140,24 +102,18 @@ impl BroadPhase for TreeBroadPhase {
             self.own.iter().flatten().map(|own| size_of::<BlockBvh>() + own.heap_bytes()).sum::<usize>();
         let boxes = &self.boxes;
         let sides = boxes.sides.capacity() * size_of::<Side>();
-        let boxes = boxes.blocks.capacity() + boxes.triangles.capacity() + boxes.tets.capacity();
-        let of_found = |found: &Found| found.pairs.capacity() + found.fresh.capacity();
-        let found = self.found.iter().map(of_found).sum::<usize>() * size_of::<(TriangleId, TetId)>();
-        let per_block = size_of::<Option<Box<BlockBvh>>>() + size_of::<Found>() + 5 * size_of::<bool>();
+        let boxes = boxes.blocks.capacity();
+        let per_block = size_of::<Option<Box<BlockBvh>>>() + 6 * size_of::<bool>();
         let tree = self.tree.heap_memory_size();
-        own + boxes * size_of::<Aabb>() + sides + found + per_block * self.found.capacity() + tree
+        own + boxes * size_of::<Aabb>() + sides + per_block * self.changed.capacity() + tree
     }
 
-    fn find_pairs(
-        &mut self,
-        scene: &BroadScene,
-        renewed: &[BlockId],
-        pairs: &mut Vec<(TriangleId, TetId)>,
-    ) -> bool {
+    fn find_pairs(&mut self, scene: &BroadScene, renewed: &[BlockId], pairs: &mut PairLists) -> bool {
         let begins = self.shape != shape_of(scene.blocks);
         if begins {
             assert_eq!(renewed.len(), scene.blocks.len(), "at first all blocks are new");
             self.begin(scene.blocks);
+            pairs.begin(scene.blocks.len());
         }
         self.is_renewed.fill(false);
         for block in renewed {
@@ -178,13 +134,7 @@ impl BroadPhase for TreeBroadPhase {
             self.mark_due();
             self.place(scene);
         }
-        let changed = self.search(scene);
-        if changed || begins {
-            pairs.clear();
-            make_room(pairs, self.found.iter().map(|found| found.pairs.len()).sum());
-            self.found.iter().for_each(|found| pairs.extend_from_slice(&found.pairs));
-        }
-        changed || begins
+        self.search(scene, pairs) || begins
     }
 }
 
@@ -197,8 +147,7 @@ impl TreeBroadPhase {
         self.is_near = vec![true; blocks.len()];
         self.is_placed = vec![false; blocks.len()];
         self.is_due = vec![false; blocks.len()];
-        self.found.clear();
-        self.found.resize_with(blocks.len(), Found::default);
+        self.changed = vec![false; blocks.len()];
         self.boxes = Boxes::new(blocks);
         let everywhere = to_parry(&Aabb::around(&blocks.rest_position));
         let leaves = blocks.ids().map(|id| (id.index(), everywhere));
@@ -273,27 +222,35 @@ impl TreeBroadPhase {
     }
 
     /// Brings the pairs of all blocks near renewed ones up to date, and says whether any changed.
-    fn search(&mut self, scene: &BroadScene) -> bool {
-        let (is_renewed, is_near, tree) = (&self.is_renewed, &self.is_near, &self.tree);
+    fn search(&mut self, scene: &BroadScene, pairs: &mut PairLists) -> bool {
+        let threads = rayon::current_num_threads().max(self.fresh.len());
+        self.fresh.resize_with(threads, Mutex::default);
+        let (is_renewed, is_near, tree, scratch) = (&self.is_renewed, &self.is_near, &self.tree, &self.fresh);
         let near = Near { scene, own: &self.own, boxes: &self.boxes };
-        let is_convex = &self.is_convex;
-        let search = |(index, found): (usize, &mut Found)| {
+        let (is_convex, by_element) = (&self.is_convex, pairs.by_element);
+        let search = |(index, (list, changed)): (usize, (&mut Vec<PairRun>, &mut bool))| {
+            *changed = false;
             if !is_near[index] {
                 return;
             }
-            found.fresh.clear();
+            let own = &scratch[rayon::current_thread_index().unwrap_or(0)];
+            let fresh = &mut *own.lock().unwrap_or_else(PoisonError::into_inner);
+            fresh.by_element = by_element;
+            fresh.runs.clear();
+            near.place_triangles(BlockId(index as u32), fresh);
             for other in tree.leaves(|node| node_touches(node, &near.boxes.blocks[index])) {
                 let stale = is_renewed[index] || is_renewed[other as usize];
                 if stale && (other as usize != index || !is_convex[index]) {
-                    near.find(BlockId(index as u32), BlockId(other), &mut found.fresh);
+                    near.find(BlockId(index as u32), BlockId(other), fresh);
                 }
             }
-            found.merge(|pair| {
-                is_renewed[index] || is_renewed[scene.blocks.tet_block[pair.1.index()].index()]
+            *changed = fresh.merge_into(list, |run| {
+                is_renewed[index] || is_renewed[scene.blocks.tet_block[run.first().index()].index()]
             });
         };
-        self.found.par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(search);
-        self.found.iter().zip(is_near).any(|(found, &near)| near && found.changed)
+        let lists = pairs.each_mut().par_iter_mut().zip(&mut self.changed).enumerate();
+        lists.with_min_len(GRAIN_BLOCKS).for_each(search);
+        self.changed.contains(&true)
     }
 }
 
@@ -305,8 +262,16 @@ struct Near<'a> {
 }
 
 impl Near<'_> {
+    /// Boxes of the triangles of a block without trees.
+    fn place_triangles(&self, block: BlockId, found: &mut Fresh) {
+        found.triangles.clear();
+        if self.own[block.index()].is_none() {
+            found.triangles.extend(self.scene.blocks.triangles_of(block).map(|i| self.scene.triangle_box(i)));
+        }
+    }
+
     /// Adds the pairs of triangles of `block` that reach into the box of `other` and its tetrahedra.
-    fn find(&self, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
+    fn find(&self, block: BlockId, other: BlockId, found: &mut Fresh) {
         if block != other && (self.is_apart(block, other) || self.is_apart(other, block)) {
             return;
         }
@@ -322,15 +287,28 @@ impl Near<'_> {
             }
             return;
         }
-        let triangles = self.scene.blocks.triangles_of(block);
-        let reaches = |i: &usize| self.boxes.triangles[*i].touches(there);
+        found.boxes.clear();
+        if self.own[other.index()].is_none() && self.scene.hulls.affine_target(other).is_none() {
+            found.boxes.extend(self.scene.blocks.tets_of(other).map(|j| self.scene.tet_box(j)));
+        }
+        let first = self.scene.blocks.triangles_of(block).start;
         match &self.own[block.index()] {
-            None => triangles.filter(reaches).for_each(|i| self.find_tets(i, block, other, found)),
-            Some(own) => own
-                .triangles_near(there, self.scene.margin_m[block.index()])
-                .map(|leaf| triangles.start + leaf)
-                .filter(reaches)
-                .for_each(|i| self.find_tets(i, block, other, found)),
+            None => {
+                for k in 0..found.triangles.len() {
+                    let bounds = found.triangles[k];
+                    if bounds.touches(there) {
+                        self.find_tets((first + k, &bounds), (block, other), found);
+                    }
+                }
+            }
+            Some(own) => {
+                for leaf in own.triangles_near(there, self.scene.margin_m[block.index()]) {
+                    let bounds = self.scene.triangle_box(first + leaf);
+                    if bounds.touches(there) {
+                        self.find_tets((first + leaf, &bounds), (block, other), found);
+                    }
+                }
+            }
         }
     }
 
@@ -353,18 +331,19 @@ impl Near<'_> {
         triangle: &TriangleAt,
         corners: &[Vec3],
         (block, other): (BlockId, BlockId),
-        found: &mut Vec<(TriangleId, TetId)>,
+        found: &mut Fresh,
     ) {
         let scene = self.scene;
         let Some(whole) = scene.hulls.affine_target(other) else { return };
         let others = &scene.position[scene.blocks.nodes_of(other)];
         if !self.has_before(other, block, corners) && !triangle.are_on_one_side(others) {
-            found.push((id, whole.host));
+            found.runs.push(PairRun::one(id, whole.host));
         }
     }
 
-    fn find_tets(&self, i: usize, block: BlockId, other: BlockId, found: &mut Vec<(TriangleId, TetId)>) {
-        let (scene, bounds) = (self.scene, &self.boxes.triangles[i]);
+    /// Adds the pairs of a triangle, in this box, with the tetrahedra of another block.
+    fn find_tets(&self, (i, bounds): (usize, &Aabb), (block, other): (BlockId, BlockId), found: &mut Fresh) {
+        let scene = self.scene;
         let triangle = scene.triangle_at(i, other);
         if scene.hulls.affine_target(other).is_some() {
             let id = TriangleId(i as u32);
@@ -374,19 +353,21 @@ impl Near<'_> {
             return;
         }
         let tets = scene.blocks.tets_of(other);
-        let mut add = |j: usize| {
+        let Fresh { boxes, tets: near, .. } = found;
+        let mut add = |j: usize, there: &Aabb| {
             let others = || scene.blocks.tet_corners(TetId(j as u32), scene.position);
-            let near = bounds.touches(&self.boxes.tets[j]) && !triangle.is_apart_from(&others());
-            if near && !(block == other && scene.are_neighbours(i, j)) {
-                found.push((TriangleId(i as u32), TetId(j as u32)));
+            let is_near = bounds.touches(there) && !triangle.is_apart_from(&others());
+            if is_near && !(block == other && scene.are_neighbours(i, j)) {
+                near.push(TetId(j as u32));
             }
         };
         match &self.own[other.index()] {
-            None => tets.for_each(&mut add),
+            None => tets.zip(&*boxes).for_each(|(j, there)| add(j, there)),
             Some(own) => {
-                let near = own.tets_near_triangle(&triangle.corners, triangle.reach_m);
-                near.for_each(|leaf| add(tets.start + leaf));
+                let leaves = own.tets_near_triangle(&triangle.corners, triangle.reach_m);
+                leaves.map(|leaf| tets.start + leaf).for_each(|j| add(j, &scene.tet_box(j)));
             }
         }
+        found.take_tets(TriangleId(i as u32));
     }
 }

@@ -1,71 +1,87 @@
 //! The list of pairs that are worth clipping; those of two blocks are kept while neither has moved far.
 
 use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId};
 use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
-use crate::broad_phase::bvh::{TreeBroadPhase, make_room};
+use crate::broad_phase::bvh::TreeBroadPhase;
 use crate::broad_phase::finder::BroadPhase;
 use crate::broad_phase::neighbour_list::NeighbourList;
+use crate::broad_phase::pair_lists::{PairLists, PairRun};
 use crate::model::ContactInput;
 
-/// Pairs below which a second thread costs more than it brings.
-const GRAIN_PAIRS: usize = 4096;
+/// Blocks below which a second thread costs more than it brings.
+const GRAIN_BLOCKS: usize = 64;
 
 /// A boundary triangle and the tetrahedra of one other block that it may be in.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Facet {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet<'a> {
+    /// Its number, ascending by (triangle, target).
+    pub number: u32,
     /// The contactor's triangle.
     pub triangle: TriangleId,
+    /// The block of that.
+    pub owner: BlockId,
     /// The other block.
     pub target: BlockId,
-    /// Its pairs in [`Candidates::pairs`].
-    pub pairs: Range<usize>,
     /// Its two blocks in [`Candidates::neighbours`].
     pub neighbours: u32,
+    runs: &'a [PairRun],
 }
 
-/// One pair; the tetrahedron, which may stand for a block that is an affine convex target, is an index into [`Candidates::tets`], the overlap one into a list as long as
-/// [`Candidates::overlaps`] says.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pair {
-    /// The contactor's triangle.
-    pub triangle: TriangleId,
-    /// Index of the target tetrahedron in `tets`.
-    pub tet: u32,
-    /// Index of the combination (contactor block, target tetrahedron), where these are numbered.
-    pub overlap: u32,
+impl Facet<'_> {
+    /// The tetrahedra, which may stand for a block that is an affine convex target, ascending.
+    #[inline]
+    pub fn tets(&self) -> impl Iterator<Item = TetId> + '_ {
+        self.runs.iter().flat_map(PairRun::tets)
+    }
+
+    /// The first of them.
+    #[inline]
+    pub fn first(&self) -> TetId {
+        self.runs[0].first()
+    }
+
+    /// Number of pairs.
+    #[inline]
+    pub fn pairs(&self) -> usize {
+        self.runs.iter().map(PairRun::pairs).sum()
+    }
+
+    /// How many numbers it takes.
+    #[inline]
+    pub(crate) fn numbers(&self) -> u32 {
+        self.runs.len() as u32
+    }
 }
 
-/// Pairs near contact, sorted by (triangle, target block, tetrahedron) so that sums have one order.
+/// Pairs near contact, in the order of (triangle, target block, tetrahedron) so that sums have one order.
 pub struct Candidates {
-    /// All pairs.
-    pub pairs: Vec<Pair>,
-    /// Runs of pairs with one triangle and one target block.
-    pub facets: Vec<Facet>,
     /// The distinct pairs of blocks, (smaller, larger), ascending.
     pub neighbours: Vec<(BlockId, BlockId)>,
     /// The distinct target tetrahedra, ascending.
     pub tets: Vec<TetId>,
     /// Their corners in the order of node numbers, on which neighbours agree.
     pub order: Vec<[u8; 4]>,
-    /// The distinct (target tetrahedron, contactor block), block by block; empty where they are not needed.
-    pub overlaps: Vec<(TetId, BlockId)>,
     /// Counts the changes of the list.
     pub version: u64,
-    /// Whether overlaps are numbered.
-    pub numbers_overlaps: bool,
     /// Whether facets end at the borders of target elements, too.
     pub split_by_element: bool,
-    found: Vec<(TriangleId, TetId)>,
-    slot_of: Vec<u32>,
-    /// Of each target block of the contactor that it was last seen with, its place in `neighbours`.
-    place_of: Vec<(BlockId, u32)>,
-    sorted: Vec<TetId>,
-    /// First overlap of each contactor block.
-    overlap_start: Vec<u32>,
+    /// All pairs, where the broad phase keeps them.
+    lists: PairLists,
+    /// Number of the first facet of each block.
+    start: Vec<u32>,
+    /// How many pairs there are.
+    pairs: usize,
+    /// Place of each tetrahedron in `tets`.
+    slot_of: Vec<AtomicU32>,
+    /// Of each target block, the contactor that it was last seen with.
+    seen_with: Vec<BlockId>,
+    /// First of the neighbours of each smaller block.
+    neighbour_start: Vec<u32>,
     broad_phase: Box<dyn BroadPhase>,
     neighbour_list: NeighbourList,
 }
@@ -80,28 +96,79 @@ impl Candidates {
     /// Pairs that this broad phase finds.
     pub fn found_by(broad_phase: Box<dyn BroadPhase>) -> Self {
         Self {
-            pairs: Vec::new(),
-            facets: Vec::new(),
             neighbours: Vec::new(),
             tets: Vec::new(),
             order: Vec::new(),
-            overlaps: Vec::new(),
             version: 0,
-            numbers_overlaps: false,
             split_by_element: false,
-            found: Vec::new(),
+            lists: PairLists::default(),
+            start: Vec::new(),
+            pairs: 0,
             slot_of: Vec::new(),
-            place_of: Vec::new(),
-            sorted: Vec::new(),
-            overlap_start: Vec::new(),
+            seen_with: Vec::new(),
+            neighbour_start: Vec::new(),
             broad_phase,
             neighbour_list: NeighbourList::default(),
         }
     }
 
-    /// The target tetrahedron of a pair.
-    pub fn tet_of(&self, pair: u32) -> TetId {
-        self.tets[self.pairs[pair as usize].tet as usize]
+    /// Number of pairs.
+    pub fn pairs(&self) -> usize {
+        self.pairs
+    }
+
+    /// All facets, ascending.
+    pub fn facets(&self) -> impl Iterator<Item = Facet<'_>> {
+        (0..self.start.len().saturating_sub(1)).flat_map(|block| self.facets_of(BlockId(block as u32)))
+    }
+
+    /// The facets of a block, ascending.
+    #[inline]
+    pub fn facets_of(&self, block: BlockId) -> impl Iterator<Item = Facet<'_>> {
+        self.facets_within(block, self.numbers_of(block))
+    }
+
+    /// Those of them with these numbers.
+    #[inline]
+    pub(crate) fn facets_within(
+        &self,
+        owner: BlockId,
+        numbers: Range<u32>,
+    ) -> impl Iterator<Item = Facet<'_>> {
+        let (first, mut number) = (self.start[owner.index()], numbers.start);
+        let mut rest =
+            &self.lists.of(owner)[(numbers.start - first) as usize..(numbers.end - first) as usize];
+        std::iter::from_fn(move || {
+            let run = rest.first()?;
+            let same = |next: &&PairRun| {
+                next.triangle == run.triangle && next.neighbours == run.neighbours && !self.split_by_element
+            };
+            let count = 1 + rest[1..].iter().take_while(same).count();
+            let (runs, others) = rest.split_at(count);
+            let (a, b) = self.neighbours[run.neighbours as usize];
+            let (triangle, neighbours) = (run.triangle, run.neighbours);
+            let target = if a == owner { b } else { a };
+            let facet = Facet { number, triangle, owner, target, neighbours, runs };
+            (rest, number) = (others, number + count as u32);
+            Some(facet)
+        })
+    }
+
+    /// The numbers of the facets of a block; a facet of many tetrahedra may take more than one.
+    #[inline]
+    pub(crate) fn numbers_of(&self, block: BlockId) -> Range<u32> {
+        self.start[block.index()]..self.start[block.index() + 1]
+    }
+
+    /// Number of blocks.
+    pub(crate) fn blocks(&self) -> usize {
+        self.start.len().saturating_sub(1)
+    }
+
+    /// Place of a target tetrahedron in `tets`.
+    #[inline]
+    pub fn slot_of(&self, tet: TetId) -> u32 {
+        self.slot_of[tet.index()].load(Ordering::Relaxed)
     }
 
     /// Name of what finds the pairs.
@@ -121,10 +188,11 @@ impl Candidates {
         if self.neighbour_list.renewed().is_empty() && !begins {
             return false;
         }
+        self.lists.by_element = self.split_by_element;
         let scene = self.neighbour_list.scene(input.blocks, hulls);
-        let changed = self.broad_phase.find_pairs(&scene, self.neighbour_list.renewed(), &mut self.found);
+        let changed = self.broad_phase.find_pairs(&scene, self.neighbour_list.renewed(), &mut self.lists);
         if changed || begins {
-            self.arrange(input);
+            self.arrange(input.blocks);
             self.neighbour_list.note_neighbours(&self.neighbours);
         }
         changed || begins
@@ -132,125 +200,89 @@ impl Candidates {
 
     /// Memory on the heap [B]; it grows while a scene is new, and no longer.
     pub fn heap_bytes(&self) -> usize {
-        let pairs = self.pairs.capacity() * size_of::<Pair>() + self.facets.capacity() * size_of::<Facet>();
-        let tets = (self.tets.capacity() + self.sorted.capacity()) * size_of::<TetId>()
-            + self.order.capacity() * size_of::<[u8; 4]>();
-        let found = self.found.capacity() * size_of::<(TriangleId, TetId)>();
-        let overlaps = self.overlaps.capacity() * size_of::<(TetId, BlockId)>();
-        let places = (self.slot_of.capacity() + self.overlap_start.capacity()) * size_of::<u32>()
-            + (self.place_of.capacity() + self.neighbours.capacity()) * size_of::<(BlockId, u32)>();
-        pairs
-            + tets
-            + found
-            + overlaps
-            + places
-            + self.neighbour_list.heap_bytes()
-            + self.broad_phase.heap_bytes()
+        let tets = self.tets.capacity() * size_of::<TetId>() + self.order.capacity() * size_of::<[u8; 4]>();
+        let places = (self.slot_of.capacity() + self.seen_with.capacity()) * size_of::<u32>()
+            + (self.start.capacity() + self.neighbour_start.capacity()) * size_of::<u32>()
+            + self.neighbours.capacity() * size_of::<(BlockId, BlockId)>();
+        let lists = self.lists.heap_bytes() + self.neighbour_list.heap_bytes();
+        tets + places + lists + self.broad_phase.heap_bytes()
     }
 
     /// Numbers what the pairs share.
-    fn arrange(&mut self, input: &ContactInput) {
+    fn arrange(&mut self, blocks: &BlockSet) {
         self.version += 1;
-        let (tet_block, triangle_block) = (&input.blocks.tet_block, &input.blocks.triangle_block);
-        // Blocks are contiguous in tetrahedra, so the pairs are in the order of target blocks, too.
-        self.number_tets(input);
-        if self.numbers_overlaps {
-            self.number_overlaps(triangle_block);
-        }
-        let mut pairs = std::mem::take(&mut self.pairs);
-        pairs.clear();
-        make_room(&mut pairs, self.found.len());
-        let pair_of = |found: &(TriangleId, TetId)| Pair {
-            triangle: found.0,
-            tet: self.slot_of[found.1.index()],
-            overlap: if self.numbers_overlaps { self.overlap_of(found, triangle_block) } else { 0 },
-        };
-        self.found.par_iter().with_min_len(GRAIN_PAIRS).map(pair_of).collect_into_vec(&mut pairs);
-        self.pairs = pairs;
-        self.facets.clear();
-        for (i, &(triangle, tet_id)) in self.found.iter().enumerate() {
-            let target = tet_block[tet_id.index()];
-            match self.facets.last_mut() {
-                Some(last)
-                    if last.triangle == triangle && last.target == target && !self.split_by_element =>
-                {
-                    last.pairs.end = i + 1
-                }
-                _ => self.facets.push(Facet { triangle, target, pairs: i..i + 1, neighbours: 0 }),
-            }
-        }
-        self.list_neighbours(input.blocks);
+        self.start.clear();
+        self.start.push(0);
+        let mut end = 0;
+        self.start.extend(self.lists.each().iter().map(|runs| {
+            end += runs.len() as u32;
+            end
+        }));
+        self.number_tets(blocks);
+        self.list_neighbours(blocks);
     }
 
     /// The distinct pairs of blocks, and the place of each facet's.
     fn list_neighbours(&mut self, blocks: &BlockSet) {
-        let Self { facets, neighbours, place_of, .. } = self;
-        let owner = |facet: &Facet| blocks.triangle_block[facet.triangle.index()];
-        let pair_of = |a: BlockId, b: BlockId| (a.min(b), a.max(b));
-        // Facets of a block follow each other, and most targets were seen with its last triangle.
-        let forget = |place_of: &mut Vec<(BlockId, u32)>| {
-            place_of.clear();
-            place_of.resize(blocks.len(), (BlockId(u32::MAX), 0));
-        };
+        let Self { lists, neighbours, neighbour_start, seen_with, .. } = self;
+        let target_of = |run: &PairRun| blocks.tet_block[run.first().index()];
         neighbours.clear();
-        forget(place_of);
-        for facet in facets.iter() {
-            let (own, seen) = (owner(facet), &mut place_of[facet.target.index()].0);
-            if std::mem::replace(seen, own) != own {
-                neighbours.push(pair_of(own, facet.target));
+        seen_with.clear();
+        seen_with.resize(blocks.len(), BlockId(u32::MAX));
+        for (own, runs) in blocks.ids().zip(lists.each()) {
+            for target in runs.iter().map(target_of) {
+                if std::mem::replace(&mut seen_with[target.index()], own) != own {
+                    neighbours.push((own.min(target), own.max(target)));
+                }
             }
         }
-        neighbours.sort_unstable();
+        neighbours.par_sort_unstable();
         neighbours.dedup();
-        forget(place_of);
-        for facet in facets.iter_mut() {
-            let (own, (seen, place)) = (owner(facet), &mut place_of[facet.target.index()]);
-            if std::mem::replace(seen, own) != own {
-                let found = neighbours.binary_search(&pair_of(own, facet.target));
-                *place = found.expect("listed above") as u32;
+        neighbour_start.clear();
+        neighbour_start.resize(blocks.len() + 1, 0);
+        neighbours.iter().for_each(|(a, _)| neighbour_start[a.index() + 1] += 1);
+        (0..blocks.len()).for_each(|b| neighbour_start[b + 1] += neighbour_start[b]);
+        let (neighbours, starts) = (&*neighbours, &*neighbour_start);
+        let place = |(own, runs): (usize, &mut Vec<PairRun>)| {
+            let own = BlockId(own as u32);
+            for run in runs {
+                let target = target_of(run);
+                let (a, b) = (own.min(target), own.max(target));
+                let [start, end] = [0, 1].map(|next| starts[a.index() + next] as usize);
+                let found = neighbours[start..end].partition_point(|pair| pair.1 < b);
+                run.neighbours = (start + found) as u32;
             }
-            facet.neighbours = *place;
-        }
-    }
-
-    fn overlap_of(&self, (triangle, tet): &(TriangleId, TetId), triangle_block: &[BlockId]) -> u32 {
-        let block = triangle_block[triangle.index()].index();
-        let first = self.overlap_start[block] as usize;
-        let end = self.overlap_start.get(block + 1).map_or(self.overlaps.len(), |&e| e as usize);
-        (first + self.overlaps[first..end].partition_point(|o| o.0 < *tet)) as u32
+        };
+        lists.each_mut().par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(place);
     }
 
     /// The distinct tetrahedra, ascending, and the place of each.
-    fn number_tets(&mut self, input: &ContactInput) {
+    fn number_tets(&mut self, blocks: &BlockSet) {
         self.slot_of.clear();
-        self.slot_of.resize(input.blocks.tets.len(), u32::MAX);
-        self.found.iter().for_each(|pair| self.slot_of[pair.1.index()] = 0);
+        self.slot_of.resize_with(blocks.tets.len(), || AtomicU32::new(u32::MAX));
+        let slot_of = &self.slot_of;
+        let mark = |runs: &Vec<PairRun>| {
+            let mut pairs = 0;
+            for run in runs {
+                run.tets().for_each(|tet| slot_of[tet.index()].store(0, Ordering::Relaxed));
+                pairs += run.pairs();
+            }
+            pairs
+        };
+        self.pairs = self.lists.each().par_iter().with_min_len(GRAIN_BLOCKS).map(mark).sum();
         self.tets.clear();
-        for (tet, slot) in self.slot_of.iter_mut().enumerate().filter(|(_, slot)| **slot == 0) {
-            *slot = self.tets.len() as u32;
-            self.tets.push(TetId(tet as u32));
+        for (tet, slot) in self.slot_of.iter_mut().enumerate() {
+            let slot = slot.get_mut();
+            if *slot == 0 {
+                *slot = self.tets.len() as u32;
+                self.tets.push(TetId(tet as u32));
+            }
         }
         self.order.clear();
         self.order.extend(self.tets.iter().map(|tet| {
             let mut order = [0, 1, 2, 3];
-            order.sort_unstable_by_key(|&i: &u8| input.blocks.tets[tet.index()][usize::from(i)]);
+            order.sort_unstable_by_key(|&i: &u8| blocks.tets[tet.index()][usize::from(i)]);
             order
         }));
-    }
-
-    /// The distinct (tetrahedron, contactor block), block by block.
-    fn number_overlaps(&mut self, triangle_block: &[BlockId]) {
-        self.overlaps.clear();
-        self.overlap_start.clear();
-        let block_of = |pair: &(TriangleId, TetId)| triangle_block[pair.0.index()];
-        for run in self.found.chunk_by(|a, b| block_of(a) == block_of(b)) {
-            let block = block_of(&run[0]);
-            self.overlap_start.resize(block.index() + 1, self.overlaps.len() as u32);
-            self.sorted.clear();
-            self.sorted.extend(run.iter().map(|pair| pair.1));
-            self.sorted.sort_unstable();
-            self.sorted.dedup();
-            self.overlaps.extend(self.sorted.iter().map(|&tet| (tet, block)));
-        }
     }
 }

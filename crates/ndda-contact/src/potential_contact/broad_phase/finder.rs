@@ -6,6 +6,7 @@ use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, TriangleId, Vec3};
 use crate::affine::convex_target::ConvexBlocks;
 use crate::affine::face::Face;
 use crate::affine::face_contactor::FaceContactor;
+use crate::broad_phase::pair_lists::PairLists;
 
 /// Blocks of more nodes are compared by their elements only.
 pub(crate) const FEW_NODES: usize = 64;
@@ -174,13 +175,8 @@ pub trait BroadPhase: Send + Sync {
     fn name(&self) -> &'static str;
 
     /// Brings `pairs`, the answer to the last call, up to date after the blocks `renewed` (ascending; in the first
-    /// call all of them) were given other positions or margins, and says whether they changed. Sorted.
-    fn find_pairs(
-        &mut self,
-        scene: &BroadScene,
-        renewed: &[BlockId],
-        pairs: &mut Vec<(TriangleId, TetId)>,
-    ) -> bool;
+    /// call all of them) were given other positions or margins, and says whether they changed.
+    fn find_pairs(&mut self, scene: &BroadScene, renewed: &[BlockId], pairs: &mut PairLists) -> bool;
 
     /// Memory on the heap [B].
     fn heap_bytes(&self) -> usize {
@@ -197,24 +193,19 @@ impl BroadPhase for AllPairs {
         "all pairs"
     }
 
-    fn find_pairs(
-        &mut self,
-        scene: &BroadScene,
-        _renewed: &[BlockId],
-        pairs: &mut Vec<(TriangleId, TetId)>,
-    ) -> bool {
-        pairs.clear();
-        let blocks = scene.blocks;
+    fn find_pairs(&mut self, scene: &BroadScene, _renewed: &[BlockId], pairs: &mut PairLists) -> bool {
+        let (blocks, mut all) = (scene.blocks, Vec::new());
         let tet_boxes: Vec<Aabb> = (0..blocks.tets.len()).map(|tet| scene.tet_box(tet)).collect();
         for i in 0..blocks.triangles.len() {
             for (j, tet) in tet_boxes.iter().enumerate() {
                 let (own, target) = (blocks.triangle_block[i], blocks.tet_block[j]);
                 let Some(contactor) = scene.contactor_box(i, target) else { continue };
                 if contactor.touches(tet) && !(own == target && scene.are_neighbours(i, j)) {
-                    pairs.push((TriangleId(i as u32), TetId(j as u32)));
+                    all.push((TriangleId(i as u32), TetId(j as u32)));
                 }
             }
         }
+        pairs.set(blocks, &all);
         true
     }
 }

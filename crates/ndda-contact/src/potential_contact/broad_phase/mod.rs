@@ -5,8 +5,10 @@ pub(crate) mod bvh;
 pub(crate) mod candidates;
 pub(crate) mod finder;
 pub(crate) mod neighbour_list;
+pub(crate) mod pair_lists;
 pub mod testing;
 
 pub use bvh::TreeBroadPhase;
-pub use candidates::{Candidates, Facet, Pair};
+pub use candidates::{Candidates, Facet};
 pub use finder::{AllPairs, BroadPhase, BroadScene};
+pub use pair_lists::{PairLists, PairRun};

@@ -5,6 +5,7 @@ use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 use crate::affine::convex_target::ConvexBlocks;
 use crate::affine::surface::BlockFaces;
 use crate::broad_phase::finder::{AllPairs, BroadPhase, BroadScene};
+use crate::broad_phase::pair_lists::PairLists;
 use crate::integration::clip::{Form, Polygon};
 use crate::integration::tet_frame::TetFrame;
 use crate::testing::{Random, test_box, test_horseshoe, test_set};
@@ -46,11 +47,12 @@ pub fn check_broad_phase<P: BroadPhase>(new: impl Fn() -> P) -> BroadCounts {
             renewed: blocks.ids().collect(),
             hulls: random.hulls(&blocks),
         };
-        let (mut found, mut before) = (Vec::new(), Vec::new());
+        let (mut lists, mut before) = (PairLists::default(), Vec::new());
         for step in 0..STEPS {
             place.renew(&mut random, &blocks);
             let input = place.scene(&blocks);
-            let changed = phase.find_pairs(&input, &place.renewed, &mut found);
+            let changed = phase.find_pairs(&input, &place.renewed, &mut lists);
+            let found: Vec<_> = lists.pairs().collect();
             assert!(step == 0 || changed == (found != before), "what changed is not what was said to");
             before.clone_from(&found);
             // Until a node has moved by the margin whatever overlaps must be in the list.
@@ -64,11 +66,15 @@ pub fn check_broad_phase<P: BroadPhase>(new: impl Fn() -> P) -> BroadCounts {
 
 fn compare(input: &BroadScene, moved: &[Vec3], found: &[(TriangleId, TetId)], counts: &mut BroadCounts) {
     let every = || input.blocks.ids().collect::<Vec<BlockId>>();
-    let (mut all, mut touching) = (Vec::new(), Vec::new());
-    AllPairs.find_pairs(input, &every(), &mut all);
+    let listed = |scene: &BroadScene| {
+        let mut lists = PairLists::default();
+        AllPairs.find_pairs(scene, &every(), &mut lists);
+        lists.pairs().collect::<Vec<_>>()
+    };
+    let all = listed(input);
     let none = vec![0.0; input.blocks.len()];
     let tight = BroadScene { position: moved, margin_m: &none, ..*input };
-    AllPairs.find_pairs(&tight, &every(), &mut touching);
+    let touching = listed(&tight);
     assert!(found.is_sorted_by(|a, b| a < b), "a pair comes twice, or pairs are not in order");
     assert!(found.iter().all(|pair| all.binary_search(pair).is_ok()), "a pair out of reach");
     counts.lists += 1;

@@ -17,7 +17,6 @@
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
 
-use crate::broad_phase::candidates::Candidates;
 use crate::friction::fracture::Fracture;
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, facet_basis};
 use crate::friction::law_table::{FrictionLawTable, Memory};
@@ -49,7 +48,7 @@ fn key(blocks: &BlockSet, memory: Memory, bond: &Bond) -> Key {
 /// break.
 pub(crate) fn break_overloaded(
     joints: &FrictionLawTable,
-    (candidates, integrals): (&Candidates, &Integrals),
+    integrals: &Integrals,
     penalty_of_facet: &[f64],
     input: &ContactInput,
     (history, scratch): (&mut ContactHistory, &mut Vec<f64>),
@@ -65,8 +64,9 @@ pub(crate) fn break_overloaded(
         }
         let wanted = key(blocks, joints.memory, bond);
         let place = touching.binary_search_by_key(&wanted, |touch| {
-            let first = candidates.facets[touch.facet as usize].pairs.start as u32;
-            (touch.triangle, touch.target, wanted.2.map(|_| candidates.tet_of(first)))
+            // With memory per element, all hits of a facet are in one.
+            let element = wanted.2.map(|_| integrals.overlaps_of(touch)[0].tet);
+            (touch.triangle, touch.target, element)
         });
         let pressed_n =
             place.map_or(0.0, |t| penalty_of_facet[t] * integrals.sums_of(&touching[t]).pressure.max(0.0));

@@ -20,26 +20,24 @@ pub(crate) fn form(
     input: &ContactInput,
     bonds: &mut Vec<Bond>,
 ) {
-    let holds = |facet: &&Facet| {
+    let holds = |facet: &Facet| {
         joints.law(input.blocks, facet.triangle, facet.target).is_some_and(|law| law.holds_together())
     };
-    let facets = candidates.facets.iter().filter(holds);
+    let facets = candidates.facets().filter(holds);
     for facet in facets {
-        let Some(patch) = Patch::of(facet, (candidates, hulls), input) else { continue };
+        let Some(patch) = Patch::of(&facet, hulls, input) else { continue };
         let law = joints.law(input.blocks, facet.triangle, facet.target);
         if law.is_some_and(|law| law.fracture().is_some()) {
-            bonds.extend(
-                patch.points().into_iter().filter_map(|at| patch.bond(at, 1.0 / 3.0, candidates, input)),
-            );
+            bonds.extend(patch.points().into_iter().filter_map(|at| patch.bond(at, 1.0 / 3.0, input)));
         } else {
-            bonds.extend(patch.bond(patch.center, 1.0, candidates, input));
+            bonds.extend(patch.bond(patch.center, 1.0, input));
         }
     }
 }
 
 /// The area where a facet touches its target.
 struct Patch<'a> {
-    facet: &'a Facet,
+    facet: &'a Facet<'a>,
     /// Over the area of the facet.
     share: f64,
     /// Second and third barycentric coordinate of its centre.
@@ -50,16 +48,12 @@ struct Patch<'a> {
 
 impl<'a> Patch<'a> {
     /// None where a facet does not touch.
-    fn of(
-        facet: &'a Facet,
-        (candidates, hulls): (&Candidates, &ConvexBlocks),
-        input: &ContactInput,
-    ) -> Option<Self> {
+    fn of(facet: &'a Facet, hulls: &ConvexBlocks, input: &ContactInput) -> Option<Self> {
         let corners = input.blocks.triangle_corners(facet.triangle, input.position);
         let normal = triangle_area_vector(&corners).normalize();
         let (mut share, mut moment, mut second) = (0.0, [0.0; 2], [0.0; 3]);
-        for pair in facet.pairs.clone() {
-            let frame = bond::frame_of(candidates.tet_of(pair as u32), input);
+        for tet in facet.tets() {
+            let frame = bond::frame_of(tet, input);
             let into = TOUCHING * frame.volume_m3.cbrt() * normal;
             let shifted = corners.map(|x| x + into);
             let mut polygon = Polygon::all_of(&Outline::TRIANGLE);
@@ -108,16 +102,13 @@ impl<'a> Patch<'a> {
     }
 
     /// A bond at a point, of a part of the area, with the element that the point is deepest in.
-    fn bond(&self, at: [f64; 2], part: f64, candidates: &Candidates, input: &ContactInput) -> Option<Bond> {
+    fn bond(&self, at: [f64; 2], part: f64, input: &ContactInput) -> Option<Bond> {
         let corners = input.blocks.triangle_corners(self.facet.triangle, input.position);
         let weights = [1.0 - at[0] - at[1], at[0], at[1]];
         let point = bond::mean(&corners, &weights);
-        let lambda_in = |pair: usize| {
-            let tet = candidates.tet_of(pair as u32);
-            (tet, bond::frame_of(tet, input).lambda_at(&point))
-        };
+        let lambda_in = |tet| (tet, bond::frame_of(tet, input).lambda_at(&point));
         let least = |lambda: &[f64; 4]| lambda.iter().copied().fold(f64::INFINITY, f64::min);
-        let pairs = self.facet.pairs.clone().map(lambda_in);
+        let pairs = self.facet.tets().map(lambda_in);
         let deepest = pairs.max_by(|a, b| least(&a.1).total_cmp(&least(&b.1)));
         let (facet, share) = (self.facet.triangle, part * self.share);
         deepest.map(|(tet, lambda)| Bond { facet, tet, weights, lambda, share, part, damage: 0.0 })

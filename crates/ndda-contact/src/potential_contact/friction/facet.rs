@@ -1,9 +1,8 @@
 //! One facet: normal force, slip and friction.
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{BlockSet, TetId, Vec3};
+use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 
-use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::friction::bond;
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, facet_basis, length};
 use crate::friction::law_table::{FrictionLawTable, Memory};
@@ -34,7 +33,7 @@ pub struct FacetForce {
     pub touches: bool,
     /// Centre of pressure [m].
     pub center: Vec3,
-    /// In [`Candidates::facets`].
+    /// Its number among [`Candidates::facets`](crate::broad_phase::Candidates::facets).
     pub facet: u32,
 }
 
@@ -43,8 +42,6 @@ pub struct FacetForce {
 pub(crate) struct FacetScene<'a> {
     /// Blocks and their motion.
     pub input: &'a ContactInput<'a>,
-    /// Pairs and facets.
-    pub candidates: &'a Candidates,
     /// Friction, if there is any.
     pub joints: Option<&'a FrictionLawTable>,
     /// Memory of the last step.
@@ -88,13 +85,12 @@ impl FacetScene<'_> {
     ) {
         let law = joints.law(self.input.blocks, touch.triangle, touch.target);
         let Some(law) = law.filter(|law| !law.acts_on_faces()) else { return };
-        let facet = &self.candidates.facets[touch.facet as usize];
-        let corners = self.input.blocks.triangle_corners(facet.triangle, self.input.position);
+        let corners = self.input.blocks.triangle_corners(touch.triangle, self.input.position);
         let basis = facet_basis(&corners, normal);
         let state = &mut state[..law.state_len()];
-        let (mut memory, last_area_m2) = self.remembered(facet, sums, (law, state));
+        let key = (touch.triangle, touch.target, self.element_of(hits));
+        let (mut memory, last_area_m2) = self.remembered(key, sums, (law, state));
         let bonds = &self.history.bonds;
-        let key = (facet.triangle, facet.target, self.element_of(facet));
         let bonded = !bonds.is_empty();
         let broken =
             bonded.then(|| bond::broken_part(bonds, self.input.blocks, joints.memory, key)).flatten();
@@ -145,12 +141,11 @@ impl FacetScene<'_> {
     /// History of the facet on its target, and the area of the last step; none when they did not touch before.
     fn remembered<'a>(
         &self,
-        facet: &Facet,
+        wanted: (TriangleId, BlockId, Option<TetId>),
         sums: &FacetMoments,
         (law, state): (&dyn FrictionLaw, &'a mut [f64]),
     ) -> (ShearMemory<'a>, f64) {
         let key = |memory: &FacetMemory| (memory.facet, memory.target, memory.element);
-        let wanted = (facet.triangle, facet.target, self.element_of(facet));
         match self.history.facets.binary_search_by_key(&wanted, key) {
             Ok(place) => {
                 let FacetMemory { shear_n, broken, area_m2, .. } = self.history.facets[place];
@@ -166,10 +161,10 @@ impl FacetScene<'_> {
         }
     }
 
-    /// The element that memory belongs to, if it belongs to one.
-    pub(crate) fn element_of(&self, facet: &Facet) -> Option<TetId> {
+    /// The element that memory belongs to, if it belongs to one: then all hits of a facet are in that.
+    pub(crate) fn element_of(&self, hits: &[OverlapPair]) -> Option<TetId> {
         let per_element = self.joints.is_some_and(|joints| joints.memory == Memory::Element);
-        per_element.then(|| self.candidates.tet_of(facet.pairs.start as u32))
+        per_element.then(|| hits[0].tet)
     }
 }
 

@@ -4,26 +4,29 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{TetId, TriangleId, Vec3};
+use ndda_mesh::{BlockId, TetId, TriangleId, Vec3};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 use crate::affine::half_spaces::{HalfSpaces, Planes};
-use crate::broad_phase::candidates::{Facet, Pair};
+use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::broad_phase::finder::FEW_NODES;
 use crate::integration::clip::Outline;
 use crate::integration::function_moments::{Placed, add_function};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
 use crate::integration::pair_moments::{PairMoments, PsiRange};
-use crate::integration::pair_report::{OverlapReport, list_past_centroid};
+use crate::integration::pair_report::OverlapReport;
 use crate::integration::queue::RegionQueue;
 use crate::integration::region::{Pieces, Region};
 use crate::integration::scene::{Scene, are_on_one_side};
 use crate::integration::tet_frame::TetFrame;
 use crate::potential::contact_potential::PotentialField;
 
-/// Pairs of a chunk: one task for a thread.
+/// Pairs of a chunk: one task for a thread. Where there are many, chunks are larger, since each has memory of its own, most of which is not used.
 const CHUNK_PAIRS: usize = 512;
+const MOST_CHUNK_PAIRS: usize = 4096;
+/// Chunks from which on they grow.
+const MANY_CHUNKS: usize = 1024;
 
 /// Most chunks that a thread takes at a time: with more, one waits for the other at the end.
 const MOST_CHUNKS: usize = 8;
@@ -31,8 +34,10 @@ const MOST_CHUNKS: usize = 8;
 /// A run of facets and the hits among their pairs.
 #[derive(Default)]
 pub(crate) struct Chunk {
-    /// Facets of this chunk, in [`Candidates::facets`].
-    facets: Range<usize>,
+    /// Numbers of its facets, the block of the first, and how many pairs they have.
+    facets: Range<u32>,
+    first: BlockId,
+    pairs: usize,
     /// Hits in the order of pairs.
     pub overlaps: Vec<OverlapPair>,
     /// Its number.
@@ -42,8 +47,6 @@ pub(crate) struct Chunk {
     sums: Vec<FacetMoments>,
     /// Report on the overlapping pairs.
     pub report: OverlapReport,
-    /// Pairs of hits whose triangle has passed the tetrahedron's centroid, in their order, where φ is largest there.
-    pub past: Vec<u32>,
 }
 
 /// A contactor's triangle.
@@ -66,9 +69,9 @@ impl Triangle {
 
 /// A pair that may overlap.
 struct PendingPair {
-    /// In [`Candidates::pairs`], and its tetrahedron.
-    pair: u32,
     tet: TetId,
+    /// Place of the tetrahedron in [`Candidates::tets`](crate::broad_phase::Candidates::tets).
+    slot: u32,
     /// λ_b of the target at the corners of the contactor's triangle, as `[b][a]`.
     lambda: [[f64; 3]; 4],
     /// Range of ψ where the contactor is a face.
@@ -88,40 +91,51 @@ struct Scratch {
 
 impl Chunk {
     fn integrate(&mut self, arch: Arch, scene: &Scene, scratch: &mut Scratch) {
-        let facets = &scene.candidates.facets[self.facets.clone()];
-        let pairs = facets[facets.len() - 1].pairs.end - facets[0].pairs.start;
         self.overlaps.clear();
         // A contact that closes further rarely requires more than a quarter.
-        self.overlaps.reserve(pairs / 4);
+        self.overlaps.reserve(self.pairs / 4);
         self.touching.clear();
-        self.touching.reserve(facets.len());
-        self.sums.reserve(facets.len());
-        scratch.make_room(pairs);
-        let (mut last, mut triangle) = (None, Triangle::default());
-        for (k, facet) in facets.iter().enumerate() {
+        self.touching.reserve(self.facets.len());
+        self.sums.reserve(self.facets.len());
+        scratch.make_room(self.pairs);
+        let (mut block, mut at) = (self.first, self.facets.start);
+        while at < self.facets.end {
+            let end = scene.candidates.numbers_of(block).end.min(self.facets.end);
+            if scene.hulls.may_touch(block) {
+                self.look_at(arch, scene, scratch, (block, at..end));
+            }
+            (block, at) = (BlockId(block.0 + 1), end);
+        }
+        let Scratch { batches, seen, .. } = scratch;
+        batches.finish(arch, |part| seen[part.pair as usize].moments.add_region(part));
+        self.take(scene, seen);
+    }
+
+    /// Finds the regions of facets of one block.
+    fn look_at(
+        &mut self,
+        arch: Arch,
+        scene: &Scene,
+        scratch: &mut Scratch,
+        (owner, numbers): (BlockId, Range<u32>),
+    ) {
+        let (mut last, mut corners) = (None, Triangle::default());
+        for facet in scene.candidates.facets_within(owner, numbers) {
             if scene.hulls.are_apart(facet.neighbours) {
                 continue;
             }
             // Facets of one triangle follow each other.
             if last != Some(facet.triangle) {
-                (last, triangle) = (Some(facet.triangle), Triangle::new(scene, facet.triangle));
+                (last, corners) = (Some(facet.triangle), Triangle::new(scene, facet.triangle));
             }
             let first = scratch.seen.len() as u32;
-            scratch.add_facet(arch, scene, facet, &triangle);
+            scratch.add_facet(arch, scene, &facet, &corners);
             let overlaps = [first, scratch.seen.len() as u32];
             if overlaps[0] < overlaps[1] {
                 let (chunk, place) = (self.number, self.touching.len() as u32);
-                let Facet { triangle, target, .. } = *facet;
-                let owner = scene.blocks.triangle_block[triangle.index()];
-                let facet = (self.facets.start + k) as u32;
+                let Facet { number: facet, triangle, target, .. } = facet;
                 self.touching.push(ActiveFacet { facet, triangle, owner, target, chunk, overlaps, place });
             }
-        }
-        let Scratch { batches, seen, .. } = scratch;
-        batches.finish(arch, |part| seen[part.pair as usize].moments.add_region(part));
-        self.take(scene, seen);
-        if scene.field.is_element() {
-            list_past_centroid(&self.overlaps, scene, &mut self.past);
         }
     }
 
@@ -134,12 +148,12 @@ impl Chunk {
             let (first, mut sum) = (overlaps.len() as u32, FacetMoments::default());
             for seen in &mut seen[touch.overlaps[0] as usize..touch.overlaps[1] as usize] {
                 seen.drop_rounding();
-                let PendingPair { pair, tet, lambda, moments, .. } = seen;
+                let PendingPair { tet, slot, lambda, moments, .. } = seen;
                 if moments.area != 0.0 {
                     let on_target = moments.on_target(lambda);
                     let overlap =
-                        OverlapPair { pair: *pair, tet: *tet, pressure: moments.pressure, on_target };
-                    report.add(&overlap, moments.depth, scene);
+                        OverlapPair { tet: *tet, slot: *slot, pressure: moments.pressure, on_target };
+                    report.add(touch.triangle, &overlap, moments.depth, scene);
                     sum.add(moments);
                     overlaps.push(overlap);
                 }
@@ -178,19 +192,18 @@ impl Scratch {
             return;
         }
         let pieces = !scene.field.is_element();
-        for index in facet.pairs.clone() {
-            let pair: &Pair = &scene.candidates.pairs[index];
-            let frame = &scene.frames[pair.tet as usize];
+        for tet in facet.tets() {
+            let slot = scene.candidates.slot_of(tet);
+            let frame = &scene.frames[slot as usize];
             let in_plane = || Some(frame.lambda(corners)).filter(|l| lies_in_a_plane_of(frame, l, normal));
             let inside = frame.lambda_inside(corners);
             let Some(lambda) = inside.or_else(|| if pieces { in_plane() } else { None }) else { continue };
-            let tet = scene.candidates.tets[pair.tet as usize];
             if scene.tet_is_on_one_side(tet, &corners[0], normal) {
                 continue;
             }
             let at = self.seen.len() as u32;
             let moments = PairMoments::default();
-            self.seen.push(PendingPair { pair: index as u32, tet, lambda, range: None, moments });
+            self.seen.push(PendingPair { tet, slot, lambda, range: None, moments });
             self.add_regions(arch, scene, at, &Placed { tet, frame, lambda: &lambda, normal, area: *area });
         }
     }
@@ -213,11 +226,10 @@ impl Scratch {
         {
             return;
         }
-        let (at, index) = (self.seen.len() as u32, facet.pairs.start);
-        let slot = scene.candidates.pairs[index].tet as usize;
-        let (pair, tet) = (index as u32, scene.candidates.tets[slot]);
-        let (lambda, range) = (scene.frames[slot].lambda(corners), contactor.map(|face| face.range));
-        self.seen.push(PendingPair { pair, tet, lambda, range, moments: PairMoments::default() });
+        let (at, tet) = (self.seen.len() as u32, facet.first());
+        let slot = scene.candidates.slot_of(tet);
+        let (lambda, range) = (scene.frames[slot as usize].lambda(corners), contactor.map(|face| face.range));
+        self.seen.push(PendingPair { tet, slot, lambda, range, moments: PairMoments::default() });
         let Self { sides, region, batches, .. } = self;
         arch.dispatch(PushRegions { sides, region, batches, outline, arch, at, area_m2: *area });
     }
@@ -331,7 +343,7 @@ impl Integrals {
     pub fn update(&mut self, scene: &Scene) {
         let list = Some(scene.candidates.version);
         if self.list != list {
-            self.divide(&scene.candidates.facets);
+            self.divide(scene.candidates);
             self.list = list;
         }
         let (arch, used) = (self.arch, self.used);
@@ -351,20 +363,26 @@ impl Integrals {
         used.iter().for_each(|chunk| self.touching.extend_from_slice(&chunk.touching));
     }
 
-    fn divide(&mut self, facets: &[Facet]) {
-        let (mut used, mut start) = (0, 0);
-        while start < facets.len() {
-            let first_pair = facets[start].pairs.start;
-            let more = facets[start..].iter().take_while(|f| f.pairs.end - first_pair <= CHUNK_PAIRS).count();
-            let end = start + more.max(1);
-            if used == self.chunks.len() {
-                self.chunks.push(Chunk::default());
+    fn divide(&mut self, candidates: &Candidates) {
+        let most = (candidates.pairs() / MANY_CHUNKS).clamp(CHUNK_PAIRS, MOST_CHUNK_PAIRS);
+        self.used = 0;
+        let mut pairs = most;
+        for facet in candidates.facets() {
+            let more = facet.pairs();
+            if pairs + more > most {
+                if self.used == self.chunks.len() {
+                    self.chunks.push(Chunk::default());
+                }
+                let chunk = &mut self.chunks[self.used];
+                (chunk.facets, chunk.first) = (facet.number..facet.number, facet.owner);
+                chunk.number = self.used as u32;
+                self.used += 1;
+                pairs = 0;
             }
-            (self.chunks[used].facets, self.chunks[used].number) = (start..end, used as u32);
-            used += 1;
-            start = end;
+            pairs += more;
+            let chunk = &mut self.chunks[self.used - 1];
+            (chunk.facets.end, chunk.pairs) = (facet.number + facet.numbers(), pairs);
         }
-        self.used = used;
     }
 
     /// The chunks in use, in the order of facets.

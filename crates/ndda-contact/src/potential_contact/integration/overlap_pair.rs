@@ -7,10 +7,10 @@ use crate::integration::pair_moments::{OnTarget, PairMoments};
 /// A candidate pair that does overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OverlapPair {
-    /// Index in [`Candidates::pairs`].
-    pub pair: u32,
-    /// The pair's tetrahedron, to be had without looking for the pair.
+    /// Its tetrahedron.
     pub tet: TetId,
+    /// Place of that in [`Candidates::tets`](crate::broad_phase::Candidates::tets).
+    pub slot: u32,
     /// ∫ φ ψ_a dA [m²].
     pub pressure: [f64; 3],
     /// Reaction on the target's nodes.
@@ -52,7 +52,7 @@ impl FacetMoments {
 /// A facet that touches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ActiveFacet {
-    /// In [`Candidates::facets`].
+    /// Its number among [`Candidates::facets`](crate::broad_phase::Candidates::facets).
     pub facet: u32,
     /// Its triangle.
     pub triangle: TriangleId,

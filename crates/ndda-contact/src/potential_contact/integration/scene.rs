@@ -30,7 +30,7 @@ impl Scene<'_> {
     #[inline]
     pub(super) fn is_on_one_side(&self, facet: &Facet, point: &Vec3, normal: &Vec3) -> bool {
         let nodes = self.blocks.nodes_of(facet.target);
-        nodes.len() <= 4 * facet.pairs.len() && are_on_one_side(self.position[nodes].iter(), point, normal)
+        nodes.len() <= 4 * facet.pairs() && are_on_one_side(self.position[nodes].iter(), point, normal)
     }
 
     #[inline]
