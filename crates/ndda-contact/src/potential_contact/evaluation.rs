@@ -9,14 +9,15 @@ use crate::assembly::energy::OverlapParts;
 use crate::assembly::join_if::join_if;
 use crate::assembly::tangent::{self, Target};
 use crate::broad_phase::candidates::Candidates;
-use crate::contact_model::ContactModel;
 use crate::friction::facet::{FacetForce, FacetScene};
+use crate::friction::law_table::FrictionLawTable;
 use crate::integration::integrals::Integrals;
 use crate::integration::pair_moments::OnTarget;
 use crate::integration::scene::Scene;
 use crate::integration::tet_frame::TetFrame;
 use crate::model::{ContactError, ContactHistory, ContactInput, FacetMemory};
 use crate::pair_stiffness::PairStiffness;
+use crate::restitution::DampingScene;
 
 use crate::potential::contact_potential::{OverlapLaw, PotentialField};
 
@@ -49,7 +50,7 @@ impl PotentialContact {
             let by_triangle = self.joints.as_ref().is_some_and(|joints| !joints.act_on_faces_only());
             self.hulls.fit(input.blocks, &surfaces, phi_per_m, input.affine, by_triangle);
             self.candidates.numbers_overlaps = field.as_ref().is_ok_and(PotentialField::is_element);
-            if self.needs_bodies() {
+            if self.rubs_faces() {
                 self.faces.fit(input.blocks, &surfaces);
             }
             self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
@@ -89,6 +90,24 @@ impl PotentialContact {
             self.penalty_of_facet.push(self.penalty_pa * law.slope(overlap));
             self.curvature_of_facet.push(self.penalty_pa * law.curvature(overlap) * pressure_m2);
         }
+    }
+
+    /// Whether a friction law acts on whole faces.
+    pub(super) fn rubs_faces(&self) -> bool {
+        self.joints.as_ref().is_some_and(FrictionLawTable::act_on_faces)
+    }
+
+    /// Finds the damping of the step, where there is any.
+    pub(super) fn damp(&mut self, input: &ContactInput, history: &mut ContactHistory) {
+        let Some(damping) = self.damping.as_mut().filter(|_| !input.bodies.is_empty()) else { return };
+        let scene = DampingScene {
+            input,
+            integrals: &self.integrals,
+            hulls: &self.hulls,
+            penalty_pa: &self.penalty_of_facet,
+            curvature_pa_m: &self.curvature_of_facet,
+        };
+        damping.find(&scene, history);
     }
 
     /// Takes over what facets remember; what did not touch is forgotten.
