@@ -48,8 +48,8 @@ pub use contact_model::ContactModel;
 pub use plan::Part;
 
 pub use model::{
-    Body, BodyMemory, Bond, ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport, Deformation,
-    FaceMemory, FacetContact, FacetMemory, SpringSlip,
+    Body, BodyMemory, Bond, ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport,
+    Deformation, FaceMemory, FacetContact, FacetMemory, SpringSlip,
 };
 
 pub use pair_stiffness::PairStiffness;

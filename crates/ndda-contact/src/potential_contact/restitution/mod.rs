@@ -8,7 +8,10 @@
 //! all pairs stay. Forces beside the push, such as friction and those of supports, are those of the step before.
 
 mod law;
+mod memory;
 mod pair;
+mod scene;
+mod softness;
 mod table;
 
 use ndda_mesh::geometry::triangle_area_vector;
@@ -16,35 +19,18 @@ use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::assembly::couples::CoupleScene;
-use crate::friction::facet::{relative_motion, relative_velocity};
-use crate::friction::law::facet_basis;
-use crate::friction::patches::moments::second_moment_m2;
+use crate::friction::facet::relative_motion;
 use crate::integration::integrals::Integrals;
-use crate::integration::overlap_pair::ActiveFacet;
-use crate::model::{Body, BodyMemory, ContactHistory, ContactInput};
-use crate::restitution::pair::{Change, Pair, Point, four_points};
+use crate::model::{Body, ContactHistory, ContactInput};
+use crate::restitution::pair::{Change, Pair, Point};
 
+pub(crate) use scene::DampingScene;
 pub use table::RestitutionTable;
 
 /// Part of the largest force that the damping of a pair may still change by.
 const TOLERANCE: f64 = 1e-9;
 /// Sweeps over all pairs.
 const MOST_SWEEPS: usize = 50;
-
-/// Input of the damping of a step.
-#[derive(Clone, Copy)]
-pub(crate) struct DampingScene<'a> {
-    /// Blocks and their motion.
-    pub input: &'a ContactInput<'a>,
-    /// Integrals of the pairs.
-    pub integrals: &'a Integrals,
-    /// Blocks that are affine convex targets.
-    pub hulls: &'a ConvexBlocks,
-    /// k_n dw/dU of each touching facet [Pa].
-    pub penalty_pa: &'a [f64],
-    /// Stiffness per pressure of each touching facet, or none [Pa/m].
-    pub curvature_pa_m: &'a [f64],
-}
 
 /// Damping of the contacts of a step, and the memory that it is found in.
 pub(crate) struct ContactDamping {
@@ -55,6 +41,10 @@ pub(crate) struct ContactDamping {
     pairs: Vec<Pair>,
     /// Motion that the step brings to each block.
     changes: Vec<Change>,
+    /// For each block that deforms one vector per node in each column: its own motion, and how it answers to each of its pairs.
+    columns: Vec<Vec<Vec3>>,
+    /// Pairs of each block that have been looked at.
+    asked: Vec<usize>,
     /// Elastic push of each touching facet [Pa], and what is left of it.
     push_pa: Vec<Vec3>,
     left_pa: Vec<f64>,
@@ -74,6 +64,8 @@ impl ContactDamping {
             points: Vec::new(),
             pairs: Vec::new(),
             changes: Vec::new(),
+            columns: Vec::new(),
+            asked: Vec::new(),
             push_pa: Vec::new(),
             left_pa: Vec::new(),
             taken_pa: Vec::new(),
@@ -88,6 +80,7 @@ impl ContactDamping {
         self.predict(scene, history);
         self.list(scene);
         self.gather(scene);
+        self.ask_blocks(scene);
         self.solve(scene);
         self.spread(scene);
         self.remember(scene, history);
@@ -125,36 +118,6 @@ impl ContactDamping {
         }
     }
 
-    /// How each block moves in the step without damping: by the elastic pushes, and by all other forces of the last step, or by the loads in the
-    /// first.
-    fn predict(&mut self, scene: &DampingScene, history: &ContactHistory) {
-        let ContactInput { bodies, dt_s, .. } = *scene.input;
-        self.changes.clear();
-        self.changes.resize(bodies.len(), Change::default());
-        for (block, (change, body)) in self.changes.iter_mut().zip(bodies).enumerate() {
-            if !body.mass_kg.is_finite() {
-                continue;
-            }
-            *change = match history.bodies.get(block) {
-                Some(memory) => memory.change_by_others(body, dt_s),
-                None => Change {
-                    velocity_m_s: dt_s / body.mass_kg * body.load_n,
-                    spin_rad_s: dt_s * (body.inverse_inertia * body.torque_n_m),
-                },
-            };
-        }
-        for (touch, push_pa) in scene.integrals.touching().iter().zip(&self.push_pa) {
-            let sums = scene.integrals.sums_of(touch);
-            let center = sums.center(&scene.input.blocks.triangle_corners(touch.triangle, scene.input.position));
-            let force_n = sums.pressure * push_pa;
-            for (block, force_n) in [(touch.owner.index(), force_n), (touch.target.index(), -force_n)] {
-                if bodies[block].mass_kg.is_finite() {
-                    self.changes[block].push(&bodies[block], &center, &force_n, dt_s);
-                }
-            }
-        }
-    }
-
     /// Facets that are damped, by pair.
     fn list(&mut self, scene: &DampingScene) {
         self.order.clear();
@@ -189,9 +152,7 @@ impl ContactDamping {
                 self.points.extend(scene.points(t, &self.push_pa[t as usize], (pair, factor)));
             }
             let range = [first as u32, self.points.len() as u32];
-            let found =
-                Pair::new((pair, range), &mut self.points[first..], stiffness_n_m, bodies, dt_s);
-            match found {
+            match Pair::new((pair, range), &self.points[first..], stiffness_n_m, bodies, dt_s) {
                 Some(pair) => self.pairs.push(pair),
                 None => self.points.truncate(first),
             }
@@ -206,8 +167,7 @@ impl ContactDamping {
         for _ in 0..MOST_SWEEPS {
             let mut change_n = 0.0f64;
             for pair in &*pairs {
-                let range = pair.points[0] as usize..pair.points[1] as usize;
-                change_n = change_n.max(pair.advance(&mut points[range], (bodies, changes), dt_s));
+                change_n = change_n.max(pair.advance(&mut points[pair.range()], (bodies, changes), dt_s));
             }
             if change_n <= TOLERANCE * largest_n {
                 break;
@@ -243,30 +203,6 @@ impl ContactDamping {
         }
     }
 
-    /// Keeps how each block moves, and what contact pushes it by.
-    fn remember(&mut self, scene: &DampingScene, history: &mut ContactHistory) {
-        let ContactInput { bodies, dt_s, blocks, position, .. } = *scene.input;
-        history.bodies.clear();
-        history.bodies.extend(bodies.iter().map(|body| BodyMemory {
-            velocity_m_s: body.velocity_m_s,
-            spin_rad_s: body.spin_rad_s,
-            push_n: Vec3::zeros(),
-            push_torque_n_m: Vec3::zeros(),
-            dt_s,
-        }));
-        for (t, touch) in scene.integrals.touching().iter().enumerate() {
-            let sums = scene.integrals.sums_of(touch);
-            let center = sums.center(&blocks.triangle_corners(touch.triangle, position));
-            let force_n = sums.pressure * (self.push_pa[t] - self.taken_pa[t]);
-            for (block, sign) in [(touch.owner.index(), 1.0), (touch.target.index(), -1.0)] {
-                let memory = &mut history.bodies[block];
-                memory.push_n += sign * force_n;
-                let torque = (center - bodies[block].center).cross(&force_n) + self.tilt_n_m[t];
-                memory.push_torque_n_m += sign * torque;
-            }
-        }
-    }
-
     /// Work of damping over displacements of the nodes [m]: blocks and work [J], one call for each facet.
     pub(crate) fn each_work(
         &self,
@@ -284,60 +220,10 @@ impl ContactDamping {
             let found = (integrals.overlaps_of(touch), integrals.sums_of(touch));
             let mut work_j = -taken_pa.dot(&relative_motion(touch, found, (blocks, moved)));
             for (is_owner, tilt_n_m) in [(true, tilt_n_m), (false, -tilt_n_m)] {
-                couples.each_force(touch, is_owner, &tilt_n_m, |node, force| work_j += force.dot(&moved[node]));
+                couples
+                    .each_force(touch, is_owner, &tilt_n_m, |node, force| work_j += force.dot(&moved[node]));
             }
             add(touch.owner, touch.target, work_j);
-        }
-    }
-}
-
-impl DampingScene<'_> {
-    /// By how much the push of a facet grows with the depth [N/m].
-    fn stiffness_n_m(&self, t: usize) -> f64 {
-        let sums = self.integrals.sums_of(&self.integrals.touching()[t]);
-        let curvature = self.curvature_pa_m.get(t).copied().unwrap_or(0.0);
-        self.penalty_pa[t] * sums.slope.iter().sum::<f64>() + curvature * sums.pressure
-    }
-
-    /// Four points that stand for the pressure of a facet.
-    fn points(&self, t: u32, push_pa: &Vec3, (pair, factor): ([BlockId; 2], f64)) -> [Point; 4] {
-        let touch: &ActiveFacet = &self.integrals.touching()[t as usize];
-        let (overlaps, sums) = (self.integrals.overlaps_of(touch), self.integrals.sums_of(touch));
-        let corners = self.input.blocks.triangle_corners(touch.triangle, self.input.position);
-        let center = sums.center(&corners);
-        let unit = push_pa.normalize();
-        let moment = second_moment_m2((self.input, self.hulls), touch, sums.area, &center);
-        let sign = if touch.owner == pair[0] { 1.0 } else { -1.0 };
-        let velocity = relative_velocity(touch, (overlaps, sums), self.input) / sums.pressure;
-        let bodies = self.input.bodies;
-        let spin = bodies[touch.owner.index()].spin_rad_s - bodies[touch.target.index()].spin_rad_s;
-        four_points(&moment, &facet_basis(&corners, &-unit)).map(|arm| Point {
-            facet: t,
-            arm,
-            x: center + arm,
-            push: sign * unit,
-            force_n: 0.25 * sums.pressure * push_pa.norm(),
-            factor,
-            parting_m_s: unit.dot(&(velocity + spin.cross(&arm))),
-            rate: 0.0,
-            end: 0.0,
-            free_m_s: 0.0,
-            taken_n: 0.0,
-        })
-    }
-}
-
-impl BodyMemory {
-    /// Change of motion in a step of `dt_s` by all forces but the pushes of contact, if they are those of the last step.
-    fn change_by_others(&self, body: &Body, dt_s: f64) -> Change {
-        let part = dt_s / self.dt_s;
-        let pushed = Change {
-            velocity_m_s: dt_s / body.mass_kg * self.push_n,
-            spin_rad_s: dt_s * (body.inverse_inertia * self.push_torque_n_m),
-        };
-        Change {
-            velocity_m_s: part * (body.velocity_m_s - self.velocity_m_s) - pushed.velocity_m_s,
-            spin_rad_s: part * (body.spin_rad_s - self.spin_rad_s) - pushed.spin_rad_s,
         }
     }
 }

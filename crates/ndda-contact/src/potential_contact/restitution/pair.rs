@@ -66,9 +66,15 @@ impl Change {
 pub(super) struct Pair {
     pub blocks: [BlockId; 2],
     /// Its points.
-    pub points: [u32; 2],
-    /// Where its forces act [m].
+    points: [u32; 2],
+    /// Where its forces act [m], their sum on the first block without damping [N], and its direction.
     pub center: Vec3,
+    pub total_n: f64,
+    pub push: Vec3,
+    /// 1/m for it [1/kg].
+    inverse_mass: f64,
+    /// √(2W/m) [m/s].
+    stored_m_s: f64,
     /// Change of the relative motion by a force and a torque about the centre on the first block and the opposite on the second, all through a step
     /// [m/s, rad/s per N, N m].
     response: Matrix6<f64>,
@@ -81,10 +87,10 @@ fn inverse_mass(body: &Body, x: &Vec3, push: &Vec3) -> f64 {
 }
 
 impl Pair {
-    /// The pair of these points, whose forces grow by `stiffness_n_m` with the depth; sets their rates. Nothing if neither block can move.
+    /// The pair of these points, whose forces grow by `stiffness_n_m` with the depth. Nothing if neither block can move.
     pub(super) fn new(
         (blocks, range): ([BlockId; 2], [u32; 2]),
-        points: &mut [Point],
+        points: &[Point],
         stiffness_n_m: f64,
         bodies: &[Body],
         dt_s: f64,
@@ -99,11 +105,6 @@ impl Pair {
         let stored_m_s = total_n * (inverse_mass / stiffness_n_m).sqrt();
         if !(stored_m_s > 0.0 && stored_m_s.is_finite()) {
             return None;
-        }
-        for point in points {
-            let scale_m_s = stored_m_s.hypot(point.parting_m_s);
-            point.rate = point.factor * point.force_n / scale_m_s;
-            point.end = weight_of_end(point.factor * total_n / scale_m_s * inverse_mass * dt_s);
         }
         let mut response = Matrix6::zeros();
         for body in [a, b] {
@@ -120,7 +121,27 @@ impl Pair {
                 }
             }
         }
-        Some(Self { blocks, points: range, center, response })
+        Some(Self { blocks, points: range, center, total_n, push, inverse_mass, stored_m_s, response })
+    }
+
+    /// Its points in the list of all.
+    pub(super) fn range(&self) -> std::ops::Range<usize> {
+        self.points[0] as usize..self.points[1] as usize
+    }
+
+    /// Change of velocity along the push by a unit of it on one of both blocks in a step, if that is rigid [m/s per N].
+    pub(super) fn rigid_response(&self, body: &Body, dt_s: f64) -> f64 {
+        dt_s * inverse_mass(body, &self.center, &self.push)
+    }
+
+    /// Sets the rates of its points: F α/E, and no more than surfaces that give way by `softness` [m/s per N] beyond the rigid motion of their blocks can
+    /// follow within the step, each point by its share of the push.
+    pub(super) fn set_rates(&self, points: &mut [Point], softness: f64, dt_s: f64) {
+        for point in points {
+            let rate = point.factor / self.stored_m_s.hypot(point.parting_m_s) * self.total_n;
+            point.end = weight_of_end(rate * self.inverse_mass * dt_s);
+            point.rate = point.force_n / self.total_n * rate / (rate * softness).max(1.0);
+        }
     }
 
     /// Finds the damping of this pair while that of all others stays; returns the largest change [N].

@@ -56,8 +56,7 @@ impl RestitutionTable {
         let own = surface.and_then(|surface| self.on_surface.get(&surface));
         own.copied().unwrap_or_else(|| {
             let owner = blocks.triangle_block[facet.index()];
-            let material =
-                |block: BlockId| self.material.get(block.index()).copied().unwrap_or(0) as usize;
+            let material = |block: BlockId| self.material.get(block.index()).copied().unwrap_or(0) as usize;
             self.of_pair[material(owner) * self.materials + material(target)]
         })
     }
