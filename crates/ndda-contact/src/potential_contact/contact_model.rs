@@ -68,7 +68,8 @@ impl ContactModel for PotentialContact {
         let damping = self.damping.as_deref().filter(|_| !input.bodies.is_empty());
         let left_pa = damping.map_or(&self.penalty_of_facet[..], ContactDamping::left_pa);
         let tilt_n_m = damping.map_or(&[][..], ContactDamping::tilt_n_m);
-        let place = || place_forces(rows, &facets, integrals, left_pa, &self.hulls);
+        let shear_time_s = damping.map_or(&[][..], ContactDamping::shear_time_s);
+        let place = || place_forces(rows, &facets, integrals, (left_pa, shear_time_s), &self.hulls);
         join_if(integrals.touching().len() > GRAIN_FACETS, place, sort);
         if let Some(joints) = self.joints.as_ref().filter(|_| has_friction) {
             let bodies = damping.map_or(input.bodies, ContactDamping::bodies);

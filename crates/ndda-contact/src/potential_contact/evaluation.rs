@@ -104,6 +104,7 @@ impl PotentialContact {
             input,
             integrals: &self.integrals,
             hulls: &self.hulls,
+            joints: self.joints.as_ref(),
             penalty_pa: &self.penalty_of_facet,
             curvature_pa_m: &self.curvature_of_facet,
         };
@@ -204,7 +205,7 @@ pub(super) fn place_forces(
     FacetRows { forces, on_host, state }: FacetRows,
     scene: &FacetScene,
     integrals: &Integrals,
-    penalty_of_facet: &[f64],
+    (penalty_of_facet, shear_time_s): (&[f64], &[f64]),
     hulls: &ConvexBlocks,
 ) {
     let touching = integrals.touching();
@@ -214,7 +215,8 @@ pub(super) fn place_forces(
     state.resize(touching.len() * state_len, 0.0);
     let place = |force: &mut FacetForce, on_host: &mut OnTarget, t: usize, state: &mut [f64]| {
         let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
-        *force = scene.force(&touching[t], overlaps, sums, penalty_of_facet[t], state);
+        let pushes = (penalty_of_facet[t], shear_time_s.get(t).copied().unwrap_or(0.0));
+        *force = scene.force(&touching[t], overlaps, sums, pushes, state);
         if hulls.affine_target(touching[t].target).is_some() {
             *on_host = overlaps[0].on_target;
         }

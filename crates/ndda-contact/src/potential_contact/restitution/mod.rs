@@ -11,6 +11,7 @@ mod law;
 mod memory;
 mod pair;
 mod scene;
+mod shear;
 mod softness;
 mod table;
 
@@ -51,6 +52,8 @@ pub(crate) struct ContactDamping {
     /// What damping takes from the push [Pa] and its moment about the centre of pressure [N m], on the facet.
     taken_pa: Vec<Vec3>,
     tilt_n_m: Vec<Vec3>,
+    /// Seconds of its stiffness that the dashpot beside the shear spring of each touching facet has; empty without springs.
+    shear_time_s: Vec<f64>,
     /// Blocks with the moments of damping among their loads.
     bodies: Vec<Body>,
 }
@@ -70,6 +73,7 @@ impl ContactDamping {
             left_pa: Vec::new(),
             taken_pa: Vec::new(),
             tilt_n_m: Vec::new(),
+            shear_time_s: Vec::new(),
             bodies: Vec::new(),
         }
     }
@@ -83,6 +87,7 @@ impl ContactDamping {
         self.ask_blocks(scene);
         self.solve(scene);
         self.spread(scene);
+        self.damp_springs(scene);
         self.remember(scene, history);
     }
 
@@ -94,6 +99,11 @@ impl ContactDamping {
     /// Moment of damping on each touching facet about its centre of pressure [N m].
     pub(crate) fn tilt_n_m(&self) -> &[Vec3] {
         &self.tilt_n_m
+    }
+
+    /// Seconds of its stiffness that the dashpot beside the shear spring of each touching facet has; empty without springs.
+    pub(crate) fn shear_time_s(&self) -> &[f64] {
+        &self.shear_time_s
     }
 
     /// What damping takes from the push of each touching facet [Pa].

@@ -6,6 +6,7 @@ use ndda_mesh::Vec3;
 use crate::affine::convex_target::ConvexBlocks;
 use crate::friction::facet::relative_velocity;
 use crate::friction::law::facet_basis;
+use crate::friction::law_table::FrictionLawTable;
 use crate::friction::patches::moments::second_moment_m2;
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::ActiveFacet;
@@ -21,6 +22,8 @@ pub(crate) struct DampingScene<'a> {
     pub integrals: &'a Integrals,
     /// Blocks that are affine convex targets.
     pub hulls: &'a ConvexBlocks,
+    /// Friction laws, if there are any.
+    pub joints: Option<&'a FrictionLawTable>,
     /// k_n dw/dU of each touching facet [Pa].
     pub penalty_pa: &'a [f64],
     /// Stiffness per pressure of each touching facet, or none [Pa/m].
