@@ -289,8 +289,8 @@ fn each_joint_and_each_pair_of_materials_has_its_own_restitution() {
                joints: [Plane(name: \"flat\", dip_deg: 0, dip_direction_deg: 0, point_m: (0.5, 0.5, 1))],
                fixed: [Beyond(point_m: (0, 0, 1), normal: (0, 0, -1))])], gravity_m_s2: (0, 0, -10),"
         } else {
-            "blocks: [(name: \"base\", material: \"steel\", body: Fixed, shape: Box(size_m: (2, 2, 1)), at_m: (-0.5, -0.5, 0)),
-               (name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1)), at_m: (0, 0, 1), velocity_m_s: (0, 0, -1))],"
+            "blocks: [(name: \"base\", material: \"steel\", body: Fixed, shape: Box(size_m: (2, 2, 1), cells: (1, 1, 1)), at_m: (-0.5, -0.5, 0)),
+               (name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 1), velocity_m_s: (0, 0, -1))],"
         };
         let mut simulation = simulation(&format!(
             "(title: \"own\", time: (step_s: 1e-4, end_s: 1), {blocks}

@@ -31,6 +31,13 @@ pub(crate) struct DampingScene<'a> {
 }
 
 impl DampingScene<'_> {
+    /// Centre of pressure of a facet [m].
+    pub(super) fn center(&self, t: u32) -> Vec3 {
+        let touch = &self.integrals.touching()[t as usize];
+        let corners = self.input.blocks.triangle_corners(touch.triangle, self.input.position);
+        self.integrals.sums_of(touch).center(&corners)
+    }
+
     /// By how much the push of a facet grows with the depth [N/m].
     pub(super) fn stiffness_n_m(&self, t: usize) -> f64 {
         let sums = self.integrals.sums_of(&self.integrals.touching()[t]);

@@ -7,8 +7,9 @@ use crate::model::ContactInput;
 use crate::restitution::ContactDamping;
 use crate::restitution::scene::DampingScene;
 
-/// Most steps that a dashpot lasts where blocks deform, whose lightest nodes it would stop within one.
-const MOST_STEPS: f64 = 4.0;
+/// Most steps that a dashpot lasts where blocks deform. Taken with the velocity at the start of a step, a dashpot of τ makes a spring of frequency ω stable
+/// for ω² Δt² < 2/(½ + τ/Δt): with this one for every node with ω Δt < 1.4.
+const MOST_STEPS: f64 = 0.5;
 
 impl ContactDamping {
     /// Sets the dashpots of all springs of damped contacts.
@@ -26,19 +27,25 @@ impl ContactDamping {
         self.shear_time_s.resize(touching.len(), 0.0);
         for run in self.order.chunk_by(|a, b| a.0 == b.0) {
             let all_n_m: f64 = run.iter().map(|&(_, t)| stiffness_n_m(t)).sum();
-            let pair = run[0].0.map(|block| &bodies[block.index()]);
-            let inverse_mass: f64 = pair.iter().map(|body| 1.0 / body.mass_kg).sum();
+            let inverse_mass: f64 = run[0].0.iter().map(|block| 1.0 / bodies[block.index()].mass_kg).sum();
             let rate_per_s = (all_n_m * inverse_mass).sqrt();
             if rate_per_s == 0.0 {
                 continue;
             }
-            let most_s = if pair.iter().any(|body| body.deforms) { MOST_STEPS * dt_s } else { f64::INFINITY };
+            let deforms = run[0].0.iter().any(|block| bodies[block.index()].deforms);
+            let most_s = if deforms { MOST_STEPS * dt_s } else { f64::INFINITY };
+            // Velocity that a unit force along the face takes from the point where it acts at most, per second, rotation included.
+            let most_mobile = run[0].0.iter().map(|block| {
+                let body = &bodies[block.index()];
+                let arm2_m2 = (scene.center(run[0].1) - body.center).norm_squared();
+                1.0 / body.mass_kg + arm2_m2 * body.inverse_inertia.trace()
+            });
+            let braked_per_s2 = all_n_m * most_mobile.sum::<f64>();
             for &(_, t) in run {
                 let touch = &touching[t as usize];
-                let factor = self.table.factor(blocks, touch.triangle, touch.target);
-                // Taken at the start of a step, a dashpot may not stop more than there is.
-                let time_s = factor / rate_per_s / (1.0 + factor * rate_per_s * dt_s);
-                self.shear_time_s[t as usize] = time_s.min(most_s);
+                let time_s = self.table.factor(blocks, touch.triangle, touch.target) / rate_per_s;
+                // Taken with the velocity at the start of a step, a dashpot may not stop more than there is.
+                self.shear_time_s[t as usize] = (time_s / (1.0 + time_s * braked_per_s2 * dt_s)).min(most_s);
             }
         }
     }
