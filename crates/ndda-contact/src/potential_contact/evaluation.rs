@@ -249,6 +249,7 @@ mod tests {
     use super::*;
     use ndda_mesh::{BlockId, Vec3};
 
+    use crate::contact_model::ContactModel;
     use crate::potential::contact_potential::ContactPotential;
     use crate::potential::element::ElementPotential;
     use crate::testing::{evaluate, test_box, test_set};

@@ -8,16 +8,13 @@ use crate::restitution::pair::Change;
 use crate::restitution::scene::DampingScene;
 
 impl ContactDamping {
-    /// How each block moves in the step without damping: by the elastic pushes, and by all other forces of the last step, or by the loads in the
-    /// first.
+    /// How each block moves in the step without damping: by the elastic pushes, and by all other forces and prescribed motions as in the last step, or by
+    /// the loads in the first.
     pub(super) fn predict(&mut self, scene: &DampingScene, history: &ContactHistory) {
         let ContactInput { bodies, dt_s, .. } = *scene.input;
         self.changes.clear();
         self.changes.resize(bodies.len(), Change::default());
         for (block, (change, body)) in self.changes.iter_mut().zip(bodies).enumerate() {
-            if !body.mass_kg.is_finite() {
-                continue;
-            }
             *change = match history.bodies.get(block) {
                 Some(memory) => memory.change_by_others(body, dt_s),
                 None => Change {
@@ -26,22 +23,19 @@ impl ContactDamping {
                 },
             };
         }
-        for (touch, push_pa) in scene.integrals.touching().iter().zip(&self.push_pa) {
+        for (t, (touch, push_pa)) in (0..).zip(scene.integrals.touching().iter().zip(&self.push_pa)) {
             let sums = scene.integrals.sums_of(touch);
-            let center =
-                sums.center(&scene.input.blocks.triangle_corners(touch.triangle, scene.input.position));
+            let center = scene.center(t);
             let force_n = sums.pressure * push_pa;
             for (block, force_n) in [(touch.owner.index(), force_n), (touch.target.index(), -force_n)] {
-                if bodies[block].mass_kg.is_finite() {
-                    self.changes[block].push(&bodies[block], &center, &force_n, dt_s);
-                }
+                self.changes[block].push(&bodies[block], &center, &force_n, dt_s);
             }
         }
     }
 
     /// Keeps how each block moves, and what contact pushes it by.
     pub(super) fn remember(&mut self, scene: &DampingScene, history: &mut ContactHistory) {
-        let ContactInput { bodies, dt_s, blocks, position, .. } = *scene.input;
+        let ContactInput { bodies, dt_s, .. } = *scene.input;
         history.bodies.clear();
         history.bodies.extend(bodies.iter().map(|body| BodyMemory {
             velocity_m_s: body.velocity_m_s,
@@ -52,7 +46,7 @@ impl ContactDamping {
         }));
         for (t, touch) in scene.integrals.touching().iter().enumerate() {
             let sums = scene.integrals.sums_of(touch);
-            let center = sums.center(&blocks.triangle_corners(touch.triangle, position));
+            let center = scene.center(t as u32);
             let force_n = sums.pressure * (self.push_pa[t] - self.taken_pa[t]);
             for (block, sign) in [(touch.owner.index(), 1.0), (touch.target.index(), -1.0)] {
                 let memory = &mut history.bodies[block];
