@@ -34,9 +34,10 @@ static ALLOCATOR: Counting = Counting;
 
 /// Requests for memory in `steps` steps of a scene after `warm_up` steps; the fewest of three such runs of steps, since a
 /// thread of the pool that comes to work late makes room for itself once.
-fn requests(scene: &str, threads: usize, warm_up: usize, steps: usize) -> usize {
+fn requests((scene, set): (&str, &[&str]), threads: usize, warm_up: usize, steps: usize) -> usize {
+    let set: Vec<String> = set.iter().map(|set| (*set).into()).collect();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("scenes/{scene}.ron"));
-    let mut simulation = Model::open(&scene, &[]).unwrap().simulation;
+    let mut simulation = Model::open(&scene, &set).unwrap().simulation;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     // Threads make room for themselves when they start.
     pool.broadcast(|_| ());
@@ -58,15 +59,22 @@ fn requests(scene: &str, threads: usize, warm_up: usize, steps: usize) -> usize 
 // One test: the counter belongs to the process, and tests run side by side.
 #[test]
 fn a_warm_step_with_contact_friction_and_supports_allocates_nothing() {
-    for (scene, warm_up, steps) in [
-        ("sliding_45_phi35", 2000, 2000),
-        ("collision_equal", 2500, 200),
-        ("spinning_block", 5, 1000),
-        ("sticking_30_phi35", 50, 1000),
-        ("safety/plane_water", 50, 1000),
+    let damped: &[&str] = &["contact.restitution=0.5"];
+    for (scene, set, warm_up, steps) in [
+        ("sliding_45_phi35", &[][..], 2000, 2000),
+        ("collision_equal", &[], 2500, 200),
+        ("spinning_block", &[], 5, 1000),
+        ("sticking_30_phi35", &[], 50, 1000),
+        ("sticking_30_phi35", damped, 500, 500),
+        ("sticking_30_phi35_spring", damped, 500, 500),
+        ("safety/plane_water", &[], 50, 1000),
     ] {
         for threads in [1, 2] {
-            assert_eq!(requests(scene, threads, warm_up, steps), 0, "{scene} on {threads} thread(s)");
+            assert_eq!(
+                requests((scene, set), threads, warm_up, steps),
+                0,
+                "{scene} {set:?} on {threads} thread(s)"
+            );
         }
     }
 }

@@ -193,6 +193,23 @@ fn a_run_that_goes_on_from_its_checkpoint_has_the_bits_of_one_that_was_never_kil
 }
 
 #[test]
+fn a_run_of_damped_contacts_has_the_bits_of_one_that_was_never_killed() {
+    for bodies in BODIES {
+        for (integrator, friction) in
+            [("Midpoint()", FRICTION[1]), ("GeneralizedAlpha(radius: 0.8)", FRICTION[2])]
+        {
+            for step in STEPS {
+                let friction = format!("restitution: 0.4, {friction}").leak();
+                let potential = POTENTIALS[1];
+                let cell = Cell { integrator, bodies, contact_at: CONTACT_AT[0], potential, friction, step };
+                let (differs, pairs) = first_difference(&cell, 10, 3);
+                assert!(differs.is_none() && pairs > 0, "{differs:?}, {pairs} pairs");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_run_on_worn_and_closing_joints_has_the_bits_of_one_that_was_never_killed() {
     let friction = "friction: (friction_deg: 30, shear_penalty_pa_m: 1e8, roughness: (jrc: 10, jcs_pa: 1e6, mobilised: true))";
     for bodies in BODIES {

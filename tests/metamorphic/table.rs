@@ -98,6 +98,7 @@ fn short(reason: &str) -> &'static str {
         ("drifts sideways", "squeezed out"),
         ("crept by", "creep"),
         ("creeps at", "creep"),
+        ("each time longer than before", "hops"),
         ("a bond broke", "bonds"),
         ("unstable or not resolved", "h of contact"),
         ("approached each other", "travel"),

@@ -39,6 +39,7 @@ mod paper;
 mod prescribed_motion;
 mod random_impacts;
 mod release_of_initial_stress;
+mod restitution;
 mod rocking_block;
 mod safety_factor;
 mod settling;

@@ -63,6 +63,7 @@ pub fn energies(sample: &Sample) -> [(&'static str, f64); 11] {
         ("motion_work_j", sample.motion_work_j),
         ("load_work_j", sample.load_work_j),
         ("damping_work_j", sample.damping_work_j),
+        ("restitution_work_j", sample.restitution_work_j),
         ("balance_j", sample.balance_j),
     ]
 }

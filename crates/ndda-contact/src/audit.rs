@@ -17,6 +17,22 @@ pub trait ContactAudit {
     ) {
     }
 
+    /// Whether contacts are damped, so that the next reports anything.
+    fn damps(&self) -> bool {
+        false
+    }
+
+    /// Work of contact damping of the last [`add_forces`](crate::ContactModel::add_forces), at these positions, over displacements of the nodes [m]: blocks and work [J], one
+    /// call for each facet that it acts on, always in the same order. It is no part of [`each_work`](Self::each_work).
+    fn each_damping_work(
+        &mut self,
+        _blocks: &BlockSet,
+        _position: &[Vec3],
+        _moved: &[Vec3],
+        _add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+    }
+
     /// How far friction of the last [`add_forces`](crate::ContactModel::add_forces) was from Coulomb's law over displacements of the nodes [m]: two blocks, and the
     /// energy [J] that Coulomb friction takes from such a slip less what this friction took, which is never negative. A model whose friction is not
     /// judged by it makes no call.

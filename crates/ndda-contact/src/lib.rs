@@ -27,6 +27,7 @@
 //! | `integration` | exact integrals over the part of a triangle that lies in a target |
 //! | `affine` | convex blocks that move by affine maps: one target each, and faces as contactors |
 //! | `friction` | laws of friction, cohesion and tension, and the forces that they limit |
+//! | `restitution` | contact damping by a coefficient of restitution |
 //! | `assembly` | from integrals to forces on nodes, energies, stiffnesses and the report |
 //! | `reference` | one pair of tetrahedra, step by step |
 //! | [`testing`], and `testing` of the chapters | contract suites for models and laws of other people |
@@ -47,8 +48,8 @@ pub use contact_model::ContactModel;
 pub use plan::Part;
 
 pub use model::{
-    Body, Bond, ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport, Deformation,
-    FaceMemory, FacetContact, FacetMemory, SpringSlip,
+    Body, BodyMemory, Bond, ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport,
+    Deformation, FaceMemory, FacetContact, FacetMemory, SpringSlip,
 };
 
 pub use pair_stiffness::PairStiffness;

@@ -248,6 +248,21 @@ pub struct Bond {
     pub damage: f64,
 }
 
+/// Motion of a block at the start of a step, and the push of contact in it, for contact damping.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BodyMemory {
+    /// Velocity of its mass centre [m/s].
+    pub velocity_m_s: Vec3,
+    /// Rate of rotation [rad/s].
+    pub spin_rad_s: Vec3,
+    /// Sum of the normal forces of contact [N].
+    pub push_n: Vec3,
+    /// Their torque about the mass centre [N m].
+    pub push_torque_n_m: Vec3,
+    /// Length of the step [s].
+    pub dt_s: f64,
+}
+
 /// Contact history from step to step; part of the state, so it is saved and rolled back with it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactHistory {
@@ -257,6 +272,8 @@ pub struct ContactHistory {
     pub faces: Vec<FaceMemory>,
     /// Bonds that hold, sorted by (facet, target, element).
     pub bonds: Vec<Bond>,
+    /// Motion of each block in the last step; empty where no contact is damped.
+    pub bodies: Vec<BodyMemory>,
     /// Whether contact has been evaluated before: what touches then, and only that, may hold together.
     pub begun: bool,
     /// How many numbers friction laws keep of each facet.

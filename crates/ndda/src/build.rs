@@ -15,7 +15,7 @@ use std::path::Path;
 
 use ndda_contact::{
     BatchFriction, ClosurePotential, ContactModel, ContactPotential, ElementPotential, FrictionLaw,
-    FrictionLawTable, Memory, PotentialContact, SmoothPotential, VolumePotential,
+    FrictionLawTable, Memory, PotentialContact, RestitutionTable, SmoothPotential, VolumePotential,
 };
 use ndda_fem::Table;
 use ndda_io::scene::{self, At, Contact, Integrator, Scene};
@@ -243,11 +243,14 @@ pub(crate) fn contact_model(
             material_pairs,
             rock_joints,
             memory,
+            restitution,
             ..
         }) => {
             let potential = choices.potential.take().unwrap_or_else(|| contact_potential(potential));
             potential.field(blocks).map_err(|e| Fault::new("contact.potential", e))?;
             let mut model = PotentialContact::new(*penalty_pa).with_potential(potential);
+            let restitution = restitution_table(scene, blocks, *restitution, (material_pairs, rock_joints));
+            model = model.with_restitution(restitution);
             if let Some(broad_phase) = choices.broad_phase.take() {
                 model = model.with_broad_phase(broad_phase);
             }
@@ -314,13 +317,39 @@ fn between_materials(
     joints
 }
 
+/// Restitution between materials, and on the faces that joints made.
+fn restitution_table(
+    scene: &Scene,
+    blocks: &BlockSet,
+    everywhere: f64,
+    (pairs, laws): (&[scene::MaterialPair], &[scene::JointLaw]),
+) -> RestitutionTable {
+    let index = |name: &str| material_index(scene, name);
+    let materials = materials_of(scene, blocks);
+    let mut table = RestitutionTable::between(materials, scene.materials.len(), everywhere);
+    for pair in pairs {
+        if let Some(restitution) = pair.restitution {
+            table.set((index(&pair.between.0), index(&pair.between.1)), restitution);
+        }
+    }
+    for law in laws {
+        if let Some(restitution) = law.restitution {
+            table.set_on(&surfaces_of(&law.joint, blocks), restitution);
+        }
+    }
+    table
+}
+
+/// Surfaces that a joint's name means.
+fn surfaces_of(joint: &str, blocks: &BlockSet) -> Vec<u32> {
+    let named = |(_, name): &(u32, &String)| scene::matches(joint, name);
+    (0..).zip(&blocks.surface_names).filter(named).map(|(surface, _)| surface).collect()
+}
+
 /// Laws on the faces that joints made.
 fn add_joint_laws(joints: &mut FrictionLawTable, laws: &[scene::JointLaw], blocks: &BlockSet) {
     for law in laws {
-        let named = |(_, name): &(u32, &String)| scene::matches(&law.joint, name);
-        let surfaces: Vec<u32> =
-            (0..).zip(&blocks.surface_names).filter(named).map(|(surface, _)| surface).collect();
-        joints.set_on(&surfaces, law.friction.as_ref().and_then(friction_law));
+        joints.set_on(&surfaces_of(&law.joint, blocks), law.friction.as_ref().and_then(friction_law));
     }
 }
 

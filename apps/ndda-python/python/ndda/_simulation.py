@@ -35,6 +35,7 @@ _HISTORY = (
     "motion_work_j",
     "load_work_j",
     "damping_work_j",
+    "restitution_work_j",
     "balance_j",
 )
 

@@ -240,6 +240,10 @@ class Contact:
             The contact potential inside a block. Default: `Element`, the paper's.
         friction : Friction, optional
             Friction between all blocks. Default: none.
+        restitution : float, optional
+            Coefficient of restitution e of all contacts, from 0 to 1: speed at which two blocks part after a
+            central impact over that at which they met, whatever the penalty and the step. Below 1, what rings
+            comes to rest; 0 counts as 0.005. Needs `contact_at: Predicted`. Default: 1, undamped.
         material_pairs : list[MaterialPair], optional
             Friction between blocks of two materials, in place of `friction`; a later entry counts more.
             Default: none.
@@ -259,10 +263,11 @@ class Contact:
         depth_ratio: float | None = None
         potential: PotentialChoice | None = None
         friction: Friction | None = None
+        restitution: float | None = None
         material_pairs: list[MaterialPair] | None = None
         rock_joints: list[JointLaw] | None = None
         memory: MemoryChoice | None = None
-        _kinds: ClassVar[Mapping[str, str]] = {"penalty_pa": "num", "depth_ratio": "num", "potential": "Potential", "friction": "Friction", "material_pairs": "[MaterialPair]", "rock_joints": "[JointLaw]", "memory": "Memory"}
+        _kinds: ClassVar[Mapping[str, str]] = {"penalty_pa": "num", "depth_ratio": "num", "potential": "Potential", "friction": "Friction", "restitution": "num", "material_pairs": "[MaterialPair]", "rock_joints": "[JointLaw]", "memory": "Memory"}
         _variant: ClassVar[str] = "Potential"
 
 
@@ -1114,6 +1119,8 @@ class JointLaw(Builder):
         Name of the joint in `rock`, or of many as in a support; `cells` is that between Voronoi cells.
     friction : Friction, optional
         Friction there. Default: none.
+    restitution : float, optional
+        Coefficient of restitution there. Default: that of the two materials.
 
     Examples
     --------
@@ -1123,7 +1130,8 @@ class JointLaw(Builder):
 
     joint: str
     friction: Friction | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"joint": "str", "friction": "Friction"}
+    restitution: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"joint": "str", "friction": "Friction", "restitution": "num"}
 
 
 @dataclass(kw_only=True)
@@ -1212,6 +1220,8 @@ class MaterialPair(Builder):
         Names of the two materials, or of one twice.
     friction : Friction, optional
         Friction there. Default: none.
+    restitution : float, optional
+        Coefficient of restitution there. Default: that of all contacts.
 
     Examples
     --------
@@ -1221,7 +1231,8 @@ class MaterialPair(Builder):
 
     between: Sequence[str]
     friction: Friction | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"between": "(str)", "friction": "Friction"}
+    restitution: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"between": "(str)", "friction": "Friction", "restitution": "num"}
 
 
 class Memory:

@@ -5,12 +5,12 @@ use ndda_mesh::{BlockId, BlockSet, Vec3};
 use crate::affine::closing::closing_m_s;
 use crate::affine::surface::BlockFaces;
 use crate::audit::ContactAudit;
-use crate::contact_model::ContactModel;
 use crate::friction::bond;
 use crate::friction::facet::relative_motion;
 use crate::model::{ContactHistory, ContactInput, FacetContact, SpringSlip};
 use crate::plan::Part;
 use crate::potential::contact_potential::PotentialField;
+use crate::restitution::ContactDamping;
 
 use super::evaluation::for_each_facet;
 use super::{PotentialContact, plan};
@@ -18,16 +18,34 @@ use super::{PotentialContact, plan};
 impl ContactAudit for PotentialContact {
     fn each_work(&mut self, blocks: &BlockSet, moved: &[Vec3], add: &mut dyn FnMut(BlockId, BlockId, f64)) {
         let (integrals, forces) = (&self.integrals, &self.forces);
+        let taken_pa = self.damping.as_deref().map_or(&[][..], ContactDamping::taken_pa);
         let touching = integrals.touching();
         let work_of = |(t, work_j): (usize, &mut f64)| {
             let touch = &touching[t];
             let found = (integrals.overlaps_of(touch), integrals.sums_of(touch));
-            *work_j = forces[t].push.dot(&relative_motion(touch, found, (blocks, moved)));
+            let push = taken_pa.get(t).map_or(forces[t].push, |taken_pa| forces[t].push + taken_pa);
+            *work_j = push.dot(&relative_motion(touch, found, (blocks, moved)));
         };
         self.work_of_facet.resize(touching.len(), 0.0);
         for_each_facet(&mut self.work_of_facet, work_of);
         for (touch, &work_j) in touching.iter().zip(&self.work_of_facet) {
             add(touch.owner, touch.target, work_j);
+        }
+    }
+
+    fn damps(&self) -> bool {
+        self.damping.is_some()
+    }
+
+    fn each_damping_work(
+        &mut self,
+        blocks: &BlockSet,
+        position: &[Vec3],
+        moved: &[Vec3],
+        add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+        if let Some(damping) = &self.damping {
+            damping.each_work((blocks, &self.integrals, &self.hulls), position, moved, add);
         }
     }
 
@@ -37,7 +55,7 @@ impl ContactAudit for PotentialContact {
         moved: &[Vec3],
         add: &mut dyn FnMut(BlockId, BlockId, f64),
     ) {
-        if self.needs_bodies() {
+        if self.rubs_faces() {
             self.faces.each_coulomb_gap((blocks, &self.integrals, &self.forces), moved, add);
         }
     }

@@ -245,6 +245,10 @@ impl ContactModel for BatchFriction {
         self.normal.has_acted()
     }
 
+    fn needs_bodies(&self) -> bool {
+        self.normal.needs_bodies()
+    }
+
     fn has_friction(&self) -> bool {
         true
     }
@@ -253,6 +257,20 @@ impl ContactModel for BatchFriction {
 impl ContactAudit for BatchFriction {
     fn each_work(&mut self, blocks: &BlockSet, moved: &[Vec3], add: &mut dyn FnMut(BlockId, BlockId, f64)) {
         self.normal.each_work(blocks, moved, add);
+    }
+
+    fn damps(&self) -> bool {
+        self.normal.damps()
+    }
+
+    fn each_damping_work(
+        &mut self,
+        blocks: &BlockSet,
+        position: &[Vec3],
+        moved: &[Vec3],
+        add: &mut dyn FnMut(BlockId, BlockId, f64),
+    ) {
+        self.normal.each_damping_work(blocks, position, moved, add);
     }
 
     fn each_energy(&self, add: &mut dyn FnMut(BlockId, BlockId, f64)) {

@@ -16,6 +16,8 @@ use crate::pair_stiffness::PairStiffness;
 
 use crate::potential::contact_potential::OverlapLaw;
 
+use crate::restitution::ContactDamping;
+
 use super::PotentialContact;
 use super::evaluation::{FacetRows, GRAIN_FACETS, place_forces};
 
@@ -46,7 +48,8 @@ impl ContactModel for PotentialContact {
                 (history, &mut self.new_state),
             );
         }
-        let has_friction = self.needs_bodies() && !input.bodies.is_empty();
+        let has_friction = self.rubs_faces() && !input.bodies.is_empty();
+        self.damp(input, history);
         let Self { adjacency, faces, integrals, .. } = self;
         let sort = || {
             adjacency.arrange(input.blocks.len(), integrals.touching().iter().map(blocks_of));
@@ -60,15 +63,22 @@ impl ContactModel for PotentialContact {
             state: &mut self.state_of_facet,
         };
         let facets = FacetScene { input, joints: self.joints.as_ref(), history };
-        let place = || place_forces(rows, &facets, integrals, &self.penalty_of_facet, &self.hulls);
+        let damping = self.damping.as_deref().filter(|_| !input.bodies.is_empty());
+        let left_pa = damping.map_or(&self.penalty_of_facet[..], ContactDamping::left_pa);
+        let tilt_n_m = damping.map_or(&[][..], ContactDamping::tilt_n_m);
+        let shear_time_s = damping.map_or(&[][..], ContactDamping::shear_time_s);
+        let place = || place_forces(rows, &facets, integrals, (left_pa, shear_time_s), &self.hulls);
         join_if(integrals.touching().len() > GRAIN_FACETS, place, sort);
         if let Some(joints) = self.joints.as_ref().filter(|_| has_friction) {
+            let bodies = damping.map_or(input.bodies, ContactDamping::bodies);
+            let input = &ContactInput { bodies, ..*input };
             let scene = PatchScene { input, integrals: &self.integrals, joints, hulls: &self.hulls };
             self.faces.add(&scene, &mut self.forces, history);
         }
         let scene = ScatterScene {
             blocks: input.blocks,
-            position: has_friction.then_some(input.position),
+            position: (has_friction || damping.is_some()).then_some(input.position),
+            tilt_n_m,
             integrals: &self.integrals,
             adjacency: &self.adjacency,
             hulls: &self.hulls,
@@ -134,7 +144,7 @@ impl ContactModel for PotentialContact {
     }
 
     fn needs_bodies(&self) -> bool {
-        self.joints.as_ref().is_some_and(FrictionLawTable::act_on_faces)
+        self.rubs_faces() || self.damping.is_some()
     }
 
     fn has_friction(&self) -> bool {

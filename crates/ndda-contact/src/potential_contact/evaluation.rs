@@ -9,14 +9,15 @@ use crate::assembly::energy::OverlapParts;
 use crate::assembly::join_if::join_if;
 use crate::assembly::tangent::{self, Target};
 use crate::broad_phase::candidates::Candidates;
-use crate::contact_model::ContactModel;
 use crate::friction::facet::{FacetForce, FacetScene};
+use crate::friction::law_table::FrictionLawTable;
 use crate::integration::integrals::Integrals;
 use crate::integration::pair_moments::OnTarget;
 use crate::integration::scene::Scene;
 use crate::integration::tet_frame::TetFrame;
 use crate::model::{ContactError, ContactHistory, ContactInput, FacetMemory};
 use crate::pair_stiffness::PairStiffness;
+use crate::restitution::DampingScene;
 
 use crate::potential::contact_potential::{OverlapLaw, PotentialField};
 
@@ -48,7 +49,7 @@ impl PotentialContact {
             // Each facet has a history of its own.
             let by_triangle = self.joints.as_ref().is_some_and(|joints| !joints.act_on_faces_only());
             self.hulls.fit(input.blocks, &surfaces, phi_per_m, input.affine, by_triangle);
-            if self.needs_bodies() {
+            if self.rubs_faces() {
                 self.faces.fit(input.blocks, &surfaces);
             }
             self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
@@ -88,6 +89,25 @@ impl PotentialContact {
             self.penalty_of_facet.push(self.penalty_pa * law.slope(overlap));
             self.curvature_of_facet.push(self.penalty_pa * law.curvature(overlap) * pressure_m2);
         }
+    }
+
+    /// Whether a friction law acts on whole faces.
+    pub(super) fn rubs_faces(&self) -> bool {
+        self.joints.as_ref().is_some_and(FrictionLawTable::act_on_faces)
+    }
+
+    /// Finds the damping of the step, where there is any.
+    pub(super) fn damp(&mut self, input: &ContactInput, history: &mut ContactHistory) {
+        let Some(damping) = self.damping.as_mut().filter(|_| !input.bodies.is_empty()) else { return };
+        let scene = DampingScene {
+            input,
+            integrals: &self.integrals,
+            hulls: &self.hulls,
+            joints: self.joints.as_ref(),
+            penalty_pa: &self.penalty_of_facet,
+            curvature_pa_m: &self.curvature_of_facet,
+        };
+        damping.find(&scene, history);
     }
 
     /// Takes over what facets remember; what did not touch is forgotten.
@@ -183,7 +203,7 @@ pub(super) fn place_forces(
     FacetRows { forces, on_host, state }: FacetRows,
     scene: &FacetScene,
     integrals: &Integrals,
-    penalty_of_facet: &[f64],
+    (penalty_of_facet, shear_time_s): (&[f64], &[f64]),
     hulls: &ConvexBlocks,
 ) {
     let touching = integrals.touching();
@@ -192,7 +212,8 @@ pub(super) fn place_forces(
     state.resize(touching.len() * state_len, 0.0);
     let place = |force: &mut FacetForce, t: usize, state: &mut [f64]| {
         let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
-        *force = scene.force(&touching[t], overlaps, sums, penalty_of_facet[t], state);
+        let pushes = (penalty_of_facet[t], shear_time_s.get(t).copied().unwrap_or(0.0));
+        *force = scene.force(&touching[t], overlaps, sums, pushes, state);
     };
     if state_len > 0 {
         let entries = forces.par_iter_mut().zip(state.par_chunks_mut(state_len)).enumerate();
@@ -225,6 +246,7 @@ mod tests {
     use super::*;
     use ndda_mesh::{BlockId, Vec3};
 
+    use crate::contact_model::ContactModel;
     use crate::potential::contact_potential::ContactPotential;
     use crate::potential::element::ElementPotential;
     use crate::testing::{evaluate, test_box, test_set};

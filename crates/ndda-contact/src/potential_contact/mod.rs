@@ -12,6 +12,7 @@ pub mod integration;
 mod plan;
 pub mod potential;
 pub mod reference;
+pub mod restitution;
 
 pub use {
     batch::{BatchFacet, BatchFriction, BatchLaw},
@@ -32,6 +33,7 @@ pub use {
     potential::piece_table::PieceTable,
     potential::smooth::SmoothPotential,
     potential::volume::VolumePotential,
+    restitution::RestitutionTable,
 };
 
 use crate::affine::convex_target::ConvexBlocks;
@@ -46,6 +48,7 @@ use crate::integration::integrals::Integrals;
 use crate::integration::pair_moments::OnTarget;
 use crate::integration::tet_frame::TetFrame;
 use crate::model::FacetMemory;
+use crate::restitution::ContactDamping;
 
 /// Normal forces −k_n n ∫ φ dA on boundary triangles, both ways, and friction on top of them.
 ///
@@ -72,6 +75,7 @@ pub struct PotentialContact {
     penalty_pa: f64,
     potential: Box<dyn ContactPotential>,
     joints: Option<FrictionLawTable>,
+    damping: Option<Box<ContactDamping>>,
     /// φ of the blocks last seen, and how many tetrahedra they had.
     field: Option<(usize, PotentialField)>,
     candidates: Candidates,
@@ -102,6 +106,7 @@ impl PotentialContact {
             penalty_pa,
             potential: Box::new(ElementPotential),
             joints: None,
+            damping: None,
             field: None,
             candidates: Candidates::default(),
             hulls: ConvexBlocks::default(),
@@ -139,6 +144,12 @@ impl PotentialContact {
     /// With one friction law between all blocks.
     pub fn with_friction(self, law: Box<dyn FrictionLaw>) -> Self {
         self.with_law_table(FrictionLawTable::everywhere(law))
+    }
+
+    /// With coefficients of restitution; a table that damps nothing is left out.
+    pub fn with_restitution(mut self, table: RestitutionTable) -> Self {
+        self.damping = table.damps().then(|| Box::new(ContactDamping::new(table)));
+        self
     }
 
     /// With friction laws for pairs of materials and for named surfaces.

@@ -80,6 +80,7 @@ impl Frictionless {
             hulls: &self.hulls,
             forces: &self.forces,
             on_host: &[],
+            tilt_n_m: &[],
             stiffness_pa: &self.stiffness_pa,
             curvature_pa_m: &[],
         };

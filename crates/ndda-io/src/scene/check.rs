@@ -6,6 +6,7 @@ mod friction;
 mod load;
 mod material;
 mod reference;
+mod restitution;
 mod rock;
 mod shape;
 mod support;

@@ -26,6 +26,10 @@ pub enum Contact {
         /// Friction between all blocks. Default: none.
         #[serde(default)]
         friction: Option<Friction>,
+        /// Coefficient of restitution e of all contacts, from 0 to 1: speed at which two blocks part after a central impact over that at which they met, whatever the
+        /// penalty and the step. Below 1, what rings comes to rest; 0 counts as 0.005. Needs `contact_at: Predicted`. Default: 1, undamped.
+        #[serde(default = "one")]
+        restitution: f64,
         /// Friction between blocks of two materials, in place of `friction`; a later entry counts more. Default: none.
         #[serde(default)]
         material_pairs: Vec<MaterialPair>,
@@ -178,6 +182,9 @@ pub struct MaterialPair {
     /// Friction there. Default: none.
     #[serde(default)]
     pub friction: Option<Friction>,
+    /// Coefficient of restitution there. Default: that of all contacts.
+    #[serde(default)]
+    pub restitution: Option<f64>,
 }
 
 /// Friction on the faces that a named joint made.
@@ -193,6 +200,9 @@ pub struct JointLaw {
     /// Friction there. Default: none.
     #[serde(default)]
     pub friction: Option<Friction>,
+    /// Coefficient of restitution there. Default: that of the two materials.
+    #[serde(default)]
+    pub restitution: Option<f64>,
 }
 
 /// The owner of friction history.

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::bodies::report::LateralDrift;
 use crate::bodies::report::RigidForcing;
 use crate::diagnostics::creep::CreepDiagnostics;
+use crate::diagnostics::hops::Hops;
 use crate::diagnostics::ringing::{Quadrature, Ringing};
 
 /// Part of ½ m V² that an error of V/100 is measured by where blocks meet at next to no speed: m v δv + ½ m δv².
@@ -59,6 +60,7 @@ struct BlockBalance {
     strain_j: f64,
     /// Errors left by vibration and jumps of forces.
     ringing: Ringing,
+    hops: Hops,
 }
 
 /// Energy balances and diagnostics of all blocks.
@@ -234,7 +236,18 @@ impl BlockDiagnostics {
 
     /// Records the forcing of a block in a step, and with it the error that the step leaves.
     pub(crate) fn add_ringing(&mut self, block: usize, step: &Quadrature, drive: &RigidForcing) {
-        self.balances[block].ringing.add(step, drive);
+        let balance = &mut self.balances[block];
+        balance.ringing.add(step, drive);
+        balance.hops.add(step.dt_s, drive);
+    }
+
+    /// Most hops in a row that friction lets grow.
+    pub(crate) fn growing_hops(&self) -> Worst {
+        let mut worst = Worst::default();
+        for (block, balance) in self.balances.iter().enumerate() {
+            worst.take(f64::from(balance.hops.most()), block);
+        }
+        worst
     }
 
     /// Largest error of a velocity for ringing, over a speed; what rounding may have done does not count.

@@ -39,6 +39,8 @@ pub struct Invariants {
     pub creep_speed: Worst,
     /// where that took it, over the smallest tet height of its block.
     pub creep_place: Worst,
+    /// Hops of a block in a row, each longer than the one before, with friction in between.
+    pub growing_hops: Worst,
     /// |action + reaction| / |force| over the pairs.
     pub action_reaction: f64,
     /// smallest det F.

@@ -31,6 +31,7 @@ pub struct Ledger {
     motion_work_j: f64,
     load_work_j: f64,
     damping_work_j: f64,
+    restitution_work_j: f64,
     peak_energy_j: f64,
     peak_momentum: f64,
     peak_angular: f64,
@@ -72,6 +73,7 @@ impl Ledger {
             lateral_drift_place: Worst::default(),
             creep_speed: Worst::default(),
             creep_place: Worst::default(),
+            growing_hops: Worst::default(),
             action_reaction: 0.0,
             smallest_volume_ratio: 1.0,
             largest_strain: Worst::default(),
@@ -103,6 +105,7 @@ impl Ledger {
             motion_work_j: 0.0,
             load_work_j: 0.0,
             damping_work_j: 0.0,
+            restitution_work_j: 0.0,
             peak_energy_j: 0.0,
             peak_momentum: 0.0,
             peak_angular: 0.0,
@@ -186,6 +189,11 @@ impl Ledger {
         self.motion_work_j += motion_j;
         self.load_work_j += load_j;
         self.damping_work_j += damping_j;
+    }
+
+    /// Books the work of contact damping in a step [J].
+    pub(crate) fn add_restitution_work(&mut self, work_j: f64) {
+        self.restitution_work_j += work_j;
     }
 
     /// Diagnostics of single blocks.
@@ -279,8 +287,12 @@ impl Ledger {
         sample.motion_work_j = self.motion_work_j;
         sample.load_work_j = self.load_work_j;
         sample.damping_work_j = self.damping_work_j;
-        let work_j =
-            sample.friction_work_j + sample.motion_work_j + sample.load_work_j + sample.damping_work_j;
+        sample.restitution_work_j = self.restitution_work_j;
+        let work_j = sample.friction_work_j
+            + sample.motion_work_j
+            + sample.load_work_j
+            + sample.damping_work_j
+            + sample.restitution_work_j;
         sample.balance_j = sample.total_j() - start.total_j() - work_j;
         let stored = sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j;
         self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());
@@ -329,6 +341,7 @@ impl Ledger {
             lateral_drift_place,
             creep_speed,
             creep_place,
+            growing_hops: self.blocks.growing_hops(),
             lumped_speed,
             lumped_place,
             turn_place: self.blocks.turned_over_height(),

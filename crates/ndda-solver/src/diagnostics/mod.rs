@@ -3,6 +3,7 @@
 pub(crate) mod block_diagnostics;
 pub(crate) mod creep;
 pub(crate) mod energies;
+pub(crate) mod hops;
 pub(crate) mod invariants;
 pub(crate) mod lateral_drift;
 pub(crate) mod ledger;

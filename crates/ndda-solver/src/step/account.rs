@@ -33,7 +33,7 @@ impl Simulation {
         self.audit.direction_uncertainty =
             if depth > self.problem.min_friction_coefficient { depth } else { 0.0 };
         self.note_contacts();
-        if self.contact_does_work(contact) {
+        if self.contact_does_work(contact) || self.contact_is_damped(contact) {
             self.scratch.moved.copy_from_slice(&self.state.position);
         }
     }
@@ -95,16 +95,33 @@ impl Simulation {
         contact.contact_pairs > 0 && self.weights.forces_do_their_work()
     }
 
+    /// Whether anything touches that may be damped.
+    fn contact_is_damped(&self, contact: &ContactReport) -> bool {
+        contact.contact_pairs > 0 && self.contact.as_ref().is_some_and(|model| model.damps())
+    }
+
+    /// Records the work of contact damping in the step.
+    fn record_contact_damping(&mut self) {
+        let Some(model) = self.contact.as_mut().filter(|model| model.damps()) else { return };
+        let (position, moved) = (&self.scratch.contact_position, &self.scratch.moved);
+        let mut work_j = 0.0;
+        model.each_damping_work(&self.problem.blocks, position, moved, &mut |_, _, part_j| work_j += part_j);
+        self.audit.ledger.add_restitution_work(work_j);
+    }
+
     /// Records the work of normal contact in the step on both blocks of each pair; returns the sum over single facets, without
     /// sign, where steps are controlled [J].
     pub(super) fn record_contact_work(&mut self, contact: &ContactReport) -> f64 {
         let works = self.contact_does_work(contact);
         let mut contact_work_j = 0.0;
         self.audit.travel.touching.clear();
-        let Some(model) = self.contact.as_mut().filter(|_| works) else { return contact_work_j };
-        for (moved, x) in self.scratch.moved.iter_mut().zip(&self.state.position) {
-            *moved = x - *moved;
+        if works || self.contact_is_damped(contact) {
+            for (moved, x) in self.scratch.moved.iter_mut().zip(&self.state.position) {
+                *moved = x - *moved;
+            }
+            self.record_contact_damping();
         }
+        let Some(model) = self.contact.as_mut().filter(|_| works) else { return contact_work_j };
         let (books, travel) = (self.audit.ledger.blocks(), &mut self.audit.travel);
         model.each_work(&self.problem.blocks, &self.scratch.moved, &mut |a, b, work_j| {
             books.add_work(a, b, work_j);

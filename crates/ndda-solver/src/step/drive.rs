@@ -110,6 +110,8 @@ impl Simulation {
         let moment = after.angular_momentum - before.angular_momentum + offset.cross(&impulse);
         self.audit.ledger.add_whole_impulse(impulse, moment);
         self.audit.ledger.add_work(0.0, 0.0, after.kinetic_j - before.kinetic_j, 0.0);
+        // A blow is no force that the next step feels, too.
+        self.state.contact.bodies.clear();
         Ok(())
     }
 

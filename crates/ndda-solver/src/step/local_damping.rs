@@ -70,6 +70,7 @@ impl Simulation {
 
     /// Adds velocities, per node, to those of all blocks that are not fixed; not part of the balance either.
     pub fn push(&mut self, velocity: &[Vec3]) {
+        self.state.contact.bodies.clear();
         for block in self.problem.blocks.ids() {
             if self.shape(block).kind == BodyKind::Fixed {
                 continue;

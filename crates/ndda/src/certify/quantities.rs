@@ -5,8 +5,16 @@ use std::ops::Range;
 use ndda_io::table::Table;
 
 /// Energies of a history that are certified [J].
-const ENERGIES: [&str; 7] =
-    ["kinetic_j", "strain_j", "contact_j", "load_j", "spring_j", "friction_work_j", "damping_work_j"];
+const ENERGIES: [&str; 8] = [
+    "kinetic_j",
+    "strain_j",
+    "contact_j",
+    "load_j",
+    "spring_j",
+    "friction_work_j",
+    "damping_work_j",
+    "restitution_work_j",
+];
 /// Column of time.
 pub const TIME: &str = "time_s";
 /// Energy that is there without a cause, numerical error.

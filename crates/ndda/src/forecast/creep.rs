@@ -10,14 +10,18 @@ pub fn warning(loaded: &LoadedScene) -> Option<Diagnostic> {
     let scene = &loaded.scene;
     let has_gravity = scene.gravity_m_s2 != [0.0; 3];
     let is_sudden = has_gravity && scene.gravity_ramp_s == 0.0 && scene.settle.is_none();
-    if !is_sudden || !has_springs(scene) {
+    if !is_sudden || !has_springs(scene) || is_damped(scene) {
         return None;
     }
     let message = "gravity comes suddenly, so contact will vibrate, and shear springs let blocks creep while it does, even where friction could hold them";
-    let help = "begin with settle: (), apply gravity over gravity_ramp_s, or leave out shear_penalty_pa_m, so that friction acts on velocities";
+    let help = "give contacts a restitution below 1, begin with settle: (), apply gravity over gravity_ramp_s, or leave out shear_penalty_pa_m, so that friction acts on velocities";
     let mut found = loaded.diagnose("contact.friction.shear_penalty_pa_m", message.into()).with_help(help);
     (found.code, found.severity) = (Code::Inexact, Severity::Warning);
     Some(found)
+}
+
+fn is_damped(scene: &Scene) -> bool {
+    matches!(&scene.contact, Some(Contact::Potential { restitution, .. }) if *restitution < 1.0)
 }
 
 fn has_springs(scene: &Scene) -> bool {

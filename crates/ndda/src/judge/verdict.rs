@@ -3,6 +3,10 @@
 use ndda_io::summary::{Judgement, Label, LabelWord, Named, Verdict};
 use ndda_solver::{Simulation, Worst};
 
+mod vibration;
+
+use vibration::{creep, hops, ringing, within_a_step};
+
 /// Energy gained or lost for good over the largest energy. Speeds are as its root: twice the 1 % that they may be off.
 const MOST_ENERGY: f64 = 0.02;
 /// Energy by which friction was off Coulomb's law over ½ m V²: an energy of m v δv is a speed that is off by δv.
@@ -15,9 +19,6 @@ const BOND_OVERLOAD: f64 = 0.05;
 /// Limits of an accurate run: errors of speeds over the largest, and of places over an element size.
 const SPEED: f64 = 0.01;
 const PLACE: f64 = 0.1;
-/// Limit of vibrations: the speed that elasticity changes in one step, over the largest speed. A vibration of θ = ω Δt changes θ² of its speed and lags by
-/// θ²/12 per radian, so that this limit keeps the lag within [`SPEED`].
-const MOST_VIBRATION: f64 = 12.0 * SPEED;
 /// Strain up to which a linear law is taken for true: terms of second order are half of it, 5 % of the stress.
 const MOST_STRAIN: f64 = 0.1;
 /// Relative travel of two blocks that may meet in a step, over the width of the thinner one.
@@ -77,6 +78,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.push(spurious_contact_energy(simulation));
     entries.push(friction(simulation));
     entries.extend(creep(simulation));
+    entries.push(hops(simulation));
     entries.extend(contact(simulation));
     entries.extend(lateral_drift(simulation));
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
@@ -177,28 +179,6 @@ fn friction(simulation: &Simulation) -> Entry {
         100.0 * MOST_FRICTION
     );
     warned("friction energy error", worst.value, MOST_FRICTION, reason)
-}
-
-/// Whether blocks creep on shear springs while contact rings.
-fn creep(simulation: &Simulation) -> [Entry; 2] {
-    let worst = simulation.invariants();
-    let (place, speed) = (worst.creep_place, worst.creep_speed);
-    let cure = "because vibrating contact makes its shear springs slip: add settle: (), set gravity_ramp_s, or remove shear_penalty_pa_m";
-    let where_it_is = format!(
-        "block `{}` crept by {:.2} of its smallest element size, limit {PLACE}, {cure}",
-        name(simulation, place),
-        place.value
-    );
-    let how_fast = format!(
-        "block `{}` creeps at {:.1} % of the largest speed, limit {:.0} %, {cure}",
-        name(simulation, speed),
-        100.0 * speed.value,
-        100.0 * SPEED
-    );
-    [
-        warned("creep / element size", place.value, PLACE, where_it_is),
-        warned("creep speed / largest speed", speed.value, SPEED, how_fast),
-    ]
 }
 
 fn name(simulation: &Simulation, worst: Worst) -> &str {
@@ -332,19 +312,6 @@ fn lumped_rotation(simulation: &Simulation) -> [Entry; 2] {
     ]
 }
 
-/// Whether steps are short enough for blocks that ring on their contacts or supports.
-fn ringing(simulation: &Simulation) -> Entry {
-    let worst = simulation.invariants().ringing;
-    let reason = format!(
-        "the velocity of block `{}` may be wrong by {:.1} % of the largest speed, limit {:.0} %, because its contact \
-         forces vibrate or jump faster than steps resolve: reduce step_s",
-        name(simulation, worst),
-        100.0 * worst.value,
-        100.0 * SPEED
-    );
-    warned("contact vibration error / largest speed", worst.value, SPEED, reason)
-}
-
 /// Whether bonds broke close to their strength, if any broke.
 fn bonds(simulation: &Simulation) -> Option<Entry> {
     let overload = simulation.invariants().bond_overload;
@@ -354,32 +321,6 @@ fn bonds(simulation: &Simulation) -> Option<Entry> {
         100.0 * BOND_OVERLOAD
     );
     (overload > 0.0).then(|| warned("bond overload", overload, BOND_OVERLOAD, reason))
-}
-
-/// Whether anything comes and goes within a step.
-fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
-    let worst = simulation.invariants();
-    let percent = |value: f64| 100.0 * value;
-    let vibration = format!(
-        "steps are too long for the vibrations of blocks: elasticity changes velocities by {:.1} % of the largest speed in one step, limit {:.0} %; reduce step_s",
-        percent(worst.vibration),
-        percent(MOST_VIBRATION)
-    );
-    let missed = format!(
-        "loads or motions change within a step: {:.1} % of the largest speed is missed, limit {:.0} %; reduce step_s",
-        percent(worst.unresolved_speed),
-        percent(SPEED)
-    );
-    let damping = format!(
-        "the step does not resolve damping: velocities are wrong by up to {:.1} % of the largest, limit {:.0} %; reduce step_s",
-        percent(worst.damping_speed),
-        percent(SPEED)
-    );
-    [
-        warned("unresolved vibration / largest speed", worst.vibration, MOST_VIBRATION, vibration),
-        warned("load change within a step / largest speed", worst.unresolved_speed, SPEED, missed),
-        warned("damping error / largest speed", worst.damping_speed, SPEED, damping),
-    ]
 }
 
 /// A value that should not exceed `warn`, and fails the run beyond `fail`.

@@ -199,6 +199,7 @@ pub fn columns<'a>(
         "motion_work_j",
         "load_work_j",
         "damping_work_j",
+        "restitution_work_j",
         "balance_j",
         "momentum_x_kg_m_s",
         "momentum_y_kg_m_s",
@@ -248,6 +249,7 @@ impl Sink for Recorder {
             sample.motion_work_j,
             sample.load_work_j,
             sample.damping_work_j,
+            sample.restitution_work_j,
             sample.balance_j,
         ]);
         self.row.extend(sample.momentum.iter().chain(sample.angular_momentum.iter()));

@@ -35,6 +35,8 @@ pub struct ScatterScene<'a> {
     pub forces: &'a [FacetForce],
     /// Force of each facet on the host tetrahedron of its target, where that is an affine convex target.
     pub on_host: &'a [OnTarget],
+    /// Moments of damping on facets, one entry per touching facet, or none [N m].
+    pub tilt_n_m: &'a [Vec3],
     /// Stiffness per slope, one entry per touching facet [Pa].
     pub stiffness_pa: &'a [f64],
     /// Stiffness per pressure, one entry per touching facet, or none [Pa/m].
@@ -204,6 +206,13 @@ impl BlockNodes<'_> {
         let ScatterScene { blocks, integrals, hulls, .. } = *scene;
         let couples = CoupleScene { blocks, position, integrals, hulls };
         for (t, is_owner) in own.chain(on_block) {
+            if let Some(tilt_n_m) = scene.tilt_n_m.get(t as usize) {
+                let tilt_n_m = if is_owner { *tilt_n_m } else { -tilt_n_m };
+                let force = &mut self.output.force;
+                couples.each_force(&integrals.touching()[t as usize], is_owner, &tilt_n_m, |node, f| {
+                    force[node - self.first] += f;
+                });
+            }
             let couple_n_m = scene.forces[t as usize].couple_n_m;
             if couple_n_m == Vec3::zeros() {
                 continue;

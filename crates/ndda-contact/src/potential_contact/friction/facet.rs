@@ -4,7 +4,7 @@ use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId, Vec3};
 
 use crate::friction::bond;
-use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, facet_basis, length};
+use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory, capped, facet_basis, length};
 use crate::friction::law_table::{FrictionLawTable, Memory};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
 use crate::model::{ContactHistory, ContactInput, FacetMemory, SpringSlip};
@@ -56,7 +56,7 @@ impl FacetScene<'_> {
         touch: &ActiveFacet,
         hits: &[OverlapPair],
         sums: &FacetMoments,
-        penalty_pa: f64,
+        (penalty_pa, shear_time_s): (f64, f64),
         state: &mut [f64],
     ) -> FacetForce {
         let mut force = FacetForce { facet: touch.facet, ..FacetForce::default() };
@@ -68,7 +68,13 @@ impl FacetScene<'_> {
         (force.push, force.touches) = (-penalty_pa * normal, true);
         force.center = sums.center(&corners);
         if let Some(joints) = self.joints {
-            self.add_friction(joints, touch, (hits, sums), (penalty_pa, &normal), (&mut force, state));
+            self.add_friction(
+                joints,
+                touch,
+                (hits, sums),
+                (penalty_pa, shear_time_s, &normal),
+                (&mut force, state),
+            );
         }
         force
     }
@@ -80,7 +86,7 @@ impl FacetScene<'_> {
         joints: &FrictionLawTable,
         touch: &ActiveFacet,
         (hits, sums): (&[OverlapPair], &FacetMoments),
-        (penalty_pa, normal): (f64, &Vec3),
+        (penalty_pa, shear_time_s, normal): (f64, f64, &Vec3),
         (force, state): (&mut FacetForce, &mut [f64]),
     ) {
         let law = joints.law(self.input.blocks, touch.triangle, touch.target);
@@ -109,7 +115,11 @@ impl FacetScene<'_> {
         law.advance(&slip, &mut memory);
         let [x, y] = memory.shear_n;
         force.sticks = length([x, y]) < STICKS * law.capacity_n(&slip, &memory);
-        force.shear = (basis[0] * memory.shear_n[0] + basis[1] * memory.shear_n[1]) / sums.pressure;
+        let shear_n = match shear_time_s {
+            0.0 => memory.shear_n,
+            _ => damped(law, &slip, &memory, shear_time_s),
+        };
+        force.shear = (basis[0] * shear_n[0] + basis[1] * shear_n[1]) / sums.pressure;
         force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / sums.pressure;
         if force.shear_slope > 0.0 {
             let slip_m = basis[0] * slip.slip_m[0] + basis[1] * slip.slip_m[1];
@@ -166,6 +176,13 @@ impl FacetScene<'_> {
         let per_element = self.joints.is_some_and(|joints| joints.memory == Memory::Element);
         per_element.then(|| hits[0].tet)
     }
+}
+
+/// Force of a spring with a dashpot of so many seconds of its stiffness beside it, no more than the law bears.
+fn damped(law: &dyn FrictionLaw, slip: &FacetSlip, memory: &ShearMemory, time_s: f64) -> [f64; 2] {
+    let rate = 0.5 * law.shear_stiffness_pa_m() * slip.mean_area_m2 * time_s / slip.dt_s;
+    let trial = [0, 1].map(|i| memory.shear_n[i] - rate * slip.slip_m[i]);
+    capped(trial, law.capacity_n(slip, memory)).0
 }
 
 /// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.

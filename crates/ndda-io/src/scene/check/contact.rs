@@ -20,8 +20,10 @@ impl Check<'_> {
                 friction,
                 material_pairs,
                 rock_joints,
+                restitution,
                 ..
             }) => {
+                self.restitution(*restitution, material_pairs, rock_joints);
                 self.penalty(*penalty_pa, *depth_ratio, potential);
                 self.potential(potential);
                 if let Some(friction) = friction {

@@ -6,7 +6,7 @@
 //! together (`solve.rs`); blocks that deform answer to it at their nodes, as the solver says (`nodal.rs`).
 
 mod limit_surface;
-mod moments;
+pub(crate) mod moments;
 mod nodal;
 mod opposite;
 mod patch;
@@ -207,7 +207,7 @@ impl FrictionPatches {
             let FacetMoments { pressure, area, .. } = *scene.sums(t);
             let touch = scene.touch(t);
             if pressure > 0.0 {
-                *own = moments::second_moment_m2(scene, touch, area, &force.center);
+                *own = moments::second_moment_m2((scene.input, scene.hulls), touch, area, &force.center);
             }
         };
         let each = self.own_m2.par_iter_mut().zip(forces).enumerate();

@@ -3,9 +3,10 @@
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{Mat3, Vec3};
 
-use crate::friction::patches::PatchScene;
+use crate::affine::convex_target::ConvexBlocks;
 use crate::integration::clip::{Form, Outline, Polygon};
 use crate::integration::overlap_pair::ActiveFacet;
+use crate::model::ContactInput;
 
 /// Facets of which less than this part touches count as a disc.
 const SMALL: f64 = 1e-3;
@@ -14,13 +15,18 @@ const SMALL: f64 = 1e-3;
 ///
 /// On a target that moves by an affine map the part is cut out by its faces, and φ is that of the face which is nearest at the centre; on
 /// others the facet counts as its triangle, scaled down to the area that touches.
-pub(super) fn second_moment_m2(scene: &PatchScene, touch: &ActiveFacet, area_m2: f64, center: &Vec3) -> Mat3 {
-    let corners = scene.input.blocks.triangle_corners(touch.triangle, scene.input.position);
+pub(crate) fn second_moment_m2(
+    (input, hulls): (&ContactInput, &ConvexBlocks),
+    touch: &ActiveFacet,
+    area_m2: f64,
+    center: &Vec3,
+) -> Mat3 {
+    let corners = input.blocks.triangle_corners(touch.triangle, input.position);
     let area_vector = triangle_area_vector(&corners);
     let (whole_m2, normal) = (area_vector.norm(), area_vector.normalize());
     if area_m2 > SMALL * whole_m2 {
-        let found = match scene.hulls.affine_target(touch.target) {
-            Some(_) => of_cut_facet(scene, touch, &corners, center),
+        let found = match hulls.affine_target(touch.target) {
+            Some(_) => of_cut_facet(hulls, touch, &corners, center),
             None => Some(of_triangle(&corners) * (area_m2 / whole_m2).min(1.0)),
         };
         if let Some(found) = found {
@@ -37,9 +43,14 @@ fn of_triangle(corners: &[Vec3; 3]) -> Mat3 {
     corners.iter().map(|x| (x - middle) * (x - middle).transpose()).sum::<Mat3>() / 12.0
 }
 
-fn of_cut_facet(scene: &PatchScene, touch: &ActiveFacet, corners: &[Vec3; 3], center: &Vec3) -> Option<Mat3> {
-    let faces = scene.hulls.faces_of(touch.target);
-    let outline: &Outline = scene.hulls.outline(touch.triangle, touch.target);
+fn of_cut_facet(
+    hulls: &ConvexBlocks,
+    touch: &ActiveFacet,
+    corners: &[Vec3; 3],
+    center: &Vec3,
+) -> Option<Mat3> {
+    let faces = hulls.faces_of(touch.target);
+    let outline: &Outline = hulls.outline(touch.triangle, touch.target);
     let mut part = Polygon::all_of(outline);
     let form = |k: usize| Form::through(&corners.each_ref().map(|x| faces[k].phi(x)));
     (0..faces.len()).for_each(|k| part.cut(&form(k), 0.0));

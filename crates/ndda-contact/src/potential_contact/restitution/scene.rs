@@ -1,0 +1,90 @@
+//! What a step finds in contact, as damping sees it.
+
+use ndda_mesh::BlockId;
+use ndda_mesh::Vec3;
+
+use crate::affine::convex_target::ConvexBlocks;
+use crate::friction::facet::relative_velocity;
+use crate::friction::law::facet_basis;
+use crate::friction::law_table::FrictionLawTable;
+use crate::friction::patches::moments::second_moment_m2;
+use crate::integration::integrals::Integrals;
+use crate::integration::overlap_pair::ActiveFacet;
+use crate::model::ContactInput;
+use crate::restitution::pair::{Point, four_points};
+
+/// Input of the damping of a step.
+#[derive(Clone, Copy)]
+pub(crate) struct DampingScene<'a> {
+    /// Blocks and their motion.
+    pub input: &'a ContactInput<'a>,
+    /// Integrals of the pairs.
+    pub integrals: &'a Integrals,
+    /// Blocks that are affine convex targets.
+    pub hulls: &'a ConvexBlocks,
+    /// Friction laws, if there are any.
+    pub joints: Option<&'a FrictionLawTable>,
+    /// k_n dw/dU of each touching facet [Pa].
+    pub penalty_pa: &'a [f64],
+    /// Stiffness per pressure of each touching facet, or none [Pa/m].
+    pub curvature_pa_m: &'a [f64],
+}
+
+impl DampingScene<'_> {
+    /// Centre of pressure of a facet [m].
+    pub(super) fn center(&self, t: u32) -> Vec3 {
+        let touch = &self.integrals.touching()[t as usize];
+        let corners = self.input.blocks.triangle_corners(touch.triangle, self.input.position);
+        self.integrals.sums_of(touch).center(&corners)
+    }
+
+    /// By how much the push of a facet grows with the depth [N/m].
+    pub(super) fn stiffness_n_m(&self, t: usize) -> f64 {
+        let sums = self.integrals.sums_of(&self.integrals.touching()[t]);
+        let curvature = self.curvature_pa_m.get(t).copied().unwrap_or(0.0);
+        self.penalty_pa[t] * sums.slope.iter().sum::<f64>() + curvature * sums.pressure
+    }
+
+    /// Shares of the nodes of one of both blocks in the push of a facet.
+    pub(super) fn each_weight(&self, t: u32, block: BlockId, mut add: impl FnMut(usize, f64)) {
+        let touch = &self.integrals.touching()[t as usize];
+        let (blocks, sums) = (self.input.blocks, self.integrals.sums_of(touch));
+        if touch.owner == block {
+            let triangle = &blocks.triangles[touch.triangle.index()];
+            triangle.iter().zip(sums.weights).for_each(|(node, w)| add(node.index(), w / sums.pressure));
+            return;
+        }
+        for hit in self.integrals.overlaps_of(touch) {
+            let tet = &blocks.tets[hit.tet.index()];
+            let weights = tet.iter().zip(hit.on_target.pressure);
+            weights.for_each(|(node, w)| add(node.index(), w / sums.pressure));
+        }
+    }
+
+    /// Four points that stand for the pressure of a facet.
+    pub(super) fn points(&self, t: u32, push_pa: &Vec3, (pair, factor): ([BlockId; 2], f64)) -> [Point; 4] {
+        let touch: &ActiveFacet = &self.integrals.touching()[t as usize];
+        let (overlaps, sums) = (self.integrals.overlaps_of(touch), self.integrals.sums_of(touch));
+        let corners = self.input.blocks.triangle_corners(touch.triangle, self.input.position);
+        let center = sums.center(&corners);
+        let unit = push_pa.normalize();
+        let moment = second_moment_m2((self.input, self.hulls), touch, sums.area, &center);
+        let sign = if touch.owner == pair[0] { 1.0 } else { -1.0 };
+        let velocity = relative_velocity(touch, (overlaps, sums), self.input) / sums.pressure;
+        let bodies = self.input.bodies;
+        let spin = bodies[touch.owner.index()].spin_rad_s - bodies[touch.target.index()].spin_rad_s;
+        four_points(&moment, &facet_basis(&corners, &-unit)).map(|arm| Point {
+            facet: t,
+            arm,
+            x: center + arm,
+            push: sign * unit,
+            force_n: 0.25 * sums.pressure * push_pa.norm(),
+            factor,
+            parting_m_s: unit.dot(&(velocity + spin.cross(&arm))),
+            rate: 0.0,
+            end: 0.0,
+            free_m_s: 0.0,
+            taken_n: 0.0,
+        })
+    }
+}

@@ -1,0 +1,78 @@
+//! Blocks that hop ever longer while friction takes energy: undamped contact and friction feed the hops.
+//!
+//! Contact gives back all energy, and friction turns a part of the energy of sliding into that of rocking: a block that would stand lifts off, comes
+//! down, and lifts off again, each time for longer. A block that was dropped bounces too, but friction shortens its hops, and where it
+//! does not they are as often longer as shorter than the one before: eight that grow in a row are one in forty thousand.
+
+use serde::{Deserialize, Serialize};
+
+use crate::bodies::report::RigidForcing;
+
+/// Length of a flight over that of the last one from which on it has grown.
+const GROWTH: f64 = 1.05;
+
+/// The hops of one block.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Hops {
+    touched: bool,
+    /// Whether friction acted since the block came down.
+    rubbed: bool,
+    /// Length of this flight and of the last one [s].
+    flight_s: f64,
+    last_flight_s: f64,
+    /// Flights in a row that were longer than the one before, and the most so far.
+    growing: u32,
+    most: u32,
+}
+
+impl Hops {
+    /// Books a step.
+    pub(crate) fn add(&mut self, dt_s: f64, drive: &RigidForcing) {
+        if drive.touches {
+            if !self.touched {
+                self.land();
+            }
+            self.rubbed |= drive.has_friction;
+        } else {
+            self.flight_s += dt_s;
+        }
+        self.touched = drive.touches;
+    }
+
+    fn land(&mut self) {
+        let grows = self.rubbed && self.last_flight_s > 0.0 && self.flight_s > GROWTH * self.last_flight_s;
+        self.growing = if grows { self.growing + 1 } else { 0 };
+        self.most = self.most.max(self.growing);
+        (self.last_flight_s, self.flight_s, self.rubbed) = (self.flight_s, 0.0, false);
+    }
+
+    /// Most flights in a row that were each longer than the one before, friction acting in between.
+    pub(crate) fn most(&self) -> u32 {
+        self.most
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Most growing hops of flights of so many steps.
+    fn most(flights: &[u32], has_friction: bool) -> u32 {
+        let mut hops = Hops::default();
+        let on_ground = RigidForcing { touches: true, has_friction, ..RigidForcing::default() };
+        for &flight in flights {
+            hops.add(1e-3, &on_ground);
+            (0..flight).for_each(|_| hops.add(1e-3, &RigidForcing::default()));
+        }
+        hops.add(1e-3, &on_ground);
+        hops.most()
+    }
+
+    #[test]
+    fn hops_count_where_each_is_longer_than_the_one_before_and_friction_acts() {
+        assert_eq!(most(&[1, 2, 3, 4, 5], true), 4);
+        assert_eq!(most(&[1, 2, 3, 4, 5], false), 0);
+        assert_eq!(most(&[50, 49, 50, 51, 52], true), 0);
+        assert_eq!(most(&[1, 2, 3, 2, 3], true), 2);
+    }
+}

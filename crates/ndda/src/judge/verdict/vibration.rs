@@ -1,0 +1,84 @@
+//! Verdicts on blocks that vibrate on their contacts and supports, or in themselves.
+
+use ndda_solver::Simulation;
+
+use super::{Entry, PLACE, SPEED, name, warned};
+
+/// Limit of vibrations: the speed that elasticity changes in one step, over the largest speed. A vibration of θ = ω Δt changes θ² of its speed and lags by
+/// θ²/12 per radian, so that this limit keeps the lag within [`SPEED`].
+const MOST_VIBRATION: f64 = 12.0 * SPEED;
+/// Hops in a row that may each be longer than the one before: by chance one more is one in forty thousand.
+const MOST_GROWING: f64 = 7.0;
+
+/// Whether blocks creep on shear springs while contact rings.
+pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
+    let worst = simulation.invariants();
+    let (place, speed) = (worst.creep_place, worst.creep_speed);
+    let cure = "because vibrating contact makes its shear springs slip: give the contact a restitution below 1, add settle: (), set gravity_ramp_s, or remove shear_penalty_pa_m";
+    let where_it_is = format!(
+        "block `{}` crept by {:.2} of its smallest element size, limit {PLACE}, {cure}",
+        name(simulation, place),
+        place.value
+    );
+    let how_fast = format!(
+        "block `{}` creeps at {:.1} % of the largest speed, limit {:.0} %, {cure}",
+        name(simulation, speed),
+        100.0 * speed.value,
+        100.0 * SPEED
+    );
+    [
+        warned("creep / element size", place.value, PLACE, where_it_is),
+        warned("creep speed / largest speed", speed.value, SPEED, how_fast),
+    ]
+}
+
+/// Whether friction feeds the hops of blocks on undamped contacts.
+pub(super) fn hops(simulation: &Simulation) -> Entry {
+    let worst = simulation.invariants().growing_hops;
+    let reason = format!(
+        "block `{}` hopped {} times in a row, each time longer than before, limit {MOST_GROWING}: friction feeds the hops of a contact that is not \
+         damped, and where the block would be without them is unknown; give the contact a restitution below 1",
+        name(simulation, worst),
+        worst.value
+    );
+    warned("hops that grow by friction", worst.value, MOST_GROWING, reason)
+}
+
+/// Whether steps are short enough for blocks that ring on their contacts or supports.
+pub(super) fn ringing(simulation: &Simulation) -> Entry {
+    let worst = simulation.invariants().ringing;
+    let reason = format!(
+        "the velocity of block `{}` may be wrong by {:.1} % of the largest speed, limit {:.0} %, because its contact \
+         forces vibrate or jump faster than steps resolve: reduce step_s",
+        name(simulation, worst),
+        100.0 * worst.value,
+        100.0 * SPEED
+    );
+    warned("contact vibration error / largest speed", worst.value, SPEED, reason)
+}
+
+/// Whether anything comes and goes within a step.
+pub(super) fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
+    let worst = simulation.invariants();
+    let percent = |value: f64| 100.0 * value;
+    let vibration = format!(
+        "steps are too long for the vibrations of blocks: elasticity changes velocities by {:.1} % of the largest speed in one step, limit {:.0} %; reduce step_s",
+        percent(worst.vibration),
+        percent(MOST_VIBRATION)
+    );
+    let missed = format!(
+        "loads or motions change within a step: {:.1} % of the largest speed is missed, limit {:.0} %; reduce step_s",
+        percent(worst.unresolved_speed),
+        percent(SPEED)
+    );
+    let damping = format!(
+        "the step does not resolve damping: velocities are wrong by up to {:.1} % of the largest, limit {:.0} %; reduce step_s",
+        percent(worst.damping_speed),
+        percent(SPEED)
+    );
+    [
+        warned("unresolved vibration / largest speed", worst.vibration, MOST_VIBRATION, vibration),
+        warned("load change within a step / largest speed", worst.unresolved_speed, SPEED, missed),
+        warned("damping error / largest speed", worst.damping_speed, SPEED, damping),
+    ]
+}

@@ -1,0 +1,316 @@
+//! Contact damping: the rebound of a central impact is the coefficient of restitution, whatever the body, the potential, the penalty and the step; what
+//! rings comes to rest, and friction then holds what statics says that it holds.
+
+use ndda::judge::verdict;
+use ndda_contact::testing::Random;
+use ndda_io::summary::LabelWord;
+use ndda_mesh::{BlockId, Vec3};
+use ndda_solver::Simulation;
+
+use crate::evidence::Answer::{AtLeast, AtMost, Near, Within};
+use crate::evidence::row;
+use crate::{advance, displacements, simulation};
+
+const SPEED_M_S: f64 = 0.5;
+const DENSITY_KG_M3: f64 = 2500.0;
+const CASE: &str = "coefficient of restitution";
+
+/// A cube of stiff rock that meets a wider plate at a given part of a step.
+struct Bounce {
+    body: &'static str,
+    potential: &'static str,
+    restitution: f64,
+    penalty_pa: f64,
+    /// ω Δt of the cube as one mass on the patch.
+    h: f64,
+    part: f64,
+    integrator: &'static str,
+}
+
+impl Bounce {
+    /// Two smooth fields, or two volumes of one half, of slope 1 over a metre; four heights of the paper's potential in a cube of two cells.
+    fn step_s(&self) -> f64 {
+        let per_metre = if self.potential == "Element" { 27.7 } else { 2.0 };
+        self.h / (per_metre * self.penalty_pa / DENSITY_KG_M3).sqrt()
+    }
+
+    fn simulation(&self) -> Simulation {
+        let Self { body, potential, restitution, penalty_pa, integrator, .. } = self;
+        let step_s = self.step_s();
+        let height_m = 0.25 + self.part * step_s * SPEED_M_S;
+        simulation(&format!(
+            "(title: \"bounce\", time: (step_s: {step_s:e}, end_s: 1e3, integrator: {integrator}),
+              materials: [(name: \"rock\", young_pa: {:e}, poisson: 0, density_kg_m3: {DENSITY_KG_M3})],
+              blocks: [
+                (name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (1.93, 1.93, 0.25), cells: (2, 2, 1)), at_m: (-0.46, -0.49, 0)),
+                (name: \"cube\", material: \"rock\", body: {body}, shape: Box(size_m: (1, 1, 1), cells: (2, 2, 2)), at_m: (0, 0, {height_m:e}),
+                 velocity_m_s: (0, 0, -{SPEED_M_S})),
+              ],
+              contact: Potential(penalty_pa: {penalty_pa:e}, potential: {potential}, restitution: {restitution}))",
+            2.5e5 * penalty_pa
+        ))
+    }
+
+    /// Speed after over that before, and the largest work of damping in a step over the energy of the impact, which never gives energy.
+    fn rebound(&self) -> (f64, f64) {
+        let mut simulation = self.simulation();
+        let impact_j = 0.5 * DENSITY_KG_M3 * SPEED_M_S * SPEED_M_S;
+        let (mut touched, mut last_j, mut given_j) = (false, 0.0, 0.0f64);
+        for _ in 0..(20.0 / self.h) as u32 {
+            let report = simulation.step().unwrap();
+            let work_j = simulation.sample().unwrap().restitution_work_j;
+            given_j = given_j.max(work_j - last_j);
+            last_j = work_j;
+            touched |= report.contact.contact_pairs > 0;
+            if touched && report.contact.contact_pairs == 0 {
+                break;
+            }
+        }
+        let momentum = simulation.sample().unwrap().momentum.z;
+        (momentum / (DENSITY_KG_M3 * SPEED_M_S), given_j / impact_j)
+    }
+}
+
+const POTENTIALS: [&str; 3] = ["Smooth(reference_m: 1)", "Element", "Volume(exponent: 2, reference_m3: 1)"];
+
+#[test]
+fn a_cube_rebounds_by_the_coefficient_whatever_its_body_the_potential_the_penalty_and_the_step() {
+    let mut random = Random(5);
+    for potential in POTENTIALS {
+        for body in ["Rigid", "Affine", "Elastic"] {
+            for restitution in [0.0, 0.3, 0.6, 0.9] {
+                let (mut worst, mut given) = (0.0f64, 0.0f64);
+                // Without any restitution a cube stops within a step or two, and its own elasticity sees a blow.
+                let steps = if restitution == 0.0 { [0.02, 0.05] } else { [0.05, 0.2] };
+                for (h, penalty_pa) in steps.into_iter().zip([4e6, 4e8]) {
+                    let part = random.unit();
+                    let integrator = "Midpoint()";
+                    let bounce = Bounce { body, potential, restitution, penalty_pa, h, part, integrator };
+                    let (rebound, given_part) = bounce.rebound();
+                    worst = worst.max((rebound - restitution).abs());
+                    given = given.max(given_part);
+                }
+                let tolerance = if restitution == 0.0 && body != "Rigid" { 0.03 } else { 0.01 };
+                let what = format!("error of the rebound, e = {restitution}, {body}, {potential}");
+                row(CASE, &what, worst, AtMost(tolerance));
+                // Stiff rock vibrates in itself under the blow, which the damping does not foresee.
+                let given_limit = if body == "Rigid" { 1e-12 } else { 1e-4 };
+                row(
+                    CASE,
+                    &format!("energy that damping gave in a step, e = {restitution}, {body}, {potential}"),
+                    given,
+                    AtMost(given_limit),
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn generalised_alpha_rebounds_by_the_coefficient_from_its_least_on() {
+    for integrator in ["GeneralizedAlpha(radius: 0.8)", "GeneralizedAlpha(radius: 0.5)"] {
+        for restitution in [0.3, 0.7] {
+            for h in [0.05, 0.1] {
+                let potential = POTENTIALS[0];
+                let bounce = Bounce {
+                    body: "Elastic",
+                    potential,
+                    restitution,
+                    penalty_pa: 4e6,
+                    h,
+                    part: 0.4,
+                    integrator,
+                };
+                let what = format!("rebound, {integrator}, ω Δt = {h}");
+                row(CASE, &what, bounce.rebound().0, Near(restitution, 0.01));
+            }
+        }
+    }
+}
+
+/// A block of 18 m on a plane of 30° that passes through its base.
+fn tall_block(friction_deg: f64, restitution: f64, step_s: f64, gravity: &str) -> Simulation {
+    simulation(&format!(
+        "(title: \"tall\", time: (step_s: {step_s}, end_s: 10), gravity_m_s2: (0, 0, -9.81), {gravity}
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
+          rock: [(name: \"slope\", material: \"rock\", body: Rigid, domain: Box(min_m: (0, 0, 0), max_m: (20, 5, 18)),
+            joints: [Plane(name: \"p\", dip_deg: 30, dip_direction_deg: 90, point_m: (10, 0, 6))],
+            fixed: [Beyond(point_m: (10, 0, 6), normal: (-0.5, 0, -0.8660254037844386))])],
+          contact: Potential(penalty_pa: 1e9, potential: Smooth(), restitution: {restitution}, friction: (friction_deg: {friction_deg})))"
+    ))
+}
+
+/// Farthest that a node has moved [m].
+fn farthest_m(simulation: &Simulation) -> f64 {
+    displacements(simulation).iter().map(|u| u.norm()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_tall_block_stands_on_its_plane_where_statics_says_so_and_undamped_hops_are_not_called_accurate() {
+    let mut damped = tall_block(30.5, 0.3, 1e-4, "gravity_ramp_s: 0.5,");
+    damped.sample().unwrap();
+    advance(&mut damped, 20_000);
+    let moved_m = farthest_m(&damped);
+    row(CASE, "displacement of a tall block at F = 1.02, e = 0.3, in 2 s [m]", moved_m, AtMost(1e-3));
+    advance(&mut damped, 10_000);
+    row(CASE, "… in the third second [m]", (farthest_m(&damped) - moved_m).abs(), AtMost(1e-7));
+    damped.sample().unwrap();
+    assert_eq!(verdict::label(&damped, None).word, LabelWord::Accurate);
+
+    let mut undamped = tall_block(30.5, 1.0, 1e-4, "gravity_ramp_s: 0.5,");
+    undamped.sample().unwrap();
+    advance(&mut undamped, 20_000);
+    undamped.sample().unwrap();
+    row(CASE, "… undamped, in 2 s [m]", farthest_m(&undamped), AtLeast(0.1));
+    let label = verdict::label(&undamped, None);
+    assert_eq!(label.word, LabelWord::Inaccurate);
+    assert!(label.reasons.iter().any(|reason| reason.contains("restitution below 1")), "{:?}", label.reasons);
+}
+
+#[test]
+fn a_tall_block_that_friction_cannot_hold_slides_as_statics_says() {
+    let friction_deg = 20f64;
+    let mut simulation = tall_block(friction_deg, 0.3, 1e-4, "");
+    let dip = 30f64.to_radians();
+    let expected = 9.81 * (dip.sin() - dip.cos() * friction_deg.to_radians().tan());
+    let block =
+        (0..2).map(BlockId).find(|&block| simulation.shape(block).is_free()).expect("a block that moves");
+    let nodes = simulation.blocks().nodes_of(block);
+    let speed = |simulation: &Simulation| {
+        simulation.state().velocity[nodes.clone()].iter().sum::<Vec3>().norm() / nodes.len() as f64
+    };
+    advance(&mut simulation, 2000);
+    let early = speed(&simulation);
+    advance(&mut simulation, 3000);
+    let found = (speed(&simulation) - early) / 0.3;
+    row(CASE, "acceleration of a tall block at φ = 20°, e = 0.3 [m/s²]", found, Within(expected, 1e-3));
+}
+
+/// Plates of a metre that lie on a slope of 20° by shear springs, under gravity that comes suddenly.
+fn plates(shear_pa_m: f64, step_s: f64) -> Simulation {
+    let slope = 20f64.to_radians();
+    let plate = |name: &str, z: f64| {
+        format!(
+            "(name: \"{name}\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 0.2), cells: (1, 1, 1)), at_m: (0, 0, {z})),"
+        )
+    };
+    simulation(&format!(
+        "(title: \"plates\", time: (step_s: {step_s}, end_s: 30), gravity_m_s2: ({:e}, 0, {:e}),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
+          blocks: [
+            (name: \"base\", material: \"rock\", body: Fixed, shape: Box(size_m: (4, 4, 1), cells: (1, 1, 1)), at_m: (-2, -2, -1)),
+            {}{}{}
+          ],
+          contact: Potential(penalty_pa: 1e9, potential: Smooth(), restitution: 0.3,
+            friction: (friction_deg: 30, shear_penalty_pa_m: {shear_pa_m:e})))",
+        9.81 * slope.sin(),
+        -9.81 * slope.cos(),
+        plate("a", 0.0),
+        plate("b", 0.2),
+        plate("c", 0.4)
+    ))
+}
+
+#[test]
+fn a_stack_on_shear_springs_stops_to_creep_once_its_ringing_is_damped() {
+    for shear_pa_m in [1e9, 1e8] {
+        let step_s = 1e-4;
+        let mut simulation = plates(shear_pa_m, step_s);
+        advance(&mut simulation, 10_000);
+        let early = displacements(&simulation);
+        let end_s = if std::env::var_os("NDDA_LARGE").is_some() { 30 } else { 3 };
+        advance(&mut simulation, (end_s - 1) * 10_000);
+        let late = displacements(&simulation);
+        let crept_m = early.iter().zip(&late).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        let what = format!(
+            "slip of a stack of three after its first second, k_s = {shear_pa_m:e} Pa/m, e = 0.3 [m]"
+        );
+        row(CASE, &what, crept_m, AtMost(1e-6));
+    }
+}
+
+#[test]
+fn a_stack_that_falls_comes_to_rest_and_energy_never_grows() {
+    for body in ["Rigid", "Elastic"] {
+        let cube = |name: &str, at: &str, turn: f64| {
+            format!(
+                "(name: \"{name}\", material: \"rock\", body: {body}, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: {at},
+                  turns: [(axis: (0.3, 1, 0.2), angle_deg: {turn})]),"
+            )
+        };
+        let mut simulation = simulation(&format!(
+            "(title: \"fall\", time: (step_s: 2e-4, end_s: 10), gravity_m_s2: (0, 0, -9.81),
+              materials: [(name: \"rock\", young_pa: 5e9, poisson: 0.2, density_kg_m3: 2500)],
+              blocks: [
+                (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (6, 6, 1), cells: (1, 1, 1)), at_m: (-2.5, -2.5, -1)),
+                {}{}{}
+              ],
+              contact: Potential(penalty_pa: 1e8, potential: Smooth(), restitution: 0.3, friction: (friction_deg: 35)))",
+            cube("a", "(0, 0, 0.05)", 3.0),
+            cube("b", "(0.1, 0.05, 1.2)", 0.0),
+            cube("c", "(1.4, 0, 0.3)", 12.0)
+        ));
+        let start_j = simulation.sample().unwrap().total_j();
+        let (mut most_j, mut kinetic_j, mut peak_j) = (f64::NEG_INFINITY, 0.0, 0.0f64);
+        for _ in 0..150 {
+            advance(&mut simulation, 100);
+            let sample = simulation.sample().unwrap();
+            most_j = most_j.max(sample.total_j() - start_j);
+            peak_j = peak_j.max(sample.kinetic_j);
+            kinetic_j = sample.kinetic_j;
+        }
+        row(
+            CASE,
+            &format!("energy gained by falling cubes, {body}, over the largest kinetic energy"),
+            most_j / peak_j,
+            AtMost(1e-3),
+        );
+        row(
+            CASE,
+            &format!("kinetic energy of cubes that have fallen, {body}, after 3 s, over the largest"),
+            kinetic_j / peak_j,
+            AtMost(1e-8),
+        );
+    }
+}
+
+#[test]
+fn each_joint_and_each_pair_of_materials_has_its_own_restitution() {
+    for (what, more) in [
+        (
+            "of the materials",
+            "restitution: 0.9, material_pairs: [(between: (\"rock\", \"steel\"), restitution: 0.4)]",
+        ),
+        ("of the joint", "restitution: 1, rock_joints: [(joint: \"flat\", restitution: 0.4)]"),
+    ] {
+        let rock = what == "of the joint";
+        let blocks = if rock {
+            "rock: [(name: \"r\", material: \"rock\", body: Rigid, domain: Box(min_m: (0, 0, 0), max_m: (1, 1, 2)),
+               joints: [Plane(name: \"flat\", dip_deg: 0, dip_direction_deg: 0, point_m: (0.5, 0.5, 1))],
+               fixed: [Beyond(point_m: (0, 0, 1), normal: (0, 0, -1))])], gravity_m_s2: (0, 0, -10),"
+        } else {
+            "blocks: [(name: \"base\", material: \"steel\", body: Fixed, shape: Box(size_m: (2, 2, 1), cells: (1, 1, 1)), at_m: (-0.5, -0.5, 0)),
+               (name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 1), velocity_m_s: (0, 0, -1))],"
+        };
+        let mut simulation = simulation(&format!(
+            "(title: \"own\", time: (step_s: 1e-4, end_s: 1), {blocks}
+              materials: [(name: \"rock\", young_pa: 1e10, poisson: 0.2, density_kg_m3: 2500), (name: \"steel\", young_pa: 2e11, poisson: 0.3, density_kg_m3: 7800)],
+              contact: Potential(penalty_pa: 1e7, potential: Smooth(), {more}))"
+        ));
+        if rock {
+            // Gravity that comes suddenly rings without damping: swings of the depth between zero and twice its mean.
+            advance(&mut simulation, 10_000);
+            let kinetic_j = simulation.sample().unwrap().kinetic_j;
+            row(
+                CASE,
+                &format!("kinetic energy of a block that rang on a joint, restitution {what} [J]"),
+                kinetic_j,
+                AtMost(1e-12),
+            );
+        } else {
+            advance(&mut simulation, 1500);
+            let momentum = simulation.sample().unwrap().momentum.z;
+            row(CASE, &format!("rebound, restitution {what}"), momentum / 2500.0, Near(0.4, 0.01));
+        }
+    }
+}
