@@ -40,6 +40,11 @@ impl Watched {
         self.before = self.gone_m.len() - 1;
     }
 
+    /// How far each block will be when it has gone farther by so much [m].
+    pub fn farther_by(&self, far_m: f64) -> Vec<f64> {
+        self.gone_m.last().expect("the start is looked at").iter().map(|gone| gone + far_m).collect()
+    }
+
     pub fn look(&mut self, simulation: &Simulation) {
         self.times_s.push(simulation.time_s());
         self.gone_m.push(gone_m(simulation, &self.start).into_iter().map(|(_, gone)| gone).collect());
@@ -82,6 +87,19 @@ impl Watched {
         };
         let block = (0..self.blocks.len()).find(accelerates)?;
         Some((self.blocks[block], self.gone_m[last][block]))
+    }
+
+    /// Whether no block has moved by more than so much between the ends of the last windows, all of them after the push.
+    pub fn rested(&self, windows: usize, within_m: f64) -> bool {
+        let last = self.gone_m.len() - 1;
+        let Some(first) = last.checked_sub(windows).filter(|first| *first >= self.before) else {
+            return false;
+        };
+        let range_m = |block: usize| {
+            let gone = self.gone_m[first..].iter().map(|gone| gone[block]);
+            gone.clone().fold(0.0, f64::max) - gone.fold(f64::INFINITY, f64::min)
+        };
+        (0..self.blocks.len()).all(|block| range_m(block) <= within_m)
     }
 
     /// Largest mean speed over the last quarter [m/s].
