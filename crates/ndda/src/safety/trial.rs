@@ -2,7 +2,7 @@
 //!
 //! A block that is held moves elastically, by u; one that is not accelerates by a part of gravity that grows with how far the factor
 //! is beyond the limit. A trial lasts until an acceleration of 2 % of the wanted error times gravity would have moved a block by 10 u.
-//! It *fails* as soon as a block has gone 30 u and farther in each third of what it went since than in the one before; it *stands*
+//! It *fails* as soon as a block has gone 30 u and farther in each third of the time than in the one before; it *stands*
 //! if all blocks have come to rest, also where they went farther before, or if at its end no block has gone so far, and none is faster than that
 //! acceleration would have made it. Else it goes on for up to four times as long, and then is *undecided*.
 //!
@@ -251,9 +251,7 @@ impl Course<'_> {
                 self.push(simulation);
                 watched.pushed();
                 (pushed, resting) = (true, 0);
-                if self.leans {
-                    far_m = watched.farther_by(FAR * elastic_m);
-                }
+                far_m = watched.farther_by(FAR * elastic_m);
             } else if rests || self.is_decided(window, simulation, watched, &far_m) {
                 break;
             }

@@ -5,8 +5,10 @@ use ndda_solver::Simulation;
 
 use super::free_blocks::{free, gone_m};
 
-/// Windows that are compared with each other.
+/// Fewest windows that are compared with each other.
 const SPAN: usize = 2;
+/// How much farther a block goes in one of them than in the one before where its contact does not just vibrate.
+const MUCH: f64 = 1.1;
 
 /// Observed quantities of a trial.
 pub struct Watched {
@@ -76,16 +78,20 @@ impl Watched {
         Some((self.blocks[block], last[block]))
     }
 
-    /// A block that has gone far, and in each of the last three spans farther than in the one before.
+    /// A block that has gone far and accelerates: since the push, or else the start, it has gone farther in each third of the time than in the one
+    /// before, or in each of the last three spans much farther.
     pub fn accelerating(&self, far_m: &[f64]) -> Option<(BlockId, f64)> {
         let last = self.gone_m.len() - 1;
-        let first = last.checked_sub(3 * SPAN).filter(|first| *first >= self.before)?;
+        let third = (last - self.before) / 3;
         let accelerates = |&block: &usize| {
-            let at = |look: usize| self.gone_m[look][block];
-            let [a, b, c] = [0, 1, 2].map(|k| at(first + (k + 1) * SPAN) - at(first + k * SPAN));
-            at(last) > far_m[block] && c > b && b > a && a >= 0.0
+            let gains = |span: usize, by: f64| {
+                let at = |spans: usize| self.gone_m[last - spans * span][block];
+                let [a, b, c] = [3, 2, 1].map(|spans| at(spans - 1) - at(spans));
+                a >= 0.0 && b > by * a && c > by * b
+            };
+            self.gone_m[last][block] > far_m[block] && (gains(third, 1.0) || gains(SPAN, MUCH))
         };
-        let block = (0..self.blocks.len()).find(accelerates)?;
+        let block = (0..self.blocks.len()).filter(|_| third >= SPAN).find(accelerates)?;
         Some((self.blocks[block], self.gone_m[last][block]))
     }
 

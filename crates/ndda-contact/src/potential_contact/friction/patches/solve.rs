@@ -292,3 +292,6 @@ impl CoupledPatch {
         true
     }
 }
+
+#[cfg(test)]
+mod tests;
