@@ -20,12 +20,12 @@ pub struct BlockVelocity {
     pub spin_rad_s: [f64; 3],
 }
 
-/// Velocities of the blocks that move.
-pub fn velocities(simulation: &Simulation) -> Vec<BlockVelocity> {
+/// Velocities of the blocks that move, from those of the nodes.
+pub fn velocities(simulation: &Simulation, of_nodes: &[Vec3]) -> Vec<BlockVelocity> {
     let blocks = simulation.blocks();
     let speed_m_s = |block| {
         let nodes = blocks.nodes_of(block);
-        nodes.map(|node| simulation.state().velocity[node].norm()).fold(0.0, f64::max)
+        nodes.map(|node| of_nodes[node].norm()).fold(0.0, f64::max)
     };
     let fastest_m_s = free(simulation).map(speed_m_s).fold(0.0, f64::max);
     let moving = free(simulation).filter(|&block| speed_m_s(block) > SLOW * fastest_m_s);
@@ -34,7 +34,7 @@ pub fn velocities(simulation: &Simulation) -> Vec<BlockVelocity> {
         .map(|block| {
             let nodes = blocks.nodes_of(block);
             let operator = &simulation.shape(block).operator;
-            let motion = operator.rigid_motion(&state.position[nodes.clone()], &state.velocity[nodes]);
+            let motion = operator.rigid_motion(&state.position[nodes.clone()], &of_nodes[nodes]);
             BlockVelocity {
                 block: blocks.names[block.index()].clone(),
                 velocity_m_s: motion.velocity_m_s.into(),
@@ -42,6 +42,17 @@ pub fn velocities(simulation: &Simulation) -> Vec<BlockVelocity> {
             }
         })
         .collect()
+}
+
+/// Velocities along the way that blocks have gone since they were in some places, the fastest node at a speed.
+pub fn on_the_way(simulation: &Simulation, from: &[Vec3], speed_m_s: f64) -> Vec<BlockVelocity> {
+    let way: Vec<Vec3> = simulation.state().position.iter().zip(from).map(|(x, from)| x - from).collect();
+    let farthest_m = way.iter().map(Vec3::norm).fold(0.0, f64::max);
+    if farthest_m == 0.0 {
+        return Vec::new();
+    }
+    let of_nodes: Vec<Vec3> = way.into_iter().map(|way| way * (speed_m_s / farthest_m)).collect();
+    velocities(simulation, &of_nodes)
 }
 
 /// The same, per node of a simulation, scaled so that the fastest node moves at a speed; none if nothing moves.

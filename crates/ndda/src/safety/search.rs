@@ -1,5 +1,7 @@
 //! The bracket: the largest factor at which blocks stand, and the smallest at which they fail.
 
+mod march;
+
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::time::Instant;
@@ -22,10 +24,14 @@ const STRIDE: f64 = 1.5;
 /// Trials inside a bracket that run side by side.
 const INSIDE: usize = 3;
 
-/// First stride under changed loads.
-const FIRST_STRIDE: f64 = 1.25;
-/// The last one over the wanted error.
-const LAST_STRIDE: f64 = 0.2;
+/// What a trial found.
+struct Tried {
+    state: State,
+    /// Velocities with which blocks failed.
+    failing: Vec<BlockVelocity>,
+    /// The state that it ended in.
+    ended: Snapshot,
+}
 
 /// A search for the factor of safety.
 pub struct Search<'a> {
@@ -108,13 +114,16 @@ impl<'a> Search<'a> {
         let before_s = self.answer.lock().expect("no trial panics").wall_s;
         let last = if self.by.changes_loads() { self.march(before_s)? } else { self.bisect(before_s)? };
         let (mechanism, moving) = self.mechanism(last)?;
+        let may_push = self.may_push();
         let mut answer = self.answer.into_inner().expect("no trial panics");
         (answer.mechanism, answer.moving_blocks) = (mechanism, moving);
         answer.remarks.extend(remarks(&answer));
-        // Joints that slipped on the way to rest keep their friction at its limit.
-        if answer.factor_of_safety.upper.is_some_and(|upper| upper * self.strength <= 1.0 + self.plan.error) {
+        // Springs that slipped on the way to rest keep their friction at its limit, and nothing pushes them.
+        let upper = answer.factor_of_safety.upper;
+        let fails_at_once = upper.is_some_and(|upper| upper * self.strength <= 1.0 + self.plan.error);
+        if fails_at_once && !may_push {
             answer.remarks.push(
-                "blocks fail at the very strength with which they came to rest: where joints slipped on the way, the answer depends on that way; \
+                "blocks fail at the very strength with which they came to rest: where springs of joints slipped on the way, the answer depends on that way; \
                  compare it with --by gravity and with a run"
                     .into(),
             );
@@ -128,7 +137,7 @@ impl<'a> Search<'a> {
 
     /// Whether blocks stand at one factor on the strength.
     pub fn at(&self, factor: f64) -> Result<State, SafetyError> {
-        Ok(self.try_factor(factor, &self.start.snapshot, &[], 0.0)?.0)
+        Ok(self.try_factor(factor, &self.start.snapshot, &[], 0.0)?.state)
     }
 
     /// Trials side by side, outwards until there is a bracket and inwards until it is narrow, all from the same start.
@@ -148,30 +157,6 @@ impl<'a> Search<'a> {
             };
             wanted.par_iter().map(run).collect::<Result<Vec<()>, SafetyError>>()?;
         }
-    }
-
-    /// Loads that grow by strides, each from where blocks rest under the last; strides shorten where blocks fail, since a
-    /// load that comes at once swings them beyond where they would rest. Gives the state before the last stride.
-    fn march(&self, before_s: f64) -> Result<Snapshot, SafetyError> {
-        let last = 1.0 + LAST_STRIDE * self.plan.error;
-        let (mut stride, mut factor, mut state) = (FIRST_STRIDE, 1.0, self.start.snapshot.clone());
-        let (first, stood) = self.try_factor(factor, &state, &[], before_s)?;
-        if first != State::Stands {
-            return Ok(state);
-        }
-        state = stood;
-        while factor < self.plan.most {
-            let (found, reached) = self.try_factor(factor * stride, &state, &[], before_s)?;
-            if found == State::Stands {
-                (factor, state) = (factor * stride, reached);
-            } else if stride > last {
-                self.forget(factor * stride);
-                stride = stride.sqrt().max(last);
-            } else {
-                return Ok(state);
-            }
-        }
-        Ok(state)
     }
 
     fn keep(&self, trial: Trial) {
@@ -203,7 +188,7 @@ impl<'a> Search<'a> {
         from: &Snapshot,
         failing: &[BlockVelocity],
         before_s: f64,
-    ) -> Result<(State, Snapshot), SafetyError> {
+    ) -> Result<Tried, SafetyError> {
         let mut model = self.model(factor, from)?;
         let trial =
             self.course(failing).run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
@@ -214,7 +199,8 @@ impl<'a> Search<'a> {
             trial.steps,
             trial.wall_s
         ));
-        let ended = (trial.state, model.simulation.snapshot());
+        let (state, failing) = (trial.state, trial.velocities.clone());
+        let tried = Tried { state, failing, ended: model.simulation.snapshot() };
         self.keep(trial);
         if let Some(out) = self.watch.out {
             // Trials that end at the same time write one after the other.
@@ -227,7 +213,7 @@ impl<'a> Search<'a> {
             answer.trials.extend(others);
             write(out, &answer)?;
         }
-        Ok(ended)
+        Ok(tried)
     }
 
     /// The scene at a factor, in a state.
@@ -239,13 +225,17 @@ impl<'a> Search<'a> {
         Ok(model)
     }
 
-    /// Velocities with which blocks fail at the smallest factor at which they do; none where joints have springs, whose cohesion a push
-    /// might break.
+    /// Whether blocks are pushed: not where joints have springs, whose cohesion a push might break.
+    fn may_push(&self) -> bool {
+        !changes::has_springs(&self.loaded.scene)
+    }
+
+    /// Velocities with which blocks fail at the smallest factor at which they do.
     fn failing(&self) -> Vec<BlockVelocity> {
         let answer = self.answer.lock().expect("no trial panics");
         let fails = answer.trials.iter().find(|trial| trial.state == State::Fails);
         match fails {
-            Some(trial) if !changes::has_springs(&self.loaded.scene) => trial.velocities.clone(),
+            Some(trial) if self.may_push() => trial.velocities.clone(),
             _ => Vec::new(),
         }
     }

@@ -2,15 +2,17 @@
 //!
 //! A block that is held moves elastically, by u; one that is not accelerates by a part of gravity that grows with how far the factor
 //! is beyond the limit. A trial lasts until an acceleration of 2 % of the wanted error times gravity would have moved a block by 10 u.
-//! It *fails* as soon as a block has gone 30 u and farther in each third of what it went since than in the one before; it *stands*
-//! if at its end no block has gone so far, and none is faster than that acceleration would have made it; else it is *undecided*.
-//! It ends early where all blocks have come to rest.
+//! It *fails* as soon as a block has gone 30 u and farther in each third of the time than in the one before; it *stands*
+//! if all blocks have come to rest, also where they went farther before, or if at its end no block has gone so far, and none is faster than that
+//! acceleration would have made it. Else it goes on for up to four times as long, and then is *undecided*.
 //!
 //! Vibrations are damped locally, since undamped contact of rigid blocks vibrates for ever, and blocks that hardly stand slip a little in each
 //! vibration. Their mean velocity is not damped, or a tall block that rocks while it slides would be called stable.
 //!
 //! Friction makes equilibrium ambiguous: a wedge whose friction points across its line stands where one that slides does not. Blocks that
-//! stand are therefore pushed once, by the velocities with which they failed at a larger factor, and have to come to rest again.
+//! stand are therefore pushed once, by the velocities with which they failed at a larger factor, and have to come to rest again. They have to
+//! go some elastic displacements before their friction points against their slip: where one of two joints is hardly pressed, a push of 5 u left a
+//! wedge standing at 1.4 % more than its limit.
 //!
 //! Changed loads act at once, and the scene is brought to rest under them first, with kinetic damping; a block that has gone 5 % of
 //! its radius then fails. Scenes whose friction has springs are brought to rest first, too.
@@ -33,6 +35,13 @@ const NO_ACCELERATION: f64 = 0.02;
 /// Elastic displacements that it would bring within a trial, and that a block goes before it fails.
 const WITHIN: f64 = 10.0;
 const FAR: f64 = 30.0;
+/// Part of its radius that a block goes before it is in another place, where it may rest on others.
+const ELSEWHERE: f64 = 0.05;
+/// Windows in which no block moves by more than so many elastic displacements where all rest: less than what no acceleration would bring in them.
+const RESTED: usize = 8;
+const RESTED_WITHIN: f64 = WITHIN * (RESTED as f64 / WINDOWS as f64) * (RESTED as f64 / WINDOWS as f64);
+/// Longest trial over the time in which no acceleration would move a block by those 10 u: blocks may be slow to rest.
+const LONGEST: u64 = 4;
 /// Part of its radius that a block goes under changed loads before it fails.
 const FAR_UNDER_LOADS: f64 = 0.05;
 /// How often the steps that a trial may take to come to rest are doubled, from those that it lasts.
@@ -47,7 +56,7 @@ const PUSH: u64 = 12;
 const SLOW: f64 = 0.1;
 const RESTING: u32 = 2;
 /// Elastic displacements that a push moves blocks by which half the wanted error times gravity slows down.
-const PUSHED: f64 = 5.0;
+const PUSHED: f64 = 20.0;
 /// Local damping of vibrations in trials, and the steps over which velocities are averaged.
 const DAMPING: f64 = 0.8;
 const AVERAGED: f64 = 50.0;
@@ -174,6 +183,7 @@ impl Course<'_> {
     /// Runs a trial at a factor; none if somebody asked to end.
     pub fn run(&self, simulation: &mut Simulation, factor: f64) -> Option<Trial> {
         let began = Instant::now();
+        let begun = simulation.state().position.clone();
         let mut watched = Watched::new(simulation, &self.start.position);
         let verdict = self.judge(simulation, &mut watched)?;
         let (state, reason) = verdict.unwrap_or_else(|error| {
@@ -181,7 +191,14 @@ impl Course<'_> {
             let state = if far { State::Fails } else { State::Undecided };
             (state, format!("the run stopped: {error}"))
         });
-        let velocities = if state == State::Fails { failing::velocities(simulation) } else { Vec::new() };
+        let velocities = match state {
+            // On the way to rest blocks are stopped again and again: where they went says how they fail.
+            State::Fails if self.settle_tolerance.is_some() => {
+                failing::on_the_way(simulation, &begun, self.push_m_s())
+            }
+            State::Fails => failing::velocities(simulation, &simulation.state().velocity),
+            _ => Vec::new(),
+        };
         Some(Trial {
             factor,
             velocities,
@@ -200,7 +217,7 @@ impl Course<'_> {
         simulation: &mut Simulation,
         watched: &mut Watched,
     ) -> Option<Result<(State, String), StepError>> {
-        let far_m = self.far_m(simulation);
+        let mut far_m = self.far_m(simulation);
         match self.settle(simulation, watched, &far_m)? {
             Ok(None) => {}
             Ok(Some(verdict)) => return Some(Ok(verdict)),
@@ -211,7 +228,8 @@ impl Course<'_> {
         let slow_m_s = SLOW * self.threshold_m_s2() * window_s;
         let mut damping = LocalDamping::of_vibrations(DAMPING, AVERAGED);
         let (mut pushed, mut resting) = (self.failing.is_empty(), 0);
-        for window in 1..=WINDOWS {
+        let elastic_m = self.start.elastic_m;
+        for window in 1..=LONGEST * WINDOWS {
             while simulation.state().step - first < window * steps / WINDOWS {
                 if self.stop.load(Ordering::Relaxed) {
                     return None;
@@ -228,21 +246,32 @@ impl Course<'_> {
                 return Some(Ok((State::Fails, reason)));
             }
             resting = if fastest_m_s(simulation) < slow_m_s { resting + 1 } else { 0 };
-            if !pushed && (resting == RESTING || window == PUSH) {
+            let rests = resting == RESTING || watched.rested(RESTED, RESTED_WITHIN * elastic_m);
+            if !pushed && (rests || window == PUSH) {
                 self.push(simulation);
                 watched.pushed();
                 (pushed, resting) = (true, 0);
-            } else if resting == RESTING {
+                far_m = watched.farther_by(FAR * elastic_m);
+            } else if rests || self.is_decided(window, simulation, watched, &far_m) {
                 break;
             }
         }
         Some(Ok(self.at_the_end(simulation, watched, &far_m)))
     }
 
-    /// Adds the velocities with which blocks failed, the fastest at a speed √(2 a d) that a = ½ error g stops after d = 5 u.
+    /// Whether a trial has lasted long enough to say what becomes of its blocks.
+    fn is_decided(&self, window: u64, simulation: &Simulation, watched: &Watched, far_m: &[f64]) -> bool {
+        window >= WINDOWS && self.at_the_end(simulation, watched, far_m).0 != State::Undecided
+    }
+
+    /// √(2 a d), so that a = ½ error g stops a block after d = 20 u [m/s].
+    fn push_m_s(&self) -> f64 {
+        (self.error * self.start.gravity_m_s2 * PUSHED * self.start.elastic_m).sqrt()
+    }
+
+    /// Adds the velocities with which blocks failed.
     fn push(&self, simulation: &mut Simulation) {
-        let speed_m_s = (self.error * self.start.gravity_m_s2 * PUSHED * self.start.elastic_m).sqrt();
-        if let Some(field) = failing::field(simulation, self.failing, speed_m_s) {
+        if let Some(field) = failing::field(simulation, self.failing, self.push_m_s()) {
             simulation.push(&field);
         }
     }
@@ -284,13 +313,26 @@ impl Course<'_> {
         free(simulation).map(far).collect()
     }
 
+    /// How far each free block goes at most before it counts as being in another place [m].
+    fn elsewhere_m(&self, simulation: &Simulation) -> Vec<f64> {
+        let far_m = FAR * self.start.elastic_m;
+        free(simulation)
+            .map(|block| far_m.max(ELSEWHERE * radius_m(&simulation.shape(block).operator)))
+            .collect()
+    }
+
     fn at_the_end(&self, simulation: &Simulation, watched: &Watched, far_m: &[f64]) -> (State, String) {
         let time_s = simulation.time_s() - watched.times_s[0];
         let (speed_m_s, limit_m_s) = (watched.speed_m_s(), self.threshold_m_s2() * time_s);
         let gone_m = watched.farthest_m();
         let name = watched.name(simulation);
-        if watched.beyond(far_m).is_some() {
-            let reason = format!("block `{name}` has gone {gone_m:.2e} m, and does not accelerate");
+        let has_rested = watched.rested(RESTED, RESTED_WITHIN * self.start.elastic_m);
+        if has_rested && watched.beyond(&self.elsewhere_m(simulation)).is_none() {
+            let reason =
+                format!("all blocks rest after {time_s:.3} s; none has gone farther than {gone_m:.2e} m");
+            (State::Stands, reason)
+        } else if watched.beyond(far_m).is_some() {
+            let reason = format!("block `{name}` has gone {gone_m:.2e} m, and neither rests nor accelerates");
             (State::Undecided, reason)
         } else if speed_m_s > limit_m_s {
             let reason = format!("blocks move at {speed_m_s:.2e} m/s after {time_s:.3} s, which is not rest");

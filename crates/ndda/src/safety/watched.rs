@@ -5,8 +5,10 @@ use ndda_solver::Simulation;
 
 use super::free_blocks::{free, gone_m};
 
-/// Windows that are compared with each other.
+/// Fewest windows that are compared with each other.
 const SPAN: usize = 2;
+/// How much farther a block goes in one of them than in the one before where its contact does not just vibrate.
+const MUCH: f64 = 1.1;
 
 /// Observed quantities of a trial.
 pub struct Watched {
@@ -40,6 +42,11 @@ impl Watched {
         self.before = self.gone_m.len() - 1;
     }
 
+    /// How far each block will be when it has gone farther by so much [m].
+    pub fn farther_by(&self, far_m: f64) -> Vec<f64> {
+        self.gone_m.last().expect("the start is looked at").iter().map(|gone| gone + far_m).collect()
+    }
+
     pub fn look(&mut self, simulation: &Simulation) {
         self.times_s.push(simulation.time_s());
         self.gone_m.push(gone_m(simulation, &self.start).into_iter().map(|(_, gone)| gone).collect());
@@ -71,17 +78,34 @@ impl Watched {
         Some((self.blocks[block], last[block]))
     }
 
-    /// A block that has gone far, and in each of the last three spans farther than in the one before.
+    /// A block that has gone far and accelerates: since the push, or else the start, it has gone farther in each third of the time than in the one
+    /// before, or in each of the last three spans much farther.
     pub fn accelerating(&self, far_m: &[f64]) -> Option<(BlockId, f64)> {
         let last = self.gone_m.len() - 1;
-        let first = last.checked_sub(3 * SPAN).filter(|first| *first >= self.before)?;
+        let third = (last - self.before) / 3;
         let accelerates = |&block: &usize| {
-            let at = |look: usize| self.gone_m[look][block];
-            let [a, b, c] = [0, 1, 2].map(|k| at(first + (k + 1) * SPAN) - at(first + k * SPAN));
-            at(last) > far_m[block] && c > b && b > a && a >= 0.0
+            let gains = |span: usize, by: f64| {
+                let at = |spans: usize| self.gone_m[last - spans * span][block];
+                let [a, b, c] = [3, 2, 1].map(|spans| at(spans - 1) - at(spans));
+                a >= 0.0 && b > by * a && c > by * b
+            };
+            self.gone_m[last][block] > far_m[block] && (gains(third, 1.0) || gains(SPAN, MUCH))
         };
-        let block = (0..self.blocks.len()).find(accelerates)?;
+        let block = (0..self.blocks.len()).filter(|_| third >= SPAN).find(accelerates)?;
         Some((self.blocks[block], self.gone_m[last][block]))
+    }
+
+    /// Whether no block has moved by more than so much between the ends of the last windows, all of them after the push.
+    pub fn rested(&self, windows: usize, within_m: f64) -> bool {
+        let last = self.gone_m.len() - 1;
+        let Some(first) = last.checked_sub(windows).filter(|first| *first >= self.before) else {
+            return false;
+        };
+        let range_m = |block: usize| {
+            let gone = self.gone_m[first..].iter().map(|gone| gone[block]);
+            gone.clone().fold(0.0, f64::max) - gone.fold(f64::INFINITY, f64::min)
+        };
+        (0..self.blocks.len()).all(|block| range_m(block) <= within_m)
     }
 
     /// Largest mean speed over the last quarter [m/s].

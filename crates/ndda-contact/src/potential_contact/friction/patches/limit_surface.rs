@@ -115,6 +115,20 @@ impl LimitSurface {
         along * self.most_twist_n + force.z.abs() * self.most_n <= self.most_n * self.most_twist_n
     }
 
+    /// A force that stops a patch, shortened to one within the limit for sure: the slip that is left keeps the direction of that without it, and
+    /// the force opposes it. Its length is that of friction only to a part of μN.
+    pub(super) fn held_back(&self, stopping: Vec3) -> Vec3 {
+        let along = (stopping.x * stopping.x + stopping.y * stopping.y).sqrt();
+        let load = along / self.most_n + stopping.z.abs() / self.most_twist_n;
+        if load <= 1.0 {
+            stopping
+        } else if load.is_finite() {
+            stopping / load
+        } else {
+            Vec3::zeros()
+        }
+    }
+
     /// Friction on a patch that would slip at s without, and slips at σ = s + A⁻¹ F with it: the σ of least ½ (σ − s)·A (σ − s) + D(σ).
     /// Sought from `start`, which is near σ unless it `is_first`; gives F, to `tolerance_n`: D alone is too coarse a measure of it where the slip of a
     /// step is far from what friction changes.

@@ -255,10 +255,15 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
 }
 
 impl CoupledPatch {
+    /// Whether its friction changes by less than what matters to the blocks, whatever its slip: a block has many such patches along its edges.
+    fn is_slight(&self) -> bool {
+        2.0 * self.surface.most_n <= self.tolerance_n
+    }
+
     /// Friction of this patch while that of the others stays; whether it had to change.
     fn advance(&mut self, motion: &mut Motion, time_s: f64, (now, is_first): (u32, bool)) -> bool {
         let pushed = motion.pushed[self.owner.index()].max(motion.pushed[self.target.index()]);
-        if !is_first && pushed <= self.seen {
+        if !is_first && (pushed <= self.seen || self.is_slight()) {
             return false;
         }
         self.seen = now;
@@ -268,9 +273,13 @@ impl CoupledPatch {
             return false;
         }
         self.free_slip = free_slip;
-        let tolerance_n = LOCAL_TOLERANCE * self.tolerance_n;
-        let slips = (&free_slip, &slip);
-        let force = self.surface.friction(&(self.stiffness / GAMMA), slips, tolerance_n, is_first);
+        let stiffness = self.stiffness / GAMMA;
+        let force = if self.is_slight() {
+            self.surface.held_back(-(stiffness * free_slip))
+        } else {
+            let tolerance_n = LOCAL_TOLERANCE * self.tolerance_n;
+            self.surface.friction(&stiffness, (&free_slip, &slip), tolerance_n, is_first)
+        };
         let change = force - self.force;
         self.force = force;
         self.push(motion, &change, time_s);
@@ -283,3 +292,6 @@ impl CoupledPatch {
         true
     }
 }
+
+#[cfg(test)]
+mod tests;

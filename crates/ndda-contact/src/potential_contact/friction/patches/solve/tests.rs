@@ -1,0 +1,116 @@
+use super::*;
+
+const COLUMNS: usize = 6;
+const ROWS: usize = 4;
+const DT_S: f64 = 1e-4;
+
+/// Cubes of a wall on a base that does not move, with velocities that all friction together may or may not stop.
+fn bodies() -> Vec<Body> {
+    let mut state = 1u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    let held = Body {
+        mass_kg: f64::INFINITY,
+        inverse_inertia: Mat3::zeros(),
+        load_n: Vec3::zeros(),
+        torque_n_m: Vec3::zeros(),
+        center: Vec3::zeros(),
+        velocity_m_s: Vec3::zeros(),
+        spin_rad_s: Vec3::zeros(),
+        deforms: false,
+    };
+    let mut all = vec![held];
+    for k in 0..COLUMNS * ROWS {
+        all.push(Body {
+            mass_kg: 2600.0,
+            inverse_inertia: Mat3::identity() * (6.0 / 2600.0),
+            center: Vec3::new((k % COLUMNS) as f64, 0.0, (k / COLUMNS) as f64 + 0.5),
+            velocity_m_s: 2e-3 * Vec3::new(1.0 + random(), random(), 0.0),
+            spin_rad_s: 1e-3 * Vec3::new(random(), random(), random()),
+            ..held
+        });
+    }
+    all
+}
+
+/// A patch on a face with the most friction that it can carry.
+fn patch([owner, target]: [usize; 2], center: Vec3, axes: [Vec3; 3], most_n: f64) -> ContactPatch {
+    let surface = LimitSurface::new(most_n, [1.0 / 12.0, 1.0 / 15.0]);
+    let [owner, target] = [owner, target].map(|block| BlockId(block as u32));
+    let mut patch = ContactPatch::default();
+    (patch.owner, patch.target) = (owner, target);
+    (patch.center, patch.axes, patch.surface) = (center, axes, surface);
+    patch
+}
+
+/// Faces on which cubes lie and stand beside each other, with a slight patch at an edge of each.
+fn patches() -> Vec<ContactPatch> {
+    let (x, y, z) = (Vec3::x(), Vec3::y(), Vec3::z());
+    let mut all = Vec::new();
+    for k in 0..COLUMNS * ROWS {
+        let (column, row) = (k % COLUMNS, k / COLUMNS);
+        let (block, below) = (k + 1, if row == 0 { 0 } else { k + 1 - COLUMNS });
+        let foot = Vec3::new(column as f64, 0.0, row as f64);
+        let most_n = 15e3 * (ROWS - row) as f64;
+        all.push(patch([block, below], foot, [x, y, z], most_n));
+        all.push(patch([block, below], foot + 0.5 * x, [y, z, x], 2e-6 * most_n));
+        if column > 0 {
+            all.push(patch([block, block - 1], foot + 0.5 * (z - x), [y, z, x], 3e3));
+        }
+    }
+    all
+}
+
+/// Friction, the velocities with it, and how many patches were slight.
+fn solved(tolerance: f64) -> (Vec<Vec3>, Vec<Body>, usize) {
+    let (start, mut end, mut nodal) = (bodies(), bodies(), Nodal::default());
+    let found = patches();
+    let mut coupled: Vec<_> = (0..)
+        .zip(&found)
+        .filter_map(|patch| CoupledPatch::new(patch, (&start, &nodal), [None; 2], DT_S))
+        .collect();
+    let mut motion = Motion {
+        blocks: &BlockSet::new(Vec::new()).unwrap(),
+        start: &[],
+        bodies: &mut end,
+        nodal: &mut nodal,
+        dt_s: DT_S,
+        is_iterated: false,
+        tolerance,
+        most_n: &mut Vec::new(),
+        pushed: &mut Vec::new(),
+    };
+    solve(&mut coupled, &start, &mut motion);
+    let slight = coupled.iter().filter(|patch| patch.is_slight()).count();
+    (coupled.iter().map(|patch| patch.friction().0).collect(), end, slight)
+}
+
+/// The reference has no slight patches, and a hundred thousandth of the tolerance.
+#[test]
+fn slight_patches_leave_the_friction_of_others_within_the_tolerance() {
+    let tolerance = 1e-4;
+    let (exact, exact_end, none) = solved(1e-9);
+    let (friction, end, slight) = solved(tolerance);
+    assert_eq!((none, slight), (0, COLUMNS * ROWS));
+    let most_n = 15e3 * ROWS as f64;
+    let off = friction.iter().zip(&exact).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    assert!(off <= 10.0 * tolerance * most_n, "{off} N of {most_n} N");
+    let stopped = 1e-4 * most_n / 2600.0;
+    for (a, b) in end.iter().zip(&exact_end) {
+        assert!((a.velocity_m_s - b.velocity_m_s).norm() <= 10.0 * tolerance * stopped);
+    }
+}
+
+#[test]
+fn a_slight_patch_opposes_its_slip_with_no_more_than_its_most() {
+    for most_n in [0.0, 1e-9, 5.0] {
+        let surface = LimitSurface::new(most_n, [1.0 / 12.0, 1.0 / 15.0]);
+        for slip in [Vec3::x(), Vec3::new(1.0, -2.0, 3.0), Vec3::new(0.0, 1e-3, -8.0), Vec3::zeros()] {
+            let force = surface.held_back(-1e3 * slip);
+            assert!(force.dot(&slip) <= 0.0 && force.xy().norm() <= most_n * (1.0 + 1e-12), "{force}");
+            assert!(surface.work_j(&slip) + force.dot(&slip) >= -1e-12 * most_n, "within the limit surface");
+        }
+    }
+}
