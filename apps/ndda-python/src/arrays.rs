@@ -51,7 +51,7 @@ pub fn fill(simulation: &Simulation, name: &str, out: &mut PyReadwriteArray2<'_,
 }
 
 /// Energies and works with their names [J].
-pub fn energies(sample: &Sample) -> [(&'static str, f64); 11] {
+pub fn energies(sample: &Sample) -> [(&'static str, f64); 12] {
     [
         ("kinetic_j", sample.kinetic_j),
         ("strain_j", sample.strain_j),

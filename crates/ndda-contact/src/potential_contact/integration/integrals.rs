@@ -5,12 +5,13 @@ use std::sync::{Mutex, PoisonError};
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, TetId, TriangleId, Vec3};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 use rayon::prelude::*;
 
-use crate::affine::half_spaces::{HalfSpaces, Planes};
+use crate::affine::half_spaces::HalfSpaces;
 use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::broad_phase::finder::FEW_NODES;
+use crate::integration::affine_target::{EvaluateHalfSpaces, PushRegions};
 use crate::integration::clip::Outline;
 use crate::integration::function_moments::{Placed, add_function};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
@@ -257,49 +258,6 @@ impl Scratch {
                     let moments = &mut self.seen[at as usize].moments;
                     add_function(moments, field, &self.pieces, &mut self.region, placed);
                 }
-            }
-        }
-    }
-}
-
-/// A look at a block that is an affine convex target.
-struct EvaluateHalfSpaces<'a> {
-    sides: &'a mut HalfSpaces,
-    planes: &'a [Planes],
-    corners: &'a [Vec3; 3],
-    normal: &'a Vec3,
-    outline: &'a Outline,
-}
-
-impl WithSimd for EvaluateHalfSpaces<'_> {
-    type Output = bool;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> bool {
-        self.sides.look(simd, self.planes, self.corners, self.normal, self.outline)
-    }
-}
-
-/// The regions that are seen then.
-struct PushRegions<'a> {
-    sides: &'a mut HalfSpaces,
-    region: &'a mut Region,
-    batches: &'a mut RegionQueue,
-    outline: &'a Outline,
-    arch: Arch,
-    at: u32,
-    area_m2: f64,
-}
-
-impl WithSimd for PushRegions<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { sides, region, batches, outline, arch, at, area_m2 } = self;
-        for k in 0..sides.len() {
-            if sides.set_region(simd, k, outline, region) {
-                batches.push(arch, at, area_m2, region, outline);
             }
         }
     }

@@ -1,5 +1,6 @@
 //! Exact integrals of the potential over the part of a triangle that lies in a target.
 
+mod affine_target;
 pub(crate) mod capacity;
 pub(crate) mod clip;
 pub(crate) mod double_double;
