@@ -19,8 +19,7 @@ use crate::integration::pair_moments::{PairMoments, PsiRange};
 use crate::integration::pair_report::OverlapReport;
 use crate::integration::queue::RegionQueue;
 use crate::integration::region::{Pieces, Region};
-use crate::integration::scene::{Scene, are_on_one_side};
-use crate::integration::tet_frame::TetFrame;
+use crate::integration::scene::{Scene, are_on_one_side, lies_in_a_plane_of};
 use crate::potential::contact_potential::PotentialField;
 
 /// Pairs of a chunk: one task for a thread. Where there are many, chunks are larger, since each has memory of its own, most of which is not used.
@@ -261,14 +260,6 @@ impl Scratch {
             }
         }
     }
-}
-
-/// Whether the triangle lies exactly in a face's plane and the tetrahedron owns it: other potentials than the
-/// paper's are not zero on the faces inside a block.
-fn lies_in_a_plane_of(frame: &TetFrame, lambda: &[[f64; 3]; 4], normal: &Vec3) -> bool {
-    let beyond = |at: &[f64; 3]| at.iter().all(|&l| l < 0.0);
-    let off = |b: usize| lambda[b].iter().all(|&l| l <= 0.0) && !frame.owns_plane(b, normal);
-    !lambda.iter().any(beyond) && !(0..4).any(off)
 }
 
 /// All chunks of a scene; their memory is kept from step to step.

@@ -54,3 +54,11 @@ pub(super) fn are_on_one_side<'a>(
     let (least, most) = points.fold((f64::INFINITY, f64::NEG_INFINITY), range);
     least > 0.0 || most < 0.0
 }
+
+/// Whether the triangle lies exactly in a face's plane and the tetrahedron owns it: other potentials than the
+/// paper's are not zero on the faces inside a block.
+pub(super) fn lies_in_a_plane_of(frame: &TetFrame, lambda: &[[f64; 3]; 4], normal: &Vec3) -> bool {
+    let beyond = |at: &[f64; 3]| at.iter().all(|&l| l < 0.0);
+    let off = |b: usize| lambda[b].iter().all(|&l| l <= 0.0) && !frame.owns_plane(b, normal);
+    !lambda.iter().any(beyond) && !(0..4).any(off)
+}
