@@ -83,7 +83,7 @@ impl Record {
 
 /// Subject of a reason, without its numbers.
 fn short(reason: &str) -> &'static str {
-    const KINDS: [(&str, &str); 25] = [
+    const KINDS: [(&str, &str); 26] = [
         ("deviates from Coulomb", "friction"),
         ("strains reach", "strains"),
         ("lumped masses", "lumped masses"),
