@@ -95,6 +95,21 @@ impl Watched {
         Some((self.blocks[block], self.gone_m[last][block]))
     }
 
+    /// Whether a block slows down: since the push, or else the start, it has gone much less far in each third of the time than in the one before.
+    fn slows_down(&self, block: usize) -> bool {
+        let last = self.gone_m.len() - 1;
+        let third = (last - self.before) / 3;
+        let at = |thirds: usize| self.gone_m[last - thirds * third][block];
+        let [a, b, c] = [3, 2, 1].map(|thirds| at(thirds - 1) - at(thirds));
+        third >= SPAN && MUCH * b < a && MUCH * c < b
+    }
+
+    /// Whether each block that has gone far slows down.
+    pub fn slowing(&self, far_m: &[f64]) -> bool {
+        let last = self.gone_m.last().expect("the start is looked at");
+        (0..last.len()).all(|block| last[block] <= far_m[block] || self.slows_down(block))
+    }
+
     /// Whether no block has moved by more than so much between the ends of the last windows, all of them after the push.
     pub fn rested(&self, windows: usize, within_m: f64) -> bool {
         let last = self.gone_m.len() - 1;
@@ -108,12 +123,13 @@ impl Watched {
         (0..self.blocks.len()).all(|block| range_m(block) <= within_m)
     }
 
-    /// Largest mean speed over the last quarter [m/s].
-    pub fn speed_m_s(&self) -> f64 {
+    /// Largest mean speed over the last quarter of the blocks that have not gone far [m/s].
+    pub fn speed_m_s(&self, far_m: &[f64]) -> f64 {
         let last = self.gone_m.len() - 1;
         let first = last - (last / 4).max(1);
         let time_s = self.times_s[last] - self.times_s[first];
         let speed = |block: usize| (self.gone_m[last][block] - self.gone_m[first][block]).abs() / time_s;
-        (0..self.blocks.len()).map(speed).fold(0.0, f64::max)
+        let near = (0..self.blocks.len()).filter(|&block| self.gone_m[last][block] <= far_m[block]);
+        near.map(speed).fold(0.0, f64::max)
     }
 }
