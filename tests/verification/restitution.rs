@@ -121,7 +121,7 @@ fn generalised_alpha_rebounds_by_the_coefficient_from_its_least_on() {
                     part: 0.4,
                     integrator,
                 };
-                let what = format!("rebound, {integrator}, ω Δt = {h}");
+                let what = format!("rebound, e = {restitution}, {integrator}, ω Δt = {h}");
                 row(CASE, &what, bounce.rebound().0, Near(restitution, 0.01));
             }
         }

@@ -21,7 +21,7 @@ use std::path::Path;
 /// Of the program itself [B].
 pub(super) const PROGRAM_B: f64 = 1.2e7;
 /// Of a tetrahedron in arrays, and of one that deforms [B].
-pub(super) const TET_B: f64 = 390.0;
+pub(super) const TET_B: f64 = 260.0;
 const ELASTIC_TET_B: f64 = 1500.0;
 /// Of a factor of n unknowns: the lesser of 12 n² (dense) and 230 n^(4/3) (nested dissection in space) [B].
 const DENSE_B: f64 = 12.0;

@@ -56,13 +56,18 @@ fn moved(motion: &Motion) -> String {
     let Motion { can_move, moved, farthest, farthest_m, speed_m_s, course } = motion;
     let course = match course {
         Course::AtRest => "at rest".to_string(),
-        Course::Moving => format!("moving at {}/s", length(*speed_m_s)),
-        Course::Accelerating => format!("still accelerating, {}/s", length(*speed_m_s)),
+        Course::Moving => format!("moving at {}", speed(*speed_m_s)),
+        Course::Accelerating => format!("still accelerating, {}", speed(*speed_m_s)),
     };
     format!(
         "{moved} of {can_move} blocks moved; farthest `{farthest}`: {} at the end, {course}\n",
         length(*farthest_m)
     )
+}
+
+/// A speed in m/s, or in a smaller unit if it is below a centimetre in a second.
+fn speed(speed_m_s: f64) -> String {
+    if speed_m_s >= 0.01 { format!("{speed_m_s:.3} m/s") } else { format!("{}/s", length(speed_m_s)) }
 }
 
 /// A length in a unit that suits it.
