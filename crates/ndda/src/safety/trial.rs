@@ -254,16 +254,16 @@ impl Course<'_> {
                 watched.pushed();
                 (pushed, resting) = (true, 0);
                 far_m = watched.farther_by(FAR * elastic_m);
-            } else if rests || self.is_decided(window, simulation, watched, &far_m) {
+            } else if (rests || window >= WINDOWS) && self.is_decided(simulation, watched, &far_m) {
                 break;
             }
         }
         Some(Ok(self.at_the_end(simulation, watched, &far_m)))
     }
 
-    /// Whether a trial has lasted long enough to say what becomes of its blocks.
-    fn is_decided(&self, window: u64, simulation: &Simulation, watched: &Watched, far_m: &[f64]) -> bool {
-        window >= WINDOWS && self.at_the_end(simulation, watched, far_m).0 != State::Undecided
+    /// Whether it can be said what becomes of the blocks.
+    fn is_decided(&self, simulation: &Simulation, watched: &Watched, far_m: &[f64]) -> bool {
+        self.at_the_end(simulation, watched, far_m).0 != State::Undecided
     }
 
     /// √(2 a d), so that a = ½ error g stops a block after d = 20 u, or 2 u under changed loads [m/s].
