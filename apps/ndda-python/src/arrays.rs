@@ -69,8 +69,8 @@ pub fn energies(sample: &Sample) -> [(&'static str, f64); 12] {
 }
 
 /// Time and energies of a sample.
-pub fn sample_row(sample: &Sample) -> [f64; 12] {
-    let mut row = [sample.time_s; 12];
+pub fn sample_row(sample: &Sample) -> [f64; 13] {
+    let mut row = [sample.time_s; 13];
     row[1..].copy_from_slice(&energies(sample).map(|(_, value)| value));
     row
 }

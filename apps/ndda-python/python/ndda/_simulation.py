@@ -36,7 +36,6 @@ _HISTORY = (
     "load_work_j",
     "damping_work_j",
     "restitution_work_j",
-    "restitution_work_j",
     "balance_j",
 )
 
