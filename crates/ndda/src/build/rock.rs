@@ -86,8 +86,6 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     let rock = &scene.rock[index];
     let at = |field: &str| format!("rock[{index}]{field}");
     let domain = domain(&rock.domain, folder).map_err(|m| vec![Fault::new(at(".domain"), m)])?;
-    let cut_field = if rock.voronoi.is_some() { ".voronoi" } else { ".joints" };
-    let mut blocks = cut(rock, &domain, folder).map_err(|m| vec![Fault::new(at(cut_field), m)])?;
     if rock.sliver_width_m.powi(3) >= domain.volume_m3() {
         let message = format!(
             "{} m: a cube of this width is larger than the rock of {:.3e} m³, so that all of it is slivers",
@@ -96,6 +94,8 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
         );
         return Err(vec![Fault::new(at(".sliver_width_m"), message)]);
     }
+    let cut_field = if rock.voronoi.is_some() { ".voronoi" } else { ".joints" };
+    let mut blocks = cut(rock, &domain, folder).map_err(|m| vec![Fault::new(at(cut_field), m)])?;
     let refused = blocks.report.refused.iter().map(|(_, count)| count).sum();
     let (merged, slivers) = match rock.slivers {
         _ if rock.sliver_width_m == 0.0 => (Merged::default(), Vec::new()),

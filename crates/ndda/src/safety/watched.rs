@@ -81,27 +81,33 @@ impl Watched {
     /// A block that has gone far and accelerates: since the push, or else the start, it has gone farther in each third of the time than in the one
     /// before, or in each of the last three spans much farther.
     pub fn accelerating(&self, far_m: &[f64]) -> Option<(BlockId, f64)> {
-        let last = self.gone_m.len() - 1;
-        let third = (last - self.before) / 3;
+        let (last, third) = (self.gone_m.len() - 1, self.third());
         let accelerates = |&block: &usize| {
-            let gains = |span: usize, by: f64| {
-                let at = |spans: usize| self.gone_m[last - spans * span][block];
-                let [a, b, c] = [3, 2, 1].map(|spans| at(spans - 1) - at(spans));
+            let grows = |span: usize, by: f64| {
+                let [a, b, c] = self.ways_m(block, span);
                 a >= 0.0 && b > by * a && c > by * b
             };
-            self.gone_m[last][block] > far_m[block] && (gains(third, 1.0) || gains(SPAN, MUCH))
+            self.gone_m[last][block] > far_m[block] && (grows(third, 1.0) || grows(SPAN, MUCH))
         };
         let block = (0..self.blocks.len()).filter(|_| third >= SPAN).find(accelerates)?;
         Some((self.blocks[block], self.gone_m[last][block]))
     }
 
+    /// A third of the windows since the push, or else the start.
+    fn third(&self) -> usize {
+        (self.gone_m.len() - 1 - self.before) / 3
+    }
+
+    /// How much farther a block has gone in each of the last three spans of so many windows [m].
+    fn ways_m(&self, block: usize, span: usize) -> [f64; 3] {
+        let at = |spans: usize| self.gone_m[self.gone_m.len() - 1 - spans * span][block];
+        [3, 2, 1].map(|spans| at(spans - 1) - at(spans))
+    }
+
     /// Whether a block slows down: since the push, or else the start, it has gone much less far in each third of the time than in the one before.
     fn slows_down(&self, block: usize) -> bool {
-        let last = self.gone_m.len() - 1;
-        let third = (last - self.before) / 3;
-        let at = |thirds: usize| self.gone_m[last - thirds * third][block];
-        let [a, b, c] = [3, 2, 1].map(|thirds| at(thirds - 1) - at(thirds));
-        third >= SPAN && MUCH * b < a && MUCH * c < b
+        let [a, b, c] = self.ways_m(block, self.third());
+        self.third() >= SPAN && MUCH * b < a && MUCH * c < b
     }
 
     /// Whether each block that has gone far slows down.

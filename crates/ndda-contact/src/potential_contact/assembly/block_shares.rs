@@ -1,4 +1,4 @@
-//! What each block adds to the energies of its contacts under the element potential.
+//! Part of each block in the energies of its contacts under the element potential.
 
 use std::ops::Range;
 

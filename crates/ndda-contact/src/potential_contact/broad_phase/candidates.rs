@@ -128,7 +128,7 @@ impl Candidates {
         self.facets_within(block, self.numbers_of(block))
     }
 
-    /// Those of them with these numbers.
+    /// The facets with these numbers.
     #[inline]
     pub(crate) fn facets_within(
         &self,

@@ -46,7 +46,7 @@ impl PairRun {
         self.bits.count_ones() as usize
     }
 
-    /// What runs are sorted by: that sorts pairs, too.
+    /// Key by which runs are sorted; pairs are then sorted as well.
     #[inline]
     pub(super) fn key(&self) -> (TriangleId, TetId) {
         (self.triangle, self.first)

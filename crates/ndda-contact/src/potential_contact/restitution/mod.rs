@@ -49,7 +49,7 @@ pub(crate) struct ContactDamping {
     /// Elastic push of each touching facet [Pa], and what is left of it.
     push_pa: Vec<Vec3>,
     left_pa: Vec<f64>,
-    /// What damping takes from the push [Pa] and its moment about the centre of pressure [N m], on the facet.
+    /// Reduction of the pressure [Pa] by damping, and its moment about the centre of pressure [N m], on the facet.
     taken_pa: Vec<Vec3>,
     tilt_n_m: Vec<Vec3>,
     /// Seconds of its stiffness that the dashpot beside the shear spring of each touching facet has; empty without springs.
@@ -106,7 +106,7 @@ impl ContactDamping {
         &self.shear_time_s
     }
 
-    /// What damping takes from the push of each touching facet [Pa].
+    /// Reduction of the pressure on each touching facet by damping [Pa].
     pub(crate) fn taken_pa(&self) -> &[Vec3] {
         &self.taken_pa
     }

@@ -34,9 +34,9 @@ pub(super) struct Point {
     /// Force per velocity [N s/m], and where in the step the velocity counts.
     pub rate: f64,
     pub end: f64,
-    /// What the step adds to the parting speed but for the damping of the same pair [m/s].
+    /// Change of the parting speed in the step without the damping of the same pair [m/s].
     pub free_m_s: f64,
-    /// What damping takes from the push [N].
+    /// Reduction of the normal force by damping [N].
     pub taken_n: f64,
 }
 
@@ -240,7 +240,7 @@ impl Point {
         }
     }
 
-    /// What the law takes from the push [N].
+    /// Reduction of the normal force by the law [N].
     fn taken(&self, change_m_s: f64) -> f64 {
         let Branch { constant_n, rate, end, .. } = self.law(change_m_s);
         constant_n + rate * (self.parting_m_s + end * change_m_s)
