@@ -29,7 +29,7 @@ for interpreter in $(interpreters); do
     cargo build --release --locked
     export NDDA="$target/release/ndda" NDDA_LONGEST_S=2
   fi
-  passed="$(cd "$venv" && bin/python -m pytest -q --doctest-modules --pyargs ndda "$OLDPWD/apps/ndda-python/tests" | tee /dev/stderr | grep -oE '[0-9]+ passed' | grep -oE '[0-9]+')"
+  passed="$(cd "$venv" && bin/python -m pytest -q --doctest-modules --pyargs ndda "$OLDPWD/apps/ndda-python/tests" | tee -a /dev/stderr | grep -oE '[0-9]+ passed' | grep -oE '[0-9]+')"
   # As cargo says it, for .ci/nightly.
   echo "test result: ok. $passed passed"
   rm -rf "$venv"
