@@ -125,7 +125,7 @@ impl Scene {
     /// 100
     #[getter]
     fn steps(&self) -> u64 {
-        ndda::build::steps(&self.loaded.scene.time)
+        ndda::build::all_steps(&self.loaded.scene)
     }
 
     /// Builds the scene and returns its warnings, as dictionaries like those of `SceneError.diagnostics`.

@@ -43,6 +43,9 @@ pub enum TakeOverError {
     /// Blocks, integrator or contact at the end of steps differ.
     #[error("it is another problem: {0}")]
     OtherProblem(#[from] RestoreError),
+    /// A stage of construction cannot be built.
+    #[error("{0}")]
+    Stage(String),
     /// The state cannot be sampled under the changed loads or laws, or these keep other numbers of each facet.
     #[error(transparent)]
     Step(#[from] StepError),

@@ -180,12 +180,12 @@ impl Simulation {
         let before = self.audit.ledger.clone();
         self.state.velocity.fill(Vec3::zeros());
         let (settled, came_to_rest) = self.come_to_rest(settle, self.time_s(), watch)?;
+        self.settling_at_s = None;
         if !came_to_rest {
             return Ok(settled);
         }
         self.state.velocity.fill(Vec3::zeros());
         self.state.step = step;
-        self.settling_at_s = None;
         let way = std::mem::replace(&mut self.audit.ledger, before);
         self.audit.ledger.begin_anew_at_contact();
         let (new, books) = self.look()?;
