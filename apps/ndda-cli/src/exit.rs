@@ -61,7 +61,10 @@ pub fn of_certify(error: &CertifyError) -> u8 {
     match error {
         CertifyError::Run(error) => of_study(error),
         CertifyError::Stopped { .. } | CertifyError::Failed { .. } => STOPPED,
-        CertifyError::NoMesh | CertifyError::NoContact | CertifyError::NoQuantity { .. } => BAD_INPUT,
+        CertifyError::Stages
+        | CertifyError::NoMesh
+        | CertifyError::NoContact
+        | CertifyError::NoQuantity { .. } => BAD_INPUT,
         CertifyError::Write(_) => INPUT_OUTPUT,
     }
 }
@@ -74,6 +77,7 @@ pub fn of_safety(error: &SafetyError) -> u8 {
         | SafetyError::NoLoad
         | SafetyError::NoTilt { .. }
         | SafetyError::NoSlope { .. }
+        | SafetyError::Stages
         | SafetyError::NoContact
         | SafetyError::NothingFree => BAD_INPUT,
         SafetyError::NotSettled { .. } => STOPPED,

@@ -48,7 +48,7 @@ pub use material::{Bedding, Damping, Material};
 pub use monitor::{At, Monitor};
 pub use output::{Field, FieldFormat, Output, Precision, TableFormat};
 pub use reference::Reference;
-pub use rock::{Axis, DiscRule, Discontinuity, Domain, OrientationScatter};
+pub use rock::{Axis, DiscRule, Discontinuity, Domain, Excavation, OrientationScatter};
 pub use rock::{Rock, Slivers, SpacingScatter, Voronoi, Whereabouts};
 pub use shape::{Fill, Grading, Pattern, Shape, Towards};
 pub use stage::{Stage, StageLaws, Then};

@@ -30,7 +30,7 @@ use ndda_solver::{
 use crate::run::monitor::Monitor;
 pub use choices::Choices;
 use friction::friction_law;
-use pairs::{add_joint_laws, between_materials, restitution_table};
+use pairs::{add_glue, add_joint_laws, between_materials, restitution_table};
 use regions::{find, find_all};
 pub use rock::{CutRock, Meshes, RockReport};
 pub(crate) use settle::settle;
@@ -274,6 +274,7 @@ pub(crate) fn contact_model(
             }
             let everywhere = choices.friction.take().or_else(|| friction.as_ref().and_then(friction_law));
             let mut table = between_materials(scene, blocks, everywhere, material_pairs);
+            add_glue(&mut table, scene, *penalty_pa, blocks);
             add_joint_laws(&mut table, rock_joints, blocks);
             table.memory = match memory {
                 scene::Memory::Body => Memory::Body,

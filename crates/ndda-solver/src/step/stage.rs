@@ -29,7 +29,11 @@ pub struct StageState {
     pub(crate) counted_from: Vec<Vec3>,
 }
 
-/// Forces that shrink to nothing in proportion to time.
+/// Rows of the table of a ramp.
+const RAMP_ROWS: u32 = 512;
+
+/// Forces that shrink to nothing by 1 − 3 u² + 2 u³, u being the part of the time that has gone. Its slope is zero at both ends: an oscillator of
+/// frequency ω is left with 12/(ω T)² of what the force displaced it by, at most, after a ramp of length T; a straight one leaves 2/(ω T).
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Release {
     /// Node, and force at the beginning [N].
@@ -38,6 +42,17 @@ pub(crate) struct Release {
     until_s: f64,
     /// How fast the block that feels them most is made by all of them [m/s²].
     pace_m_s2: f64,
+}
+
+impl Release {
+    fn factor(&self) -> Table {
+        let row = |i: u32| {
+            let part = f64::from(i) / f64::from(RAMP_ROWS);
+            let time_s = self.from_s + part * (self.until_s - self.from_s);
+            (time_s, 1.0 - part * part * (3.0 - 2.0 * part))
+        };
+        Table { rows: (0..=RAMP_ROWS).map(row).collect() }
+    }
 }
 
 /// Blocks cannot be left out.
@@ -303,7 +318,7 @@ impl Simulation {
         let Some(stage) = &self.stage else { return };
         let load = stage.release.as_ref().map(|release| VaryingLoad {
             forces: release.forces.clone(),
-            factor: Table { rows: vec![(release.from_s, 1.0), (release.until_s, 0.0)] },
+            factor: release.factor(),
             pace_m_s2: release.pace_m_s2,
         });
         let now_s = self.clock_s(0.0);

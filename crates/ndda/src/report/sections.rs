@@ -1,7 +1,7 @@
 //! The parts of the page that are text: what was run, what became of it, what it cost.
 
 use maud::{Markup, html};
-use ndda_io::summary::{Judgement, LabelWord, Status, Summary, Verdict};
+use ndda_io::summary::{Judgement, LabelWord, StageEnd, Status, Summary, Verdict};
 
 /// Blocks that are listed; a table of more is no help.
 const MOST_BLOCKS: usize = 200;
@@ -110,6 +110,42 @@ pub fn verdicts(summary: &Summary) -> Markup {
                             td.number { (shown(verdict.value)) }
                             td.number { (shown(verdict.limit)) }
                             td { (judgement(verdict)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// How the stages of construction ended.
+pub fn construction(summary: &Summary) -> Markup {
+    let moved = |stage: &StageEnd| {
+        stage.motion.as_ref().map_or(String::new(), |motion| {
+            format!(
+                "{} of {}, farthest {} by {} m",
+                motion.moved,
+                motion.can_move,
+                motion.farthest,
+                brief(motion.farthest_m)
+            )
+        })
+    };
+    html! {
+        @if !summary.stages.is_empty() {
+            section.card {
+                h2 { "Stages of construction" }
+                table {
+                    thead { tr { th { "" } th.number { "ends at" } th.number { "steps to rest" } th { "moved" } th { "so far" } } }
+                    tbody {
+                        @for stage in &summary.stages {
+                            tr {
+                                td { (stage.name) }
+                                td.number { (number(stage.end_s)) " s" }
+                                td.number { (stage.settling_steps.map_or(String::new(), |steps| grouped(steps as usize))) }
+                                td { (moved(stage)) }
+                                td { (stage.label.word.as_str()) }
+                            }
                         }
                     }
                 }

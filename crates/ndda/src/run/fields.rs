@@ -14,6 +14,9 @@ use serde::{Deserialize, Serialize};
 use crate::build;
 use crate::run::schedule::Schedule;
 
+/// Cell data that is 0 where a stage of construction has taken a block out, or has not yet put it in.
+pub(crate) const PRESENT: &str = "present";
+
 /// Friction state of a node that a facet holds, and of one where a facet slides.
 const STICKS: u8 = 1;
 const SLIDES: u8 = 2;
@@ -145,6 +148,11 @@ fn frame(
         simulation.recover_stress(stress_pa)?;
     }
     let mut frame = Frame::new(simulation.blocks(), &simulation.state().position);
+    if simulation.has_stages() {
+        let of_tets = simulation.blocks().tet_block.iter();
+        let present = of_tets.map(|block| u8::from(!simulation.is_absent(*block))).collect();
+        frame.add_cells(Values::states(PRESENT, present));
+    }
     for field in fields {
         match field {
             Field::Stress => frame.add_cells(Values::new("stress_pa", stress_pa.iter().copied(), precision)),
