@@ -47,6 +47,7 @@ mod shaken_base;
 mod sliding_over_element_borders;
 mod spring_creep;
 mod springs_and_elimination;
+mod stages;
 mod step_control;
 mod sticking_plate;
 mod sudden_load;
