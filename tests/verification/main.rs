@@ -41,6 +41,7 @@ mod random_impacts;
 mod release_of_initial_stress;
 mod restitution;
 mod rocking_block;
+mod roof_wedge;
 mod safety_factor;
 mod settling;
 mod shaken_base;

@@ -316,7 +316,7 @@ pub enum Whereabouts {
 /// A space that stages of construction excavate: an outline drawn along an axis.
 ///
 /// Blocks that it meets are cut along its border, and those inside are named after it, `heading_0001`, `heading_0002`, …, so that a stage can take out
-/// `heading_*`. The faces of these cuts, and only these, are glued by bonds of any strength: the rock behaves as before, until one side is taken out.
+/// `heading_*`. The faces of these cuts, and only these, are glued by bonds that no stress breaks: the rock behaves as before, until one side is taken out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

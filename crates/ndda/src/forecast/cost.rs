@@ -11,8 +11,8 @@ use serde::Serialize;
 use super::memory::readable;
 use crate::run::fields::FieldWriter;
 use crate::run::recorder::{columns, held_blocks};
-use crate::run::schedule::events;
-use crate::run::{contact_rows, motion};
+use crate::run::schedule::{events, is_due};
+use crate::run::{contact_rows, motion, stages};
 use crate::{build, machine};
 
 /// Steps are timed this long, but at least a few of them: a check of a small scene is to be felt as instant.
@@ -97,7 +97,9 @@ fn timed_steps_of(simulation: &mut Simulation, most: u64, long: Duration) -> Res
 /// Frames of a run, that of the start among them.
 pub fn frames(scene: &Scene) -> u64 {
     let asked = u64::from(scene.output.frames);
-    if asked > 0 { events(build::all_steps(scene), asked) } else { 0 }
+    let steps = build::all_steps(scene);
+    let ends = stages::ends(scene).into_iter().filter(|end| !is_due(*end, steps, asked));
+    if asked > 0 { events(steps, asked) + ends.count() as u64 } else { 0 }
 }
 
 fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), frame: u64) -> Vec<FileGuess> {
