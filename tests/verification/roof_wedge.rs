@@ -89,7 +89,7 @@ fn a_roof_wedge_falls_when_it_is_heavier_than_the_stress_across_its_joints_holds
     assert!((capacity_n() / 26_449.1 - 1.0).abs() < 1e-5, "{}", capacity_n());
     let run = |parts| Run::new(Model::from_text(&scene(parts)).unwrap()).finish(&mut []).unwrap().summary;
     let [stands, falls] = [run([0.9, 0.985]), run([0.985, 1.015])];
-    let moved_m = |k: usize| stands.stages[k].motion.as_ref().unwrap().farthest_m;
+    let moved_m = |k: usize| stands.stages[k].motion.farthest_m;
     // Pulled by P it gives way by P / (3 A k), where both stiffnesses are k.
     let gives_m = |part: f64| part * capacity_n() / (3.0 * FACE_M2 * STIFFNESS_PA_M);
     row(
@@ -99,7 +99,7 @@ fn a_roof_wedge_falls_when_it_is_heavier_than_the_stress_across_its_joints_holds
         Within(gives_m(0.9), 1e-2),
     );
     row("roof wedge", "sinking under 0.985 of it [m]", moved_m(2), Within(gives_m(0.985), 1e-2));
-    let fallen_m = falls.stages[2].motion.as_ref().unwrap().farthest_m;
+    let fallen_m = falls.stages[2].motion.farthest_m;
     row("roof wedge", "fall under 1.015 of it, in 0.4 s [m]", fallen_m, AtLeast(0.05));
     for summary in [stands, falls] {
         assert_eq!(summary.label.word, LabelWord::Accurate, "{:?}", summary.label.reasons);

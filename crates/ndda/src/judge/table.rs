@@ -49,9 +49,12 @@ pub fn ending(summary: &Summary) -> String {
 
 /// How a stage ended, in a line.
 pub fn stage(end: &StageEnd) -> String {
-    let how = end.settling_steps.map_or(String::new(), |steps| format!(", at rest after {steps} steps more"));
+    let how = match end.settling_steps {
+        0 => String::new(),
+        steps => format!(", at rest after {steps} steps more"),
+    };
     let motion =
-        end.motion.as_ref().map_or(String::new(), |motion| format!("; {}", moved(motion).trim_end()));
+        if end.motion.can_move > 0 { format!("; {}", moved(&end.motion).trim_end()) } else { String::new() };
     let (name, end_s, word) = (&end.name, time(end.end_s), end.label.word.as_str());
     format!("stage `{name}` to t = {end_s} s{how}: {word} so far{motion}")
 }

@@ -120,17 +120,16 @@ pub fn verdicts(summary: &Summary) -> Markup {
 
 /// How the stages of construction ended.
 pub fn construction(summary: &Summary) -> Markup {
-    let moved = |stage: &StageEnd| {
-        stage.motion.as_ref().map_or(String::new(), |motion| {
-            format!(
-                "{} of {}, farthest {} by {} m",
-                motion.moved,
-                motion.can_move,
-                motion.farthest,
-                brief(motion.farthest_m)
-            )
-        })
+    let moved = |StageEnd { motion, .. }: &StageEnd| {
+        format!(
+            "{} of {}, farthest {} by {} m",
+            motion.moved,
+            motion.can_move,
+            motion.farthest,
+            brief(motion.farthest_m)
+        )
     };
+    let settling = |steps: u64| if steps > 0 { grouped(steps as usize) } else { String::new() };
     html! {
         @if !summary.stages.is_empty() {
             section.card {
@@ -142,7 +141,7 @@ pub fn construction(summary: &Summary) -> Markup {
                             tr {
                                 td { (stage.name) }
                                 td.number { (number(stage.end_s)) " s" }
-                                td.number { (stage.settling_steps.map_or(String::new(), |steps| grouped(steps as usize))) }
+                                td.number { (settling(stage.settling_steps)) }
                                 td { (moved(stage)) }
                                 td { (stage.label.word.as_str()) }
                             }

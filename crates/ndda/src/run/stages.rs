@@ -24,7 +24,7 @@ pub struct StageLog {
     /// The stage, counted from 1; 0 before the first.
     pub at: usize,
     /// Steps in which the present one came to rest.
-    settling_steps: Option<u64>,
+    settling_steps: u64,
     /// The stages that have ended.
     pub rows: Vec<StageEnd>,
 }
@@ -38,10 +38,10 @@ impl StageLog {
             name: name.to_string(),
             end_s: simulation.time_s(),
             steps: simulation.state().step,
-            settling_steps: self.settling_steps.take(),
+            settling_steps: std::mem::take(&mut self.settling_steps),
             blocks: blocks.filter(|&block| !simulation.is_absent(block)).count(),
             removed_j: view.sample.map_or(0.0, |sample| sample.removed_j),
-            motion: recorder.motions.summary(simulation),
+            motion: recorder.motions.summary(simulation).unwrap_or_default(),
             label: verdict::label(simulation, None),
         });
     }
@@ -167,7 +167,7 @@ impl Course<'_> {
             restored.expect("it is of this simulation");
             return Ok(ControlFlow::Break(()));
         }
-        outputs.stages.settling_steps = Some(settled.steps);
+        outputs.stages.settling_steps = settled.steps;
         ndda_solver::show(simulation, steps, &report, &mut [&mut *outputs])
     }
 }

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Label, Motion};
 
-/// The end of a stage.
+/// The end of a stage. Checkpoints keep it, so that no field may be left out.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StageEnd {
     /// Its name.
@@ -13,16 +13,14 @@ pub struct StageEnd {
     pub end_s: f64,
     /// Steps of the run at its end.
     pub steps: u64,
-    /// Further steps, time standing still, until it was at rest; none where it was not to come to rest.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub settling_steps: Option<u64>,
+    /// Further steps, time standing still, until it was at rest; 0 where it was not to come to rest.
+    pub settling_steps: u64,
     /// Blocks that are there.
     pub blocks: usize,
     /// Energy that blocks taken out so far had, and their contacts, less that of blocks added \[J\].
     pub removed_j: f64,
-    /// Blocks that moved, and how far, since displacements began to count; none where every block is fixed.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub motion: Option<Motion>,
+    /// Blocks that moved, and how far, since displacements began to count.
+    pub motion: Motion,
     /// The run's judgement of itself so far.
     pub label: Label,
 }
