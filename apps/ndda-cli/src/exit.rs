@@ -61,24 +61,18 @@ pub fn of_certify(error: &CertifyError) -> u8 {
     match error {
         CertifyError::Run(error) => of_study(error),
         CertifyError::Stopped { .. } | CertifyError::Failed { .. } => STOPPED,
-        CertifyError::NoMesh | CertifyError::NoContact | CertifyError::NoQuantity { .. } => BAD_INPUT,
         CertifyError::Write(_) => INPUT_OUTPUT,
+        _ => BAD_INPUT,
     }
 }
 
 /// Of a scene whose factor of safety cannot be found.
 pub fn of_safety(error: &SafetyError) -> u8 {
     match error {
-        SafetyError::Scene(_)
-        | SafetyError::NoStrength
-        | SafetyError::NoLoad
-        | SafetyError::NoTilt { .. }
-        | SafetyError::NoSlope { .. }
-        | SafetyError::NoContact
-        | SafetyError::NothingFree => BAD_INPUT,
         SafetyError::NotSettled { .. } => STOPPED,
         SafetyError::Interrupted => INTERRUPTED,
         SafetyError::Write(error) => of_write(error),
+        _ => BAD_INPUT,
     }
 }
 

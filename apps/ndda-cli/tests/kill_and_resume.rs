@@ -57,6 +57,20 @@ const SCENES: [(&str, &[&str]); 5] = [
     ),
 ];
 
+/// A scene in stages, some of which come to rest: a run may be killed in each of them, and while it comes to rest.
+const STAGED: (&str, &[&str]) = (
+    "works/dam_impounding",
+    &[
+        "stages[0].over_s=0.02",
+        "stages[1].over_s=0.02",
+        "stages[1].reset_displacements=true",
+        "stages[2].over_s=0.02",
+        "stages[2].then=Run(0.05)",
+        "stages[1].remove=[\"ground\"]",
+        "stages[1].supports=[(block: \"dam_*\", on: Set(\"side_0\"), hold: Fixed)]",
+    ],
+);
+
 /// Everything that must come out the same: history, index and frames, and the fingerprint of the final state.
 fn results(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut files = vec![folder.join("history.csv"), folder.join("fields.pvd")];
@@ -71,23 +85,34 @@ fn results(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let summary = fs::read_to_string(folder.join("summary.json")).expect("a summary");
     let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
     results.push(("state".into(), summary["state_crc32"].to_string().into_bytes()));
+    results.push(("stages".into(), summary["stages"].to_string().into_bytes()));
     results
 }
 
 #[test]
 fn a_killed_run_goes_on_to_the_same_bytes() {
-    let kills: usize = std::env::var("NDDA_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(15);
+    killed_and_resumed(&SCENES, 15);
+}
+
+#[test]
+fn a_run_that_is_killed_in_a_stage_goes_on_in_it_to_the_same_bytes() {
+    killed_and_resumed(&[STAGED], 6);
+}
+
+/// Kills runs of some scenes, `NDDA_KILLS` or so many, and compares what they end in after they are resumed.
+fn killed_and_resumed(scenes: &[(&str, &[&str])], kills: usize) {
+    let kills: usize = std::env::var("NDDA_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(kills);
     let place = tempfile::tempdir().expect("a folder");
     let mut random = Random(7);
     let mut resumed = 0;
-    for (name, overrides) in SCENES {
+    for &(name, overrides) in scenes {
         let (scene, whole) = (scene(name), place.path().join("whole"));
         let started = Instant::now();
         assert!(run(&scene, overrides, &whole, "1").wait().expect("an end").success(), "{name}");
         let (lasts, expected) = (started.elapsed().as_secs_f64(), results(&whole));
-        for kill in 0..kills.div_ceil(SCENES.len()) {
+        for kill in 0..kills.div_ceil(scenes.len()) {
             // A folder of its own: a run that is killed before it has begun leaves the results of an earlier one as they were.
-            let broken = place.path().join(format!("{name}_{}_{kill}", overrides.len()));
+            let broken = place.path().join(format!("{}_{}_{kill}", name.replace('/', "_"), overrides.len()));
             let mut child = run(&scene, overrides, &broken, ["1", "2"][kill % 2]);
             let out = broken.display().to_string();
             // Killed once, and often once more while it is being resumed.
@@ -124,7 +149,7 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
             }
         }
     }
-    println!("{resumed} of {} runs were resumed", SCENES.len() * kills.div_ceil(SCENES.len()));
+    println!("{resumed} of {} runs were resumed", scenes.len() * kills.div_ceil(scenes.len()));
     assert!(resumed > kills / 2, "hardly a run had a checkpoint");
 }
 

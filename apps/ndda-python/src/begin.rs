@@ -23,6 +23,10 @@ pub fn begun(
     parts: Option<Parts>,
     raised: &Raised,
 ) -> PyResult<Driver> {
+    if scene.has_stages() {
+        let message = "the scene has stages, which `ndda.run` follows: leave them out, and change the simulation between steps with `change`";
+        return Err(PyValueError::new_err(message));
+    }
     let driver = watched(py, |watch| {
         let mut settling = |_: &Settled| match watch.stop.load(Ordering::Relaxed) {
             true => ControlFlow::Break(()),

@@ -125,7 +125,7 @@ impl Scene {
     /// 100
     #[getter]
     fn steps(&self) -> u64 {
-        ndda::build::steps(&self.loaded.scene.time)
+        ndda::build::all_steps(&self.loaded.scene)
     }
 
     /// Builds the scene and returns its warnings, as dictionaries like those of `SceneError.diagnostics`.
@@ -181,6 +181,11 @@ impl Scene {
 }
 
 impl Scene {
+    /// Whether the scene has stages of construction.
+    pub fn has_stages(&self) -> bool {
+        !self.loaded.scene.stages.is_empty()
+    }
+
     /// The scene with its simulation at the start.
     pub fn model(&self, parts: Option<&Parts>) -> Result<Model, SceneErrors> {
         let choices = parts.map_or_else(Default::default, |make| make());

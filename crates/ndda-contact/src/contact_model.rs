@@ -44,6 +44,11 @@ pub trait ContactModel: ContactAudit + Send + Sync {
         Err(ContactError::NoTangent)
     }
 
+    /// Leaves blocks out of contact from now on, those that are `true`, as if they were not there; `false` where the model cannot.
+    fn leave_out(&mut self, _absent: &[bool]) -> bool {
+        false
+    }
+
     /// Whether forces on a block go to a few of its nodes wherever they press, because it moves by an affine map.
     fn uses_host_forces(&self, _block: BlockId) -> bool {
         false

@@ -284,6 +284,17 @@ pub struct ContactHistory {
     pub own: Vec<f64>,
 }
 
+impl ContactHistory {
+    /// Forgets the bonds of blocks that are not there any more.
+    pub fn forget_bonds(&mut self, blocks: &BlockSet, is_absent: impl Fn(BlockId) -> bool) {
+        self.bonds.retain(|bond| {
+            let [own, other] =
+                [blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]];
+            !is_absent(own) && !is_absent(other)
+        });
+    }
+}
+
 /// Contact between a boundary triangle and a block that it is pressed into.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FacetContact {

@@ -26,6 +26,7 @@ mod rock;
 #[cfg(feature = "schema")]
 pub mod schema;
 mod shape;
+mod stage;
 pub mod study;
 mod suggest;
 mod support;
@@ -47,9 +48,10 @@ pub use material::{Bedding, Damping, Material};
 pub use monitor::{At, Monitor};
 pub use output::{Field, FieldFormat, Output, Precision, TableFormat};
 pub use reference::Reference;
-pub use rock::{Axis, DiscRule, Discontinuity, Domain, OrientationScatter};
+pub use rock::{Axis, DiscRule, Discontinuity, Domain, Excavation, OrientationScatter};
 pub use rock::{Rock, Slivers, SpacingScatter, Voronoi, Whereabouts};
 pub use shape::{Fill, Grading, Pattern, Shape, Towards};
+pub use stage::{Stage, StageLaws, Then};
 pub use support::{By, Hold, MotionRow, Region, Support};
 pub use time::{ContactAt, Integrator, Mass, Settle, SettleDamping, Solver, Step, Time};
 pub use water::{LinearPressure, Pressure, Water, Wet};
@@ -106,6 +108,9 @@ pub struct Scene {
     /// Contact between blocks. Must be said when there is more than one block.
     #[serde(default)]
     pub contact: Option<Contact>,
+    /// Stages of construction, one after the other from `time.end_s` on. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stages: Vec<Stage>,
     /// Points whose motion is recorded. Default: none.
     #[serde(default)]
     pub monitors: Vec<Monitor>,

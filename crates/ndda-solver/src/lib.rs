@@ -88,7 +88,7 @@ pub use linear::linear_solver::{
     Factor, FactorError, LinearSolver, MULTI, Scratch, SolveError, SymmetricMatrix,
 };
 pub use linear::supernodal::{Supernodal, SupernodalFactor};
-pub use sink::{RunError, Sink, SinkError, View, resume, run};
+pub use sink::{RunError, Sink, SinkError, View, advance, resume, run, show, unseen_step};
 pub use step::Simulation;
 pub use step::change::TakeOverError;
 pub use step::control::AutoStep;
@@ -100,4 +100,5 @@ pub use step::report::{Iterations, StageTimes, StepCounts, StepReport};
 pub use step::settle::{Damping, Settle, Settled};
 pub use step::setup::Setup;
 pub use step::snapshot::{RestoreError, Snapshot, SnapshotView};
+pub use step::stage::{LeaveOutError, StageStart, StageState};
 pub use step::state::State;

@@ -67,18 +67,45 @@ pub fn run(simulation: &mut Simulation, steps: u64, sinks: &mut [&mut dyn Sink])
 /// # Errors
 /// [`RunError`] of the step or sink that failed.
 pub fn resume(simulation: &mut Simulation, steps: u64, sinks: &mut [&mut dyn Sink]) -> Result<(), RunError> {
-    while simulation.state().step < steps {
-        let next = simulation.state().step + 1;
-        simulation.watch_contacts(sinks.iter().any(|sink| sink.wants_contacts(next)));
-        let report = simulation.step()?;
-        if show(simulation, steps, &report, sinks)?.is_break() {
-            break;
-        }
-    }
-    Ok(())
+    advance(simulation, (steps, steps), sinks).map(|_| ())
 }
 
-fn show(
+/// Runs up to step `until` of a run of `steps`, and shows each step to the sinks; `Break` if one of them has ended the run.
+///
+/// # Errors
+/// [`RunError`] of the step or sink that failed.
+pub fn advance(
+    simulation: &mut Simulation,
+    (until, steps): (u64, u64),
+    sinks: &mut [&mut dyn Sink],
+) -> Result<ControlFlow<()>, RunError> {
+    while simulation.state().step < until {
+        let report = unseen_step(simulation, sinks)?;
+        if show(simulation, steps, &report, sinks)?.is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+    }
+    Ok(ControlFlow::Continue(()))
+}
+
+/// Takes a step that is shown to the sinks later.
+///
+/// # Errors
+/// [`StepError`] of the step.
+pub fn unseen_step(
+    simulation: &mut Simulation,
+    sinks: &mut [&mut dyn Sink],
+) -> Result<StepReport, StepError> {
+    let next = simulation.state().step + 1;
+    simulation.watch_contacts(sinks.iter().any(|sink| sink.wants_contacts(next)));
+    simulation.step()
+}
+
+/// Shows a simulation to the sinks as it is now, of a run of `steps`; `Break` if one of them ends the run.
+///
+/// # Errors
+/// [`RunError`] of the sink that failed, or of the sample that one wants.
+pub fn show(
     simulation: &mut Simulation,
     steps: u64,
     report: &StepReport,

@@ -10,6 +10,7 @@ mod rock;
 mod settle;
 mod shapes;
 mod solid;
+pub(crate) mod stages;
 mod water;
 
 use std::path::Path;
@@ -22,14 +23,14 @@ use ndda_fem::Table;
 use ndda_io::scene::{self, At, Contact, Integrator, Scene};
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
 use ndda_solver::{
-    AutoStep, ConjugateGradients, Direct, GeneralizedAlpha, ImplicitContact, LinearSolver, Mass, Midpoint,
-    Newmark, Setup, SetupError, Simulation, TimeIntegrator,
+    AutoStep, BodySetup, ConjugateGradients, Direct, GeneralizedAlpha, ImplicitContact, LinearSolver, Mass,
+    Midpoint, Newmark, Setup, SetupError, Simulation, TimeIntegrator,
 };
 
 use crate::run::monitor::Monitor;
 pub use choices::Choices;
 use friction::friction_law;
-use pairs::{add_joint_laws, between_materials, restitution_table};
+use pairs::{add_glue, add_joint_laws, between_materials, restitution_table};
 use regions::{find, find_all};
 pub use rock::{CutRock, Meshes, RockReport};
 pub(crate) use settle::settle;
@@ -181,10 +182,22 @@ pub fn simulation_with(
     scene: &Scene,
     blocks: BlockSet,
     folder: &Path,
+    choices: Choices,
+) -> Result<Simulation, Vec<Fault>> {
+    simulation_of(scene, blocks, folder, choices, &|_| {})
+}
+
+/// The same with bodies that are changed before they are built.
+fn simulation_of(
+    scene: &Scene,
+    blocks: BlockSet,
+    folder: &Path,
     mut choices: Choices,
+    change: &dyn Fn(&mut [BodySetup]),
 ) -> Result<Simulation, Vec<Fault>> {
     let contact = contact_model(scene, &blocks, &mut choices).map_err(|fault| vec![fault])?;
-    let bodies = bodies::bodies(scene, &blocks, folder, &choices.materials)?;
+    let mut bodies = bodies::bodies(scene, &blocks, folder, &choices.materials)?;
+    change(&mut bodies);
     let setup = Setup {
         blocks,
         bodies,
@@ -261,6 +274,7 @@ pub(crate) fn contact_model(
             }
             let everywhere = choices.friction.take().or_else(|| friction.as_ref().and_then(friction_law));
             let mut table = between_materials(scene, blocks, everywhere, material_pairs);
+            add_glue(&mut table, scene, *penalty_pa, blocks);
             add_joint_laws(&mut table, rock_joints, blocks);
             table.memory = match memory {
                 scene::Memory::Body => Memory::Body,
@@ -351,7 +365,13 @@ fn one_monitor(monitor: &scene::Monitor, simulation: &Simulation) -> Result<Moni
     }
 }
 
-/// Steps of a run: its end rounded to whole steps, at least one.
+/// Steps of all of a scene, its stages included.
+pub fn all_steps(scene: &Scene) -> u64 {
+    let of_stage = |stage| stages::steps_of_stage(stage, scene.time.step_s);
+    steps(&scene.time) + scene.stages.iter().map(of_stage).sum::<u64>()
+}
+
+/// Steps before the first stage, or of a run without stages: `end_s` rounded to whole steps, at least one.
 pub fn steps(time: &scene::Time) -> u64 {
     ((time.end_s / time.step_s).round() as u64).max(1)
 }

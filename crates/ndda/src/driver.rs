@@ -26,7 +26,7 @@ use crate::run::schedule::is_due;
 /// Rows of a history that there is room for from the start.
 const ORDINARY_ROWS: u64 = 10_000;
 
-/// A simulation that is stepped from outside and judged as [`Run`](crate::Run) judges it.
+/// A simulation that is stepped from outside, up to the first of its stages if it has any, and judged as [`Run`](crate::Run) judges it.
 ///
 /// Energies are sampled at the steps at which a run of the same scene samples them, whatever the caller looks at, so that state
 /// and label after the scene's last step are those of the run.
@@ -127,7 +127,7 @@ impl Driver {
 
     fn around(model: Model, origin: Arc<str>, parts: Option<Parts>) -> Self {
         let rows = u64::from(model.loaded.scene.output.history_rows);
-        let steps = model.steps();
+        let steps = crate::build::steps(&model.loaded.scene.time);
         // Room for all rows of an ordinary run: a step allocates nothing.
         let history = Vec::with_capacity(rows.min(steps).min(ORDINARY_ROWS) as usize + 2);
         let (stopped, facets, watches_contacts) = (None, Vec::new(), false);
@@ -143,7 +143,7 @@ impl Driver {
 
     /// Puts another model in the place of the present one.
     fn put(&mut self, model: Model) {
-        self.steps = model.steps();
+        self.steps = crate::build::steps(&model.loaded.scene.time);
         self.rows = u64::from(model.loaded.scene.output.history_rows);
         self.model = model;
         self.model.simulation.watch_contacts(self.watches_contacts);

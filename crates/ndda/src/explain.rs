@@ -64,7 +64,7 @@ pub fn explain(model: &mut Model) -> Explanation {
         scene: loaded.file.clone(),
         title: scene.title.clone(),
         parameters: scene.parameters.clone(),
-        steps: build::steps(&scene.time),
+        steps: build::all_steps(scene),
         step_s: simulation.step_s(),
         step_advice: advice(scene, simulation),
         blocks: kinds,

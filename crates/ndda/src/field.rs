@@ -3,10 +3,11 @@
 use ndda_io::results::{Array, FieldFrame};
 use ndda_io::vtu::von_mises_pa;
 
+use crate::run::fields::PRESENT;
 use crate::surface::{BLOCK_ID, Surface};
 
 /// Arrays that the page shows otherwise: displacement is known from where blocks are.
-const SHOWN_OTHERWISE: [&str; 2] = [BLOCK_ID, "displacement_m"];
+const SHOWN_OTHERWISE: [&str; 3] = [BLOCK_ID, PRESENT, "displacement_m"];
 /// Endings of names, and units.
 const UNITS: [(&str, &str); 10] = [
     ("_kg_m2_s", "kg m²/s"),

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use ndda_io::diagnostic::{Diagnostic, SceneErrors};
 use ndda_io::read::{self, LoadedScene};
+use ndda_mesh::BlockSet;
 use ndda_solver::Simulation;
 
 use crate::build::{self, Choices, Fault, RockReport, overlaps};
@@ -87,7 +88,9 @@ impl Model {
         admit::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
         let (blocks, rock) = build::blocks_and_rock(&loaded.scene, folder).map_err(located)?;
         let far = rounding::warning(&loaded, &blocks);
-        let simulation = build::simulation_with(&loaded.scene, blocks, folder, choices).map_err(located)?;
+        build::stages::refuse(&loaded.scene, &blocks, folder).map_err(located)?;
+        let simulation = build::stages::simulation_in_stage(&loaded.scene, blocks, folder, choices, 0);
+        let simulation = simulation.map_err(located)?;
         let monitors = build::monitors(&loaded.scene, &simulation).map_err(located)?;
         loaded.warnings.extend(far);
         loaded.warnings.extend(lumped::warning(&loaded, &simulation));
@@ -102,6 +105,23 @@ impl Model {
 
     /// Steps of the run.
     pub fn steps(&self) -> u64 {
-        build::steps(&self.loaded.scene.time)
+        build::all_steps(&self.loaded.scene)
     }
+}
+
+/// The simulation of a scene as it is in a stage, counted from 1, on its blocks; nothing has moved in it yet.
+///
+/// # Errors
+/// What cannot be built.
+pub(crate) fn in_stage(
+    loaded: &LoadedScene,
+    folder: &Path,
+    blocks: BlockSet,
+    stage: usize,
+) -> Result<Simulation, SceneErrors> {
+    let built = build::stages::simulation_in_stage(&loaded.scene, blocks, folder, Choices::default(), stage);
+    built.map_err(|faults| {
+        let diagnose = |fault: Fault| loaded.diagnose(&fault.path, fault.message);
+        loaded.errors(faults.into_iter().map(diagnose).collect())
+    })
 }

@@ -12,6 +12,7 @@ pub mod recorder;
 mod resume;
 pub mod run_log;
 pub mod schedule;
+pub(crate) mod stages;
 mod twin;
 
 use std::ops::ControlFlow;
@@ -226,9 +227,12 @@ impl Run {
         observers: &mut [&mut dyn Sink],
     ) -> Result<Outcome, RunError> {
         let Self {
-            model: Model { loaded, mut simulation, monitors, .. }, comparison, name, recording, ..
+            model: Model { loaded, mut simulation, monitors, folder: beside, .. },
+            comparison,
+            name,
+            recording,
+            ..
         } = self;
-        let twin = (self.sensitivity, self.built, self.tell, self.stop.clone());
         let (scene, started) = (&loaded.scene, self.started);
         let (mut log, place) = match recording {
             Some(Recording { identity, folder, log, earlier }) => {
@@ -238,12 +242,18 @@ impl Run {
         };
         let earlier = place.as_ref().and_then(|(_, _, earlier)| earlier.as_ref());
         let (earlier_s, goes_on) = (earlier.map_or(0.0, |earlier| earlier.wall_s), earlier.is_some());
-        let course = Course { steps, started, stop: self.stop };
+        let course = Course { steps, started, stop: self.stop.clone() };
         let mut outputs =
             Outputs::new((scene, &simulation), (monitors, comparison), place, observers, course)?;
         let setup_s = started.elapsed().as_secs_f64() - settled_s;
-        let go = if goes_on { ndda_solver::resume } else { ndda_solver::run };
-        let ended = go(&mut simulation, steps, &mut [&mut outputs]);
+        let ended = if scene.stages.is_empty() {
+            let go = if goes_on { ndda_solver::resume } else { ndda_solver::run };
+            go(&mut simulation, steps, &mut [&mut outputs])
+        } else {
+            let through =
+                stages::Course { loaded: &loaded, folder: &beside, stop: &self.stop, tell: &*self.tell };
+            through.run(&mut simulation, &mut outputs, goes_on)
+        };
         let stopped_by = ended.map_or_else(|error| error::numerical_stop(error).map(Some), |()| Ok(None))?;
         outputs.flush()?;
         if stopped_by.is_none() && simulation.unsampled_s() > 0.0 {
@@ -264,9 +274,12 @@ impl Run {
             state_crc32: checkpoint::fingerprint(simulation.state()),
         };
         let mut summary = summarise(&simulation, &outputs.recorder, ending);
+        summary.stages = std::mem::take(&mut outputs.stages.rows);
         let (folder, history) = outputs.end();
-        let (sensitivity, built, tell, stop) = twin;
-        if let Some(built) = built.filter(|_| is_whole(&summary) && sensitivity.wants_twin(&simulation)) {
+        let (sensitivity, built, tell, stop) = (self.sensitivity, self.built, self.tell, self.stop);
+        let has_twin =
+            loaded.scene.stages.is_empty() && is_whole(&summary) && sensitivity.wants_twin(&simulation);
+        if let Some(built) = built.filter(|_| has_twin) {
             tell(
                 "a twin with other velocities, by 1e-4 of the largest speed, shows whether the motion is sensitive",
             );

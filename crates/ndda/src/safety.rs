@@ -129,6 +129,11 @@ pub enum SafetyError {
     /// Blocks do not feel each other.
     #[error("the scene has no contact between blocks, so nothing can stand: give `contact`")]
     NoContact,
+    /// Stages of construction.
+    #[error(
+        "a factor of safety is that of one state: give a scene without `stages`, with the blocks and loads of the stage"
+    )]
+    Stages,
     /// No block can move.
     #[error("every block of the scene is fixed, so nothing can fail")]
     NothingFree,

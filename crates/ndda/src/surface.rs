@@ -5,6 +5,8 @@ use ndda_mesh::Vec3;
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::surface::boundary_faces;
 
+use crate::run::fields::PRESENT;
+
 /// Faces that meet at less than this angle [°] are drawn as one.
 const SMOOTH_DEG: f64 = 20.0;
 /// Cell data with the block of each tetrahedron.
@@ -46,6 +48,19 @@ impl Surface {
             nodes,
             triangles,
         }
+    }
+
+    /// The blocks that are not there in a frame, ascending.
+    pub fn absent(&self, frame: &FieldFrame) -> Vec<u32> {
+        // Without the numbers of blocks all are one.
+        let present = frame.cell_data.get(PRESENT).filter(|_| frame.cell_data.contains_key(BLOCK_ID));
+        let Some(present) = present else { return Vec::new() };
+        let is_absent = |tet: u32| present.values.get(tet as usize) == Some(&0.0);
+        let absent = self.tets.iter().zip(&self.blocks).filter(|(tet, _)| is_absent(**tet));
+        let mut absent: Vec<u32> = absent.map(|(_, block)| *block).collect();
+        absent.sort_unstable();
+        absent.dedup();
+        absent
     }
 
     /// Number of blocks, those without triangles included.

@@ -90,6 +90,9 @@ pub fn tune(
     settings: &Settings,
     wanted: &Wanted,
 ) -> Result<(Tuned, String), TuneError> {
+    if !trial.plan.scene.stages.is_empty() {
+        return Err(CertifyError::Stages.into());
+    }
     let mut runner = Runner {
         launch,
         plan: &trial.plan,

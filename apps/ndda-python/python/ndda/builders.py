@@ -669,6 +669,45 @@ class Domain:
 
 
 @dataclass(kw_only=True)
+class Excavation(Builder):
+    """A space that stages of construction excavate: an outline drawn along an axis.
+
+    Blocks that it meets are cut along its border, and those inside are named after it, `heading_0001`,
+    `heading_0002`, …, so that a stage can take out `heading_*`. The faces of these cuts, and only these, are
+    glued by bonds of any strength: the rock behaves as before, until one side is taken out.
+
+    Parameters
+    ----------
+    name : str
+        Its name, unique among all excavations, rocks and joints.
+    outline_m : Sequence[Sequence[float]]
+        Corners in order, either way round, convex or not [m]: (y, z) along `X`, (x, z) along `Y`, (x, y)
+        along `Z`.
+    start_m : float
+        Where it starts on the axis [m].
+    end_m : float
+        Where it ends [m].
+    axis : AxisChoice, optional
+        The axis. Default: `Z`.
+    glue_pa_m : float, optional
+        Stiffness of the glue [Pa/m]. Default: that of normal contact there.
+
+    Examples
+    --------
+    >>> Excavation(name="name", outline_m=[(1.0, 1.0, 1.0)], start_m=1.0, end_m=1.0).to_ron()
+    '(name: "name", outline_m: [(1.0, 1.0, 1.0)], start_m: 1.0, end_m: 1.0)'
+    """
+
+    name: str
+    outline_m: Sequence[Sequence[float]]
+    start_m: float
+    end_m: float
+    axis: AxisChoice | None = None
+    glue_pa_m: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "outline_m": "[(num)]", "axis": "Axis", "start_m": "num", "end_m": "num", "glue_pa_m": "num"}
+
+
+@dataclass(kw_only=True)
 class FactorRow(Builder):
     """One row of a load's factor.
 
@@ -1917,6 +1956,9 @@ class Rock(Builder):
         How blocks are filled with tetrahedra. Default: `Fewest`.
     body : BodyChoice, optional
         How blocks may move. Default: `Elastic`.
+    excavations : list[Excavation], optional
+        Spaces that stages of construction excavate: their borders cut the rock beforehand, and are glued
+        until then. Default: none.
     removed : list[WhereaboutsChoice], optional
         Blocks that are taken out: an excavation. Default: none.
     fixed : list[WhereaboutsChoice], optional
@@ -1938,9 +1980,10 @@ class Rock(Builder):
     slivers: SliversChoice | None = None
     fill: FillChoice | None = None
     body: BodyChoice | None = None
+    excavations: list[Excavation] | None = None
     removed: list[WhereaboutsChoice] | None = None
     fixed: list[WhereaboutsChoice] | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "material": "str", "domain": "Domain", "joints": "[Discontinuity]", "voronoi": "Voronoi", "seed": "int", "sliver_width_m": "num", "slivers": "Slivers", "fill": "Fill", "body": "Body", "removed": "[Whereabouts]", "fixed": "[Whereabouts]"}
+    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "material": "str", "domain": "Domain", "joints": "[Discontinuity]", "voronoi": "Voronoi", "seed": "int", "sliver_width_m": "num", "slivers": "Slivers", "fill": "Fill", "body": "Body", "excavations": "[Excavation]", "removed": "[Whereabouts]", "fixed": "[Whereabouts]"}
 
 
 @dataclass(kw_only=True)
@@ -2021,6 +2064,8 @@ class Scene(Builder):
         Forces on points of blocks. Default: none.
     contact : ContactChoice, optional
         Contact between blocks. Must be said when there is more than one block.
+    stages : list[Stage], optional
+        Stages of construction, one after the other from `time.end_s` on. Default: none.
     monitors : list[Monitor], optional
         Points whose motion is recorded. Default: none.
     output : Output, optional
@@ -2050,10 +2095,11 @@ class Scene(Builder):
     water: list[Water] | None = None
     forces: list[Force] | None = None
     contact: ContactChoice | None = None
+    stages: list[Stage] | None = None
     monitors: list[Monitor] | None = None
     output: Output | None = None
     reference: ReferenceChoice | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"title": "str", "parameters": "{num}", "time": "Time", "gravity_m_s2": "(num)", "gravity_ramp_s": "num", "in_situ": "InSitu", "settle": "Settle", "include": "[str]", "materials": "[Material]", "blocks": "[Block]", "rock": "[Rock]", "supports": "[Support]", "tractions": "[Traction]", "water": "[Water]", "forces": "[Force]", "contact": "Contact", "monitors": "[Monitor]", "output": "Output", "reference": "Reference"}
+    _kinds: ClassVar[Mapping[str, str]] = {"title": "str", "parameters": "{num}", "time": "Time", "gravity_m_s2": "(num)", "gravity_ramp_s": "num", "in_situ": "InSitu", "settle": "Settle", "include": "[str]", "materials": "[Material]", "blocks": "[Block]", "rock": "[Rock]", "supports": "[Support]", "tractions": "[Traction]", "water": "[Water]", "forces": "[Force]", "contact": "Contact", "stages": "[Stage]", "monitors": "[Monitor]", "output": "Output", "reference": "Reference"}
 
 
 @dataclass(kw_only=True)
@@ -2471,6 +2517,91 @@ class SpacingScatter:
     Exponential: ClassVar[Literal["Exponential"]] = "Exponential"
 
 
+@dataclass(kw_only=True)
+class Stage(Builder):
+    """A stage of construction: blocks are taken out and added, supports, loads and laws change, then time
+    goes on or the scene comes to rest.
+
+    Stages follow each other after `time.end_s`. What a stage changes stays changed in those after it; lists
+    replace the whole list. ```text stages: [ (name: "heading", remove: ["heading_*"], over_s: 0.05, then:
+    Settle()), (name: "lining", add: ["lining_*"], then: Settle()), (name: "bench", remove: ["bench_*"],
+    over_s: 0.05, reset_displacements: true, then: Run(0.5)), ], ```
+
+    Parameters
+    ----------
+    name : str
+        Its name, that of its checkpoint and of its row in the summary.
+    then : ThenChoice
+        How the stage goes on.
+    remove : Sequence[str], optional
+        Blocks that are taken out, by name, or many as in a support. Default: none.
+    add : Sequence[str], optional
+        Blocks that are put in, without stress and at rest where they were meshed; until then they are not
+        there. Default: none.
+    supports : list[Support], optional
+        Supports from now on, in the place of all before. Default: as before.
+    tractions : list[Traction], optional
+        Tractions from now on, in the place of all before. Default: as before.
+    forces : list[Force], optional
+        Forces from now on, in the place of all before. Default: as before.
+    water : list[Water], optional
+        Water from now on, in the place of all before. Default: as before.
+    gravity_m_s2 : Sequence[float], optional
+        Gravity from now on [m/s²]. Default: as before.
+    laws : StageLaws, optional
+        Laws of contact from now on. Default: as before.
+    over_s : float, optional
+        Time over which forces of removed blocks fall to nothing, and loads change to the new ones [s]: ten
+        periods of what moves leave it at rest; 0 changes them at once, as a blast does. Default: 0.
+    reset_displacements : bool, optional
+        Whether displacements count from the beginning of this stage. Default: false.
+
+    Examples
+    --------
+    >>> Stage(name="name", then=Then.Settle()).to_ron()
+    '(name: "name", then: Settle())'
+    """
+
+    name: str
+    then: ThenChoice
+    remove: Sequence[str] | None = None
+    add: Sequence[str] | None = None
+    supports: list[Support] | None = None
+    tractions: list[Traction] | None = None
+    forces: list[Force] | None = None
+    water: list[Water] | None = None
+    gravity_m_s2: Sequence[float] | None = None
+    laws: StageLaws | None = None
+    over_s: float | None = None
+    reset_displacements: bool | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "remove": "[str]", "add": "[str]", "supports": "[Support]", "tractions": "[Traction]", "forces": "[Force]", "water": "[Water]", "gravity_m_s2": "(num)", "laws": "StageLaws", "over_s": "num", "then": "Then", "reset_displacements": "bool"}
+
+
+@dataclass(kw_only=True)
+class StageLaws(Builder):
+    """Laws of contact in a stage; a list replaces the whole list.
+
+    Parameters
+    ----------
+    friction : Friction, optional
+        Friction between all blocks. Default: as before.
+    material_pairs : list[MaterialPair], optional
+        Friction between materials. Default: as before.
+    rock_joints : list[JointLaw], optional
+        Friction of joints. Default: as before.
+
+    Examples
+    --------
+    >>> StageLaws().to_ron()
+    '()'
+    """
+
+    friction: Friction | None = None
+    material_pairs: list[MaterialPair] | None = None
+    rock_joints: list[JointLaw] | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"friction": "Friction", "material_pairs": "[MaterialPair]", "rock_joints": "[JointLaw]"}
+
+
 class Step:
     """Whether steps may be shorter.
 
@@ -2611,6 +2742,61 @@ class TableFormat:
     Parquet: ClassVar[Literal["Parquet"]] = "Parquet"
     # Both.
     Both: ClassVar[Literal["Both"]] = "Both"
+
+
+class Then:
+    """How a stage goes on.
+
+    Examples
+    --------
+    >>> Then.Settle().to_ron()
+    'Settle()'
+    """
+
+    @dataclass(kw_only=True)
+    class Settle(Builder):
+        """To rest: after `over_s`, and one step at least, time stands still until forces balance, with
+        damping as in `settle`.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            Speed left over the largest speed on the way [-]. Default: 1e-4.
+        most_steps : int, optional
+            Steps after which it is given up. Default: 1000000.
+        damping : SettleDampingChoice, optional
+            Damping on the way to rest. Default: `Kinetic`.
+
+        Examples
+        --------
+        >>> Then.Settle().to_ron()
+        'Settle()'
+        """
+
+        tolerance: float | None = None
+        most_steps: int | None = None
+        damping: SettleDampingChoice | None = None
+        _kinds: ClassVar[Mapping[str, str]] = {"tolerance": "num", "most_steps": "int", "damping": "SettleDamping"}
+        _variant: ClassVar[str] = "Settle"
+
+    @dataclass
+    class Run(Builder):
+        """So many seconds, `over_s` included.
+
+        Parameters
+        ----------
+        value : float
+            So many seconds, `over_s` included.
+
+        Examples
+        --------
+        >>> Then.Run(1.0).to_ron()
+        'Run(1.0)'
+        """
+
+        value: float
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "num"}
+        _variant: ClassVar[str] = "Run"
 
 
 @dataclass(kw_only=True)
@@ -2942,6 +3128,7 @@ SolverChoice: TypeAlias = Literal["Cholesky"] | Solver.ConjugateGradients
 SpacingScatterChoice: TypeAlias = Literal["None"] | SpacingScatter.Uniform | SpacingScatter.Normal | Literal["Exponential"]
 StepChoice: TypeAlias = Literal["Fixed"] | Step.Auto
 TableFormatChoice: TypeAlias = Literal["Csv"] | Literal["Parquet"] | Literal["Both"]
+ThenChoice: TypeAlias = Then.Settle | Then.Run
 TowardsChoice: TypeAlias = Towards.Point | Towards.Plane
 WetChoice: TypeAlias = Wet.Joint | Wet.Part
 WhereaboutsChoice: TypeAlias = Whereabouts.Inside | Whereabouts.Beyond
@@ -2961,6 +3148,7 @@ __all__ = [
     "DiscRule",
     "Discontinuity",
     "Domain",
+    "Excavation",
     "FactorRow",
     "Field",
     "FieldFormat",
@@ -2998,11 +3186,14 @@ __all__ = [
     "Slivers",
     "Solver",
     "SpacingScatter",
+    "Stage",
+    "StageLaws",
     "Step",
     "Stress",
     "StressGradient",
     "Support",
     "TableFormat",
+    "Then",
     "Time",
     "Towards",
     "Traction",

@@ -237,6 +237,10 @@ impl ContactModel for BatchFriction {
         self.normal.add_stiffness(input, history, stiffness)
     }
 
+    fn leave_out(&mut self, absent: &[bool]) -> bool {
+        self.normal.leave_out(absent)
+    }
+
     fn uses_host_forces(&self, block: BlockId) -> bool {
         self.normal.uses_host_forces(block)
     }

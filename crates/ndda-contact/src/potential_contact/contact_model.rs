@@ -139,6 +139,11 @@ impl ContactModel for PotentialContact {
         Ok(())
     }
 
+    fn leave_out(&mut self, absent: &[bool]) -> bool {
+        self.candidates.leave_out(absent);
+        true
+    }
+
     fn uses_host_forces(&self, block: BlockId) -> bool {
         self.hulls.affine_target(block).is_some()
     }

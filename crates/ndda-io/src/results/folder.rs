@@ -37,6 +37,9 @@ pub const CHECKPOINT: &str = "checkpoint.ndda";
 const PREVIOUS: &str = "checkpoint.previous.ndda";
 /// A checkpoint that is whole and not yet in its place.
 const WAITING: &str = "checkpoint.new.ndda";
+/// Beginning and ending of the name of a checkpoint at the end of a stage.
+const OF_STAGE: &str = "checkpoint.stage.";
+const ENDING: &str = ".ndda";
 /// Folder of the frames.
 pub const FIELDS_FOLDER: &str = "fields";
 
@@ -143,6 +146,11 @@ impl OutputFolder {
     /// Where a new one waits until it is whole.
     pub(crate) fn waiting_checkpoint(&self) -> PathBuf {
         self.path.join(WAITING)
+    }
+
+    /// Path of the checkpoint at the end of a stage.
+    pub fn stage_checkpoint(&self, stage: &str) -> PathBuf {
+        self.path.join(format!("{OF_STAGE}{stage}{ENDING}"))
     }
 
     /// Path of the summary.

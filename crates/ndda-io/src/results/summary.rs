@@ -3,6 +3,7 @@
 mod chosen;
 mod motion;
 mod named;
+mod stage;
 
 use std::path::Path;
 
@@ -15,6 +16,7 @@ use crate::write_error::WriteError;
 pub use chosen::Chosen;
 pub use motion::{BlockEnd, BlockMotion, Course, MonitorEnd, Motion};
 pub use named::Named;
+pub use stage::StageEnd;
 
 /// Everything that `summary.json` says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -61,6 +63,9 @@ pub struct Summary {
     pub invariants: Invariants,
     /// The invariants and the scene's own criteria with their limits.
     pub verdicts: Named<Verdict>,
+    /// How the stages of construction ended. Left out where there are none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub stages: Vec<StageEnd>,
     /// Blocks that moved, and how far. Left out where every block is fixed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
@@ -295,6 +300,7 @@ mod tests {
                 ("energy gained".into(), verdict(Some(1e-9), Some(0.01), Judgement::Pass)),
                 ("action minus reaction".into(), verdict(None, None, Judgement::NotYet)),
             ]),
+            stages: Vec::new(),
             motion: None,
             monitors: Named(vec![("top".into(), MonitorEnd::default())]),
             blocks: Named(vec![("ramp".into(), BlockEnd::default()), ("block".into(), BlockEnd::default())]),

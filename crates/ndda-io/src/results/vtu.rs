@@ -106,7 +106,7 @@ impl Values {
         Self::new(name, vectors.map(<[f64; 3]>::from), precision)
     }
 
-    /// A small whole number for each node.
+    /// A small whole number for each node or tetrahedron.
     pub fn states(name: &'static str, states: Vec<u8>) -> Self {
         Self { name, kind: "UInt8", components: 1, count: states.len(), bytes: states, bad: None }
     }

@@ -9,6 +9,7 @@ mod reference;
 mod restitution;
 mod rock;
 mod shape;
+mod stage;
 mod support;
 mod time;
 mod water;
@@ -43,6 +44,7 @@ pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> 
     check.supports(folder);
     check.loads();
     check.contact();
+    check.stages(folder);
     check.monitors();
     check.reference();
     check.output();

@@ -57,6 +57,9 @@ pub struct Rock {
     /// How blocks may move. Default: `Elastic`.
     #[serde(default)]
     pub body: Body,
+    /// Spaces that stages of construction excavate: their borders cut the rock beforehand, and are glued until then. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub excavations: Vec<Excavation>,
     /// Blocks that are taken out: an excavation. Default: none.
     #[serde(default)]
     pub removed: Vec<Whereabouts>,
@@ -310,11 +313,43 @@ pub enum Whereabouts {
     },
 }
 
+/// A space that stages of construction excavate: an outline drawn along an axis.
+///
+/// Blocks that it meets are cut along its border, and those inside are named after it, `heading_0001`, `heading_0002`, …, so that a stage can take out
+/// `heading_*`. The faces of these cuts, and only these, are glued by bonds that no stress breaks: the rock behaves as before, until one side is taken out.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Excavation {
+    /// Its name, unique among all excavations, rocks and joints.
+    pub name: String,
+    /// Corners in order, either way round, convex or not [m]: (y, z) along `X`, (x, z) along `Y`, (x, y) along `Z`.
+    pub outline_m: Vec<[f64; 2]>,
+    /// The axis. Default: `Z`.
+    #[serde(default)]
+    pub axis: Axis,
+    /// Where it starts on the axis [m].
+    pub start_m: f64,
+    /// Where it ends [m].
+    pub end_m: f64,
+    /// Stiffness of the glue [Pa/m]. Default: that of normal contact there.
+    #[serde(default)]
+    pub glue_pa_m: Option<f64>,
+}
+
 impl Rock {
     /// Whether a block of this name comes from this rock.
     pub fn makes(&self, block: &str) -> bool {
-        let number = block.strip_prefix(self.name.as_str()).and_then(|rest| rest.strip_prefix('_'));
-        number.is_some_and(|n| !n.is_empty() && n.bytes().all(|c| c.is_ascii_digit()))
+        let is_number = |n: &str| !n.is_empty() && n.bytes().all(|c| c.is_ascii_digit());
+        let number = |stem: &str| {
+            block.strip_prefix(stem).and_then(|rest| rest.strip_prefix('_')).is_some_and(is_number)
+        };
+        self.stems().any(number)
+    }
+
+    /// The names that those of its blocks begin with.
+    fn stems(&self) -> impl Iterator<Item = &str> {
+        [self.name.as_str()].into_iter().chain(self.excavations.iter().map(|space| space.name.as_str()))
     }
 }
 

@@ -62,6 +62,13 @@ pub enum Hold {
     },
 }
 
+impl Hold {
+    /// Whether it moves what it holds.
+    pub fn is_moved(&self) -> bool {
+        matches!(self, Self::Motion(_) | Self::Acceleration { .. })
+    }
+}
+
 /// One row of a prescribed motion.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

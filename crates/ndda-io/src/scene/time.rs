@@ -10,7 +10,7 @@ pub struct Time {
     /// Time step Δt [s]. Default: chosen from the stability of contact, speeds and loads, and said with its reason.
     #[serde(default = "super::unset", skip_serializing_if = "super::is_unset")]
     pub step_s: f64,
-    /// End of the run [s]; rounded to a whole number of steps.
+    /// End of the run, or of what comes before the first of `stages` [s]; rounded to a whole number of steps.
     pub end_s: f64,
     /// Time integrator. Default: `Midpoint(theta: 0.5)`.
     #[serde(default)]

@@ -11,6 +11,7 @@ mod decompose;
 mod discs;
 mod domain;
 mod error;
+mod excavate;
 mod joints;
 mod merge;
 mod neighbours;

@@ -4,6 +4,8 @@
 //! work of its forces on both blocks differs from the loss of its potential energy. The lighter block is affected: where two collide at v,
 //! an error of energy δE is one of its speed δv = δE/(m v), whatever the other weighs.
 
+mod stages;
+
 use crate::diagnostics::worst::BlockScale;
 use crate::diagnostics::worst::Worst;
 use ndda_contact::SpringSlip;

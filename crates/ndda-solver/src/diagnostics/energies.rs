@@ -50,6 +50,8 @@ pub struct Sample {
     pub damping_work_j: f64,
     /// Work of contact damping since the start: what contacts with a restitution below 1 do not give back, never positive [J].
     pub restitution_work_j: f64,
+    /// Energy of blocks that stages have taken out, and of their contact, less that of blocks added, since the start [J].
+    pub removed_j: f64,
     /// Energy that appeared (+) or vanished (−) without a cause since the start [J].
     pub balance_j: f64,
     /// Linear momentum [kg m/s].

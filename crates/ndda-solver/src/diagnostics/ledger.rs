@@ -1,5 +1,7 @@
 //! The ledger of a run: energy and momentum balance, and the worst of everything that has a limit.
 
+mod stages;
+
 use crate::diagnostics::energies::Sample;
 use crate::diagnostics::energies::Vibration;
 use crate::diagnostics::invariants::Invariants;
@@ -32,6 +34,7 @@ pub struct Ledger {
     load_work_j: f64,
     damping_work_j: f64,
     restitution_work_j: f64,
+    removed_j: f64,
     peak_energy_j: f64,
     peak_momentum: f64,
     peak_angular: f64,
@@ -106,6 +109,7 @@ impl Ledger {
             load_work_j: 0.0,
             damping_work_j: 0.0,
             restitution_work_j: 0.0,
+            removed_j: 0.0,
             peak_energy_j: 0.0,
             peak_momentum: 0.0,
             peak_angular: 0.0,
@@ -288,11 +292,13 @@ impl Ledger {
         sample.load_work_j = self.load_work_j;
         sample.damping_work_j = self.damping_work_j;
         sample.restitution_work_j = self.restitution_work_j;
+        sample.removed_j = self.removed_j;
         let work_j = sample.friction_work_j
             + sample.motion_work_j
             + sample.load_work_j
             + sample.damping_work_j
-            + sample.restitution_work_j;
+            + sample.restitution_work_j
+            - sample.removed_j;
         sample.balance_j = sample.total_j() - start.total_j() - work_j;
         let stored = sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j;
         self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());

@@ -2,7 +2,7 @@
 
 use nalgebra::Rotation3;
 use ndda_fem::supports::{BlockSupports, HeldNode, Spring};
-use ndda_mesh::{BlockId, Vec3};
+use ndda_mesh::BlockId;
 
 use crate::bodies::kind::BodyKind;
 use crate::error::StepError;
@@ -43,16 +43,12 @@ pub enum TakeOverError {
     /// Blocks, integrator or contact at the end of steps differ.
     #[error("it is another problem: {0}")]
     OtherProblem(#[from] RestoreError),
+    /// A stage of construction cannot be built.
+    #[error("{0}")]
+    Stage(String),
     /// The state cannot be sampled under the changed loads or laws, or these keep other numbers of each facet.
     #[error(transparent)]
     Step(#[from] StepError),
-}
-
-/// Totals before and after a change, whose difference is booked.
-struct Totals {
-    energy_j: f64,
-    momentum: Vec3,
-    angular_momentum: Vec3,
 }
 
 impl Simulation {
@@ -68,7 +64,7 @@ impl Simulation {
         if self.weights.needs_acceleration && self.pulls_otherwise(before) {
             return Err(TakeOverError::RemembersAccelerations);
         }
-        let old = before.totals()?;
+        let (old, _) = before.look()?;
         let snapshot = before.snapshot();
         self.restore(snapshot.clone())?;
         if self.has_contact() {
@@ -77,15 +73,15 @@ impl Simulation {
             self.restore(snapshot)?;
         }
         self.stop_held_nodes(before);
-        let new = self.totals()?;
-        self.audit.ledger.add_work(0.0, 0.0, new.energy_j - old.energy_j, 0.0);
+        let (new, _) = self.look()?;
+        self.audit.ledger.add_work(0.0, 0.0, new.total_j() - old.total_j(), 0.0);
         self.audit
             .ledger
             .add_whole_impulse(new.momentum - old.momentum, new.angular_momentum - old.angular_momentum);
         Ok(())
     }
 
-    fn refuse_other_supports(&self, before: &Self) -> Result<(), TakeOverError> {
+    pub(super) fn refuse_other_supports(&self, before: &Self) -> Result<(), TakeOverError> {
         for block in self.held_anew(before) {
             let (new, old) = (&self.shape(block).supports, &before.shape(block).supports);
             let name = || self.problem.blocks.names[block.index()].clone();
@@ -100,11 +96,13 @@ impl Simulation {
         Ok(())
     }
 
-    /// Blocks that deform and whose supports are others than before.
+    /// Blocks that deform, were there before, and whose supports are others than then.
     fn held_anew(&self, before: &Self) -> Vec<BlockId> {
         let is_other = |block: &BlockId| {
             let shape = self.shape(*block);
-            shape.kind != BodyKind::Fixed && shape.supports != before.shape(*block).supports
+            shape.kind != BodyKind::Fixed
+                && !before.is_absent(*block)
+                && shape.supports != before.shape(*block).supports
         };
         self.problem.blocks.ids().take(before.problem.blocks.len()).filter(is_other).collect()
     }
@@ -123,7 +121,7 @@ impl Simulation {
     }
 
     /// Velocities that new supports leave.
-    fn stop_held_nodes(&mut self, before: &Self) {
+    pub(super) fn stop_held_nodes(&mut self, before: &Self) {
         for block in self.held_anew(before) {
             let nodes = self.problem.blocks.nodes_of(block);
             let shape = &self.problem.shapes[self.bodies[block.index()].shape];
@@ -141,19 +139,6 @@ impl Simulation {
             && self.loads.changing().is_empty() == before.loads.changing().is_empty();
         let same = |block| self.shape(block).supports == before.shape(block).supports;
         !same_loads || !self.problem.blocks.ids().all(same)
-    }
-
-    /// Energy and momentum now, without a word in the ledger.
-    fn totals(&mut self) -> Result<Totals, StepError> {
-        let kept = self.audit.ledger.clone();
-        let sample = self.sample();
-        self.audit.ledger = kept;
-        let sample = sample?;
-        Ok(Totals {
-            energy_j: sample.total_j(),
-            momentum: sample.momentum,
-            angular_momentum: sample.angular_momentum,
-        })
     }
 }
 

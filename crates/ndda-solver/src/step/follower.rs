@@ -50,6 +50,11 @@ impl FollowerPressure {
         Self { triangles, field, factor, pace_m_s2: force_n / mass_kg, room }
     }
 
+    /// A node of its block.
+    pub(crate) fn first_node(&self) -> Option<u32> {
+        self.triangles.first().map(|triangle| triangle[0])
+    }
+
     /// Adds its mean between two times [s]; returns the speed that it brings and takes back unseen [m/s].
     pub(crate) fn add(&mut self, (from_s, to_s): (f64, f64), places: Places, force: &mut [Vec3]) -> f64 {
         let constant = Between { mean: 1.0, beyond_s: 0.0 };

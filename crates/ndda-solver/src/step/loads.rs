@@ -1,5 +1,7 @@
 //! External loads on the nodes, at any time of a run.
 
+use std::ops::Range;
+
 use ndda_fem::{Between, Table};
 use ndda_mesh::Vec3;
 
@@ -29,6 +31,8 @@ impl VaryingLoad {
 pub(crate) struct Loads {
     constant: Vec<Vec3>,
     varying: Vec<VaryingLoad>,
+    /// What a stage lets act on and ramp down.
+    release: Option<VaryingLoad>,
     /// Pressure of water.
     pressures: Vec<FollowerPressure>,
     /// Forces that a caller has set, per node [N]; empty while none was.
@@ -55,6 +59,7 @@ impl Loads {
         let mut loads = Self {
             constant,
             varying,
+            release: None,
             pressures,
             driving: Vec::new(),
             changing: vec![Vec3::zeros(); nodes],
@@ -83,7 +88,7 @@ impl Loads {
             self.changing.copy_from_slice(&self.driving);
         }
         self.unresolved_m_s = 0.0;
-        for load in &self.varying {
+        for load in self.varying.iter().chain(&self.release) {
             let Between { mean: factor, beyond_s } = load.factor.between(from_s, to_s);
             self.unresolved_m_s += load.pace_m_s2 * beyond_s;
             load.forces.iter().for_each(|(node, force)| self.changing[*node as usize] += factor * force);
@@ -98,11 +103,34 @@ impl Loads {
 
     /// Lets forces per node [N] act from now on, beside the others.
     pub(crate) fn drive(&mut self, nodal: Vec<Vec3>) {
+        self.make_room();
+        self.driving = nodal;
+    }
+
+    fn make_room(&mut self) {
         if self.changing.is_empty() {
-            self.changing = vec![Vec3::zeros(); nodal.len()];
+            self.changing = vec![Vec3::zeros(); self.constant.len()];
             self.total = self.changing.clone();
         }
-        self.driving = nodal;
+    }
+
+    /// Lets a load act that is taken away by and by, in the place of the one before.
+    pub(crate) fn release(&mut self, load: Option<VaryingLoad>, now_s: f64, places: Places) {
+        if load.is_some() {
+            self.make_room();
+        }
+        self.release = load;
+        self.place(now_s, now_s, places);
+    }
+
+    /// Takes all loads off some runs of nodes.
+    pub(crate) fn leave_out(&mut self, nodes: &[Range<usize>], places: Places) {
+        let is_there = |n: u32| !nodes.iter().any(|range| range.contains(&(n as usize)));
+        nodes.iter().for_each(|range| self.constant[range.clone()].fill(Vec3::zeros()));
+        self.varying.iter_mut().for_each(|load| load.forces.retain(|(node, _)| is_there(*node)));
+        self.pressures.retain(|pressure| pressure.first_node().is_none_or(is_there));
+        self.force = self.constant.iter().sum();
+        self.place(0.0, 0.0, places);
     }
 
     /// Whether a caller has set forces.

@@ -18,11 +18,13 @@ pub(crate) mod loads;
 pub(crate) mod local_damping;
 pub(crate) mod plan;
 pub(crate) mod queries;
+pub(crate) mod release;
 pub(crate) mod report;
 pub(crate) mod sample;
 pub(crate) mod settle;
 pub(crate) mod setup;
 pub(crate) mod snapshot;
+pub(crate) mod stage;
 pub(crate) mod state;
 pub(crate) mod travel;
 
@@ -44,6 +46,7 @@ use crate::step::control::Control;
 use crate::step::follower::Places;
 use crate::step::implicit_contact::Newton;
 use crate::step::loads::Loads;
+use crate::step::stage::StageState;
 use crate::step::state::State;
 use crate::step::travel::Travel;
 
@@ -65,7 +68,10 @@ pub struct Simulation {
     pub(crate) part_s: f64,
     pub(crate) weights: StepWeights,
     pub(crate) control: Option<Box<Control>>,
-    pub(crate) settling: bool,
+    /// Time that loads and prescribed motions see while a scene settles [s].
+    pub(crate) settling_at_s: Option<f64>,
+    /// What stages keep; none in a scene without them.
+    pub(crate) stage: Option<Box<StageState>>,
     pub(crate) scratch: Scratch,
     pub(crate) audit: Audit,
 }

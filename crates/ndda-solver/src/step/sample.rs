@@ -178,7 +178,7 @@ impl Simulation {
         self.audit.contacts = Some(contacts);
     }
 
-    fn add_facets(&mut self, facets: &mut Vec<FacetContact>) {
+    pub(super) fn add_facets(&mut self, facets: &mut Vec<FacetContact>) {
         let Some(model) = &self.contact else { return };
         let State { velocity, contact_offset, contact, .. } = &self.state;
         let position = seen(

@@ -130,9 +130,24 @@ impl Simulation {
         settle: &Settle,
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<Settled, StepError> {
-        self.settling = true;
         let start = std::mem::take(&mut self.state.velocity);
         self.state.velocity = vec![Vec3::zeros(); start.len()];
+        let (settled, came_to_rest) = self.come_to_rest(settle, 0.0, watch)?;
+        if came_to_rest {
+            self.begin_at_rest(start);
+        }
+        Ok(settled)
+    }
+
+    /// Runs with damping until all blocks are at rest, while loads and prescribed motions are those of a time [s]; whether they came to rest
+    /// before somebody broke it off.
+    fn come_to_rest(
+        &mut self,
+        settle: &Settle,
+        at_s: f64,
+        watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
+    ) -> Result<(Settled, bool), StepError> {
+        self.settling_at_s = Some(at_s);
         let from = self.state.position.clone();
         let extent_m = Aabb::around(&from).diagonal();
         let mut progress = Progress::new(self, settle.damping);
@@ -145,10 +160,44 @@ impl Simulation {
             settled.speed_ratio = progress.step(self)?;
             settled.steps += 1;
             if watch(&settled).is_break() {
-                return Ok(settled);
+                return Ok((settled, false));
             }
         }
-        self.begin_at_rest(start);
+        Ok((settled, true))
+    }
+
+    /// Brings the scene to rest in the course of a run, time standing still, and goes on from there: displacements and what contact remembers
+    /// stay. What damping takes on the way is in the balance; diagnostics do not judge the way.
+    ///
+    /// # Errors
+    /// As [`settle`](Self::settle).
+    pub fn settle_within(
+        &mut self,
+        settle: &Settle,
+        watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
+    ) -> Result<Settled, StepError> {
+        let (step, (old, _)) = (self.state.step, self.look()?);
+        let before = self.audit.ledger.clone();
+        self.state.velocity.fill(Vec3::zeros());
+        let (settled, came_to_rest) = self.come_to_rest(settle, self.time_s(), watch)?;
+        self.settling_at_s = None;
+        if !came_to_rest {
+            return Ok(settled);
+        }
+        self.state.velocity.fill(Vec3::zeros());
+        self.state.step = step;
+        let way = std::mem::replace(&mut self.audit.ledger, before);
+        self.audit.ledger.begin_anew_at_contact();
+        let (new, books) = self.look()?;
+        self.audit.ledger.blocks().rebase(&books);
+        self.audit.ledger.add_way_to_rest(&way, new.total_j() - old.total_j());
+        let momentum = new.momentum - old.momentum;
+        self.audit.ledger.add_whole_impulse(momentum, new.angular_momentum - old.angular_momentum);
+        if self.has_contact() {
+            let (contact, _) = self.contacts_at_start()?;
+            self.stop_past_centroid(&contact)?;
+            self.audit.ledger.watch_depth(contact.max_penetration_ratio);
+        }
         Ok(settled)
     }
 

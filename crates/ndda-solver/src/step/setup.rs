@@ -117,7 +117,8 @@ impl Simulation {
             part_s: step_s,
             weights,
             control: None,
-            settling: false,
+            settling_at_s: None,
+            stage: None,
             scratch: Scratch {
                 force: vec![Vec3::zeros(); nodes],
                 friction_force: vec![Vec3::zeros(); friction_nodes],

@@ -9,6 +9,7 @@ use crate::diagnostics::ledger::Ledger;
 use crate::integrators::time_integrator::Inertia;
 use crate::step::Simulation;
 use crate::step::follower::Places;
+use crate::step::stage::StageState;
 use crate::step::state::State;
 
 /// All that a run has become: what a checkpoint keeps, and a simulation of the same problem can go on from.
@@ -24,6 +25,8 @@ pub struct Snapshot {
     pub contact_stiffness: Vec<f64>,
     /// Balance of energy after a step \[J\], and after which, where the step is controlled.
     pub step_balance: Option<(u64, f64)>,
+    /// What stages keep; none in a scene without them.
+    pub stage: Option<StageState>,
 }
 
 /// A snapshot that is written but not kept: all by reference. Its encoding is that of [`Snapshot`].
@@ -34,6 +37,7 @@ pub struct SnapshotView<'a> {
     stages: StageTimes,
     contact_stiffness: &'a [f64],
     step_balance: Option<(u64, f64)>,
+    stage: Option<&'a StageState>,
 }
 
 /// A snapshot of another problem.
@@ -57,6 +61,7 @@ impl Simulation {
             stages: self.audit.stages,
             contact_stiffness,
             step_balance: self.control.as_ref().and_then(|control| control.balance()),
+            stage: self.stage.as_deref().cloned(),
         }
     }
 
@@ -69,6 +74,7 @@ impl Simulation {
             stages: self.audit.stages,
             contact_stiffness: if acts { &self.scratch.contact_stiffness } else { &[] },
             step_balance: self.control.as_ref().and_then(|control| control.balance()),
+            stage: self.stage.as_deref(),
         }
     }
 
@@ -78,7 +84,7 @@ impl Simulation {
     /// [`RestoreError`] when it has another number of nodes.
     pub fn restore(&mut self, snapshot: Snapshot) -> Result<(), RestoreError> {
         let expected = self.problem.blocks.rest_position.len();
-        let Snapshot { state, ledger, stages, contact_stiffness, step_balance } = snapshot;
+        let Snapshot { state, ledger, stages, contact_stiffness, step_balance, stage } = snapshot;
         let internal = self.state.internal_force.len();
         for (found, expected) in [
             (state.position.len(), expected),
@@ -110,6 +116,7 @@ impl Simulation {
         }
         self.scratch.friction_force.fill(Vec3::zeros());
         self.place_driving_forces();
+        self.restore_stage(stage);
         self.control.iter_mut().for_each(|control| control.restore_balance(step_balance));
         Ok(())
     }
@@ -121,7 +128,7 @@ impl Simulation {
         self.state.acceleration.fill(Vec3::zeros());
         self.state.inertia.fill(Inertia::default());
         self.state.step = 0;
-        self.settling = false;
+        self.settling_at_s = None;
         let State { position, velocity, .. } = &self.state;
         self.loads.place(0.0, 0.0, Places { position, velocity, lead_s: 0.0 });
         self.audit.ledger = self.new_ledger((Vec3::zeros(), Vec3::zeros()));

@@ -39,6 +39,9 @@ async function showBlocks(byId, data, charts) {
   for (const button of document.querySelectorAll("[data-view]")) {
     button.addEventListener("click", () => viewer.look(button.dataset.view));
   }
+  for (const button of document.querySelectorAll("[data-time]")) {
+    button.addEventListener("click", () => player.jumpTo(Number(button.dataset.time)));
+  }
   byId("view").addEventListener("pointermove", (event) => {
     if (event.buttons !== 0) return;
     const block = viewer.blockAt(event.clientX, event.clientY);

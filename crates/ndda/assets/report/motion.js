@@ -29,6 +29,11 @@ class Motion {
     return decoded(this.moved, frame, this.frames, this.about.moved);
   }
 
+  /** Blocks that are not there in a frame. */
+  absent(frame) {
+    return new Set(this.about.absent ? this.about.absent[frame] : []);
+  }
+
   /** One value per node or triangle in a frame. */
   values(field, frame) {
     return decoded(field.codes, frame, this.frames, field.range);

@@ -85,6 +85,7 @@ class Viewer {
     for (let i = 0; i < positions.length; i += 1) {
       positions[i] = motion.start[i] + factor * moved[i];
     }
+    this.takeOut(motion.absent(frame));
     const corners = this.corners.array;
     for (let c = 0; c < motion.triangles.length; c += 1) {
       const node = 3 * motion.triangles[c];
@@ -97,6 +98,20 @@ class Viewer {
       changed.needsUpdate = true;
     }
     this.draw();
+  }
+
+  /** Draws blocks that are not there as points, which nobody sees. */
+  takeOut(absent) {
+    if (absent.size === 0) return;
+    const { motion, positions } = this;
+    const anchors = new Map();
+    for (let c = 0; c < motion.triangles.length; c += 1) {
+      const block = motion.blocks[Math.floor(c / 3)];
+      if (!absent.has(block)) continue;
+      const node = 3 * motion.triangles[c];
+      if (!anchors.has(block)) anchors.set(block, positions.slice(node, node + 3));
+      positions.set(anchors.get(block), node);
+    }
   }
 
   paint(values, choice, coloursStill) {

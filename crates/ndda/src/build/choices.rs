@@ -37,3 +37,13 @@ pub struct Choices {
     /// Materials by their name in the scene.
     pub materials: Vec<(String, Arc<dyn Material>)>,
 }
+
+impl Choices {
+    /// Whether everything is as the scene says.
+    pub(crate) fn are_the_scenes(&self) -> bool {
+        let models = self.contact.is_none() && self.potential.is_none() && self.friction.is_none();
+        let laws =
+            self.batch_law.is_none() && self.friction_tolerance.is_none() && self.broad_phase.is_none();
+        models && laws && self.integrator.is_none() && self.solver.is_none() && self.materials.is_empty()
+    }
+}

@@ -68,8 +68,9 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
 /// A block with all nodes in the solid of another, and that other, unless both are fixed.
 fn enclosed(simulation: &Simulation) -> Option<(BlockId, BlockId)> {
     let (blocks, position) = (simulation.blocks(), &simulation.state().position);
+    let there = blocks.ids().filter(|&block| !simulation.is_absent(block));
     let mut boxes: Vec<(BlockId, Aabb)> =
-        blocks.ids().map(|block| (block, Aabb::around(&position[blocks.nodes_of(block)]))).collect();
+        there.map(|block| (block, Aabb::around(&position[blocks.nodes_of(block)]))).collect();
     boxes.sort_by(|a, b| a.1.min.x.total_cmp(&b.1.min.x));
     let within = |inner: &Aabb, outer: &Aabb| {
         (0..3).all(|i| outer.min[i] < inner.min[i] && inner.max[i] < outer.max[i])

@@ -1,8 +1,9 @@
 //! Friction and restitution between pairs of materials, and on the faces of joints.
 
-use ndda_contact::{FrictionLaw, FrictionLawTable, RestitutionTable};
+use ndda_contact::{FrictionLaw, FrictionLawTable, MohrCoulomb, RestitutionTable};
 use ndda_io::scene::{self, Scene};
 use ndda_mesh::BlockSet;
+use ndda_mesh::geometry::{TET_FACES, tet_volume, triangle_area_vector};
 
 use super::friction::friction_law;
 use super::{material_index, materials_of};
@@ -60,4 +61,43 @@ pub(super) fn add_joint_laws(joints: &mut FrictionLawTable, laws: &[scene::Joint
     for law in laws {
         joints.set_on(&surfaces_of(&law.joint, blocks), law.friction.as_ref().and_then(friction_law));
     }
+}
+
+/// Cohesion and tensile strength of glue [Pa], beyond any stress: 1e15 is ten thousand times Young's modulus of rock.
+const GLUE_PA: f64 = 1e15;
+
+/// Glues the faces that the borders of excavations made, as stiff as normal contact is there unless the scene says how stiff.
+pub(super) fn add_glue(joints: &mut FrictionLawTable, scene: &Scene, penalty_pa: f64, blocks: &BlockSet) {
+    for space in scene.rock.iter().flat_map(|rock| &rock.excavations) {
+        let surfaces = surfaces_of(&space.name, blocks);
+        let stiffness_pa_m =
+            space.glue_pa_m.unwrap_or_else(|| contact_stiffness_pa_m(&surfaces, penalty_pa, blocks));
+        joints.set_on(&surfaces, Some(Box::new(MohrCoulomb::new(0.0, stiffness_pa_m, GLUE_PA, GLUE_PA))));
+    }
+}
+
+/// Mean stiffness of normal contact on surfaces: pressure 4 k_n (1/H + 1/H) over depth, H being the heights of the tetrahedra behind their faces.
+fn contact_stiffness_pa_m(surfaces: &[u32], penalty_pa: f64, blocks: &BlockSet) -> f64 {
+    let (mut area_m2, mut volume_m3) = (0.0, 0.0);
+    let mut of_triangle = std::collections::HashMap::new();
+    for (triangle, surface) in blocks.triangles.iter().zip(&blocks.triangle_surface) {
+        if surface.is_some_and(|surface| surfaces.contains(&surface)) {
+            let mut nodes = *triangle;
+            nodes.sort_unstable();
+            let area = triangle_area_vector(&triangle.map(|n| blocks.rest_position[n.index()])).norm();
+            of_triangle.insert(nodes, area);
+        }
+    }
+    for tet in &blocks.tets {
+        for face in TET_FACES {
+            let mut nodes = face.map(|corner| tet[corner]);
+            nodes.sort_unstable();
+            if let Some(area) = of_triangle.get(&nodes) {
+                area_m2 += area;
+                volume_m3 += tet_volume(&tet.map(|n| blocks.rest_position[n.index()]));
+            }
+        }
+    }
+    // 3 V/S is the mean height.
+    8.0 * penalty_pa * area_m2 / (3.0 * volume_m3)
 }

@@ -111,6 +111,8 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
         let message = "holds no block: no centroid lies in it; check its signs, or leave it out";
         return Err(vec![Fault::new(at(&format!(".fixed[{k}]")), message)]);
     }
+    let spaces = excavate(rock, &domain, &mut blocks)
+        .map_err(|(k, message)| vec![Fault::new(at(&format!(".excavations[{k}]")), message)])?;
     let thin = blocks.report.slivers.len();
     let mut meshes = Meshes::new();
     let mut report = RockReport {
@@ -130,17 +132,25 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
         .map_err(|m| vec![Fault::new(at(".fill"), m)])?;
     let filled: Vec<_> =
         groups.par_iter().map(|group| solid::filled_group(&blocks, group, &rock.fill)).collect();
-    for (number, filled) in (1..).zip(filled) {
+    let mut counts = vec![0; spaces.len() + 1];
+    for (group, filled) in groups.iter().zip(filled) {
+        let at_m = centroid(&blocks, group);
+        let space = spaces.iter().position(|space| space.holds(&at_m));
+        let stem = space.map_or(&rock.name, |k| &rock.excavations[k].name);
+        let count = &mut counts[space.map_or(spaces.len(), |k| k)];
+        *count += 1;
+        let name = format!("{stem}_{count:04}");
         match filled {
-            Ok(mesh) => meshes.push((format!("{}_{number:04}", rock.name), mesh)),
+            Ok(mesh) => meshes.push((name, mesh)),
             Err(error) => faults.push(Fault::new(
                 at(".fill"),
-                format!(
-                    "block {}_{number:04} cannot be filled: {error}; a larger `sliver_width_m` unites thin ones with neighbours",
-                    rock.name
-                ),
+                format!("block {name} cannot be filled: {error}; a larger `sliver_width_m` unites thin ones with neighbours"),
             )),
         }
+    }
+    if let Some(k) = counts[..spaces.len()].iter().position(|count| *count == 0) {
+        let message = "holds no rock: its outline counts as (y, z) along X, (x, z) along Y, (x, y) along Z";
+        faults.push(Fault::new(at(&format!(".excavations[{k}]")), message));
     }
     if meshes.is_empty() && faults.is_empty() {
         faults.push(Fault::new(at(".removed"), "no block is left: take out fewer"));
@@ -159,13 +169,35 @@ fn slivers(blocks: &Blocks) -> Vec<u32> {
 /// Blocks whose centroid, that of all glued parts, is in one of the places.
 fn chosen(blocks: &Blocks, places: &[Whereabouts]) -> Vec<u32> {
     let groups = if places.is_empty() { Vec::new() } else { blocks.groups() };
-    let inside = |group: &Vec<u32>| {
-        let parts = group.iter().map(|&b| blocks.blocks[b as usize].volume_and_centroid());
-        let (volume, moment) =
-            parts.fold((0.0, Vec3::zeros()), |(v, m), (volume, c)| (v + volume, m + volume * c));
-        holds(places, &(moment / volume))
-    };
-    groups.into_iter().filter(inside).flatten().collect()
+    groups.into_iter().filter(|group| holds(places, &centroid(blocks, group))).flatten().collect()
+}
+
+/// Centroid of glued parts [m].
+fn centroid(blocks: &Blocks, group: &[u32]) -> Vec3 {
+    let parts = group.iter().map(|&b| blocks.blocks[b as usize].volume_and_centroid());
+    let (volume, moment) =
+        parts.fold((0.0, Vec3::zeros()), |(v, m), (volume, c)| (v + volume, m + volume * c));
+    moment / volume
+}
+
+/// Cuts rock along the borders of what is to be excavated, and gives these spaces.
+fn excavate(rock: &Rock, domain: &Domain, blocks: &mut Blocks) -> Result<Vec<Domain>, (usize, String)> {
+    let mut spaces = Vec::new();
+    for (k, given) in rock.excavations.iter().enumerate() {
+        let space = Domain::extruded(&given.outline_m, axis(given.axis), given.start_m, given.end_m);
+        let space = space.map_err(|error| (k, error.to_string()))?;
+        blocks.excavate(domain, (&given.name, &space), rock.sliver_width_m);
+        spaces.push(space);
+    }
+    Ok(spaces)
+}
+
+fn axis(axis: scene::Axis) -> Axis {
+    match axis {
+        scene::Axis::X => Axis::X,
+        scene::Axis::Y => Axis::Y,
+        scene::Axis::Z => Axis::Z,
+    }
 }
 
 fn holds(places: &[Whereabouts], at: &Vec3) -> bool {
@@ -196,13 +228,8 @@ fn domain(domain: &scene::Domain, folder: &Path) -> Result<Domain, String> {
         scene::Domain::Box { min_m, max_m } => {
             Domain::cuboid(vec3(*min_m), vec3(*max_m)).map_err(|e| e.to_string())
         }
-        scene::Domain::Column { outline_m, axis, start_m, end_m } => {
-            let axis = match axis {
-                scene::Axis::X => Axis::X,
-                scene::Axis::Y => Axis::Y,
-                scene::Axis::Z => Axis::Z,
-            };
-            Domain::extruded(outline_m, axis, *start_m, *end_m).map_err(|e| e.to_string())
+        scene::Domain::Column { outline_m, axis: along, start_m, end_m } => {
+            Domain::extruded(outline_m, axis(*along), *start_m, *end_m).map_err(|e| e.to_string())
         }
         scene::Domain::Polyhedron { corners_m, faces } => {
             solid::domain(&solid::of_corners(corners_m, faces), solid::EXACT)

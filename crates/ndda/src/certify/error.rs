@@ -34,6 +34,11 @@ pub enum CertifyError {
     /// The scene has no mesh to refine.
     #[error("--mesh: no block of the scene has cells, levels or a size that could be halved")]
     NoMesh,
+    /// Stages of construction.
+    #[error(
+        "the scene has stages, whose ends differ from step to step: certify and tune one stage, as a scene of its own without `stages`"
+    )]
+    Stages,
     /// No contact to make stiffer.
     #[error("--penalty: the scene has no contact: leave the option out")]
     NoContact,

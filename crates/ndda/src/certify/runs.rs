@@ -48,6 +48,9 @@ pub fn certify(
     name: &str,
     wanted: &Wanted,
 ) -> Result<Certificate, CertifyError> {
+    if !plan.scene.stages.is_empty() {
+        return Err(CertifyError::Stages);
+    }
     if wanted.meshes > 0 && finer(&plan.scene, 1).is_empty() {
         return Err(CertifyError::NoMesh);
     }

@@ -11,8 +11,8 @@ use serde::Serialize;
 use super::memory::readable;
 use crate::run::fields::FieldWriter;
 use crate::run::recorder::{columns, held_blocks};
-use crate::run::schedule::events;
-use crate::run::{contact_rows, motion};
+use crate::run::schedule::{events, is_due};
+use crate::run::{contact_rows, motion, stages};
 use crate::{build, machine};
 
 /// Steps are timed this long, but at least a few of them: a check of a small scene is to be felt as instant.
@@ -53,7 +53,7 @@ pub struct Guess {
 /// # Errors
 /// Errors that would stop the run in these steps.
 pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkError> {
-    let steps = build::steps(&scene.time);
+    let steps = build::all_steps(scene);
     simulation.watch_contacts(scene.output.contacts);
     let started = Instant::now();
     let mut timed_steps = 0;
@@ -97,7 +97,9 @@ fn timed_steps_of(simulation: &mut Simulation, most: u64, long: Duration) -> Res
 /// Frames of a run, that of the start among them.
 pub fn frames(scene: &Scene) -> u64 {
     let asked = u64::from(scene.output.frames);
-    if asked > 0 { events(build::steps(&scene.time), asked) } else { 0 }
+    let steps = build::all_steps(scene);
+    let ends = stages::ends(scene).into_iter().filter(|end| !is_due(*end, steps, asked));
+    if asked > 0 { events(steps, asked) + ends.count() as u64 } else { 0 }
 }
 
 fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), frame: u64) -> Vec<FileGuess> {
@@ -105,7 +107,8 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
     let file = |name: &str, count: u64, bytes: u64| FileGuess { name: name.to_string(), count, bytes };
     let held = if output.reactions { held_blocks(simulation) } else { Vec::new() };
     let monitors = scene.monitors.iter().map(|monitor| monitor.name.as_str());
-    let columns = columns(monitors, &held, scene.reference.is_some()).len() as u64;
+    let columns =
+        columns(monitors, &held, (scene.reference.is_some(), !scene.stages.is_empty())).len() as u64;
     // Of the scene, its text is kept.
     let saved = checkpoint::size(&simulation.snapshot_view()) + checkpoint::size(scene);
     let blocks = simulation.blocks().len() as u64;
@@ -119,7 +122,7 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
         files.push(file(&format!("{}/*.vtu", folder::FIELDS_FOLDER), frames, frames * frame));
     }
     if output.blocks {
-        let rows = blocks * events(build::steps(&scene.time), output.frames.into());
+        let rows = blocks * events(build::all_steps(scene), output.frames.into());
         files.push(file(folder::BLOCKS, 1, rows * motion::COLUMNS.len() as u64 * NUMBER_BYTES));
     }
     if output.contacts {

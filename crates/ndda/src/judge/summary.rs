@@ -82,6 +82,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
             max_h: worst.max_h,
         },
         verdicts,
+        stages: Vec::new(),
         motion: recorder.motions.summary(simulation),
         monitors: monitor_ends(simulation, recorder),
         blocks: block_ends(simulation, recorder),

@@ -1,6 +1,6 @@
 //! The end of a run: a few lines for a person, and tables of everything.
 
-use ndda_io::summary::{Course, Judgement, LabelWord, Motion, Summary, Verdict};
+use ndda_io::summary::{Course, Judgement, LabelWord, Motion, StageEnd, Summary, Verdict};
 
 use crate::columns::columns;
 
@@ -21,6 +21,7 @@ pub fn ending(summary: &Summary) -> String {
         (LabelWord::Stopped, _) => format!("stopped at t = {} s\n", time(summary.end_s)),
     };
     text.extend(summary.chosen.iter().map(|chosen| format!("{chosen}\n")));
+    text.extend(summary.stages.iter().map(|end| format!("{}\n", stage(end))));
     text.extend(summary.motion.as_ref().map(moved));
     text.push_str(&error(summary));
     let failed =
@@ -44,6 +45,18 @@ pub fn ending(summary: &Summary) -> String {
         summary.wall_s
     ));
     text
+}
+
+/// How a stage ended, in a line.
+pub fn stage(end: &StageEnd) -> String {
+    let how = match end.settling_steps {
+        0 => String::new(),
+        steps => format!(", at rest after {steps} steps more"),
+    };
+    let motion =
+        if end.motion.can_move > 0 { format!("; {}", moved(&end.motion).trim_end()) } else { String::new() };
+    let (name, end_s, word) = (&end.name, time(end.end_s), end.label.word.as_str());
+    format!("stage `{name}` to t = {end_s} s{how}: {word} so far{motion}")
 }
 
 /// A time of so many steps, without the digits of rounding.

@@ -26,6 +26,8 @@ pub struct Motion {
     start: Vec<Vec3>,
     /// Displacements since then [m], three per node.
     moved: Codes,
+    /// Blocks that are not there, for each frame.
+    absent: Vec<Vec<u32>>,
     /// The fields with a value per node or triangle.
     fields: Vec<(Field, Codes)>,
     /// The box that holds all blocks at all times.
@@ -43,6 +45,9 @@ pub struct Description {
     triangles: usize,
     /// Blocks that hardly move.
     still: Vec<usize>,
+    /// Blocks that are not there, for each frame; none where all are.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    absent: Vec<Vec<u32>>,
     moved: Range,
     fields: Vec<Colour>,
     arrays: Vec<PackedArray>,
@@ -79,7 +84,7 @@ impl Motion {
         let shown = thinned(listed.len(), most.unwrap_or(fitting.max(2)));
         let start: Vec<Vec3> = surface.nodes.iter().map(|&n| first.points[n as usize]).collect();
         let (mut moved, mut values) = (Vec::new(), vec![Vec::new(); fields.len()]);
-        let (mut extent, mut times_s) = (Aabb::empty(), Vec::new());
+        let (mut extent, mut times_s, mut absent) = (Aabb::empty(), Vec::new(), Vec::new());
         for index in shown {
             let ListedFrame { time_s, path } = &listed[index];
             let frame = results::frame(path)?;
@@ -93,9 +98,14 @@ impl Motion {
                 values.extend(field.array_of(&frame).map(|array| field.values(array, &surface)));
             }
             times_s.push(*time_s);
+            absent.push(surface.absent(&frame));
+        }
+        if absent.iter().all(Vec::is_empty) {
+            absent.clear();
         }
         let fields = fields.into_iter().zip(&values).map(|(field, values)| (field, Codes::new(values)));
-        Ok(Self { times_s, start, moved: Codes::new(&moved), fields: fields.collect(), surface, extent })
+        let (moved, fields) = (Codes::new(&moved), fields.collect());
+        Ok(Self { times_s, start, moved, absent, fields, surface, extent })
     }
 
     /// The page's description of the motion, and the numbers as a text.
@@ -123,6 +133,7 @@ impl Motion {
             nodes: self.start.len(),
             triangles: self.surface.triangles.len(),
             still: (0..lengths.len()).filter(|&b| lengths[b] < STILL * farthest).collect(),
+            absent: self.absent.clone(),
             moved: Range { least: self.moved.least, largest: self.moved.largest, top: farthest as f32 },
             fields,
             arrays: packed.arrays.drain(..).collect(),

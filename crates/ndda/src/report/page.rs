@@ -1,6 +1,7 @@
 //! The page: its skeleton, and the scripts and numbers in it. `maud` escapes every text that comes from a scene.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use ndda_io::summary::StageEnd;
 use serde::Serialize;
 
 use super::certificate;
@@ -54,6 +55,7 @@ pub fn page(input: &Input, motion: Option<&Motion>) -> String {
                     (certificate::certificate(input.certificate.as_ref(), summary))
                     (curves(&charts))
                     div.columns.even { (sections::stages(summary)) (sections::monitors(summary)) }
+                    (sections::construction(summary))
                     (sections::blocks(summary))
                 }
                 (sections::footer(summary))
@@ -74,7 +76,7 @@ pub fn viewer(title: &str, block_names: &[String], motion: &Motion) -> String {
         html lang="en" {
             (head(title))
             body {
-                main { (player(motion, motion.times_s.len())) }
+                main { (player(motion, motion.times_s.len(), &[])) }
                 (scripts(&data, Some(&numbers)))
             }
         }
@@ -122,11 +124,11 @@ fn stage(input: &Input, motion: Option<&Motion>) -> Markup {
             }
         };
     };
-    player(motion, input.frames.len())
+    player(motion, input.frames.len(), &input.summary.stages)
 }
 
-/// The 3D view with its controls, of a run with so many frames.
-fn player(motion: &Motion, all: usize) -> Markup {
+/// The 3D view with its controls, of a run with so many frames; buttons lead to the ends of stages.
+fn player(motion: &Motion, all: usize, stages: &[StageEnd]) -> Markup {
     let shown = motion.times_s.len();
     html! {
         section.card.stage {
@@ -150,6 +152,14 @@ fn player(motion: &Motion, all: usize) -> Markup {
             div #view tabindex="0" aria-label="Blocks in 3D: drag to turn, wheel to zoom, right button to shift" {
                 div #bar { span #bar-title {} div #bar-colours {} div #bar-numbers {} }
                 output #picked {}
+            }
+            @if !stages.is_empty() {
+                div.tools {
+                    span.views {
+                        "Ends of stages "
+                        @for stage in stages { button type="button" data-time=(stage.end_s) { (stage.name) } }
+                    }
+                }
             }
             div.player {
                 button #play type="button" aria-label="Play" { "▶" }

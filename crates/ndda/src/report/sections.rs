@@ -1,7 +1,7 @@
 //! The parts of the page that are text: what was run, what became of it, what it cost.
 
 use maud::{Markup, html};
-use ndda_io::summary::{Judgement, LabelWord, Status, Summary, Verdict};
+use ndda_io::summary::{Judgement, LabelWord, StageEnd, Status, Summary, Verdict};
 
 /// Blocks that are listed; a table of more is no help.
 const MOST_BLOCKS: usize = 200;
@@ -110,6 +110,41 @@ pub fn verdicts(summary: &Summary) -> Markup {
                             td.number { (shown(verdict.value)) }
                             td.number { (shown(verdict.limit)) }
                             td { (judgement(verdict)) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// How the stages of construction ended.
+pub fn construction(summary: &Summary) -> Markup {
+    let moved = |StageEnd { motion, .. }: &StageEnd| {
+        format!(
+            "{} of {}, farthest {} by {} m",
+            motion.moved,
+            motion.can_move,
+            motion.farthest,
+            brief(motion.farthest_m)
+        )
+    };
+    let settling = |steps: u64| if steps > 0 { grouped(steps as usize) } else { String::new() };
+    html! {
+        @if !summary.stages.is_empty() {
+            section.card {
+                h2 { "Stages of construction" }
+                table {
+                    thead { tr { th { "" } th.number { "ends at" } th.number { "steps to rest" } th { "moved" } th { "so far" } } }
+                    tbody {
+                        @for stage in &summary.stages {
+                            tr {
+                                td { (stage.name) }
+                                td.number { (number(stage.end_s)) " s" }
+                                td.number { (settling(stage.settling_steps)) }
+                                td { (moved(stage)) }
+                                td { (stage.label.word.as_str()) }
+                            }
                         }
                     }
                 }

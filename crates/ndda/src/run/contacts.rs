@@ -8,13 +8,12 @@ use ndda_io::{History, OutputFolder, WriteError};
 use ndda_solver::{Sink, SinkError, View};
 
 use crate::run::contact_rows::{COLUMNS, contact_rows};
-use crate::run::schedule::is_due;
+use crate::run::schedule::Schedule;
 
 /// Writes `contacts.csv`.
 pub struct ContactTable {
     table: History,
-    steps: u64,
-    rows: u64,
+    schedule: Schedule,
     facets: Vec<FacetContact>,
     /// Seconds spent in this part of the run.
     pub spent_s: f64,
@@ -25,17 +24,13 @@ impl ContactTable {
     ///
     /// # Errors
     /// [`WriteError`] when the file cannot be written, or is another table.
-    pub fn new(
-        folder: &OutputFolder,
-        (steps, rows): (u64, u64),
-        saved: Option<usize>,
-    ) -> Result<Self, WriteError> {
+    pub fn new(folder: &OutputFolder, schedule: Schedule, saved: Option<usize>) -> Result<Self, WriteError> {
         let columns = COLUMNS.map(String::from);
         let table = match saved {
             None => History::create(&folder.contacts(), &columns)?,
             Some(saved) => History::resume(&folder.contacts(), &columns, saved)?,
         };
-        Ok(Self { table, steps, rows, facets: Vec::new(), spent_s: 0.0 })
+        Ok(Self { table, schedule, facets: Vec::new(), spent_s: 0.0 })
     }
 
     /// Rows so far, all of them on the disk.
@@ -50,12 +45,12 @@ impl ContactTable {
 
 impl Sink for ContactTable {
     fn wants_contacts(&self, step: u64) -> bool {
-        is_due(step, self.steps, self.rows)
+        self.schedule.is_due(step)
     }
 
     fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
         let simulation = &*view.simulation;
-        if !is_due(simulation.state().step, self.steps, self.rows) {
+        if !self.schedule.is_due(simulation.state().step) {
             return Ok(ControlFlow::Continue(()));
         }
         let started = Instant::now();

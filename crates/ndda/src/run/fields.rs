@@ -12,7 +12,10 @@ use ndda_solver::{Simulation, Sink, SinkError, StepError, View};
 use serde::{Deserialize, Serialize};
 
 use crate::build;
-use crate::run::schedule::is_due;
+use crate::run::schedule::Schedule;
+
+/// Cell data that is 0 where a stage of construction has taken a block out, or has not yet put it in.
+pub(crate) const PRESENT: &str = "present";
 
 /// Friction state of a node that a facet holds, and of one where a facet slides.
 const STICKS: u8 = 1;
@@ -23,8 +26,7 @@ pub struct FieldWriter {
     series: FieldSeries,
     fields: Vec<Field>,
     precision: Precision,
-    steps: u64,
-    frames: u64,
+    schedule: Schedule,
     /// Per tetrahedron; empty unless some field needs it.
     stress_pa: Vec<[f64; 6]>,
     /// Seconds spent.
@@ -47,7 +49,7 @@ impl FieldWriter {
         folder: &OutputFolder,
         simulation: &Simulation,
         scene: &Scene,
-        steps: u64,
+        schedule: Schedule,
         saved: Option<SavedFields>,
     ) -> Result<Self, WriteError> {
         let fields = scene.output.fields.clone();
@@ -61,8 +63,7 @@ impl FieldWriter {
             },
             fields,
             precision: scene.output.precision,
-            steps,
-            frames: u64::from(scene.output.frames),
+            schedule,
             stress_pa,
             spent_s,
         })
@@ -94,11 +95,11 @@ impl Sink for FieldWriter {
     fn wants_contacts(&self, step: u64) -> bool {
         let of_facets =
             |field| matches!(field, &Field::FrictionState | &Field::ContactForce | &Field::ContactTraction);
-        self.fields.iter().any(of_facets) && is_due(step, self.steps, self.frames)
+        self.fields.iter().any(of_facets) && self.schedule.is_due(step)
     }
 
     fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
-        if !is_due(view.simulation.state().step, self.steps, self.frames) {
+        if !self.schedule.is_due(view.simulation.state().step) {
             return Ok(ControlFlow::Continue(()));
         }
         let started = Instant::now();
@@ -147,6 +148,11 @@ fn frame(
         simulation.recover_stress(stress_pa)?;
     }
     let mut frame = Frame::new(simulation.blocks(), &simulation.state().position);
+    if simulation.has_stages() {
+        let of_tets = simulation.blocks().tet_block.iter();
+        let present = of_tets.map(|block| u8::from(!simulation.is_absent(*block))).collect();
+        frame.add_cells(Values::states(PRESENT, present));
+    }
     for field in fields {
         match field {
             Field::Stress => frame.add_cells(Values::new("stress_pa", stress_pa.iter().copied(), precision)),
@@ -181,7 +187,7 @@ fn motion(field: Field, simulation: &Simulation, precision: Precision) -> Values
             Values::vectors("acceleration_m_s2", state.acceleration.iter().copied(), precision)
         }
         _ => {
-            let moved = state.position.iter().zip(simulation.start_position()).map(|(x, start)| x - start);
+            let moved = state.position.iter().zip(simulation.counted_from()).map(|(x, start)| x - start);
             Values::vectors("displacement_m", moved, precision)
         }
     }

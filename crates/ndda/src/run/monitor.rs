@@ -66,7 +66,7 @@ impl Monitor {
 
     /// Displacement since the start [m].
     pub fn displacement(&self, simulation: &Simulation) -> Vec3 {
-        let (position, start) = (&simulation.state().position, simulation.start_position());
+        let (position, start) = (&simulation.state().position, simulation.counted_from());
         self.mean(simulation, |n| position[n] - start[n])
     }
 
@@ -79,7 +79,7 @@ impl Monitor {
         match &self.place {
             Place::Point(weights) => weights.iter().map(|(n, weight)| value(n.index()) * *weight).sum(),
             Place::Largest(nodes, direction) => {
-                let (position, start) = (&simulation.state().position, simulation.start_position());
+                let (position, start) = (&simulation.state().position, simulation.counted_from());
                 let along = |n: &usize| (position[*n] - start[*n]).dot(direction);
                 let all = nodes.iter().flat_map(Clone::clone);
                 all.max_by(|a, b| along(a).total_cmp(&along(b))).map_or(Vec3::zeros(), value)

@@ -10,7 +10,7 @@ use ndda_mesh::{BlockId, Mat3, Vec3};
 use ndda_solver::{BodyKind, Simulation, Sink, SinkError, View};
 use serde::{Deserialize, Serialize};
 
-use super::schedule::is_due;
+use super::schedule::Schedule;
 
 /// A block has moved if a point of it has gone farther than this part of the distance from its mass centre to its farthest node.
 const MOVED: f64 = 0.01;
@@ -55,6 +55,11 @@ impl LargestMotions {
             *farthest = farthest.max(farthest_m(simulation, block));
             *fastest = fastest.max(velocity_m_s(simulation, block).norm());
         }
+    }
+
+    /// Displacements count from now on.
+    pub fn begin_anew(&mut self) {
+        self.farthest_m.clear();
     }
 
     /// Motion of a block now, and its largest.
@@ -105,14 +110,14 @@ pub(crate) fn radius_m(operator: &BlockOperator) -> f64 {
 
 /// How far the farthest node has gone [m].
 fn farthest_m(simulation: &Simulation, block: BlockId) -> f64 {
-    let (now, start) = (&simulation.state().position, simulation.start_position());
+    let (now, start) = (&simulation.state().position, simulation.counted_from());
     let squares = simulation.blocks().nodes_of(block).map(|n| (now[n] - start[n]).norm_squared());
     squares.fold(0.0, f64::max).sqrt()
 }
 
 /// Displacement of the mass centre [m].
 fn displacement_m(simulation: &Simulation, block: BlockId) -> Vec3 {
-    shift_m(simulation, simulation.start_position(), block)
+    shift_m(simulation, simulation.counted_from(), block)
 }
 
 /// Displacement of the mass centre from where nodes were [m].
@@ -127,7 +132,7 @@ fn velocity_m_s(simulation: &Simulation, block: BlockId) -> Vec3 {
 }
 
 fn rotation_deg(simulation: &Simulation, block: BlockId) -> f64 {
-    turn_deg(simulation, simulation.start_position(), block)
+    turn_deg(simulation, simulation.counted_from(), block)
 }
 
 /// Angle of the rotation that fits the motion of the nodes best, from 0 to 180 [°]: the orthogonal part of Σ m (x − c)(X − C)ᵀ by its
@@ -161,8 +166,7 @@ pub(crate) fn turn_deg(simulation: &Simulation, from: &[Vec3], block: BlockId) -
 /// Writes `blocks.csv`: a row per block at the times of the frames.
 pub struct BlockTable {
     table: History,
-    steps: u64,
-    frames: u64,
+    schedule: Schedule,
     /// Seconds spent in this part of the run.
     pub spent_s: f64,
 }
@@ -172,17 +176,13 @@ impl BlockTable {
     ///
     /// # Errors
     /// [`WriteError`] when the file cannot be written, or is another table.
-    pub fn new(
-        folder: &OutputFolder,
-        (steps, frames): (u64, u64),
-        saved: Option<usize>,
-    ) -> Result<Self, WriteError> {
+    pub fn new(folder: &OutputFolder, schedule: Schedule, saved: Option<usize>) -> Result<Self, WriteError> {
         let columns = COLUMNS.map(String::from);
         let table = match saved {
             None => History::create(&folder.blocks(), &columns)?,
             Some(saved) => History::resume(&folder.blocks(), &columns, saved)?,
         };
-        Ok(Self { table, steps, frames, spent_s: 0.0 })
+        Ok(Self { table, schedule, spent_s: 0.0 })
     }
 
     /// Rows so far, all of them on the disk.
@@ -198,11 +198,11 @@ impl BlockTable {
 impl Sink for BlockTable {
     fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
         let simulation = &*view.simulation;
-        if !is_due(simulation.state().step, self.steps, self.frames) {
+        if !self.schedule.is_due(simulation.state().step) {
             return Ok(ControlFlow::Continue(()));
         }
         let started = Instant::now();
-        for block in simulation.blocks().ids() {
+        for block in simulation.blocks().ids().filter(|&block| !simulation.is_absent(block)) {
             self.table.push(&row(simulation, block))?;
         }
         self.spent_s += started.elapsed().as_secs_f64();

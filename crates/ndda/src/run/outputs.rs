@@ -17,6 +17,8 @@ use super::identity::Identity;
 use super::monitor::Monitor;
 use super::motion::BlockTable;
 use super::recorder::{Recorder, SavedRecorder, held_blocks};
+use super::schedule::Schedule;
+use super::stages::{self, StageLog};
 use crate::judge::reference::{self, Comparison};
 
 /// Everything that `ndda resume` needs.
@@ -41,6 +43,8 @@ pub struct Earlier {
     pub contacts: Option<usize>,
     /// Rows of the motion of blocks.
     pub blocks: Option<usize>,
+    /// Where it was in its stages.
+    pub stages: StageLog,
     /// Seconds of wall clock spent, all parts of the run together.
     pub wall_s: f64,
 }
@@ -49,6 +53,11 @@ pub struct Earlier {
 pub struct Outputs<'a, 'b> {
     /// History.
     pub recorder: Recorder,
+    /// Where the run is in its stages.
+    pub stages: StageLog,
+    /// Names of the stages, and the last step of each, that before the first included.
+    stage_names: Vec<String>,
+    stage_ends: Vec<u64>,
     files: Option<Files>,
     observers: &'a mut [&'b mut dyn Sink],
     /// The last step.
@@ -102,21 +111,28 @@ impl<'a, 'b> Outputs<'a, 'b> {
         Course { steps, started, stop }: Course,
     ) -> Result<Self, WriteError> {
         let after_s = scene.reference.as_ref().map_or(0.0, |r| reference::kind(r).1);
-        let rows = (steps, u64::from(scene.output.history_rows));
-        let held = if scene.output.reactions { held_blocks(simulation) } else { Vec::new() };
-        let (mut saved, mut files, mut history) = (None, None, None);
+        let stage_ends = stages::ends(scene);
+        let schedule = |count: u32| Schedule { steps, count: u64::from(count), ends: stage_ends.clone() };
+        let rows = schedule(scene.output.history_rows);
+        let held = match scene.output.reactions {
+            true if scene.stages.is_empty() => held_blocks(simulation),
+            true => stages::held_blocks(scene, simulation),
+            false => Vec::new(),
+        };
+        let (mut saved, mut files, mut history, mut stage_log) = (None, None, None, StageLog::default());
         if let Some((identity, folder, earlier)) = place {
             history = Some(folder.history());
             let mut goes_on = None;
             if let Some(earlier) = earlier {
                 saved = Some(earlier.recorder);
+                stage_log = earlier.stages;
                 goes_on = Some((earlier.fields, earlier.contacts, earlier.blocks, earlier.wall_s));
             }
             let (saved_fields, saved_contacts, saved_blocks, earlier_s) = goes_on.unwrap_or_default();
-            let frames = (steps, u64::from(scene.output.frames));
-            let fields = || FieldWriter::new(&folder, simulation, scene, steps, saved_fields);
-            let contacts = || ContactTable::new(&folder, rows, saved_contacts);
-            let blocks = || BlockTable::new(&folder, frames, saved_blocks);
+            let frames = schedule(scene.output.frames);
+            let fields = || FieldWriter::new(&folder, simulation, scene, frames.clone(), saved_fields);
+            let contacts = || ContactTable::new(&folder, rows.clone(), saved_contacts);
+            let blocks = || BlockTable::new(&folder, frames.clone(), saved_blocks);
             files = Some(Files {
                 fields: (scene.output.frames > 0).then(fields).transpose()?,
                 contacts: scene.output.contacts.then(contacts).transpose()?,
@@ -130,7 +146,9 @@ impl<'a, 'b> Outputs<'a, 'b> {
             });
         }
         let recorder = Recorder::new(history.as_deref(), monitors, comparison, after_s, rows, held, saved)?;
-        Ok(Self { recorder, files, observers, steps, started, stop })
+        let stage_names = scene.stages.iter().map(|stage| stage.name.clone()).collect();
+        let stages = stage_log;
+        Ok(Self { recorder, stages, stage_names, stage_ends, files, observers, steps, started, stop })
     }
 
     /// Closes the tables, and waits until fields are on the disk.
@@ -164,24 +182,43 @@ impl<'a, 'b> Outputs<'a, 'b> {
         step == 0 || step >= self.steps || passed
     }
 
-    fn write_checkpoint(&mut self, view: &View) -> Result<(), WriteError> {
+    /// Writes a checkpoint now.
+    ///
+    /// # Errors
+    /// [`WriteError`] when it cannot be written.
+    pub fn checkpoint(&mut self, simulation: &Simulation) -> Result<(), WriteError> {
+        self.write_checkpoint(simulation, None)
+    }
+
+    /// Writes a checkpoint, and another one that is kept by the name of a stage that ends.
+    fn write_checkpoint(&mut self, simulation: &Simulation, stage: Option<&str>) -> Result<(), WriteError> {
         let Some(files) = &mut self.files else { return Ok(()) };
         let started = Instant::now();
         let saved = SavedRun {
             identity: files.identity.clone(),
-            snapshot: view.simulation.snapshot_view(),
+            snapshot: simulation.snapshot_view(),
             earlier: Earlier {
                 recorder: self.recorder.save()?,
                 fields: files.fields.as_mut().map(FieldWriter::save).transpose()?,
                 contacts: files.contacts.as_mut().map(ContactTable::save).transpose()?,
                 blocks: files.blocks.as_mut().map(BlockTable::save).transpose()?,
+                stages: self.stages.clone(),
                 wall_s: files.earlier_s + self.started.elapsed().as_secs_f64(),
             },
         };
         checkpoint::write(&files.folder, &saved)?;
+        if let Some(stage) = stage {
+            checkpoint::write_file(&files.folder.stage_checkpoint(stage), &saved)?;
+        }
         files.last = Instant::now();
         files.spent_s += started.elapsed().as_secs_f64();
         Ok(())
+    }
+
+    /// The stage that ends with a step, counted from 1.
+    fn ending_stage(&self, step: u64) -> Option<usize> {
+        let at = self.stages.at;
+        (at > 0 && self.stage_ends.get(at) == Some(&step)).then_some(at)
     }
 }
 
@@ -231,9 +268,13 @@ impl Sink for Outputs<'_, '_> {
             ends |= observer.step_done(view)?.is_break();
         }
         ends |= self.stop.load(Ordering::Relaxed);
+        let ending = self.ending_stage(step).map(|at| self.stage_names[at - 1].clone());
+        if let Some(name) = &ending {
+            self.stages.end(name, view, &self.recorder);
+        }
         // Last, so that it knows of all rows and frames.
-        if ends || self.is_due(step) {
-            self.write_checkpoint(view)?;
+        if ends || ending.is_some() || self.is_due(step) {
+            self.write_checkpoint(view.simulation, ending.as_deref())?;
         }
         Ok(if ends { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
     }

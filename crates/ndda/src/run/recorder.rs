@@ -12,16 +12,17 @@ use serde::{Deserialize, Serialize};
 
 use super::monitor::Monitor;
 use super::motion::LargestMotions;
-use super::schedule::is_due;
+use super::schedule::Schedule;
 use crate::judge::reference::{Comparison, Errors};
 
 /// Keeps the history, as `history.csv` or in memory, and follows the errors against the closed form.
 pub struct Recorder {
     history: Rows,
-    steps: u64,
-    rows: u64,
+    schedule: Schedule,
     after_s: f64,
     comparison: Option<Comparison>,
+    /// Whether the energy of removed blocks is a column.
+    has_stages: bool,
     row: Vec<f64>,
     /// Held blocks whose supports' forces are columns.
     held: Vec<BlockId>,
@@ -86,12 +87,13 @@ impl Recorder {
         monitors: Vec<Monitor>,
         comparison: Option<Comparison>,
         after_s: f64,
-        (steps, rows): (u64, u64),
+        schedule: Schedule,
         held: Vec<(BlockId, String)>,
         saved: Option<SavedRecorder>,
     ) -> Result<Self, WriteError> {
         let names = monitors.iter().map(|monitor| monitor.name.as_str());
-        let columns = columns(names, &held, comparison.is_some());
+        let has_stages = !schedule.ends.is_empty();
+        let columns = columns(names, &held, (comparison.is_some(), has_stages));
         let history = match (file, &saved) {
             (None, _) => {
                 Rows::Memory(Table { columns: vec![Vec::new(); columns.len()], names: columns.clone() })
@@ -103,10 +105,10 @@ impl Recorder {
         let row = Vec::with_capacity(columns.len());
         Ok(Self {
             history,
-            steps,
-            rows,
+            schedule,
             after_s,
             comparison,
+            has_stages,
             row,
             held: held.into_iter().map(|(block, _)| block).collect(),
             monitors,
@@ -182,11 +184,11 @@ pub fn held_blocks(simulation: &Simulation) -> Vec<(BlockId, String)> {
     held.map(|block| (block, blocks.names[block.index()].clone())).collect()
 }
 
-/// Columns of the history, with those of monitors, held blocks and the comparison.
+/// Columns of the history, with those of stages, monitors, held blocks and the comparison.
 pub fn columns<'a>(
     monitors: impl Iterator<Item = &'a str>,
     held: &[(BlockId, String)],
-    compared: bool,
+    (compared, has_stages): (bool, bool),
 ) -> Vec<String> {
     let fixed = [
         "time_s",
@@ -212,6 +214,7 @@ pub fn columns<'a>(
         "h",
     ];
     let mut columns: Vec<String> = fixed.map(String::from).to_vec();
+    columns.extend(has_stages.then(|| "removed_j".to_string()));
     for monitor in monitors {
         for (quantity, unit) in [("displacement", "m"), ("velocity", "m_s")] {
             columns.extend(["x", "y", "z"].map(|axis| format!("{monitor}.{quantity}_{axis}_{unit}")));
@@ -228,7 +231,7 @@ pub fn columns<'a>(
 
 impl Sink for Recorder {
     fn wants_sample(&self, step: u64) -> bool {
-        is_due(step, self.steps, self.rows)
+        self.schedule.is_due(step)
     }
 
     fn step_done(&mut self, view: &mut View) -> Result<ControlFlow<()>, SinkError> {
@@ -255,6 +258,7 @@ impl Sink for Recorder {
         self.row.extend(sample.momentum.iter().chain(sample.angular_momentum.iter()));
         let contact = &view.report.contact;
         self.row.extend([contact.contact_pairs as f64, contact.max_penetration_ratio, view.report.h]);
+        self.row.extend(self.has_stages.then_some(sample.removed_j));
         for monitor in &self.monitors {
             self.row.extend(monitor.displacement(simulation).iter());
             self.row.extend(monitor.velocity(simulation).iter());
@@ -276,7 +280,7 @@ impl Sink for Recorder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::schedule::events;
+    use crate::run::schedule::{events, is_due};
 
     #[test]
     fn events_are_evenly_spaced_and_never_more_than_asked_for() {

@@ -10,9 +10,9 @@ use super::Run;
 use super::identity::Identity;
 use super::outputs::SavedRun;
 use super::run_log;
-use crate::Model;
 use crate::build::Choices;
 use crate::places::name_of;
+use crate::{Model, model};
 
 /// A run that goes on.
 pub struct Resumed {
@@ -59,7 +59,8 @@ impl Run {
         let folder = OutputFolder::open(folder)?;
         let mut warnings = Vec::new();
         let saved = last_checkpoint(&folder, &mut warnings)?;
-        let meshes = saved.identity.folder();
+        let beside = saved.identity.folder().to_path_buf();
+        let meshes = beside.as_path();
         outside_files::verify(&saved.identity.outside, meshes)
             .map_err(|error| ResumeError::Unusable(error.to_string()))?;
         let name = saved.identity.file.display().to_string();
@@ -70,6 +71,10 @@ impl Run {
             return Err(ResumeError::HasEnded(folder.path().to_path_buf()));
         }
         let SavedRun { identity, snapshot, earlier } = saved;
+        if earlier.stages.at > 0 {
+            let (loaded, blocks) = (&run.model.loaded, run.model.simulation.blocks().clone());
+            run.model.simulation = model::in_stage(loaded, meshes, blocks, earlier.stages.at)?;
+        }
         run.name = name_of(&identity.file);
         run.built = Some(run.model.simulation.snapshot());
         let restored = run.model.simulation.restore(snapshot);

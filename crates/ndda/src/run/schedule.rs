@@ -10,3 +10,21 @@ pub fn is_due(step: u64, steps: u64, count: u64) -> bool {
 pub fn events(steps: u64, count: u64) -> u64 {
     count.clamp(1, steps.max(1)) + 1
 }
+
+/// When something is written in a run: evenly spaced, and at the ends of stages.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Schedule {
+    /// Steps of the run.
+    pub steps: u64,
+    /// How many times it is to be written.
+    pub count: u64,
+    /// The last steps of stages.
+    pub ends: Vec<u64>,
+}
+
+impl Schedule {
+    /// Whether it is due at a step.
+    pub fn is_due(&self, step: u64) -> bool {
+        is_due(step, self.steps, self.count) || self.ends.contains(&step)
+    }
+}

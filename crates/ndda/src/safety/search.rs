@@ -59,6 +59,9 @@ impl<'a> Search<'a> {
         watch: &'a Watch<'a>,
     ) -> Result<Self, SafetyError> {
         let begun = Instant::now();
+        if !loaded.scene.stages.is_empty() {
+            return Err(SafetyError::Stages);
+        }
         let mut loaded = loaded.clone();
         loaded.scene = changes::at_rest(&loaded.scene);
         plan.by.check(&mut loaded.scene)?;

@@ -115,7 +115,10 @@ pub fn of_model(model: &Model) -> Values {
         known.extend(["error_end", "error_max"].map(String::from));
     }
     let held = recorder::held_blocks(&model.simulation);
-    known.extend(recorder::columns(names(), &held, compared).into_iter().filter(|name| name != TIME));
+    let has_stages = !model.loaded.scene.stages.is_empty();
+    known.extend(
+        recorder::columns(names(), &held, (compared, has_stages)).into_iter().filter(|name| name != TIME),
+    );
     Values { label: None, numbers: known.into_iter().map(|name| (name, 0.0)).collect() }
 }
 

@@ -23,6 +23,8 @@ pub struct Moment {
     pub time_s: Option<f64>,
     /// Positions of the nodes of the surface [m].
     pub positions: Vec<Vec3>,
+    /// Blocks that are not there, ascending.
+    pub absent: Vec<u32>,
     /// Values on the scale of colours, one to a node or a triangle; none where colours are of groups.
     pub values: Vec<f32>,
 }
@@ -177,13 +179,18 @@ mod tests {
         let start = vec![Vec3::zeros(); 6];
         let moment = |far: f64| {
             let x = |i: usize| Vec3::new(if i < 3 { 1.0 } else { far }, 0.0, 0.0);
-            Moment { time_s: None, positions: (0..6).map(x).collect(), values: Vec::new() }
+            Moment {
+                time_s: None,
+                positions: (0..6).map(x).collect(),
+                absent: Vec::new(),
+                values: Vec::new(),
+            }
         };
         assert_eq!(moving(&surface, &start, &[moment(0.009)]), [true, false]);
         assert_eq!(moving(&surface, &start, &[moment(0.011)]), [true, true]);
         // It counts that it was away, although it has come back.
         assert_eq!(moving(&surface, &start, &[moment(1.0), moment(0.0)]), [true, true]);
-        let still = Moment { time_s: None, positions: start.clone(), values: Vec::new() };
+        let still = Moment { time_s: None, positions: start.clone(), absent: Vec::new(), values: Vec::new() };
         assert_eq!(moving(&surface, &start, &[still]), [false, false]);
     }
 }

@@ -98,7 +98,7 @@ pub fn read(folder: &Path, frames: Frames, colour: &Colour) -> Result<Film, View
         same_blocks(path, &first, &frame, &[])?;
         let positions = positions(&frame, &surface, path)?;
         let values = source.values(path, &frame, &surface, [&start, &positions])?;
-        moments.push(Moment { time_s: Some(*time_s), positions, values });
+        moments.push(Moment { time_s: Some(*time_s), positions, absent: surface.absent(&frame), values });
     }
     let moves = moving(&surface, &start, &moments);
     let colouring = source.colouring(&surface, &moves, &moments);

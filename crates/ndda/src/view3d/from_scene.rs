@@ -55,7 +55,8 @@ fn by_block(blocks: &BlockSet, with_resting: bool) -> Colouring {
 fn film(title: String, blocks: &BlockSet, colouring: Colouring, moves: Vec<bool>) -> Film {
     let surface = Surface::new(&frame(blocks));
     let positions: Vec<_> = surface.nodes.iter().map(|&n| blocks.rest_position[n as usize]).collect();
-    let moment = Moment { time_s: None, positions: positions.clone(), values: Vec::new() };
+    let moment =
+        Moment { time_s: None, positions: positions.clone(), absent: Vec::new(), values: Vec::new() };
     Film { title, surface, start: positions, moves, colouring, moments: vec![moment] }
 }
 

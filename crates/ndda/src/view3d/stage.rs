@@ -152,6 +152,7 @@ impl<'a> Stage<'a> {
     /// Faces and edges of some blocks.
     fn solid(&self, moment: &Moment, camera: &Camera, holds: impl Fn(usize) -> bool) -> Solid {
         let Film { surface, .. } = self.film;
+        let holds = |block: usize| holds(block) && moment.absent.binary_search(&(block as u32)).is_err();
         let places = shown_places(self.film, moment, self.setting.magnify);
         let projected: Vec<[f64; 3]> = places.iter().map(|x| camera.project(x)).collect();
         let Axes { right, up, towards } = camera.axes;

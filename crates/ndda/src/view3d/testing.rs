@@ -48,7 +48,7 @@ pub fn boxes(boxes: &[Moved]) -> Film {
         *ends = range(values.iter().copied());
     }
     let positions = start.iter().enumerate().map(|(node, x)| x + moved(node)).collect();
-    film.moments.push(Moment { time_s: Some(1.0), positions, values });
+    film.moments.push(Moment { time_s: Some(1.0), positions, absent: Vec::new(), values });
     film.moves = moving(&film.surface, &film.start, &film.moments);
     film
 }

@@ -240,6 +240,7 @@ impl TreeBroadPhase {
             near.place_triangles(BlockId(index as u32), fresh);
             for other in tree.leaves(|node| node_touches(node, &near.boxes.blocks[index])) {
                 let stale = is_renewed[index] || is_renewed[other as usize];
+                let stale = stale && scene.is_there(BlockId(index as u32)) && scene.is_there(BlockId(other));
                 if stale && (other as usize != index || !is_convex[index]) {
                     near.find(BlockId(index as u32), BlockId(other), fresh);
                 }

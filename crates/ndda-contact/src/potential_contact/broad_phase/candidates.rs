@@ -84,6 +84,8 @@ pub struct Candidates {
     neighbour_start: Vec<u32>,
     broad_phase: Box<dyn BroadPhase>,
     neighbour_list: NeighbourList,
+    /// Which blocks are not there; empty where all are.
+    absent: Vec<bool>,
 }
 
 impl Default for Candidates {
@@ -109,6 +111,7 @@ impl Candidates {
             neighbour_start: Vec::new(),
             broad_phase,
             neighbour_list: NeighbourList::default(),
+            absent: Vec::new(),
         }
     }
 
@@ -181,6 +184,15 @@ impl Candidates {
         self.neighbour_list.forget();
     }
 
+    /// Leaves blocks out from the next update on, those that are `true`.
+    pub(crate) fn leave_out(&mut self, absent: &[bool]) {
+        self.absent.clear();
+        if absent.contains(&true) {
+            self.absent.extend_from_slice(absent);
+        }
+        self.forget();
+    }
+
     /// Brings the list up to date and says whether it changed: the pairs of blocks that have moved no further than
     /// their margin since they were listed stay.
     pub fn update(&mut self, input: &ContactInput, hulls: &ConvexBlocks) -> bool {
@@ -189,8 +201,11 @@ impl Candidates {
             return false;
         }
         self.lists.by_element = self.split_by_element;
-        let scene = self.neighbour_list.scene(input.blocks, hulls);
+        let scene = self.neighbour_list.scene(input.blocks, hulls, &self.absent);
         let changed = self.broad_phase.find_pairs(&scene, self.neighbour_list.renewed(), &mut self.lists);
+        if !self.absent.is_empty() {
+            self.lists.keep(|own, target| scene.is_there(own) && scene.is_there(target), input.blocks);
+        }
         if changed || begins {
             self.arrange(input.blocks);
             self.neighbour_list.note_neighbours(&self.neighbours);

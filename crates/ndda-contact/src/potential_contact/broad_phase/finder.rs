@@ -22,9 +22,17 @@ pub struct BroadScene<'a> {
     pub margin_m: &'a [f64],
     /// Which blocks are affine convex targets: the only tetrahedron of these is their host, and stands for all of the block.
     pub hulls: &'a ConvexBlocks,
+    /// Which blocks are not there; empty where all are. Pairs with these may be left out: they are taken out afterwards.
+    pub absent: &'a [bool],
 }
 
 impl BroadScene<'_> {
+    /// Whether a block is there.
+    #[inline]
+    pub fn is_there(&self, block: BlockId) -> bool {
+        self.absent.get(block.index()) != Some(&true)
+    }
+
     /// Box around a boundary triangle, with the margin of its block.
     pub(crate) fn triangle_box(&self, triangle: usize) -> Aabb {
         let block = self.blocks.triangle_block[triangle];

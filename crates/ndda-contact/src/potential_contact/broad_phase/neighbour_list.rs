@@ -83,8 +83,13 @@ impl NeighbourList {
     }
 
     /// The blocks where they are recorded.
-    pub(crate) fn scene<'a>(&'a self, blocks: &'a BlockSet, hulls: &'a ConvexBlocks) -> BroadScene<'a> {
-        BroadScene { blocks, position: &self.position, margin_m: &self.margin_m, hulls }
+    pub(crate) fn scene<'a>(
+        &'a self,
+        blocks: &'a BlockSet,
+        hulls: &'a ConvexBlocks,
+        absent: &'a [bool],
+    ) -> BroadScene<'a> {
+        BroadScene { blocks, position: &self.position, margin_m: &self.margin_m, hulls, absent }
     }
 
     fn begin(&mut self, blocks: &BlockSet) {

@@ -109,6 +109,13 @@ impl PairLists {
         self.of_block.get(block.index()).map_or(&[], Vec::as_slice)
     }
 
+    /// Keeps the pairs of these blocks, the contactor's and the target's, only.
+    pub(super) fn keep(&mut self, is_kept: impl Fn(BlockId, BlockId) -> bool, blocks: &BlockSet) {
+        for (own, runs) in blocks.ids().zip(&mut self.of_block) {
+            runs.retain(|run| is_kept(own, blocks.tet_block[run.first.index()]));
+        }
+    }
+
     /// The lists of all blocks, to be changed each by itself.
     pub(super) fn each_mut(&mut self) -> &mut [Vec<PairRun>] {
         &mut self.of_block

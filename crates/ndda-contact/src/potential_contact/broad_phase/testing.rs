@@ -120,7 +120,13 @@ struct Place {
 
 impl Place {
     fn scene<'a>(&'a self, blocks: &'a BlockSet) -> BroadScene<'a> {
-        BroadScene { blocks, position: &self.position, margin_m: &self.margin_m, hulls: &self.hulls }
+        BroadScene {
+            blocks,
+            position: &self.position,
+            margin_m: &self.margin_m,
+            hulls: &self.hulls,
+            absent: &[],
+        }
     }
 
     /// Turns, shifts and deforms what is to be renewed, and gives it another margin.

@@ -4,7 +4,10 @@ use std::fs::{self, File, FileType, TryLockError};
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::{CHECKPOINT, FIELDS_FOLDER, FIELDS_INDEX, LOG, MESH_REPORT, PREVIOUS, PROBE, TOP_FILES, WAITING};
+use super::{
+    CHECKPOINT, ENDING, FIELDS_FOLDER, FIELDS_INDEX, LOG, MESH_REPORT, OF_STAGE, PREVIOUS, PROBE, TOP_FILES,
+    WAITING,
+};
 use crate::atomic::TEMPORARY_ENDING;
 use crate::write_error::WriteError;
 
@@ -61,11 +64,14 @@ pub(super) fn refuse_unless_empty(path: &Path) -> Result<(), WriteError> {
 
 /// Deletes what ndda writes. Looks at everything first, so that nothing is deleted when something is in the way.
 pub(super) fn delete_earlier_run(path: &Path) -> Result<(), WriteError> {
-    let mut has_frames = false;
+    let (mut has_frames, mut of_stages) = (false, Vec::new());
     for (name, kind) in entries(path)? {
         let in_the_way = |needed| Err(WriteError::InTheWay { path: path.join(&name), needed });
         if is_top_file(&name) && kind.is_dir() {
             return in_the_way("file");
+        }
+        if is_of_stage(&name) {
+            of_stages.push(path.join(&name));
         }
         if name == FIELDS_FOLDER {
             // A link is not followed: what it points to may be somebody else's.
@@ -91,7 +97,7 @@ pub(super) fn delete_earlier_run(path: &Path) -> Result<(), WriteError> {
     for name in [CHECKPOINT, PREVIOUS, WAITING, FIELDS_INDEX] {
         delete(&path.join(name))?;
     }
-    for file in &frame_files {
+    for file in of_stages.iter().chain(&frame_files) {
         delete(file)?;
     }
     for name in TOP_FILES {
@@ -121,7 +127,13 @@ pub(super) fn entries(path: &Path) -> Result<Vec<(String, FileType)>, WriteError
 }
 
 fn is_top_file(name: &str) -> bool {
-    TOP_FILES.contains(&name.strip_suffix(TEMPORARY_ENDING).unwrap_or(name))
+    let name = name.strip_suffix(TEMPORARY_ENDING).unwrap_or(name);
+    TOP_FILES.contains(&name) || is_of_stage(name)
+}
+
+/// Whether it is the name of a checkpoint at the end of a stage.
+fn is_of_stage(name: &str) -> bool {
+    name.strip_suffix(TEMPORARY_ENDING).unwrap_or(name).starts_with(OF_STAGE) && name.contains(ENDING)
 }
 
 /// Whether `name` is `frame_`, six digits or more, `.vtu`, and perhaps the temporary ending.

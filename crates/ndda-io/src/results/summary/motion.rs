@@ -12,7 +12,7 @@ pub struct MonitorEnd {
 }
 
 /// Motion of the blocks in a run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
     /// Blocks that are not fixed.
     pub can_move: usize,
@@ -29,10 +29,11 @@ pub struct Motion {
 }
 
 /// How a block moves at the end of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Course {
     /// At less than 1 % of its largest speed.
+    #[default]
     AtRest,
     /// More slowly than it did.
     Moving,

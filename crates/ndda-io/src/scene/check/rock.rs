@@ -25,6 +25,7 @@ pub(super) fn joint_names(scene: &Scene, folder: Option<&Path>) -> Option<Vec<St
         }
         names.push(joint.name().to_string());
     }
+    names.extend(scene.rock.iter().flat_map(|rock| &rock.excavations).map(|space| space.name.clone()));
     names.extend(scene.rock.iter().filter(|rock| rock.voronoi.is_some()).map(|_| CELLS.to_string()));
     let mut seen = HashSet::new();
     names.retain(|name| seen.insert(name.clone()));
@@ -41,9 +42,34 @@ impl Check<'_> {
         self.joints = Some(names);
     }
 
+    /// Names of excavations begin those of blocks, and are those of the joints that glue them.
+    fn excavations(&mut self) {
+        let scene = self.scene;
+        let mut taken: Vec<&str> = scene.rock.iter().map(|rock| rock.name.as_str()).collect();
+        taken.extend(scene.rock.iter().flat_map(|rock| &rock.joints).map(Discontinuity::name));
+        for (i, rock) in scene.rock.iter().enumerate() {
+            let list = format!("rock[{i}].excavations");
+            self.names(&list, &rock.excavations.iter().map(|space| space.name.as_str()).collect::<Vec<_>>());
+            for (k, space) in rock.excavations.iter().enumerate() {
+                let path = |field: &str| format!("{list}[{k}].{field}");
+                if taken.contains(&space.name.as_str()) {
+                    let message = format!("a rock, joint or excavation is named `{}` already", space.name);
+                    self.report(Code::BadName, path("name"), message, "give each its own name");
+                }
+                self.numbers(&path("outline_m"), space.outline_m.as_flattened());
+                self.numbers(&path("start_m"), &[space.start_m, space.end_m]);
+                if let Some(glue) = space.glue_pa_m {
+                    self.positive(path("glue_pa_m"), glue, "Pa/m");
+                }
+            }
+            taken.extend(rock.excavations.iter().map(|space| space.name.as_str()));
+        }
+    }
+
     pub(super) fn rock(&mut self, folder: Option<&Path>) {
         let scene = self.scene;
         self.names("rock", &scene.rock.iter().map(|rock| rock.name.as_str()).collect::<Vec<_>>());
+        self.excavations();
         let materials: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
         for (i, rock) in scene.rock.iter().enumerate() {
             let path = |field: &str| format!("rock[{i}].{field}");

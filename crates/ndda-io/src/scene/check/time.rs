@@ -20,7 +20,7 @@ impl Check<'_> {
             } else if time.end_s / time.step_s > MOST_STEPS {
                 let message = format!("{:.1e} steps", time.end_s / time.step_s);
                 self.error("time.step_s", message, "at most 1e9 steps are taken: make the step larger");
-            } else if time.step_s > 0.1 * time.end_s {
+            } else if time.step_s > 0.1 * time.end_s && self.scene.stages.is_empty() {
                 self.warn(
                     Code::UnitSlip,
                     "time.step_s",

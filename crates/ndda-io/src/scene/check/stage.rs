@@ -1,0 +1,107 @@
+//! Checks of stages of construction.
+
+use std::path::Path;
+
+use super::{Check, MOST_STEPS, problems};
+use crate::scene::{By, Contact, Integrator, Scene, SettleDamping, Stage, Support, Then, is_unset};
+
+impl Check<'_> {
+    pub(super) fn stages(&mut self, folder: Option<&Path>) {
+        let scene = self.scene;
+        if scene.stages.is_empty() {
+            return;
+        }
+        self.names("stages", &scene.stages.iter().map(|stage| stage.name.as_str()).collect::<Vec<_>>());
+        if !matches!(scene.time.integrator, Integrator::Midpoint { .. }) {
+            let message = "remembers accelerations, which jump where blocks are taken out";
+            self.misfit("time.integrator", message, "use Midpoint() in a scene with stages");
+        }
+        if scene.reference.is_some() {
+            let help = "leave out the reference, or the stages";
+            self.misfit("reference", "no closed form follows a scene through its stages", help);
+        }
+        for (k, stage) in scene.stages.iter().enumerate() {
+            self.stage(k, stage);
+            self.in_stage(k, stage, folder);
+        }
+    }
+
+    fn stage(&mut self, k: usize, stage: &Stage) {
+        let path = |field: &str| format!("stages[{k}].{field}");
+        for (list, patterns) in [("remove", &stage.remove), ("add", &stage.add)] {
+            for (i, pattern) in patterns.iter().enumerate() {
+                self.known_blocks(path(&format!("{list}[{i}]")), pattern);
+            }
+        }
+        if !(stage.over_s >= 0.0 && stage.over_s.is_finite()) {
+            let message = format!("{} s: must not be negative", stage.over_s);
+            self.error(path("over_s"), message, "0 changes everything at once");
+        }
+        match stage.then {
+            Then::Run(run_s) => {
+                self.positive(path("then"), run_s, "s");
+                if stage.over_s > run_s && run_s > 0.0 {
+                    let message = format!("{} s are longer than the stage, {run_s} s", stage.over_s);
+                    self.misfit(
+                        path("over_s"),
+                        message,
+                        "Run(…) counts from the beginning of the stage: make it longer",
+                    );
+                }
+                let step_s = self.scene.time.step_s;
+                if !is_unset(&step_s) && run_s / step_s > MOST_STEPS {
+                    let message = format!("{:.1e} steps", run_s / step_s);
+                    self.error(path("then"), message, "at most 1e9 steps are taken: make the stage shorter");
+                }
+            }
+            Then::Settle { tolerance, most_steps, damping } => {
+                if !(0.0 < tolerance && tolerance < 1.0) {
+                    let message = format!("{tolerance}: must be between 0 and 1");
+                    self.error(
+                        path("then.tolerance"),
+                        message,
+                        "1e-4 leaves a ten-thousandth of the largest speed",
+                    );
+                }
+                if most_steps == 0 {
+                    let help = "1000000 is the default; Run(…) goes on without coming to rest";
+                    self.error(path("then.most_steps"), "0 steps bring nothing to rest", help);
+                }
+                if let SettleDamping::Local { factor } = damping
+                    && !(0.0 < factor && factor <= 1.0)
+                {
+                    let message = format!("{factor}: must be above 0 and at most 1");
+                    self.error(path("then.damping.factor"), message, "0.8 is usual");
+                }
+            }
+        }
+        if stage.laws.is_some() && !matches!(self.scene.contact, Some(Contact::Potential { .. })) {
+            self.misfit(
+                path("laws"),
+                "there is no contact that they could be of",
+                "give contact: Potential(…)",
+            );
+        }
+    }
+
+    /// What is wrong with the parts that a stage gives, as if they were the scene's own.
+    fn in_stage(&mut self, k: usize, stage: &Stage, folder: Option<&Path>) {
+        let scene = Scene { stages: Vec::new(), ..self.scene.in_stage(k + 1) };
+        for mut found in problems(&scene, folder) {
+            if let Some(path) = stage.path_of(k, &found.path) {
+                found.path = path;
+                self.found.push(found);
+            }
+        }
+        let known = self.scene.in_stage(k).supports;
+        let is_new = |support: &&Support| {
+            (support.hold.is_moved() || matches!(support.by, By::Springs { .. })) && !known.contains(support)
+        };
+        let Some(i) = scene.supports.iter().position(|support| is_new(&support)) else { return };
+        if let Some(path) = stage.path_of(k, &format!("supports[{i}]")) {
+            let message = "springs and motions count from the start of the run and cannot begin with a stage";
+            let help = "hold nodes where they are (Fixed, Normal, Direction), or give it in the scene's own `supports`";
+            self.misfit(path, message, help);
+        }
+    }
+}

@@ -1,0 +1,173 @@
+//! A run through the stages of its scene: each is a simulation of its own, which takes over the state of the one before.
+
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use ndda_io::read::LoadedScene;
+use ndda_io::scene::{Scene, Settle, Support, matches};
+use ndda_io::summary::StageEnd;
+use ndda_mesh::BlockId;
+use ndda_solver::{RunError, Settled, Simulation, StageStart, StepReport, TakeOverError, View};
+use serde::{Deserialize, Serialize};
+
+use super::outputs::Outputs;
+use super::recorder::Recorder;
+use super::unless_stopped;
+use crate::build;
+use crate::judge::verdict;
+use crate::model;
+
+/// Where a run is in its stages; a checkpoint keeps it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StageLog {
+    /// The stage, counted from 1; 0 before the first.
+    pub at: usize,
+    /// Steps in which the present one came to rest.
+    settling_steps: u64,
+    /// The stages that have ended.
+    pub rows: Vec<StageEnd>,
+}
+
+impl StageLog {
+    /// Notes that the present stage has ended.
+    pub(super) fn end(&mut self, name: &str, view: &View, recorder: &Recorder) {
+        let simulation = &*view.simulation;
+        let blocks = simulation.blocks().ids();
+        self.rows.push(StageEnd {
+            name: name.to_string(),
+            end_s: simulation.time_s(),
+            steps: simulation.state().step,
+            settling_steps: std::mem::take(&mut self.settling_steps),
+            blocks: blocks.filter(|&block| !simulation.is_absent(block)).count(),
+            removed_j: view.sample.map_or(0.0, |sample| sample.removed_j),
+            motion: recorder.motions.summary(simulation).unwrap_or_default(),
+            label: verdict::label(simulation, None),
+        });
+    }
+}
+
+/// The last step of what comes before the first stage, and of each stage; none in a scene without stages.
+pub(crate) fn ends(scene: &Scene) -> Vec<u64> {
+    if scene.stages.is_empty() {
+        return Vec::new();
+    }
+    let mut end = build::steps(&scene.time);
+    let after = scene.stages.iter().map(|stage| build::stages::steps_of_stage(stage, scene.time.step_s));
+    let mut ends = vec![end];
+    ends.extend(after.map(|steps| {
+        end += steps;
+        end
+    }));
+    ends
+}
+
+/// Blocks that are fixed or that a support of any stage may hold, and their names: the same in all stages.
+pub(crate) fn held_blocks(scene: &Scene, simulation: &Simulation) -> Vec<(BlockId, String)> {
+    let blocks = simulation.blocks();
+    let later = scene.stages.iter().filter_map(|stage| stage.supports.as_ref()).flatten();
+    let supports: Vec<&Support> = scene.supports.iter().chain(later).collect();
+    let moving = build::moving(scene, blocks);
+    let is_held = |block: &BlockId| {
+        let name = &blocks.names[block.index()];
+        moving[block.index()].is_none() || supports.iter().any(|support| matches(&support.block, name))
+    };
+    blocks.ids().filter(is_held).map(|block| (block, blocks.names[block.index()].clone())).collect()
+}
+
+/// A scene that is run through its stages.
+pub(super) struct Course<'a> {
+    /// The scene.
+    pub loaded: &'a LoadedScene,
+    /// Folder of the files that it names.
+    pub folder: &'a Path,
+    /// Raised when somebody asks the run to end.
+    pub stop: &'a AtomicBool,
+    /// Told how each stage ended.
+    pub tell: &'a dyn Fn(&str),
+}
+
+impl Course<'_> {
+    /// Shows the start, unless it has been shown, and goes to the end.
+    pub(super) fn run(
+        &self,
+        simulation: &mut Simulation,
+        outputs: &mut Outputs,
+        goes_on: bool,
+    ) -> Result<(), RunError> {
+        let steps = build::all_steps(&self.loaded.scene);
+        let shown = goes_on
+            || ndda_solver::show(simulation, steps, &StepReport::default(), &mut [&mut *outputs])?
+                .is_continue();
+        if shown { self.go(simulation, outputs) } else { Ok(()) }
+    }
+
+    /// Goes on from where a simulation is to the end of the last stage, or until somebody asks to end.
+    pub(super) fn go(&self, simulation: &mut Simulation, outputs: &mut Outputs) -> Result<(), RunError> {
+        let scene = &self.loaded.scene;
+        let ends = ends(scene);
+        let steps = ends[ends.len() - 1];
+        loop {
+            let at = outputs.stages.at;
+            let settle = at.checked_sub(1).and_then(|k| scene.stages[k].settle());
+            let goes_on = match settle {
+                Some(settle) if simulation.state().step < ends[at] => {
+                    self.to_rest(simulation, outputs, (&settle, ends[at], steps))?
+                }
+                _ => ndda_solver::advance(simulation, (ends[at], steps), &mut [&mut *outputs])?,
+            };
+            if goes_on.is_break() || simulation.state().step < ends[at] {
+                return Ok(());
+            }
+            if let Some(row) = outputs.stages.rows.last().filter(|_| at > 0) {
+                (self.tell)(&crate::judge::table::stage(row));
+            }
+            if at == scene.stages.len() {
+                return Ok(());
+            }
+            self.begin(simulation, at + 1).map_err(|error| match error {
+                TakeOverError::Step(error) => RunError::Step(error),
+                error => RunError::Sink(format!("stage `{}`: {error}", scene.stages[at].name).into()),
+            })?;
+            outputs.stages.at = at + 1;
+            if scene.stages[at].reset_displacements {
+                outputs.recorder.motions.begin_anew();
+            }
+        }
+    }
+
+    /// Begins a stage, counted from 1.
+    fn begin(&self, simulation: &mut Simulation, stage: usize) -> Result<(), TakeOverError> {
+        let given = &self.loaded.scene.stages[stage - 1];
+        let start = StageStart { over_s: given.over_s, reset_displacements: given.reset_displacements };
+        let built = model::in_stage(self.loaded, self.folder, simulation.blocks().clone(), stage);
+        let mut next = built.map_err(|errors| TakeOverError::Stage(errors.render(false)))?;
+        next.begin_stage(simulation, &start)?;
+        *simulation = next;
+        Ok(())
+    }
+
+    /// Steps up to the last of a stage, and brings the scene to rest before that is shown. A run that is ended on the way goes on from before it.
+    fn to_rest(
+        &self,
+        simulation: &mut Simulation,
+        outputs: &mut Outputs,
+        (settle, end, steps): (&Settle, u64, u64),
+    ) -> Result<ControlFlow<()>, RunError> {
+        if ndda_solver::advance(simulation, (end - 1, steps), &mut [&mut *outputs])?.is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+        outputs.checkpoint(simulation).map_err(|error| RunError::Sink(Box::new(error)))?;
+        let before = simulation.snapshot();
+        let mut watch = |_: &Settled| unless_stopped(self.stop);
+        let report = ndda_solver::unseen_step(simulation, &mut [&mut *outputs])?;
+        let settled = simulation.settle_within(&build::settle(*settle), &mut watch)?;
+        if self.stop.load(Ordering::Relaxed) {
+            let restored = simulation.restore(before);
+            restored.expect("it is of this simulation");
+            return Ok(ControlFlow::Break(()));
+        }
+        outputs.stages.settling_steps = settled.steps;
+        ndda_solver::show(simulation, steps, &report, &mut [&mut *outputs])
+    }
+}
