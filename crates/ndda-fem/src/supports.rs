@@ -6,6 +6,7 @@ use ndda_mesh::{Mat3, Vec3};
 use crate::block_operator::BlockOperator;
 use crate::frame::Frame;
 use crate::motion::Motion;
+use crate::quiet::Quiet;
 
 /// Two directions closer than this (sine of the angle) are the same; far above round-off, far below any joint.
 const SAME_DIRECTION: f64 = 1e-6;
@@ -91,6 +92,8 @@ pub struct BlockSupports {
     pub motions: Vec<Motion>,
     /// How the block's frame may turn under these supports.
     pub frame: Frame,
+    /// Quiet faces, which resist velocities and hold nothing.
+    pub quiet: Quiet,
 }
 
 /// Rigid motions with less than this part of the stiffness of the best held one are free.
@@ -125,8 +128,13 @@ impl BlockSupports {
     /// [`SupportError::Conflict`] for contradictory prescriptions, [`SupportError::TurnsHeldDirections`] when a
     /// roller direction would not stay constant in the block's frame.
     pub fn new(operator: &BlockOperator, supports: &[NodeSupport]) -> Result<Self, SupportError> {
-        let mut merged =
-            Self { held: Vec::new(), springs: Vec::new(), motions: Vec::new(), frame: Frame::Held };
+        let mut merged = Self {
+            held: Vec::new(),
+            springs: Vec::new(),
+            motions: Vec::new(),
+            frame: Frame::Held,
+            quiet: Quiet::default(),
+        };
         let mut held: Vec<Option<HeldNode>> = vec![None; operator.nodes()];
         for support in supports {
             let motion = match &support.hold {

@@ -40,6 +40,7 @@ pub fn cubes(count: usize, n: u32, kind: BodyKind, integrator: Box<dyn TimeInteg
         initial_stress: None,
         tractions: Vec::new(),
         pressures: Vec::new(),
+        quiet: Vec::new(),
         forces: Vec::new(),
         velocity_m_s: Vec3::x(),
         spin_rad_s: Vec3::new(0.1, 0.2, 0.3),

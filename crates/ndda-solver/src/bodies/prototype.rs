@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use ndda_fem::frame::polar_rotation;
 use ndda_fem::{
-    BlockOperator, BlockSupports, Frame, Hold, InitialStress, Material, NodeSupport, PressureField, Table,
+    BlockOperator, BlockSupports, Frame, Hold, InitialStress, Material, NodeSupport, PressureField, Quiet,
+    QuietFaces, Table,
 };
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
@@ -37,6 +38,8 @@ pub struct BodySetup {
     pub forces: Vec<ForceSetup>,
     /// Pressures of water on its surface, which follow it.
     pub pressures: Vec<PressureSetup>,
+    /// Faces behind which rock goes on.
+    pub quiet: Vec<QuietSetup>,
     /// Velocity of the mass centre [m/s].
     pub velocity_m_s: Vec3,
     /// Rate of rotation about the mass centre [rad/s].
@@ -63,6 +66,15 @@ pub struct PressureSetup {
     pub field: Arc<PressureField>,
     /// Factor over time; constant without.
     pub factor: Option<Table>,
+}
+
+/// Faces of a block behind which rock goes on for ever.
+#[derive(Clone)]
+pub struct QuietSetup {
+    /// The faces, and waves that arrive through them; places relative to the origin of the block set.
+    pub faces: QuietFaces,
+    /// The rock beyond them.
+    pub beyond: Arc<dyn Material>,
 }
 
 /// A force on a node of a block.
@@ -147,8 +159,11 @@ impl Prototype {
             (Mass::Lumped, BodyKind::Elastic) => lumped(operator),
             _ => (operator, 0.0),
         };
-        let supports = BlockSupports::new(&operator, &setup.supports)
+        let mut supports = BlockSupports::new(&operator, &setup.supports)
             .map_err(|source| SetupError::Support { block: name(), source })?;
+        let quiet: Vec<_> = setup.quiet.iter().map(|quiet| (&quiet.faces, quiet.beyond.as_ref())).collect();
+        supports.quiet = Quiet::new(position, &quiet)
+            .map_err(|source| SetupError::Wave { block: name(), source: Box::new(source) })?;
         let unknowns = match kind {
             BodyKind::Elastic => Unknowns::nodal(operator.nodes(), &supports),
             BodyKind::Affine => Unknowns::affine(&operator, &supports),
@@ -238,7 +253,10 @@ impl Prototype {
 
     /// Whether nothing holds the block, so that its momentum changes by outside forces only.
     pub fn is_free(&self) -> bool {
-        self.kind != BodyKind::Fixed && self.supports.held.is_empty() && self.supports.springs.is_empty()
+        self.kind != BodyKind::Fixed
+            && self.supports.held.is_empty()
+            && self.supports.springs.is_empty()
+            && self.supports.quiet.dashpots.is_empty()
     }
 
     /// Whether velocities of the block change by impulses beside the forces: those of damping, and of prescribed velocities.
@@ -306,6 +324,7 @@ impl Prototype {
         if !self.is_free()
             || self.kind != setup.kind
             || !setup.supports.is_empty()
+            || !setup.quiet.is_empty()
             || !Arc::ptr_eq(&self.material, &setup.material)
             || position.len() != self.operator.nodes()
             || !blocks.local_tets(block).eq(self.operator.tets.iter().copied())
@@ -343,6 +362,9 @@ fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
     let moves = |s: &NodeSupport| matches!(s.hold, Hold::Motion(_)) && s.spring_n_m.is_none();
     match setup.kind {
         BodyKind::Elastic => Ok(()),
+        _ if !setup.quiet.is_empty() => {
+            Err("a quiet face lets the waves of its block out, which only those of an Elastic block are: make it Elastic")
+        }
         BodyKind::Affine if setup.supports.iter().any(moves) => {
             Err("parts of an affine block cannot be moved: make it Elastic, or Fixed to move it as a whole")
         }

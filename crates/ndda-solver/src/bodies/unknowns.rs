@@ -157,7 +157,8 @@ impl Unknowns {
         }
     }
 
-    /// K̃ = θ (K + S) + c M + d K over the unknowns (eq 12), S being the springs and d = b/Δt damping in proportion to stiffness.
+    /// K̃ = θ (K + S) + c M + d K + Q over the unknowns (eq 12), S being the springs, d = b/Δt damping in proportion to stiffness, and Q what quiet
+    /// faces add.
     pub fn matrix(
         &self,
         operator: &BlockOperator,
@@ -170,6 +171,9 @@ impl Unknowns {
         for spring in &supports.springs {
             let projector = spring.along.map_or(Mat3::identity(), |n| n * n.transpose());
             springs[spring.node as usize] += weights.stiffness * spring.stiffness_n_m * projector;
+        }
+        for dashpot in &supports.quiet.dashpots {
+            springs[dashpot.node as usize] += weights.drag_per_m() * dashpot.drag;
         }
         let row = |node: usize| {
             let springs = &springs;

@@ -31,6 +31,7 @@ pub struct Ledger {
     motion_work_j: f64,
     load_work_j: f64,
     damping_work_j: f64,
+    radiated_j: f64,
     restitution_work_j: f64,
     peak_energy_j: f64,
     peak_momentum: f64,
@@ -105,6 +106,7 @@ impl Ledger {
             motion_work_j: 0.0,
             load_work_j: 0.0,
             damping_work_j: 0.0,
+            radiated_j: 0.0,
             restitution_work_j: 0.0,
             peak_energy_j: 0.0,
             peak_momentum: 0.0,
@@ -189,6 +191,11 @@ impl Ledger {
         self.motion_work_j += motion_j;
         self.load_work_j += load_j;
         self.damping_work_j += damping_j;
+    }
+
+    /// Books the energy that left through quiet faces in a step [J].
+    pub(crate) fn add_radiated(&mut self, radiated_j: f64) {
+        self.radiated_j += radiated_j;
     }
 
     /// Books the work of contact damping in a step [J].
@@ -287,11 +294,13 @@ impl Ledger {
         sample.motion_work_j = self.motion_work_j;
         sample.load_work_j = self.load_work_j;
         sample.damping_work_j = self.damping_work_j;
+        sample.radiated_j = self.radiated_j;
         sample.restitution_work_j = self.restitution_work_j;
         let work_j = sample.friction_work_j
             + sample.motion_work_j
             + sample.load_work_j
             + sample.damping_work_j
+            - sample.radiated_j
             + sample.restitution_work_j;
         sample.balance_j = sample.total_j() - start.total_j() - work_j;
         let stored = sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j;

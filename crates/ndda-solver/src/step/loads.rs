@@ -28,6 +28,8 @@ impl VaryingLoad {
 #[derive(Clone, Debug)]
 pub(crate) struct Loads {
     constant: Vec<Vec3>,
+    /// The part of them that is not reactions of quiet faces; empty while there are none.
+    given: Vec<Vec3>,
     varying: Vec<VaryingLoad>,
     /// Pressure of water.
     pressures: Vec<FollowerPressure>,
@@ -54,6 +56,7 @@ impl Loads {
         let nodes = if varying.is_empty() && pressures.is_empty() { 0 } else { constant.len() };
         let mut loads = Self {
             constant,
+            given: Vec::new(),
             varying,
             pressures,
             driving: Vec::new(),
@@ -103,6 +106,18 @@ impl Loads {
             self.total = self.changing.clone();
         }
         self.driving = nodal;
+    }
+
+    /// Lets the reactions of quiet faces [N] act from now on as constant loads, in the place of those of before.
+    pub(crate) fn keep(&mut self, reactions: &[Vec3]) {
+        if self.given.is_empty() {
+            self.given.clone_from(&self.constant);
+        }
+        let sums = self.given.iter().zip(reactions);
+        self.constant.iter_mut().zip(sums).for_each(|(sum, (given, kept))| *sum = given + kept);
+        if self.changing.is_empty() {
+            self.force = self.constant.iter().sum();
+        }
     }
 
     /// Whether a caller has set forces.

@@ -148,6 +148,10 @@ impl Simulation {
                 return Ok(settled);
             }
         }
+        let force = std::mem::take(&mut self.scratch.force);
+        let kept = self.keep_static_reactions(&force);
+        self.scratch.force = force;
+        kept?;
         self.begin_at_rest(start);
         Ok(settled)
     }

@@ -106,6 +106,7 @@ fn body(
         initial_stress: initial_stress(scene, body, own_stress, blocks),
         tractions: Vec::new(),
         pressures: Vec::new(),
+        quiet: Vec::new(),
         forces: Vec::new(),
         velocity_m_s: vec3(velocity),
         spin_rad_s: vec3(spin),

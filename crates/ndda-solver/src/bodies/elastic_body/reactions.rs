@@ -20,6 +20,7 @@ impl ElasticBody {
         nodes: &Nodes,
     ) {
         self.collect_springs(shape, context, rotation, nodes);
+        self.collect_quiet(shape, context, rotation, nodes);
         if shape.kind == BodyKind::Affine {
             return self.collect_as_a_whole(shape, context, rotation, nodes);
         }
