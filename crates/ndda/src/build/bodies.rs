@@ -13,6 +13,8 @@ use ndda_mesh::geometry::{Aabb, tet_volume};
 use ndda_mesh::{BlockId, BlockSet};
 use ndda_solver::{BodyKind, BodySetup, ForceSetup, TractionSetup};
 
+use super::blast::add_blasts;
+use super::quiet::add_quiet;
 use super::regions::{in_region, loaded_triangles, region_nodes};
 use super::water::add_water;
 use super::{Fault, Source, rock, sources, table, vec3};
@@ -79,6 +81,8 @@ pub(super) fn bodies(
         }
     }
     add_water(scene, blocks, &mut bodies, &mut faults);
+    add_quiet(scene, blocks, folder, &materials, &mut bodies, &mut faults);
+    add_blasts(scene, blocks, &mut bodies, &mut faults);
     if faults.is_empty() { Ok(bodies) } else { Err(faults) }
 }
 
@@ -226,6 +230,15 @@ fn node_supports(
             record::check_speed(&file, &rows, *factor).map_err(|e| e.to_string())?;
             let direction = *factor * vec3(*direction).normalize();
             FemHold::Motion(Motion::Record(Record::new(direction, &rows)))
+        }
+        (Hold::Shaking(components), _) => {
+            let part = |component: &scene::Component| {
+                let prepared = record::prepare(&component.record, folder).map_err(|e| e.to_string())?;
+                let direction = vec3(component.direction).normalize();
+                Ok(Motion::Record(Record::new(direction, &prepared.rows)))
+            };
+            let parts = components.iter().map(part).collect::<Result<_, String>>()?;
+            FemHold::Motion(Motion::Sum(parts))
         }
     };
     let young_pa = |block: BlockId| {
