@@ -37,6 +37,7 @@ mod nothing_far_or_stale;
 mod one_block_alone;
 mod paper;
 mod prescribed_motion;
+mod quiet;
 mod random_impacts;
 mod release_of_initial_stress;
 mod restitution;

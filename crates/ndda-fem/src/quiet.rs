@@ -240,12 +240,8 @@ mod tests {
 
     #[test]
     fn bedded_rock_has_impedances_of_its_own_and_refuses_a_motion_that_no_wave_has() {
-        let bedding = Bedding {
-            normal: Vec3::z(),
-            young_across_pa: 5e9,
-            poisson_across: 0.1,
-            shear_across_pa: 2e9,
-        };
+        let bedding =
+            Bedding { normal: Vec3::z(), young_across_pa: 5e9, poisson_across: 0.1, shear_across_pa: 2e9 };
         let bedded = TransverselyIsotropic::new(&rock(), &bedding).unwrap();
         let c = speed_m_s(&bedded, &wave(Vec3::z(), Vec3::x())).unwrap();
         assert!((c - (2e9f64 / 2650.0).sqrt()).abs() < 1e-9 * c);

@@ -19,9 +19,9 @@ pub(crate) mod overrides;
 mod parameter_values;
 mod parameters;
 pub(crate) mod parse;
+mod quiet;
 pub mod read;
 pub mod record;
-mod quiet;
 mod reference;
 mod renamed;
 mod rock;
@@ -50,7 +50,7 @@ pub use load::{FactorRow, Force, Traction};
 pub use material::{Bedding, Damping, Material};
 pub use monitor::{At, Monitor};
 pub use output::{Field, FieldFormat, Output, Precision, TableFormat};
-pub use quiet::{IncidentWave, Quiet, RecordedAs, WaveKind};
+pub use quiet::{IncidentWave, Quiet, RecordedAs, Tie, WaveKind};
 pub use reference::Reference;
 pub use rock::{Axis, DiscRule, Discontinuity, Domain, OrientationScatter};
 pub use rock::{Rock, Slivers, SpacingScatter, Voronoi, Whereabouts};
@@ -109,6 +109,9 @@ pub struct Scene {
     /// Faces behind which rock goes on, and waves that arrive through them. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub quiet: Vec<Quiet>,
+    /// Nodes of equal height that move alike, as at the sides of level ground. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ties: Vec<Tie>,
     /// Pressure of explosions on the walls of holes. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub blasts: Vec<Blast>,

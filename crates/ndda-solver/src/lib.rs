@@ -22,6 +22,7 @@
 //!     initial_stress: None,
 //!     tractions: Vec::new(),
 //!     pressures: Vec::new(),
+//!     ties: Vec::new(),
 //!     quiet: Vec::new(),
 //!     forces: Vec::new(),
 //!     velocity_m_s: Vec3::zeros(),

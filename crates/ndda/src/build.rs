@@ -32,8 +32,8 @@ use crate::run::monitor::Monitor;
 pub use choices::Choices;
 use friction::friction_law;
 use pairs::{add_joint_laws, between_materials, restitution_table};
-use regions::{find, find_all};
 pub use quiet::records;
+use regions::{find, find_all};
 pub use rock::{CutRock, Meshes, RockReport};
 pub(crate) use settle::settle;
 

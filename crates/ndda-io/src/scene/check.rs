@@ -44,6 +44,7 @@ pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> 
     check.supports(folder);
     check.loads();
     check.quiet(folder);
+    check.ties();
     check.blasts();
     check.contact();
     check.monitors();

@@ -88,7 +88,14 @@ fn names(scene: &Scene) -> Vec<&str> {
     });
     let components = shaking.flatten().map(|component| component.record.file.as_str());
     let materials = scene.include.iter().map(String::as_str);
-    shapes.chain(domains).chain(discs).chain(records).chain(waves).chain(components).chain(materials).collect()
+    shapes
+        .chain(domains)
+        .chain(discs)
+        .chain(records)
+        .chain(waves)
+        .chain(components)
+        .chain(materials)
+        .collect()
 }
 
 /// Adds a file once, and what is read along with it: the other files of a TetGen mesh, and what a Gmsh script names in

@@ -79,3 +79,20 @@ pub enum RecordedAs {
     /// damping, so that the record must not hold the frequencies at which such a place stands still.
     Within,
 }
+
+/// Nodes at equal height that move alike: the sides of level ground, which are those of ground that goes on as it is.
+///
+/// The nodes of all regions at the same place along a direction are one group. Between blocks nothing can be tied.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Tie {
+    /// Name of the block, which must be elastic; in `base_*` the star stands for anything, and all such blocks with nodes in the regions count, each by
+    /// itself.
+    pub block: String,
+    /// Regions of which all nodes of one height move alike, such as both sides: `[Set("x_min"), Set("x_max")]`.
+    pub on: Vec<Region>,
+    /// Direction of the height; its length does not matter. Default: against gravity, (0, 0, 1) without.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub along: Option<[f64; 3]>,
+}

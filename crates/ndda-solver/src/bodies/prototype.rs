@@ -38,6 +38,8 @@ pub struct BodySetup {
     pub forces: Vec<ForceSetup>,
     /// Pressures of water on its surface, which follow it.
     pub pressures: Vec<PressureSetup>,
+    /// Groups of nodes that move alike, counted from the block's first.
+    pub ties: Vec<Vec<u32>>,
     /// Faces behind which rock goes on.
     pub quiet: Vec<QuietSetup>,
     /// Velocity of the mass centre [m/s].
@@ -159,7 +161,7 @@ impl Prototype {
             (Mass::Lumped, BodyKind::Elastic) => lumped(operator),
             _ => (operator, 0.0),
         };
-        let mut supports = BlockSupports::new(&operator, &setup.supports)
+        let mut supports = BlockSupports::new(&operator, &setup.supports, &setup.ties)
             .map_err(|source| SetupError::Support { block: name(), source })?;
         let quiet: Vec<_> = setup.quiet.iter().map(|quiet| (&quiet.faces, quiet.beyond.as_ref())).collect();
         supports.quiet = Quiet::new(position, &quiet)
@@ -257,6 +259,7 @@ impl Prototype {
             && self.supports.held.is_empty()
             && self.supports.springs.is_empty()
             && self.supports.quiet.dashpots.is_empty()
+            && self.supports.ties.is_empty()
     }
 
     /// Whether velocities of the block change by impulses beside the forces: those of damping, and of prescribed velocities.
@@ -290,6 +293,12 @@ impl Prototype {
         for held in &self.supports.held {
             let v = &mut velocity[held.node as usize];
             held.held.iter().for_each(|n| *v -= n * n.dot(v));
+        }
+        for group in &self.supports.ties {
+            let masses = group.iter().map(|&n| (self.operator.node_mass[n as usize], velocity[n as usize]));
+            let (mass, momentum) =
+                masses.fold((0.0, Vec3::zeros()), |sum, (m, v)| (sum.0 + m, sum.1 + m * v));
+            group.iter().for_each(|&n| velocity[n as usize] = momentum / mass);
         }
     }
 
@@ -325,6 +334,7 @@ impl Prototype {
             || self.kind != setup.kind
             || !setup.supports.is_empty()
             || !setup.quiet.is_empty()
+            || !setup.ties.is_empty()
             || !Arc::ptr_eq(&self.material, &setup.material)
             || position.len() != self.operator.nodes()
             || !blocks.local_tets(block).eq(self.operator.tets.iter().copied())
@@ -362,9 +372,10 @@ fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
     let moves = |s: &NodeSupport| matches!(s.hold, Hold::Motion(_)) && s.spring_n_m.is_none();
     match setup.kind {
         BodyKind::Elastic => Ok(()),
-        _ if !setup.quiet.is_empty() => {
-            Err("a quiet face lets the waves of its block out, which only those of an Elastic block are: make it Elastic")
-        }
+        _ if !setup.ties.is_empty() => Err("only nodes of an Elastic block can be tied: make it Elastic"),
+        _ if !setup.quiet.is_empty() => Err(
+            "a quiet face lets the waves of its block out, which only those of an Elastic block are: make it Elastic",
+        ),
         BodyKind::Affine if setup.supports.iter().any(moves) => {
             Err("parts of an affine block cannot be moved: make it Elastic, or Fixed to move it as a whole")
         }

@@ -296,12 +296,10 @@ impl Ledger {
         sample.damping_work_j = self.damping_work_j;
         sample.radiated_j = self.radiated_j;
         sample.restitution_work_j = self.restitution_work_j;
-        let work_j = sample.friction_work_j
-            + sample.motion_work_j
-            + sample.load_work_j
-            + sample.damping_work_j
-            - sample.radiated_j
-            + sample.restitution_work_j;
+        let work_j =
+            sample.friction_work_j + sample.motion_work_j + sample.load_work_j + sample.damping_work_j
+                - sample.radiated_j
+                + sample.restitution_work_j;
         sample.balance_j = sample.total_j() - start.total_j() - work_j;
         let stored = sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j;
         self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());

@@ -14,7 +14,7 @@ use ndda_mesh::{BlockId, BlockSet};
 use ndda_solver::{BodyKind, BodySetup, ForceSetup, TractionSetup};
 
 use super::blast::add_blasts;
-use super::quiet::add_quiet;
+use super::quiet::{add_quiet, add_ties};
 use super::regions::{in_region, loaded_triangles, region_nodes};
 use super::water::add_water;
 use super::{Fault, Source, rock, sources, table, vec3};
@@ -82,6 +82,7 @@ pub(super) fn bodies(
     }
     add_water(scene, blocks, &mut bodies, &mut faults);
     add_quiet(scene, blocks, folder, &materials, &mut bodies, &mut faults);
+    add_ties(scene, blocks, &mut bodies, &mut faults);
     add_blasts(scene, blocks, &mut bodies, &mut faults);
     if faults.is_empty() { Ok(bodies) } else { Err(faults) }
 }
@@ -110,6 +111,7 @@ fn body(
         initial_stress: initial_stress(scene, body, own_stress, blocks),
         tractions: Vec::new(),
         pressures: Vec::new(),
+        ties: Vec::new(),
         quiet: Vec::new(),
         forces: Vec::new(),
         velocity_m_s: vec3(velocity),

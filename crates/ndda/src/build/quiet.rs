@@ -6,12 +6,13 @@ use std::sync::Arc;
 use ndda_fem::quiet::speed_m_s;
 use ndda_fem::{Material, Motion, PlaneWave, QuietFaces, Record};
 use ndda_io::record;
-use ndda_io::scene::{self, IncidentWave, RecordedAs, Scene, WaveKind};
+use ndda_io::scene::{self, IncidentWave, RecordedAs, Region, Scene, WaveKind};
+use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{BodyKind, BodySetup, QuietSetup};
 
-use super::regions::{in_region, outward_triangles};
-use super::{Fault, vec3};
+use super::regions::{in_region, outward_triangles, region_nodes};
+use super::{Fault, ON_PLANE, vec3};
 
 /// Faces by block.
 type Parts = Vec<(BlockId, Vec<[u32; 3]>)>;
@@ -27,7 +28,8 @@ pub(super) fn add_quiet(
 ) {
     for (i, quiet) in scene.quiet.iter().enumerate() {
         let path = |field: &str| format!("quiet[{i}].{field}");
-        let parts = match in_region(blocks, &quiet.block, |block| outward_triangles(blocks, block, &quiet.on)) {
+        let parts = match in_region(blocks, &quiet.block, |block| outward_triangles(blocks, block, &quiet.on))
+        {
             Ok(parts) => parts,
             Err(message) => {
                 faults.push(Fault::new(path("on"), message));
@@ -36,11 +38,13 @@ pub(super) fn add_quiet(
         };
         if let Some((block, _)) = parts.iter().find(|(b, _)| bodies[b.index()].kind != BodyKind::Elastic) {
             let name = &blocks.names[block.index()];
-            let message = format!("block `{name}` is not Elastic, and has no waves that could leave: make it Elastic");
+            let message =
+                format!("block `{name}` is not Elastic, and has no waves that could leave: make it Elastic");
             faults.push(Fault::new(path("block"), message));
             continue;
         }
-        let named = quiet.beyond.as_ref().and_then(|name| scene.materials.iter().position(|m| m.name == *name));
+        let named =
+            quiet.beyond.as_ref().and_then(|name| scene.materials.iter().position(|m| m.name == *name));
         let named = named.and_then(|index| materials[index].clone());
         let mut waves = Vec::new();
         for (k, wave) in quiet.incident.iter().enumerate() {
@@ -58,6 +62,62 @@ pub(super) fn add_quiet(
     }
 }
 
+/// Ties the nodes of bodies that a scene wants to move alike.
+pub(super) fn add_ties(scene: &Scene, blocks: &BlockSet, bodies: &mut [BodySetup], faults: &mut Vec<Fault>) {
+    for (i, tie) in scene.ties.iter().enumerate() {
+        let along = tie.along.map_or_else(|| upwards(scene), |along| vec3(along).normalize());
+        match in_region(blocks, &tie.block, |block| level_groups(blocks, block, &tie.on, &along)) {
+            Ok(parts) => {
+                for (block, groups) in parts {
+                    if bodies[block.index()].kind != BodyKind::Elastic {
+                        let name = &blocks.names[block.index()];
+                        let message =
+                            format!("block `{name}` is not Elastic: make it Elastic to tie its nodes");
+                        faults.push(Fault::new(format!("ties[{i}].block"), message));
+                        break;
+                    }
+                    bodies[block.index()].ties.extend(groups);
+                }
+            }
+            Err(message) => faults.push(Fault::new(format!("ties[{i}].on"), message)),
+        }
+    }
+}
+
+/// Nodes of regions of a block by their height, to within 1e-6 of its size.
+fn level_groups(
+    blocks: &BlockSet,
+    block: BlockId,
+    on: &[Region],
+    along: &Vec3,
+) -> Result<Vec<Vec<u32>>, String> {
+    let rest = &blocks.rest_position[blocks.nodes_of(block)];
+    let mut nodes = Vec::new();
+    for region in on {
+        nodes.extend(region_nodes(blocks, block, region)?);
+    }
+    nodes.sort_unstable();
+    nodes.dedup();
+    let height = |node: u32| rest[node as usize].dot(along);
+    nodes.sort_by(|&a, &b| height(a).total_cmp(&height(b)).then(a.cmp(&b)));
+    let near = ON_PLANE * Aabb::around(rest).diagonal();
+    let groups = nodes.chunk_by(|&a, &b| height(b) - height(a) <= near);
+    let groups: Vec<Vec<u32>> = groups.filter(|group| group.len() > 1).map(<[u32]>::to_vec).collect();
+    if groups.is_empty() {
+        let name = &blocks.names[block.index()];
+        return Err(format!(
+            "no two nodes of block `{name}` in these regions are at the same height: mesh both sides alike"
+        ));
+    }
+    Ok(groups)
+}
+
+/// Against gravity, or along z without.
+fn upwards(scene: &Scene) -> Vec3 {
+    let up = -vec3(scene.gravity_m_s2);
+    if up.norm() > 0.0 { up.normalize() } else { Vec3::z() }
+}
+
 /// A wave of a scene, and its echo from level ground.
 fn arriving(
     scene: &Scene,
@@ -66,15 +126,15 @@ fn arriving(
     (wave, parts): (&IncidentWave, &Parts),
     beyond: &dyn Material,
 ) -> Result<Vec<PlaneWave>, String> {
-    let up = -vec3(scene.gravity_m_s2);
-    let default = if up.norm() > 0.0 { up } else { Vec3::z() };
-    let along = wave.along.map_or(default, vec3).normalize();
+    let along = wave.along.map_or_else(|| upwards(scene), |along| vec3(along).normalize());
     let moves = match wave.wave {
         WaveKind::P => along,
         WaveKind::S(direction) => vec3(direction).normalize(),
     };
     if matches!(wave.wave, WaveKind::S(_)) && moves.dot(&along).abs() > 1e-6 {
-        return Err("an S wave moves rock across its way: give S a direction at right angles to `along`".into());
+        return Err(
+            "an S wave moves rock across its way: give S a direction at right angles to `along`".into()
+        );
     }
     let from = wave.from_m.map_or_else(|| first_met(blocks, parts, &along), |at| vec3(at) - blocks.origin_m);
     let empty = PlaneWave { motion: Motion::Rows(Vec::new()), along, from, moves };
@@ -145,7 +205,8 @@ mod tests {
     #[test]
     fn a_record_from_within_is_the_wave_and_its_echo() {
         let wave = |t: f64| if (0.0..1.0).contains(&t) { (std::f64::consts::TAU * t).sin() } else { 0.0 };
-        let rows: Vec<_> = (0..=4000).map(|i| f64::from(i) * 1e-3).map(|t| (t, wave(t) + wave(t - 0.37))).collect();
+        let rows: Vec<_> =
+            (0..=4000).map(|i| f64::from(i) * 1e-3).map(|t| (t, wave(t) + wave(t - 0.37))).collect();
         for (t, a) in without_echo(&rows, 0.37) {
             assert!((a - wave(t)).abs() < 1e-4, "{t}: {a} {}", wave(t));
         }

@@ -44,7 +44,9 @@ fn wet(blocks: &BlockSet, on: &Wet) -> Result<Vec<Faces>, String> {
                 Ok(parts)
             }
         }
-        Wet::Part { block, region } => in_region(blocks, block, |block| outward_triangles(blocks, block, region)),
+        Wet::Part { block, region } => {
+            in_region(blocks, block, |block| outward_triangles(blocks, block, region))
+        }
     }
 }
 

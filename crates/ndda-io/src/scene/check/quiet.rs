@@ -23,7 +23,11 @@ impl Check<'_> {
                     "block `{}` is {:?}, and has no waves that could leave: a quiet face needs an Elastic one",
                     block.name, block.body
                 );
-                self.misfit(path("block"), message, "give the block `body: Elastic`, or hold it by a support");
+                self.misfit(
+                    path("block"),
+                    message,
+                    "give the block `body: Elastic`, or hold it by a support",
+                );
             }
             for (k, wave) in quiet.incident.iter().enumerate() {
                 self.incident(&path(&format!("incident[{k}]")), wave, folder);
@@ -32,7 +36,12 @@ impl Check<'_> {
         let stressed = scene.in_situ.is_some() || scene.blocks.iter().any(|b| b.initial_stress_pa.is_some());
         if !scene.quiet.is_empty() && scene.gravity_m_s2 != [0.0; 3] && scene.settle.is_none() && !stressed {
             let message = "a quiet face has no stiffness: without `settle` or an initial stress nothing holds the rock up, and it sinks";
-            self.warn(Code::Inexact, "quiet[0]", message, "add settle: (), or give the stress in the ground as in_situ");
+            self.warn(
+                Code::Inexact,
+                "quiet[0]",
+                message,
+                "add settle: (), or give the stress in the ground as in_situ",
+            );
         }
     }
 
@@ -49,7 +58,8 @@ impl Check<'_> {
             }
         }
         if wave.is == RecordedAs::Within && wave.ground_m.is_none() {
-            let message = "a record from within rock holds the wave and its echo, which comes from level ground";
+            let message =
+                "a record from within rock holds the wave and its echo, which comes from level ground";
             self.misfit(format!("{path}.is"), message, "give ground_m, a place on the ground above");
         }
         self.record(&format!("{path}.record"), &wave.record, folder);
@@ -64,8 +74,30 @@ impl Check<'_> {
         if let Some((low_hz, high_hz)) = record.filter_hz
             && !(0.0 <= low_hz && low_hz < high_hz && high_hz.is_finite())
         {
-            let message = format!("({low_hz}, {high_hz}) Hz: the lower corner comes first, and is not negative");
-            self.error(format!("{path}.filter_hz"), message, "such as (0.1, 25); a low of 0 lets low frequencies pass");
+            let message =
+                format!("({low_hz}, {high_hz}) Hz: the lower corner comes first, and is not negative");
+            self.error(
+                format!("{path}.filter_hz"),
+                message,
+                "such as (0.1, 25); a low of 0 lets low frequencies pass",
+            );
+        }
+    }
+
+    pub(super) fn ties(&mut self) {
+        let scene = self.scene;
+        for (i, tie) in scene.ties.iter().enumerate() {
+            self.known_blocks(format!("ties[{i}].block"), &tie.block);
+            if tie.on.is_empty() {
+                let help = "such as [Set(\"x_min\"), Set(\"x_max\")]";
+                self.error(format!("ties[{i}].on"), "names no region", help);
+            }
+            for (k, region) in tie.on.iter().enumerate() {
+                self.region(&format!("ties[{i}].on[{k}]"), region);
+            }
+            if let Some(along) = &tie.along {
+                self.direction(format!("ties[{i}].along"), along);
+            }
         }
     }
 
@@ -95,12 +127,17 @@ impl Check<'_> {
         match pressure {
             BlastPressure::Rows(rows) => {
                 if rows.len() < 2 {
-                    self.error(path, "needs two rows at least", "such as Rows([(0, 0), (1e-4, 2e8), (1e-3, 0)])");
+                    self.error(
+                        path,
+                        "needs two rows at least",
+                        "such as Rows([(0, 0), (1e-4, 2e8), (1e-3, 0)])",
+                    );
                 }
                 for (k, row) in rows.iter().enumerate() {
                     self.numbers(&format!("{path}[0][{k}]"), &[row.0, row.1]);
                     if row.0 < 0.0 || row.1 < 0.0 {
-                        let message = format!("({}, {}): neither time nor pressure is negative", row.0, row.1);
+                        let message =
+                            format!("({}, {}): neither time nor pressure is negative", row.0, row.1);
                         self.error(format!("{path}[0][{k}]"), message, "times count from the detonation");
                     }
                 }
@@ -114,7 +151,11 @@ impl Check<'_> {
                 self.positive(format!("{path}.alpha_per_s"), *alpha_per_s, "1/s");
                 if !(beta_per_s > alpha_per_s && beta_per_s.is_finite()) {
                     let message = format!("{beta_per_s} 1/s: must be above alpha_per_s, {alpha_per_s} 1/s");
-                    self.error(format!("{path}.beta_per_s"), message, "a pressure rises faster than it falls");
+                    self.error(
+                        format!("{path}.beta_per_s"),
+                        message,
+                        "a pressure rises faster than it falls",
+                    );
                 }
             }
         }

@@ -19,7 +19,10 @@ pub(super) fn parse(
     let wrong = |fault: String| RecordError::Table { file: file.to_path_buf(), fault };
     let lines: Vec<&str> = text.lines().collect();
     let Some(counts) = lines.get(HEADER - 1) else {
-        return Err(wrong(format!("it has {} lines: a PEER record has four before its numbers", lines.len())));
+        return Err(wrong(format!(
+            "it has {} lines: a PEER record has four before its numbers",
+            lines.len()
+        )));
     };
     let (points, spacing_s) = counted(counts).ok_or_else(|| {
         wrong(format!(
@@ -30,7 +33,8 @@ pub(super) fn parse(
     let mut rows = Vec::new();
     for (i, line) in lines.iter().enumerate().skip(HEADER) {
         for word in line.split_whitespace() {
-            let value = number(word).ok_or_else(|| wrong(format!("line {}: `{word}` is no number", i + 1)))?;
+            let value =
+                number(word).ok_or_else(|| wrong(format!("line {}: `{word}` is no number", i + 1)))?;
             rows.push((rows.len() as f64 * spacing_s, value));
         }
     }

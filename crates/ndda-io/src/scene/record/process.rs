@@ -33,10 +33,7 @@ impl Section {
         let k = (PI * corner_hz * spacing_s).tan();
         let scale = 1.0 / (1.0 + SQRT_2 * k + k * k);
         let b = if passes_high { [1.0, -2.0, 1.0] } else { [k * k, 2.0 * k * k, k * k] };
-        Self {
-            b: b.map(|b| b * scale),
-            a: [2.0 * (k * k - 1.0) * scale, (1.0 - SQRT_2 * k + k * k) * scale],
-        }
+        Self { b: b.map(|b| b * scale), a: [2.0 * (k * k - 1.0) * scale, (1.0 - SQRT_2 * k + k * k) * scale] }
     }
 
     /// Filters values in place, from rest.
@@ -127,7 +124,12 @@ mod tests {
             filtered(&mut rows, (1.0, 10.0));
             let kept = 1.0 / (1.0 + (tan(1.0) / tan(f)).powi(4)) / (1.0 + (tan(f) / tan(10.0)).powi(4));
             for i in 9_000..11_000 {
-                assert!((rows[i].1 - kept * sine(i)).abs() < 1e-6, "{f} Hz: {} {}", rows[i].1, kept * sine(i));
+                assert!(
+                    (rows[i].1 - kept * sine(i)).abs() < 1e-6,
+                    "{f} Hz: {} {}",
+                    rows[i].1,
+                    kept * sine(i)
+                );
             }
         }
     }
@@ -141,7 +143,9 @@ mod tests {
         for (baseline, slope) in [(Baseline::Linear, 0.0), (Baseline::Quadratic, 0.07)] {
             let (mut plain, mut shifted) = (rows(0.0, 0.0), rows(0.3, slope));
             let (before, after) = (corrected(&mut plain, baseline), corrected(&mut shifted, baseline));
-            assert!((after.0 - before.0 - 0.3).abs() < 1e-12 && (after.1 - before.1 - 0.5 * slope).abs() < 1e-12);
+            assert!(
+                (after.0 - before.0 - 0.3).abs() < 1e-12 && (after.1 - before.1 - 0.5 * slope).abs() < 1e-12
+            );
             for (one, other) in plain.iter().zip(&shifted) {
                 assert!((one.1 - other.1).abs() < 1e-12);
             }
