@@ -64,6 +64,7 @@ pub mod joint;
 pub mod judge;
 pub mod machine;
 pub mod mesh_export;
+pub mod mesh_files;
 pub mod mesh_input;
 #[cfg(feature = "plots")]
 pub mod mesh_picture;

@@ -23,6 +23,7 @@ use ndda_io::scene::Record;
 use ndda_io::table::TableError;
 use serde::Serialize;
 
+pub use input::{parse_baseline, parse_corners, parse_unit};
 pub use measures::{Measures, Motion, measures};
 pub use newmark::{Slide, Slip, slip};
 pub use report::tell;

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
-use ndda::shaking::{Request, Slide};
+use clap::Args;
+use ndda::shaking::{Request, Slide, parse_baseline, parse_corners, parse_unit};
 use ndda_io::scene::{AccelerationUnit, Baseline, Record};
 
 /// Arguments of `ndda record`.
@@ -18,18 +18,18 @@ pub struct RecordArgs {
     /// Column of accelerations of a CSV file, or of velocities of a history, as crest.velocity_x_m_s.
     #[arg(long, value_name = "NAME")]
     pub column: Option<String>,
-    /// Unit of the accelerations [default: that which the file names, or m/s²].
-    #[arg(long, value_enum, value_name = "UNIT")]
-    pub unit: Option<Unit>,
+    /// Unit of the accelerations: g, m/s2 or cm/s2 [default: that which the file names, or m/s2].
+    #[arg(long, value_name = "UNIT", value_parser = parse_unit)]
+    pub unit: Option<AccelerationUnit>,
     /// Factor on the accelerations.
     #[arg(long, default_value_t = 1.0)]
     pub factor: f64,
     /// Corners of a band pass in hertz, as 0.1,25.
-    #[arg(long, value_name = "LOW,HIGH", value_parser = corners)]
+    #[arg(long, value_name = "LOW,HIGH", value_parser = parse_corners)]
     pub filter: Option<(f64, f64)>,
-    /// Baseline to take out of the velocity.
-    #[arg(long, value_enum, default_value = "none")]
-    pub baseline: Line,
+    /// Baseline to take out of the velocity: none, linear or quadratic.
+    #[arg(long, value_name = "LINE", default_value = "none", value_parser = parse_baseline)]
+    pub baseline: Baseline,
     /// Even spacing of rows in seconds.
     #[arg(long, value_name = "SECONDS")]
     pub resample: Option<f64>,
@@ -56,60 +56,19 @@ pub struct RecordArgs {
     pub json: bool,
 }
 
-/// Unit of accelerations.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Unit {
-    /// Standard gravity.
-    G,
-    /// m/s².
-    #[value(name = "m/s2")]
-    Metre,
-    /// cm/s².
-    #[value(name = "cm/s2")]
-    Centimetre,
-}
-
-/// A baseline.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Line {
-    /// Nothing.
-    None,
-    /// A constant acceleration.
-    Linear,
-    /// An acceleration that grows linearly.
-    Quadratic,
-}
-
-fn corners(text: &str) -> Result<(f64, f64), String> {
-    let numbers = text
-        .split_once(',')
-        .and_then(|(low, high)| Some((low.trim().parse().ok()?, high.trim().parse().ok()?)));
-    numbers.ok_or_else(|| "write two frequencies in hertz, as 0.1,25".into())
-}
-
 impl RecordArgs {
     /// What the library is asked for.
     pub fn request(&self) -> Request {
-        let unit = self.unit.map(|unit| match unit {
-            Unit::G => AccelerationUnit::G,
-            Unit::Metre => AccelerationUnit::MetrePerSecondSquared,
-            Unit::Centimetre => AccelerationUnit::CentimetrePerSecondSquared,
-        });
-        let baseline = match self.baseline {
-            Line::None => Baseline::None,
-            Line::Linear => Baseline::Linear,
-            Line::Quadratic => Baseline::Quadratic,
-        };
         let slope = self.slope.zip(self.friction);
         let slope = slope.map(|(slope, friction)| Slide::slope(slope, friction, self.along_slope));
         Request {
             record: Record {
                 file: self.input.to_string_lossy().into_owned(),
                 column: self.column.clone(),
-                unit,
+                unit: self.unit,
                 factor: self.factor,
                 filter_hz: self.filter,
-                baseline,
+                baseline: self.baseline,
                 resample_s: self.resample,
             },
             damping: self.damping,

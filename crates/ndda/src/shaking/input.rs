@@ -3,13 +3,50 @@
 use std::path::{Path, PathBuf};
 
 use ndda_io::record::{Prepared, prepare};
-use ndda_io::scene::Record;
+use ndda_io::scene::{AccelerationUnit, Baseline, Record};
 use ndda_io::{folder, results, table};
 
 use super::ShakingError;
 
 /// What a column of velocities is called between the name of the monitor and the axis.
 const VELOCITY: &str = ".velocity_";
+
+/// A unit of accelerations by its name.
+///
+/// # Errors
+/// The names, for another one.
+pub fn parse_unit(text: &str) -> Result<AccelerationUnit, String> {
+    match text {
+        "g" => Ok(AccelerationUnit::G),
+        "m/s2" => Ok(AccelerationUnit::MetrePerSecondSquared),
+        "cm/s2" | "gal" => Ok(AccelerationUnit::CentimetrePerSecondSquared),
+        _ => Err("write g, m/s2 or cm/s2".into()),
+    }
+}
+
+/// A baseline by its name.
+///
+/// # Errors
+/// The names, for another one.
+pub fn parse_baseline(text: &str) -> Result<Baseline, String> {
+    match text {
+        "none" => Ok(Baseline::None),
+        "linear" => Ok(Baseline::Linear),
+        "quadratic" => Ok(Baseline::Quadratic),
+        _ => Err("write none, linear or quadratic".into()),
+    }
+}
+
+/// Two frequencies, as `0.1,25`.
+///
+/// # Errors
+/// An example, for another text.
+pub fn parse_corners(text: &str) -> Result<(f64, f64), String> {
+    let numbers = text
+        .split_once(',')
+        .and_then(|(low, high)| Some((low.trim().parse().ok()?, high.trim().parse().ok()?)));
+    numbers.ok_or_else(|| "write two frequencies in hertz, as 0.1,25".into())
+}
 
 /// A record, or the acceleration of a monitor of a run.
 pub(super) fn read(record: &Record) -> Result<Prepared, ShakingError> {
