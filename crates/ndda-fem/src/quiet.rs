@@ -71,7 +71,7 @@ pub struct Incident {
     pub delay_s: f64,
 }
 
-/// A node of quiet faces.
+/// A node of some quiet faces.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Dashpot {
     /// The node, counted from the block's first.
@@ -85,7 +85,7 @@ pub struct Dashpot {
 /// All quiet faces of one block.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Quiet {
-    /// Their nodes, ascending.
+    /// Their nodes: those of some faces after those of others, so that each knows what arrives through its own.
     pub dashpots: Vec<Dashpot>,
     /// Displacements of the waves.
     pub waves: Vec<Motion>,
@@ -97,14 +97,14 @@ impl Quiet {
     /// # Errors
     /// [`NoWave`] of the first wave that the rock beyond does not carry.
     pub fn new(rest: &[Vec3], faces: &[(&QuietFaces, &dyn Material)]) -> Result<Self, NoWave> {
-        let mut drag = vec![Mat3::zeros(); rest.len()];
-        let mut incident: Vec<Vec<Incident>> = vec![Vec::new(); rest.len()];
-        let mut waves = Vec::new();
+        let mut quiet = Self::default();
         for (faces, beyond) in faces {
+            let mut drag = vec![Mat3::zeros(); rest.len()];
+            let mut incident: Vec<Vec<Incident>> = vec![Vec::new(); rest.len()];
             let speeds: Vec<f64> =
                 faces.waves.iter().map(|wave| speed_m_s(*beyond, wave)).collect::<Result<_, _>>()?;
-            let first = waves.len();
-            waves.extend(faces.waves.iter().map(|wave| wave.motion.clone()));
+            let first = quiet.waves.len();
+            quiet.waves.extend(faces.waves.iter().map(|wave| wave.motion.clone()));
             for triangle in &faces.triangles {
                 let area = triangle_area_vector(&triangle.map(|n| rest[n as usize]));
                 let (third, normal) = (area.norm() / 3.0, area.normalize());
@@ -118,13 +118,12 @@ impl Quiet {
                     }
                 }
             }
+            let nodes = drag.into_iter().zip(incident).enumerate();
+            let some = nodes.filter(|(_, (drag, _))| *drag != Mat3::zeros());
+            let dashpot = |(node, (drag, incident))| Dashpot { node: node as u32, drag, incident };
+            quiet.dashpots.extend(some.map(dashpot));
         }
-        let nodes = drag.into_iter().zip(incident).enumerate();
-        let dashpots = nodes
-            .filter(|(_, (drag, _))| *drag != Mat3::zeros())
-            .map(|(node, (drag, incident))| Dashpot { node: node as u32, drag, incident })
-            .collect();
-        Ok(Self { dashpots, waves })
+        Ok(quiet)
     }
 
     /// Force of the waves that arrive at a node [N], and their velocity there [m/s]: the mean between two times.

@@ -111,7 +111,7 @@ pub fn make(request: &Request) -> Result<Shaking, ShakingError> {
     let periods_s = spectrum::periods_s();
     let turned: Vec<(f64, f64)> = rows.iter().map(|(t, a)| (*t, -a)).collect();
     let slips = request.slide.as_ref().map(|slide| [slip(rows, slide), slip(&turned, slide)]);
-    let mut shaking = Shaking {
+    let shaking = Shaking {
         record: prepared.told.clone(),
         measures: measures(&motion),
         damping: request.damping,
@@ -122,10 +122,10 @@ pub fn make(request: &Request) -> Result<Shaking, ShakingError> {
     };
     report::write_tables(&shaking, &motion)?;
     #[cfg(feature = "plots")]
-    {
+    let shaking = {
         picture::draw(&shaking, &motion, &request.out)?;
-        shaking.picture = Some(request.out.clone());
-    }
+        Shaking { picture: Some(request.out.clone()), ..shaking }
+    };
     Ok(shaking)
 }
 
