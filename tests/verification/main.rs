@@ -2,6 +2,7 @@
 
 mod bar_under_traction;
 mod bedded_bar;
+mod blast;
 mod block_on_a_slope;
 mod body_kinds;
 mod bonded_bar;
@@ -39,6 +40,7 @@ mod paper;
 mod prescribed_motion;
 mod quiet;
 mod quiet_joints;
+mod quiet_oblique;
 mod random_impacts;
 mod release_of_initial_stress;
 mod restitution;

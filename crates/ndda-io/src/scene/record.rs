@@ -53,6 +53,9 @@ pub enum RecordError {
     },
 }
 
+/// Spacings that differ by less than this part are even.
+const EVEN: f64 = 1e-4;
+
 /// Most rows of a record that is brought to an even spacing.
 const MOST_ROWS: usize = 10_000_000;
 
@@ -85,8 +88,8 @@ pub fn prepare(record: &Record, folder: &Path) -> Result<Prepared, RecordError> 
     check_speed(&file, &rows, 1.0)?;
     let (count, end_s) = (rows.len(), rows[rows.len() - 1].0);
     let mut told = format!("{}: {count} rows to {end_s:.6} s", file.display());
-    let shortest_s = rows.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(f64::INFINITY, f64::min);
-    if let Some(spacing_s) = record.resample_s.or(record.filter_hz.map(|_| shortest_s)) {
+    let needed_s = record.filter_hz.and_then(|_| uneven(&rows));
+    if let Some(spacing_s) = record.resample_s.or(needed_s) {
         let (given, new) = (rows.len(), ((end_s - rows[0].0) / spacing_s) as usize);
         if new > MOST_ROWS {
             return Err(RecordError::Spacing { file, rows: new, given });
@@ -111,6 +114,13 @@ pub fn prepare(record: &Record, folder: &Path) -> Result<Prepared, RecordError> 
     let peak = rows.iter().map(|row| row.1.abs()).fold(0.0, f64::max);
     told += &format!("; peak {peak:.4} m/s²");
     Ok(Prepared { rows, told })
+}
+
+/// The shortest spacing of rows [s]; none where all are even, to the digits that files have.
+fn uneven(rows: &[(f64, f64)]) -> Option<f64> {
+    let spacings = || rows.windows(2).map(|pair| pair[1].0 - pair[0].0);
+    let (shortest_s, longest_s) = (spacings().fold(f64::INFINITY, f64::min), spacings().fold(0.0, f64::max));
+    (longest_s > shortest_s * (1.0 + EVEN)).then_some(shortest_s)
 }
 
 /// Times [s] and accelerations [m/s²] of a CSV file.

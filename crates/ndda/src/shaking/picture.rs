@@ -11,6 +11,8 @@ use crate::plot::{self, Line};
 /// Width and height [px], and heights of the curves over time.
 const SIZE: (u32, u32) = (1160, 1240);
 const CURVE: u32 = 280;
+/// Longest period that is drawn [s].
+const LONGEST_S: f64 = 4.0;
 
 /// Draws a record to an SVG or PNG file.
 pub(super) fn draw(shaking: &Shaking, motion: &Motion, out: &Path) -> Result<(), WriteError> {
@@ -23,18 +25,19 @@ pub(super) fn draw(shaking: &Shaking, motion: &Motion, out: &Path) -> Result<(),
         (over_time("velocity", &motion.velocity), "velocity [m/s]"),
         (over_time("displacement", &motion.displacement), "displacement [m]"),
     ];
-    let points = shaking.spectrum.iter().map(|r| (r.period_s.log10(), r.acceleration_m_s2)).collect();
+    let shown = shaking.spectrum.iter().filter(|r| r.period_s <= LONGEST_S);
+    let points = shown.map(|r| (r.period_s, r.acceleration_m_s2)).collect();
     let damping = format!("{} % of critical", 100.0 * shaking.damping);
     let spectrum = Line { name: damping, points };
     write(out, SIZE, |root| {
-        let title = shaking.record.split(';').next().unwrap_or_default();
+        let title = shaking.record.split([':', ';']).next().unwrap_or_default();
         let mut rest = root.titled(title, ("sans-serif", 17))?;
         for (line, axis) in curves {
             let (upper, lower) = rest.split_vertically(CURVE);
             draw_lines(&upper, line, ["time [s]", axis])?;
             rest = lower;
         }
-        draw_lines(&rest, spectrum, ["log₁₀ of the period [s]", "pseudo-acceleration [m/s²]"])
+        draw_lines(&rest, spectrum, ["period [s]", "pseudo-acceleration [m/s²]"])
     })
 }
 
