@@ -22,7 +22,7 @@ fn impulse(peak_pa: f64, (alpha, beta): (f64, f64)) -> f64 {
 /// v = p(t − z/c)/ρ c along a column with a quiet far end.
 #[test]
 fn a_blast_on_a_face_sends_off_the_velocity_of_its_pressure_over_the_impedance() {
-    let (cells, c, rates, start_s) = (60, speeds().0, (60.0, 240.0), 2e-3);
+    let (cells, c, rates, start_s) = (60, speeds().0, (40.0, 160.0), 2e-3);
     let height = CELL_M * f64::from(cells);
     let step_s = 0.1 * CELL_M / c;
     let text = format!(
@@ -38,14 +38,14 @@ fn a_blast_on_a_face_sends_off_the_velocity_of_its_pressure_over_the_impedance()
     let mut simulation = with_record(&text, &[]);
     let (mut error, mut gone) = (0.0f64, 0.0);
     let peak = 10e6 / (DENSITY * c);
-    for step in 1..=((start_s + 2.0 * height / c + 0.06) / step_s) as u32 {
+    for step in 1..=((start_s + 2.0 * height / c + 0.15) / step_s) as u32 {
         simulation.step().unwrap();
         let t = f64::from(step) * step_s;
         let v = velocity(&simulation, 40.0, 2);
         error = error.max((v - pressure(10e6, rates, t - start_s - 40.0 / c) / (DENSITY * c)).abs());
         gone += v * step_s;
     }
-    row("blast on a face", "largest error of the velocity at 40 m over its peak", error / peak, AtMost(0.03));
+    row("blast on a face", "largest error of the velocity at 40 m over its peak", error / peak, AtMost(0.05));
     let exact = impulse(10e6, rates) / (DENSITY * c);
     row("blast on a face", "∫ v dt at 40 m [m]", gone, Within(exact, 5e-3));
 }

@@ -56,7 +56,7 @@ fn measured(angle_deg: f64, cells: u32, height: u32) -> f64 {
     let width = f64::from(cells);
     let period_s = width * sine / c;
     let omega = TAU / period_s;
-    let steps_a_period = 80;
+    let steps_a_period = 60;
     let step_s = period_s / f64::from(steps_a_period);
     let grown = |t: f64| (t / (3.0 * period_s)).min(1.0);
     let rows: Vec<(f64, f64)> = (0..=3000)
@@ -124,7 +124,7 @@ fn a_quiet_face_sends_back_of_oblique_waves_what_its_closed_form_says() {
         let exact = sent_back(is_p, angle_deg);
         assert!((exact - printed).abs() < 6e-6, "P {is_p}, {angle_deg}°: {exact} {printed}");
     }
-    for (angle_deg, cells) in [(60.0, 24), (75.0, 22)] {
+    for (angle_deg, cells) in [(60.0, 34), (75.0, 30)] {
         row(
             "oblique wave",
             &format!("energy that a quiet face sends back of a P wave at {angle_deg}°"),
