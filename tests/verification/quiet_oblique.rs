@@ -124,7 +124,7 @@ fn a_quiet_face_sends_back_of_oblique_waves_what_its_closed_form_says() {
         let exact = sent_back(is_p, angle_deg);
         assert!((exact - printed).abs() < 6e-6, "P {is_p}, {angle_deg}°: {exact} {printed}");
     }
-    for (angle_deg, cells) in [(60.0, 34), (75.0, 30)] {
+    for (angle_deg, cells) in [(60.0, 48), (75.0, 44)] {
         row(
             "oblique wave",
             &format!("energy that a quiet face sends back of a P wave at {angle_deg}°"),

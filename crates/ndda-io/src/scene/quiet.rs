@@ -12,7 +12,7 @@ use super::{Record, Region};
 /// ```text
 /// quiet: [
 ///     // Rock goes on below; an S wave comes up, from a record on outcropping rock.
-///     (block: "ground", on: Set("z_min"), incident: [(wave: S((1, 0, 0)), is: Outcrop, record: (file: "quake.at2"))]),
+///     (block: "ground", on: Set("z_min"), incident: [(wave: S((1, 0, 0)), motion: Outcrop, record: (file: "quake.at2"))]),
 /// ],
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -42,7 +42,7 @@ pub struct IncidentWave {
     pub record: Record,
     /// What the record is of. Default: `Upgoing`.
     #[serde(default)]
-    pub is: RecordedAs,
+    pub motion: RecordedAs,
     /// Direction in which it travels; its length does not matter. Default: against gravity, (0, 0, 1) without.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub along: Option<[f64; 3]>,

@@ -144,7 +144,7 @@ fn arriving(
         return Err(format!("ground_m lies {:.3} m behind where the wave begins: it must be ahead", -height));
     }
     let prepared = record::prepare(&wave.record, folder).map_err(|error| error.to_string())?;
-    let (rows, share) = match (wave.is, ground) {
+    let (rows, share) = match (wave.motion, ground) {
         (RecordedAs::Outcrop, _) => (prepared.rows, 0.5),
         (RecordedAs::Within, Some(height)) => (without_echo(&prepared.rows, 2.0 * height / c), 1.0),
         (RecordedAs::Within, None) => return Err("a record from within rock needs ground_m".into()),

@@ -57,10 +57,10 @@ impl Check<'_> {
                 self.numbers(&format!("{path}.{field}"), place);
             }
         }
-        if wave.is == RecordedAs::Within && wave.ground_m.is_none() {
+        if wave.motion == RecordedAs::Within && wave.ground_m.is_none() {
             let message =
                 "a record from within rock holds the wave and its echo, which comes from level ground";
-            self.misfit(format!("{path}.is"), message, "give ground_m, a place on the ground above");
+            self.misfit(format!("{path}.motion"), message, "give ground_m, a place on the ground above");
         }
         self.record(&format!("{path}.record"), &wave.record, folder);
     }
