@@ -68,6 +68,7 @@ fn a_warm_step_with_contact_friction_and_supports_allocates_nothing() {
         ("sticking_30_phi35", damped, 500, 500),
         ("sticking_30_phi35_spring", damped, 500, 500),
         ("safety/plane_water", &[], 50, 1000),
+        ("works/quiet_column", &[], 50, 1000),
     ] {
         for threads in [1, 2] {
             assert_eq!(

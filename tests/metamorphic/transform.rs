@@ -111,6 +111,7 @@ pub fn each_direction(scene: &mut Scene, map: &mut impl FnMut(&mut [f64; 3])) {
         match &mut support.hold {
             Hold::Direction(direction) | Hold::Acceleration { direction, .. } => map(direction),
             Hold::Motion(rows) => rows.iter_mut().for_each(|row| map(&mut row.displacement_m)),
+            Hold::Shaking(parts) => parts.iter_mut().for_each(|part| map(&mut part.direction)),
             Hold::Fixed | Hold::Normal => {}
         }
         if let Region::Plane { normal, .. } = &mut support.on {

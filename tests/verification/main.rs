@@ -2,6 +2,7 @@
 
 mod bar_under_traction;
 mod bedded_bar;
+mod blast;
 mod block_on_a_slope;
 mod body_kinds;
 mod bonded_bar;
@@ -37,6 +38,9 @@ mod nothing_far_or_stale;
 mod one_block_alone;
 mod paper;
 mod prescribed_motion;
+mod quiet;
+mod quiet_joints;
+mod quiet_oblique;
 mod random_impacts;
 mod release_of_initial_stress;
 mod restitution;
@@ -45,6 +49,7 @@ mod roof_wedge;
 mod safety_factor;
 mod settling;
 mod shaken_base;
+mod shaking;
 mod sliding_over_element_borders;
 mod spring_creep;
 mod springs_and_elimination;

@@ -3,6 +3,7 @@
 mod joint;
 #[cfg(feature = "plots")]
 mod picture;
+mod record;
 mod safety;
 mod stereonet;
 mod study;
@@ -15,6 +16,7 @@ pub use joint::{JointArgs, JointTestKind};
 use ndda::run::Sensitivity;
 #[cfg(feature = "plots")]
 pub use picture::PictureArgs;
+pub use record::RecordArgs;
 pub use safety::{SafetyArgs, SafetyBy};
 pub use stereonet::StereonetArgs;
 pub use study::{Emit, Spread, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
@@ -123,6 +125,8 @@ pub enum Verb {
     Tune(TuneArgs),
     /// Draw joints on a stereonet: poles, mean and concentration of each set, and which may slide or topple out of a slope.
     Stereonet(StereonetArgs),
+    /// Show a record of ground motion: motion over time, response spectrum, intensity, and slip of a rigid block.
+    Record(RecordArgs),
     /// Draw columns of histories.
     #[cfg(feature = "plots")]
     Plot(PlotArgs),

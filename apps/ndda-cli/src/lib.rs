@@ -20,7 +20,7 @@ use verbs::schema;
 #[cfg(feature = "shell")]
 use verbs::shell;
 use verbs::{
-    certify, check, explain, joint, mesh, new, processes, resume, run, safety, stereonet, study, tune,
+    certify, check, explain, joint, mesh, new, processes, record, resume, run, safety, stereonet, study, tune,
 };
 #[cfg(feature = "plots")]
 use verbs::{picture, plot};
@@ -71,6 +71,7 @@ pub fn run_command(args: Vec<OsString>, program: Vec<OsString>) -> u8 {
         Verb::Safety(args) => safety::safety(&args),
         Verb::Tune(args) => tune::tune(&args),
         Verb::Stereonet(args) => stereonet::stereonet(&args),
+        Verb::Record(args) => record::record(&args),
         Verb::Study(args) => study::study(&args),
         #[cfg(feature = "plots")]
         Verb::Plot(args) => plot::plot(&args),

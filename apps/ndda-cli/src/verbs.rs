@@ -11,6 +11,7 @@ pub mod picture;
 #[cfg(feature = "plots")]
 pub mod plot;
 pub mod processes;
+pub mod record;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod resume;

@@ -64,6 +64,7 @@ pub fn energies(sample: &Sample) -> [(&'static str, f64); 12] {
         ("load_work_j", sample.load_work_j),
         ("damping_work_j", sample.damping_work_j),
         ("restitution_work_j", sample.restitution_work_j),
+        ("radiated_j", sample.radiated_j),
         ("balance_j", sample.balance_j),
     ]
 }

@@ -29,6 +29,7 @@
 //! | [`frame`] | the rotation R of a block |
 //! | [`loads`], [`pressure`], [`table`], [`motion`] | gravity, tractions, initial stress, pressure of water; values and motions over time |
 //! | [`supports`] | held nodes, springs and prescribed motion |
+//! | [`quiet`] | faces behind which rock goes on, and waves that arrive through them |
 //! | [`stress`] | stresses, recovered for output |
 //! | [`testing`] | the contract suite of materials |
 
@@ -42,11 +43,13 @@ pub mod loads;
 pub mod material;
 pub mod motion;
 pub mod pressure;
+pub mod quiet;
 pub mod stress;
 pub mod supports;
 pub mod table;
 pub mod testing;
 pub mod tet4;
+mod ties;
 pub mod transversely_isotropic;
 
 pub use block_operator::BlockOperator;
@@ -57,6 +60,7 @@ pub use loads::InitialStress;
 pub use material::{Damping, Material, Voigt};
 pub use motion::{Motion, Record};
 pub use pressure::{CutRoom, LinearField, PressureField, PressurePiece};
+pub use quiet::{PlaneWave, Quiet, QuietFaces};
 pub use supports::{BlockSupports, Hold, NodeSupport, SupportError};
 pub use table::{Between, Table};
 pub use transversely_isotropic::{Bedding, TransverselyIsotropic};

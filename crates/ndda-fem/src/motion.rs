@@ -11,6 +11,8 @@ pub enum Motion {
     Rows(Vec<(f64, Vec3)>),
     /// A record of accelerations, integrated to velocity and displacement.
     Record(Record),
+    /// Several at once, which add up.
+    Sum(Vec<Motion>),
 }
 
 impl Motion {
@@ -19,6 +21,7 @@ impl Motion {
         match self {
             Self::Rows(rows) => interpolated(rows, time_s).unwrap_or_else(Vec3::zeros),
             Self::Record(record) => record.displacement(time_s),
+            Self::Sum(parts) => parts.iter().map(|part| part.displacement(time_s)).sum(),
         }
     }
 
@@ -33,6 +36,7 @@ impl Motion {
                 }
             }
             Self::Record(record) => record.velocity(time_s),
+            Self::Sum(parts) => parts.iter().map(|part| part.velocity(time_s)).sum(),
         }
     }
 
@@ -49,6 +53,7 @@ impl Motion {
                 let inside = within(&record.rows, |row| row[0], from_s, to_s);
                 self.farthest_velocity(from_s, to_s, inside.iter().map(|row| row[0]))
             }
+            Self::Sum(parts) => parts.iter().map(|part| part.unresolved_m_s(from_s, to_s)).sum(),
         }
     }
 
@@ -69,6 +74,7 @@ impl Motion {
         match self {
             Self::Rows(rows) => rows.iter().any(|row| part(&row.1)),
             Self::Record(record) => part(&record.direction),
+            Self::Sum(parts) => parts.iter().any(|part| part.moves(along)),
         }
     }
 }

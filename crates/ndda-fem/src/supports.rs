@@ -6,6 +6,8 @@ use ndda_mesh::{Mat3, Vec3};
 use crate::block_operator::BlockOperator;
 use crate::frame::Frame;
 use crate::motion::Motion;
+use crate::quiet::Quiet;
+use crate::ties;
 
 /// Two directions closer than this (sine of the angle) are the same; far above round-off, far below any joint.
 const SAME_DIRECTION: f64 = 1e-6;
@@ -43,6 +45,12 @@ pub enum SupportError {
     TurnsHeldDirections {
         /// How many independent rotations the supports leave.
         freedom: usize,
+    },
+    /// A node moves like others, and as prescribed.
+    #[error("node {node} is tied to others and moved by a support: leave it out of one")]
+    TiedAndMoved {
+        /// The node, counted from the block's first.
+        node: u32,
     },
     /// Two supports want different things of one node.
     #[error(
@@ -91,6 +99,10 @@ pub struct BlockSupports {
     pub motions: Vec<Motion>,
     /// How the block's frame may turn under these supports.
     pub frame: Frame,
+    /// Groups of nodes that move alike, each ascending.
+    pub ties: Vec<Vec<u32>>,
+    /// Quiet faces, which resist velocities and hold nothing.
+    pub quiet: Quiet,
 }
 
 /// Rigid motions with less than this part of the stiffness of the best held one are free.
@@ -119,14 +131,24 @@ impl BlockSupports {
         stiffness.min() > RIGID * stiffness.max()
     }
 
-    /// Merges the supports of one block and finds how its frame may turn.
+    /// Merges the supports and the tied nodes of one block, and finds how its frame may turn.
     ///
     /// # Errors
-    /// [`SupportError::Conflict`] for contradictory prescriptions, [`SupportError::TurnsHeldDirections`] when a
+    /// [`SupportError::Conflict`] and [`SupportError::TiedAndMoved`] for contradictory prescriptions, [`SupportError::TurnsHeldDirections`] when a
     /// roller direction would not stay constant in the block's frame.
-    pub fn new(operator: &BlockOperator, supports: &[NodeSupport]) -> Result<Self, SupportError> {
-        let mut merged =
-            Self { held: Vec::new(), springs: Vec::new(), motions: Vec::new(), frame: Frame::Held };
+    pub fn new(
+        operator: &BlockOperator,
+        supports: &[NodeSupport],
+        tied: &[Vec<u32>],
+    ) -> Result<Self, SupportError> {
+        let mut merged = Self {
+            held: Vec::new(),
+            springs: Vec::new(),
+            motions: Vec::new(),
+            frame: Frame::Held,
+            ties: ties::merged(operator.nodes(), tied),
+            quiet: Quiet::default(),
+        };
         let mut held: Vec<Option<HeldNode>> = vec![None; operator.nodes()];
         for support in supports {
             let motion = match &support.hold {
@@ -146,6 +168,7 @@ impl BlockSupports {
                 }
             }
         }
+        ties::hold_alike(&merged.ties, &mut held)?;
         merged.held = held.into_iter().flatten().collect();
         for node in &mut merged.held {
             node.free = complement(&node.held);
@@ -184,6 +207,10 @@ impl BlockSupports {
     /// The frame is free where only whole nodes are held, held where no rotation is left, and turns about one
     /// axis where that axis leaves all held directions alone.
     fn choose_frame(&self, operator: &BlockOperator) -> Result<Frame, SupportError> {
+        // What moves alike at some distance does not turn.
+        if !self.ties.is_empty() {
+            return Ok(Frame::Held);
+        }
         let holds = self.all_holds();
         if holds.is_empty() {
             return Ok(Frame::free(operator));
@@ -220,7 +247,7 @@ fn direction(hold: &Hold) -> Option<Vec3> {
 }
 
 /// Adds the part of `n` that is new, by Gram–Schmidt.
-fn add_direction(held: &mut Vec<Vec3>, n: &Vec3) {
+pub(crate) fn add_direction(held: &mut Vec<Vec3>, n: &Vec3) {
     let new = held.iter().fold(*n, |rest, h| rest - h * h.dot(&rest));
     if new.norm() > SAME_DIRECTION {
         held.push(new.normalize());
@@ -294,13 +321,13 @@ mod tests {
 
     #[test]
     fn a_block_without_supports_turns_freely() {
-        let supports = BlockSupports::new(&corner(), &[]).unwrap();
+        let supports = BlockSupports::new(&corner(), &[], &[]).unwrap();
         assert!(matches!(supports.frame, Frame::Free { .. }));
     }
 
     #[test]
     fn a_block_on_one_roller_plane_turns_about_its_normal() {
-        let supports = BlockSupports::new(&corner(), &[along(&[0, 1, 2], Vec3::z())]).unwrap();
+        let supports = BlockSupports::new(&corner(), &[along(&[0, 1, 2], Vec3::z())], &[]).unwrap();
         let Frame::About { axis } = supports.frame else { panic!("{:?}", supports.frame) };
         assert!(axis.cross(&Vec3::z()).norm() < 1e-12);
     }
@@ -309,7 +336,7 @@ mod tests {
     fn three_roller_planes_hold_the_frame_and_merge_at_the_corner() {
         let planes =
             [along(&[0, 1, 2], Vec3::z()), along(&[0, 1, 3], Vec3::y()), along(&[0, 2, 3], -Vec3::x())];
-        let supports = BlockSupports::new(&corner(), &planes).unwrap();
+        let supports = BlockSupports::new(&corner(), &planes, &[]).unwrap();
         assert_eq!(supports.frame, Frame::Held);
         assert_eq!(supports.held[0].held.len(), 3);
         assert_eq!(supports.held[1].free, vec![Vec3::x()]);
@@ -318,9 +345,9 @@ mod tests {
     #[test]
     fn a_fixed_corner_leaves_a_pendulum_and_a_single_roller_is_refused() {
         let fixed = NodeSupport { nodes: vec![0], hold: Hold::Fixed, spring_n_m: None };
-        let supports = BlockSupports::new(&corner(), &[fixed]).unwrap();
+        let supports = BlockSupports::new(&corner(), &[fixed], &[]).unwrap();
         assert!(matches!(supports.frame, Frame::Free { .. }));
-        let refused = BlockSupports::new(&corner(), &[along(&[0], Vec3::z())]);
+        let refused = BlockSupports::new(&corner(), &[along(&[0], Vec3::z())], &[]);
         assert!(matches!(refused, Err(SupportError::TurnsHeldDirections { .. })));
     }
 
@@ -328,8 +355,8 @@ mod tests {
     fn a_motion_against_a_roller_is_a_conflict() {
         let motion = Motion::Rows(vec![(0.0, Vec3::zeros()), (1.0, Vec3::z())]);
         let moved = NodeSupport { nodes: vec![0, 1, 2], hold: Hold::Motion(motion), spring_n_m: None };
-        let clash = BlockSupports::new(&corner(), &[moved.clone(), along(&[0], Vec3::z())]);
+        let clash = BlockSupports::new(&corner(), &[moved.clone(), along(&[0], Vec3::z())], &[]);
         assert_eq!(clash, Err(SupportError::Conflict { node: 0 }));
-        assert!(BlockSupports::new(&corner(), &[moved, along(&[0], Vec3::x())]).is_ok());
+        assert!(BlockSupports::new(&corner(), &[moved, along(&[0], Vec3::x())], &[]).is_ok());
     }
 }

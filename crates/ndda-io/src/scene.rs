@@ -1,5 +1,6 @@
 //! The scene: everything a run needs, as a person writes it in RON. Every quantity is SI with its unit in the key.
 
+mod blast;
 mod block;
 pub(crate) mod check;
 pub mod code;
@@ -18,6 +19,7 @@ pub(crate) mod overrides;
 mod parameter_values;
 mod parameters;
 pub(crate) mod parse;
+mod quiet;
 pub mod read;
 pub mod record;
 mod reference;
@@ -25,6 +27,7 @@ mod renamed;
 mod rock;
 #[cfg(feature = "schema")]
 pub mod schema;
+mod shaking;
 mod shape;
 mod stage;
 pub mod study;
@@ -38,6 +41,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use blast::{Blast, BlastPressure, BlastWall};
 pub use block::{Block, Body, InSitu, Stress, StressGradient, Turn};
 pub use contact::{
     Contact, Dilation, FractureEnergy, Friction, JointLaw, MaterialPair, Memory, Potential, Residual,
@@ -47,9 +51,11 @@ pub use load::{FactorRow, Force, Traction};
 pub use material::{Bedding, Damping, Material};
 pub use monitor::{At, Monitor};
 pub use output::{Field, FieldFormat, Output, Precision, TableFormat};
+pub use quiet::{IncidentWave, Quiet, RecordedAs, Tie, WaveKind};
 pub use reference::Reference;
 pub use rock::{Axis, DiscRule, Discontinuity, Domain, Excavation, OrientationScatter};
 pub use rock::{Rock, Slivers, SpacingScatter, Voronoi, Whereabouts};
+pub use shaking::{AccelerationUnit, Baseline, Component, Record};
 pub use shape::{Fill, Grading, Pattern, Shape, Towards};
 pub use stage::{Stage, StageLaws, Then};
 pub use support::{By, Hold, MotionRow, Region, Support};
@@ -102,6 +108,15 @@ pub struct Scene {
     /// Pressure of water in joints and on faces. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub water: Vec<Water>,
+    /// Faces behind which rock goes on, and waves that arrive through them. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub quiet: Vec<Quiet>,
+    /// Nodes of equal height that move alike, as at the sides of level ground. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ties: Vec<Tie>,
+    /// Pressure of explosions on the walls of holes. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub blasts: Vec<Blast>,
     /// Forces on points of blocks. Default: none.
     #[serde(default)]
     pub forces: Vec<Force>,

@@ -2,6 +2,7 @@
 
 use crate::linear::linear_solver::SolveError;
 use ndda_contact::ContactError;
+use ndda_fem::quiet::NoWave;
 use ndda_fem::{FrameError, SupportError};
 use ndda_mesh::{TetId, TriangleId};
 
@@ -208,6 +209,14 @@ pub enum SetupError {
         block: String,
         /// The conflict and its remedy.
         reason: &'static str,
+    },
+    /// A wave that the rock beyond a quiet face does not carry.
+    #[error("block `{block}`: {source}")]
+    Wave {
+        /// Name of the block.
+        block: String,
+        /// The problem.
+        source: Box<NoWave>,
     },
     /// Contact at the start cannot be computed.
     #[error(transparent)]

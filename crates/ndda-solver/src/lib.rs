@@ -22,6 +22,8 @@
 //!     initial_stress: None,
 //!     tractions: Vec::new(),
 //!     pressures: Vec::new(),
+//!     ties: Vec::new(),
+//!     quiet: Vec::new(),
 //!     forces: Vec::new(),
 //!     velocity_m_s: Vec3::zeros(),
 //!     spin_rad_s: Vec3::zeros(),
@@ -70,7 +72,9 @@ mod step;
 pub mod testing;
 
 pub use bodies::kind::BodyKind;
-pub use bodies::prototype::{BodySetup, ForceSetup, Mass, PressureSetup, Prototype, TractionSetup};
+pub use bodies::prototype::{
+    BodySetup, ForceSetup, Mass, PressureSetup, Prototype, QuietSetup, TractionSetup,
+};
 pub use bodies::step_damping::StepDamping;
 pub use bodies::unknowns::Unknowns;
 pub use diagnostics::energies::Sample;

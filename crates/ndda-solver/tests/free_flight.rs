@@ -18,6 +18,8 @@ fn cube(integrator: Box<dyn TimeIntegrator>, step_s: f64, gravity: Vec3, spin: V
         initial_stress: None,
         tractions: Vec::new(),
         pressures: Vec::new(),
+        ties: Vec::new(),
+        quiet: Vec::new(),
         forces: Vec::new(),
         velocity_m_s: Vec3::zeros(),
         spin_rad_s: spin,

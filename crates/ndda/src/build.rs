@@ -1,10 +1,12 @@
 //! Scene → simulation: the only place where names become objects.
 
+mod blast;
 mod bodies;
 mod choices;
 pub mod friction;
 pub mod overlaps;
 mod pairs;
+mod quiet;
 mod regions;
 mod rock;
 mod settle;
@@ -31,6 +33,7 @@ use crate::run::monitor::Monitor;
 pub use choices::Choices;
 use friction::friction_law;
 use pairs::{add_glue, add_joint_laws, between_materials, restitution_table};
+pub use quiet::records;
 use regions::{find, find_all};
 pub use rock::{CutRock, Meshes, RockReport};
 pub(crate) use settle::settle;
@@ -233,6 +236,10 @@ fn setup_fault(scene: &Scene, error: SetupError) -> Fault {
     let (block, supported) = match &error {
         SetupError::Support { block, .. } | SetupError::Kind { block, .. } => (block, true),
         SetupError::Factor { block, .. } | SetupError::Solve { block, .. } => (block, false),
+        SetupError::Wave { block, .. } => {
+            let quiet = scene.quiet.iter().position(|q| scene::matches(&q.block, block)).unwrap_or(0);
+            return Fault::new(format!("quiet[{quiet}].incident"), error);
+        }
         SetupError::Contact(_) => return Fault::new("contact", error),
     };
     let support = scene.supports.iter().position(|s| supported && scene::matches(&s.block, block));

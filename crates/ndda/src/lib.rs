@@ -30,6 +30,7 @@
 //! | [`run`] | a run with its history, fields, contacts, checkpoints and log |
 //! | [`driver`] | a simulation that a script or another program steps |
 //! | [`judge`] | closed forms, verdicts, the label `accurate` or `inaccurate`, the summary |
+//! | [`checked`] | what `ndda check` finds in a scene without errors |
 //! | [`explain`] | what a run will do, what it leaves out and why |
 //! | [`study`] | many runs of one scene: error against time |
 //! | [`sweep`] | quantities over values and distributions of parameters: tables, probability of failure |
@@ -37,6 +38,7 @@
 //! | [`safety`] | the factor of safety of a slope, and how its blocks fail |
 //! | [`joint`] | direct shear and closure of one joint, without blocks |
 //! | [`stereonet`] | orientations of joints on a net, and kinematic checks of a slope |
+//! | [`shaking`] | records of ground motion: measures, response spectra, slip of a rigid block |
 //! | [`numbers`] | numbers as command lines take them |
 //! | [`tune`] | the cheapest settings that reach an error |
 //! | [`examples`], [`templates`] | scenes that come with the program |
@@ -46,6 +48,7 @@
 
 pub mod build;
 pub mod certify;
+pub mod checked;
 pub mod choose;
 pub mod columns;
 mod documents;
@@ -61,6 +64,7 @@ pub mod joint;
 pub mod judge;
 pub mod machine;
 pub mod mesh_export;
+pub mod mesh_files;
 pub mod mesh_input;
 #[cfg(feature = "plots")]
 pub mod mesh_picture;
@@ -76,6 +80,7 @@ pub mod plot;
 pub mod report;
 pub mod run;
 pub mod safety;
+pub mod shaking;
 pub mod stereonet;
 pub mod study;
 #[cfg(any(feature = "plots", feature = "report"))]

@@ -186,6 +186,8 @@ where
     Y: AsRangedCoord<Value = f64>,
     Y::CoordDescType: Ranged<ValueType = f64> + ValueFormatter<f64>,
 {
+    // Labels of zero are what rounding leaves of it.
+    let small = 1e-9 * lines.iter().flat_map(|line| &line.points).map(|p| p.1.abs()).fold(0.0, f64::max);
     let mut chart = ChartBuilder::on(root)
         .margin(16)
         .x_label_area_size(46)
@@ -202,7 +204,7 @@ where
         .label_style(("sans-serif", 14))
         .axis_desc_style(("sans-serif", 16))
         .x_label_formatter(&|x| short(*x))
-        .y_label_formatter(&|y| short(*y))
+        .y_label_formatter(&|y| short(if !log && y.abs() < small { 0.0 } else { *y }))
         .draw()?;
     for (i, line) in lines.iter().enumerate() {
         // Values without a logarithm leave a gap.

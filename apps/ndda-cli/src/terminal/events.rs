@@ -20,6 +20,8 @@ pub const NEW: &str = "ndda.new/1";
 pub const PLOT: &str = "ndda.plot/1";
 /// Schema of `ndda stereonet`.
 pub const STEREONET: &str = "ndda.stereonet/1";
+/// Schema of `ndda record`.
+pub const RECORD: &str = "ndda.record/1";
 /// Schema of `ndda picture`.
 #[cfg(feature = "plots")]
 pub const PICTURE: &str = "ndda.picture/1";

@@ -1,38 +1,15 @@
 //! `ndda check`: everything that can be wrong with a scene, without running it.
 
-use std::fmt;
 use std::path::Path;
 
-use ndda::build::RockReport;
-use ndda::choose;
-use ndda::forecast::{cost, cost::Guess, doubts, step, step::Advice};
-use ndda_io::summary::Chosen;
-use serde::Serialize;
+use ndda::checked::Checked;
+use ndda::forecast::{cost, doubts, step};
+use ndda::{build, choose};
 
 use crate::args::CheckArgs;
 use crate::terminal::console::say;
 use crate::terminal::events::{self, Events};
 use crate::{exit, input};
-
-/// Findings in a scene without errors.
-#[derive(Serialize)]
-struct Checked<'a> {
-    exit_code: u8,
-    scene: &'a Path,
-    warnings: usize,
-    blocks: usize,
-    nodes: usize,
-    tets: usize,
-    unknowns: usize,
-    factors: usize,
-    steps: u64,
-    advised_step_s: Option<f64>,
-    contact_stability: Option<&'a Advice>,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    chosen: &'a [Chosen],
-    rock: &'a [RockReport],
-    guess: Option<Guess>,
-}
 
 /// Runs `ndda check`; returns the exit code.
 pub fn check(args: &CheckArgs) -> u8 {
@@ -52,6 +29,7 @@ pub fn check(args: &CheckArgs) -> u8 {
     let file = input::file(&args.input);
     let stops = guess.as_ref().err().map(|error| format!("the first steps stop: {error}"));
     stops.iter().for_each(|stops| events.warn(stops));
+    let records = build::records(&loaded.scene, file.parent().unwrap_or(Path::new("")));
     let (simulation, blocks) = (&model.simulation, model.simulation.blocks());
     let checked = Checked {
         exit_code: exit::DONE,
@@ -66,6 +44,7 @@ pub fn check(args: &CheckArgs) -> u8 {
         advised_step_s: advice.as_ref().map(|advice| advice.step_s),
         contact_stability: advice.as_ref(),
         chosen: &loaded.chosen,
+        records: &records,
         rock: &model.rock,
         guess: guess.ok(),
     };
@@ -87,19 +66,4 @@ pub fn check(args: &CheckArgs) -> u8 {
         say(&format!("{checked}{stable}{written}"));
     }
     checked.exit_code
-}
-
-impl fmt::Display for Checked<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { blocks, nodes, tets, unknowns, factors, steps, warnings, .. } = self;
-        writeln!(f, "{}: no errors, {warnings} warning(s)", self.scene.display())?;
-        write!(
-            f,
-            "{blocks} block(s), {nodes} nodes, {tets} tets, {unknowns} unknowns, {factors} factor(s); "
-        )?;
-        write!(f, "{steps} steps")?;
-        self.rock.iter().try_for_each(|rock| write!(f, "\n{rock}"))?;
-        self.chosen.iter().try_for_each(|chosen| write!(f, "\n{chosen}"))?;
-        self.guess.as_ref().map_or(Ok(()), |guess| write!(f, "\n{guess}"))
-    }
 }

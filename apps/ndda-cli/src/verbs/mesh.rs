@@ -1,18 +1,15 @@
 //! `ndda mesh`: the blocks of a scene or of a mesh file, counted, measured and drawn without running anything.
 
-use std::fmt::Write as _;
 use std::path::Path;
 
 use ndda::build::{self, CutRock, Meshes};
+use ndda::mesh_files::MeshFiles;
 use ndda::mesh_input::{self, Repair};
 use ndda::mesh_report::{self, MeshReport};
-use ndda::{forecast, mesh_export, places};
+use ndda::{forecast, places};
 use ndda_io::diagnostic::SceneErrors;
-use ndda_io::folder::MESH_REPORT;
 use ndda_io::read::load;
-use ndda_io::scene::{FieldFormat, Scene};
-use ndda_io::vtu::{self, Frame, Topology};
-use ndda_io::{OutputFolder, WriteError};
+use ndda_io::scene::Scene;
 use ndda_mesh::BlockSet;
 use serde::Serialize;
 
@@ -20,9 +17,6 @@ use crate::args::{Fix, MeshArgs};
 use crate::terminal::console::say;
 use crate::terminal::events::{self, Events};
 use crate::{exit, input};
-
-/// Picture of the blocks.
-const DRAWN: &str = if cfg!(feature = "png") { "blocks.png" } else { "blocks.svg" };
 
 /// Blocks before they are checked.
 struct Input {
@@ -129,7 +123,14 @@ fn from_file(args: &MeshArgs) -> Result<Input, Refused> {
 
 fn finish(args: &MeshArgs, events: Events, measured: &MeshReport, input: &Input, blocks: &BlockSet) -> u8 {
     let folder = places::folder_for(args.out.as_deref(), &args.input, "_mesh");
-    match write(&folder, args, measured, input, blocks) {
+    let written = MeshFiles {
+        input: &args.input,
+        also: &args.also,
+        measured,
+        meshes: &input.meshes,
+        rock: &input.rock,
+    };
+    match written.write(&folder, args.force, blocks) {
         Ok(files) => {
             events.emit("measured", &Measured { report: measured });
             events.emit("finished", &Finished { exit_code: exit::DONE, folder: &folder });
@@ -140,37 +141,4 @@ fn finish(args: &MeshArgs, events: Events, measured: &MeshReport, input: &Input,
         }
         Err(error) => events.fail(exit::INPUT_OUTPUT, &error.to_string()),
     }
-}
-
-/// Writes the picture and the blocks; returns a line that says where.
-fn write(
-    folder: &Path,
-    args: &MeshArgs,
-    measured: &MeshReport,
-    input: &Input,
-    blocks: &BlockSet,
-) -> Result<String, WriteError> {
-    let folder = OutputFolder::create(folder, args.force)?;
-    let folder = folder.path();
-    let path = folder.join("blocks.vtu");
-    let topology = Topology::new(blocks, FieldFormat::default()).with_blocks(blocks);
-    let frame = Frame::new(blocks, &blocks.rest_position);
-    ndda_io::atomic::write(&path, &vtu::encode(&path, &topology, &frame)?)?;
-    ndda_io::atomic::write(&folder.join(MESH_REPORT), measured.json().as_bytes())?;
-    #[cfg(feature = "plots")]
-    {
-        use ndda::{mesh_picture, picture, view3d};
-        let draw = |root: &picture::Area| mesh_picture::draw(measured, root);
-        picture::write(&folder.join("mesh.svg"), mesh_picture::SIZE, draw)?;
-        view3d::draw_blocks(&args.input.display().to_string(), blocks, &folder.join(DRAWN))?;
-    }
-    let mut exported = String::new();
-    for export in &args.also {
-        for name in mesh_export::write(folder, *export, &input.meshes, &input.rock)? {
-            let _ = write!(exported, ", {name}");
-        }
-    }
-    let pictures = format!(", {DRAWN} (blocks), mesh.svg (histograms)");
-    let pictures = if cfg!(feature = "plots") { &pictures } else { "" };
-    Ok(format!("{}: blocks.vtu (open it in ParaView), mesh.json{pictures}{exported}", folder.display()))
 }

@@ -36,6 +36,7 @@ _HISTORY = (
     "load_work_j",
     "damping_work_j",
     "restitution_work_j",
+    "radiated_j",
     "balance_j",
 )
 

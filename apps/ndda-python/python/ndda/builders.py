@@ -19,6 +19,23 @@ from typing import ClassVar, Literal, TypeAlias
 from ndda._builder import Builder
 
 
+class AccelerationUnit:
+    """Unit of a record.
+
+    Examples
+    --------
+    >>> AccelerationUnit.G
+    'G'
+    """
+
+    # Standard gravity, 9.80665 m/s².
+    G: ClassVar[Literal["G"]] = "G"
+    # m/s².
+    MetrePerSecondSquared: ClassVar[Literal["MetrePerSecondSquared"]] = "MetrePerSecondSquared"
+    # cm/s², gal.
+    CentimetrePerSecondSquared: ClassVar[Literal["CentimetrePerSecondSquared"]] = "CentimetrePerSecondSquared"
+
+
 class At:
     """A place on a block.
 
@@ -87,6 +104,24 @@ class Axis:
     Z: ClassVar[Literal["Z"]] = "Z"
 
 
+class Baseline:
+    """The baseline of a record's velocity: the polynomial through zero at the first row that fits the
+    velocity best, by least squares over time.
+
+    Examples
+    --------
+    >>> Baseline.None_
+    'None'
+    """
+
+    # Nothing is taken out.
+    None_: ClassVar[Literal["None"]] = "None"
+    # c₁ t: a constant acceleration.
+    Linear: ClassVar[Literal["Linear"]] = "Linear"
+    # c₁ t + c₂ t²: an acceleration that grows linearly.
+    Quadratic: ClassVar[Literal["Quadratic"]] = "Quadratic"
+
+
 @dataclass(kw_only=True)
 class Bedding(Builder):
     """Moduli of a bedded rock across its beds (transverse isotropy).
@@ -113,6 +148,148 @@ class Bedding(Builder):
     poisson_across: float
     shear_across_pa: float
     _kinds: ClassVar[Mapping[str, str]] = {"normal": "(num)", "young_across_pa": "num", "poisson_across": "num", "shear_across_pa": "num"}
+
+
+@dataclass(kw_only=True)
+class Blast(Builder):
+    """Pressure of an explosion on faces, along their inward normals as they are at any time.
+
+    ```text blasts: [ (block: "bench_*", on: Hole(from_m: (0, 3, 0), to_m: (0, 3, 8), within_m: 0.2),
+    pressure: Duvall(peak_pa: Megapascal(200), alpha_per_s: 1200, beta_per_s: 12000), start_s: 0.025), ], ```
+
+    Parameters
+    ----------
+    block : str
+        Name of the block; in `bench_*` the star stands for anything, and all such blocks with faces there
+        count.
+    on : BlastWallChoice
+        Which faces.
+    pressure : BlastPressureChoice
+        Pressure over the time since the detonation.
+    start_s : float, optional
+        When it detonates [s]. Default: 0.
+
+    Examples
+    --------
+    >>> Blast(block="name", on=BlastWall.Part(Region.All), pressure=BlastPressure.Rows([(1.0, 1.0, 1.0)])).to_ron()
+    '(block: "name", on: Part(All), pressure: Rows([(1.0, 1.0, 1.0)]))'
+    """
+
+    block: str
+    on: BlastWallChoice
+    pressure: BlastPressureChoice
+    start_s: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"block": "str", "on": "BlastWall", "pressure": "BlastPressure", "start_s": "num"}
+
+
+class BlastPressure:
+    """A pressure over time.
+
+    Examples
+    --------
+    >>> BlastPressure.Rows([(1.0, 1.0, 1.0)]).to_ron()
+    'Rows([(1.0, 1.0, 1.0)])'
+    """
+
+    @dataclass
+    class Rows(Builder):
+        """(time [s], pressure [Pa]), linear between rows, and nothing before the first and after the last.
+
+        Parameters
+        ----------
+        value : Sequence[Sequence[float]]
+            (time [s], pressure [Pa]), linear between rows, and nothing before the first and after the last.
+
+        Examples
+        --------
+        >>> BlastPressure.Rows([(1.0, 1.0, 1.0)]).to_ron()
+        'Rows([(1.0, 1.0, 1.0)])'
+        """
+
+        value: Sequence[Sequence[float]]
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "[(num)]"}
+        _variant: ClassVar[str] = "Rows"
+
+    @dataclass(kw_only=True)
+    class Duvall(Builder):
+        """p₀ ξ (exp(−α t) − exp(−β t)) with ξ such that p₀ is the peak (Duvall 1953), which comes after
+        ln(β/α)/(β − α).
+
+        Parameters
+        ----------
+        peak_pa : float
+            p₀ [Pa].
+        alpha_per_s : float
+            α, which says how fast it falls [1/s].
+        beta_per_s : float
+            β, which says how fast it rises, above α [1/s].
+
+        Examples
+        --------
+        >>> BlastPressure.Duvall(peak_pa=1.0, alpha_per_s=1.0, beta_per_s=1.0).to_ron()
+        'Duvall(peak_pa: 1.0, alpha_per_s: 1.0, beta_per_s: 1.0)'
+        """
+
+        peak_pa: float
+        alpha_per_s: float
+        beta_per_s: float
+        _kinds: ClassVar[Mapping[str, str]] = {"peak_pa": "num", "alpha_per_s": "num", "beta_per_s": "num"}
+        _variant: ClassVar[str] = "Duvall"
+
+
+class BlastWall:
+    """Faces that an explosion presses on.
+
+    Examples
+    --------
+    >>> BlastWall.Part(Region.All).to_ron()
+    'Part(All)'
+    """
+
+    @dataclass
+    class Part(Builder):
+        """Boundary triangles of which all corners are in a region.
+
+        Parameters
+        ----------
+        value : RegionChoice
+            Boundary triangles of which all corners are in a region.
+
+        Examples
+        --------
+        >>> BlastWall.Part(Region.All).to_ron()
+        'Part(All)'
+        """
+
+        value: RegionChoice
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "Region"}
+        _variant: ClassVar[str] = "Part"
+
+    @dataclass(kw_only=True)
+    class Hole(Builder):
+        """The charged part of a hole: boundary triangles of which all corners are near its axis, and not
+        beyond its ends by more than 1 % of that distance.
+
+        Parameters
+        ----------
+        from_m : Sequence[float]
+            One end of the charge [m].
+        to_m : Sequence[float]
+            Its other end [m].
+        within_m : float
+            Largest distance of a corner from the axis [m]: a little more than the radius of the meshed hole.
+
+        Examples
+        --------
+        >>> BlastWall.Hole(from_m=(1.0, 1.0, 1.0), to_m=(1.0, 1.0, 1.0), within_m=1.0).to_ron()
+        'Hole(from_m: (1.0, 1.0, 1.0), to_m: (1.0, 1.0, 1.0), within_m: 1.0)'
+        """
+
+        from_m: Sequence[float]
+        to_m: Sequence[float]
+        within_m: float
+        _kinds: ClassVar[Mapping[str, str]] = {"from_m": "(num)", "to_m": "(num)", "within_m": "num"}
+        _variant: ClassVar[str] = "Hole"
 
 
 @dataclass(kw_only=True)
@@ -173,8 +350,8 @@ class Body:
     Affine: ClassVar[Literal["Affine"]] = "Affine"
     # Does not deform, 6 unknowns; cannot be held in parts.
     Rigid: ClassVar[Literal["Rigid"]] = "Rigid"
-    # Stays where it is, or goes where one support with a `Motion` or an `Acceleration` takes it as a whole;
-    # no unknowns.
+    # Stays where it is, or goes where one support with a `Motion`, an `Acceleration` or a `Shaking` takes it
+    # as a whole; no unknowns.
     Fixed: ClassVar[Literal["Fixed"]] = "Fixed"
 
 
@@ -208,6 +385,28 @@ class By:
         stiffness_n_m: float | None = None
         _kinds: ClassVar[Mapping[str, str]] = {"stiffness_n_m": "num"}
         _variant: ClassVar[str] = "Springs"
+
+
+@dataclass(kw_only=True)
+class Component(Builder):
+    """One component of a shaken base.
+
+    Parameters
+    ----------
+    direction : Sequence[float]
+        Its direction; its length does not matter.
+    record : Record
+        Its record.
+
+    Examples
+    --------
+    >>> Component(direction=(1.0, 1.0, 1.0), record=Record(file="name")).to_ron()
+    '(direction: (1.0, 1.0, 1.0), record: (file: "name"))'
+    """
+
+    direction: Sequence[float]
+    record: Record
+    _kinds: ClassVar[Mapping[str, str]] = {"direction": "(num)", "record": "Record"}
 
 
 class Contact:
@@ -1047,6 +1246,27 @@ class Hold:
         _kinds: ClassVar[Mapping[str, str]] = {"file": "str", "direction": "(num)", "factor": "num"}
         _variant: ClassVar[str] = "Acceleration"
 
+    @dataclass
+    class Shaking(Builder):
+        """All three components follow records of accelerations, from rest, which add up: a base that is
+        shaken along one, two or three directions.
+
+        Parameters
+        ----------
+        value : list[Component]
+            All three components follow records of accelerations, from rest, which add up: a base that is
+            shaken along one, two or three directions.
+
+        Examples
+        --------
+        >>> Hold.Shaking([Component(direction=(1.0, 1.0, 1.0), record=Record(file="name"))]).to_ron()
+        'Shaking([(direction: (1.0, 1.0, 1.0), record: (file: "name"))])'
+        """
+
+        value: list[Component]
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "[Component]"}
+        _variant: ClassVar[str] = "Shaking"
+
 
 @dataclass(kw_only=True)
 class InSitu(Builder):
@@ -1071,6 +1291,44 @@ class InSitu(Builder):
     at_m: Sequence[float] | None = None
     gradients: list[StressGradient] | None = None
     _kinds: ClassVar[Mapping[str, str]] = {"stress_pa": "Stress", "at_m": "(num)", "gradients": "[StressGradient]"}
+
+
+@dataclass(kw_only=True)
+class IncidentWave(Builder):
+    """A plane wave that arrives from beyond quiet faces.
+
+    Parameters
+    ----------
+    wave : WaveKindChoice
+        Its kind.
+    record : Record
+        Its motion over time.
+    motion : RecordedAsChoice, optional
+        What the record is of. Default: `Upgoing`.
+    along : Sequence[float], optional
+        Direction in which it travels; its length does not matter. Default: against gravity, (0, 0, 1)
+        without.
+    from_m : Sequence[float], optional
+        A place that it passes at the times of the record [m]. Default: the node of these faces that it meets
+        first.
+    ground_m : Sequence[float], optional
+        A place on level ground, across the way of the wave, that sends it back [m]: its echo arrives at these
+        faces, too. For faces at the sides of uniform ground, which then move as the ground far away does, and
+        for a record `Within`. Default: no echo.
+
+    Examples
+    --------
+    >>> IncidentWave(wave=WaveKind.P, record=Record(file="name")).to_ron()
+    '(wave: P, record: (file: "name"))'
+    """
+
+    wave: WaveKindChoice
+    record: Record
+    motion: RecordedAsChoice | None = None
+    along: Sequence[float] | None = None
+    from_m: Sequence[float] | None = None
+    ground_m: Sequence[float] | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"wave": "WaveKind", "record": "Record", "motion": "RecordedAs", "along": "(num)", "from_m": "(num)", "ground_m": "(num)"}
 
 
 class Integrator:
@@ -1669,6 +1927,104 @@ class Pressure:
         _variant: ClassVar[str] = "Least"
 
 
+@dataclass(kw_only=True)
+class Quiet(Builder):
+    """Faces behind which rock goes on for ever: waves leave through them, and may arrive through them (Lysmer
+    & Kuhlemeyer 1969).
+
+    They bear −ρ c_p v_n − ρ c_s v_s beside what holds the rock up when time begins: while the scene settles
+    they rest on springs of ρ c/2Δt per area, and what these, or an initial stress, bear then stays as a
+    constant force. Only elastic blocks have such faces. ```text quiet: [ // Rock goes on below; an S wave
+    comes up, from a record on outcropping rock. (block: "ground", on: Set("z_min"), incident: [(wave: S((1,
+    0, 0)), motion: Outcrop, record: (file: "quake.at2"))]), ], ```
+
+    Parameters
+    ----------
+    block : str
+        Name of the block; in `base_*` the star stands for anything, and all such blocks with faces in the
+        region count.
+    on : RegionChoice
+        Its faces: boundary triangles of which all corners are in the region.
+    beyond : str, optional
+        Material of the rock beyond the faces. Default: that of the block.
+    incident : list[IncidentWave], optional
+        Plane waves that arrive from beyond. Default: none.
+
+    Examples
+    --------
+    >>> Quiet(block="name", on=Region.All).to_ron()
+    '(block: "name", on: All)'
+    """
+
+    block: str
+    on: RegionChoice
+    beyond: str | None = None
+    incident: list[IncidentWave] | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"block": "str", "on": "Region", "beyond": "str", "incident": "[IncidentWave]"}
+
+
+@dataclass(kw_only=True)
+class Record(Builder):
+    """A record of accelerations and what is done with it, in this order: unit and factor, filter, baseline.
+
+    Acceleration is linear between its rows, and zero before and after; `ndda record` shows it.
+
+    Parameters
+    ----------
+    file : str
+        An `.at2` file of the PEER data base, or a CSV file with a column `time_s`; its path counts from the
+        scene file.
+    column : str, optional
+        Column of accelerations of a CSV file. Default: `acceleration_m_s2`.
+    unit : AccelerationUnitChoice, optional
+        Unit of the accelerations. Default: that which an `.at2` file names, m/s² for CSV.
+    factor : float, optional
+        Factor on the accelerations; a negative one turns them round. Default: 1.
+    filter_hz : Sequence[float], optional
+        Corner frequencies (low, high) [Hz] of a Butterworth band pass of second order that runs forwards and
+        backwards: no shift in time, half of the amplitude at the corners. A low of 0 lets all low frequencies
+        pass. Default: no filter.
+    baseline : BaselineChoice, optional
+        What is taken out of the velocity, so that it does not drift. Default: `None`.
+    resample_s : float, optional
+        Even spacing to which the record is brought, linearly between its rows [s]. Default: its own rows, or
+        their shortest spacing with a filter.
+
+    Examples
+    --------
+    >>> Record(file="name").to_ron()
+    '(file: "name")'
+    """
+
+    file: str
+    column: str | None = None
+    unit: AccelerationUnitChoice | None = None
+    factor: float | None = None
+    filter_hz: Sequence[float] | None = None
+    baseline: BaselineChoice | None = None
+    resample_s: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"file": "str", "column": "str", "unit": "AccelerationUnit", "factor": "num", "filter_hz": "(num)", "baseline": "Baseline", "resample_s": "num"}
+
+
+class RecordedAs:
+    """What a record of a wave is of.
+
+    Examples
+    --------
+    >>> RecordedAs.Upgoing
+    'Upgoing'
+    """
+
+    # The wave that arrives.
+    Upgoing: ClassVar[Literal["Upgoing"]] = "Upgoing"
+    # Rock that crops out, which moves twice as much as the wave that arrives.
+    Outcrop: ClassVar[Literal["Outcrop"]] = "Outcrop"
+    # Rock at `from_m` below level ground at `ground_m`: the wave that arrives and its echo. The echo is taken
+    # out exactly for uniform ground without damping, so that the record must not hold the frequencies at which
+    # such a place stands still.
+    Within: ClassVar[Literal["Within"]] = "Within"
+
+
 class Reference:
     """A closed form that the run is compared with.
 
@@ -2060,6 +2416,12 @@ class Scene(Builder):
         Surface tractions. Default: none.
     water : list[Water], optional
         Pressure of water in joints and on faces. Default: none.
+    quiet : list[Quiet], optional
+        Faces behind which rock goes on, and waves that arrive through them. Default: none.
+    ties : list[Tie], optional
+        Nodes of equal height that move alike, as at the sides of level ground. Default: none.
+    blasts : list[Blast], optional
+        Pressure of explosions on the walls of holes. Default: none.
     forces : list[Force], optional
         Forces on points of blocks. Default: none.
     contact : ContactChoice, optional
@@ -2093,13 +2455,16 @@ class Scene(Builder):
     supports: list[Support] | None = None
     tractions: list[Traction] | None = None
     water: list[Water] | None = None
+    quiet: list[Quiet] | None = None
+    ties: list[Tie] | None = None
+    blasts: list[Blast] | None = None
     forces: list[Force] | None = None
     contact: ContactChoice | None = None
     stages: list[Stage] | None = None
     monitors: list[Monitor] | None = None
     output: Output | None = None
     reference: ReferenceChoice | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"title": "str", "parameters": "{num}", "time": "Time", "gravity_m_s2": "(num)", "gravity_ramp_s": "num", "in_situ": "InSitu", "settle": "Settle", "include": "[str]", "materials": "[Material]", "blocks": "[Block]", "rock": "[Rock]", "supports": "[Support]", "tractions": "[Traction]", "water": "[Water]", "forces": "[Force]", "contact": "Contact", "stages": "[Stage]", "monitors": "[Monitor]", "output": "Output", "reference": "Reference"}
+    _kinds: ClassVar[Mapping[str, str]] = {"title": "str", "parameters": "{num}", "time": "Time", "gravity_m_s2": "(num)", "gravity_ramp_s": "num", "in_situ": "InSitu", "settle": "Settle", "include": "[str]", "materials": "[Material]", "blocks": "[Block]", "rock": "[Rock]", "supports": "[Support]", "tractions": "[Traction]", "water": "[Water]", "quiet": "[Quiet]", "ties": "[Tie]", "blasts": "[Blast]", "forces": "[Force]", "contact": "Contact", "stages": "[Stage]", "monitors": "[Monitor]", "output": "Output", "reference": "Reference"}
 
 
 @dataclass(kw_only=True)
@@ -2800,6 +3165,37 @@ class Then:
 
 
 @dataclass(kw_only=True)
+class Tie(Builder):
+    """Nodes at equal height that move alike: the sides of level ground, which are those of ground that goes
+    on as it is.
+
+    The nodes of all regions at the same place along a direction are one group. Between blocks nothing can be
+    tied.
+
+    Parameters
+    ----------
+    block : str
+        Name of the block, which must be elastic; in `base_*` the star stands for anything, and all such
+        blocks with nodes in the regions count, each by itself.
+    on : list[RegionChoice]
+        Regions of which all nodes of one height move alike, such as both sides: `[Set("x_min"),
+        Set("x_max")]`.
+    along : Sequence[float], optional
+        Direction of the height; its length does not matter. Default: against gravity, (0, 0, 1) without.
+
+    Examples
+    --------
+    >>> Tie(block="name", on=[Region.All]).to_ron()
+    '(block: "name", on: [All])'
+    """
+
+    block: str
+    on: list[RegionChoice]
+    along: Sequence[float] | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"block": "str", "on": "[Region]", "along": "(num)"}
+
+
+@dataclass(kw_only=True)
 class Time(Builder):
     """Time stepping.
 
@@ -2993,6 +3389,38 @@ class Water(Builder):
     _kinds: ClassVar[Mapping[str, str]] = {"on": "Wet", "pressure": "Pressure", "factor": "[FactorRow]"}
 
 
+class WaveKind:
+    """The kind of a plane wave.
+
+    Examples
+    --------
+    >>> WaveKind.P
+    'P'
+    """
+
+    # It moves the rock along its way.
+    P: ClassVar[Literal["P"]] = "P"
+
+    @dataclass
+    class S(Builder):
+        """It moves the rock along this direction, across its way.
+
+        Parameters
+        ----------
+        value : Sequence[float]
+            It moves the rock along this direction, across its way.
+
+        Examples
+        --------
+        >>> WaveKind.S((1.0, 1.0, 1.0)).to_ron()
+        'S((1.0, 1.0, 1.0))'
+        """
+
+        value: Sequence[float]
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "(num)"}
+        _variant: ClassVar[str] = "S"
+
+
 class Wet:
     """Faces that are wet.
 
@@ -3098,8 +3526,12 @@ class Whereabouts:
         _variant: ClassVar[str] = "Beyond"
 
 
+AccelerationUnitChoice: TypeAlias = Literal["G"] | Literal["MetrePerSecondSquared"] | Literal["CentimetrePerSecondSquared"]
 AtChoice: TypeAlias = Literal["Centre"] | At.Point | At.Largest
 AxisChoice: TypeAlias = Literal["X"] | Literal["Y"] | Literal["Z"]
+BaselineChoice: TypeAlias = Literal["None"] | Literal["Linear"] | Literal["Quadratic"]
+BlastPressureChoice: TypeAlias = BlastPressure.Rows | BlastPressure.Duvall
+BlastWallChoice: TypeAlias = BlastWall.Part | BlastWall.Hole
 BodyChoice: TypeAlias = Literal["Elastic"] | Literal["Affine"] | Literal["Rigid"] | Literal["Fixed"]
 ByChoice: TypeAlias = Literal["Elimination"] | By.Springs
 ContactChoice: TypeAlias = Literal["Off"] | Contact.Potential
@@ -3110,7 +3542,7 @@ DomainChoice: TypeAlias = Domain.Box | Domain.Column | Domain.Polyhedron | Domai
 FieldChoice: TypeAlias = Literal["Displacement"] | Literal["Velocity"] | Literal["Acceleration"] | Literal["Stress"] | Literal["VonMises"] | Literal["ContactForce"] | Literal["ContactTraction"] | Literal["FrictionState"] | Literal["BlockId"] | Literal["Material"]
 FieldFormatChoice: TypeAlias = Literal["Compressed"] | Literal["Appended"] | Literal["Base64"]
 FillChoice: TypeAlias = Literal["Fewest"] | Literal["Centre"] | Fill.Size | Fill.TetGen
-HoldChoice: TypeAlias = Literal["Fixed"] | Literal["Normal"] | Hold.Direction | Hold.Motion | Hold.Acceleration
+HoldChoice: TypeAlias = Literal["Fixed"] | Literal["Normal"] | Hold.Direction | Hold.Motion | Hold.Acceleration | Hold.Shaking
 IntegratorChoice: TypeAlias = Integrator.Midpoint | Integrator.GeneralizedAlpha | Integrator.Newmark
 MassChoice: TypeAlias = Literal["Consistent"] | Literal["Lumped"]
 MemoryChoice: TypeAlias = Literal["Body"] | Literal["Element"]
@@ -3119,6 +3551,7 @@ PatternChoice: TypeAlias = Literal["Six"] | Literal["TwentyFour"]
 PotentialChoice: TypeAlias = Literal["Element"] | Potential.Smooth | Potential.Closure | Potential.Volume
 PrecisionChoice: TypeAlias = Literal["F32"] | Literal["F64"]
 PressureChoice: TypeAlias = Pressure.Level | Pressure.Linear | Pressure.Points | Pressure.Least
+RecordedAsChoice: TypeAlias = Literal["Upgoing"] | Literal["Outcrop"] | Literal["Within"]
 ReferenceChoice: TypeAlias = Reference.SlidingBlock | Reference.Collision | Reference.FreeFall | Reference.FreeSpin | Reference.BarImpact | Reference.Displacement
 RegionChoice: TypeAlias = Literal["All"] | Region.Plane | Region.Set
 SettleDampingChoice: TypeAlias = Literal["Kinetic"] | SettleDamping.Local
@@ -3130,17 +3563,24 @@ StepChoice: TypeAlias = Literal["Fixed"] | Step.Auto
 TableFormatChoice: TypeAlias = Literal["Csv"] | Literal["Parquet"] | Literal["Both"]
 ThenChoice: TypeAlias = Then.Settle | Then.Run
 TowardsChoice: TypeAlias = Towards.Point | Towards.Plane
+WaveKindChoice: TypeAlias = Literal["P"] | WaveKind.S
 WetChoice: TypeAlias = Wet.Joint | Wet.Part
 WhereaboutsChoice: TypeAlias = Whereabouts.Inside | Whereabouts.Beyond
 
 
 __all__ = [
+    "AccelerationUnit",
     "At",
     "Axis",
+    "Baseline",
     "Bedding",
+    "Blast",
+    "BlastPressure",
+    "BlastWall",
     "Block",
     "Body",
     "By",
+    "Component",
     "Contact",
     "ContactAt",
     "Damping",
@@ -3159,6 +3599,7 @@ __all__ = [
     "Grading",
     "Hold",
     "InSitu",
+    "IncidentWave",
     "Integrator",
     "JointLaw",
     "LinearPressure",
@@ -3174,6 +3615,9 @@ __all__ = [
     "Potential",
     "Precision",
     "Pressure",
+    "Quiet",
+    "Record",
+    "RecordedAs",
     "Reference",
     "Region",
     "Residual",
@@ -3194,12 +3638,14 @@ __all__ = [
     "Support",
     "TableFormat",
     "Then",
+    "Tie",
     "Time",
     "Towards",
     "Traction",
     "Turn",
     "Voronoi",
     "Water",
+    "WaveKind",
     "Wet",
     "Whereabouts",
 ]

@@ -111,6 +111,6 @@ impl Deformed {
     pub fn supports(&self) -> BlockSupports {
         let nodes = (0..self.operator.nodes() as u32).filter(|&n| self.operator.rest[n as usize].z < -0.49);
         let held = NodeSupport { nodes: nodes.collect(), hold: Hold::Fixed, spring_n_m: None };
-        BlockSupports::new(&self.operator, &[held]).expect("a foot")
+        BlockSupports::new(&self.operator, &[held], &[]).expect("a foot")
     }
 }

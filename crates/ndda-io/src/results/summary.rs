@@ -1,6 +1,7 @@
 //! The summary: what a run did, what it cost and whether it can be trusted, as `summary.json`.
 
 mod chosen;
+mod label;
 mod motion;
 mod named;
 mod stage;
@@ -14,6 +15,7 @@ use crate::atomic;
 use crate::write_error::WriteError;
 
 pub use chosen::Chosen;
+pub use label::{Label, LabelWord};
 pub use motion::{BlockEnd, BlockMotion, Course, MonitorEnd, Motion};
 pub use named::Named;
 pub use stage::StageEnd;
@@ -91,42 +93,6 @@ pub enum Status {
     Stopped,
     /// A person or the system ended it.
     Interrupted,
-}
-
-/// A run's judgement of its own result, and why.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Label {
-    /// Whether its motion is to be trusted.
-    pub word: LabelWord,
-    /// Why it is not; empty for an accurate run.
-    pub reasons: Vec<String>,
-}
-
-/// Whether the motion of a run is to be trusted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum LabelWord {
-    /// Speeds are right to 1 % of the largest, places to a tenth of the height of the tetrahedra in contact.
-    #[default]
-    Accurate,
-    /// The same holds, but a hardly different start ends elsewhere: only statistics of several runs mean something.
-    Sensitive,
-    /// They may not be.
-    Inaccurate,
-    /// It ended before it could be wrong.
-    Stopped,
-}
-
-impl LabelWord {
-    /// The word itself.
-    pub fn as_str(self) -> &'static str {
-        match self {
-            Self::Accurate => "accurate",
-            Self::Sensitive => "sensitive",
-            Self::Inaccurate => "inaccurate",
-            Self::Stopped => "stopped",
-        }
-    }
 }
 
 /// Sizes of the problem.

@@ -15,7 +15,7 @@ pub enum Body {
     Affine,
     /// Does not deform, 6 unknowns; cannot be held in parts.
     Rigid,
-    /// Stays where it is, or goes where one support with a `Motion` or an `Acceleration` takes it as a whole; no unknowns.
+    /// Stays where it is, or goes where one support with a `Motion`, an `Acceleration` or a `Shaking` takes it as a whole; no unknowns.
     Fixed,
 }
 

@@ -5,6 +5,7 @@ mod contact;
 mod friction;
 mod load;
 mod material;
+mod quiet;
 mod reference;
 mod restitution;
 mod rock;
@@ -43,6 +44,9 @@ pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> 
     check.rock(folder);
     check.supports(folder);
     check.loads();
+    check.quiet(folder);
+    check.ties();
+    check.blasts();
     check.contact();
     check.stages(folder);
     check.monitors();

@@ -81,8 +81,21 @@ fn names(scene: &Scene) -> Vec<&str> {
         Hold::Acceleration { file, .. } => Some(file.as_str()),
         _ => None,
     });
+    let waves = scene.quiet.iter().flat_map(|quiet| &quiet.incident).map(|wave| wave.record.file.as_str());
+    let shaking = scene.supports.iter().filter_map(|support| match &support.hold {
+        Hold::Shaking(components) => Some(components),
+        _ => None,
+    });
+    let components = shaking.flatten().map(|component| component.record.file.as_str());
     let materials = scene.include.iter().map(String::as_str);
-    shapes.chain(domains).chain(discs).chain(records).chain(materials).collect()
+    shapes
+        .chain(domains)
+        .chain(discs)
+        .chain(records)
+        .chain(waves)
+        .chain(components)
+        .chain(materials)
+        .collect()
 }
 
 /// Adds a file once, and what is read along with it: the other files of a TetGen mesh, and what a Gmsh script names in

@@ -1,9 +1,13 @@
-//! Records of ground motion: a CSV file with the columns `time_s` and `acceleration_m_s2`.
+//! Records of ground motion, from CSV files and those of the PEER data base, and what a scene does with them.
+
+mod at2;
+mod process;
 
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
+pub use process::resampled;
 
+use crate::scene::{AccelerationUnit, Baseline, Record};
 use crate::{csv_text, limited};
 
 /// Why a record cannot be used.
@@ -25,6 +29,18 @@ pub enum RecordError {
         /// The problem.
         source: std::io::Error,
     },
+    /// A spacing that leaves too few rows or makes too many.
+    #[error(
+        "{}: `resample_s`, or the shortest spacing of {given} rows, would make {rows} rows: give a spacing that makes between 2 and {MOST_ROWS}", file.display()
+    )]
+    Spacing {
+        /// The file.
+        file: PathBuf,
+        /// Rows that it would have.
+        rows: usize,
+        /// Rows that it has.
+        given: usize,
+    },
     /// Values that are no record.
     #[error("{}, row {row}: {reason}", file.display())]
     Row {
@@ -37,31 +53,124 @@ pub enum RecordError {
     },
 }
 
+/// Spacings that differ by less than this part are even.
+const EVEN: f64 = 1e-4;
+
+/// Most rows of a record that is brought to an even spacing.
+const MOST_ROWS: usize = 10_000_000;
+
 /// Speed of light [m/s]: no ground moves faster, and far above it squares of speeds are no numbers any more.
 const LIGHT_M_S: f64 = 299_792_458.0;
 
-#[derive(Deserialize)]
-struct Row {
-    time_s: f64,
-    acceleration_m_s2: f64,
+/// Columns of a CSV file.
+const TIME: &str = "time_s";
+const ACCELERATION: &str = "acceleration_m_s2";
+
+/// A record as a scene wants it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prepared {
+    /// Time [s] and acceleration [m/s²].
+    pub rows: Vec<(f64, f64)>,
+    /// What it is and what was done with it, in words.
+    pub told: String,
 }
 
-/// Times [s] and accelerations [m/s²] of a record.
+/// Reads a record and does with it what the scene says; `folder` is that of the scene.
+///
+/// # Errors
+/// [`RecordError`] naming file and row.
+pub fn prepare(record: &Record, folder: &Path) -> Result<Prepared, RecordError> {
+    let file = folder.join(&record.file);
+    let (mut rows, named) = raw(&file, record.column.as_deref())?;
+    let unit = record.unit.or(named).unwrap_or(AccelerationUnit::MetrePerSecondSquared);
+    let factor = record.factor * unit.m_s2();
+    rows.iter_mut().for_each(|row| row.1 *= factor);
+    check_speed(&file, &rows, 1.0)?;
+    let (count, end_s) = (rows.len(), rows[rows.len() - 1].0);
+    let mut told = format!("{}: {count} rows to {end_s:.6} s", file.display());
+    let needed_s = record.filter_hz.and_then(|_| uneven(&rows));
+    if let Some(spacing_s) = record.resample_s.or(needed_s) {
+        let (given, new) = (rows.len(), ((end_s - rows[0].0) / spacing_s) as usize);
+        if new > MOST_ROWS {
+            return Err(RecordError::Spacing { file, rows: new, given });
+        }
+        rows = process::resampled(&rows, spacing_s);
+        if rows.len() < 2 {
+            return Err(RecordError::Spacing { file, rows: rows.len(), given });
+        }
+        told += &format!(", brought to {} rows of {spacing_s} s", rows.len());
+    }
+    if let Some(corners) = record.filter_hz {
+        process::filtered(&mut rows, corners);
+        told += &format!(", filtered from {} to {} Hz", corners.0, corners.1);
+        if corners.1 >= 0.5 / (rows[1].0 - rows[0].0) {
+            told += " (the upper corner is beyond what the rows hold, and has no effect)";
+        }
+    }
+    if record.baseline != Baseline::None {
+        let (c1, c2) = process::corrected(&mut rows, record.baseline);
+        told += &format!(", less a velocity of {c1:.4e} m/s² t + {c2:.4e} m/s³ t²");
+    }
+    let peak = rows.iter().map(|row| row.1.abs()).fold(0.0, f64::max);
+    told += &format!("; peak {peak:.4} m/s²");
+    Ok(Prepared { rows, told })
+}
+
+/// The shortest spacing of rows [s]; none where all are even, to the digits that files have.
+fn uneven(rows: &[(f64, f64)]) -> Option<f64> {
+    let spacings = || rows.windows(2).map(|pair| pair[1].0 - pair[0].0);
+    let (shortest_s, longest_s) = (spacings().fold(f64::INFINITY, f64::min), spacings().fold(0.0, f64::max));
+    (longest_s > shortest_s * (1.0 + EVEN)).then_some(shortest_s)
+}
+
+/// Times [s] and accelerations [m/s²] of a CSV file.
 ///
 /// # Errors
 /// [`RecordError`] naming file and row.
 pub fn read(file: &Path) -> Result<Vec<(f64, f64)>, RecordError> {
-    let broken = |error| RecordError::Table { file: file.to_path_buf(), fault: csv_text::in_words(&error) };
-    let unreadable = |source| RecordError::Unreadable { file: file.to_path_buf(), source };
-    let bytes = limited::file(file).map_err(unreadable)?;
-    let mut reader = csv_text::reader(&bytes);
-    if let Some(fault) = csv_text::fault_of_header(reader.headers().map_err(&broken)?) {
-        return Err(RecordError::Table { file: file.to_path_buf(), fault });
+    csv(file, &bytes_of(file)?, ACCELERATION)
+}
+
+/// Rows of a file by its ending, and the unit that it names.
+fn raw(
+    file: &Path,
+    column: Option<&str>,
+) -> Result<(Vec<(f64, f64)>, Option<AccelerationUnit>), RecordError> {
+    let bytes = bytes_of(file)?;
+    if file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("at2")) {
+        return at2::parse(file, &String::from_utf8_lossy(&bytes));
     }
+    Ok((csv(file, &bytes, column.unwrap_or(ACCELERATION))?, None))
+}
+
+fn bytes_of(file: &Path) -> Result<Vec<u8>, RecordError> {
+    limited::file(file).map_err(|source| RecordError::Unreadable { file: file.to_path_buf(), source })
+}
+
+/// The column `time_s` and another one of a CSV file.
+fn csv(file: &Path, bytes: &[u8], column: &str) -> Result<Vec<(f64, f64)>, RecordError> {
+    let table = |fault| RecordError::Table { file: file.to_path_buf(), fault };
+    let broken = |error| table(csv_text::in_words(&error));
+    let mut reader = csv_text::reader(bytes);
+    let header = reader.headers().map_err(&broken)?.clone();
+    if let Some(fault) = csv_text::fault_of_header(&header) {
+        return Err(table(fault));
+    }
+    let place = |name: &str| {
+        let known = header.iter().collect::<Vec<_>>().join(", ");
+        let found = header.iter().position(|column| column == name);
+        found.ok_or_else(|| table(format!("there is no column `{name}`; the first line names {known}")))
+    };
+    let places = [place(TIME)?, place(column)?];
     let mut rows: Vec<(f64, f64)> = Vec::new();
     let wrong = |row: usize, reason| RecordError::Row { file: file.to_path_buf(), row, reason };
-    for row in reader.deserialize() {
-        let Row { time_s, acceleration_m_s2 } = row.map_err(broken)?;
+    for record in reader.records() {
+        let record = record.map_err(broken)?;
+        let [time_s, acceleration] = places.map(|i| record[i].parse::<f64>());
+        let (Ok(time_s), Ok(acceleration_m_s2)) = (time_s, acceleration) else {
+            let line = record.position().map_or(0, csv::Position::line);
+            return Err(table(format!("line {line} has no number in column `{TIME}` or `{column}`")));
+        };
         if !(time_s.is_finite() && acceleration_m_s2.is_finite()) {
             return Err(wrong(rows.len() + 1, "a value is not a number"));
         }

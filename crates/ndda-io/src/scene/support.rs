@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Component;
+
 /// Part of a block.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -60,6 +62,8 @@ pub enum Hold {
         #[serde(default = "super::one")]
         factor: f64,
     },
+    /// All three components follow records of accelerations, from rest, which add up: a base that is shaken along one, two or three directions.
+    Shaking(Vec<Component>),
 }
 
 impl Hold {

@@ -16,7 +16,7 @@ pub fn matrix(n: u32) -> SymmetricMatrix {
     let mesh = box_block([1.0; 3], [n; 3], BoxPattern::Six).expect("a cube");
     let rock = LinearElastic::new(20e9, 0.25, 2650.0).expect("rock");
     let operator = BlockOperator::new(&mesh.nodes, mesh.tets, &rock);
-    let supports = BlockSupports::new(&operator, &[]).expect("no supports");
+    let supports = BlockSupports::new(&operator, &[], &[]).expect("no supports");
     let weights = Midpoint { theta: 0.5 }.weights(1e-4);
     Unknowns::nodal(operator.nodes(), &supports).matrix(&operator, &supports, &weights, 0.0)
 }
@@ -40,6 +40,8 @@ pub fn cubes(count: usize, n: u32, kind: BodyKind, integrator: Box<dyn TimeInteg
         initial_stress: None,
         tractions: Vec::new(),
         pressures: Vec::new(),
+        ties: Vec::new(),
+        quiet: Vec::new(),
         forces: Vec::new(),
         velocity_m_s: Vec3::x(),
         spin_rad_s: Vec3::new(0.1, 0.2, 0.3),

@@ -20,6 +20,8 @@ pub(crate) struct StepContext<'a> {
     pub time_s: f64,
     /// Time at the end of the step [s].
     pub end_s: f64,
+    /// Springs on which quiet faces rest while a scene settles, over their impedance [1/s]; zero in a run.
+    pub settling_per_s: f64,
     /// Where contact was evaluated, x* per node of the block [m].
     pub contact_position: &'a [Vec3],
     /// Contact offset: contact is evaluated this far from where the block is [m].
@@ -47,6 +49,13 @@ impl StepContext<'_> {
     /// Time at which supports pull: (1 − θ) start + θ end [s].
     pub(crate) fn theta_time_s(&self) -> f64 {
         self.time_s + self.weights.stiffness * (self.end_s - self.time_s)
+    }
+
+    /// Times between which loads act by their mean [s].
+    pub(crate) fn load_window_s(&self) -> (f64, f64) {
+        let length_s = self.end_s - self.time_s;
+        let shift_s = (self.weights.load_lead - 0.5) * length_s;
+        (self.time_s + shift_s, self.end_s + shift_s)
     }
 
     /// The point about which a block reports torques [m]: its mass centre at x* if its orbital moment is reported apart

@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use ndda_fem::frame::polar_rotation;
 use ndda_fem::{
-    BlockOperator, BlockSupports, Frame, Hold, InitialStress, Material, NodeSupport, PressureField, Table,
+    BlockOperator, BlockSupports, Frame, Hold, InitialStress, Material, NodeSupport, PressureField, Quiet,
+    QuietFaces, Table,
 };
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
@@ -37,6 +38,10 @@ pub struct BodySetup {
     pub forces: Vec<ForceSetup>,
     /// Pressures of water on its surface, which follow it.
     pub pressures: Vec<PressureSetup>,
+    /// Groups of nodes that move alike, counted from the block's first.
+    pub ties: Vec<Vec<u32>>,
+    /// Faces behind which rock goes on.
+    pub quiet: Vec<QuietSetup>,
     /// Velocity of the mass centre [m/s].
     pub velocity_m_s: Vec3,
     /// Rate of rotation about the mass centre [rad/s].
@@ -63,6 +68,15 @@ pub struct PressureSetup {
     pub field: Arc<PressureField>,
     /// Factor over time; constant without.
     pub factor: Option<Table>,
+}
+
+/// Faces of a block behind which rock goes on for ever.
+#[derive(Clone)]
+pub struct QuietSetup {
+    /// The faces, and waves that arrive through them; places relative to the origin of the block set.
+    pub faces: QuietFaces,
+    /// The rock beyond them.
+    pub beyond: Arc<dyn Material>,
 }
 
 /// A force on a node of a block.
@@ -147,8 +161,11 @@ impl Prototype {
             (Mass::Lumped, BodyKind::Elastic) => lumped(operator),
             _ => (operator, 0.0),
         };
-        let supports = BlockSupports::new(&operator, &setup.supports)
+        let mut supports = BlockSupports::new(&operator, &setup.supports, &setup.ties)
             .map_err(|source| SetupError::Support { block: name(), source })?;
+        let quiet: Vec<_> = setup.quiet.iter().map(|quiet| (&quiet.faces, quiet.beyond.as_ref())).collect();
+        supports.quiet = Quiet::new(position, &quiet)
+            .map_err(|source| SetupError::Wave { block: name(), source: Box::new(source) })?;
         let unknowns = match kind {
             BodyKind::Elastic => Unknowns::nodal(operator.nodes(), &supports),
             BodyKind::Affine => Unknowns::affine(&operator, &supports),
@@ -238,7 +255,11 @@ impl Prototype {
 
     /// Whether nothing holds the block, so that its momentum changes by outside forces only.
     pub fn is_free(&self) -> bool {
-        self.kind != BodyKind::Fixed && self.supports.held.is_empty() && self.supports.springs.is_empty()
+        self.kind != BodyKind::Fixed
+            && self.supports.held.is_empty()
+            && self.supports.springs.is_empty()
+            && self.supports.quiet.dashpots.is_empty()
+            && self.supports.ties.is_empty()
     }
 
     /// Whether velocities of the block change by impulses beside the forces: those of damping, and of prescribed velocities.
@@ -273,6 +294,12 @@ impl Prototype {
             let v = &mut velocity[held.node as usize];
             held.held.iter().for_each(|n| *v -= n * n.dot(v));
         }
+        for group in &self.supports.ties {
+            let masses = group.iter().map(|&n| (self.operator.node_mass[n as usize], velocity[n as usize]));
+            let (mass, momentum) =
+                masses.fold((0.0, Vec3::zeros()), |sum, (m, v)| (sum.0 + m, sum.1 + m * v));
+            group.iter().for_each(|&n| velocity[n as usize] = momentum / mass);
+        }
     }
 
     /// Inverse of the inertia of a rigid block at these positions [1/(kg m²)]; lumped masses would make that of a coarse mesh several times too large.
@@ -306,6 +333,8 @@ impl Prototype {
         if !self.is_free()
             || self.kind != setup.kind
             || !setup.supports.is_empty()
+            || !setup.quiet.is_empty()
+            || !setup.ties.is_empty()
             || !Arc::ptr_eq(&self.material, &setup.material)
             || position.len() != self.operator.nodes()
             || !blocks.local_tets(block).eq(self.operator.tets.iter().copied())
@@ -343,6 +372,10 @@ fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
     let moves = |s: &NodeSupport| matches!(s.hold, Hold::Motion(_)) && s.spring_n_m.is_none();
     match setup.kind {
         BodyKind::Elastic => Ok(()),
+        _ if !setup.ties.is_empty() => Err("only nodes of an Elastic block can be tied: make it Elastic"),
+        _ if !setup.quiet.is_empty() => Err(
+            "a quiet face lets the waves of its block out, which only those of an Elastic block are: make it Elastic",
+        ),
         BodyKind::Affine if setup.supports.iter().any(moves) => {
             Err("parts of an affine block cannot be moved: make it Elastic, or Fixed to move it as a whole")
         }

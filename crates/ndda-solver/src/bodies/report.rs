@@ -22,6 +22,8 @@ pub(crate) struct BlockReport {
     pub load_work_j: f64,
     /// Work of damping [J].
     pub damping_work_j: f64,
+    /// Energy that left through quiet faces [J].
+    pub radiated_j: f64,
     /// Impulses beside the forces, of damping and of prescribed velocities [kg m/s].
     pub impulse: Vec3,
     /// Their moment about the origin [kg m²/s].

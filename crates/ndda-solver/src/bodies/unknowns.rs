@@ -20,6 +20,15 @@ pub enum Unknowns {
         /// Directions of the unknowns.
         direction: Vec<Vec3>,
     },
+    /// Free components of groups of nodes that move alike.
+    Tied {
+        /// Group of each node.
+        group: Vec<u32>,
+        /// First unknown of each group (`groups + 1` values).
+        start: Vec<u32>,
+        /// Directions of the unknowns.
+        direction: Vec<Vec3>,
+    },
     /// Amplitudes of motions.
     Modes {
         /// How many.
@@ -32,6 +41,9 @@ pub enum Unknowns {
 impl Unknowns {
     /// The free components of a block.
     pub fn nodal(nodes: usize, supports: &BlockSupports) -> Self {
+        if !supports.ties.is_empty() {
+            return Self::tied(nodes, supports);
+        }
         let (mut start, mut direction) = (vec![0], Vec::with_capacity(3 * nodes));
         let mut held = supports.held.iter().peekable();
         for node in 0..nodes as u32 {
@@ -42,6 +54,28 @@ impl Unknowns {
             start.push(direction.len() as u32);
         }
         Self::Nodal { start, direction }
+    }
+
+    /// The free components of a block with tied nodes: groups are numbered by their first nodes.
+    fn tied(nodes: usize, supports: &BlockSupports) -> Self {
+        let mut first: Vec<u32> = (0..nodes as u32).collect();
+        for group in &supports.ties {
+            group.iter().for_each(|&node| first[node as usize] = group[0]);
+        }
+        let (mut group, mut start, mut direction) = (vec![0; nodes], vec![0], Vec::new());
+        for node in 0..nodes as u32 {
+            if first[node as usize] != node {
+                group[node as usize] = group[first[node as usize] as usize];
+                continue;
+            }
+            group[node as usize] = start.len() as u32 - 1;
+            match supports.held.binary_search_by_key(&node, |held| held.node) {
+                Ok(held) => direction.extend(&supports.held[held].free),
+                Err(_) => direction.extend([Vec3::x(), Vec3::y(), Vec3::z()]),
+            }
+            start.push(direction.len() as u32);
+        }
+        Self::Tied { group, start, direction }
     }
 
     /// Affine motions, u = a + A X (Shi 1988): those of twelve that the supports leave.
@@ -82,7 +116,7 @@ impl Unknowns {
     /// Number of unknowns.
     pub(crate) fn len(&self) -> usize {
         match self {
-            Self::Nodal { direction, .. } => direction.len(),
+            Self::Nodal { direction, .. } | Self::Tied { direction, .. } => direction.len(),
             Self::Modes { modes, .. } => *modes,
         }
     }
@@ -107,6 +141,14 @@ impl Unknowns {
                     }
                 }
             }
+            Self::Tied { group, start, direction } => {
+                out.fill(0.0);
+                for (v, &group) in nodal.iter().zip(group) {
+                    for k in start[group as usize] as usize..start[group as usize + 1] as usize {
+                        out[k] += v.dot(&direction[k]);
+                    }
+                }
+            }
             Self::Modes { modes, shape } if *modes > 0 => {
                 out.fill(0.0);
                 for (v, moves) in nodal.iter().zip(shape.chunks_exact(*modes)) {
@@ -128,6 +170,13 @@ impl Unknowns {
             Self::Nodal { start, direction } => {
                 for (v, ends) in nodal.iter_mut().zip(start.windows(2)) {
                     for k in ends[0] as usize..ends[1] as usize {
+                        *v += unknowns[k] * direction[k];
+                    }
+                }
+            }
+            Self::Tied { group, start, direction } => {
+                for (v, &group) in nodal.iter_mut().zip(group) {
+                    for k in start[group as usize] as usize..start[group as usize + 1] as usize {
                         *v += unknowns[k] * direction[k];
                     }
                 }
@@ -157,7 +206,8 @@ impl Unknowns {
         }
     }
 
-    /// K̃ = θ (K + S) + c M + d K over the unknowns (eq 12), S being the springs and d = b/Δt damping in proportion to stiffness.
+    /// K̃ = θ (K + S) + c M + d K + Q over the unknowns (eq 12), S being the springs, d = b/Δt damping in proportion to stiffness, and Q what quiet
+    /// faces add.
     pub fn matrix(
         &self,
         operator: &BlockOperator,
@@ -171,6 +221,9 @@ impl Unknowns {
             let projector = spring.along.map_or(Mat3::identity(), |n| n * n.transpose());
             springs[spring.node as usize] += weights.stiffness * spring.stiffness_n_m * projector;
         }
+        for dashpot in &supports.quiet.dashpots {
+            springs[dashpot.node as usize] += weights.drag_per_m() * dashpot.drag;
+        }
         let row = |node: usize| {
             let springs = &springs;
             operator.row(node).map(move |(other, stiffness, mass)| {
@@ -183,6 +236,7 @@ impl Unknowns {
         };
         match self {
             Self::Nodal { start, direction } => nodal_matrix(start, direction, row),
+            Self::Tied { group, start, direction } => tied_matrix(group, start, direction, row),
             Self::Modes { modes, shape } => modal_matrix(*modes, shape, row),
         }
     }
@@ -202,6 +256,32 @@ fn nodal_matrix<I: Iterator<Item = (usize, Mat3)>>(
             let along_other = block.transpose() * direction[j];
             out.extend(of(other).filter(|&i| i >= j).map(|i| (i, direction[i].dot(&along_other))));
         }
+    })
+}
+
+/// The matrix between free components of groups: rows of all nodes of a group, and their columns by groups, add up.
+fn tied_matrix<I: Iterator<Item = (usize, Mat3)>>(
+    group: &[u32],
+    start: &[u32],
+    direction: &[Vec3],
+    row: impl Fn(usize) -> I,
+) -> SymmetricMatrix {
+    let of = |group: u32| start[group as usize] as usize..start[group as usize + 1] as usize;
+    let mut members: Vec<Vec<usize>> = vec![Vec::new(); start.len() - 1];
+    group.iter().enumerate().for_each(|(node, &group)| members[group as usize].push(node));
+    let group_of: Vec<u32> =
+        (0..start.len() as u32 - 1).flat_map(|group| of(group).map(move |_| group)).collect();
+    SymmetricMatrix::from_lower(direction.len(), |j, out| {
+        let mut column = std::collections::BTreeMap::new();
+        for &node in &members[group_of[j] as usize] {
+            for (other, block) in row(node) {
+                let along_other = block.transpose() * direction[j];
+                for i in of(group[other]).filter(|&i| i >= j) {
+                    *column.entry(i).or_insert(0.0) += direction[i].dot(&along_other);
+                }
+            }
+        }
+        out.extend(column);
     })
 }
 

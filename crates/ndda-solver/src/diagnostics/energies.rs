@@ -48,6 +48,8 @@ pub struct Sample {
     pub load_work_j: f64,
     /// Work of damping since the start, never positive [J].
     pub damping_work_j: f64,
+    /// Energy that left through quiet faces since the start, never negative [J].
+    pub radiated_j: f64,
     /// Work of contact damping since the start: what contacts with a restitution below 1 do not give back, never positive [J].
     pub restitution_work_j: f64,
     /// Energy of blocks that stages have taken out, and of their contact, less that of blocks added, since the start [J].

@@ -1,6 +1,7 @@
 //! The ledger of a run: energy and momentum balance, and the worst of everything that has a limit.
 
 mod stages;
+mod work;
 
 use crate::diagnostics::energies::Sample;
 use crate::diagnostics::energies::Vibration;
@@ -33,6 +34,7 @@ pub struct Ledger {
     motion_work_j: f64,
     load_work_j: f64,
     damping_work_j: f64,
+    radiated_j: f64,
     restitution_work_j: f64,
     removed_j: f64,
     peak_energy_j: f64,
@@ -108,6 +110,7 @@ impl Ledger {
             motion_work_j: 0.0,
             load_work_j: 0.0,
             damping_work_j: 0.0,
+            radiated_j: 0.0,
             restitution_work_j: 0.0,
             removed_j: 0.0,
             peak_energy_j: 0.0,
@@ -185,19 +188,6 @@ impl Ledger {
     /// The size of all loads now [N].
     pub(crate) fn watch_load(&mut self, load_n: f64) {
         self.load_n = load_n;
-    }
-
-    /// Books the work of friction, of prescribed motions, of changing loads and of damping in a step [J].
-    pub(crate) fn add_work(&mut self, friction_j: f64, motion_j: f64, load_j: f64, damping_j: f64) {
-        self.friction_work_j += friction_j;
-        self.motion_work_j += motion_j;
-        self.load_work_j += load_j;
-        self.damping_work_j += damping_j;
-    }
-
-    /// Books the work of contact damping in a step [J].
-    pub(crate) fn add_restitution_work(&mut self, work_j: f64) {
-        self.restitution_work_j += work_j;
     }
 
     /// Diagnostics of single blocks.
@@ -291,6 +281,7 @@ impl Ledger {
         sample.motion_work_j = self.motion_work_j;
         sample.load_work_j = self.load_work_j;
         sample.damping_work_j = self.damping_work_j;
+        sample.radiated_j = self.radiated_j;
         sample.restitution_work_j = self.restitution_work_j;
         sample.removed_j = self.removed_j;
         let work_j = sample.friction_work_j
@@ -298,6 +289,7 @@ impl Ledger {
             + sample.load_work_j
             + sample.damping_work_j
             + sample.restitution_work_j
+            - sample.radiated_j
             - sample.removed_j;
         sample.balance_j = sample.total_j() - start.total_j() - work_j;
         let stored = sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j;

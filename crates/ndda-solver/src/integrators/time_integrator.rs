@@ -46,6 +46,17 @@ impl StepWeights {
         }
     }
 
+    /// w: quiet faces resist (1 − w) of the velocity at the start plus w of that at the end; as elasticity is weighted, but where u = Δt (v₀ + v₁)/2 by
+    /// the mean, so that what they take is never negative.
+    pub(crate) fn drag(&self) -> f64 {
+        if self.mean_velocity { 0.5 } else { self.stiffness }
+    }
+
+    /// w ∂v₁/∂u [1/s]; none for a matrix without time, as M alone.
+    pub(crate) fn drag_per_m(&self) -> f64 {
+        if self.stiffness == 0.0 { 0.0 } else { self.drag() * self.velocity_per_m }
+    }
+
     /// Whether the work of a force over a step is what it changes of kinetic energy.
     pub fn forces_do_their_work(&self) -> bool {
         self.mean_velocity && self.new_force == 1.0 && self.old_inertia == 0.0

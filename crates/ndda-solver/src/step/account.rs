@@ -46,6 +46,7 @@ impl Simulation {
         let (mut rate2, mut speed_m_s) = (0.0f64, 0.0f64);
         let quadrature = self.quadrature();
         let (mut friction_j, mut motion_j, mut load_j, mut damping_j) = (0.0, 0.0, 0.0, 0.0);
+        let mut radiated_j = 0.0;
         for (k, body) in self.bodies.iter().enumerate() {
             let report = &body.report;
             self.audit.ledger.blocks().add_ringing(k, &quadrature, &report.drive);
@@ -57,6 +58,7 @@ impl Simulation {
             motion_j += report.motion_work_j;
             load_j += report.load_work_j;
             damping_j += report.damping_work_j;
+            radiated_j += report.radiated_j;
             rate2 = rate2.max(report.contact_rate2);
             speed_m_s = speed_m_s.max(report.speed_m_s);
         }
@@ -65,6 +67,7 @@ impl Simulation {
         self.audit.ledger.add_impulse(self.part_s, &self.weights, force, torque);
         self.audit.ledger.add_whole_impulse(impulse, orbital);
         self.audit.ledger.add_work(friction_j, motion_j, load_j, damping_j);
+        self.audit.ledger.add_radiated(radiated_j);
         if self.problem.has_impulses {
             self.record_impulses();
         }
@@ -167,7 +170,8 @@ impl Simulation {
     /// Speed that loads and motions bring and take back within the step, where nobody sees it [m/s].
     pub(super) fn unresolved_m_s(&self) -> f64 {
         let (now_s, end_s) = (self.clock_s(0.0), self.clock_s(1.0));
-        let motions = self.problem.shapes.iter().flat_map(|shape| &shape.supports.motions);
+        let motions = self.problem.shapes.iter().map(|shape| &shape.supports);
+        let motions = motions.flat_map(|supports| supports.motions.iter().chain(&supports.quiet.waves));
         let fastest = motions.map(|motion| motion.unresolved_m_s(now_s, end_s)).fold(0.0, f64::max);
         self.loads.unresolved_m_s().max(fastest)
     }

@@ -30,6 +30,8 @@ impl VaryingLoad {
 #[derive(Clone, Debug)]
 pub(crate) struct Loads {
     constant: Vec<Vec3>,
+    /// The part of them that is not reactions of quiet faces; empty while there are none.
+    given: Vec<Vec3>,
     varying: Vec<VaryingLoad>,
     /// What a stage lets act on and ramp down.
     release: Option<VaryingLoad>,
@@ -58,6 +60,7 @@ impl Loads {
         let nodes = if varying.is_empty() && pressures.is_empty() { 0 } else { constant.len() };
         let mut loads = Self {
             constant,
+            given: Vec::new(),
             varying,
             release: None,
             pressures,
@@ -131,6 +134,18 @@ impl Loads {
         self.pressures.retain(|pressure| pressure.first_node().is_none_or(is_there));
         self.force = self.constant.iter().sum();
         self.place(0.0, 0.0, places);
+    }
+
+    /// Lets the reactions of quiet faces [N] act from now on as constant loads, in the place of those of before.
+    pub(crate) fn keep(&mut self, reactions: &[Vec3]) {
+        if self.given.is_empty() {
+            self.given.clone_from(&self.constant);
+        }
+        let sums = self.given.iter().zip(reactions);
+        self.constant.iter_mut().zip(sums).for_each(|(sum, (given, kept))| *sum = given + kept);
+        if self.changing.is_empty() {
+            self.force = self.constant.iter().sum();
+        }
     }
 
     /// Whether a caller has set forces.

@@ -18,6 +18,7 @@ pub(crate) mod loads;
 pub(crate) mod local_damping;
 pub(crate) mod plan;
 pub(crate) mod queries;
+pub(crate) mod quiet;
 pub(crate) mod release;
 pub(crate) mod report;
 pub(crate) mod sample;

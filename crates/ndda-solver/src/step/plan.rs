@@ -147,7 +147,16 @@ impl Simulation {
         let held = self.any_shape(|shape| !shape.supports.held.is_empty());
         let springs = self.any_shape(|shape| !shape.supports.springs.is_empty());
         let moved = self.any_shape(|shape| !shape.supports.motions.is_empty());
+        let quiet = self.any_shape(|shape| !shape.supports.quiet.dashpots.is_empty());
+        let tied = self.any_shape(|shape| !shape.supports.ties.is_empty());
         vec![
+            Part::of(
+                "quiet faces",
+                quiet,
+                "impedances of the rock beyond on the diagonal of the block's equations",
+                "rock goes on nowhere",
+            ),
+            Part::of("ties", tied, "one unknown for nodes that move alike", "no nodes are tied"),
             Part::of(
                 "loads over time",
                 !self.loads.changing().is_empty(),

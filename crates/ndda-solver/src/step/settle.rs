@@ -134,6 +134,10 @@ impl Simulation {
         self.state.velocity = vec![Vec3::zeros(); start.len()];
         let (settled, came_to_rest) = self.come_to_rest(settle, 0.0, watch)?;
         if came_to_rest {
+            let force = std::mem::take(&mut self.scratch.force);
+            let kept = self.keep_static_reactions(&force);
+            self.scratch.force = force;
+            kept?;
             self.begin_at_rest(start);
         }
         Ok(settled)

@@ -108,6 +108,7 @@ impl Simulation {
                 contact_force: vec![Vec3::zeros(); newton_nodes],
                 contact_offset: Vec::new(),
                 driving_force: Vec::new(),
+                kept_force: Vec::new(),
                 contact: Default::default(),
             },
             bodies: Vec::with_capacity(blocks.len()),
@@ -166,6 +167,8 @@ impl Simulation {
             let shapes = simulation.problem.blocks.ids().map(|block| simulation.shape(block));
             simulation.contact_moments = Some(Box::new(ContactMoments::new(shapes)));
         }
+        let loads = simulation.loads.total().to_vec();
+        simulation.keep_static_reactions(&loads).map_err(Box::new)?;
         simulation.open_ledger(solver.as_ref())?;
         if let Some(settings) = auto_step {
             let control = Control::new(settings, solver, &simulation.state, &simulation.audit.ledger);

@@ -96,6 +96,7 @@ impl Simulation {
                 state.driving_force.len(),
                 if state.driving_force.is_empty() { 0 } else { self.problem.blocks.len() },
             ),
+            (state.kept_force.len(), if state.kept_force.is_empty() { 0 } else { expected }),
             (state.contact_force.len(), self.state.contact_force.len()),
             (ledger.block_count(), self.problem.blocks.len()),
             (
@@ -115,6 +116,7 @@ impl Simulation {
             self.scratch.contact_stiffness.fill(0.0);
         }
         self.scratch.friction_force.fill(Vec3::zeros());
+        self.place_kept_forces();
         self.place_driving_forces();
         self.restore_stage(stage);
         self.control.iter_mut().for_each(|control| control.restore_balance(step_balance));

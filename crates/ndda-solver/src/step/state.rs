@@ -31,6 +31,8 @@ pub struct State {
     pub contact_offset: Vec<Vec3>,
     /// Force that a caller has set on each block [N]; empty while none was ever set.
     pub driving_force: Vec<Vec3>,
+    /// Static reactions of quiet faces, per node [N]; empty where no block has any.
+    pub kept_force: Vec<Vec3>,
     /// Contact history.
     pub contact: ContactHistory,
 }

@@ -13,6 +13,8 @@ use ndda_mesh::geometry::{Aabb, tet_volume};
 use ndda_mesh::{BlockId, BlockSet};
 use ndda_solver::{BodyKind, BodySetup, ForceSetup, TractionSetup};
 
+use super::blast::add_blasts;
+use super::quiet::{add_quiet, add_ties};
 use super::regions::{in_region, loaded_triangles, region_nodes};
 use super::water::add_water;
 use super::{Fault, Source, rock, sources, table, vec3};
@@ -79,6 +81,9 @@ pub(super) fn bodies(
         }
     }
     add_water(scene, blocks, &mut bodies, &mut faults);
+    add_quiet(scene, blocks, folder, &materials, &mut bodies, &mut faults);
+    add_ties(scene, blocks, &mut bodies, &mut faults);
+    add_blasts(scene, blocks, &mut bodies, &mut faults);
     if faults.is_empty() { Ok(bodies) } else { Err(faults) }
 }
 
@@ -106,6 +111,8 @@ fn body(
         initial_stress: initial_stress(scene, body, own_stress, blocks),
         tractions: Vec::new(),
         pressures: Vec::new(),
+        ties: Vec::new(),
+        quiet: Vec::new(),
         forces: Vec::new(),
         velocity_m_s: vec3(velocity),
         spin_rad_s: vec3(spin),
@@ -225,6 +232,15 @@ fn node_supports(
             record::check_speed(&file, &rows, *factor).map_err(|e| e.to_string())?;
             let direction = *factor * vec3(*direction).normalize();
             FemHold::Motion(Motion::Record(Record::new(direction, &rows)))
+        }
+        (Hold::Shaking(components), _) => {
+            let part = |component: &scene::Component| {
+                let prepared = record::prepare(&component.record, folder).map_err(|e| e.to_string())?;
+                let direction = vec3(component.direction).normalize();
+                Ok(Motion::Record(Record::new(direction, &prepared.rows)))
+            };
+            let parts = components.iter().map(part).collect::<Result<_, String>>()?;
+            FemHold::Motion(Motion::Sum(parts))
         }
     };
     let young_pa = |block: BlockId| {

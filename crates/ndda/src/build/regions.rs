@@ -1,5 +1,7 @@
 //! Blocks by name, and parts of them.
 
+use std::collections::HashSet;
+
 use ndda_io::scene::{self, Region};
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet};
@@ -68,6 +70,27 @@ fn boundary_nodes(blocks: &BlockSet, block: BlockId) -> Vec<u32> {
     nodes.sort_unstable();
     nodes.dedup();
     nodes
+}
+
+/// Boundary triangles of a block with their numbers, counter-clockwise seen from outside, by nodes counted from the block's first.
+pub(super) fn boundary(blocks: &BlockSet, block: BlockId) -> impl Iterator<Item = (usize, [u32; 3])> {
+    let first = blocks.nodes_of(block).start as u32;
+    blocks.triangles_of(block).map(move |t| (t, blocks.triangles[t].map(|n| n.0 - first)))
+}
+
+/// As [`loaded_triangles`], counter-clockwise seen from outside.
+pub(super) fn outward_triangles(
+    blocks: &BlockSet,
+    block: BlockId,
+    on: &Region,
+) -> Result<Vec<[u32; 3]>, String> {
+    let sorted = |mut nodes: [u32; 3]| {
+        nodes.sort_unstable();
+        nodes
+    };
+    let loaded: HashSet<[u32; 3]> = loaded_triangles(blocks, block, on)?.into_iter().map(sorted).collect();
+    let outward = boundary(blocks, block).map(|(_, nodes)| nodes);
+    Ok(outward.filter(|nodes| loaded.contains(&sorted(*nodes))).collect())
 }
 
 /// Boundary triangles of a block in a region: those of the named surface, or else those whose corners are all in it.

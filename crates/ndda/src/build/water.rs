@@ -1,6 +1,5 @@
 //! Water of a scene: which faces are wet, and the field of its pressure.
 
-use std::collections::HashSet;
 use std::sync::Arc;
 
 use ndda_fem::{LinearField, PressureField, PressurePiece};
@@ -8,7 +7,7 @@ use ndda_io::scene::{self, LinearPressure, Pressure, Scene, Wet};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{BodySetup, PressureSetup};
 
-use super::regions::{in_region, loaded_triangles};
+use super::regions::{boundary, in_region, outward_triangles};
 use super::{Fault, table, vec3};
 
 /// Triangles of a block, counter-clockwise seen from outside.
@@ -31,18 +30,13 @@ pub(super) fn add_water(scene: &Scene, blocks: &BlockSet, bodies: &mut [BodySetu
 }
 
 fn wet(blocks: &BlockSet, on: &Wet) -> Result<Vec<Faces>, String> {
-    let outward = |block: BlockId, is_wet: &dyn Fn(usize, &[u32; 3]) -> bool| -> Vec<[u32; 3]> {
-        let first = blocks.nodes_of(block).start as u32;
-        let of_block = blocks.triangles_of(block).map(|t| (t, blocks.triangles[t].map(|n| n.0 - first)));
-        of_block.filter(|(t, nodes)| is_wet(*t, nodes)).map(|(_, nodes)| nodes).collect()
-    };
     match on {
         Wet::Joint(pattern) => {
             let is_named: Vec<bool> =
                 blocks.surface_names.iter().map(|name| scene::matches(pattern, name)).collect();
-            let is_wet =
-                |t: usize, _: &[u32; 3]| blocks.triangle_surface[t].is_some_and(|s| is_named[s as usize]);
-            let parts: Vec<Faces> = blocks.ids().map(|block| (block, outward(block, &is_wet))).collect();
+            let is_wet = |t: usize| blocks.triangle_surface[t].is_some_and(|s| is_named[s as usize]);
+            let faces = |block| boundary(blocks, block).filter(|(t, _)| is_wet(*t)).map(|(_, nodes)| nodes);
+            let parts: Vec<Faces> = blocks.ids().map(|block| (block, faces(block).collect())).collect();
             let parts: Vec<Faces> = parts.into_iter().filter(|(_, faces)| !faces.is_empty()).collect();
             if parts.is_empty() {
                 Err(format!("no block has a face on joint `{pattern}`"))
@@ -50,15 +44,9 @@ fn wet(blocks: &BlockSet, on: &Wet) -> Result<Vec<Faces>, String> {
                 Ok(parts)
             }
         }
-        Wet::Part { block, region } => in_region(blocks, block, |block| {
-            let sorted = |mut nodes: [u32; 3]| {
-                nodes.sort_unstable();
-                nodes
-            };
-            let loaded = loaded_triangles(blocks, block, region)?;
-            let loaded: HashSet<[u32; 3]> = loaded.into_iter().map(sorted).collect();
-            Ok(outward(block, &|_, nodes| loaded.contains(&sorted(*nodes))))
-        }),
+        Wet::Part { block, region } => {
+            in_region(blocks, block, |block| outward_triangles(blocks, block, region))
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use ndda_io::table::Table;
 
 /// Energies of a history that are certified [J].
-const ENERGIES: [&str; 8] = [
+const ENERGIES: [&str; 9] = [
     "kinetic_j",
     "strain_j",
     "contact_j",
@@ -14,6 +14,7 @@ const ENERGIES: [&str; 8] = [
     "friction_work_j",
     "damping_work_j",
     "restitution_work_j",
+    "radiated_j",
 ];
 /// Column of time.
 pub const TIME: &str = "time_s";

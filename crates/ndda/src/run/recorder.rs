@@ -202,6 +202,7 @@ pub fn columns<'a>(
         "load_work_j",
         "damping_work_j",
         "restitution_work_j",
+        "radiated_j",
         "balance_j",
         "momentum_x_kg_m_s",
         "momentum_y_kg_m_s",
@@ -253,6 +254,7 @@ impl Sink for Recorder {
             sample.load_work_j,
             sample.damping_work_j,
             sample.restitution_work_j,
+            sample.radiated_j,
             sample.balance_j,
         ]);
         self.row.extend(sample.momentum.iter().chain(sample.angular_momentum.iter()));

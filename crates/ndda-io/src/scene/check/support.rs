@@ -26,6 +26,17 @@ impl Check<'_> {
                     self.numbers(&path("hold.factor"), &[*factor]);
                     self.file(path("hold.file"), file, folder);
                 }
+                Hold::Shaking(components) => {
+                    if components.is_empty() {
+                        let help = "give one component at least: (direction: (1, 0, 0), record: (file: \"quake.at2\"))";
+                        self.error(path("hold"), "shakes along no direction", help);
+                    }
+                    for (k, component) in components.iter().enumerate() {
+                        let path = path(&format!("hold[0][{k}]"));
+                        self.direction(format!("{path}.direction"), &component.direction);
+                        self.record(&format!("{path}.record"), &component.record, folder);
+                    }
+                }
                 _ => {}
             }
             if let By::Springs { stiffness_n_m: Some(stiffness) } = support.by {

@@ -3,6 +3,7 @@
 mod energy;
 mod momentum;
 mod nonlinear;
+mod quiet;
 mod reactions;
 
 use ndda_fem::Voigt;
@@ -26,7 +27,7 @@ pub(crate) struct ElasticBody {
     pub initial_force: Option<Vec<Vec3>>,
     /// σ₀ of each element [Pa]; empty without.
     pub initial_stress_pa: Vec<Voigt>,
-    /// Start positions of the held nodes [m], one entry per held node, then one per spring.
+    /// Start positions of the held nodes [m], one entry per held node, then one per spring, then one per node of quiet faces.
     anchor: Vec<Vec3>,
     /// û [m].
     predicted: Vec<Vec3>,
@@ -59,10 +60,11 @@ impl ElasticBody {
         let zeros = || vec![Vec3::zeros(); shape.operator.nodes()];
         let held = shape.supports.held.iter().map(|h| position[h.node as usize]);
         let sprung = shape.supports.springs.iter().map(|s| position[s.node as usize]);
+        let quiet = shape.supports.quiet.dashpots.iter().map(|d| position[d.node as usize]);
         Self {
             initial_force,
             initial_stress_pa,
-            anchor: held.chain(sprung).collect(),
+            anchor: held.chain(sprung).chain(quiet).collect(),
             predicted: zeros(),
             load: zeros(),
             displacement: zeros(),
@@ -244,6 +246,10 @@ impl ElasticBody {
         for (k, spring) in shape.supports.springs.iter().enumerate() {
             let pull = self.pull_of_spring(shape, context, k, nodes.position);
             self.load[spring.node as usize] += pull;
+        }
+        for (k, dashpot) in shape.supports.quiet.dashpots.iter().enumerate() {
+            let known = self.quiet_force(shape, context, k, nodes).0;
+            self.load[dashpot.node as usize] += known;
         }
         for load in &mut self.load {
             *load = rotation.tr_mul(load);

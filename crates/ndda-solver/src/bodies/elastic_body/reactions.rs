@@ -20,9 +20,11 @@ impl ElasticBody {
         nodes: &Nodes,
     ) {
         self.collect_springs(shape, context, rotation, nodes);
+        self.collect_quiet(shape, context, rotation, nodes);
         if shape.kind == BodyKind::Affine {
             return self.collect_as_a_whole(shape, context, rotation, nodes);
         }
+        self.collect_ties(shape, context, rotation, nodes);
         for held in &shape.supports.held {
             let i = held.node as usize;
             let reaction = rotation * onto(&held.held, &self.unbalanced(shape, context, i));
@@ -31,6 +33,19 @@ impl ElasticBody {
             if held.motion.is_some() {
                 self.report.motion_work_j += reaction.dot(&increment);
             }
+        }
+    }
+
+    /// Forces by which tied nodes hold each other: they add up to nothing, but have a moment.
+    fn collect_ties(&mut self, shape: &Prototype, context: &StepContext, rotation: &Mat3, nodes: &Nodes) {
+        for &node in shape.supports.ties.iter().flatten() {
+            let i = node as usize;
+            let mut force = self.unbalanced(shape, context, i);
+            if let Ok(held) = shape.supports.held.binary_search_by_key(&node, |held| held.node) {
+                force -= onto(&shape.supports.held[held].held, &force);
+            }
+            let increment = self.predicted[i] + rotation * self.correction[i];
+            self.add_reaction(&(rotation * force), &(nodes.position[i] + 0.5 * increment));
         }
     }
 

@@ -19,12 +19,14 @@ impl Ledger {
         let motion_j = way.motion_work_j - self.motion_work_j;
         let load_j = way.load_work_j - self.load_work_j;
         let restitution_j = way.restitution_work_j - self.restitution_work_j;
+        let radiated_j = way.radiated_j - self.radiated_j;
         self.add_work(
             friction_j,
             motion_j,
             load_j,
-            change_j - friction_j - motion_j - load_j - restitution_j,
+            change_j - friction_j - motion_j - load_j - restitution_j + radiated_j,
         );
+        self.add_radiated(radiated_j);
         self.add_restitution_work(restitution_j);
     }
 

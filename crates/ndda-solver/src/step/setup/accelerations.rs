@@ -74,6 +74,10 @@ impl Simulation {
         if let Some(initial) = body.elastic().and_then(|elastic| elastic.initial_force.as_ref()) {
             load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
         }
+        let velocity = &self.state.velocity[self.problem.blocks.nodes_of(block)];
+        for dashpot in &shape.supports.quiet.dashpots {
+            load[dashpot.node as usize] -= dashpot.drag * velocity[dashpot.node as usize];
+        }
         let matrix = shape.unknowns.matrix(&shape.operator, &shape.supports, &mass_only, 0.0);
         let factor = solver.factor(&matrix).map_err(|source| SetupError::Factor { block: name(), source })?;
         let mut rhs = vec![0.0; factor.unknowns()];

@@ -1,0 +1,24 @@
+//! `ndda record`: a record of ground motion, its measures, response spectrum, and slip of a block.
+
+use ndda::shaking::{ShakingError, make, tell};
+
+use crate::args::RecordArgs;
+use crate::exit;
+use crate::terminal::console::say;
+use crate::terminal::events::{self, Events};
+
+/// Runs `ndda record`; returns the exit code.
+pub fn record(args: &RecordArgs) -> u8 {
+    let events = Events::new(args.json, events::RECORD);
+    match make(&args.request()) {
+        Ok(shaking) => {
+            events.emit("finished", &shaking);
+            if !args.json {
+                say(&tell(&shaking));
+            }
+            exit::DONE
+        }
+        Err(ShakingError::Write(error)) => events.fail(exit::of_write(&error), &error.to_string()),
+        Err(error) => events.fail(exit::BAD_INPUT, &error.to_string()),
+    }
+}

@@ -1,0 +1,60 @@
+//! `ndda record`: files, numbers and refusals.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn record(folder: &Path, args: &[&str]) -> Output {
+    let mut ndda = Command::new(env!("CARGO_BIN_EXE_ndda"));
+    ndda.arg("record").args(args).current_dir(folder).output().unwrap()
+}
+
+/// A pulse of 0.3 g for half a second, in g, as PEER writes it.
+fn pulse() -> String {
+    let values = "  .3000000E+00".repeat(5) + "\n";
+    format!(
+        "PEER\npulse\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 50, DT= .0100 SEC\n{}",
+        values.repeat(10)
+    )
+}
+
+#[test]
+fn a_record_is_measured_and_its_block_slides_as_its_closed_form_says() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("pulse.AT2"), pulse()).unwrap();
+    let done = record(folder.path(), &["pulse.AT2", "--yield", "0.980665", "--json"]);
+    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    let json: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert_eq!((&json["schema"], &json["event"]), (&"ndda.record/1".into(), &"finished".into()));
+    let (g, t) = (9.80665, 0.49);
+    // 0.3 g for 0.49 s against 0.1 g: ½ · 0.2 g t² · 3.
+    let slip = json["slip"][0]["last_m"].as_f64().unwrap();
+    assert!((slip + 0.5 * 0.2 * g * t * t * 3.0).abs() < 1e-6, "{slip}");
+    let peak = json["peak_velocity_m_s"]["value"].as_f64().unwrap();
+    assert!((peak - 0.3 * g * t).abs() < 1e-9, "{peak}");
+    for file in ["record.motion.csv", "record.spectrum.csv"] {
+        assert!(folder.path().join(file).is_file(), "{file}");
+    }
+}
+
+#[test]
+fn what_is_no_record_is_refused_with_its_cure() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("pulse.at2"), pulse().replace("NPTS= 50", "NPTS= 51")).unwrap();
+    std::fs::write(folder.path().join("table.csv"), "time_s,ax,ay\n0,1,2\n1,1,2\n").unwrap();
+    for (args, word) in [
+        (vec!["pulse.at2"], "line 4 says 51"),
+        (vec!["no.at2"], "cannot be read"),
+        (vec!["table.csv"], "there is no column `acceleration_m_s2`; the first line names time_s, ax, ay"),
+        (vec!["table.csv", "--column", "ax", "--filter", "5,1"], "the lower one first"),
+        (vec!["table.csv", "--column", "ax", "--resample", "5"], "would make 1 rows"),
+        (
+            vec!["table.csv", "--column", "ax", "--slope", "40", "--friction", "30"],
+            "below that of --friction",
+        ),
+        (vec!["table.csv", "--column", "ax", "--damping", "1.5"], "from 0 to below 1"),
+    ] {
+        let done = record(folder.path(), &args);
+        let said = String::from_utf8_lossy(&done.stderr).into_owned();
+        assert!(done.status.code() == Some(3) && said.contains(word), "{args:?}: {said}");
+    }
+}

@@ -1,0 +1,39 @@
+//! The label of a run.
+
+use serde::{Deserialize, Serialize};
+
+/// A run's judgement of its own result, and why.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Label {
+    /// Whether its motion is to be trusted.
+    pub word: LabelWord,
+    /// Why it is not; empty for an accurate run.
+    pub reasons: Vec<String>,
+}
+
+/// Whether the motion of a run is to be trusted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum LabelWord {
+    /// Speeds are right to 1 % of the largest, places to a tenth of the height of the tetrahedra in contact.
+    #[default]
+    Accurate,
+    /// The same holds, but a hardly different start ends elsewhere: only statistics of several runs mean something.
+    Sensitive,
+    /// They may not be.
+    Inaccurate,
+    /// It ended before it could be wrong.
+    Stopped,
+}
+
+impl LabelWord {
+    /// The word itself.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Accurate => "accurate",
+            Self::Sensitive => "sensitive",
+            Self::Inaccurate => "inaccurate",
+            Self::Stopped => "stopped",
+        }
+    }
+}

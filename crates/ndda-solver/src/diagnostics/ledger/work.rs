@@ -1,0 +1,23 @@
+//! Work and energy that leave or enter.
+
+use crate::diagnostics::ledger::Ledger;
+
+impl Ledger {
+    /// Books the work of friction, of prescribed motions, of changing loads and of damping in a step [J].
+    pub(crate) fn add_work(&mut self, friction_j: f64, motion_j: f64, load_j: f64, damping_j: f64) {
+        self.friction_work_j += friction_j;
+        self.motion_work_j += motion_j;
+        self.load_work_j += load_j;
+        self.damping_work_j += damping_j;
+    }
+
+    /// Books the energy that left through quiet faces in a step [J].
+    pub(crate) fn add_radiated(&mut self, radiated_j: f64) {
+        self.radiated_j += radiated_j;
+    }
+
+    /// Books the work of contact damping in a step [J].
+    pub(crate) fn add_restitution_work(&mut self, work_j: f64) {
+        self.restitution_work_j += work_j;
+    }
+}

@@ -1,0 +1,59 @@
+//! Static reactions of quiet faces: what holds the rock up when time begins acts on as a constant force.
+
+use ndda_mesh::Vec3;
+
+use crate::error::StepError;
+use crate::step::Simulation;
+use crate::step::follower::Places;
+use crate::step::state::State;
+
+impl Simulation {
+    /// Whether a block has quiet faces.
+    fn is_quiet(&self) -> bool {
+        self.problem.shapes.iter().any(|shape| !shape.supports.quiet.dashpots.is_empty())
+    }
+
+    /// Lets what quiet faces need to stay where they are, under all other forces per node, act on them from now on.
+    ///
+    /// # Errors
+    /// [`StepError::Block`] when a block has no rotation any more.
+    pub(crate) fn keep_static_reactions(&mut self, force: &[Vec3]) -> Result<(), StepError> {
+        if !self.is_quiet() {
+            return Ok(());
+        }
+        let mut kept = vec![Vec3::zeros(); force.len()];
+        let mut others = force.to_vec();
+        // Reactions that were kept until now are in `force`.
+        others.iter_mut().zip(&self.state.kept_force).for_each(|(other, old)| *other -= old);
+        for block in self.problem.blocks.ids() {
+            let nodes = self.problem.blocks.nodes_of(block);
+            let body = &mut self.bodies[block.index()];
+            let shape = &self.problem.shapes[body.shape];
+            let Some(elastic) = body.elastic().filter(|_| !shape.supports.quiet.dashpots.is_empty()) else {
+                continue;
+            };
+            let place = (&self.state.position[nodes.clone()], &others[nodes.clone()]);
+            if let Err(source) = elastic.keep_quiet(shape, place, &mut kept[nodes]) {
+                let (time_s, block) = (self.time_s(), self.problem.blocks.names[block.index()].clone());
+                return Err(StepError::Block { time_s, block, source });
+            }
+        }
+        self.state.kept_force = kept;
+        self.place_kept_forces();
+        Ok(())
+    }
+
+    /// Puts the static reactions of the state among the constant loads.
+    pub(crate) fn place_kept_forces(&mut self) {
+        if self.state.kept_force.is_empty() {
+            return;
+        }
+        if !self.is_quiet() {
+            return self.state.kept_force.clear();
+        }
+        self.loads.keep(&self.state.kept_force);
+        let State { position, velocity, .. } = &self.state;
+        let now_s = self.clock_s(0.0);
+        self.loads.place(now_s, now_s, Places { position, velocity, lead_s: 0.0 });
+    }
+}

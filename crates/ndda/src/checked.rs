@@ -1,0 +1,64 @@
+//! What `ndda check` finds in a scene without errors.
+
+use std::fmt;
+use std::path::Path;
+
+use ndda_io::summary::Chosen;
+use serde::Serialize;
+
+use crate::build::RockReport;
+use crate::forecast::cost::Guess;
+use crate::forecast::step::Advice;
+
+/// Findings in a scene without errors.
+#[derive(Serialize)]
+pub struct Checked<'a> {
+    /// Exit code of the command.
+    pub exit_code: u8,
+    /// The scene.
+    pub scene: &'a Path,
+    /// Warnings.
+    pub warnings: usize,
+    /// Blocks.
+    pub blocks: usize,
+    /// Their nodes.
+    pub nodes: usize,
+    /// Their tetrahedra.
+    pub tets: usize,
+    /// Unknowns that are solved for.
+    pub unknowns: usize,
+    /// Distinct factors.
+    pub factors: usize,
+    /// Steps of the run.
+    pub steps: u64,
+    /// Longest step that contact allows [s].
+    pub advised_step_s: Option<f64>,
+    /// Why.
+    pub contact_stability: Option<&'a Advice>,
+    /// Settings that were chosen.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub chosen: &'a [Chosen],
+    /// What its records are, and what is done with them.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub records: &'a [String],
+    /// What rock was cut into.
+    pub rock: &'a [RockReport],
+    /// What a run will take; none where its first steps stop.
+    pub guess: Option<Guess>,
+}
+
+impl fmt::Display for Checked<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { blocks, nodes, tets, unknowns, factors, steps, warnings, .. } = self;
+        writeln!(f, "{}: no errors, {warnings} warning(s)", self.scene.display())?;
+        write!(
+            f,
+            "{blocks} block(s), {nodes} nodes, {tets} tets, {unknowns} unknowns, {factors} factor(s); "
+        )?;
+        write!(f, "{steps} steps")?;
+        self.rock.iter().try_for_each(|rock| write!(f, "\n{rock}"))?;
+        self.records.iter().try_for_each(|record| write!(f, "\nrecord {record}"))?;
+        self.chosen.iter().try_for_each(|chosen| write!(f, "\n{chosen}"))?;
+        self.guess.as_ref().map_or(Ok(()), |guess| write!(f, "\n{guess}"))
+    }
+}
