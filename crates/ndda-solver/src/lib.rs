@@ -104,5 +104,6 @@ pub use step::report::{Iterations, StageTimes, StepCounts, StepReport};
 pub use step::settle::{Damping, Settle, Settled};
 pub use step::setup::Setup;
 pub use step::snapshot::{RestoreError, Snapshot, SnapshotView};
-pub use step::stage::{LeaveOutError, StageStart, StageState};
+pub use step::stage::{LeaveOutError, StageStart};
+pub use step::stage_state::StageState;
 pub use step::state::State;

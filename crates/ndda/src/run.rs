@@ -13,7 +13,8 @@ pub mod recorder;
 mod resume;
 pub mod run_log;
 pub mod schedule;
-pub(crate) mod stages;
+pub(crate) mod stage_log;
+mod stages;
 mod twin;
 
 use std::ops::ControlFlow;

@@ -873,7 +873,7 @@ class Excavation(Builder):
 
     Blocks that it meets are cut along its border, and those inside are named after it, `heading_0001`,
     `heading_0002`, …, so that a stage can take out `heading_*`. The faces of these cuts, and only these, are
-    glued by bonds of any strength: the rock behaves as before, until one side is taken out.
+    glued by bonds that no stress breaks: the rock behaves as before, until one side is taken out.
 
     Parameters
     ----------
@@ -3202,7 +3202,7 @@ class Time(Builder):
     Parameters
     ----------
     end_s : float
-        End of the run [s]; rounded to a whole number of steps.
+        End of the run, or of what comes before the first of `stages` [s]; rounded to a whole number of steps.
     step_s : float, optional
         Time step Δt [s]. Default: chosen from the stability of contact, speeds and loads, and said with its
         reason.

@@ -5,6 +5,7 @@ mod label;
 mod motion;
 mod named;
 mod stage;
+mod verdict;
 
 use std::path::Path;
 
@@ -19,6 +20,7 @@ pub use label::{Label, LabelWord};
 pub use motion::{BlockEnd, BlockMotion, Course, MonitorEnd, Motion};
 pub use named::Named;
 pub use stage::StageEnd;
+pub use verdict::{Judgement, Verdict};
 
 /// Everything that `summary.json` says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -150,36 +152,6 @@ pub struct Invariants {
     pub max_penetration_ratio: f64,
     /// Largest h = ω_c Δt of contact.
     pub max_h: f64,
-}
-
-/// A number judged against its limit.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Verdict {
-    /// The number. Left out when it is not computed yet.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub value: Option<f64>,
-    /// Its limit. Left out when the number is only shown.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub limit: Option<f64>,
-    /// The judgement.
-    pub verdict: Judgement,
-}
-
-/// How a number compares with its limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Judgement {
-    /// Within the limit.
-    #[serde(rename = "pass")]
-    Pass,
-    /// Beyond the limit of a warning.
-    #[serde(rename = "warn")]
-    Warn,
-    /// Beyond the limit: the result is not to be used.
-    #[serde(rename = "fail")]
-    Fail,
-    /// This version does not compute it.
-    #[serde(rename = "not yet")]
-    NotYet,
 }
 
 /// Error against a closed form, relative to its magnitude.

@@ -1,5 +1,6 @@
 //! The ledger of a run: energy and momentum balance, and the worst of everything that has a limit.
 
+mod control;
 mod stages;
 mod work;
 
@@ -162,17 +163,6 @@ impl Ledger {
         self.impulse += impulse;
         self.angular_impulse += angular_impulse;
         self.damping_m_s = self.damping_m_s.max(error_m_s);
-    }
-
-    /// Counts a discarded step.
-    pub(crate) fn note_rejected(&mut self) {
-        self.worst.control.rejected += 1;
-    }
-
-    /// Keeps the most halvings of a step.
-    pub(crate) fn note_halvings(&mut self, halvings: u32) {
-        let control = &mut self.worst.control;
-        control.most_halvings = control.most_halvings.max(halvings);
     }
 
     /// Whether a first sample has opened the balance.

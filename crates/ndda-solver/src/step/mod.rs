@@ -26,6 +26,7 @@ pub(crate) mod settle;
 pub(crate) mod setup;
 pub(crate) mod snapshot;
 pub(crate) mod stage;
+pub(crate) mod stage_state;
 pub(crate) mod state;
 pub(crate) mod travel;
 
@@ -47,7 +48,7 @@ use crate::step::control::Control;
 use crate::step::follower::Places;
 use crate::step::implicit_contact::Newton;
 use crate::step::loads::Loads;
-use crate::step::stage::StageState;
+use crate::step::stage_state::StageState;
 use crate::step::state::State;
 use crate::step::travel::Travel;
 

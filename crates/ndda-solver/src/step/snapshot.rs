@@ -9,7 +9,7 @@ use crate::diagnostics::ledger::Ledger;
 use crate::integrators::time_integrator::Inertia;
 use crate::step::Simulation;
 use crate::step::follower::Places;
-use crate::step::stage::StageState;
+use crate::step::stage_state::StageState;
 use crate::step::state::State;
 
 /// All that a run has become: what a checkpoint keeps, and a simulation of the same problem can go on from.

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use ndda_mesh::{BlockId, Vec3};
-use serde::{Deserialize, Serialize};
 
 use crate::bodies::kind::BodyKind;
 use crate::bodies::prototype::Prototype;
@@ -13,19 +12,8 @@ use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::change::TakeOverError;
 use crate::step::follower::Places;
-use crate::step::release::Release;
+use crate::step::stage_state::StageState;
 use crate::step::state::State;
-
-/// What stages keep of a simulation.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct StageState {
-    /// Which blocks are absent.
-    pub(crate) absent: Vec<bool>,
-    /// Forces that act on in place of what was taken away, until they have ramped down.
-    pub(crate) release: Option<Release>,
-    /// Where nodes were when displacements were last set to zero [m]; empty while they never were.
-    pub(crate) counted_from: Vec<Vec3>,
-}
 
 /// Blocks cannot be left out.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

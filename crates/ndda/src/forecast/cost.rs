@@ -12,7 +12,7 @@ use super::memory::readable;
 use crate::run::fields::FieldWriter;
 use crate::run::recorder::{columns, held_blocks};
 use crate::run::schedule::{events, is_due};
-use crate::run::{contact_rows, motion, stages};
+use crate::run::{contact_rows, motion, stage_log};
 use crate::{build, machine};
 
 /// Steps are timed this long, but at least a few of them: a check of a small scene is to be felt as instant.
@@ -98,7 +98,7 @@ fn timed_steps_of(simulation: &mut Simulation, most: u64, long: Duration) -> Res
 pub fn frames(scene: &Scene) -> u64 {
     let asked = u64::from(scene.output.frames);
     let steps = build::all_steps(scene);
-    let ends = stages::ends(scene).into_iter().filter(|end| !is_due(*end, steps, asked));
+    let ends = stage_log::ends(scene).into_iter().filter(|end| !is_due(*end, steps, asked));
     if asked > 0 { events(steps, asked) + ends.count() as u64 } else { 0 }
 }
 

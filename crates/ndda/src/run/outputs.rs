@@ -18,7 +18,7 @@ use super::monitor::Monitor;
 use super::motion::BlockTable;
 use super::recorder::{Recorder, SavedRecorder, held_blocks};
 use super::schedule::Schedule;
-use super::stages::{self, StageLog};
+use super::stage_log::{self, StageLog};
 use crate::judge::reference::{self, Comparison};
 
 /// Everything that `ndda resume` needs.
@@ -111,12 +111,12 @@ impl<'a, 'b> Outputs<'a, 'b> {
         Course { steps, started, stop }: Course,
     ) -> Result<Self, WriteError> {
         let after_s = scene.reference.as_ref().map_or(0.0, |r| reference::kind(r).1);
-        let stage_ends = stages::ends(scene);
+        let stage_ends = stage_log::ends(scene);
         let schedule = |count: u32| Schedule { steps, count: u64::from(count), ends: stage_ends.clone() };
         let rows = schedule(scene.output.history_rows);
         let held = match scene.output.reactions {
             true if scene.stages.is_empty() => held_blocks(simulation),
-            true => stages::held_blocks(scene, simulation),
+            true => stage_log::held_blocks(scene, simulation),
             false => Vec::new(),
         };
         let (mut saved, mut files, mut history, mut stage_log) = (None, None, None, StageLog::default());

@@ -281,7 +281,6 @@ impl Sink for Recorder {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::run::schedule::{events, is_due};
 
     #[test]
