@@ -124,12 +124,10 @@ fn a_quiet_face_sends_back_of_oblique_waves_what_its_closed_form_says() {
         let exact = sent_back(is_p, angle_deg);
         assert!((exact - printed).abs() < 6e-6, "P {is_p}, {angle_deg}°: {exact} {printed}");
     }
-    for (angle_deg, cells) in [(60.0, 48), (75.0, 44)] {
-        row(
-            "oblique wave",
-            &format!("energy that a quiet face sends back of a P wave at {angle_deg}°"),
-            measured(angle_deg, cells, 40),
-            Within(sent_back(true, angle_deg), 0.05),
-        );
-    }
+    row(
+        "oblique wave",
+        "energy that a quiet face sends back of a P wave at 60°",
+        measured(60.0, 48, 40),
+        Within(sent_back(true, 60.0), 0.05),
+    );
 }

@@ -49,7 +49,6 @@ pub mod supports;
 pub mod table;
 pub mod testing;
 pub mod tet4;
-mod ties;
 pub mod transversely_isotropic;
 
 pub use block_operator::BlockOperator;

@@ -1,5 +1,7 @@
 //! Where a block is held or moved, and what of its motion is left.
 
+mod ties;
+
 use nalgebra::{Matrix6, SymmetricEigen, Vector6};
 use ndda_mesh::{Mat3, Vec3};
 
@@ -7,7 +9,6 @@ use crate::block_operator::BlockOperator;
 use crate::frame::Frame;
 use crate::motion::Motion;
 use crate::quiet::Quiet;
-use crate::ties;
 
 /// Two directions closer than this (sine of the angle) are the same; far above round-off, far below any joint.
 const SAME_DIRECTION: f64 = 1e-6;
@@ -247,7 +248,7 @@ fn direction(hold: &Hold) -> Option<Vec3> {
 }
 
 /// Adds the part of `n` that is new, by Gram–Schmidt.
-pub(crate) fn add_direction(held: &mut Vec<Vec3>, n: &Vec3) {
+fn add_direction(held: &mut Vec<Vec3>, n: &Vec3) {
     let new = held.iter().fold(*n, |rest, h| rest - h * h.dot(&rest));
     if new.norm() > SAME_DIRECTION {
         held.push(new.normalize());

@@ -62,6 +62,9 @@ const MOST_ROWS: usize = 10_000_000;
 /// Speed of light [m/s]: no ground moves faster, and far above it squares of speeds are no numbers any more.
 const LIGHT_M_S: f64 = 299_792_458.0;
 
+/// Time [s] and acceleration.
+type Rows = Vec<(f64, f64)>;
+
 /// Columns of a CSV file.
 const TIME: &str = "time_s";
 const ACCELERATION: &str = "acceleration_m_s2";
@@ -132,10 +135,7 @@ pub fn read(file: &Path) -> Result<Vec<(f64, f64)>, RecordError> {
 }
 
 /// Rows of a file by its ending, and the unit that it names.
-fn raw(
-    file: &Path,
-    column: Option<&str>,
-) -> Result<(Vec<(f64, f64)>, Option<AccelerationUnit>), RecordError> {
+fn raw(file: &Path, column: Option<&str>) -> Result<(Rows, Option<AccelerationUnit>), RecordError> {
     let bytes = bytes_of(file)?;
     if file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("at2")) {
         return at2::parse(file, &String::from_utf8_lossy(&bytes));

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::RecordError;
+use super::{RecordError, Rows};
 use crate::scene::AccelerationUnit;
 
 /// Lines before the numbers.
@@ -12,10 +12,7 @@ const HEADER: usize = 4;
 ///
 /// # Errors
 /// [`RecordError::Table`] with the line that is wrong.
-pub(super) fn parse(
-    file: &Path,
-    text: &str,
-) -> Result<(Vec<(f64, f64)>, Option<AccelerationUnit>), RecordError> {
+pub(super) fn parse(file: &Path, text: &str) -> Result<(Rows, Option<AccelerationUnit>), RecordError> {
     let wrong = |fault: String| RecordError::Table { file: file.to_path_buf(), fault };
     let lines: Vec<&str> = text.lines().collect();
     let Some(counts) = lines.get(HEADER - 1) else {

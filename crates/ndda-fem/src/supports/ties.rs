@@ -1,10 +1,11 @@
 //! Nodes that move alike: the sides of level ground.
 
-use crate::supports::{HeldNode, SupportError};
 use ndda_mesh::Vec3;
 
+use super::{HeldNode, SupportError, add_direction};
+
 /// Merges groups of nodes that share one, and leaves out nodes that are alone: each group ascending, ordered by its first.
-pub(crate) fn merged(nodes: usize, groups: &[Vec<u32>]) -> Vec<Vec<u32>> {
+pub(super) fn merged(nodes: usize, groups: &[Vec<u32>]) -> Vec<Vec<u32>> {
     let mut first: Vec<u32> = (0..nodes as u32).collect();
     let root = |first: &[u32], mut node: u32| {
         while first[node as usize] != node {
@@ -28,7 +29,7 @@ pub(crate) fn merged(nodes: usize, groups: &[Vec<u32>]) -> Vec<Vec<u32>> {
 ///
 /// # Errors
 /// [`SupportError::TiedAndMoved`] where one of them is moved.
-pub(crate) fn hold_alike(groups: &[Vec<u32>], held: &mut [Option<HeldNode>]) -> Result<(), SupportError> {
+pub(super) fn hold_alike(groups: &[Vec<u32>], held: &mut [Option<HeldNode>]) -> Result<(), SupportError> {
     for group in groups {
         let mut all: Vec<Vec3> = Vec::new();
         for &node in group {
@@ -36,7 +37,7 @@ pub(crate) fn hold_alike(groups: &[Vec<u32>], held: &mut [Option<HeldNode>]) -> 
             if entry.motion.is_some() {
                 return Err(SupportError::TiedAndMoved { node });
             }
-            entry.held.iter().for_each(|n| crate::supports::add_direction(&mut all, n));
+            entry.held.iter().for_each(|n| add_direction(&mut all, n));
         }
         if !all.is_empty() {
             for &node in group {
