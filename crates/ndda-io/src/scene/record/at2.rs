@@ -78,7 +78,7 @@ fn number(word: &str) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn told(text: &str) -> Result<(Vec<(f64, f64)>, Option<AccelerationUnit>), String> {
+    fn told(text: &str) -> Result<(Rows, Option<AccelerationUnit>), String> {
         parse(Path::new("quake.at2"), text).map_err(|error| error.to_string())
     }
 
