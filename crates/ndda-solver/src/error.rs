@@ -1,5 +1,6 @@
 //! Why a run stops.
 
+use crate::bolts::setup::BoltError;
 use crate::linear::linear_solver::SolveError;
 use ndda_contact::ContactError;
 use ndda_fem::{FrameError, SupportError};
@@ -208,6 +209,14 @@ pub enum SetupError {
         block: String,
         /// The conflict and its remedy.
         reason: &'static str,
+    },
+    /// A bolt cannot be set.
+    #[error("bolt `{bolt}`: {source}")]
+    Bolt {
+        /// Name of the bolt.
+        bolt: String,
+        /// The problem.
+        source: BoltError,
     },
     /// Contact at the start cannot be computed.
     #[error(transparent)]

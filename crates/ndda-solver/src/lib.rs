@@ -38,6 +38,7 @@
 //!     implicit_contact: None,
 //!     solver: Box::new(Direct),
 //!     auto_step: None,
+//!     bolts: Vec::new(),
 //! })?;
 //! let start_m = simulation.state().position[0].z;
 //! for _ in 0..100 {
@@ -52,6 +53,7 @@
 //! | chapter | |
 //! |---|---|
 //! | `step` | the step, its control, contact at its end, settling, what changes ([`State`]) |
+//! | `bolts` | rock bolts, solved statically in each step |
 //! | `bodies` | one step of one block: elastic, affine, rigid, fixed; damping |
 //! | `integrators` | Newmark, midpoint, generalised α |
 //! | `linear` | factors and solves: supernodal, dense, conjugate gradients |
@@ -61,6 +63,7 @@
 #![warn(unreachable_pub)]
 
 mod bodies;
+mod bolts;
 mod diagnostics;
 mod error;
 mod integrators;
@@ -73,6 +76,11 @@ pub use bodies::kind::BodyKind;
 pub use bodies::prototype::{BodySetup, ForceSetup, Mass, PressureSetup, Prototype, TractionSetup};
 pub use bodies::step_damping::StepDamping;
 pub use bodies::unknowns::Unknowns;
+pub use bolts::embedding::Portion;
+pub use bolts::memory::BoltMemory;
+pub use bolts::report::{BoltPiece, BoltStatus, PieceState};
+pub use bolts::setup::{BoltError, BoltSetup, Grout, Plate, Steel};
+pub use bolts::span::Dowel;
 pub use diagnostics::energies::Sample;
 pub use diagnostics::invariants::Invariants;
 pub use diagnostics::worst::Worst;

@@ -36,6 +36,7 @@ use ndda_mesh::{BlockSet, Vec3};
 use crate::bodies::body::Body;
 use crate::bodies::congruent_groups::CongruentGroups;
 use crate::bodies::prototype::Prototype;
+use crate::bolts::set::Bolts;
 use crate::diagnostics::ledger::Ledger;
 use crate::error::StepError;
 use crate::integrators::time_integrator::{StepWeights, TimeIntegrator};
@@ -61,6 +62,8 @@ pub struct Simulation {
     pub(crate) newton: Option<Box<Newton>>,
     /// Correction that conserves angular momentum where the integrator evaluates contact away from mid-step or remembers accelerations.
     pub(crate) contact_moments: Option<Box<ContactMoments>>,
+    /// Rock bolts, if there are any.
+    pub(crate) bolts: Option<Box<Bolts>>,
     /// The length of the parts that a step is done in, and the integrator's weights for it.
     pub(crate) part_s: f64,
     pub(crate) weights: StepWeights,
