@@ -4,6 +4,7 @@ mod bar_under_traction;
 mod bedded_bar;
 mod block_on_a_slope;
 mod body_kinds;
+mod bolts;
 mod bonded_bar;
 mod bonded_plate;
 mod bouncing_block;

@@ -1,6 +1,7 @@
 //! The scene: everything a run needs, as a person writes it in RON. Every quantity is SI with its unit in the key.
 
 mod block;
+mod bolt;
 pub(crate) mod check;
 pub mod code;
 mod contact;
@@ -38,6 +39,7 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 pub use block::{Block, Body, InSitu, Stress, StressGradient, Turn};
+pub use bolt::{Bolt, BoltDowel, BoltGrout, BoltPlace, BoltPlate, BoltSteel};
 pub use contact::{
     Contact, Dilation, FractureEnergy, Friction, JointLaw, MaterialPair, Memory, Potential, Residual,
     Roughness,
@@ -100,6 +102,9 @@ pub struct Scene {
     /// Pressure of water in joints and on faces. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub water: Vec<Water>,
+    /// Rock bolts and anchors. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bolts: Vec<Bolt>,
     /// Forces on points of blocks. Default: none.
     #[serde(default)]
     pub forces: Vec<Force>,

@@ -76,7 +76,7 @@ pub use bodies::kind::BodyKind;
 pub use bodies::prototype::{BodySetup, ForceSetup, Mass, PressureSetup, Prototype, TractionSetup};
 pub use bodies::step_damping::StepDamping;
 pub use bodies::unknowns::Unknowns;
-pub use bolts::embedding::Portion;
+pub use bolts::embedding::{Portion, first_rock_m};
 pub use bolts::memory::BoltMemory;
 pub use bolts::report::{BoltPiece, BoltStatus, PieceState};
 pub use bolts::setup::{BoltError, BoltSetup, Grout, Plate, Steel};

@@ -1,6 +1,7 @@
 //! Scene → simulation: the only place where names become objects.
 
 mod bodies;
+mod bolts;
 mod choices;
 pub mod friction;
 pub mod overlaps;
@@ -185,9 +186,11 @@ pub fn simulation_with(
 ) -> Result<Simulation, Vec<Fault>> {
     let contact = contact_model(scene, &blocks, &mut choices).map_err(|fault| vec![fault])?;
     let bodies = bodies::bodies(scene, &blocks, folder, &choices.materials)?;
+    let bolts = bolts::bolts(scene, &blocks)?;
     let setup = Setup {
         blocks,
         bodies,
+        bolts,
         gravity_m_s2: vec3(scene.gravity_m_s2),
         gravity_factor: (scene.gravity_ramp_s > 0.0)
             .then(|| Table { rows: vec![(0.0, 0.0), (scene.gravity_ramp_s, 1.0)] }),
@@ -220,6 +223,9 @@ fn setup_fault(scene: &Scene, error: SetupError) -> Fault {
     let (block, supported) = match &error {
         SetupError::Support { block, .. } | SetupError::Kind { block, .. } => (block, true),
         SetupError::Factor { block, .. } | SetupError::Solve { block, .. } => (block, false),
+        SetupError::Bolt { bolt, .. } => {
+            return Fault::new(format!("bolts[{}]", bolts::entry(scene, bolt)), error);
+        }
         SetupError::Contact(_) => return Fault::new("contact", error),
     };
     let support = scene.supports.iter().position(|s| supported && scene::matches(&s.block, block));

@@ -1,6 +1,7 @@
 //! Checks that the types of a scene cannot express: ranges, names, and combinations. All errors are found in one pass.
 
 mod block;
+mod bolt;
 mod contact;
 mod friction;
 mod load;
@@ -42,6 +43,7 @@ pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> 
     check.rock(folder);
     check.supports(folder);
     check.loads();
+    check.bolts();
     check.contact();
     check.monitors();
     check.reference();

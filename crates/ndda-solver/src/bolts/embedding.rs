@@ -17,6 +17,16 @@ pub struct Portion {
     pub to_m: f64,
 }
 
+/// Distance from a point along a line at which it first meets a block [m]; none where it meets none.
+pub fn first_rock_m(blocks: &BlockSet, from_m: &Vec3, to_m: &Vec3) -> Option<f64> {
+    let line = Line { from_m: *from_m, to_m: *to_m };
+    let around = Aabb::around([from_m, to_m]);
+    let near = |block: &BlockId| Aabb::around(&blocks.rest_position[blocks.nodes_of(*block)]).touches(&around);
+    let tets = blocks.ids().filter(near).flat_map(|block| blocks.tets_of(block));
+    let meets = tets.filter_map(|tet| line.inside(&blocks.tet_corners(TetId(tet as u32), &blocks.rest_position)));
+    meets.map(|(enters_m, _)| enters_m).min_by(f64::total_cmp)
+}
+
 /// A point that moves with a tetrahedron.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Anchor {
@@ -86,7 +96,8 @@ impl Line {
                 self.add_portions(blocks, block, short_m, &mut found);
             }
         }
-        found.sort_by(|a, b| a.from_m.total_cmp(&b.from_m).then(a.block.cmp(&b.block)));
+        let by_place = |a: &Portion, b: &Portion| a.from_m.total_cmp(&b.from_m).then(a.block.cmp(&b.block));
+        found.sort_by(by_place);
         for k in 1..found.len() {
             let (before, after) = (found[k - 1], found[k]);
             let shorter_m = (before.to_m - before.from_m).min(after.to_m - after.from_m);
@@ -189,6 +200,6 @@ mod tests {
     fn a_line_in_the_contact_face_of_two_blocks_is_refused() {
         let blocks = two_boxes(0.0);
         let line = Line { from_m: Vec3::new(0.1, 0.3, 1.0), to_m: Vec3::new(0.9, 0.4, 1.0) };
-        assert_eq!(line.portions(&blocks), Err((BlockId(0), BlockId(1))));
+        assert_eq!(line.portions(&blocks), Err((BlockId(1), BlockId(0))));
     }
 }

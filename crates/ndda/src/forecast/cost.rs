@@ -105,7 +105,7 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
     let file = |name: &str, count: u64, bytes: u64| FileGuess { name: name.to_string(), count, bytes };
     let held = if output.reactions { held_blocks(simulation) } else { Vec::new() };
     let monitors = scene.monitors.iter().map(|monitor| monitor.name.as_str());
-    let columns = columns(monitors, &held, scene.reference.is_some()).len() as u64;
+    let columns = columns(monitors, &held, (!scene.bolts.is_empty(), scene.reference.is_some())).len() as u64;
     // Of the scene, its text is kept.
     let saved = checkpoint::size(&simulation.snapshot_view()) + checkpoint::size(scene);
     let blocks = simulation.blocks().len() as u64;

@@ -129,7 +129,7 @@ impl<'a, 'b> Outputs<'a, 'b> {
                 folder,
             });
         }
-        let recorder = Recorder::new(history.as_deref(), monitors, comparison, after_s, rows, held, saved)?;
+        let recorder = Recorder::new(history.as_deref(), monitors, comparison, after_s, rows, (held, simulation.bolt_count() > 0), saved)?;
         Ok(Self { recorder, files, observers, steps, started, stop })
     }
 

@@ -87,11 +87,11 @@ impl Recorder {
         comparison: Option<Comparison>,
         after_s: f64,
         (steps, rows): (u64, u64),
-        held: Vec<(BlockId, String)>,
+        (held, bolted): (Vec<(BlockId, String)>, bool),
         saved: Option<SavedRecorder>,
     ) -> Result<Self, WriteError> {
         let names = monitors.iter().map(|monitor| monitor.name.as_str());
-        let columns = columns(names, &held, comparison.is_some());
+        let columns = columns(names, &held, (bolted, comparison.is_some()));
         let history = match (file, &saved) {
             (None, _) => {
                 Rows::Memory(Table { columns: vec![Vec::new(); columns.len()], names: columns.clone() })
@@ -186,7 +186,7 @@ pub fn held_blocks(simulation: &Simulation) -> Vec<(BlockId, String)> {
 pub fn columns<'a>(
     monitors: impl Iterator<Item = &'a str>,
     held: &[(BlockId, String)],
-    compared: bool,
+    (bolted, compared): (bool, bool),
 ) -> Vec<String> {
     let fixed = [
         "time_s",
@@ -219,6 +219,9 @@ pub fn columns<'a>(
     }
     for (_, name) in held {
         columns.extend(["x", "y", "z"].map(|axis| format!("{name}.reaction_{axis}_n")));
+    }
+    if bolted {
+        columns.extend(["bolt_j", "bolt_work_j"].map(String::from));
     }
     if compared {
         columns.push("reference_error".into());
@@ -262,6 +265,9 @@ impl Sink for Recorder {
         for &block in &self.held {
             let reaction = if sample.step == 0 { Vec3::zeros() } else { simulation.reaction_n(block) };
             self.row.extend(reaction.iter());
+        }
+        if simulation.bolt_count() > 0 {
+            self.row.extend([sample.bolt_j, sample.bolt_work_j]);
         }
         let errors = self.compare(simulation);
         if self.comparison.is_some() {

@@ -115,7 +115,8 @@ pub fn of_model(model: &Model) -> Values {
         known.extend(["error_end", "error_max"].map(String::from));
     }
     let held = recorder::held_blocks(&model.simulation);
-    known.extend(recorder::columns(names(), &held, compared).into_iter().filter(|name| name != TIME));
+    let bolted = model.simulation.bolt_count() > 0;
+    known.extend(recorder::columns(names(), &held, (bolted, compared)).into_iter().filter(|name| name != TIME));
     Values { label: None, numbers: known.into_iter().map(|name| (name, 0.0)).collect() }
 }
 
