@@ -1,5 +1,6 @@
 //! The summary: what a run did, what it cost and whether it can be trusted, as `summary.json`.
 
+mod bolt;
 mod chosen;
 mod motion;
 mod named;
@@ -12,6 +13,7 @@ use serde_json::Value;
 use crate::atomic;
 use crate::write_error::WriteError;
 
+pub use bolt::BoltEnd;
 pub use chosen::Chosen;
 pub use motion::{BlockEnd, BlockMotion, Course, MonitorEnd, Motion};
 pub use named::Named;
@@ -68,6 +70,9 @@ pub struct Summary {
     pub monitors: Named<MonitorEnd>,
     /// State of the blocks at the end.
     pub blocks: Named<BlockEnd>,
+    /// State of the bolts at the end; left out where there are none.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub bolts: Named<BoltEnd>,
     /// Comparison with the closed form that the scene names; null when it names none.
     pub reference: Option<ReferenceError>,
     /// Warnings to read before using the result.
@@ -296,6 +301,7 @@ mod tests {
                 ("action minus reaction".into(), verdict(None, None, Judgement::NotYet)),
             ]),
             motion: None,
+            bolts: Named(Vec::new()),
             monitors: Named(vec![("top".into(), MonitorEnd::default())]),
             blocks: Named(vec![("ramp".into(), BlockEnd::default()), ("block".into(), BlockEnd::default())]),
             reference: Some(ReferenceError {

@@ -17,8 +17,8 @@ const LEAST_SEGMENTS: f64 = 4.0;
 /// Length over which the strain at break is measured, over √A: proportional test pieces of ISO 6892-1.
 const GAUGE: f64 = 5.65;
 
-/// Stiffness of a plate over that of the steel next to it: it gives way by a millionth.
-const PLATE: f64 = 1e6;
+/// Stiffness of plates, and of steel between two sides of a closed joint, over that of the steel next to it.
+const RIGID: f64 = 1e4;
 
 /// Gaps below this part of a bolt are none.
 const CLOSED: f64 = 1e-6;
@@ -284,7 +284,8 @@ impl<'a> Maker<'a> {
         let first_point = self.points.len();
         for i in 0..=count {
             let along_m = portion.from_m + length_m * i as f64 / count as f64;
-            let joins = self.nodes.last().is_some_and(|last| along_m - last <= self.closed_m);
+            // Both sides of a joint have nodes of their own, so that steel may break between them.
+            let joins = i == 0 && !meets && self.nodes.last().is_some_and(|last| along_m - last <= self.closed_m);
             if !joins {
                 self.nodes.push(along_m);
             }
@@ -340,12 +341,16 @@ impl<'a> Maker<'a> {
         let ea_n = self.setup.steel.axial_stiffness_n();
         let lengths_m: Vec<f64> = self.nodes.windows(2).map(|pair| pair[1] - pair[0]).collect();
         if let Some(plate) = &self.setup.plate {
-            let stiffness_n_m = PLATE * ea_n / lengths_m[0];
+            let stiffness_n_m = RIGID * ea_n / lengths_m[0];
             let law = Law { stiffness_n_m, least_n: 0.0, most_n: plate.strength_n, opens: true };
             self.holders.push(Holder { node: 0, law });
             self.held_at.push(0);
         }
-        let steel = lengths_m.iter().map(|h| Law::symmetric(ea_n / h, self.setup.steel.yield_n)).collect();
+        let longest_m = lengths_m.iter().copied().fold(0.0, f64::max);
+        let closed_n_m = RIGID * ea_n / longest_m;
+        let stiffness_n_m = |h: f64| if h > self.closed_m { ea_n / h } else { closed_n_m };
+        let yield_n = self.setup.steel.yield_n;
+        let steel = lengths_m.iter().map(|h| Law::symmetric(stiffness_n_m(*h), yield_n)).collect();
         let begins_bonded = self.holders.first().is_some_and(|one| one.node == 0) && self.held_at[0] == 0;
         let strain = if begins_bonded && self.setup.plate.is_some() { -self.setup.pretension_n / ea_n } else { 0.0 };
         let gauge_m = self.setup.gauge_m();
