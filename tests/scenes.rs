@@ -88,7 +88,7 @@ fn every_scene_has_a_criterion() {
 /// Scenes that are no examples of the program: tests and scripts run them.
 fn other_scenes() -> Vec<PathBuf> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folders = ["scenes/extreme", "scenes/failures", "scenes/joints", "scenes/safety"];
+    let folders = ["scenes/extreme", "scenes/failures", "scenes/joints", "scenes/safety", "scenes/works"];
     let files = folders.into_iter().flat_map(|folder| std::fs::read_dir(root.join(folder)).unwrap());
     files.map(|e| e.unwrap().path()).filter(|p| p.extension().is_some_and(|e| e == "ron")).collect()
 }

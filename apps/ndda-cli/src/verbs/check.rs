@@ -3,6 +3,7 @@
 use std::fmt;
 use std::path::Path;
 
+use ndda::bolt_report::BoltReports;
 use ndda::build::RockReport;
 use ndda::choose;
 use ndda::forecast::{cost, cost::Guess, doubts, step, step::Advice};
@@ -31,6 +32,8 @@ struct Checked<'a> {
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     chosen: &'a [Chosen],
     rock: &'a [RockReport],
+    #[serde(skip_serializing_if = "BoltReports::is_empty")]
+    bolts: BoltReports,
     guess: Option<Guess>,
 }
 
@@ -67,6 +70,7 @@ pub fn check(args: &CheckArgs) -> u8 {
         contact_stability: advice.as_ref(),
         chosen: &loaded.chosen,
         rock: &model.rock,
+        bolts: BoltReports::new(simulation),
         guess: guess.ok(),
     };
     if args.write
@@ -79,11 +83,8 @@ pub fn check(args: &CheckArgs) -> u8 {
     let stable = advice.as_ref().filter(|advice| advice.worst().h <= advice.bound);
     if !args.json {
         let stable = stable.map_or_else(String::new, |advice| format!("\n{advice}"));
-        let written = if args.write && !checked.chosen.is_empty() {
-            format!("\nwritten into {}", file.display())
-        } else {
-            String::new()
-        };
+        let is_written = args.write && !checked.chosen.is_empty();
+        let written = is_written.then(|| format!("\nwritten into {}", file.display())).unwrap_or_default();
         say(&format!("{checked}{stable}{written}"));
     }
     checked.exit_code
@@ -93,12 +94,10 @@ impl fmt::Display for Checked<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { blocks, nodes, tets, unknowns, factors, steps, warnings, .. } = self;
         writeln!(f, "{}: no errors, {warnings} warning(s)", self.scene.display())?;
-        write!(
-            f,
-            "{blocks} block(s), {nodes} nodes, {tets} tets, {unknowns} unknowns, {factors} factor(s); "
-        )?;
-        write!(f, "{steps} steps")?;
+        write!(f, "{blocks} block(s), {nodes} nodes, {tets} tets, {unknowns} unknowns, ")?;
+        write!(f, "{factors} factor(s); {steps} steps")?;
         self.rock.iter().try_for_each(|rock| write!(f, "\n{rock}"))?;
+        write!(f, "{}", self.bolts)?;
         self.chosen.iter().try_for_each(|chosen| write!(f, "\n{chosen}"))?;
         self.guess.as_ref().map_or(Ok(()), |guess| write!(f, "\n{guess}"))
     }

@@ -44,6 +44,8 @@ impl Crossing {
 #[derive(Clone, Debug)]
 pub(crate) struct Bolt {
     pub name: String,
+    /// From head to end [m].
+    pub length_m: f64,
     /// Distance of each node of the bar from the head [m].
     pub nodes_m: Vec<f64>,
     pub steel: Vec<Law>,

@@ -86,6 +86,11 @@ impl Simulation {
         Some((&bolt.name, &bolt.portions))
     }
 
+    /// Length of a bolt from its head to its end [m].
+    pub fn bolt_length_m(&self, index: usize) -> f64 {
+        self.bolts.as_ref().and_then(|bolts| bolts.list.get(index)).map_or(0.0, |bolt| bolt.length_m)
+    }
+
     /// Bonded length of a bolt in blocks [m].
     pub fn bonded_m(&self, index: usize) -> f64 {
         let bolt = self.bolts.as_ref().and_then(|bolts| bolts.list.get(index));

@@ -356,6 +356,7 @@ impl<'a> Maker<'a> {
         let gauge_m = self.setup.gauge_m();
         Bolt {
             name: self.setup.name.clone(),
+            length_m: self.line.length_m(),
             rest_m: lengths_m.iter().map(|h| strain * h).collect(),
             steel,
             breaks: Break { strain: self.setup.steel.break_strain, ea_n },
