@@ -62,7 +62,12 @@ fn bolts_are_pulled_out_as_their_bond_and_steel_let_them() {
         let bar_n_m = EA_N * lambda() * (lambda() * length_m).tanh();
         assert!((bar_n_m / stiffness_n_m - 1.0).abs() < 2e-6);
         let (pull_n, status) = pull(length_m, 1e-4, 1e-4 * bar_n_m, "");
-        row("bolts", &format!("elastic pull-out of {length_m} m [N/m]"), pull_n / 1e-4, Within(bar_n_m, 1e-2));
+        row(
+            "bolts",
+            &format!("elastic pull-out of {length_m} m [N/m]"),
+            pull_n / 1e-4,
+            Within(bar_n_m, 1e-2),
+        );
         assert_eq!((status.state, status.debonded), (PieceState::Elastic, 0.0));
     }
     for (length_m, answer_n) in [(0.5, 59.308e3), (2.0, 69.850e3)] {
@@ -99,7 +104,12 @@ fn a_bolt_across_a_joint_resists_its_opening_whatever_its_segments() {
     let stiffness_n_m = 0.5 * EA_N * lambda();
     assert!((stiffness_n_m / 22.354e6 - 1.0).abs() < 1e-4);
     let coarsest_m = 1.0 / (4.0 * lambda());
-    for segment in [String::new(), format!("segment_m: {coarsest_m:e}"), "segment_m: 0.061".into(), "segment_m: 0.01".into()] {
+    for segment in [
+        String::new(),
+        format!("segment_m: {coarsest_m:e}"),
+        "segment_m: 0.061".into(),
+        "segment_m: 0.01".into(),
+    ] {
         let mut simulation = joint(&format!("grout: ({GROUT}), {segment}"), (4.0, 5.0), 3e-3, "Fixed");
         for _ in 0..1003 {
             simulation.step().unwrap();
@@ -142,7 +152,12 @@ fn steel_breaks_at_the_same_opening_whatever_its_segments() {
         opening_m
     });
     // Two gauge lengths next to the joint, of which one may break first, and what the bond gives.
-    row("bolts", "opening at which it breaks, coarse segments over fine ones", openings[0] / openings[2], Near(1.0, 1e-2));
+    row(
+        "bolts",
+        "opening at which it breaks, coarse segments over fine ones",
+        openings[0] / openings[2],
+        Near(1.0, 1e-2),
+    );
     row("bolts", "the same, middling ones", openings[1] / openings[2], Near(1.0, 1e-2));
 }
 
@@ -206,9 +221,8 @@ fn a_bolted_block_stands_or_slides_as_its_factor_of_safety_says() {
     let (sin, cos) = DIP_DEG.to_radians().sin_cos();
     let half = 0.5f64.sqrt();
     let needed_n = |tan: f64| WEIGHT_N * (sin - cos * tan) / (half * (1.0 + tan));
-    let acceleration = |tension_n: f64, tan: f64| {
-        GRAVITY * (sin - cos * tan) - tension_n * half * (1.0 + tan) / 2600.0
-    };
+    let acceleration =
+        |tension_n: f64, tan: f64| GRAVITY * (sin - cos * tan) - tension_n * half * (1.0 + tan) / 2600.0;
     let tan = 30f64.to_radians().tan();
     assert!((needed_n(tan) - 2301.41).abs() < 0.005 && (needed_n(tan / 1.5) - 6727.25).abs() < 0.005);
     assert!((acceleration(1000.0, tan) - 0.558284).abs() < 1e-6);
@@ -249,7 +263,12 @@ fn an_elastic_bar_along_the_slope_stops_the_block_where_it_should() {
             }
         }
         let name = if more.is_empty() { "" } else { ", contact at the end of steps" };
-        row("bolts", &format!("an elastic bar stops the block{name} [m]"), farthest_m, Within(51.3379e-3, 1e-2));
+        row(
+            "bolts",
+            &format!("an elastic bar stops the block{name} [m]"),
+            farthest_m,
+            Within(51.3379e-3, 1e-2),
+        );
         row("bolts", &format!("after [s]{name}"), when_s, Within(0.506566, 1e-2));
         let rest_m = start_m - center(&simulation).0;
         row("bolts", &format!("and it stays there{name} [m]"), rest_m, Within(farthest_m, 1e-2));
@@ -296,7 +315,12 @@ fn bolts_keep_momentum_and_their_energy_is_accounted_for() {
                 continue;
             }
             let share = sample.balance_j.abs() / -sample.bolt_work_j;
-            row("bolts", &format!("energy without a cause over that of the bolt, {name}"), share, AtMost(1e-2));
+            row(
+                "bolts",
+                &format!("energy without a cause over that of the bolt, {name}"),
+                share,
+                AtMost(1e-2),
+            );
         }
     }
 }

@@ -84,7 +84,7 @@ pub fn check(args: &CheckArgs) -> u8 {
     if !args.json {
         let stable = stable.map_or_else(String::new, |advice| format!("\n{advice}"));
         let is_written = args.write && !checked.chosen.is_empty();
-        let written = is_written.then(|| format!("\nwritten into {}", file.display())).unwrap_or_default();
+        let written = if is_written { format!("\nwritten into {}", file.display()) } else { String::new() };
         say(&format!("{checked}{stable}{written}"));
     }
     checked.exit_code

@@ -66,9 +66,15 @@ impl BoltSeries {
     }
 
     fn list(&self) -> String {
-        let mut text = String::from("<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n");
+        let mut text = String::from(
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n<Collection>\n",
+        );
         for (k, time_s) in self.times_s.iter().enumerate() {
-            let _ = writeln!(text, "<DataSet timestep=\"{time_s:?}\" file=\"{FIELDS_FOLDER}/{}\"/>", bolts_name(k));
+            let _ = writeln!(
+                text,
+                "<DataSet timestep=\"{time_s:?}\" file=\"{FIELDS_FOLDER}/{}\"/>",
+                bolts_name(k)
+            );
         }
         text + "</Collection>\n</VTKFile>\n"
     }

@@ -4,6 +4,7 @@ mod bolt;
 mod chosen;
 mod motion;
 mod named;
+mod reference_error;
 
 use std::path::Path;
 
@@ -17,6 +18,7 @@ pub use bolt::BoltEnd;
 pub use chosen::Chosen;
 pub use motion::{BlockEnd, BlockMotion, Course, MonitorEnd, Motion};
 pub use named::Named;
+pub use reference_error::ReferenceError;
 
 /// Everything that `summary.json` says.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -214,28 +216,6 @@ pub enum Judgement {
     /// This version does not compute it.
     #[serde(rename = "not yet")]
     NotYet,
-}
-
-/// Error against a closed form, relative to its magnitude.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ReferenceError {
-    /// Which closed form, by its name in the scene.
-    pub kind: String,
-    /// Relative error at the end.
-    pub error_end: f64,
-    /// Largest relative error after `after_s`.
-    pub error_max: f64,
-    /// After a collision, how far the blocks are from where hard ones would be, over the smallest tetrahedron height.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub place_end: Option<f64>,
-    /// From when on the largest error is taken \[s\].
-    pub after_s: f64,
-    /// Relative error at the end against the closed form with the shear spring's stick stage.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stick_stage_end: Option<f64>,
-    /// Largest relative error after `after_s` against the closed form with the stick stage.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stick_stage_max: Option<f64>,
 }
 
 /// Writes the summary to `path`, replacing an older file whole.

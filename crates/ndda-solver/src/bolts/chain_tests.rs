@@ -80,7 +80,8 @@ fn pulling_a_chain_out_takes_what_its_difference_equation_says() {
         let x = lambda() * length_m / segments as f64;
         // 2 sinh(μ/2) = λh: P/u = ½ k_b h coth(μ/2) tanh(n μ).
         let half = (0.5 * x).asinh();
-        let chain_n_m = 0.5 * BOND_N_M2 * (x / lambda()) / half.tanh() * (2.0 * half * segments as f64).tanh();
+        let chain_n_m =
+            0.5 * BOND_N_M2 * (x / lambda()) / half.tanh() * (2.0 * half * segments as f64).tanh();
         let mut bar = Bar::new(length_m, segments, f64::INFINITY);
         let found_n_m = bar.pull(1e-4) / 1e-4;
         // The driver gives way by 1e-6 of a bar of a metre.

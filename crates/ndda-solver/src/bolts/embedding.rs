@@ -21,9 +21,11 @@ pub struct Portion {
 pub fn first_rock_m(blocks: &BlockSet, from_m: &Vec3, to_m: &Vec3) -> Option<f64> {
     let line = Line { from_m: *from_m, to_m: *to_m };
     let around = Aabb::around([from_m, to_m]);
-    let near = |block: &BlockId| Aabb::around(&blocks.rest_position[blocks.nodes_of(*block)]).touches(&around);
+    let near =
+        |block: &BlockId| Aabb::around(&blocks.rest_position[blocks.nodes_of(*block)]).touches(&around);
     let tets = blocks.ids().filter(near).flat_map(|block| blocks.tets_of(block));
-    let meets = tets.filter_map(|tet| line.inside(&blocks.tet_corners(TetId(tet as u32), &blocks.rest_position)));
+    let meets =
+        tets.filter_map(|tet| line.inside(&blocks.tet_corners(TetId(tet as u32), &blocks.rest_position)));
     meets.map(|(enters_m, _)| enters_m).min_by(f64::total_cmp)
 }
 
@@ -71,7 +73,7 @@ impl Line {
         let (start, end) = (barycentric(corners, &self.from_m)?, barycentric(corners, &self.to_m)?);
         let (mut enters, mut leaves) = (0.0f64, 1.0f64);
         for (a, b) in start.into_iter().zip(end) {
-            if a < 0.0 && b < 0.0 || a == b && a < 0.0 {
+            if a < 0.0 && b < 0.0 {
                 return None;
             }
             if a < 0.0 {
@@ -114,9 +116,9 @@ impl Line {
     }
 
     fn add_portions(&self, blocks: &BlockSet, block: BlockId, short_m: f64, found: &mut Vec<Portion>) {
-        let spans = blocks.tets_of(block).filter_map(|tet| {
-            self.inside(&blocks.tet_corners(TetId(tet as u32), &blocks.rest_position))
-        });
+        let spans = blocks
+            .tets_of(block)
+            .filter_map(|tet| self.inside(&blocks.tet_corners(TetId(tet as u32), &blocks.rest_position)));
         let mut spans: Vec<(f64, f64)> = spans.collect();
         spans.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut pieces: Vec<Portion> = Vec::new();

@@ -94,12 +94,8 @@ impl Simulation {
     pub(crate) fn find_bolt_forces(&mut self) {
         let Some(mut bolts) = self.bolts.take() else { return };
         let mut room = take(&mut self.scratch.seen_position);
-        let position = seen(
-            &self.problem.blocks,
-            &self.state.contact_offset,
-            &self.scratch.contact_position,
-            &mut room,
-        );
+        let position =
+            seen(&self.problem.blocks, &self.state.contact_offset, &self.scratch.contact_position, &mut room);
         let Bolts { list, rows, work, force, .. } = &mut *bolts;
         rows.iter().for_each(|(node, _)| force[*node as usize] = Vec3::zeros());
         work.pairs.clear();

@@ -117,7 +117,9 @@ pub enum BoltError {
         ends_m: f64,
     },
     /// Segments too long for the bond.
-    #[error("segments of {asked_m} m are too long for its grout, which makes it too stiff: segment_m must be at most {most_m:.4} m")]
+    #[error(
+        "segments of {asked_m} m are too long for its grout, which makes it too stiff: segment_m must be at most {most_m:.4} m"
+    )]
     Coarse {
         /// What was asked for [m].
         asked_m: f64,
@@ -285,7 +287,8 @@ impl<'a> Maker<'a> {
         for i in 0..=count {
             let along_m = portion.from_m + length_m * i as f64 / count as f64;
             // Both sides of a joint have nodes of their own, so that steel may break between them.
-            let joins = i == 0 && !meets && self.nodes.last().is_some_and(|last| along_m - last <= self.closed_m);
+            let joins =
+                i == 0 && !meets && self.nodes.last().is_some_and(|last| along_m - last <= self.closed_m);
             if !joins {
                 self.nodes.push(along_m);
             }
@@ -352,7 +355,8 @@ impl<'a> Maker<'a> {
         let yield_n = self.setup.steel.yield_n;
         let steel = lengths_m.iter().map(|h| Law::symmetric(stiffness_n_m(*h), yield_n)).collect();
         let begins_bonded = self.holders.first().is_some_and(|one| one.node == 0) && self.held_at[0] == 0;
-        let strain = if begins_bonded && self.setup.plate.is_some() { -self.setup.pretension_n / ea_n } else { 0.0 };
+        let strain =
+            if begins_bonded && self.setup.plate.is_some() { -self.setup.pretension_n / ea_n } else { 0.0 };
         let gauge_m = self.setup.gauge_m();
         Bolt {
             name: self.setup.name.clone(),

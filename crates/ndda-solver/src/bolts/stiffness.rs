@@ -25,15 +25,14 @@ impl Bolt {
         let series = |a: f64, b: f64| if a + b > 0.0 { a * b / (a + b) } else { 0.0 };
         let last_left = held.iter().rposition(|[left, _]| *left > 0.0).unwrap_or(0);
         let first_right = held.iter().position(|[_, right]| *right > 0.0).unwrap_or(held.len() - 1);
-        let mut left = 0.0;
-        for i in 0..=last_left {
+        let (mut left, mut right) = (0.0, 0.0);
+        for (i, [here, _]) in held.iter().enumerate().take(last_left + 1) {
             let carried = if i > 0 { series(left, self.steel[i - 1].stiffness_n_m) } else { 0.0 };
-            left = held[i][0] + carried;
+            left = here + carried;
         }
-        let mut right = 0.0;
-        for i in (first_right..held.len()).rev() {
+        for (i, [_, here]) in held.iter().enumerate().skip(first_right).rev() {
             let carried = self.steel.get(i).map_or(0.0, |law| series(right, law.stiffness_n_m));
-            right = held[i][1] + carried;
+            right = here + carried;
         }
         let between = &self.steel[last_left..first_right.max(last_left)];
         let slack: f64 = between.iter().map(|law| 1.0 / law.stiffness_n_m).sum();

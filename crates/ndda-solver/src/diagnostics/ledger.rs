@@ -295,7 +295,8 @@ impl Ledger {
             + sample.restitution_work_j
             + (sample.bolt_work_j - start.bolt_work_j);
         sample.balance_j = sample.total_j() - start.total_j() - work_j;
-        let stored = sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j + sample.bolt_j;
+        let stored =
+            sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j + sample.bolt_j;
         self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());
         self.largest_gain_j = self.largest_gain_j.max(sample.balance_j);
         self.largest_loss_j = self.largest_loss_j.max(-sample.balance_j);

@@ -72,7 +72,8 @@ impl Simulation {
         if acts {
             for block in self.problem.blocks.ids() {
                 let nodes = self.problem.blocks.nodes_of(block);
-                moments.velocity[block.index()] = self.shape(block).operator.center(&self.state.velocity[nodes]);
+                moments.velocity[block.index()] =
+                    self.shape(block).operator.center(&self.state.velocity[nodes]);
             }
         }
         if let Some(model) = self.contact.as_ref().filter(|_| acts) {

@@ -22,7 +22,10 @@ impl Simulation {
     fn needs_offset(&self) -> bool {
         let is_settled = self.settling || !self.state.start.is_empty();
         let first = self.state.step == 0 && self.state.control.part == 0 && !is_settled;
-        first && (self.contact.is_some() || self.has_bolts()) && self.newton.is_none() && self.weights.contact_in_the_middle()
+        first
+            && (self.contact.is_some() || self.has_bolts())
+            && self.newton.is_none()
+            && self.weights.contact_in_the_middle()
     }
 
     /// o ← ⅛ Δt² a, by loads and contact where the blocks are put.

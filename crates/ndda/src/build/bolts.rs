@@ -26,7 +26,9 @@ pub(super) fn bolts(scene: &Scene, blocks: &BlockSet) -> Result<Vec<BoltSetup>, 
 pub(super) fn entry(scene: &Scene, name: &str) -> usize {
     let is_of = |bolt: &Bolt| {
         let rest = name.strip_prefix(&bolt.name);
-        rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('_') && matches!(bolt.at, BoltPlace::Rows { .. }))
+        rest.is_some_and(|rest| {
+            rest.is_empty() || rest.starts_with('_') && matches!(bolt.at, BoltPlace::Rows { .. })
+        })
     };
     scene.bolts.iter().position(is_of).unwrap_or(0)
 }
@@ -98,7 +100,9 @@ fn setup(bolt: &Bolt, name: String, (from_m, to_m): (Vec3, Vec3)) -> BoltSetup {
             from_m: bolt.grout.from_m,
             to_m: never(bolt.grout.to_m),
         },
-        dowel: bolt.dowel.map(|dowel| Dowel { stiffness_n_m: dowel.stiffness_n_m, capacity_n: dowel.capacity_n }),
+        dowel: bolt
+            .dowel
+            .map(|dowel| Dowel { stiffness_n_m: dowel.stiffness_n_m, capacity_n: dowel.capacity_n }),
         pretension_n: bolt.pretension_n,
         plate: bolt.plate.map(|plate| Plate { strength_n: never(plate.strength_n) }),
         segment_m: bolt.segment_m,

@@ -3,8 +3,8 @@
 use ndda_fem::stress::volume_m3;
 use ndda_io::scene::{Integrator, Scene};
 use ndda_io::summary::{
-    BlockEnd, BoltEnd, Chosen, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError, Status,
-    Summary,
+    BlockEnd, BoltEnd, Chosen, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError,
+    Status, Summary,
 };
 use ndda_mesh::Vec3;
 use ndda_solver::{BoltStatus, Simulation, StepCounts};

@@ -10,18 +10,8 @@ use serde::{Deserialize, Serialize};
 use crate::run::schedule::is_due;
 
 /// Columns of the table; bolts, their pieces and blocks are numbered from 0, and states are 0 elastic, 1 debonded, 2 yielding, 3 broken.
-pub const COLUMNS: [&str; 10] = [
-    "time_s",
-    "bolt",
-    "piece",
-    "block",
-    "from_m",
-    "to_m",
-    "axial_n",
-    "utilisation",
-    "slip_m",
-    "state",
-];
+pub const COLUMNS: [&str; 10] =
+    ["time_s", "bolt", "piece", "block", "from_m", "to_m", "axial_n", "utilisation", "slip_m", "state"];
 
 /// How far the table and the lines had come.
 #[derive(Clone, Debug, Serialize, Deserialize)]

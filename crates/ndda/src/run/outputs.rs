@@ -117,7 +117,8 @@ impl<'a, 'b> Outputs<'a, 'b> {
                 goes_on =
                     Some((earlier.fields, earlier.contacts, earlier.blocks, earlier.bolts, earlier.wall_s));
             }
-            let (saved_fields, saved_contacts, saved_blocks, saved_bolts, earlier_s) = goes_on.unwrap_or_default();
+            let (saved_fields, saved_contacts, saved_blocks, saved_bolts, earlier_s) =
+                goes_on.unwrap_or_default();
             let frames = (steps, u64::from(scene.output.frames));
             let fields = || FieldWriter::new(&folder, simulation, scene, steps, saved_fields);
             let contacts = || ContactTable::new(&folder, rows, saved_contacts);
@@ -136,7 +137,15 @@ impl<'a, 'b> Outputs<'a, 'b> {
                 folder,
             });
         }
-        let recorder = Recorder::new(history.as_deref(), monitors, comparison, after_s, rows, (held, simulation.bolt_count() > 0), saved)?;
+        let recorder = Recorder::new(
+            history.as_deref(),
+            monitors,
+            comparison,
+            after_s,
+            rows,
+            (held, simulation.bolt_count() > 0),
+            saved,
+        )?;
         Ok(Self { recorder, files, observers, steps, started, stop })
     }
 

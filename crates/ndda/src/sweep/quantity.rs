@@ -116,7 +116,9 @@ pub fn of_model(model: &Model) -> Values {
     }
     let held = recorder::held_blocks(&model.simulation);
     let bolted = model.simulation.bolt_count() > 0;
-    known.extend(recorder::columns(names(), &held, (bolted, compared)).into_iter().filter(|name| name != TIME));
+    known.extend(
+        recorder::columns(names(), &held, (bolted, compared)).into_iter().filter(|name| name != TIME),
+    );
     Values { label: None, numbers: known.into_iter().map(|name| (name, 0.0)).collect() }
 }
 

@@ -127,6 +127,9 @@ fn is_top_file(name: &str) -> bool {
 /// Whether `name` is `frame_` or `bolts_`, six digits or more, `.vtu`, and perhaps the temporary ending.
 fn is_frame(name: &str) -> bool {
     let name = name.strip_suffix(TEMPORARY_ENDING).unwrap_or(name);
-    let number = ["frame_", "bolts_"].into_iter().find_map(|kind| name.strip_prefix(kind)).and_then(|rest| rest.strip_suffix(".vtu"));
+    let number = ["frame_", "bolts_"]
+        .into_iter()
+        .find_map(|kind| name.strip_prefix(kind))
+        .and_then(|rest| rest.strip_suffix(".vtu"));
     number.is_some_and(|n| n.len() >= 6 && n.bytes().all(|b| b.is_ascii_digit()))
 }

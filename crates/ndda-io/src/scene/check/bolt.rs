@@ -26,7 +26,11 @@ impl Check<'_> {
                 self.numbers(&format!("{path}.from_m"), from_m);
                 self.numbers(&format!("{path}.to_m"), to_m);
                 if from_m == to_m {
-                    self.error(format!("{path}.to_m"), "is the head: the bolt has no length", "move one of them");
+                    self.error(
+                        format!("{path}.to_m"),
+                        "is the head: the bolt has no length",
+                        "move one of them",
+                    );
                 }
             }
             BoltPlace::Rows { corner_m, along_m, up_m, spacing_m, direction, length_m, .. } => {
@@ -76,7 +80,11 @@ impl Check<'_> {
         let ends_m = grout.to_m.unwrap_or(f64::INFINITY);
         if !(grout.from_m >= 0.0 && grout.from_m.is_finite() && ends_m > grout.from_m) {
             let message = format!("the bonded length from {} to {ends_m} m has none", grout.from_m);
-            self.error(format!("{path}.grout.from_m"), message, "both count from the head: 0 <= from_m < to_m");
+            self.error(
+                format!("{path}.grout.from_m"),
+                message,
+                "both count from the head: 0 <= from_m < to_m",
+            );
         }
         if let (Some(yield_n), Some(strain)) = (steel.yield_n, steel.break_strain)
             && strain * steel.young_pa * steel.area_m2 < yield_n

@@ -62,11 +62,7 @@ pub const DIMENSIONS: [Dimension; 16] = [
     dimension(
         "_m2",
         "an area",
-        &[
-            decimal("SquareMetre", 0),
-            decimal("SquareCentimetre", -4),
-            decimal("SquareMillimetre", -6),
-        ],
+        &[decimal("SquareMetre", 0), decimal("SquareCentimetre", -4), decimal("SquareMillimetre", -6)],
     ),
     dimension(
         "_m_s2",
