@@ -5,7 +5,7 @@ use ndda_mesh::{BlockId, Vec3};
 use crate::bolts::chain::{Chain, Holder, Room};
 use crate::bolts::embedding::{Anchor, Portion};
 use crate::bolts::law::Law;
-use crate::bolts::memory::MemoryOf;
+use crate::bolts::memory::{MemoryOf, Sizes};
 use crate::bolts::span::{Crossing, Dowel, Frame};
 
 /// Strain at which the steel breaks.
@@ -83,6 +83,11 @@ pub(crate) struct Work {
 }
 
 impl Bolt {
+    /// How much it remembers.
+    pub(crate) fn sizes(&self) -> Sizes {
+        Sizes { nodes: self.nodes_m.len(), holders: self.holders.len(), crossings: self.crossings() }
+    }
+
     /// Number of places where it crosses from one block to the next.
     pub(crate) fn crossings(&self) -> usize {
         self.spans.iter().filter(|span| matches!(span, Span::Crossing { .. })).count()

@@ -2,8 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::bolts::bolt::Bolt;
-
 /// What all bolts remember, one after the other; part of the state.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BoltMemory {
@@ -20,6 +18,17 @@ pub struct BoltMemory {
     dissipated_j: Vec<f64>,
 }
 
+/// How much a bolt remembers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sizes {
+    /// Nodes of its bar.
+    pub nodes: usize,
+    /// Springs that hold it.
+    pub holders: usize,
+    /// Places where it crosses from one block to the next.
+    pub crossings: usize,
+}
+
 /// What one bolt remembers.
 pub(crate) struct MemoryOf<'a> {
     pub displacement_m: &'a mut [f64],
@@ -32,19 +41,20 @@ pub(crate) struct MemoryOf<'a> {
 
 impl BoltMemory {
     /// Of bolts as they are set.
-    pub(crate) fn new(bolts: &[Bolt]) -> Self {
-        let count = |of: fn(&Bolt) -> usize| bolts.iter().map(of).sum::<usize>();
+    pub(crate) fn new(bolts: &[Sizes]) -> Self {
+        let count = |of: fn(&Sizes) -> usize| bolts.iter().map(of).sum::<usize>();
+        let pieces = count(|bolt| bolt.nodes - 1);
         Self {
-            displacement_m: vec![0.0; count(|bolt| bolt.nodes_m.len())],
-            slip_m: vec![0.0; count(|bolt| bolt.holders.len())],
-            yielded_m: vec![0.0; count(|bolt| bolt.steel.len())],
-            broken: vec![false; count(|bolt| bolt.steel.len())],
-            dowel_slip_m: vec![[0.0; 2]; count(Bolt::crossings)],
+            displacement_m: vec![0.0; count(|bolt| bolt.nodes)],
+            slip_m: vec![0.0; count(|bolt| bolt.holders)],
+            yielded_m: vec![0.0; pieces],
+            broken: vec![false; pieces],
+            dowel_slip_m: vec![[0.0; 2]; count(|bolt| bolt.crossings)],
             dissipated_j: vec![0.0; bolts.len()],
         }
     }
 
-    /// Whether both are of the same bolts; the numbers of values that differ otherwise.
+    /// Numbers of its values: those of the same bolts agree.
     pub(crate) fn sizes(&self) -> [usize; 6] {
         [
             self.displacement_m.len(),
@@ -76,20 +86,20 @@ impl BoltMemory {
         self.dissipated_j.fill(0.0);
     }
 
-    /// Does something with each bolt and what it remembers, in order.
-    pub(crate) fn each<'a>(&mut self, bolts: &'a [Bolt], mut work: impl FnMut(&'a Bolt, MemoryOf)) {
+    /// Does something with what each bolt remembers, in order, and its index.
+    pub(crate) fn each(&mut self, bolts: &[Sizes], mut work: impl FnMut(usize, MemoryOf)) {
         let (mut displacement_m, mut slip_m) = (&mut self.displacement_m[..], &mut self.slip_m[..]);
         let (mut yielded_m, mut broken) = (&mut self.yielded_m[..], &mut self.broken[..]);
         let mut dowel_slip_m = &mut self.dowel_slip_m[..];
-        for (bolt, dissipated_j) in bolts.iter().zip(&mut self.dissipated_j) {
+        for (index, (bolt, dissipated_j)) in bolts.iter().zip(&mut self.dissipated_j).enumerate() {
             work(
-                bolt,
+                index,
                 MemoryOf {
-                    displacement_m: take(&mut displacement_m, bolt.nodes_m.len()),
-                    slip_m: take(&mut slip_m, bolt.holders.len()),
-                    yielded_m: take(&mut yielded_m, bolt.steel.len()),
-                    broken: take(&mut broken, bolt.steel.len()),
-                    dowel_slip_m: take(&mut dowel_slip_m, bolt.crossings()),
+                    displacement_m: take(&mut displacement_m, bolt.nodes),
+                    slip_m: take(&mut slip_m, bolt.holders),
+                    yielded_m: take(&mut yielded_m, bolt.nodes - 1),
+                    broken: take(&mut broken, bolt.nodes - 1),
+                    dowel_slip_m: take(&mut dowel_slip_m, bolt.crossings),
                     dissipated_j,
                 },
             );

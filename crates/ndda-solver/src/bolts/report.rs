@@ -4,9 +4,7 @@ use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::bolts::bolt::{Bolt, Span};
-use crate::bolts::embedding::Portion;
 use crate::bolts::memory::MemoryOf;
-use crate::step::Simulation;
 
 /// State of a piece of a bolt.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -74,56 +72,15 @@ pub struct BoltStatus {
     pub dissipated_j: f64,
 }
 
-impl Simulation {
-    /// Number of bolts.
-    pub fn bolt_count(&self) -> usize {
-        self.bolts.as_ref().map_or(0, |bolts| bolts.list.len())
-    }
-
-    /// Name of a bolt, and its pieces in blocks.
-    pub fn bolt(&self, index: usize) -> Option<(&str, &[Portion])> {
-        let bolt = self.bolts.as_ref()?.list.get(index)?;
-        Some((&bolt.name, &bolt.portions))
-    }
-
-    /// Length of a bolt from its head to its end [m].
-    pub fn bolt_length_m(&self, index: usize) -> f64 {
-        self.bolts.as_ref().and_then(|bolts| bolts.list.get(index)).map_or(0.0, |bolt| bolt.length_m)
-    }
-
-    /// Bonded length of a bolt in blocks [m].
-    pub fn bonded_m(&self, index: usize) -> f64 {
-        let bolt = self.bolts.as_ref().and_then(|bolts| bolts.list.get(index));
-        bolt.map_or(0.0, |bolt| bolt.bonded.iter().map(|part| part.to_m - part.from_m).sum())
-    }
-
-    /// Replaces `out` by the pieces of all bolts as they were when forces were last taken, at the present places of blocks.
-    pub fn bolt_pieces(&self, out: &mut Vec<BoltPiece>) {
-        out.clear();
-        let Some(bolts) = &self.bolts else { return };
-        let (mut memory, mut index) = (self.state.bolts.clone(), 0);
-        memory.each(&bolts.list, |bolt, memory| {
-            bolt.add_pieces(index, &self.state.position, &memory, out);
-            index += 1;
-        });
-    }
-
-    /// Replaces `out` by all bolts as a whole.
-    pub fn bolt_statuses(&self, out: &mut Vec<BoltStatus>) {
-        out.clear();
-        let Some(bolts) = &self.bolts else { return };
-        let mut memory = self.state.bolts.clone();
-        let mut pieces = Vec::new();
-        memory.each(&bolts.list, |bolt, memory| {
-            pieces.clear();
-            bolt.add_pieces(0, &self.state.position, &memory, &mut pieces);
-            out.push(bolt.status(&self.state.position, &memory, &pieces));
-        });
-    }
-}
-
 impl Bolt {
-    fn add_pieces(&self, index: usize, position: &[Vec3], memory: &MemoryOf, out: &mut Vec<BoltPiece>) {
+    /// Adds its pieces.
+    pub(crate) fn add_pieces(
+        &self,
+        index: usize,
+        position: &[Vec3],
+        memory: &MemoryOf,
+        out: &mut Vec<BoltPiece>,
+    ) {
         // Steel does not depend on where the rock is but through its nodes.
         let chain = self.chain_without_rock(memory);
         for i in 0..self.steel.len() {
@@ -171,7 +128,8 @@ impl Bolt {
         grout.filter(move |(one, _)| one.node as usize == node).map(|(_, point)| *point as usize)
     }
 
-    fn status(&self, position: &[Vec3], memory: &MemoryOf, pieces: &[BoltPiece]) -> BoltStatus {
+    /// The bolt as a whole.
+    pub(crate) fn status(&self, position: &[Vec3], memory: &MemoryOf, pieces: &[BoltPiece]) -> BoltStatus {
         let mut status = BoltStatus { dissipated_j: *memory.dissipated_j, ..BoltStatus::default() };
         for piece in pieces {
             if piece.axial_n.abs() > status.axial_n.abs() {

@@ -1,29 +1,27 @@
 //! All bolts of a simulation, and what a step does with them.
 
-use std::mem::take;
-
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use crate::bodies::kind::BodyKind;
 use crate::bolts::bolt::{Bolt, Span, Work};
 use crate::bolts::chain::Room;
-use crate::bolts::memory::BoltMemory;
+use crate::bolts::memory::{BoltMemory, Sizes};
 use crate::bolts::setup::{BoltError, BoltSetup};
 use crate::error::SetupError;
-use crate::step::Simulation;
-use crate::step::first_step::seen;
 
 /// All bolts, and memory that every step uses again.
 #[derive(Default)]
 pub(crate) struct Bolts {
     pub list: Vec<Bolt>,
+    /// How much each remembers.
+    pub sizes: Vec<Sizes>,
     /// Nodes that bolts act on, in order, and bounds of Σ|k| there [N/m].
-    rows: Vec<(u32, f64)>,
-    work: Work,
+    pub rows: Vec<(u32, f64)>,
+    pub work: Work,
     /// Forces on all nodes [N].
-    force: Vec<Vec3>,
+    pub force: Vec<Vec3>,
     /// What was remembered before a step whose end is being looked for.
-    before: BoltMemory,
+    pub before: BoltMemory,
 }
 
 impl Bolts {
@@ -63,10 +61,11 @@ impl Bolts {
             }
             same
         });
-        let mut memory = BoltMemory::new(&list);
-        memory.each(&list, |bolt, memory| bolt.tension(&blocks.rest_position, memory, &mut work));
+        let sizes: Vec<Sizes> = list.iter().map(Bolt::sizes).collect();
+        let mut memory = BoltMemory::new(&sizes);
+        memory.each(&sizes, |k, memory| list[k].tension(&blocks.rest_position, memory, &mut work));
         let force = vec![Vec3::zeros(); blocks.rest_position.len()];
-        Ok((Self { list, rows, work, force, before: memory.clone() }, memory))
+        Ok((Self { list, sizes, rows, work, force, before: memory.clone() }, memory))
     }
 
     /// Forces that bolts exert on the first of two blocks, and against on the second.
@@ -86,80 +85,5 @@ impl Bolt {
             Span::Crossing { crossing, .. } => crossing.points[4].nodes.to_vec(),
             Span::Straight { .. } => Vec::new(),
         })
-    }
-}
-
-impl Simulation {
-    /// Finds the forces of bolts where contact is evaluated; what yields is remembered.
-    pub(crate) fn find_bolt_forces(&mut self) {
-        let Some(mut bolts) = self.bolts.take() else { return };
-        let mut room = take(&mut self.scratch.seen_position);
-        let position =
-            seen(&self.problem.blocks, &self.state.contact_offset, &self.scratch.contact_position, &mut room);
-        let Bolts { list, rows, work, force, .. } = &mut *bolts;
-        rows.iter().for_each(|(node, _)| force[*node as usize] = Vec3::zeros());
-        work.pairs.clear();
-        self.state.bolts.each(list, |bolt, memory| bolt.act(position, memory, work, force));
-        self.scratch.seen_position = room;
-        self.bolts = Some(bolts);
-    }
-
-    /// force ← force + bolts, and their stiffness.
-    pub(crate) fn add_bolt_forces(&mut self) {
-        let Some(bolts) = &self.bolts else { return };
-        if !std::mem::replace(&mut self.scratch.contact_has_acted, true) || self.contact.is_none() {
-            self.scratch.friction_force.fill(Vec3::zeros());
-            self.scratch.contact_stiffness.fill(0.0);
-        }
-        for (node, stiffness_n_m) in &bolts.rows {
-            let node = *node as usize;
-            self.scratch.force[node] += bolts.force[node];
-            self.scratch.contact_stiffness[node] += stiffness_n_m;
-        }
-    }
-
-    /// Keeps what bolts remember before the end of a step is looked for, or goes back to it.
-    pub(crate) fn keep_bolts(&mut self) {
-        if let Some(bolts) = &mut self.bolts {
-            bolts.before.copy_from(&self.state.bolts);
-        }
-    }
-
-    /// Goes back to what was [kept](Self::keep_bolts).
-    pub(crate) fn put_bolts_back(&mut self) {
-        if let Some(bolts) = &self.bolts {
-            self.state.bolts.copy_from(&bolts.before);
-        }
-    }
-
-    /// Energy stored in bolts where blocks are now, and what they have taken [J].
-    pub(crate) fn bolt_energies_j(&mut self) -> (f64, f64) {
-        let Some(mut bolts) = self.bolts.take() else { return (0.0, 0.0) };
-        let mut room = take(&mut self.scratch.seen_position);
-        let position =
-            seen(&self.problem.blocks, &self.state.contact_offset, &self.state.position, &mut room);
-        let mut stored_j = 0.0;
-        let Bolts { list, work, .. } = &mut *bolts;
-        self.state.bolts.each(list, |bolt, memory| stored_j += bolt.potential_j(position, &memory, work));
-        self.scratch.seen_position = room;
-        self.bolts = Some(bolts);
-        (stored_j, self.state.bolts.dissipated_j())
-    }
-
-    /// Whether there are bolts.
-    pub(crate) fn has_bolts(&self) -> bool {
-        self.bolts.is_some()
-    }
-
-    /// Sets bolts, if there are any.
-    pub(crate) fn set_bolts(&mut self, setups: &[BoltSetup]) -> Result<(), SetupError> {
-        if setups.is_empty() {
-            return Ok(());
-        }
-        let kinds: Vec<BodyKind> = self.problem.blocks.ids().map(|block| self.shape(block).kind).collect();
-        let (bolts, memory) = Bolts::new(setups, &self.problem.blocks, &kinds)?;
-        self.state.bolts = memory;
-        self.bolts = Some(Box::new(bolts));
-        Ok(())
     }
 }

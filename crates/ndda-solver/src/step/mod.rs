@@ -2,6 +2,8 @@
 
 pub(crate) mod account;
 pub(crate) mod blocks;
+pub(crate) mod bolt_forces;
+pub(crate) mod bolt_queries;
 pub(crate) mod change;
 pub(crate) mod clock;
 pub(crate) mod contact_fields;
