@@ -5,6 +5,7 @@ mod bedded_bar;
 mod blast;
 mod block_on_a_slope;
 mod body_kinds;
+mod bolts;
 mod bonded_bar;
 mod bonded_plate;
 mod bouncing_block;

@@ -45,6 +45,7 @@ pub use scene::schema;
 pub use scene::{code, diagnostic, joint_table, locate, outside_files, read, record, study, units};
 
 pub use folder::OutputFolder;
+pub use results::bolt_lines::{BoltLine, BoltSeries, bolts_name};
 pub use results::history::History;
 pub use results::pvd::FieldSeries;
 pub use summary::Summary;

@@ -1,5 +1,6 @@
 //! Results of a run: writing and reading them.
 
+pub(crate) mod bolt_lines;
 pub mod checkpoint;
 pub mod folder;
 pub(crate) mod history;

@@ -2,6 +2,7 @@
 
 mod blast;
 mod block;
+mod bolt;
 pub(crate) mod check;
 pub mod code;
 mod contact;
@@ -43,6 +44,7 @@ use serde::{Deserialize, Serialize};
 
 pub use blast::{Blast, BlastPressure, BlastWall};
 pub use block::{Block, Body, InSitu, Stress, StressGradient, Turn};
+pub use bolt::{Bolt, BoltDowel, BoltGrout, BoltPlace, BoltPlate, BoltSteel};
 pub use contact::{
     Contact, Dilation, FractureEnergy, Friction, JointLaw, MaterialPair, Memory, Potential, Residual,
     Roughness,
@@ -117,6 +119,9 @@ pub struct Scene {
     /// Pressure of explosions on the walls of holes. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub blasts: Vec<Blast>,
+    /// Rock bolts and anchors. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub bolts: Vec<Bolt>,
     /// Forces on points of blocks. Default: none.
     #[serde(default)]
     pub forces: Vec<Force>,

@@ -1,5 +1,6 @@
 //! Why a run stops.
 
+use crate::bolts::setup::BoltError;
 use crate::linear::linear_solver::SolveError;
 use ndda_contact::ContactError;
 use ndda_fem::quiet::NoWave;
@@ -217,6 +218,14 @@ pub enum SetupError {
         block: String,
         /// The problem.
         source: Box<NoWave>,
+    },
+    /// A bolt cannot be set.
+    #[error("bolt `{bolt}`: {source}")]
+    Bolt {
+        /// Name of the bolt.
+        bolt: String,
+        /// The problem.
+        source: BoltError,
     },
     /// Contact at the start cannot be computed.
     #[error(transparent)]

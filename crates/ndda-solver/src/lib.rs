@@ -40,6 +40,7 @@
 //!     implicit_contact: None,
 //!     solver: Box::new(Direct),
 //!     auto_step: None,
+//!     bolts: Vec::new(),
 //! })?;
 //! let start_m = simulation.state().position[0].z;
 //! for _ in 0..100 {
@@ -54,6 +55,7 @@
 //! | chapter | |
 //! |---|---|
 //! | `step` | the step, its control, contact at its end, settling, what changes ([`State`]) |
+//! | `bolts` | rock bolts, solved statically in each step |
 //! | `bodies` | one step of one block: elastic, affine, rigid, fixed; damping |
 //! | `integrators` | Newmark, midpoint, generalised α |
 //! | `linear` | factors and solves: supernodal, dense, conjugate gradients |
@@ -63,6 +65,7 @@
 #![warn(unreachable_pub)]
 
 mod bodies;
+mod bolts;
 mod diagnostics;
 mod error;
 mod integrators;
@@ -77,6 +80,11 @@ pub use bodies::prototype::{
 };
 pub use bodies::step_damping::StepDamping;
 pub use bodies::unknowns::Unknowns;
+pub use bolts::embedding::{Portion, first_rock_m};
+pub use bolts::memory::BoltMemory;
+pub use bolts::report::{BoltPiece, BoltStatus, PieceState};
+pub use bolts::setup::{BoltError, BoltSetup, Grout, Plate, Steel};
+pub use bolts::span::Dowel;
 pub use diagnostics::energies::Sample;
 pub use diagnostics::invariants::Invariants;
 pub use diagnostics::worst::Worst;

@@ -36,6 +36,7 @@ fn cube(integrator: Box<dyn TimeIntegrator>, step_s: f64, gravity: Vec3, spin: V
         implicit_contact: None,
         solver: Box::new(Direct),
         auto_step: None,
+        bolts: Vec::new(),
     })
     .unwrap()
 }

@@ -2,6 +2,7 @@
 
 mod blast;
 mod bodies;
+mod bolts;
 mod choices;
 pub mod friction;
 pub mod overlaps;
@@ -201,9 +202,11 @@ fn simulation_of(
     let contact = contact_model(scene, &blocks, &mut choices).map_err(|fault| vec![fault])?;
     let mut bodies = bodies::bodies(scene, &blocks, folder, &choices.materials)?;
     change(&mut bodies);
+    let bolts = bolts::bolts(scene, &blocks)?;
     let setup = Setup {
         blocks,
         bodies,
+        bolts,
         gravity_m_s2: vec3(scene.gravity_m_s2),
         gravity_factor: (scene.gravity_ramp_s > 0.0)
             .then(|| Table { rows: vec![(0.0, 0.0), (scene.gravity_ramp_s, 1.0)] }),
@@ -239,6 +242,9 @@ fn setup_fault(scene: &Scene, error: SetupError) -> Fault {
         SetupError::Wave { block, .. } => {
             let quiet = scene.quiet.iter().position(|q| scene::matches(&q.block, block)).unwrap_or(0);
             return Fault::new(format!("quiet[{quiet}].incident"), error);
+        }
+        SetupError::Bolt { bolt, .. } => {
+            return Fault::new(format!("bolts[{}]", bolts::entry(scene, bolt)), error);
         }
         SetupError::Contact(_) => return Fault::new("contact", error),
     };

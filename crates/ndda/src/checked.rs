@@ -6,6 +6,7 @@ use std::path::Path;
 use ndda_io::summary::Chosen;
 use serde::Serialize;
 
+use crate::bolt_report::BoltReports;
 use crate::build::RockReport;
 use crate::forecast::cost::Guess;
 use crate::forecast::step::Advice;
@@ -43,6 +44,9 @@ pub struct Checked<'a> {
     pub records: &'a [String],
     /// What rock was cut into.
     pub rock: &'a [RockReport],
+    /// Where bolts are bonded.
+    #[serde(skip_serializing_if = "BoltReports::is_empty")]
+    pub bolts: BoltReports,
     /// What a run will take; none where its first steps stop.
     pub guess: Option<Guess>,
 }
@@ -57,6 +61,7 @@ impl fmt::Display for Checked<'_> {
         )?;
         write!(f, "{steps} steps")?;
         self.rock.iter().try_for_each(|rock| write!(f, "\n{rock}"))?;
+        write!(f, "{}", self.bolts)?;
         self.records.iter().try_for_each(|record| write!(f, "\nrecord {record}"))?;
         self.chosen.iter().try_for_each(|chosen| write!(f, "\n{chosen}"))?;
         self.guess.as_ref().map_or(Ok(()), |guess| write!(f, "\n{guess}"))

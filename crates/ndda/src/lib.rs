@@ -46,6 +46,7 @@
 //! | `picture` | pictures as SVG and PNG (features `plots`, `png`) |
 //! | `view3d` | pictures and animations of blocks in 3D (features `plots`, `png`) |
 
+pub mod bolt_report;
 pub mod build;
 pub mod certify;
 pub mod checked;

@@ -1,5 +1,6 @@
 //! A run: a scene stepped to its end, shown to observers, recorded if asked to, and judged.
 
+pub mod bolts;
 pub mod contact_rows;
 pub mod contacts;
 mod error;

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use ndda::bolt_report::BoltReports;
 use ndda::checked::Checked;
 use ndda::forecast::{cost, doubts, step};
 use ndda::{build, choose};
@@ -46,6 +47,7 @@ pub fn check(args: &CheckArgs) -> u8 {
         chosen: &loaded.chosen,
         records: &records,
         rock: &model.rock,
+        bolts: BoltReports::new(simulation),
         guess: guess.ok(),
     };
     if args.write
@@ -58,11 +60,8 @@ pub fn check(args: &CheckArgs) -> u8 {
     let stable = advice.as_ref().filter(|advice| advice.worst().h <= advice.bound);
     if !args.json {
         let stable = stable.map_or_else(String::new, |advice| format!("\n{advice}"));
-        let written = if args.write && !checked.chosen.is_empty() {
-            format!("\nwritten into {}", file.display())
-        } else {
-            String::new()
-        };
+        let is_written = args.write && !checked.chosen.is_empty();
+        let written = if is_written { format!("\nwritten into {}", file.display()) } else { String::new() };
         say(&format!("{checked}{stable}{written}"));
     }
     checked.exit_code

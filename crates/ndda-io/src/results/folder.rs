@@ -21,6 +21,10 @@ pub const HISTORY: &str = "history.csv";
 pub const CONTACTS: &str = "contacts.csv";
 /// File of the motion of blocks.
 pub const BLOCKS: &str = "blocks.csv";
+/// File of the bolts.
+pub const BOLTS: &str = "bolts.csv";
+/// File that lists the frames of bolts.
+pub const BOLTS_INDEX: &str = "bolts.pvd";
 /// The tables in columnar form.
 pub const PARQUET: [&str; 3] = ["history.parquet", "contacts.parquet", "blocks.parquet"];
 /// The log of the run.
@@ -44,7 +48,7 @@ const ENDING: &str = ".ndda";
 pub const FIELDS_FOLDER: &str = "fields";
 
 /// Files at the top of the folder, in the order in which an earlier run is deleted: an index before what it lists.
-const TOP_FILES: [&str; 16] = [
+const TOP_FILES: [&str; 18] = [
     CHECKPOINT,
     PREVIOUS,
     WAITING,
@@ -56,6 +60,8 @@ const TOP_FILES: [&str; 16] = [
     HISTORY,
     CONTACTS,
     BLOCKS,
+    BOLTS_INDEX,
+    BOLTS,
     PARQUET[0],
     PARQUET[1],
     PARQUET[2],
@@ -176,6 +182,16 @@ impl OutputFolder {
     /// Path of the log.
     pub fn log(&self) -> PathBuf {
         self.path.join(LOG)
+    }
+
+    /// Path of the bolts.
+    pub fn bolts(&self) -> PathBuf {
+        self.path.join(BOLTS)
+    }
+
+    /// Path of the list of frames of bolts.
+    pub fn bolts_index(&self) -> PathBuf {
+        self.path.join(BOLTS_INDEX)
     }
 
     /// Path of the list of frames.

@@ -1,9 +1,11 @@
 //! The summary: what a run did, what it cost and whether it can be trusted, as `summary.json`.
 
+mod bolt;
 mod chosen;
 mod label;
 mod motion;
 mod named;
+mod reference_error;
 mod stage;
 mod verdict;
 
@@ -15,10 +17,12 @@ use serde_json::Value;
 use crate::atomic;
 use crate::write_error::WriteError;
 
+pub use bolt::BoltEnd;
 pub use chosen::Chosen;
 pub use label::{Label, LabelWord};
 pub use motion::{BlockEnd, BlockMotion, Course, MonitorEnd, Motion};
 pub use named::Named;
+pub use reference_error::ReferenceError;
 pub use stage::StageEnd;
 pub use verdict::{Judgement, Verdict};
 
@@ -77,6 +81,9 @@ pub struct Summary {
     pub monitors: Named<MonitorEnd>,
     /// State of the blocks at the end.
     pub blocks: Named<BlockEnd>,
+    /// State of the bolts at the end; left out where there are none.
+    #[serde(default, skip_serializing_if = "Named::is_empty")]
+    pub bolts: Named<BoltEnd>,
     /// Comparison with the closed form that the scene names; null when it names none.
     pub reference: Option<ReferenceError>,
     /// Warnings to read before using the result.
@@ -154,28 +161,6 @@ pub struct Invariants {
     pub max_h: f64,
 }
 
-/// Error against a closed form, relative to its magnitude.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct ReferenceError {
-    /// Which closed form, by its name in the scene.
-    pub kind: String,
-    /// Relative error at the end.
-    pub error_end: f64,
-    /// Largest relative error after `after_s`.
-    pub error_max: f64,
-    /// After a collision, how far the blocks are from where hard ones would be, over the smallest tetrahedron height.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub place_end: Option<f64>,
-    /// From when on the largest error is taken \[s\].
-    pub after_s: f64,
-    /// Relative error at the end against the closed form with the shear spring's stick stage.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stick_stage_end: Option<f64>,
-    /// Largest relative error after `after_s` against the closed form with the stick stage.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub stick_stage_max: Option<f64>,
-}
-
 /// Writes the summary to `path`, replacing an older file whole.
 ///
 /// # Errors
@@ -240,6 +225,7 @@ mod tests {
             ]),
             stages: Vec::new(),
             motion: None,
+            bolts: Named(Vec::new()),
             monitors: Named(vec![("top".into(), MonitorEnd::default())]),
             blocks: Named(vec![("ramp".into(), BlockEnd::default()), ("block".into(), BlockEnd::default())]),
             reference: Some(ReferenceError {

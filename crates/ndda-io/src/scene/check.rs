@@ -1,6 +1,7 @@
 //! Checks that the types of a scene cannot express: ranges, names, and combinations. All errors are found in one pass.
 
 mod block;
+mod bolt;
 mod contact;
 mod friction;
 mod load;
@@ -47,6 +48,7 @@ pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> 
     check.quiet(folder);
     check.ties();
     check.blasts();
+    check.bolts();
     check.contact();
     check.stages(folder);
     check.monitors();

@@ -58,6 +58,7 @@ pub fn cubes(count: usize, n: u32, kind: BodyKind, integrator: Box<dyn TimeInteg
         implicit_contact: None,
         solver: Box::new(Direct),
         auto_step: None,
+        bolts: Vec::new(),
     })
     .expect("a simulation")
 }

@@ -54,6 +54,10 @@ pub struct Sample {
     pub restitution_work_j: f64,
     /// Energy of blocks that stages have taken out, and of their contact, less that of blocks added, since the start [J].
     pub removed_j: f64,
+    /// Energy stored in bolts [J].
+    pub bolt_j: f64,
+    /// Work of yielding, slip and breaks of bolts since the start, never positive [J].
+    pub bolt_work_j: f64,
     /// Energy that appeared (+) or vanished (−) without a cause since the start [J].
     pub balance_j: f64,
     /// Linear momentum [kg m/s].
@@ -69,8 +73,8 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// Kinetic + strain + contact + load + spring energy [J].
+    /// Kinetic + strain + contact + load + spring + bolt energy [J].
     pub fn total_j(&self) -> f64 {
-        self.kinetic_j + self.strain_j + self.contact_j + self.load_j + self.spring_j
+        self.kinetic_j + self.strain_j + self.contact_j + self.load_j + self.spring_j + self.bolt_j
     }
 }

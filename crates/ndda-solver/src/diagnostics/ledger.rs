@@ -280,14 +280,16 @@ impl Ledger {
             + sample.damping_work_j
             + sample.restitution_work_j
             - sample.radiated_j
-            - sample.removed_j;
+            - sample.removed_j
+            + (sample.bolt_work_j - start.bolt_work_j);
         sample.balance_j = sample.total_j() - start.total_j() - work_j;
-        let stored = sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j;
+        let stored =
+            sample.kinetic_j + sample.strain_j.abs() + sample.contact_j + sample.spring_j + sample.bolt_j;
         self.peak_energy_j = self.peak_energy_j.max(stored).max(sample.load_j.abs());
         self.largest_gain_j = self.largest_gain_j.max(sample.balance_j);
         self.largest_loss_j = self.largest_loss_j.max(-sample.balance_j);
         let h = if explicit_contact { self.worst.max_h } else { 0.0 };
-        let comes_back_j = 0.25 * h * h * sample.contact_j;
+        let comes_back_j = 0.25 * h * h * (sample.contact_j + sample.bolt_j);
         self.blocks.balance(0.25 * h * h);
         self.last_sample_s = sample.time_s;
         self.lasting_gain_j = self.lasting_gain_j.max(sample.balance_j - comes_back_j);

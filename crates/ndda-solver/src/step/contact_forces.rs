@@ -90,15 +90,28 @@ impl Simulation {
             for (x, load) in position.iter().zip(&self.loads.total()[range]) {
                 body.push(&(x + contact_offset), load);
             }
+            if let Some(bolts) = &self.bolts {
+                let range = self.problem.blocks.nodes_of(BlockId(index as u32));
+                for (x, pull) in position.iter().zip(&bolts.force()[range]) {
+                    body.push(&(x + contact_offset), pull);
+                }
+            }
         }
     }
 
-    /// force ← force + contact at x*; slip is by the velocities of the nodes, or by others where laws of facets ask.
+    /// force ← force + contact and bolts at x*; slip is by the velocities of the nodes, or by others where laws of facets ask.
     pub(crate) fn add_contact_forces(
         &mut self,
         facet_velocity: Option<&[Vec3]>,
     ) -> Result<ContactReport, StepError> {
+        self.find_bolt_forces();
         self.place_bodies();
+        let report = self.add_forces_of_contact(facet_velocity);
+        self.add_bolt_forces();
+        report
+    }
+
+    fn add_forces_of_contact(&mut self, facet_velocity: Option<&[Vec3]>) -> Result<ContactReport, StepError> {
         let time_s = self.time_s();
         let Some(mut model) = self.contact.take() else { return Ok(ContactReport::default()) };
         if std::mem::replace(&mut self.scratch.contact_has_acted, true) {

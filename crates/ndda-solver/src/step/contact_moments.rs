@@ -68,21 +68,27 @@ impl Simulation {
     pub(crate) fn carry_contact_forces(&mut self) {
         let Some(mut moments) = self.contact_moments.take() else { return };
         moments.carried.fill(Vec3::zeros());
-        if let Some(model) = self.contact.as_ref().filter(|_| self.scratch.contact_has_acted) {
+        let acts = self.scratch.contact_has_acted;
+        if acts {
+            for block in self.problem.blocks.ids() {
+                let nodes = self.problem.blocks.nodes_of(block);
+                moments.velocity[block.index()] =
+                    self.shape(block).operator.center(&self.state.velocity[nodes]);
+            }
+        }
+        if let Some(model) = self.contact.as_ref().filter(|_| acts) {
             moments.facets.clear();
             let (position, velocity) = (&self.scratch.contact_position, &self.state.velocity);
             let input = ContactInput::new(&self.problem.blocks, position, velocity, self.part_s);
             model.add_facets(&input, &self.state.contact, &mut moments.facets);
-            for block in self.problem.blocks.ids() {
-                let nodes = self.problem.blocks.nodes_of(block);
-                moments.velocity[block.index()] = self.shape(block).operator.center(&velocity[nodes]);
-            }
             for k in 0..moments.facets.len() {
                 let facet = moments.facets[k];
                 let owner = self.problem.blocks.triangle_block[facet.facet.index()];
                 moments.carry(owner, facet.target, &(facet.push_n + facet.friction_n));
             }
         }
+        let pairs = self.bolts.iter().flat_map(|bolts| bolts.pairs());
+        pairs.for_each(|(owner, target, force)| moments.carry(*owner, *target, force));
         self.contact_moments = Some(moments);
     }
 

@@ -15,6 +15,7 @@ impl Simulation {
     /// [`StepError::Contact`] when contact cannot be computed.
     pub fn contact_rates2(&mut self, depth_over_height: f64) -> Result<Vec<f64>, StepError> {
         let (untouched, force) = (self.state.contact.clone(), self.scratch.force.clone());
+        self.keep_bolts();
         for block in self.problem.blocks.ids() {
             let (nodes, shape) =
                 (self.problem.blocks.nodes_of(block), &self.problem.shapes[self.bodies[block.index()].shape]);
@@ -27,6 +28,7 @@ impl Simulation {
         }
         let found = self.add_contact_forces(None);
         (self.state.contact, self.scratch.force) = (untouched, force);
+        self.put_bolts_back();
         found.map(|_| self.problem.blocks.ids().map(|block| self.contact_rate2(block)).collect())
     }
 

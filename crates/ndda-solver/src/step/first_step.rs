@@ -22,7 +22,10 @@ impl Simulation {
     fn needs_offset(&self) -> bool {
         let is_settled = self.settling_at_s.is_some() || !self.state.start.is_empty();
         let first = self.state.step == 0 && self.state.control.part == 0 && !is_settled;
-        first && self.contact.is_some() && self.newton.is_none() && self.weights.contact_in_the_middle()
+        first
+            && (self.contact.is_some() || self.has_bolts())
+            && self.newton.is_none()
+            && self.weights.contact_in_the_middle()
     }
 
     /// o ← ⅛ Δt² a, by loads and contact where the blocks are put.
@@ -48,10 +51,12 @@ impl Simulation {
     /// Loads and contact where the blocks are now [N]; nothing of it is remembered.
     pub(crate) fn force_at_start(&mut self) -> Result<Vec<Vec3>, StepError> {
         let untouched = self.state.contact.clone();
+        self.keep_bolts();
         self.scratch.force.copy_from_slice(self.loads.total());
         self.scratch.contact_position.copy_from_slice(&self.state.position);
         let found = self.add_contact_forces(None);
         self.state.contact = untouched;
+        self.put_bolts_back();
         found.map(|_| self.scratch.force.clone())
     }
 }

@@ -130,6 +130,7 @@ impl Simulation {
     /// f ← loads and the contact forces at the end of the step, x* ← where that is.
     pub(crate) fn solve_contact(&mut self, newton: &mut Newton) -> Result<ContactReport, StepError> {
         newton.history.clone_from(&self.state.contact);
+        self.keep_bolts();
         newton.iterations = Iterations::default();
         let (mut stride, mut search) = (0.0, None::<Search>);
         newton.base.copy_from_slice(&self.state.contact_force);
@@ -216,6 +217,7 @@ impl Simulation {
         let step_s = self.part_s;
         newton.velocity.iter_mut().zip(moved).for_each(|(v, (end, x))| *v = (end - x) / step_s);
         self.state.contact.clone_from(&newton.history);
+        self.put_bolts_back();
         self.scratch.force.fill(Vec3::zeros());
         let report = self.add_contact_forces(Some(&newton.velocity))?;
         self.hold_friction(newton);

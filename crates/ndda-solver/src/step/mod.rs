@@ -2,6 +2,8 @@
 
 pub(crate) mod account;
 pub(crate) mod blocks;
+pub(crate) mod bolt_forces;
+pub(crate) mod bolt_queries;
 pub(crate) mod change;
 pub(crate) mod clock;
 pub(crate) mod contact_fields;
@@ -40,6 +42,7 @@ use ndda_mesh::{BlockSet, Vec3};
 use crate::bodies::body::Body;
 use crate::bodies::congruent_groups::CongruentGroups;
 use crate::bodies::prototype::Prototype;
+use crate::bolts::set::Bolts;
 use crate::diagnostics::ledger::Ledger;
 use crate::error::StepError;
 use crate::integrators::time_integrator::{StepWeights, TimeIntegrator};
@@ -66,6 +69,8 @@ pub struct Simulation {
     pub(crate) newton: Option<Box<Newton>>,
     /// Correction that conserves angular momentum where the integrator evaluates contact away from mid-step or remembers accelerations.
     pub(crate) contact_moments: Option<Box<ContactMoments>>,
+    /// Rock bolts, if there are any.
+    pub(crate) bolts: Option<Box<Bolts>>,
     /// The length of the parts that a step is done in, and the integrator's weights for it.
     pub(crate) part_s: f64,
     pub(crate) weights: StepWeights,

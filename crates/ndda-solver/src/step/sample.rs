@@ -52,6 +52,8 @@ impl Simulation {
                 model.each_energy(&mut |a, b, energy_j| books.add_energy(a, b, energy_j));
             }
         }
+        let (stored_j, taken_j) = self.bolt_energies_j();
+        (sample.bolt_j, sample.bolt_work_j) = (stored_j, -taken_j + 0.0);
         let sample = self.audit.ledger.balance(sample, self.contact_bound().is_some());
         self.audit.stages.ledger_s += started.elapsed().as_secs_f64();
         Ok(sample)
@@ -162,11 +164,13 @@ impl Simulation {
     /// [`StepError::Contact`] when contact cannot be computed.
     pub fn contacts_at_start(&mut self) -> Result<(ContactReport, Vec<FacetContact>), StepError> {
         let (remembered, force) = (self.state.contact.clone(), self.scratch.force.clone());
+        self.keep_bolts();
         self.scratch.contact_position.copy_from_slice(&self.state.position);
         let found = self.add_contact_forces(None);
         let mut facets = Vec::new();
         self.add_facets(&mut facets);
         (self.state.contact, self.scratch.force) = (remembered, force);
+        self.put_bolts_back();
         found.map(|report| (report, facets))
     }
 

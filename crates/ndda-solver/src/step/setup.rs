@@ -18,6 +18,8 @@ use crate::bodies::kind::BodyKind;
 use crate::bodies::prototype::{BodySetup, Mass, Prototype};
 use crate::bodies::report::BlockReport;
 use crate::bodies::rigid_body::RigidBody;
+use crate::bolts::memory::BoltMemory;
+use crate::bolts::setup::BoltSetup;
 use crate::diagnostics::block_diagnostics::BlockDiagnostics;
 use crate::diagnostics::ledger::Ledger;
 use crate::error::SetupError;
@@ -59,6 +61,8 @@ pub struct Setup {
     pub solver: Box<dyn LinearSolver>,
     /// Steps as short as they have to be, `step_s` being the longest; always `step_s` without.
     pub auto_step: Option<AutoStep>,
+    /// Rock bolts.
+    pub bolts: Vec<BoltSetup>,
 }
 
 /// Blocks hardly move below this part of the speed √(g h).
@@ -82,6 +86,7 @@ impl Simulation {
             implicit_contact,
             solver,
             auto_step,
+            bolts,
         } = setup;
         let weights = step_weights(integrator.as_ref(), step_s, implicit_contact.is_some());
         let (shapes, shape_of) =
@@ -94,7 +99,7 @@ impl Simulation {
         let friction_nodes = if contact.as_ref().is_some_and(|c| c.has_friction()) { nodes } else { 0 };
         let implicit_contact = implicit_contact.filter(|_| contact.is_some());
         let newton_nodes = if implicit_contact.is_some() { nodes } else { 0 };
-        let contact_nodes = if contact.is_some() { nodes } else { 0 };
+        let contact_nodes = if contact.is_some() || !bolts.is_empty() { nodes } else { 0 };
         let mut simulation = Self {
             state: State {
                 step: 0,
@@ -110,11 +115,13 @@ impl Simulation {
                 driving_force: Vec::new(),
                 kept_force: Vec::new(),
                 contact: Default::default(),
+                bolts: BoltMemory::default(),
             },
             bodies: Vec::with_capacity(blocks.len()),
             loads: Loads::none(),
             newton: implicit_contact.map(|settings| Box::new(Newton::new(settings, nodes, blocks.len()))),
             contact_moments: None,
+            bolts: None,
             part_s: step_s,
             weights,
             control: None,
@@ -163,7 +170,9 @@ impl Simulation {
             let bodies = simulation.problem.blocks.ids().map(|block| simulation.shape(block).contact_body());
             simulation.scratch.contact_bodies = bodies.collect();
         }
-        if simulation.contact.is_some() && !simulation.weights.contact_in_the_middle() {
+        simulation.set_bolts(&bolts)?;
+        let acts = simulation.contact.is_some() || simulation.has_bolts();
+        if acts && !simulation.weights.contact_in_the_middle() {
             let shapes = simulation.problem.blocks.ids().map(|block| simulation.shape(block));
             simulation.contact_moments = Some(Box::new(ContactMoments::new(shapes)));
         }

@@ -103,7 +103,10 @@ impl Simulation {
                 contact_stiffness.len(),
                 if contact_stiffness.is_empty() { 0 } else { self.scratch.contact_stiffness.len() },
             ),
-        ] {
+        ]
+        .into_iter()
+        .chain(state.bolts.sizes().into_iter().zip(self.state.bolts.sizes()))
+        {
             if found != expected {
                 return Err(RestoreError { found, expected });
             }
@@ -133,6 +136,7 @@ impl Simulation {
         self.settling_at_s = None;
         let State { position, velocity, .. } = &self.state;
         self.loads.place(0.0, 0.0, Places { position, velocity, lead_s: 0.0 });
+        self.state.bolts.forget_work();
         self.audit.ledger = self.new_ledger((Vec3::zeros(), Vec3::zeros()));
     }
 }

@@ -4,6 +4,7 @@ use ndda_contact::ContactHistory;
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
+use crate::bolts::memory::BoltMemory;
 use crate::integrators::time_integrator::Inertia;
 
 /// The changing state of all blocks; a checkpoint, a rollback and a determinism test all work on it.
@@ -35,6 +36,8 @@ pub struct State {
     pub kept_force: Vec<Vec3>,
     /// Contact history.
     pub contact: ContactHistory,
+    /// What bolts remember.
+    pub bolts: BoltMemory,
 }
 
 impl State {

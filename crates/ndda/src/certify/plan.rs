@@ -199,7 +199,8 @@ fn filled(path: &str, fill: &Fill, times: i32) -> Option<String> {
 pub fn not_refined(scene: &Scene) -> Vec<String> {
     let deforms = |body: &Body| matches!(body, Body::Elastic);
     let alone = |block: &ndda_io::scene::Block| {
-        let scene = Scene { blocks: vec![block.clone()], rock: Vec::new(), ..scene.clone() };
+        let scene =
+            Scene { blocks: vec![block.clone()], rock: Vec::new(), bolts: Vec::new(), ..scene.clone() };
         finer(&scene, 1).is_empty()
     };
     let blocks = scene.blocks.iter().filter(|b| deforms(&b.body) && alone(b)).map(|b| b.name.clone());

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::memory::readable;
 use crate::run::fields::FieldWriter;
-use crate::run::recorder::{columns, held_blocks};
+use crate::run::recorder::{Extras, columns, held_blocks};
 use crate::run::schedule::{events, is_due};
 use crate::run::{contact_rows, motion, stage_log};
 use crate::{build, machine};
@@ -107,8 +107,7 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
     let file = |name: &str, count: u64, bytes: u64| FileGuess { name: name.to_string(), count, bytes };
     let held = if output.reactions { held_blocks(simulation) } else { Vec::new() };
     let monitors = scene.monitors.iter().map(|monitor| monitor.name.as_str());
-    let columns =
-        columns(monitors, &held, (scene.reference.is_some(), !scene.stages.is_empty())).len() as u64;
+    let columns = columns(monitors, &held, Extras::of(scene)).len() as u64;
     // Of the scene, its text is kept.
     let saved = checkpoint::size(&simulation.snapshot_view()) + checkpoint::size(scene);
     let blocks = simulation.blocks().len() as u64;

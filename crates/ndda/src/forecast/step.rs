@@ -298,7 +298,7 @@ fn contact_rate2(scene: &Scene, trial: &Trial) -> Option<f64> {
 
 /// The scene with nothing in it but a block and an identical one, for the laws of contact between them.
 fn scene_of_an_identical_pair(scene: &Scene, block: BlockId, name: &str) -> Scene {
-    let mut pair = Scene { rock: Vec::new(), ..scene.clone() };
+    let mut pair = Scene { rock: Vec::new(), bolts: Vec::new(), ..scene.clone() };
     match scene.blocks.get(block.index()) {
         Some(own) => pair.blocks = vec![own.clone(), own.clone()],
         // Blocks of rock are of its material, which is all that counts here.

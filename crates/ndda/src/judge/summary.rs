@@ -3,11 +3,11 @@
 use ndda_fem::stress::volume_m3;
 use ndda_io::scene::{Integrator, Scene};
 use ndda_io::summary::{
-    BlockEnd, Chosen, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError, Status,
-    Summary,
+    BlockEnd, BoltEnd, Chosen, Counts, Invariants, Judgement, LabelWord, MonitorEnd, Named, ReferenceError,
+    Status, Summary,
 };
 use ndda_mesh::Vec3;
-use ndda_solver::{Simulation, StepCounts};
+use ndda_solver::{BoltStatus, Simulation, StepCounts};
 
 use crate::judge::reference;
 use crate::judge::verdict;
@@ -86,6 +86,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
         motion: recorder.motions.summary(simulation),
         monitors: monitor_ends(simulation, recorder),
         blocks: block_ends(simulation, recorder),
+        bolts: bolt_ends(simulation),
         reference: reference_error(ending.scene, recorder),
         warnings,
     }
@@ -193,6 +194,17 @@ fn block_ends(simulation: &Simulation, recorder: &Recorder) -> Named<BlockEnd> {
         }
     };
     blocks.ids().map(|block| (blocks.names[block.index()].clone(), end(block))).collect()
+}
+
+fn bolt_ends(simulation: &Simulation) -> Named<BoltEnd> {
+    let mut all = Vec::new();
+    simulation.bolt_statuses(&mut all);
+    let end = |(index, status): (usize, BoltStatus)| {
+        let name = simulation.bolt(index).map_or_else(String::new, |(name, _)| name.to_string());
+        let BoltStatus { axial_n, utilisation, shear_n, debonded, .. } = status;
+        (name, BoltEnd { axial_n, utilisation, shear_n, state: status.state.name().into(), debonded })
+    };
+    all.into_iter().enumerate().map(end).collect()
 }
 
 fn reference_error(scene: &Scene, recorder: &Recorder) -> Option<ReferenceError> {

@@ -11,12 +11,13 @@ use ndda_io::{OutputFolder, WriteError, checkpoint};
 use ndda_solver::{Simulation, Sink, SinkError, Snapshot, View};
 use serde::{Deserialize, Serialize};
 
+use super::bolts::{BoltTable, SavedBolts};
 use super::contacts::ContactTable;
 use super::fields::{FieldWriter, SavedFields};
 use super::identity::Identity;
 use super::monitor::Monitor;
 use super::motion::BlockTable;
-use super::recorder::{Recorder, SavedRecorder, held_blocks};
+use super::recorder::{Extras, Recorder, SavedRecorder, held_blocks};
 use super::schedule::Schedule;
 use super::stage_log::{self, StageLog};
 use crate::judge::reference::{self, Comparison};
@@ -45,6 +46,8 @@ pub struct Earlier {
     pub blocks: Option<usize>,
     /// Where it was in its stages.
     pub stages: StageLog,
+    /// Bolts.
+    pub bolts: Option<SavedBolts>,
     /// Seconds of wall clock spent, all parts of the run together.
     pub wall_s: f64,
 }
@@ -73,6 +76,7 @@ struct Files {
     fields: Option<FieldWriter>,
     contacts: Option<ContactTable>,
     blocks: Option<BlockTable>,
+    bolts: Option<BoltTable>,
     identity: Identity,
     folder: OutputFolder,
     /// Between checkpoints; none between start and end if zero.
@@ -126,17 +130,21 @@ impl<'a, 'b> Outputs<'a, 'b> {
             if let Some(earlier) = earlier {
                 saved = Some(earlier.recorder);
                 stage_log = earlier.stages;
-                goes_on = Some((earlier.fields, earlier.contacts, earlier.blocks, earlier.wall_s));
+                goes_on =
+                    Some((earlier.fields, earlier.contacts, earlier.blocks, earlier.bolts, earlier.wall_s));
             }
-            let (saved_fields, saved_contacts, saved_blocks, earlier_s) = goes_on.unwrap_or_default();
+            let (saved_fields, saved_contacts, saved_blocks, saved_bolts, earlier_s) =
+                goes_on.unwrap_or_default();
             let frames = schedule(scene.output.frames);
             let fields = || FieldWriter::new(&folder, simulation, scene, frames.clone(), saved_fields);
             let contacts = || ContactTable::new(&folder, rows.clone(), saved_contacts);
             let blocks = || BlockTable::new(&folder, frames.clone(), saved_blocks);
+            let bolts = || BoltTable::new(&folder, frames.clone(), saved_bolts);
             files = Some(Files {
                 fields: (scene.output.frames > 0).then(fields).transpose()?,
                 contacts: scene.output.contacts.then(contacts).transpose()?,
                 blocks: scene.output.blocks.then(blocks).transpose()?,
+                bolts: (simulation.bolt_count() > 0).then(bolts).transpose()?,
                 every: Duration::from_secs_f64(scene.output.checkpoint_wall_s),
                 last: Instant::now(),
                 earlier_s,
@@ -145,7 +153,15 @@ impl<'a, 'b> Outputs<'a, 'b> {
                 folder,
             });
         }
-        let recorder = Recorder::new(history.as_deref(), monitors, comparison, after_s, rows, held, saved)?;
+        let recorder = Recorder::new(
+            history.as_deref(),
+            monitors,
+            comparison,
+            after_s,
+            rows,
+            (held, Extras::of(scene)),
+            saved,
+        )?;
         let stage_names = scene.stages.iter().map(|stage| stage.name.clone()).collect();
         let stages = stage_log;
         Ok(Self { recorder, stages, stage_names, stage_ends, files, observers, steps, started, stop })
@@ -163,6 +179,9 @@ impl<'a, 'b> Outputs<'a, 'b> {
         }
         if let Some(contacts) = &mut files.contacts {
             contacts.save()?;
+        }
+        if let Some(bolts) = &mut files.bolts {
+            bolts.save()?;
         }
         files.blocks.as_mut().map_or(Ok(()), |blocks| blocks.save().map(drop))
     }
@@ -203,6 +222,7 @@ impl<'a, 'b> Outputs<'a, 'b> {
                 contacts: files.contacts.as_mut().map(ContactTable::save).transpose()?,
                 blocks: files.blocks.as_mut().map(BlockTable::save).transpose()?,
                 stages: self.stages.clone(),
+                bolts: files.bolts.as_mut().map(BoltTable::save).transpose()?,
                 wall_s: files.earlier_s + self.started.elapsed().as_secs_f64(),
             },
         };
@@ -227,7 +247,8 @@ impl Files {
         let fields_s = self.fields.as_ref().map_or(0.0, |fields| fields.spent_s);
         let contacts_s = self.contacts.as_ref().map_or(0.0, |contacts| contacts.spent_s);
         let blocks_s = self.blocks.as_ref().map_or(0.0, |blocks| blocks.spent_s);
-        fields_s + contacts_s + blocks_s + self.spent_s
+        let bolts_s = self.bolts.as_ref().map_or(0.0, |bolts| bolts.spent_s);
+        fields_s + contacts_s + blocks_s + bolts_s + self.spent_s
     }
 
     fn wants_contacts(&self, step: u64) -> bool {
@@ -253,7 +274,7 @@ impl Sink for Outputs<'_, '_> {
         if self.recorder.wants_sample(step) || step >= self.steps {
             ends |= self.recorder.step_done(view)?.is_break();
         }
-        if let Some(Files { fields, contacts, blocks, .. }) = &mut self.files {
+        if let Some(Files { fields, contacts, blocks, bolts, .. }) = &mut self.files {
             if let Some(fields) = fields {
                 ends |= fields.step_done(view)?.is_break();
             }
@@ -262,6 +283,9 @@ impl Sink for Outputs<'_, '_> {
             }
             if let Some(blocks) = blocks {
                 ends |= blocks.step_done(view)?.is_break();
+            }
+            if let Some(bolts) = bolts {
+                ends |= bolts.step_done(view)?.is_break();
             }
         }
         for observer in self.observers.iter_mut() {

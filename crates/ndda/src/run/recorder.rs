@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
+use ndda_io::scene::Scene;
 use ndda_io::table::Table;
 use ndda_io::{History, WriteError};
 use ndda_mesh::{BlockId, Vec3};
@@ -21,8 +22,7 @@ pub struct Recorder {
     schedule: Schedule,
     after_s: f64,
     comparison: Option<Comparison>,
-    /// Whether the energy of removed blocks is a column.
-    has_stages: bool,
+    extras: Extras,
     row: Vec<f64>,
     /// Held blocks whose supports' forces are columns.
     held: Vec<BlockId>,
@@ -38,6 +38,28 @@ pub struct Recorder {
     pub last: Sample,
     /// Seconds spent.
     pub spent_s: f64,
+}
+
+/// Columns that only some scenes have.
+#[derive(Clone, Copy, Debug)]
+pub struct Extras {
+    /// The energy of removed blocks.
+    stages: bool,
+    /// Energy and work of bolts.
+    bolts: bool,
+    /// The error against a closed form.
+    reference: bool,
+}
+
+impl Extras {
+    /// Those of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        Self {
+            stages: !scene.stages.is_empty(),
+            bolts: !scene.bolts.is_empty(),
+            reference: scene.reference.is_some(),
+        }
+    }
 }
 
 /// Where rows go.
@@ -88,12 +110,11 @@ impl Recorder {
         comparison: Option<Comparison>,
         after_s: f64,
         schedule: Schedule,
-        held: Vec<(BlockId, String)>,
+        (held, extras): (Vec<(BlockId, String)>, Extras),
         saved: Option<SavedRecorder>,
     ) -> Result<Self, WriteError> {
         let names = monitors.iter().map(|monitor| monitor.name.as_str());
-        let has_stages = !schedule.ends.is_empty();
-        let columns = columns(names, &held, (comparison.is_some(), has_stages));
+        let columns = columns(names, &held, extras);
         let history = match (file, &saved) {
             (None, _) => {
                 Rows::Memory(Table { columns: vec![Vec::new(); columns.len()], names: columns.clone() })
@@ -108,7 +129,7 @@ impl Recorder {
             schedule,
             after_s,
             comparison,
-            has_stages,
+            extras,
             row,
             held: held.into_iter().map(|(block, _)| block).collect(),
             monitors,
@@ -188,7 +209,7 @@ pub fn held_blocks(simulation: &Simulation) -> Vec<(BlockId, String)> {
 pub fn columns<'a>(
     monitors: impl Iterator<Item = &'a str>,
     held: &[(BlockId, String)],
-    (compared, has_stages): (bool, bool),
+    extras: Extras,
 ) -> Vec<String> {
     let fixed = [
         "time_s",
@@ -215,7 +236,7 @@ pub fn columns<'a>(
         "h",
     ];
     let mut columns: Vec<String> = fixed.map(String::from).to_vec();
-    columns.extend(has_stages.then(|| "removed_j".to_string()));
+    columns.extend(extras.stages.then(|| "removed_j".to_string()));
     for monitor in monitors {
         for (quantity, unit) in [("displacement", "m"), ("velocity", "m_s")] {
             columns.extend(["x", "y", "z"].map(|axis| format!("{monitor}.{quantity}_{axis}_{unit}")));
@@ -224,7 +245,10 @@ pub fn columns<'a>(
     for (_, name) in held {
         columns.extend(["x", "y", "z"].map(|axis| format!("{name}.reaction_{axis}_n")));
     }
-    if compared {
+    if extras.bolts {
+        columns.extend(["bolt_j", "bolt_work_j"].map(String::from));
+    }
+    if extras.reference {
         columns.push("reference_error".into());
     }
     columns
@@ -260,7 +284,7 @@ impl Sink for Recorder {
         self.row.extend(sample.momentum.iter().chain(sample.angular_momentum.iter()));
         let contact = &view.report.contact;
         self.row.extend([contact.contact_pairs as f64, contact.max_penetration_ratio, view.report.h]);
-        self.row.extend(self.has_stages.then_some(sample.removed_j));
+        self.row.extend(self.extras.stages.then_some(sample.removed_j));
         for monitor in &self.monitors {
             self.row.extend(monitor.displacement(simulation).iter());
             self.row.extend(monitor.velocity(simulation).iter());
@@ -268,6 +292,9 @@ impl Sink for Recorder {
         for &block in &self.held {
             let reaction = if sample.step == 0 { Vec3::zeros() } else { simulation.reaction_n(block) };
             self.row.extend(reaction.iter());
+        }
+        if self.extras.bolts {
+            self.row.extend([sample.bolt_j, sample.bolt_work_j]);
         }
         let errors = self.compare(simulation);
         if self.comparison.is_some() {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::Model;
 use crate::certify::quantities::{BLOCK, TIME};
-use crate::run::recorder;
+use crate::run::recorder::{self, Extras};
 use crate::safety::Bracket;
 use crate::study::error::StudyError;
 
@@ -110,15 +110,12 @@ pub fn of_model(model: &Model) -> Values {
     for name in &blocks.names {
         known.extend(OF_BLOCK.map(|quantity| format!("{BLOCK}{name}.{quantity}")));
     }
-    let compared = model.loaded.scene.reference.is_some();
-    if compared {
+    if model.loaded.scene.reference.is_some() {
         known.extend(["error_end", "error_max"].map(String::from));
     }
     let held = recorder::held_blocks(&model.simulation);
-    let has_stages = !model.loaded.scene.stages.is_empty();
-    known.extend(
-        recorder::columns(names(), &held, (compared, has_stages)).into_iter().filter(|name| name != TIME),
-    );
+    let extras = Extras::of(&model.loaded.scene);
+    known.extend(recorder::columns(names(), &held, extras).into_iter().filter(|name| name != TIME));
     Values { label: None, numbers: known.into_iter().map(|name| (name, 0.0)).collect() }
 }
 

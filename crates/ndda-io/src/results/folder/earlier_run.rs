@@ -136,9 +136,12 @@ fn is_of_stage(name: &str) -> bool {
     name.strip_suffix(TEMPORARY_ENDING).unwrap_or(name).starts_with(OF_STAGE) && name.contains(ENDING)
 }
 
-/// Whether `name` is `frame_`, six digits or more, `.vtu`, and perhaps the temporary ending.
+/// Whether `name` is `frame_` or `bolts_`, six digits or more, `.vtu`, and perhaps the temporary ending.
 fn is_frame(name: &str) -> bool {
     let name = name.strip_suffix(TEMPORARY_ENDING).unwrap_or(name);
-    let number = name.strip_prefix("frame_").and_then(|rest| rest.strip_suffix(".vtu"));
+    let number = ["frame_", "bolts_"]
+        .into_iter()
+        .find_map(|kind| name.strip_prefix(kind))
+        .and_then(|rest| rest.strip_suffix(".vtu"));
     number.is_some_and(|n| n.len() >= 6 && n.bytes().all(|b| b.is_ascii_digit()))
 }

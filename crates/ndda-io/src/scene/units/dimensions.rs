@@ -35,7 +35,7 @@ const fn dimension(suffix: &'static str, name: &'static str, units: &'static [Un
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// Dimensions; an end that is part of another comes after it.
-pub const DIMENSIONS: [Dimension; 14] = [
+pub const DIMENSIONS: [Dimension; 16] = [
     dimension(
         "_kg_m3",
         "a density",
@@ -49,6 +49,20 @@ pub const DIMENSIONS: [Dimension; 14] = [
         "_j_m2",
         "an energy per area",
         &[decimal("JoulePerSquareMetre", 0), decimal("KilojoulePerSquareMetre", 3)],
+    ),
+    dimension(
+        "_n_m2",
+        "a stiffness per length",
+        &[
+            decimal("NewtonPerSquareMetre", 0),
+            decimal("MeganewtonPerSquareMetre", 6),
+            decimal("GiganewtonPerSquareMetre", 9),
+        ],
+    ),
+    dimension(
+        "_m2",
+        "an area",
+        &[decimal("SquareMetre", 0), decimal("SquareCentimetre", -4), decimal("SquareMillimetre", -6)],
     ),
     dimension(
         "_m_s2",

@@ -1,0 +1,110 @@
+//! Bolts of a scene: rows become single bolts, and heads go to the face.
+
+use ndda_io::scene::{Bolt, BoltPlace, Scene};
+use ndda_mesh::geometry::Aabb;
+use ndda_mesh::{BlockSet, Vec3};
+use ndda_solver::{BoltSetup, Dowel, Grout, Plate, Steel, first_rock_m};
+
+use super::{Fault, vec3};
+
+/// All bolts of a scene one by one, in the coordinates of the blocks.
+pub(super) fn bolts(scene: &Scene, blocks: &BlockSet) -> Result<Vec<BoltSetup>, Vec<Fault>> {
+    let (mut found, mut faults) = (Vec::new(), Vec::new());
+    for (i, bolt) in scene.bolts.iter().enumerate() {
+        match places(bolt, blocks) {
+            Ok(places) => {
+                let setups = places.into_iter().map(|(name, from_m, to_m)| setup(bolt, name, (from_m, to_m)));
+                found.extend(setups);
+            }
+            Err(message) => faults.push(Fault::new(format!("bolts[{i}].at"), message)),
+        }
+    }
+    if faults.is_empty() { Ok(found) } else { Err(faults) }
+}
+
+/// The entry of a scene that a bolt comes from.
+pub(super) fn entry(scene: &Scene, name: &str) -> usize {
+    let is_of = |bolt: &Bolt| {
+        let rest = name.strip_prefix(&bolt.name);
+        rest.is_some_and(|rest| {
+            rest.is_empty() || rest.starts_with('_') && matches!(bolt.at, BoltPlace::Rows { .. })
+        })
+    };
+    scene.bolts.iter().position(is_of).unwrap_or(0)
+}
+
+type Place = (String, Vec3, Vec3);
+
+fn places(bolt: &Bolt, blocks: &BlockSet) -> Result<Vec<Place>, String> {
+    match &bolt.at {
+        BoltPlace::Line { from_m, to_m } => {
+            let (from_m, to_m) = (vec3(*from_m) - blocks.origin_m, vec3(*to_m) - blocks.origin_m);
+            Ok(vec![(bolt.name.clone(), from_m, to_m)])
+        }
+        BoltPlace::Rows { corner_m, along_m, up_m, spacing_m, direction, length_m, staggered } => {
+            let (along, up) = (vec3(*along_m), vec3(*up_m));
+            let direction = vec3(*direction).normalize();
+            let reach_m = Aabb::around(&blocks.rest_position).diagonal() + along.norm() + up.norm();
+            let mut found = Vec::new();
+            for (row, rise) in spread(up.norm(), spacing_m.1).into_iter().enumerate() {
+                for (column, offset) in columns(along.norm(), spacing_m.0, *staggered && row % 2 == 1) {
+                    let along_axis = along.try_normalize(0.0).unwrap_or_default();
+                    let up_axis = up.try_normalize(0.0).unwrap_or_default();
+                    let point = vec3(*corner_m) - blocks.origin_m + offset * along_axis + rise * up_axis;
+                    let name = format!("{}_{}_{}", bolt.name, row + 1, column + 1);
+                    let ahead_m = first_rock_m(blocks, &point, &(point + reach_m * direction));
+                    let Some(ahead_m) = ahead_m else {
+                        let [x, y, z]: [f64; 3] = (point + blocks.origin_m).into();
+                        return Err(format!(
+                            "`{name}`, from ({x:.4}, {y:.4}, {z:.4}) along its direction, meets no block: move the rectangle or turn `direction`"
+                        ));
+                    };
+                    let head = point + ahead_m * direction;
+                    found.push((name, head, head + *length_m * direction));
+                }
+            }
+            Ok(found)
+        }
+    }
+}
+
+/// Distances along a side, what is left over being shared by both ends.
+fn spread(length_m: f64, spacing_m: f64) -> Vec<f64> {
+    let gaps = (length_m / spacing_m * (1.0 + 4.0 * f64::EPSILON)).floor();
+    let rest_m = 0.5 * (length_m - gaps * spacing_m);
+    (0..=gaps as usize).map(|k| rest_m + k as f64 * spacing_m).collect()
+}
+
+fn columns(length_m: f64, spacing_m: f64, shifted: bool) -> Vec<(usize, f64)> {
+    let places = spread(length_m, spacing_m);
+    let between = || places.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+    let places: Vec<f64> = if shifted && places.len() > 1 { between() } else { places.clone() };
+    places.into_iter().enumerate().collect()
+}
+
+fn setup(bolt: &Bolt, name: String, (from_m, to_m): (Vec3, Vec3)) -> BoltSetup {
+    let never = |value: Option<f64>| value.unwrap_or(f64::INFINITY);
+    BoltSetup {
+        name,
+        from_m,
+        to_m,
+        steel: Steel {
+            young_pa: bolt.steel.young_pa,
+            area_m2: bolt.steel.area_m2,
+            yield_n: never(bolt.steel.yield_n),
+            break_strain: never(bolt.steel.break_strain),
+        },
+        grout: Grout {
+            stiffness_n_m2: bolt.grout.stiffness_n_m2,
+            strength_n_m: bolt.grout.strength_n_m,
+            from_m: bolt.grout.from_m,
+            to_m: never(bolt.grout.to_m),
+        },
+        dowel: bolt
+            .dowel
+            .map(|dowel| Dowel { stiffness_n_m: dowel.stiffness_n_m, capacity_n: dowel.capacity_n }),
+        pretension_n: bolt.pretension_n,
+        plate: bolt.plate.map(|plate| Plate { strength_n: never(plate.strength_n) }),
+        segment_m: bolt.segment_m,
+    }
+}
