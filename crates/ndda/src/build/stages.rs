@@ -126,8 +126,27 @@ pub fn simulation_in_stage(
     let apply = |bodies: &mut [BodySetup]| presence.apply(bodies);
     let built = simulation_of(&scene.in_stage(stage), blocks, folder, choices, &apply);
     let mut simulation = built.map_err(|faults| at_stage(scene, stage, faults))?;
+    for stage in 0..=scene.stages.len() {
+        refuse_loose_bolts(&simulation, &Presence::of(scene, simulation.blocks(), stage)?)?;
+    }
     simulation.leave_out(presence.absent.clone()).map_err(|error| vec![Fault::new("stages", error)])?;
     Ok(simulation)
+}
+
+/// Bolts hold from the start on, in blocks that are there all the time.
+fn refuse_loose_bolts(simulation: &Simulation, presence: &Presence) -> Result<(), Vec<Fault>> {
+    let fault = |bolt: usize| {
+        let (name, portions) = simulation.bolt(bolt)?;
+        let absent = portions.iter().find(|portion| presence.absent[portion.block.index()])?;
+        let block = &simulation.blocks().names[absent.block.index()];
+        let message = format!(
+            "bolt `{name}` is bonded in block `{block}`, which is not always there: bolts hold from the start on and stages cannot let them go, \
+             so end the bolt before that block"
+        );
+        Some(Fault::new("bolts", message))
+    };
+    let faults: Vec<Fault> = (0..simulation.bolt_count()).filter_map(fault).collect();
+    if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
 /// Looks at what all stages need: their blocks, and parts of these.
@@ -157,5 +176,30 @@ pub(crate) fn steps_of_stage(stage: &Stage, step_s: f64) -> u64 {
         // What changes over a time has changed when the scene comes to rest.
         Then::Settle { .. } => ((stage.over_s / step_s).ceil() as u64).max(1),
         Then::Run(_) => steps.max(1),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Model;
+
+    #[test]
+    fn a_bolt_in_a_block_that_is_taken_out_is_refused() {
+        let text = r#"(
+            title: "A bolt in a block that is taken out", time: (step_s: 1e-4, end_s: 1e-3),
+            materials: [(name: "rock", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+            blocks: [
+                (name: "foot", material: "rock", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+                (name: "top", material: "rock", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 1)),
+            ],
+            contact: Potential(penalty_pa: 1e9, friction: (friction_deg: 30)),
+            bolts: [(
+                name: "anchor", at: Line(from_m: (0.5, 0.5, 1.9), to_m: (0.5, 0.5, 0.1)),
+                steel: (young_pa: 200e9, area_m2: 5e-4), grout: (stiffness_n_m2: 1e9, strength_n_m: 2e5),
+            )],
+            stages: [(name: "out", remove: ["top"], over_s: 1e-3, then: Run(2e-3))],
+        )"#;
+        let message = Model::from_text(text).err().expect("nothing lets the bolt go").to_string();
+        assert!(message.contains("bolt `anchor` is bonded in block `top`"), "{message}");
     }
 }
