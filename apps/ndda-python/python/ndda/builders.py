@@ -355,6 +355,226 @@ class Body:
     Fixed: ClassVar[Literal["Fixed"]] = "Fixed"
 
 
+@dataclass(kw_only=True)
+class Bolt(Builder):
+    """A rock bolt, or rows of equal ones: a bar in a borehole, held by grout over all of its length or a part
+    of it.
+
+    A bolt has no mass; in each step its forces are in balance. Tension acts along it and turns with the
+    blocks. Where it crosses from one block to the next, a dowel resists shear. ```text bolts: [ // A fully
+    grouted bolt of 3 m with a plate. (name: "one", at: Line(from_m: (0, 0, 0), to_m: (0, 0, 3)), steel:
+    (young_pa: 200e9, area_m2: 491e-6, yield_n: 245e3, break_strain: 0.05), grout: (stiffness_n_m2: 2e9,
+    strength_n_m: 400e3), plate: (strength_n: 150e3)), // Rows of anchors with a free length of 9 m, tensioned
+    to 600 kN. (name: "anchor", at: Rows(corner_m: (0, 0, 2), along_m: (0, 20, 0), up_m: (0, 0, 6), spacing_m:
+    (4, 3), direction: (1, 0, -0.26), length_m: 15), steel: (young_pa: 195e9, area_m2: 840e-6, yield_n:
+    1300e3), grout: (stiffness_n_m2: 2e9, strength_n_m: 400e3, from_m: 9), pretension_n: 600e3, plate: ()), ],
+    ```
+
+    Parameters
+    ----------
+    name : str
+        Name; those of rows get the numbers of row and column, as in `anchor_1_3`.
+    at : BoltPlaceChoice
+        Where it is.
+    steel : BoltSteel
+        Its bar.
+    grout : BoltGrout
+        Its bond to the rock.
+    dowel : BoltDowel, optional
+        Resistance to shear at joints. Default: none.
+    pretension_n : float, optional
+        Tension at the start, jacked against the plate [N]. Default: none.
+    plate : BoltPlate, optional
+        Plate that ties the head to the face. Default: none.
+    segment_m : float, optional
+        Longest segment of the bonded length [m]; at most 1/(4λ), λ = √(k_b/EA). Default: 1/(8λ).
+
+    Examples
+    --------
+    >>> Bolt(name="name", at=BoltPlace.Line(from_m=(1.0, 1.0, 1.0), to_m=(1.0, 1.0, 1.0)), steel=BoltSteel(young_pa=1.0, area_m2=1.0), grout=BoltGrout(stiffness_n_m2=1.0, strength_n_m=1.0)).to_ron()
+    '(name: "name", at: Line(from_m: (1.0, 1.0, 1.0), to_m: (1.0, 1.0, 1.0)), steel: (young_pa: 1.0, area_m2: 1.0), grout: (stiffness_n_m2: 1.0, strength_n_m: 1.0))'
+    """
+
+    name: str
+    at: BoltPlaceChoice
+    steel: BoltSteel
+    grout: BoltGrout
+    dowel: BoltDowel | None = None
+    pretension_n: float | None = None
+    plate: BoltPlate | None = None
+    segment_m: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "at": "BoltPlace", "steel": "BoltSteel", "grout": "BoltGrout", "dowel": "BoltDowel", "pretension_n": "num", "plate": "BoltPlate", "segment_m": "num"}
+
+
+@dataclass(kw_only=True)
+class BoltDowel(Builder):
+    """Resistance of a bolt to shear where it crosses from one block to the next.
+
+    Parameters
+    ----------
+    stiffness_n_m : float
+        Shear force per offset [N/m].
+    capacity_n : float
+        Largest shear force [N].
+
+    Examples
+    --------
+    >>> BoltDowel(stiffness_n_m=1.0, capacity_n=1.0).to_ron()
+    '(stiffness_n_m: 1.0, capacity_n: 1.0)'
+    """
+
+    stiffness_n_m: float
+    capacity_n: float
+    _kinds: ClassVar[Mapping[str, str]] = {"stiffness_n_m": "num", "capacity_n": "num"}
+
+
+@dataclass(kw_only=True)
+class BoltGrout(Builder):
+    """The bond of a bolt.
+
+    Parameters
+    ----------
+    stiffness_n_m2 : float
+        Shear force per length of bolt and slip, k_b [N/m²].
+    strength_n_m : float
+        Largest shear force per length of bolt, s_b = π D τ of a borehole of diameter D and a bond of strength
+        τ [N/m].
+    from_m : float, optional
+        Where the bonded length begins, from the head [m]; the bolt is free before it. Default: at the head.
+    to_m : float, optional
+        Where it ends, from the head [m]. Default: at the end.
+
+    Examples
+    --------
+    >>> BoltGrout(stiffness_n_m2=1.0, strength_n_m=1.0).to_ron()
+    '(stiffness_n_m2: 1.0, strength_n_m: 1.0)'
+    """
+
+    stiffness_n_m2: float
+    strength_n_m: float
+    from_m: float | None = None
+    to_m: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"stiffness_n_m2": "num", "strength_n_m": "num", "from_m": "num", "to_m": "num"}
+
+
+class BoltPlace:
+    """Where bolts are.
+
+    Examples
+    --------
+    >>> BoltPlace.Line(from_m=(1.0, 1.0, 1.0), to_m=(1.0, 1.0, 1.0)).to_ron()
+    'Line(from_m: (1.0, 1.0, 1.0), to_m: (1.0, 1.0, 1.0))'
+    """
+
+    @dataclass(kw_only=True)
+    class Line(Builder):
+        """One bolt; it begins where it first meets a block.
+
+        Parameters
+        ----------
+        from_m : Sequence[float]
+            Head [m].
+        to_m : Sequence[float]
+            End [m].
+
+        Examples
+        --------
+        >>> BoltPlace.Line(from_m=(1.0, 1.0, 1.0), to_m=(1.0, 1.0, 1.0)).to_ron()
+        'Line(from_m: (1.0, 1.0, 1.0), to_m: (1.0, 1.0, 1.0))'
+        """
+
+        from_m: Sequence[float]
+        to_m: Sequence[float]
+        _kinds: ClassVar[Mapping[str, str]] = {"from_m": "(num)", "to_m": "(num)"}
+        _variant: ClassVar[str] = "Line"
+
+    @dataclass(kw_only=True)
+    class Rows(Builder):
+        """Equal bolts over a rectangle, in rows along its first side; each head is where its line from the
+        rectangle first meets a block.
+
+        Parameters
+        ----------
+        corner_m : Sequence[float]
+            A corner of the rectangle, on the face or in front of it [m].
+        along_m : Sequence[float]
+            First side, from the corner [m].
+        up_m : Sequence[float]
+            Second side, from the corner [m].
+        spacing_m : Sequence[float]
+            Spacing along both sides [m]; what is left over is shared by both ends.
+        direction : Sequence[float]
+            Direction of the bolts, into the rock; its length does not matter.
+        length_m : float
+            Length of a bolt from its head [m].
+        staggered : bool, optional
+            Whether every second row is shifted by half the spacing; these have one bolt less. Default: no.
+
+        Examples
+        --------
+        >>> BoltPlace.Rows(corner_m=(1.0, 1.0, 1.0), along_m=(1.0, 1.0, 1.0), up_m=(1.0, 1.0, 1.0), spacing_m=(1.0, 1.0), direction=(1.0, 1.0, 1.0), length_m=1.0).to_ron()
+        'Rows(corner_m: (1.0, 1.0, 1.0), along_m: (1.0, 1.0, 1.0), up_m: (1.0, 1.0, 1.0), spacing_m: (1.0, 1.0), direction: (1.0, 1.0, 1.0), length_m: 1.0)'
+        """
+
+        corner_m: Sequence[float]
+        along_m: Sequence[float]
+        up_m: Sequence[float]
+        spacing_m: Sequence[float]
+        direction: Sequence[float]
+        length_m: float
+        staggered: bool | None = None
+        _kinds: ClassVar[Mapping[str, str]] = {"corner_m": "(num)", "along_m": "(num)", "up_m": "(num)", "spacing_m": "(num)", "direction": "(num)", "length_m": "num", "staggered": "bool"}
+        _variant: ClassVar[str] = "Rows"
+
+
+@dataclass(kw_only=True)
+class BoltPlate(Builder):
+    """The plate of a bolt.
+
+    Parameters
+    ----------
+    strength_n : float, optional
+        Force at which it gives way [N]. Default: never.
+
+    Examples
+    --------
+    >>> BoltPlate().to_ron()
+    '()'
+    """
+
+    strength_n: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"strength_n": "num"}
+
+
+@dataclass(kw_only=True)
+class BoltSteel(Builder):
+    """The bar of a bolt.
+
+    Parameters
+    ----------
+    young_pa : float
+        Young's modulus [Pa].
+    area_m2 : float
+        Area of its section [m²].
+    yield_n : float, optional
+        Force at which it yields, in tension and compression [N]. Default: never.
+    break_strain : float, optional
+        Strain at which it breaks, over a gauge length of 5.65 √A as in a tensile test (ISO 6892-1). Default:
+        never.
+
+    Examples
+    --------
+    >>> BoltSteel(young_pa=1.0, area_m2=1.0).to_ron()
+    '(young_pa: 1.0, area_m2: 1.0)'
+    """
+
+    young_pa: float
+    area_m2: float
+    yield_n: float | None = None
+    break_strain: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"young_pa": "num", "area_m2": "num", "yield_n": "num", "break_strain": "num"}
+
+
 class By:
     """How a support is imposed.
 
@@ -2422,6 +2642,8 @@ class Scene(Builder):
         Nodes of equal height that move alike, as at the sides of level ground. Default: none.
     blasts : list[Blast], optional
         Pressure of explosions on the walls of holes. Default: none.
+    bolts : list[Bolt], optional
+        Rock bolts and anchors. Default: none.
     forces : list[Force], optional
         Forces on points of blocks. Default: none.
     contact : ContactChoice, optional
@@ -2458,13 +2680,14 @@ class Scene(Builder):
     quiet: list[Quiet] | None = None
     ties: list[Tie] | None = None
     blasts: list[Blast] | None = None
+    bolts: list[Bolt] | None = None
     forces: list[Force] | None = None
     contact: ContactChoice | None = None
     stages: list[Stage] | None = None
     monitors: list[Monitor] | None = None
     output: Output | None = None
     reference: ReferenceChoice | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"title": "str", "parameters": "{num}", "time": "Time", "gravity_m_s2": "(num)", "gravity_ramp_s": "num", "in_situ": "InSitu", "settle": "Settle", "include": "[str]", "materials": "[Material]", "blocks": "[Block]", "rock": "[Rock]", "supports": "[Support]", "tractions": "[Traction]", "water": "[Water]", "quiet": "[Quiet]", "ties": "[Tie]", "blasts": "[Blast]", "forces": "[Force]", "contact": "Contact", "stages": "[Stage]", "monitors": "[Monitor]", "output": "Output", "reference": "Reference"}
+    _kinds: ClassVar[Mapping[str, str]] = {"title": "str", "parameters": "{num}", "time": "Time", "gravity_m_s2": "(num)", "gravity_ramp_s": "num", "in_situ": "InSitu", "settle": "Settle", "include": "[str]", "materials": "[Material]", "blocks": "[Block]", "rock": "[Rock]", "supports": "[Support]", "tractions": "[Traction]", "water": "[Water]", "quiet": "[Quiet]", "ties": "[Tie]", "blasts": "[Blast]", "bolts": "[Bolt]", "forces": "[Force]", "contact": "Contact", "stages": "[Stage]", "monitors": "[Monitor]", "output": "Output", "reference": "Reference"}
 
 
 @dataclass(kw_only=True)
@@ -3533,6 +3756,7 @@ BaselineChoice: TypeAlias = Literal["None"] | Literal["Linear"] | Literal["Quadr
 BlastPressureChoice: TypeAlias = BlastPressure.Rows | BlastPressure.Duvall
 BlastWallChoice: TypeAlias = BlastWall.Part | BlastWall.Hole
 BodyChoice: TypeAlias = Literal["Elastic"] | Literal["Affine"] | Literal["Rigid"] | Literal["Fixed"]
+BoltPlaceChoice: TypeAlias = BoltPlace.Line | BoltPlace.Rows
 ByChoice: TypeAlias = Literal["Elimination"] | By.Springs
 ContactChoice: TypeAlias = Literal["Off"] | Contact.Potential
 ContactAtChoice: TypeAlias = Literal["Predicted"] | ContactAt.End
@@ -3579,6 +3803,12 @@ __all__ = [
     "BlastWall",
     "Block",
     "Body",
+    "Bolt",
+    "BoltDowel",
+    "BoltGrout",
+    "BoltPlace",
+    "BoltPlate",
+    "BoltSteel",
     "By",
     "Component",
     "Contact",

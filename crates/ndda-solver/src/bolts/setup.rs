@@ -209,6 +209,7 @@ impl BoltSetup {
             .collect();
         if bonded.is_empty() {
             let (enters_m, ends_m) = (first.from_m, last.to_m);
+            let to_m = to_m.min(self.line().length_m());
             return Err(BoltError::Unbonded { from_m, to_m, enters_m, ends_m });
         }
         self.refuse_pretension(bonded.iter().map(|p| p.to_m - p.from_m).sum())?;
