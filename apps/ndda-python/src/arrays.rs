@@ -51,7 +51,7 @@ pub fn fill(simulation: &Simulation, name: &str, out: &mut PyReadwriteArray2<'_,
 }
 
 /// Energies and works with their names [J].
-pub fn energies(sample: &Sample) -> [(&'static str, f64); 12] {
+pub fn energies(sample: &Sample) -> [(&'static str, f64); 15] {
     [
         ("kinetic_j", sample.kinetic_j),
         ("strain_j", sample.strain_j),
@@ -65,13 +65,15 @@ pub fn energies(sample: &Sample) -> [(&'static str, f64); 12] {
         ("damping_work_j", sample.damping_work_j),
         ("restitution_work_j", sample.restitution_work_j),
         ("radiated_j", sample.radiated_j),
+        ("bolt_j", sample.bolt_j),
+        ("bolt_work_j", sample.bolt_work_j),
         ("balance_j", sample.balance_j),
     ]
 }
 
 /// Time and energies of a sample.
-pub fn sample_row(sample: &Sample) -> [f64; 13] {
-    let mut row = [sample.time_s; 13];
+pub fn sample_row(sample: &Sample) -> [f64; 16] {
+    let mut row = [sample.time_s; 16];
     row[1..].copy_from_slice(&energies(sample).map(|(_, value)| value));
     row
 }

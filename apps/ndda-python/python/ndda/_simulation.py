@@ -37,6 +37,8 @@ _HISTORY = (
     "damping_work_j",
     "restitution_work_j",
     "radiated_j",
+    "bolt_j",
+    "bolt_work_j",
     "balance_j",
 )
 
