@@ -13,6 +13,8 @@ const SEGMENTS: f64 = 8.0;
 
 /// The fewest: 0.8 % too stiff.
 const LEAST_SEGMENTS: f64 = 4.0;
+/// Segments of a bolt at most.
+const MOST_SEGMENTS: f64 = 1e4;
 
 /// Length over which the strain at break is measured, over √A: proportional test pieces of ISO 6892-1.
 const GAUGE: f64 = 5.65;
@@ -126,6 +128,16 @@ pub enum BoltError {
         /// A quarter of 1/λ, or the gauge length of the break strain [m].
         most_m: f64,
     },
+    /// More segments than are ever needed.
+    #[error(
+        "segments of {segment_m:e} m would be {count:.1e} of them, and at most {MOST_SEGMENTS:.0} are possible: give a longer segment_m or a softer grout"
+    )]
+    Fine {
+        /// Their length [m].
+        segment_m: f64,
+        /// How many there would be.
+        count: f64,
+    },
     /// Pretension without a plate.
     #[error("pretension_n needs a plate at the head, against which the bolt is tensioned: add plate")]
     NoPlate,
@@ -213,6 +225,11 @@ impl BoltSetup {
             return Err(BoltError::Unbonded { from_m, to_m, enters_m, ends_m });
         }
         self.refuse_pretension(bonded.iter().map(|p| p.to_m - p.from_m).sum())?;
+        let segment_m = self.segment_m()?;
+        let count = bonded.iter().map(|p| p.to_m - p.from_m).sum::<f64>() / segment_m;
+        if count > MOST_SEGMENTS {
+            return Err(BoltError::Fine { segment_m, count });
+        }
         let mut maker = Maker::new(self, blocks);
         if self.plate.is_some() && bonded[0].from_m - first.from_m > maker.closed_m {
             maker.add_head(&first);
@@ -221,7 +238,7 @@ impl BoltSetup {
             let before = k.checked_sub(1).map(|k| bonded[k]);
             // Two pieces meet at a joint where both are bonded up to it, and no block is between them.
             let meets = before.filter(|before| portions.iter().all(|p| !is_between(p, before, portion)));
-            maker.add_portion(portion, meets.is_some(), self.segment_m()?);
+            maker.add_portion(portion, meets.is_some(), segment_m);
         }
         Ok(maker.finish(portions, bonded))
     }

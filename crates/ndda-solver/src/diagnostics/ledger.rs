@@ -309,6 +309,9 @@ impl Ledger {
     /// The worst of the run so far.
     pub(crate) fn invariants(&self) -> Invariants {
         let over = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
+        // Where nothing has moved, what loads and supports leave of each other is rounding.
+        let kept =
+            |error: f64, scale: f64| if self.largest_speed_m_s > 0.0 { over(error, scale) } else { 0.0 };
         let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
         let scale_m_s = self.speed_scale_m_s();
         let (block_gain, block_loss) = self.blocks.lasting(scale_m_s, self.rounding_j);
@@ -318,8 +321,8 @@ impl Ledger {
         let (lumped_speed, lumped_place) = self.blocks.lumped(scale_m_s, self.rounding_j);
         let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
         Invariants {
-            linear_momentum: over(self.momentum_error, self.peak_momentum),
-            angular_momentum: over(self.angular_error, self.peak_angular),
+            linear_momentum: kept(self.momentum_error, self.peak_momentum),
+            angular_momentum: kept(self.angular_error, self.peak_angular),
             energy_gain: energy(self.largest_gain_j),
             energy_loss: energy(self.largest_loss_j),
             lasting_gain: energy(self.lasting_gain_j),

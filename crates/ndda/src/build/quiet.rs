@@ -57,6 +57,15 @@ pub(super) fn add_quiet(
         for (block, triangles) in parts {
             let body = &mut bodies[block.index()];
             let beyond = named.clone().unwrap_or_else(|| body.material.clone());
+            let is_known = |triangle| body.quiet.iter().any(|known| known.faces.triangles.contains(triangle));
+            if triangles.iter().any(is_known) {
+                let message = format!(
+                    "faces of block `{}` are quiet already by an entry before this one: give all their waves in one entry",
+                    blocks.names[block.index()]
+                );
+                faults.push(Fault::new(path("on"), message));
+                continue;
+            }
             body.quiet.push(QuietSetup { faces: QuietFaces { triangles, waves: waves.clone() }, beyond });
         }
     }
@@ -210,5 +219,38 @@ mod tests {
         for (t, a) in without_echo(&rows, 0.37) {
             assert!((a - wave(t)).abs() < 1e-4, "{t}: {a} {}", wave(t));
         }
+    }
+
+    /// A column of a cube, Elastic or Fixed, and what else a scene has.
+    fn column(body: &str, rest: &str) -> String {
+        format!(
+            r#"(
+                title: "A cube", time: (step_s: 1e-4, end_s: 1e-2),
+                materials: [(name: "rock", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+                blocks: [(name: "cube", material: "rock", body: {body}, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+                {rest}
+            )"#
+        )
+    }
+
+    #[test]
+    fn a_face_that_is_quiet_twice_is_refused() {
+        let text = column(
+            "Elastic",
+            r#"quiet: [(block: "cube", on: Set("z_min")), (block: "c*", on: Set("z_min"))]"#,
+        );
+        let message =
+            crate::Model::from_text(&text).err().expect("its dashpots would be twice as strong").to_string();
+        assert!(message.contains("quiet already") && message.contains("quiet[1]"), "{message}");
+    }
+
+    #[test]
+    fn a_blast_on_a_block_that_cannot_move_leaves_no_error_of_momentum() {
+        let rest =
+            r#"blasts: [(block: "cube", on: Part(Set("z_min")), pressure: Rows([(0, 0), (1e-3, 1e6)]))]"#;
+        let model = crate::Model::from_text(&column("Fixed", rest)).unwrap();
+        let summary = crate::Run::new(model).finish(&mut []).unwrap().summary;
+        assert_eq!(summary.invariants.linear_momentum, 0.0);
+        assert_eq!(summary.invariants.angular_momentum, 0.0);
     }
 }

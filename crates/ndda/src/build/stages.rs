@@ -81,6 +81,8 @@ impl Presence {
                 body.tractions.clear();
                 body.forces.clear();
                 body.pressures.clear();
+                body.quiet.clear();
+                body.ties.clear();
                 (body.velocity_m_s, body.spin_rad_s) = (Vec3::zeros(), Vec3::zeros());
             }
         }

@@ -4,7 +4,7 @@ use super::Check;
 use crate::scene::{Bolt, BoltPlace};
 
 /// More bolts in rows than this are a slip of the keyboard.
-const MOST_BOLTS: f64 = 1e5;
+const MOST_BOLTS: f64 = 1e4;
 
 impl Check<'_> {
     pub(super) fn bolts(&mut self) {

@@ -21,6 +21,14 @@ pub(super) fn parse(file: &Path, text: &str) -> Result<(Rows, Option<Acceleratio
             lines.len()
         )));
     };
+    let kind = lines[HEADER - 2].to_uppercase();
+    if !kind.contains("ACCEL") && (kind.contains("VELOC") || kind.contains("DISPL")) {
+        return Err(wrong(format!(
+            "line {} is `{}`: a record must be of accelerations, as in files ending with .AT2",
+            HEADER - 1,
+            kind.trim()
+        )));
+    }
     let (points, spacing_s) = counted(counts).ok_or_else(|| {
         wrong(format!(
             "line {HEADER} is `{}`: it should say `NPTS= 4000, DT= .0050 SEC`, the number of points and their spacing",
@@ -98,6 +106,10 @@ mod tests {
     fn a_record_that_is_cut_off_or_damaged_is_refused_with_its_line() {
         for (text, word) in [
             ("PEER\nLoma\n", "2 lines"),
+            (
+                "a\nb\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 1, DT= .005\n1\n",
+                "must be of accelerations",
+            ),
             ("a\nb\nc\nd\n1 2\n", "line 4"),
             ("a\nb\nc\nNPTS= 3, DT= .005\n1 2\n", "has 2 numbers, and line 4 says 3"),
             ("a\nb\nc\nNPTS= 3, DT= .005\n1 x\n2\n", "line 5: `x`"),
