@@ -6,6 +6,9 @@ use super::{HeldNode, SupportError, add_direction};
 
 /// Merges groups of nodes that share one, and leaves out nodes that are alone: each group ascending, ordered by its first.
 pub(super) fn merged(nodes: usize, groups: &[Vec<u32>]) -> Vec<Vec<u32>> {
+    if groups.is_empty() {
+        return Vec::new();
+    }
     let mut first: Vec<u32> = (0..nodes as u32).collect();
     let root = |first: &[u32], mut node: u32| {
         while first[node as usize] != node {
