@@ -309,9 +309,8 @@ impl Ledger {
     /// The worst of the run so far.
     pub(crate) fn invariants(&self) -> Invariants {
         let over = |value: f64, scale: f64| if value == 0.0 { 0.0 } else { value / scale };
-        // Where nothing has moved, what loads and supports leave of each other is rounding.
-        let kept =
-            |error: f64, scale: f64| if self.largest_speed_m_s > 0.0 { over(error, scale) } else { 0.0 };
+        // Where nothing had a momentum, what loads and supports leave of each other is rounding.
+        let kept = |error: f64, scale: f64| if scale > 0.0 { error / scale } else { 0.0 };
         let energy = |value_j: f64| over((value_j - self.rounding_j).max(0.0), self.peak_energy_j);
         let scale_m_s = self.speed_scale_m_s();
         let (block_gain, block_loss) = self.blocks.lasting(scale_m_s, self.rounding_j);
