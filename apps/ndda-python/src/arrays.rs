@@ -50,8 +50,11 @@ pub fn fill(simulation: &Simulation, name: &str, out: &mut PyReadwriteArray2<'_,
     each_node(simulation, name, |i, value| (0..3).for_each(|axis| view[[i, axis]] = value[axis]))
 }
 
+/// Number of energies and works of a sample.
+const ENERGIES: usize = 15;
+
 /// Energies and works with their names [J].
-pub fn energies(sample: &Sample) -> [(&'static str, f64); 15] {
+pub fn energies(sample: &Sample) -> [(&'static str, f64); ENERGIES] {
     [
         ("kinetic_j", sample.kinetic_j),
         ("strain_j", sample.strain_j),
@@ -72,8 +75,15 @@ pub fn energies(sample: &Sample) -> [(&'static str, f64); 15] {
 }
 
 /// Time and energies of a sample.
-pub fn sample_row(sample: &Sample) -> [f64; 16] {
-    let mut row = [sample.time_s; 16];
+pub fn sample_row(sample: &Sample) -> [f64; ENERGIES + 1] {
+    let mut row = [sample.time_s; ENERGIES + 1];
     row[1..].copy_from_slice(&energies(sample).map(|(_, value)| value));
     row
+}
+
+/// Names of the values of a [`sample_row`].
+pub fn row_names() -> [&'static str; ENERGIES + 1] {
+    let mut names = ["time_s"; ENERGIES + 1];
+    names[1..].copy_from_slice(&energies(&Sample::default()).map(|(name, _)| name));
+    names
 }

@@ -14,6 +14,7 @@ mod watched;
 use std::ffi::OsString;
 
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 
 use errors::{SceneError, StopError};
 use scene::Scene;
@@ -28,6 +29,7 @@ fn _command(py: Python<'_>, args: Vec<OsString>, program: Vec<OsString>) -> u8 {
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add("_HISTORY", PyTuple::new(module.py(), arrays::row_names())?)?;
     module.add("SceneError", module.py().get_type::<SceneError>())?;
     module.add("StopError", module.py().get_type::<StopError>())?;
     module.add_class::<Scene>()?;

@@ -60,7 +60,7 @@ pub struct QuietFaces {
     pub waves: Vec<PlaneWave>,
 }
 
-/// What a wave does at a node.
+/// The force of an incident wave at a node, and its delay there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Incident {
     /// Index into [`Quiet::waves`].
@@ -142,7 +142,7 @@ impl Quiet {
     }
 }
 
-/// Adds what a wave does at a node to what it does there by other triangles.
+/// Adds the force of a wave on one triangle of a node to that on its other triangles.
 fn add(incident: &mut Vec<Incident>, new: Incident) {
     match incident.iter_mut().find(|known| known.wave == new.wave) {
         Some(known) => known.force += new.force,

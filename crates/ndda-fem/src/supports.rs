@@ -208,7 +208,7 @@ impl BlockSupports {
     /// The frame is free where only whole nodes are held, held where no rotation is left, and turns about one
     /// axis where that axis leaves all held directions alone.
     fn choose_frame(&self, operator: &BlockOperator) -> Result<Frame, SupportError> {
-        // What moves alike at some distance does not turn.
+        // Nodes apart from each other that move alike keep the block from turning.
         if !self.ties.is_empty() {
             return Ok(Frame::Held);
         }

@@ -37,6 +37,19 @@ pub fn tet_heights(corners: &[Vec3; 4]) -> [f64; 4] {
     TET_FACES.map(|face| 3.0 * volume / triangle_area_vector(&face.map(|i| corners[i])).norm())
 }
 
+/// Barycentric coordinates of a point in a tetrahedron [1], one per corner, which sum to one; none in a tetrahedron without volume.
+pub fn barycentric([a, b, c, d]: &[Vec3; 4], point: &Vec3) -> Option<[f64; 4]> {
+    let (u, v, w, p) = (b - a, c - a, d - a, point - a);
+    let volume6 = u.dot(&v.cross(&w));
+    if volume6 == 0.0 {
+        return None;
+    }
+    let second = p.dot(&v.cross(&w)) / volume6;
+    let third = u.dot(&p.cross(&w)) / volume6;
+    let fourth = u.dot(&v.cross(&p)) / volume6;
+    Some([1.0 - second - third - fourth, second, third, fourth])
+}
+
 /// Local corners of the face opposite to each corner, outward for a tetrahedron of positive volume.
 pub const TET_FACES: [[usize; 3]; 4] = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 

@@ -57,7 +57,7 @@ pub struct RecordArgs {
 }
 
 impl RecordArgs {
-    /// What the library is asked for.
+    /// The request to the library that these options stand for.
     pub fn request(&self) -> Request {
         let slope = self.slope.zip(self.friction);
         let slope = slope.map(|(slope, friction)| Slide::slope(slope, friction, self.along_slope));

@@ -14,6 +14,7 @@ __all__ = [
     "Simulation",
     "Snapshot",
     "StopError",
+    "_HISTORY",
     "__version__",
     "_certify",
     "_command",
@@ -28,6 +29,7 @@ __all__ = [
 ]
 
 __version__: str
+_HISTORY: tuple[str, ...]
 
 class SceneError(ValueError):
     diagnostics: list[dict[str, Any]]

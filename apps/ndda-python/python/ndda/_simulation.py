@@ -23,24 +23,7 @@ if TYPE_CHECKING:
     from ndda.builders import Scene as SceneBuilder
 
 _FORCES = ("force", "friction", "center", "moment")
-_HISTORY = (
-    "time_s",
-    "kinetic_j",
-    "strain_j",
-    "contact_j",
-    "load_j",
-    "spring_j",
-    "total_j",
-    "friction_work_j",
-    "motion_work_j",
-    "load_work_j",
-    "damping_work_j",
-    "restitution_work_j",
-    "radiated_j",
-    "bolt_j",
-    "bolt_work_j",
-    "balance_j",
-)
+_HISTORY = _core._HISTORY
 
 
 class Simulation(_core.Simulation):

@@ -1524,7 +1524,7 @@ class IncidentWave(Builder):
     record : Record
         Its motion over time.
     motion : RecordedAsChoice, optional
-        What the record is of. Default: `Upgoing`.
+        Where the record was measured. Default: `Upgoing`.
     along : Sequence[float], optional
         Direction in which it travels; its length does not matter. Default: against gravity, (0, 0, 1)
         without.
@@ -2227,7 +2227,7 @@ class Record(Builder):
 
 
 class RecordedAs:
-    """What a record of a wave is of.
+    """Where the motion of a record was measured, or what was computed from it.
 
     Examples
     --------

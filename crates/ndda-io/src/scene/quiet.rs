@@ -40,7 +40,7 @@ pub struct IncidentWave {
     pub wave: WaveKind,
     /// Its motion over time.
     pub record: Record,
-    /// What the record is of. Default: `Upgoing`.
+    /// Where the record was measured. Default: `Upgoing`.
     #[serde(default)]
     pub motion: RecordedAs,
     /// Direction in which it travels; its length does not matter. Default: against gravity, (0, 0, 1) without.
@@ -66,7 +66,7 @@ pub enum WaveKind {
     S([f64; 3]),
 }
 
-/// What a record of a wave is of.
+/// Where the motion of a record was measured, or what was computed from it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum RecordedAs {

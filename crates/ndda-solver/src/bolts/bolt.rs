@@ -90,7 +90,15 @@ impl Bolt {
 
     /// Number of places where it crosses from one block to the next.
     pub(crate) fn crossings(&self) -> usize {
-        self.spans.iter().filter(|span| matches!(span, Span::Crossing { .. })).count()
+        self.each_crossing().count()
+    }
+
+    /// Where it crosses from one block to the next, from its head.
+    pub(crate) fn each_crossing(&self) -> impl Iterator<Item = &Crossing> {
+        self.spans.iter().filter_map(|span| match span {
+            Span::Crossing { crossing, .. } => Some(&**crossing),
+            Span::Straight { .. } => None,
+        })
     }
 
     /// Springs of grout, without the plate.
@@ -99,15 +107,7 @@ impl Bolt {
     }
 
     pub(crate) fn chain<'a>(&'a self, memory: &'a MemoryOf<'_>, rock_m: &'a [f64]) -> Chain<'a> {
-        Chain {
-            steel: &self.steel,
-            rest_m: &self.rest_m,
-            yielded_m: memory.yielded_m,
-            broken: memory.broken,
-            holders: &self.holders,
-            slip_m: memory.slip_m,
-            rock_m: &rock_m[..self.holders.len()],
-        }
+        self.chain_of((memory.slip_m, memory.yielded_m, memory.broken), rock_m)
     }
 
     /// The bar alone, for what does not depend on the rock.
@@ -115,18 +115,27 @@ impl Bolt {
         Chain { holders: &[], rock_m: &[], ..self.chain(memory, memory.slip_m) }
     }
 
-    /// Finds where the bar is in balance.
-    fn balance(&self, memory: &mut MemoryOf, rock_m: &[f64], room: &mut Room) {
-        let chain = Chain {
+    fn chain_of<'a>(
+        &'a self,
+        (slip_m, yielded_m, broken): (&'a [f64], &'a [f64], &'a [bool]),
+        rock_m: &'a [f64],
+    ) -> Chain<'a> {
+        let rock_m = &rock_m[..self.holders.len()];
+        Chain {
             steel: &self.steel,
             rest_m: &self.rest_m,
-            yielded_m: &*memory.yielded_m,
-            broken: &*memory.broken,
+            yielded_m,
+            broken,
             holders: &self.holders,
-            slip_m: &*memory.slip_m,
-            rock_m: &rock_m[..self.holders.len()],
-        };
-        chain.solve(memory.displacement_m, room);
+            slip_m,
+            rock_m,
+        }
+    }
+
+    /// Finds where the bar is in balance.
+    fn balance(&self, memory: &mut MemoryOf, rock_m: &[f64], room: &mut Room) {
+        let MemoryOf { displacement_m, slip_m, yielded_m, broken, .. } = memory;
+        self.chain_of((slip_m, yielded_m, broken), rock_m).solve(displacement_m, room);
     }
 
     /// Displacements of the rock along the bolt.
@@ -249,17 +258,14 @@ impl Bolt {
         }
         if breaks {
             self.balance(memory, &work.rock_m, &mut work.room);
-            let (kept_j, known_j) = (self.potential_along_j(memory, &work.rock_m), *memory.dissipated_j);
+            let kept_j = self.chain(memory, &work.rock_m).potential_j(memory.displacement_m);
+            let known_j = *memory.dissipated_j;
             // Slip that goes on as the pieces draw back is part of the energy set free.
             self.yield_parts(memory, work);
             let freed_j = before_j - kept_j + (*memory.dissipated_j - known_j);
             *memory.dissipated_j = known_j + freed_j.max(0.0);
         }
         breaks
-    }
-
-    fn potential_along_j(&self, memory: &MemoryOf, rock_m: &[f64]) -> f64 {
-        self.chain(memory, rock_m).potential_j(memory.displacement_m)
     }
 
     /// Elastic energy of steel, grout and plate, nothing of which yields further [J].
@@ -298,11 +304,7 @@ impl Bolt {
         chain.solve(u, room);
         let mut energy_j = chain.potential_j(u);
         let Some(dowel) = self.dowel else { return energy_j };
-        let crossings = self.spans.iter().filter_map(|span| match span {
-            Span::Crossing { crossing, .. } => Some(crossing),
-            Span::Straight { .. } => None,
-        });
-        for (crossing, slip_m) in crossings.zip(memory.dowel_slip_m.iter()) {
+        for (crossing, slip_m) in self.each_crossing().zip(memory.dowel_slip_m.iter()) {
             energy_j += dowel.potential_j(crossing.frame(position).across_m(), *slip_m);
         }
         energy_j

@@ -1,6 +1,6 @@
 //! Where a bolt runs: the blocks along its line, and points of it in their tetrahedra.
 
-use ndda_mesh::geometry::Aabb;
+use ndda_mesh::geometry::{Aabb, barycentric};
 use ndda_mesh::{BlockId, BlockSet, TetId, Vec3};
 
 /// Pieces shorter than this part of the bolt are none: the line grazes an edge there.
@@ -145,19 +145,6 @@ impl Line {
         }
         best.1
     }
-}
-
-/// Barycentric coordinates of a point, which sum to one; none in a tetrahedron without volume.
-fn barycentric([a, b, c, d]: &[Vec3; 4], point: &Vec3) -> Option<[f64; 4]> {
-    let (u, v, w, p) = (b - a, c - a, d - a, point - a);
-    let volume6 = u.dot(&v.cross(&w));
-    if volume6 == 0.0 {
-        return None;
-    }
-    let second = p.dot(&v.cross(&w)) / volume6;
-    let third = u.dot(&p.cross(&w)) / volume6;
-    let fourth = u.dot(&v.cross(&p)) / volume6;
-    Some([1.0 - second - third - fourth, second, third, fourth])
 }
 
 #[cfg(test)]

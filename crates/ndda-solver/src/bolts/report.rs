@@ -3,7 +3,7 @@
 use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
-use crate::bolts::bolt::{Bolt, Span};
+use crate::bolts::bolt::Bolt;
 use crate::bolts::memory::MemoryOf;
 
 /// State of a piece of a bolt.
@@ -144,11 +144,7 @@ impl Bolt {
             slipped += if memory.slip_m[k] == 0.0 { 0.0 } else { holder.law.stiffness_n_m };
         }
         status.debonded = slipped / all;
-        let crossings = self.spans.iter().filter_map(|span| match span {
-            Span::Crossing { crossing, .. } => Some(crossing),
-            Span::Straight { .. } => None,
-        });
-        for (crossing, slip_m) in crossings.zip(memory.dowel_slip_m.iter()) {
+        for (crossing, slip_m) in self.each_crossing().zip(memory.dowel_slip_m.iter()) {
             let across_m = crossing.frame(position).across_m();
             let shear_n = self.dowel.map_or([0.0; 2], |dowel| dowel.respond(across_m, *slip_m).0);
             status.shear_n = status.shear_n.max(shear_n[0].hypot(shear_n[1]));

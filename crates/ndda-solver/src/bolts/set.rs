@@ -1,9 +1,9 @@
 //! All bolts of a simulation, and what a step does with them.
 
-use ndda_mesh::{BlockId, BlockSet, Vec3};
+use ndda_mesh::{BlockSet, Vec3};
 
 use crate::bodies::kind::BodyKind;
-use crate::bolts::bolt::{Bolt, Span, Work};
+use crate::bolts::bolt::{Bolt, Work};
 use crate::bolts::chain::Room;
 use crate::bolts::memory::{BoltMemory, Sizes};
 use crate::bolts::setup::{BoltError, BoltSetup};
@@ -47,11 +47,13 @@ impl Bolts {
         };
         let mut rows = Vec::new();
         for bolt in &list {
-            bolt.add_row_sums(blocks, kinds, &mut rows);
+            bolt.add_row_sums(kinds, &mut rows);
             // Nodes that it acts on without stiffness are listed too.
             let nodes = bolt.points.iter().flat_map(|point| point.nodes);
             rows.extend(nodes.map(|node| (node, 0.0)));
-            rows.extend(bolt.edge_nodes().map(|node| (node, 0.0)));
+            // The edge of a crossing is of one tetrahedron.
+            let edges = bolt.each_crossing().flat_map(|crossing| crossing.points[4].nodes);
+            rows.extend(edges.map(|node| (node, 0.0)));
         }
         rows.sort_by_key(|(node, _)| *node);
         rows.dedup_by(|next, kept| {
@@ -66,24 +68,5 @@ impl Bolts {
         memory.each(&sizes, |k, memory| list[k].tension(&blocks.rest_position, memory, &mut work));
         let force = vec![Vec3::zeros(); blocks.rest_position.len()];
         Ok((Self { list, sizes, rows, work, force, before: memory.clone() }, memory))
-    }
-
-    /// Forces that bolts exert on the first of two blocks, and against on the second.
-    pub(crate) fn pairs(&self) -> &[(BlockId, BlockId, Vec3)] {
-        &self.work.pairs
-    }
-
-    /// Force on each node, as last found [N].
-    pub(crate) fn force(&self) -> &[Vec3] {
-        &self.force
-    }
-}
-
-impl Bolt {
-    fn edge_nodes(&self) -> impl Iterator<Item = u32> + '_ {
-        self.spans.iter().flat_map(|span| match span {
-            Span::Crossing { crossing, .. } => crossing.points[4].nodes.to_vec(),
-            Span::Straight { .. } => Vec::new(),
-        })
     }
 }

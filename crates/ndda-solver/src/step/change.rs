@@ -75,9 +75,7 @@ impl Simulation {
         self.stop_held_nodes(before);
         let (new, _) = self.look()?;
         self.audit.ledger.add_work(0.0, 0.0, new.total_j() - old.total_j(), 0.0);
-        self.audit
-            .ledger
-            .add_whole_impulse(new.momentum - old.momentum, new.angular_momentum - old.angular_momentum);
+        self.audit.ledger.add_jump_of_momentum(&old, &new);
         Ok(())
     }
 

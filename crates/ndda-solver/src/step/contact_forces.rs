@@ -92,7 +92,7 @@ impl Simulation {
             }
             if let Some(bolts) = &self.bolts {
                 let range = self.problem.blocks.nodes_of(BlockId(index as u32));
-                for (x, pull) in position.iter().zip(&bolts.force()[range]) {
+                for (x, pull) in position.iter().zip(&bolts.force[range]) {
                     body.push(&(x + contact_offset), pull);
                 }
             }

@@ -87,7 +87,7 @@ impl Simulation {
                 moments.carry(owner, facet.target, &(facet.push_n + facet.friction_n));
             }
         }
-        let pairs = self.bolts.iter().flat_map(|bolts| bolts.pairs());
+        let pairs = self.bolts.iter().flat_map(|bolts| &bolts.work.pairs);
         pairs.for_each(|(owner, target, force)| moments.carry(*owner, *target, force));
         self.contact_moments = Some(moments);
     }

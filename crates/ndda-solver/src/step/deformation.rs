@@ -30,7 +30,7 @@ impl<'a> StepDeformation<'a> {
         let loads = &simulation.loads.total()[range.clone()];
         force.iter_mut().zip(loads).for_each(|(force, load)| *force += load);
         if let Some(bolts) = &simulation.bolts {
-            let pulls = &bolts.force()[range.clone()];
+            let pulls = &bolts.force[range.clone()];
             force.iter_mut().zip(pulls).for_each(|(force, pull)| *force += pull);
         }
         let state = &simulation.state;

@@ -5,7 +5,6 @@ use ndda_mesh::{BlockId, Vec3};
 use crate::bodies::kind::BodyKind;
 use crate::bodies::prototype::Prototype;
 use crate::step::Simulation;
-use crate::step::follower::Places;
 use crate::step::state::State;
 
 /// Why a block cannot be driven.
@@ -141,10 +140,8 @@ impl Simulation {
             let nodes = nodal[self.problem.blocks.nodes_of(block)].iter_mut();
             nodes.zip(&operator.node_mass).for_each(|(f, m)| *f = force * (m / operator.mass_kg));
         }
-        let State { position, velocity, .. } = &self.state;
-        let now_s = self.clock_s(0.0);
         self.loads.drive(nodal);
-        self.loads.place(now_s, now_s, Places { position, velocity, lead_s: 0.0 });
+        self.place_loads_now();
     }
 }
 

@@ -5,7 +5,9 @@ use std::ops::Range;
 use ndda_fem::{Between, Table};
 use ndda_mesh::Vec3;
 
+use crate::step::Simulation;
 use crate::step::follower::{FollowerPressure, Places};
+use crate::step::state::State;
 
 /// Nodal forces that grow and shrink together.
 #[derive(Clone, Debug)]
@@ -176,5 +178,14 @@ impl Loads {
     /// Their sum over all nodes [N].
     pub(crate) fn force(&self) -> Vec3 {
         self.force
+    }
+}
+
+impl Simulation {
+    /// Loads on the nodes where they are, at the present time.
+    pub(crate) fn place_loads_now(&mut self) {
+        let now_s = self.clock_s(0.0);
+        let State { position, velocity, .. } = &self.state;
+        self.loads.place(now_s, now_s, Places { position, velocity, lead_s: 0.0 });
     }
 }

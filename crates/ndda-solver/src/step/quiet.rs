@@ -4,8 +4,6 @@ use ndda_mesh::Vec3;
 
 use crate::error::StepError;
 use crate::step::Simulation;
-use crate::step::follower::Places;
-use crate::step::state::State;
 
 impl Simulation {
     /// Whether a block has quiet faces.
@@ -52,8 +50,6 @@ impl Simulation {
             return self.state.kept_force.clear();
         }
         self.loads.keep(&self.state.kept_force);
-        let State { position, velocity, .. } = &self.state;
-        let now_s = self.clock_s(0.0);
-        self.loads.place(now_s, now_s, Places { position, velocity, lead_s: 0.0 });
+        self.place_loads_now();
     }
 }

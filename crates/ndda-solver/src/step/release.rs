@@ -3,6 +3,7 @@
 use ndda_contact::FacetContact;
 use ndda_fem::Table;
 use ndda_fem::supports::BlockSupports;
+use ndda_mesh::geometry::barycentric;
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
@@ -84,14 +85,14 @@ impl Simulation {
                 nodal[node] += weight * force;
             }
             let place = |n: usize| self.state.position[n] + self.state.contact_offset_of(facet.target);
-            let tets = blocks.tets_of(facet.target).map(|tet| {
-                let corners = blocks.tets[tet].map(|n| n.index());
-                on_tet(corners, corners.map(place), &facet.center)
+            let tets = blocks.tets_of(facet.target).filter_map(|tet| {
+                let nodes = blocks.tets[tet].map(|n| n.index());
+                Some((nodes, barycentric(&nodes.map(place), &facet.center)?))
             });
-            let least =
-                |weights: &[(usize, f64); 4]| weights.iter().map(|w| w.1).fold(f64::INFINITY, f64::min);
-            let nearest = tets.max_by(|a, b| least(a).total_cmp(&least(b)));
-            nearest.into_iter().flatten().for_each(|(node, weight)| nodal[node] -= weight * force);
+            let least = |weights: &[f64; 4]| weights.iter().copied().fold(f64::INFINITY, f64::min);
+            let nearest = tets.max_by(|a, b| least(&a.1).total_cmp(&least(&b.1)));
+            let Some((nodes, weights)) = nearest else { continue };
+            nodes.into_iter().zip(weights).for_each(|(node, weight)| nodal[node] -= weight * force);
         }
         nodal
     }
@@ -166,13 +167,6 @@ impl Simulation {
         forces
     }
 
-    /// Loads on the nodes where they are, at the present time.
-    pub(super) fn place_loads_now(&mut self) {
-        let now_s = self.clock_s(0.0);
-        let State { position, velocity, .. } = &self.state;
-        self.loads.place(now_s, now_s, Places { position, velocity, lead_s: 0.0 });
-    }
-
     /// Puts the ramp of the state among the loads.
     pub(super) fn place_release(&mut self) {
         let Some(stage) = &self.stage else { return };
@@ -204,15 +198,4 @@ fn on_triangle(nodes: [usize; 3], corners: [Vec3; 3], at: &Vec3) -> [(usize, f64
     let over = normal.norm_squared();
     let part = |from: Vec3, to: Vec3| normal.dot(&(to - from).cross(&(at - from))) / over;
     [(nodes[0], part(b, c)), (nodes[1], part(c, a)), (nodes[2], part(a, b))]
-}
-
-/// Weights of the corners of a tetrahedron at a point.
-fn on_tet(nodes: [usize; 4], corners: [Vec3; 4], at: &Vec3) -> [(usize, f64); 4] {
-    let volume = |[a, b, c, d]: [Vec3; 4]| (b - a).cross(&(c - a)).dot(&(d - a));
-    let whole = volume(corners);
-    [0, 1, 2, 3].map(|i| {
-        let mut replaced = corners;
-        replaced[i] = *at;
-        (nodes[i], volume(replaced) / whole)
-    })
 }

@@ -195,8 +195,7 @@ impl Simulation {
         let (new, books) = self.look()?;
         self.audit.ledger.blocks().rebase(&books);
         self.audit.ledger.add_way_to_rest(&way, new.total_j() - old.total_j());
-        let momentum = new.momentum - old.momentum;
-        self.audit.ledger.add_whole_impulse(momentum, new.angular_momentum - old.angular_momentum);
+        self.audit.ledger.add_jump_of_momentum(&old, &new);
         if self.has_contact() {
             let (contact, _) = self.contacts_at_start()?;
             self.stop_past_centroid(&contact)?;

@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 use crate::diagnostics::ledger::Ledger;
 use crate::integrators::time_integrator::Inertia;
 use crate::step::Simulation;
-use crate::step::follower::Places;
 use crate::step::stage_state::StageState;
 use crate::step::state::State;
 
@@ -134,8 +133,7 @@ impl Simulation {
         self.state.inertia.fill(Inertia::default());
         self.state.step = 0;
         self.settling_at_s = None;
-        let State { position, velocity, .. } = &self.state;
-        self.loads.place(0.0, 0.0, Places { position, velocity, lead_s: 0.0 });
+        self.place_loads_now();
         self.state.bolts.forget_work();
         self.audit.ledger = self.new_ledger((Vec3::zeros(), Vec3::zeros()));
     }

@@ -118,9 +118,7 @@ impl Simulation {
         removed_j += old.contact_j - new.contact_j;
         self.audit.ledger.add_work(0.0, 0.0, new.total_j() - old.total_j() + removed_j, 0.0);
         self.audit.ledger.add_removed(removed_j);
-        self.audit
-            .ledger
-            .add_whole_impulse(new.momentum - old.momentum, new.angular_momentum - old.angular_momentum);
+        self.audit.ledger.add_jump_of_momentum(&old, &new);
         Ok(())
     }
 

@@ -41,9 +41,9 @@ pub(super) fn add_blasts(
 
 /// Triangles of a block that a blast presses on, counter-clockwise seen from outside.
 fn wall(blocks: &BlockSet, block: BlockId, on: &BlastWall) -> Result<Vec<[u32; 3]>, String> {
-    let BlastWall::Hole { from_m, to_m, within_m } = on else {
-        let BlastWall::Part(region) = on else { unreachable!("there are two kinds of walls") };
-        return outward_triangles(blocks, block, region);
+    let (from_m, to_m, within_m) = match on {
+        BlastWall::Part(region) => return outward_triangles(blocks, block, region),
+        BlastWall::Hole { from_m, to_m, within_m } => (from_m, to_m, within_m),
     };
     let (from, to) = (vec3(*from_m) - blocks.origin_m, vec3(*to_m) - blocks.origin_m);
     let (length_m, axis) = ((to - from).norm(), (to - from).normalize());

@@ -1,5 +1,6 @@
 //! Quiet faces of a scene, and the waves that arrive through them.
 
+use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -57,8 +58,8 @@ pub(super) fn add_quiet(
         for (block, triangles) in parts {
             let body = &mut bodies[block.index()];
             let beyond = named.clone().unwrap_or_else(|| body.material.clone());
-            let is_known = |triangle| body.quiet.iter().any(|known| known.faces.triangles.contains(triangle));
-            if triangles.iter().any(is_known) {
+            let known: HashSet<_> = body.quiet.iter().flat_map(|known| &known.faces.triangles).collect();
+            if triangles.iter().any(|triangle| known.contains(triangle)) {
                 let message = format!(
                     "faces of block `{}` are quiet already by an entry before this one: give all their waves in one entry",
                     blocks.names[block.index()]
@@ -150,7 +151,10 @@ fn arriving(
     let c = speed_m_s(beyond, &empty).map_err(|error| error.to_string())?;
     let ground = wave.ground_m.map(|at| (vec3(at) - blocks.origin_m - from).dot(&along));
     if let Some(height) = ground.filter(|height| *height <= 0.0) {
-        return Err(format!("ground_m lies {:.3} m behind where the wave begins: it must be ahead", -height));
+        return Err(format!(
+            "ground_m lies {:.3} m behind where the wave begins: it must be ahead",
+            height.abs()
+        ));
     }
     let prepared = record::prepare(&wave.record, folder).map_err(|error| error.to_string())?;
     let (rows, share) = match (wave.motion, ground) {

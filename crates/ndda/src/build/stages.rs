@@ -128,26 +128,32 @@ pub fn simulation_in_stage(
     let apply = |bodies: &mut [BodySetup]| presence.apply(bodies);
     let built = simulation_of(&scene.in_stage(stage), blocks, folder, choices, &apply);
     let mut simulation = built.map_err(|faults| at_stage(scene, stage, faults))?;
-    for stage in 0..=scene.stages.len() {
-        refuse_loose_bolts(&simulation, &Presence::of(scene, simulation.blocks(), stage)?)?;
+    if stage == 0 {
+        refuse_loose_bolts(&simulation, scene)?;
     }
     simulation.leave_out(presence.absent.clone()).map_err(|error| vec![Fault::new("stages", error)])?;
     Ok(simulation)
 }
 
-/// Bolts hold from the start on, in blocks that are there all the time.
-fn refuse_loose_bolts(simulation: &Simulation, presence: &Presence) -> Result<(), Vec<Fault>> {
-    let fault = |bolt: usize| {
-        let (name, portions) = simulation.bolt(bolt)?;
-        let absent = portions.iter().find(|portion| presence.absent[portion.block.index()])?;
-        let block = &simulation.blocks().names[absent.block.index()];
-        let message = format!(
-            "bolt `{name}` is bonded in block `{block}`, which is not always there: bolts hold from the start on and stages cannot let them go, \
-             so end the bolt before that block"
-        );
-        Some(Fault::new("bolts", message))
-    };
-    let faults: Vec<Fault> = (0..simulation.bolt_count()).filter_map(fault).collect();
+/// Bolts hold from the start on, in blocks that are there in all stages.
+fn refuse_loose_bolts(simulation: &Simulation, scene: &Scene) -> Result<(), Vec<Fault>> {
+    let blocks = simulation.blocks();
+    let mut faults = Vec::new();
+    for bolt in 0..simulation.bolt_count() {
+        let Some((name, portions)) = simulation.bolt(bolt) else { continue };
+        let comes_or_goes = |block: BlockId| {
+            let name = &blocks.names[block.index()];
+            scene.stages.iter().any(|stage| stage.remove.iter().chain(&stage.add).any(|p| matches(p, name)))
+        };
+        if let Some(portion) = portions.iter().find(|portion| comes_or_goes(portion.block)) {
+            let block = &blocks.names[portion.block.index()];
+            let message = format!(
+                "bolt `{name}` is bonded in block `{block}`, which is not always there: bolts hold from the start on and stages cannot let them go, \
+                 so end the bolt before that block"
+            );
+            faults.push(Fault::new("bolts", message));
+        }
+    }
     if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 

@@ -18,7 +18,7 @@ pub enum LabelWord {
     /// Speeds are right to 1 % of the largest, places to a tenth of the height of the tetrahedra in contact.
     #[default]
     Accurate,
-    /// The same holds, but a hardly different start ends elsewhere: only statistics of several runs mean something.
+    /// Accurate, but a slightly different start leads to other positions: only statistics of several runs are meaningful.
     Sensitive,
     /// They may not be.
     Inaccurate,

@@ -88,7 +88,7 @@ impl Check<'_> {
         }
     }
 
-    /// What is wrong with the parts that a stage gives, as if they were the scene's own.
+    /// Checks the supports, loads and laws of a stage as those of a scene are checked.
     fn in_stage(&mut self, k: usize, stage: &Stage, folder: Option<&Path>) {
         let scene = Scene { stages: Vec::new(), ..self.scene.in_stage(k + 1) };
         for mut found in problems(&scene, folder) {

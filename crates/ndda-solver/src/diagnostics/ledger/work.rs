@@ -1,5 +1,6 @@
 //! Work and energy that leave or enter.
 
+use crate::diagnostics::energies::Sample;
 use crate::diagnostics::ledger::Ledger;
 
 impl Ledger {
@@ -9,6 +10,12 @@ impl Ledger {
         self.motion_work_j += motion_j;
         self.load_work_j += load_j;
         self.damping_work_j += damping_j;
+    }
+
+    /// Books what a change at once does to momentum and angular momentum, from samples before and after it.
+    pub(crate) fn add_jump_of_momentum(&mut self, before: &Sample, after: &Sample) {
+        let turn = after.angular_momentum - before.angular_momentum;
+        self.add_whole_impulse(after.momentum - before.momentum, turn);
     }
 
     /// Books the energy that left through quiet faces in a step [J].
