@@ -284,3 +284,28 @@ fn a_mesh_that_is_there_has_no_size() {
     let message = in_folder("a.msh", "", scene).unwrap_err();
     assert!(message.contains("a mesh in a file is as fine as it is"), "{message}");
 }
+
+#[test]
+fn terrain_from_a_file_in_coordinates_of_a_map_is_that_of_the_same_heights_in_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let grid = "ncols 3\nnrows 3\nxllcenter 2600000\nyllcenter 1200000\ncellsize 2\nNODATA_value -9999\n7 8 9\n4 5 6\n1 2 3.5\n";
+    let built = |domain: &str| {
+        let loaded = load(&format!("(material: \"rock\", domain: {domain})"), "");
+        build::blocks(&loaded.scene, folder.path()).map_err(|faults| format!("{faults:?}"))
+    };
+    let file = "TerrainFile(file: \"hill.asc\", origin_m: (2600000, 1200000), base_m: -1)";
+    assert!(built(file).unwrap_err().contains("hill.asc"));
+    std::fs::write(folder.path().join("hill.asc"), grid).unwrap();
+    let heights = "heights_m: [[1, 2, 3.5], [4, 5, 6], [7, 8, 9]]";
+    let same = format!("Terrain(origin_m: (0, 0), step_m: (2, 2), {heights}, base_m: -1)");
+    let [read, given] = [file, same.as_str()].map(|domain| built(domain).unwrap());
+    assert_eq!((&read.rest_position, &read.tets), (&given.rest_position, &given.tets));
+    assert_eq!((&read.node_sets, read.origin_m), (&given.node_sets, given.origin_m));
+    // Without a height in the north-eastern corner its cell is left out.
+    std::fs::write(folder.path().join("hill.asc"), grid.replace("8 9", "8 -9999")).unwrap();
+    let whole_m3 = volume_m3(&given);
+    let corner_m3 = 2.0 * ((5.0 + 6.0 + 9.0) + (5.0 + 9.0 + 8.0)) / 3.0 + 4.0;
+    assert!((whole_m3 - volume_m3(&built(file).unwrap()) - corner_m3).abs() < 1e-9);
+    std::fs::write(folder.path().join("hill.asc"), grid.replace("5 6", "-9999 6")).unwrap();
+    assert!(built(file).unwrap_err().contains("fewer gaps"));
+}

@@ -18,6 +18,7 @@ pub(crate) mod lines;
 pub mod msh;
 pub(crate) mod parts;
 pub mod surface_file;
+pub mod terrain_grid;
 pub(crate) mod tetgen;
 #[cfg(feature = "tetgen")]
 pub mod tetgen_fill;

@@ -1086,6 +1086,32 @@ class Domain:
         _kinds: ClassVar[Mapping[str, str]] = {"origin_m": "(num)", "step_m": "(num)", "heights_m": "[[num]]", "base_m": "num"}
         _variant: ClassVar[str] = "Terrain"
 
+    @dataclass(kw_only=True)
+    class TerrainFile(Builder):
+        """Rock under heights in an ESRI ASCII grid, `.asc`; faces as of `Terrain`. Cells with a corner without
+        height are left out.
+
+        Parameters
+        ----------
+        file : str
+            Path, relative to the scene file.
+        base_m : float
+            Height of the base [m].
+        origin_m : Sequence[float], optional
+            Point (x, y) of the map that is (0, 0) in the scene [m]. Default: (0, 0).
+
+        Examples
+        --------
+        >>> Domain.TerrainFile(file="name", base_m=1.0).to_ron()
+        'TerrainFile(file: "name", base_m: 1.0)'
+        """
+
+        file: str
+        base_m: float
+        origin_m: Sequence[float] | None = None
+        _kinds: ClassVar[Mapping[str, str]] = {"file": "str", "origin_m": "(num)", "base_m": "num"}
+        _variant: ClassVar[str] = "TerrainFile"
+
 
 @dataclass(kw_only=True)
 class Excavation(Builder):
@@ -3762,7 +3788,7 @@ ContactChoice: TypeAlias = Literal["Off"] | Contact.Potential
 ContactAtChoice: TypeAlias = Literal["Predicted"] | ContactAt.End
 DiscRuleChoice: TypeAlias = DiscRule.Share | Literal["Meets"] | Literal["Covers"]
 DiscontinuityChoice: TypeAlias = Discontinuity.Set | Discontinuity.Plane | Discontinuity.Disc | Discontinuity.Discs
-DomainChoice: TypeAlias = Domain.Box | Domain.Column | Domain.Polyhedron | Domain.File | Domain.Terrain
+DomainChoice: TypeAlias = Domain.Box | Domain.Column | Domain.Polyhedron | Domain.File | Domain.Terrain | Domain.TerrainFile
 FieldChoice: TypeAlias = Literal["Displacement"] | Literal["Velocity"] | Literal["Acceleration"] | Literal["Stress"] | Literal["VonMises"] | Literal["ContactForce"] | Literal["ContactTraction"] | Literal["FrictionState"] | Literal["BlockId"] | Literal["Material"]
 FieldFormatChoice: TypeAlias = Literal["Compressed"] | Literal["Appended"] | Literal["Base64"]
 FillChoice: TypeAlias = Literal["Fewest"] | Literal["Centre"] | Fill.Size | Fill.TetGen

@@ -63,14 +63,14 @@ pub fn verify(files: &[OutsideFile], folder: &Path) -> Result<(), OutsideFileErr
     Ok(())
 }
 
-/// Meshes, surfaces, tables of discs, records and materials.
+/// Meshes, surfaces, terrain, tables of discs, records and materials.
 fn names(scene: &Scene) -> Vec<&str> {
     let shapes = scene.blocks.iter().filter_map(|block| match &block.shape {
         Shape::Surface { file, .. } | Shape::Mesh { file, .. } => Some(file.as_str()),
         _ => None,
     });
     let domains = scene.rock.iter().filter_map(|rock| match &rock.domain {
-        Domain::File { file, .. } => Some(file.as_str()),
+        Domain::File { file, .. } | Domain::TerrainFile { file, .. } => Some(file.as_str()),
         _ => None,
     });
     let discs = scene.rock.iter().flat_map(|rock| &rock.joints).filter_map(|joint| match joint {

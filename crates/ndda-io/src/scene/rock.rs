@@ -118,6 +118,16 @@ pub enum Domain {
         /// Height of the base [m].
         base_m: f64,
     },
+    /// Rock under heights in an ESRI ASCII grid, `.asc`; faces as of `Terrain`. Cells with a corner without height are left out.
+    TerrainFile {
+        /// Path, relative to the scene file.
+        file: String,
+        /// Point (x, y) of the map that is (0, 0) in the scene [m]. Default: (0, 0).
+        #[serde(default)]
+        origin_m: [f64; 2],
+        /// Height of the base [m].
+        base_m: f64,
+    },
 }
 
 /// Treatment of slivers.

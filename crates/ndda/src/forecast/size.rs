@@ -40,6 +40,8 @@ const TRIANGLES_PER_SIZE2: f64 = 2.5;
 const FILE_TET_B: f64 = 25.0;
 const PACKED_TET_B: f64 = 10.0;
 const FILE_TRIANGLE_B: f64 = 30.0;
+/// Bytes of a height in a grid, of which there are two triangles.
+const HEIGHT_B: f64 = 8.0;
 /// Seconds per tetrahedron, and per Voronoi cell.
 const TET_S: f64 = 1e-5;
 const CELL_S: f64 = 3e-3;
@@ -224,6 +226,7 @@ fn of_domain(domain: &Domain, folder: &Path) -> (Vec3, f64) {
             let extent = Vec3::new(along(columns, step_m[0]), along(rows, step_m[1]), highest - base_m);
             (extent, 2.0 * along(columns, 1.0) * along(rows, 1.0))
         }
+        Domain::TerrainFile { file, .. } => (Vec3::zeros(), 1.0 + 2.0 * file_b(folder, file) / HEIGHT_B),
     }
 }
 

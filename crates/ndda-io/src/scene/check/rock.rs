@@ -152,6 +152,11 @@ impl Check<'_> {
                 self.positive(format!("{path}.step_m[1]"), step_m[1], "m");
                 heights_m.iter().for_each(|row| self.numbers(&format!("{path}.heights_m"), row));
             }
+            Domain::TerrainFile { file, origin_m, base_m } => {
+                self.numbers(&format!("{path}.origin_m"), origin_m);
+                self.numbers(&format!("{path}.base_m"), &[*base_m]);
+                self.file(format!("{path}.file"), file, folder);
+            }
         }
     }
 

@@ -1,0 +1,218 @@
+//! Heights of terrain in ESRI ASCII grids (`.asc`), as geographic information systems write them.
+//!
+//! A header of keys and numbers, then heights in rows along x, the northernmost row first. `xllcorner` and `yllcorner` are the corner of the
+//! south-western cell, `xllcenter` and `yllcenter` its centre; heights belong to the centres of cells.
+
+use std::path::Path;
+
+use super::error::{Fault, FileProblem, MeshFileError, ending};
+use super::lines::{Line, Lines, parse, real};
+use crate::limited;
+
+/// Most heights of a grid: more would need gigabytes once they are rock.
+const MOST_HEIGHTS: u64 = 1 << 24;
+
+/// The value that says "no height" where the header gives none.
+const NO_DATA: f64 = -9999.0;
+
+/// Heights of terrain on a regular grid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TerrainGrid {
+    /// Place (x, y) of the south-western height [m].
+    pub origin_m: [f64; 2],
+    /// Distance of heights along x and y [m].
+    pub step_m: [f64; 2],
+    /// Rows of heights along x, the southernmost row first [m]; none where the file has no height.
+    pub heights_m: Vec<Vec<Option<f64>>>,
+}
+
+/// Reads an ESRI ASCII grid.
+///
+/// # Errors
+/// [`MeshFileError`] with the line when the file cannot be read or understood, or holds more or fewer heights than its header says.
+pub fn read(path: &Path) -> Result<TerrainGrid, MeshFileError> {
+    if ending(path) != "asc" {
+        let problem = FileProblem::Extension { found: ending(path), known: ".asc" };
+        return Err(Fault::from(problem).of(path));
+    }
+    let bytes = limited::file(path)
+        .map_err(|error| Fault::from(FileProblem::Unreadable(error.to_string())).of(path))?;
+    grid(&bytes).map_err(|fault| fault.of(path))
+}
+
+fn grid(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
+    let mut lines = Lines::new(bytes, b'#');
+    let (header, first) = Header::read(&mut lines)?;
+    let (columns, rows) = (needed(header.columns, "ncols")?, needed(header.rows, "nrows")?);
+    let count = columns.saturating_mul(rows);
+    if count > MOST_HEIGHTS {
+        let what = format!("a grid of {columns} × {rows} heights, more than {MOST_HEIGHTS},");
+        return Err(FileProblem::NotRead { what, cure: "resample it, or cut out the part you need" }.into());
+    }
+    // A height takes at least a digit and a space; the last one may lack the space.
+    if count > (first.text.len() + lines.bytes_left()) as u64 / 2 + 1 {
+        return Err(FileProblem::TooShort { what: "heights", count }.into());
+    }
+    let mut heights_m = header.heights(first, lines, count as usize, columns as usize)?;
+    heights_m.reverse();
+    let step_m = [needed(header.step_m[0], "cellsize")?, needed(header.step_m[1], "cellsize")?];
+    let origin_m = [header.origin(0, step_m[0])?, header.origin(1, step_m[1])?];
+    Ok(TerrainGrid { origin_m, step_m, heights_m })
+}
+
+/// What precedes the heights.
+#[derive(Default)]
+struct Header {
+    columns: Option<u64>,
+    rows: Option<u64>,
+    corner_m: [Option<f64>; 2],
+    center_m: [Option<f64>; 2],
+    step_m: [Option<f64>; 2],
+    no_data: Option<f64>,
+}
+
+impl Header {
+    /// The header, and the first line of heights.
+    fn read<'a>(lines: &mut Lines<'a>) -> Result<(Self, Line<'a>), Fault> {
+        let mut header = Self::default();
+        loop {
+            let line = lines.expect("a row of heights")?;
+            let mut rest = line;
+            let key = rest.word().unwrap_or_default();
+            if parse::<f64>(key).is_some_and(|_| !key.eq_ignore_ascii_case(b"nan")) {
+                return Ok((header, line));
+            }
+            match key.to_ascii_lowercase().as_slice() {
+                b"ncols" => header.columns = Some(extent(&mut rest)?),
+                b"nrows" => header.rows = Some(extent(&mut rest)?),
+                b"xllcorner" => header.corner_m[0] = Some(rest.finite("a coordinate")?),
+                b"yllcorner" => header.corner_m[1] = Some(rest.finite("a coordinate")?),
+                b"xllcenter" => header.center_m[0] = Some(rest.finite("a coordinate")?),
+                b"yllcenter" => header.center_m[1] = Some(rest.finite("a coordinate")?),
+                b"cellsize" => header.step_m = [Some(step(&mut rest)?); 2],
+                b"dx" => header.step_m[0] = Some(step(&mut rest)?),
+                b"dy" => header.step_m[1] = Some(step(&mut rest)?),
+                b"nodata_value" => header.no_data = Some(rest.number("a number")?),
+                _ => {
+                    let expected = "a height, or ncols, nrows, xllcorner, xllcenter, yllcorner, yllcenter, cellsize, dx, dy or \
+                                    NODATA_value";
+                    return Err(Fault::unexpected(line.number, expected, key));
+                }
+            }
+        }
+    }
+
+    /// Rows of heights in the order of the file; lines may break anywhere.
+    fn heights(
+        &self,
+        first: Line,
+        lines: Lines,
+        count: usize,
+        columns: usize,
+    ) -> Result<Vec<Vec<Option<f64>>>, Fault> {
+        let no_data = self.no_data.unwrap_or(NO_DATA);
+        let mut heights = Vec::with_capacity(count);
+        for mut line in std::iter::once(first).chain(lines) {
+            while let Some(word) = line.word() {
+                if heights.len() == count {
+                    let expected = format!("the end of the file after ncols × nrows = {count} heights");
+                    return Err(Fault::unexpected(line.number, expected, word));
+                }
+                let is_missing =
+                    parse::<f64>(word).is_some_and(|z| z == no_data || (z.is_nan() && no_data.is_nan()));
+                let height = real(word).filter(|_| !is_missing);
+                if height.is_none() && !is_missing {
+                    return Err(Fault::unexpected(line.number, "a height, finite", word));
+                }
+                heights.push(height);
+            }
+        }
+        if heights.len() < count {
+            return Err(Fault::truncated(format!("height {} of {count}", heights.len() + 1)));
+        }
+        Ok(heights.chunks(columns).map(<[_]>::to_vec).collect())
+    }
+
+    /// The place of the south-western height along x or y [m].
+    fn origin(&self, axis: usize, step_m: f64) -> Result<f64, Fault> {
+        let key = ["xllcorner", "yllcorner"][axis];
+        match self.center_m[axis] {
+            Some(center_m) => Ok(center_m),
+            None => needed(self.corner_m[axis], key).map(|corner_m| corner_m + 0.5 * step_m),
+        }
+    }
+}
+
+fn needed<T>(value: Option<T>, key: &str) -> Result<T, Fault> {
+    value.ok_or_else(|| Fault::truncated(format!("the line `{key}` of the header")))
+}
+
+fn extent(line: &mut Line) -> Result<u64, Fault> {
+    let (number, word) = (line.number, line.text);
+    let count = line.number("a whole number of at least 2")?;
+    if count < 2 { Err(Fault::unexpected(number, "a whole number of at least 2", word)) } else { Ok(count) }
+}
+
+fn step(line: &mut Line) -> Result<f64, Fault> {
+    let (number, word) = (line.number, line.text);
+    let step_m = line.finite("a width above 0")?;
+    if step_m > 0.0 { Ok(step_m) } else { Err(Fault::unexpected(number, "a width above 0", word)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GRID: &str =
+        "ncols 3\nnrows 2\nxllcorner 100\nyllcorner 200\ncellsize 2\nNODATA_value -1\n4 5 -1\n1 2 3\n";
+
+    fn error(text: &str) -> String {
+        grid(text.as_bytes()).unwrap_err().of(Path::new("a.asc")).to_string()
+    }
+
+    #[test]
+    fn rows_run_from_south_to_north_and_heights_lie_at_centres_of_cells() {
+        let found = grid(GRID.as_bytes()).unwrap();
+        assert_eq!((found.origin_m, found.step_m), ([101.0, 201.0], [2.0, 2.0]));
+        let rows = [vec![Some(1.0), Some(2.0), Some(3.0)], vec![Some(4.0), Some(5.0), None]];
+        assert_eq!(found.heights_m, rows);
+    }
+
+    #[test]
+    fn keys_of_any_case_centres_unequal_steps_and_broken_rows_are_read() {
+        let text = "NCOLS 3\r\nNROWS 2\r\nXLLCENTER 101\r\nYLLCENTER 201\r\nDX 2\r\nDY 2\r\nnodata_value nan\r\n4 5\r\nNaN 1 2\r\n3";
+        assert_eq!(grid(text.as_bytes()).unwrap(), grid(GRID.as_bytes()).unwrap());
+    }
+
+    #[test]
+    fn errors_name_line_and_cure() {
+        for (from, to, part) in [
+            ("ncols 3", "ncols 1", "a.asc:1: expected a whole number of at least 2"),
+            ("cellsize 2", "cellsize 0", "a.asc:5: expected a width above 0"),
+            ("cellsize 2", "cells 2", "a.asc:5: expected a height, or ncols"),
+            ("xllcorner 100\n", "", "the line `xllcorner` of the header"),
+            ("1 2 3", "1 2 x", "a.asc:8: expected a height, finite, found `x`"),
+            ("1 2 3", "1 2 inf", "a.asc:8: expected a height, finite, found `inf`"),
+            ("1 2 3", "1 2", "height 6 of 6"),
+            ("1 2 3", "1 2,5 3", "a.asc:8: expected the end of the file after ncols × nrows = 6 heights"),
+            ("ncols 3", "ncols 99", "promises 198 heights"),
+            ("ncols 3", "ncols 18446744073709551615", "resample it"),
+        ] {
+            let message = error(&GRID.replace(from, to));
+            assert!(message.contains(part), "{from} -> {to}: {message}");
+        }
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_text_makes_the_reader_panic(cut in 0..GRID.len(), byte: u8, rest in "[ -~\\n]{0,60}") {
+            let mut bytes = GRID.as_bytes().to_vec();
+            bytes[cut] = byte;
+            let _ = grid(&bytes);
+            bytes.truncate(cut);
+            let _ = grid(&bytes);
+            bytes.extend(rest.bytes());
+            let _ = grid(&bytes);
+        }
+    }
+}
