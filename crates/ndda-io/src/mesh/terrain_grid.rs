@@ -79,7 +79,7 @@ impl Header {
             let line = lines.expect("a row of heights")?;
             let mut rest = line;
             let key = rest.word().unwrap_or_default();
-            if parse::<f64>(key).is_some_and(|_| !key.eq_ignore_ascii_case(b"nan")) {
+            if parse::<f64>(key).is_some() {
                 return Ok((header, line));
             }
             match key.to_ascii_lowercase().as_slice() {
@@ -148,13 +148,13 @@ fn needed<T>(value: Option<T>, key: &str) -> Result<T, Fault> {
 }
 
 fn extent(line: &mut Line) -> Result<u64, Fault> {
-    let (number, word) = (line.number, line.text);
+    let (number, word) = (line.number, line.clone().word().unwrap_or_default());
     let count = line.number("a whole number of at least 2")?;
     if count < 2 { Err(Fault::unexpected(number, "a whole number of at least 2", word)) } else { Ok(count) }
 }
 
 fn step(line: &mut Line) -> Result<f64, Fault> {
-    let (number, word) = (line.number, line.text);
+    let (number, word) = (line.number, line.clone().word().unwrap_or_default());
     let step_m = line.finite("a width above 0")?;
     if step_m > 0.0 { Ok(step_m) } else { Err(Fault::unexpected(number, "a width above 0", word)) }
 }
@@ -185,10 +185,16 @@ mod tests {
     }
 
     #[test]
+    fn a_grid_may_begin_with_a_missing_height() {
+        let text = "ncols 2\nnrows 2\nxllcenter 0\nyllcenter 0\ncellsize 1\nNODATA_value nan\nnan 4\n1 2\n";
+        assert_eq!(grid(text.as_bytes()).unwrap().heights_m[1], [None, Some(4.0)]);
+    }
+
+    #[test]
     fn errors_name_line_and_cure() {
         for (from, to, part) in [
             ("ncols 3", "ncols 1", "a.asc:1: expected a whole number of at least 2"),
-            ("cellsize 2", "cellsize 0", "a.asc:5: expected a width above 0"),
+            ("cellsize 2", "cellsize 0 m", "a.asc:5: expected a width above 0, found `0`"),
             ("cellsize 2", "cells 2", "a.asc:5: expected a height, or ncols"),
             ("xllcorner 100\n", "", "the line `xllcorner` of the header"),
             ("1 2 3", "1 2 x", "a.asc:8: expected a height, finite, found `x`"),
