@@ -101,6 +101,26 @@ fn a_wedge_slides_along_the_line_of_its_joints() {
     assert_eq!(joints, ["a", "b"]);
 }
 
+/// Dip and dip direction of a joint whose normal is tilted from that of a mean, in a direction clockwise from the dip.
+fn tilted((dip_deg, direction_deg): (f64, f64), tilt_deg: f64, turn_deg: f64) -> (f64, f64) {
+    let mean = normal(dip_deg, direction_deg);
+    // Down the dip, turned clockwise about the normal as it is seen from above.
+    let dip = normal(dip_deg + 90.0, direction_deg);
+    let (turn, tilt) = (-turn_deg.to_radians(), tilt_deg.to_radians());
+    let towards = turn.cos() * dip + turn.sin() * mean.cross(&dip);
+    let n = tilt.cos() * mean + tilt.sin() * towards;
+    (n.z.acos().to_degrees(), n.x.atan2(n.y).to_degrees())
+}
+
+#[test]
+fn a_wedge_of_tilted_joints_has_the_factor_of_their_orientations() {
+    let safety = found(&scene("wedge_fisher"), Question::Strength);
+    let planes = [tilted((40.0, 130.0), 3.0, 50.0), tilted((60.0, 220.0), 2.0, 200.0)];
+    let (exact, expected) = limit_equilibrium(planes, 40.0);
+    holds("wedge of joints tilted by 3° and 2°, φ = 40°", &safety, exact);
+    assert_eq!(kind(&safety), expected);
+}
+
 #[test]
 fn a_column_slides_where_joints_weaken_and_topples_where_gravity_tilts() {
     let safety = found(&scene("toppling_column"), Question::Strength);

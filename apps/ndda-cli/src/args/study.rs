@@ -41,7 +41,7 @@ pub struct StudyArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Sweeps and probability")]
 pub struct SweepArgs {
-    /// Vary a value of the scene: path=a,b,c, or path=Normal(mean, deviation), LogNormal, Uniform or Triangular; may be repeated.
+    /// Vary a value of the scene: path=a,b,c, or path=Normal(mean, deviation), LogNormal, Uniform, Triangular or Fisher; may be repeated.
     #[arg(long, value_name = "PATH=VALUES")]
     pub vary: Vec<String>,
     /// Quantities: label, safety, columns of history.csv, monitors or blocks, by name or its beginning [default: displacements].

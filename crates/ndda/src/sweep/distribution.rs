@@ -22,6 +22,12 @@ pub fn quantile(distribution: &Distribution, p: f64) -> f64 {
                 false => largest - ((1.0 - p) * width * (largest - likeliest)).sqrt(),
             }
         }
+        Distribution::Fisher(concentration) => {
+            // P(θ) = (1 − e^(−κ(1 − cos θ)))/(1 − e^(−2κ)), solved for 1 − cos θ, so that small angles keep their digits.
+            let versine = -(p * (-2.0 * concentration).exp_m1()).ln_1p() / concentration;
+            // 1 − cos θ is at most 2 but for rounding.
+            2.0 * (0.5 * versine).min(1.0).sqrt().asin().to_degrees()
+        }
     }
 }
 
@@ -92,6 +98,25 @@ mod tests {
         // The median of a log-normal distribution is m/√(1 + (s/m)²).
         let median = quantile(&Distribution::LogNormal(3.0, 4.0), 0.5);
         assert!((median - 3.0 / (1.0 + 16.0 / 9.0f64).sqrt()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn directions_scatter_as_fisher_says() {
+        for concentration in [1e-3, 0.5, 5.0, 300.0, 1e7] {
+            // The mean of cos θ is coth κ − 1/κ; 1 less that is compared, which is small where directions are close together.
+            let n = 200_000;
+            let versine = |i: u32| {
+                let p = (f64::from(i) + 0.5) / f64::from(n);
+                2.0 * (0.5 * quantile(&Distribution::Fisher(concentration), p).to_radians()).sin().powi(2)
+            };
+            let found = (0..n).map(versine).sum::<f64>() / f64::from(n);
+            let exact = 1.0 / concentration - 2.0 / (2.0 * concentration).exp_m1();
+            assert!((found / exact - 1.0).abs() < 1e-5, "κ {concentration}: {found}, {exact}");
+        }
+        // Half of the directions of a large concentration lie within √(2 ln 2/κ).
+        let median = quantile(&Distribution::Fisher(1e8), 0.5).to_radians();
+        assert!((median / (2.0 * 2f64.ln() / 1e8).sqrt() - 1.0).abs() < 1e-8, "{median}");
+        assert_eq!(quantile(&Distribution::Fisher(1e3), 1.0), 180.0);
     }
 
     #[test]

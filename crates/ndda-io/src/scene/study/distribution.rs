@@ -16,10 +16,12 @@ pub enum Distribution {
     Uniform(f64, f64),
     /// Least, most likely and largest value.
     Triangular(f64, f64, f64),
+    /// Concentration κ of directions about their mean (Fisher 1953). The number is the angle between the two, in degrees.
+    Fisher(f64),
 }
 
 /// Names of the distributions.
-const NAMES: [&str; 4] = ["Normal", "LogNormal", "Uniform", "Triangular"];
+const NAMES: [&str; 5] = ["Normal", "LogNormal", "Uniform", "Triangular", "Fisher"];
 
 impl Distribution {
     /// A distribution as it is written; none if the text is something else.
@@ -32,8 +34,8 @@ impl Distribution {
             return None;
         }
         let read = ron::from_str::<Self>(text).map_err(|error| {
-            format!("`{text}`: {error}; write Normal(mean, deviation), LogNormal(mean, deviation), Uniform(least, largest) or \
-                     Triangular(least, likeliest, largest)")
+            format!("`{text}`: {error}; write Normal(mean, deviation), LogNormal(mean, deviation), Uniform(least, largest), \
+                     Triangular(least, likeliest, largest) or Fisher(concentration)")
         });
         Some(read.and_then(|read| read.check().map(|()| read)))
     }
@@ -63,6 +65,7 @@ impl Distribution {
         let numbers = match *self {
             Self::Normal(a, b) | Self::LogNormal(a, b) | Self::Uniform(a, b) => [a, b, b],
             Self::Triangular(a, b, c) => [a, b, c],
+            Self::Fisher(a) => [a, a, a],
         };
         let refuse = |reason: &str| Err(format!("{self:?}: {reason}"));
         if numbers.iter().any(|number| !number.is_finite()) {
@@ -81,6 +84,9 @@ impl Distribution {
             {
                 refuse("write the least, the likeliest and the largest value in this order")
             }
+            Self::Fisher(concentration) if concentration <= 0.0 => {
+                refuse("the concentration must be above 0")
+            }
             _ => Ok(()),
         }
     }
@@ -97,6 +103,7 @@ mod tests {
             Distribution::parse("Triangular(1,1,4)"),
             Some(Ok(Distribution::Triangular(1.0, 1.0, 4.0)))
         );
+        assert_eq!(Distribution::parse("Fisher(300)"), Some(Ok(Distribution::Fisher(300.0))));
         assert_eq!(Distribution::parse("Newmark()"), None);
         for (text, word) in [
             ("Normal(30)", "Normal(mean"),
@@ -105,6 +112,8 @@ mod tests {
             ("Uniform(2, 1)", "least value comes first"),
             ("Triangular(1, 5, 4)", "order"),
             ("Normal(inf, 1)", "finite"),
+            ("Fisher(0)", "concentration must be above 0"),
+            ("Fisher(1, 2)", "Fisher(concentration)"),
         ] {
             let said = Distribution::parse(text).expect("a distribution").unwrap_err();
             assert!(said.contains(word), "{said}");
