@@ -256,7 +256,7 @@ pub enum Fix {
 /// Which scene, and what is changed in it.
 #[derive(Debug, Default, Args)]
 pub struct SceneArgs {
-    /// Scene file (RON; see docs/reference/scene.md).
+    /// Scene file (RON; see docs/reference/scene.md), or - for standard input.
     #[arg(required_unless_present = "example")]
     pub scene: Option<PathBuf>,
     /// Take an example that is in the program instead of a file; without a name, list them.

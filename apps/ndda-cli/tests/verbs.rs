@@ -1,7 +1,8 @@
 //! The verbs around a run: new, explain, schema, examples, completions, man.
 
+use std::io::Write;
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use ndda::templates::TEMPLATES;
 use serde_json::Value;
@@ -41,6 +42,30 @@ fn every_template_passes_its_check_without_a_warning_and_runs() {
         }
         said(folder.path(), &words);
     }
+}
+
+/// What a call prints that gets `text` on its standard input, and whether it ends well.
+fn piped(folder: &Path, text: &str, words: &[&str]) -> (bool, String) {
+    let mut call = Command::new(env!("CARGO_BIN_EXE_ndda"));
+    call.args(words).current_dir(folder).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = call.spawn().unwrap();
+    child.stdin.take().unwrap().write_all(text.as_bytes()).unwrap();
+    let done = child.wait_with_output().unwrap();
+    let said = String::from_utf8(done.stdout).unwrap() + &String::from_utf8(done.stderr).unwrap();
+    (done.status.success(), said)
+}
+
+#[test]
+fn a_scene_may_come_from_standard_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = said(folder.path(), &["new", "slide", "--out", "-"]);
+    let (is_well, text) = piped(folder.path(), &scene, &["check", "-"]);
+    assert!(is_well && text.contains("no errors"), "{text}");
+    let (is_well, text) = piped(folder.path(), &scene, &["run", "-", "--quiet", "--set", "time.end_s=1e-3"]);
+    assert!(is_well, "{text}");
+    assert!(folder.path().join("out/scene/summary.json").is_file());
+    let (is_well, text) = piped(folder.path(), "(title: 1)", &["check", "-"]);
+    assert!(!is_well && text.contains("standard input"), "{text}");
 }
 
 #[test]

@@ -26,6 +26,14 @@ pub fn stream(path: &Path) -> io::Result<Vec<u8>> {
     at_most(File::open(path)?, MOST_BYTES)
 }
 
+/// All of standard input.
+///
+/// # Errors
+/// It cannot be read, or is larger than [`MOST_BYTES`].
+pub(crate) fn standard_input() -> io::Result<Vec<u8>> {
+    at_most(io::stdin().lock(), MOST_BYTES)
+}
+
 fn at_most(source: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     source.take(most + 1).read_to_end(&mut bytes)?;

@@ -77,6 +77,9 @@ pub fn write(file: &Path, chosen: &[Chosen]) -> Result<(), String> {
     if chosen.is_empty() {
         return Ok(());
     }
+    if read::is_standard_input(file) {
+        return Err("standard input is no file to write to: save the scene, and name its file".into());
+    }
     let text = read::text_of(file).map_err(|errors| errors.render(false))?;
     let text = read::with_values(&text, chosen).map_err(|refused| refused.message)?;
     ndda_io::atomic::write(file, text.as_bytes()).map_err(|error| error.to_string())

@@ -2,8 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-/// Name of what is in a file: the file's name without its ending.
+use ndda_io::read;
+
+/// Name of what is in a file: the file's name without its ending; `scene` for standard input.
 pub fn name_of(file: &Path) -> String {
+    if read::is_standard_input(file) {
+        return "scene".into();
+    }
     file.file_stem().map_or_else(|| "scene".into(), |stem| stem.to_string_lossy().into_owned())
 }
 
@@ -22,5 +27,6 @@ mod tests {
         assert_eq!(folder_for(None, file, "_safety"), Path::new("out/wedge_safety"));
         assert_eq!(folder_for(Some(Path::new("here")), file, "_safety"), Path::new("here"));
         assert_eq!(name_of(Path::new("/")), "scene");
+        assert_eq!(name_of(Path::new("-")), "scene");
     }
 }

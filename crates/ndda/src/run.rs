@@ -16,7 +16,7 @@ pub mod run_log;
 pub mod schedule;
 pub(crate) mod stage_log;
 mod stages;
-mod twin;
+pub(crate) mod twin;
 
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};

@@ -13,8 +13,8 @@ use crate::scene::suggest::suggest;
 const DEEPEST: usize = 50;
 
 /// The functions; angles are in degrees.
-pub(crate) const FUNCTIONS: [&str; 10] =
-    ["sin", "cos", "tan", "asin", "acos", "atan", "sqrt", "abs", "min", "max"];
+pub(crate) const FUNCTIONS: [&str; 11] =
+    ["sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "abs", "min", "max"];
 
 /// Why an expression has no value.
 #[derive(Clone, Debug, PartialEq)]
@@ -235,9 +235,12 @@ impl<'a> Parser<'a> {
             values.push(self.expression(0)?);
         }
         self.close(at.start)?;
-        let several = ["min", "max"].contains(&name);
-        if several != (values.len() > 1) {
-            let takes = if several { "at least two values" } else { "one value" };
+        let (takes, is_right) = match name {
+            "min" | "max" => ("at least two values", values.len() > 1),
+            "atan2" => ("two values, y and x", values.len() == 2),
+            _ => ("one value", values.len() == 1),
+        };
+        if !is_right {
             return Err(mistake(
                 at.start..self.at,
                 format!("`{name}` takes {takes}"),
@@ -252,6 +255,7 @@ impl<'a> Parser<'a> {
             "asin" => x.asin().to_degrees(),
             "acos" => x.acos().to_degrees(),
             "atan" => x.atan().to_degrees(),
+            "atan2" => x.atan2(values[1]).to_degrees(),
             "sqrt" => x.sqrt(),
             "abs" => x.abs(),
             "min" => values.iter().copied().fold(f64::INFINITY, f64::min),
@@ -317,6 +321,7 @@ mod tests {
         for (text, expected) in [
             ("atan(tan(dip_deg))", 30.0),
             ("asin(0.5) + acos(0.5)", 90.0),
+            ("atan2(-1, -1)", -135.0),
             ("tan(45)", 1.0),
             ("pi", std::f64::consts::PI),
         ] {
@@ -335,6 +340,7 @@ mod tests {
             ("2 * sin", 4..7, "is a function", "sin(…)"),
             ("max(1)", 0..6, "at least two", "there are 1"),
             ("sin(1, 2)", 0..9, "one value", "there are 2"),
+            ("atan2(1)", 0..8, "two values, y and x", "there are 1"),
             ("(1 + 2", 6..6, "found the end", "operators"),
             ("1 2", 2..3, "`2` is no operator", "+ - * / ^"),
             ("1 +", 3..3, "found the end", "number"),

@@ -17,12 +17,25 @@ use crate::scene::parameters::Parameters;
 use crate::scene::units::{self, Resolved};
 use words::explain;
 
-/// The text of a scene or study file.
+/// What a scene is called that came from standard input.
+const STANDARD_INPUT: &str = "standard input";
+
+/// Whether a path names standard input: `-`.
+pub fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// What messages call a file.
+pub(crate) fn label_of(path: &Path) -> String {
+    if is_standard_input(path) { STANDARD_INPUT.into() } else { path.display().to_string() }
+}
+
+/// The text of a scene or study file, or of standard input for `-`, which can be read once.
 ///
 /// # Errors
 /// It cannot be read, or is no text.
 pub fn text_of(path: &Path) -> Result<String, SceneErrors> {
-    let file = path.display().to_string();
+    let file = label_of(path);
     let unreadable = |message: String, help: &str| SceneErrors {
         file: file.clone(),
         text: String::new(),
@@ -31,8 +44,9 @@ pub fn text_of(path: &Path) -> Result<String, SceneErrors> {
     if path.is_dir() {
         return Err(unreadable("is a folder".into(), "name a scene file, such as scenes/sliding_45.ron"));
     }
-    let bytes = limited::stream(path)
-        .map_err(|e| unreadable(format!("cannot be read: {e}"), "check the path of the scene file"))?;
+    let read = if is_standard_input(path) { limited::standard_input() } else { limited::stream(path) };
+    let bytes =
+        read.map_err(|e| unreadable(format!("cannot be read: {e}"), "check the path of the scene file"))?;
     String::from_utf8(bytes).map_err(|e| {
         let at = e.utf8_error().valid_up_to();
         let line = e.as_bytes()[..at].iter().filter(|&&b| b == b'\n').count() + 1;

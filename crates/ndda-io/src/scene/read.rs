@@ -9,8 +9,8 @@ use crate::scene::include;
 use crate::scene::locate;
 use crate::scene::overrides;
 use crate::scene::parameter_values;
-pub use crate::scene::parse::text_of;
-use crate::scene::parse::{locate_all, parse_with, place, refuse_blank, sort};
+pub use crate::scene::parse::{is_standard_input, text_of};
+use crate::scene::parse::{label_of, locate_all, parse_with, place, refuse_blank, sort};
 use crate::scene::renamed;
 pub use crate::scene::suggest::{nearest, suggest};
 use crate::scene::{Contact, Scene, is_unset};
@@ -79,14 +79,14 @@ pub fn with_values(text: &str, chosen: &[Chosen]) -> Result<String, Diagnostic> 
     })
 }
 
-/// Reads and checks a scene file.
+/// Reads and checks a scene file, or standard input for `-`; files that it names are then beside the present folder.
 ///
 /// # Errors
 /// Everything that is wrong with it: syntax and types one at a time, values all at once.
 pub fn load(path: &Path, overrides: &[String]) -> Result<LoadedScene, SceneErrors> {
     let text = text_of(path)?;
     let folder = path.parent().unwrap_or(Path::new("."));
-    load_text(&path.display().to_string(), &text, overrides, Some(folder))
+    load_text(&label_of(path), &text, overrides, Some(folder))
 }
 
 /// Reads and checks the text of a scene; `folder` is where its meshes are, if they are to be looked for.

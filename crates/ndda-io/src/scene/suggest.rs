@@ -6,7 +6,10 @@ const ALIKE: f64 = 0.75;
 /// "did you mean", or all that would be allowed.
 pub fn suggest(found: &str, expected: &[&str]) -> String {
     match nearest(found, expected) {
-        Some(name) => format!("did you mean `{name}`?"),
+        Some(name) => match with_unit(name, expected) {
+            Some(longer) => format!("did you mean `{name}` or `{longer}`?"),
+            None => format!("did you mean `{name}`?"),
+        },
         None => {
             let mut names = expected.to_vec();
             names.dedup();
@@ -15,9 +18,27 @@ pub fn suggest(found: &str, expected: &[&str]) -> String {
     }
 }
 
+/// The same name with a unit, as `step_s` for `step`.
+fn with_unit<'a>(name: &str, expected: &[&'a str]) -> Option<&'a str> {
+    let is_longer = |other: &&&str| other.strip_prefix(name).is_some_and(|rest| rest.starts_with('_'));
+    expected.iter().find(is_longer).copied()
+}
+
 /// The name most like `found`, if any is like it.
 pub fn nearest<'a>(found: &str, expected: &[&'a str]) -> Option<&'a str> {
     let likeness = |name: &&str| strsim::jaro_winkler(found, name);
     let best = expected.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)))?;
     (likeness(best) >= ALIKE).then_some(*best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_is_suggested_with_the_one_that_adds_its_unit() {
+        assert_eq!(suggest("stp", &["end_s", "step", "step_s"]), "did you mean `step` or `step_s`?");
+        assert_eq!(suggest("ste_s", &["end_s", "step", "step_s"]), "did you mean `step_s`?");
+        assert_eq!(suggest("x", &["end_s", "step"]), "there is end_s, step");
+    }
 }

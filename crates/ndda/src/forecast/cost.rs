@@ -12,7 +12,7 @@ use super::memory::readable;
 use crate::run::fields::FieldWriter;
 use crate::run::recorder::{Extras, columns, held_blocks};
 use crate::run::schedule::{events, is_due};
-use crate::run::{contact_rows, motion, stage_log};
+use crate::run::{contact_rows, motion, stage_log, twin};
 use crate::{build, machine};
 
 /// Steps are timed this long, but at least a few of them: a check of a small scene is to be felt as instant.
@@ -42,6 +42,8 @@ pub struct Guess {
     pub timed_steps: u64,
     /// Wall-clock time of a run on as many threads as this process has, if contacts stay as many [s].
     pub run_s: f64,
+    /// Time of the twin that shows whether the motion is sensitive, which a run makes if three or more blocks move; none where fewer can [s].
+    pub twin_s: Option<f64>,
     /// Most memory of this process, which has done all that a run does [B]; none where the system does not report it.
     pub memory_bytes: Option<u64>,
     /// Files.
@@ -79,8 +81,10 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
     let rows = events(steps, scene.output.history_rows.into());
     let frames = frames(scene);
     let run_s = first_s + steps as f64 * step_s + rows as f64 * row_s + frames as f64 * frame_s;
+    // The twin writes nothing.
+    let twin_s = twin::may_want_twin(simulation).then_some(first_s + steps as f64 * step_s);
     let files = files(scene, simulation, (rows, frames), frame.len() as u64);
-    Ok(Guess { timed_steps, run_s, memory_bytes: machine::peak_memory_bytes(), files })
+    Ok(Guess { timed_steps, run_s, twin_s, memory_bytes: machine::peak_memory_bytes(), files })
 }
 
 /// Does steps for so long, at least a few and at most `most`; gives how many, and the time of one [s].
@@ -136,6 +140,9 @@ impl fmt::Display for Guess {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let steps = self.timed_steps;
         write!(f, "a run would take {:.1} s ({steps} steps timed; more as contacts grow)", self.run_s)?;
+        if let Some(twin_s) = self.twin_s {
+            write!(f, ", {twin_s:.1} s more to see how sensitive the motion is if three blocks move,")?;
+        }
         if let Some(bytes) = self.memory_bytes {
             write!(f, " and {} of memory", readable(bytes))?;
         }
@@ -148,5 +155,41 @@ impl fmt::Display for Guess {
             )?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Model;
+
+    fn guess_of(blocks: usize) -> Guess {
+        let block = |i: usize| {
+            format!(
+                "(name: \"{i}\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: ({}, 0, 0)),",
+                2 * i
+            )
+        };
+        let text = format!(
+            "(title: \"blocks\", time: (step_s: 1e-4, end_s: 0.01), gravity_m_s2: (0, 0, -9.81),
+            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
+            blocks: [(name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (40, 20, 1), cells: (1, 1, 1)),
+                at_m: (-10, -10, -1)), {}],
+            contact: Potential(penalty_pa: 1e8, potential: Smooth(), friction: (friction_deg: 25)))",
+            (0..blocks).map(block).collect::<String>()
+        );
+        let mut model = Model::from_text(&text).unwrap();
+        guess(&model.loaded.scene, &mut model.simulation).unwrap()
+    }
+
+    #[test]
+    fn a_twin_is_foreseen_where_three_blocks_can_move() {
+        let two = guess_of(2);
+        assert_eq!(two.twin_s, None);
+        assert!(!two.to_string().contains("sensitive"), "{two}");
+        let three = guess_of(3);
+        let twin_s = three.twin_s.unwrap();
+        assert!(0.0 < twin_s && twin_s <= three.run_s, "{three:?}");
+        assert!(three.to_string().contains("sensitive the motion is if three blocks move"), "{three}");
     }
 }

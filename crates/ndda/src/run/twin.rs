@@ -59,6 +59,12 @@ pub struct Parted {
     pub blocks: usize,
 }
 
+/// Whether a run that begins here makes a twin, by default, if its blocks move far enough.
+pub(crate) fn may_want_twin(simulation: &Simulation) -> bool {
+    let free = simulation.blocks().ids().filter(|&block| moves(simulation, block));
+    simulation.has_contact() && free.take(ENOUGH).count() == ENOUGH
+}
+
 impl Sensitivity {
     /// Whether the twin of an accurate run that ends here is to be run.
     pub(super) fn wants_twin(self, simulation: &Simulation) -> bool {
