@@ -12,6 +12,7 @@ use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
+use crate::bodies::kind::BodyKind;
 use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::local_damping::LocalDamping;
@@ -33,7 +34,8 @@ pub enum Damping {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settle {
     /// Largest speed left over the largest speed on the way, by the kinetic energy of the scene; on the way is also what
-    /// loads alone would bring in the first step, where a scene is at rest from the start.
+    /// loads alone would bring in the first step, where a scene is at rest from the start, and in the course of a run
+    /// ([`Simulation::settle_within`]) what they would bring in a quarter of the slowest oscillation.
     pub tolerance: f64,
     /// Steps after which it is given up.
     pub most_steps: u64,
@@ -66,6 +68,8 @@ struct Oscillation {
     /// Steps since it was stopped, and between the last two stops.
     since: u64,
     between: u64,
+    /// Most steps between two stops: a quarter of the slowest oscillation.
+    longest: u64,
 }
 
 /// Steps between looks at how far blocks have gone.
@@ -82,6 +86,7 @@ impl Oscillation {
         self.since += 1;
         if past {
             (self.between, self.since) = (self.since, 0);
+            self.longest = self.longest.max(self.between);
             self.peak_j = Some(self.energy_j.max(REMEMBERED * self.peak_j.unwrap_or(0.0)));
         }
         self.energy_j = if past { 0.0 } else { energy_j };
@@ -105,11 +110,18 @@ impl Oscillation {
 impl Simulation {
     /// Kinetic energy that the loads would give free blocks in a step [J].
     fn load_energy_j(&self) -> f64 {
-        let of_block = |block: BlockId| {
-            let load: Vec3 = self.loads.total()[self.blocks().nodes_of(block)].iter().sum();
-            0.5 * (self.part_s * load).norm_squared() / self.shape(block).operator.mass_kg
-        };
-        self.blocks().ids().map(of_block).sum()
+        self.blocks().ids().map(|block| self.load_energy_of_j(block)).sum()
+    }
+
+    /// The same of the blocks that can move [J].
+    fn load_energy_of_moving_j(&self) -> f64 {
+        let moves = |block: &BlockId| self.shape(*block).kind != BodyKind::Fixed;
+        self.blocks().ids().filter(moves).map(|block| self.load_energy_of_j(block)).sum()
+    }
+
+    fn load_energy_of_j(&self, block: BlockId) -> f64 {
+        let load: Vec3 = self.loads.total()[self.blocks().nodes_of(block)].iter().sum();
+        0.5 * (self.part_s * load).norm_squared() / self.shape(block).operator.mass_kg
     }
 
     /// Runs with kinetic damping until all blocks are at rest, then sets time and displacements to zero; initial
@@ -132,7 +144,8 @@ impl Simulation {
     ) -> Result<Settled, StepError> {
         let start = std::mem::take(&mut self.state.velocity);
         self.state.velocity = vec![Vec3::zeros(); start.len()];
-        let (settled, came_to_rest) = self.come_to_rest(settle, 0.0, watch)?;
+        let progress = Progress::new(self, settle.damping);
+        let (settled, came_to_rest) = self.come_to_rest((settle, progress), 0.0, watch)?;
         if came_to_rest {
             let force = std::mem::take(&mut self.scratch.force);
             let kept = self.keep_static_reactions(&force);
@@ -147,14 +160,13 @@ impl Simulation {
     /// before somebody broke it off.
     fn come_to_rest(
         &mut self,
-        settle: &Settle,
+        (settle, mut progress): (&Settle, Progress),
         at_s: f64,
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<(Settled, bool), StepError> {
         self.settling_at_s = Some(at_s);
         let from = self.state.position.clone();
         let extent_m = Aabb::around(&from).diagonal();
-        let mut progress = Progress::new(self, settle.damping);
         let mut settled = Settled { speed_ratio: f64::INFINITY, ..Settled::default() };
         while settled.speed_ratio > settle.tolerance {
             let looks = settled.steps % LOOK == LOOK - 1;
@@ -183,7 +195,9 @@ impl Simulation {
         let (step, (old, _)) = (self.state.step, self.look()?);
         let before = self.audit.ledger.clone();
         self.state.velocity.fill(Vec3::zeros());
-        let (settled, came_to_rest) = self.come_to_rest(settle, self.time_s(), watch)?;
+        let progress =
+            Progress { moving_j: self.load_energy_of_moving_j(), ..Progress::new(self, settle.damping) };
+        let (settled, came_to_rest) = self.come_to_rest((settle, progress), self.time_s(), watch)?;
         self.settling_at_s = None;
         if !came_to_rest {
             return Ok(settled);
@@ -248,6 +262,11 @@ impl Simulation {
 /// A scene on its way to rest.
 struct Progress {
     damper: Damper,
+    oscillation: Oscillation,
+    /// What `load_j` is of the blocks that can move, where the scene bears its loads already and its own speed is no measure; otherwise
+    /// zero [J]. Compared is then also with the speed that loads alone would bring in a quarter of the slowest oscillation: about the
+    /// largest one of a scene that is released without stress, whatever the step.
+    moving_j: f64,
     /// Kinetic energy that loads alone would give free blocks in a step [J].
     load_j: f64,
     /// Largest kinetic energy on the way [J].
@@ -255,45 +274,74 @@ struct Progress {
 }
 
 enum Damper {
-    Kinetic(Oscillation),
+    Kinetic,
     Local(LocalDamping),
 }
 
 impl Progress {
     fn new(simulation: &Simulation, damping: Damping) -> Self {
         let damper = match damping {
-            Damping::Kinetic => Damper::Kinetic(Oscillation::default()),
+            Damping::Kinetic => Damper::Kinetic,
             Damping::Local { factor } => Damper::Local(LocalDamping::new(factor)),
         };
         let load_j = simulation.load_energy_j();
-        Self { damper, load_j, highest_j: load_j }
+        Self { damper, oscillation: Oscillation::default(), moving_j: 0.0, load_j, highest_j: load_j }
     }
 
     /// A step; gives the speed that is left over the largest.
     fn step(&mut self, simulation: &mut Simulation) -> Result<f64, StepError> {
         match &mut self.damper {
-            Damper::Kinetic(oscillation) => {
-                simulation.step()?;
-                let total_j = simulation.kinetic_energy_j();
-                self.highest_j = self.highest_j.max(total_j);
-                if oscillation.is_past_peak(total_j) {
+            Damper::Kinetic => simulation.step()?,
+            Damper::Local(damping) => simulation.step_with_local_damping(damping)?,
+        };
+        let total_j = simulation.kinetic_energy_j();
+        self.highest_j = self.highest_j.max(total_j);
+        let past_peak = self.oscillation.is_past_peak(total_j);
+        match &self.damper {
+            Damper::Kinetic => {
+                if past_peak {
                     simulation.state.velocity.fill(Vec3::zeros());
                 }
-                Ok(ratio(oscillation.left_j(), self.highest_j))
+                Ok(ratio(self.oscillation.left_j(), self.scale_j()))
             }
             Damper::Local(damping) => {
-                simulation.step_with_local_damping(damping)?;
-                let total_j = simulation.kinetic_energy_j();
-                self.highest_j = self.highest_j.max(total_j);
                 // Where an oscillation turns it is slow, and its forces are farthest from balance.
                 let unbalanced = ratio(damping.change_j(), self.load_j);
-                Ok(ratio(total_j, self.highest_j).max(unbalanced))
+                Ok(ratio(total_j, self.scale_j()).max(unbalanced))
             }
         }
+    }
+
+    /// Energy that what is left is compared with [J].
+    fn scale_j(&self) -> f64 {
+        let steps = self.oscillation.longest as f64;
+        self.highest_j.max(steps * steps * self.moving_j)
     }
 }
 
 /// Speed of an energy over that of another.
 fn ratio(energy_j: f64, largest_j: f64) -> f64 {
     if largest_j > 0.0 { (energy_j / largest_j).sqrt() } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_of_an_oscillation_over_its_scale_does_not_depend_on_the_step() {
+        // A mass of 1 kg under 1 N begins at 1e-3 of the speed that 1 N brings in a quarter of its period of 1 s, and is not stopped.
+        let left = |step_s: f64| {
+            let mut oscillation = Oscillation::default();
+            let speed_m_s = |t: f64| 0.25e-3 * (std::f64::consts::TAU * t).sin();
+            for k in 1..=(0.4 / step_s).round() as u64 {
+                oscillation.is_past_peak(0.5 * speed_m_s(k as f64 * step_s).powi(2));
+            }
+            let (steps, load_j) = (oscillation.longest as f64, 0.5 * step_s * step_s);
+            ratio(0.5 * 0.25e-3f64.powi(2), steps * steps * load_j)
+        };
+        for step_s in [1e-2, 1e-3, 1e-4, 1e-5] {
+            assert!((left(step_s) / 1e-3 - 1.0).abs() < 0.06, "{step_s}: {}", left(step_s));
+        }
+    }
 }

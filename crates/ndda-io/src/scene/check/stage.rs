@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Check, MOST_STEPS, problems};
+use super::{Check, Code, MOST_STEPS, problems};
 use crate::scene::{By, Contact, Integrator, Scene, SettleDamping, Stage, Support, Then, is_unset};
 
 impl Check<'_> {
@@ -11,7 +11,9 @@ impl Check<'_> {
         if scene.stages.is_empty() {
             return;
         }
-        self.names("stages", &scene.stages.iter().map(|stage| stage.name.as_str()).collect::<Vec<_>>());
+        let names: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
+        self.names("stages", &names);
+        self.names_apart_in_case(&names);
         if !matches!(scene.time.integrator, Integrator::Midpoint { .. }) {
             let message = "remembers accelerations, which jump where blocks are taken out";
             self.misfit("time.integrator", message, "use Midpoint() in a scene with stages");
@@ -23,6 +25,19 @@ impl Check<'_> {
         for (k, stage) in scene.stages.iter().enumerate() {
             self.stage(k, stage);
             self.in_stage(k, stage, folder);
+        }
+    }
+
+    /// Refuses names that differ in case only: each becomes the name of a checkpoint, and not every file system tells them apart.
+    fn names_apart_in_case(&mut self, names: &[&str]) {
+        for (i, name) in names.iter().enumerate() {
+            let is_like = |other: &&&str| *other != name && other.to_lowercase() == name.to_lowercase();
+            if let Some(other) = names[..i].iter().find(is_like) {
+                let message = format!("the names `{other}` and `{name}` differ in case only");
+                let help =
+                    "stages write files by these names, which some systems do not tell apart: change one";
+                self.report(Code::BadName, format!("stages[{i}].name"), message, help);
+            }
         }
     }
 
