@@ -68,6 +68,20 @@ impl Motion {
         times_s.fold(0.0, |most, time_s| most.max(off(self.velocity(time_s))))
     }
 
+    /// Times of the first and the last row [s], and how many rows there are; none without rows.
+    pub fn extent(&self) -> Option<(f64, f64, usize)> {
+        let of = |first: Option<f64>, last: Option<f64>, rows| Some((first?, last?, rows));
+        match self {
+            Self::Rows(rows) => of(rows.first().map(|row| row.0), rows.last().map(|row| row.0), rows.len()),
+            Self::Record(Record { rows, .. }) => {
+                of(rows.first().map(|row| row[0]), rows.last().map(|row| row[0]), rows.len())
+            }
+            Self::Sum(parts) => {
+                parts.iter().filter_map(Self::extent).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1), a.2 + b.2))
+            }
+        }
+    }
+
     /// Whether anything ever moves, or moves along a direction.
     pub fn moves(&self, along: Option<&Vec3>) -> bool {
         let part = |v: &Vec3| along.map_or(v.norm(), |n| v.dot(n).abs()) > 0.0;

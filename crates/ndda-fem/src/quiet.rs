@@ -89,6 +89,8 @@ pub struct Quiet {
     pub dashpots: Vec<Dashpot>,
     /// Displacements of the waves.
     pub waves: Vec<Motion>,
+    /// Of each wave, the direction in which it travels and that in which it moves the rock.
+    pub ways: Vec<(Vec3, Vec3)>,
 }
 
 impl Quiet {
@@ -105,6 +107,7 @@ impl Quiet {
                 faces.waves.iter().map(|wave| speed_m_s(*beyond, wave)).collect::<Result<_, _>>()?;
             let first = quiet.waves.len();
             quiet.waves.extend(faces.waves.iter().map(|wave| wave.motion.clone()));
+            quiet.ways.extend(faces.waves.iter().map(|wave| (wave.along, wave.moves)));
             for triangle in &faces.triangles {
                 let area = triangle_area_vector(&triangle.map(|n| rest[n as usize]));
                 let (third, normal) = (area.norm() / 3.0, area.normalize());

@@ -91,6 +91,7 @@ pub mod templates;
 pub mod tune;
 #[cfg(feature = "plots")]
 pub mod view3d;
+mod waves;
 
 pub use model::Model;
 pub use run::{Outcome, Run, RunError};

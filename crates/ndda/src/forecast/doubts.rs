@@ -5,6 +5,7 @@ use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
 
 use super::step::Advice;
+use crate::waves;
 
 /// Penalties over Young's modulus, for a potential of 1 m, outside of which contact is deep or requires short steps.
 const SOFT: f64 = 1e-6;
@@ -14,6 +15,8 @@ const HARD: f64 = 1.0;
 pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>) -> Vec<String> {
     let unstable = advice.filter(|advice| advice.worst().h > advice.bound).map(ToString::to_string);
     let mut doubts: Vec<String> = unstable.into_iter().collect();
+    let coarse = waves::findings(simulation).into_iter().filter(|found| found.value > found.limit);
+    doubts.extend(coarse.map(|found| found.reason));
     let falls = scene.gravity_m_s2 != [0.0; 3];
     let blocks = simulation.blocks();
     let free = || blocks.ids().filter(|&block| simulation.shape(block).is_free());

@@ -2,6 +2,8 @@
 
 use ndda_solver::Simulation;
 
+use crate::waves;
+
 use super::{Entry, PLACE, SPEED, name, warned};
 
 /// Limit of vibrations: the speed that elasticity changes in one step, over the largest speed. A vibration of θ = ω Δt changes θ² of its speed and lags by
@@ -55,6 +57,12 @@ pub(super) fn ringing(simulation: &Simulation) -> Entry {
         100.0 * SPEED
     );
     warned("contact vibration error / largest speed", worst.value, SPEED, reason)
+}
+
+/// Whether mesh and steps resolve the waves that arrive.
+pub(super) fn arriving_waves(simulation: &Simulation) -> impl Iterator<Item = Entry> {
+    let findings = waves::findings(simulation).into_iter();
+    findings.map(|found| warned(found.what, found.value, found.limit, found.reason))
 }
 
 /// Whether anything comes and goes within a step.
