@@ -11,6 +11,7 @@ mod bonded_plate;
 mod bouncing_block;
 mod bound_of_contact;
 mod cantilever;
+mod cavity;
 mod contact_fields;
 mod contact_patch;
 mod conveyor;
