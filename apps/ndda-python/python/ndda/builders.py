@@ -1088,8 +1088,9 @@ class Domain:
 
     @dataclass(kw_only=True)
     class TerrainFile(Builder):
-        """Rock under heights in an ESRI ASCII grid, `.asc`; faces as of `Terrain`. Cells with a corner without
-        height are left out.
+        """Rock under heights in an ESRI ASCII grid, `.asc`; faces as of `Terrain`.
+
+        Cells with a corner without height are left out.
 
         Parameters
         ----------
