@@ -72,8 +72,10 @@ fn moved(motion: &Motion) -> String {
         Course::Moving => format!("moving at {}", speed(*speed_m_s)),
         Course::Accelerating => format!("still accelerating, {}", speed(*speed_m_s)),
     };
+    // A large block may go far by less than what counts.
+    let by = if *moved == 0 { " by more than 1 % of their radius" } else { "" };
     format!(
-        "{moved} of {can_move} blocks moved; farthest `{farthest}`: {} at the end, {course}\n",
+        "{moved} of {can_move} blocks moved{by}; farthest `{farthest}`: {} at the end, {course}\n",
         length(*farthest_m)
     )
 }
