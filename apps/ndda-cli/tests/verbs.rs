@@ -44,7 +44,7 @@ fn every_template_passes_its_check_without_a_warning_and_runs() {
     }
 }
 
-/// What a call prints that gets `text` on its standard input, and whether it ends well.
+/// Whether a call with `text` on its standard input ends well, and all that it prints.
 fn piped(folder: &Path, text: &str, words: &[&str]) -> (bool, String) {
     let mut call = Command::new(env!("CARGO_BIN_EXE_ndda"));
     call.args(words).current_dir(folder).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
@@ -66,6 +66,9 @@ fn a_scene_may_come_from_standard_input() {
     let (is_well, text) = piped(folder.path(), &scene, &words);
     assert!(is_well, "{text}");
     assert!(folder.path().join("out/scene/summary.json").is_file());
+    let words = [&["certify", "-", "--quiet"][..], &short].concat();
+    let (is_well, text) = piped(folder.path(), &scene, &words);
+    assert!(is_well, "{text}");
     let (is_well, text) = piped(folder.path(), "(title: 1)", &["check", "-"]);
     assert!(!is_well && text.contains("standard input"), "{text}");
 }

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// Most bytes of a scene or table: 256 MiB.
 pub const MOST_BYTES: u64 = 1 << 28;
@@ -26,12 +27,17 @@ pub fn stream(path: &Path) -> io::Result<Vec<u8>> {
     at_most(File::open(path)?, MOST_BYTES)
 }
 
-/// All of standard input.
+/// All of standard input. It can be read once only, and is kept for those who ask again.
 ///
 /// # Errors
 /// It cannot be read, or is larger than [`MOST_BYTES`].
 pub(crate) fn standard_input() -> io::Result<Vec<u8>> {
-    at_most(io::stdin().lock(), MOST_BYTES)
+    static KEPT: Mutex<Option<Vec<u8>>> = Mutex::new(None);
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if kept.is_none() {
+        *kept = Some(at_most(io::stdin().lock(), MOST_BYTES)?);
+    }
+    Ok(kept.clone().unwrap_or_default())
 }
 
 fn at_most(source: impl Read, most: u64) -> io::Result<Vec<u8>> {

@@ -36,17 +36,18 @@ pub fn open(
         None => read::text_of(&file).map_err(|errors| events.refuse(&errors))?,
         Some(example) => examples::find(example).unwrap_or_default().to_string(),
     };
+    let is_file = args.example.is_none() && !read::is_standard_input(&file);
     let steps = steps(&model.loaded.scene);
     let mut trial =
         Trial::new(&model, (file, text), &args.overrides, out, steps).map_err(|error| refuse(&error))?;
-    if args.example.is_some() {
-        trial.loaded.scene = example_file(&trial).map_err(|error| refuse(&error.into()))?;
+    if !is_file {
+        trial.loaded.scene = kept_file(&trial).map_err(|error| refuse(&error.into()))?;
     }
     Ok((trial, model))
 }
 
-/// Writes an example to the folder, so that runs have a file to read.
-fn example_file(trial: &Trial) -> Result<PathBuf, WriteError> {
+/// Writes a scene that is no file, an example or standard input, to the folder, so that runs have a file to read.
+fn kept_file(trial: &Trial) -> Result<PathBuf, WriteError> {
     let file = trial.out.join("scene.ron");
     atomic::write(&file, trial.loaded.scene_text.as_bytes()).map(|()| file)
 }

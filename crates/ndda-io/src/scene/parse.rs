@@ -17,7 +17,7 @@ use crate::scene::parameters::Parameters;
 use crate::scene::units::{self, Resolved};
 use words::explain;
 
-/// What a scene is called that came from standard input.
+/// Name of standard input in messages.
 const STANDARD_INPUT: &str = "standard input";
 
 /// Whether a path names standard input: `-`.
@@ -25,12 +25,12 @@ pub fn is_standard_input(path: &Path) -> bool {
     path == Path::new("-")
 }
 
-/// What messages call a file.
+/// Name of a file in messages.
 pub(crate) fn label_of(path: &Path) -> String {
     if is_standard_input(path) { STANDARD_INPUT.into() } else { path.display().to_string() }
 }
 
-/// The text of a scene or study file, or of standard input for `-`, which can be read once.
+/// The text of a scene or study file, or of standard input for `-`.
 ///
 /// # Errors
 /// It cannot be read, or is no text.
