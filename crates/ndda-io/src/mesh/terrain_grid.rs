@@ -60,7 +60,7 @@ fn grid(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
     Ok(TerrainGrid { origin_m, step_m, heights_m })
 }
 
-/// What precedes the heights.
+/// The header of a grid.
 #[derive(Default)]
 struct Header {
     columns: Option<u64>,

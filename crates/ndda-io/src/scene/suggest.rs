@@ -18,7 +18,7 @@ pub fn suggest(found: &str, expected: &[&str]) -> String {
     }
 }
 
-/// The same name with a unit, as `step_s` for `step`.
+/// An expected name that continues another one by a unit, as `step_s` continues `step`.
 fn with_unit<'a>(name: &str, expected: &[&'a str]) -> Option<&'a str> {
     let is_longer = |other: &&&str| other.strip_prefix(name).is_some_and(|rest| rest.starts_with('_'));
     expected.iter().find(is_longer).copied()

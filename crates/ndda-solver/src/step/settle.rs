@@ -108,18 +108,8 @@ impl Oscillation {
 }
 
 impl Simulation {
-    /// Kinetic energy that the loads would give free blocks in a step [J].
-    fn load_energy_j(&self) -> f64 {
-        self.blocks().ids().map(|block| self.load_energy_of_j(block)).sum()
-    }
-
-    /// The same of the blocks that can move [J].
-    fn load_energy_of_moving_j(&self) -> f64 {
-        let moves = |block: &BlockId| self.shape(*block).kind != BodyKind::Fixed;
-        self.blocks().ids().filter(moves).map(|block| self.load_energy_of_j(block)).sum()
-    }
-
-    fn load_energy_of_j(&self, block: BlockId) -> f64 {
+    /// Kinetic energy that its loads alone would give a block in a step [J].
+    fn load_energy_j(&self, block: BlockId) -> f64 {
         let load: Vec3 = self.loads.total()[self.blocks().nodes_of(block)].iter().sum();
         0.5 * (self.part_s * load).norm_squared() / self.shape(block).operator.mass_kg
     }
@@ -195,8 +185,9 @@ impl Simulation {
         let (step, (old, _)) = (self.state.step, self.look()?);
         let before = self.audit.ledger.clone();
         self.state.velocity.fill(Vec3::zeros());
-        let progress =
-            Progress { moving_j: self.load_energy_of_moving_j(), ..Progress::new(self, settle.damping) };
+        let moves = |block: &BlockId| self.shape(*block).kind != BodyKind::Fixed;
+        let moving_j = self.blocks().ids().filter(moves).map(|block| self.load_energy_j(block)).sum();
+        let progress = Progress { moving_j, ..Progress::new(self, settle.damping) };
         let (settled, came_to_rest) = self.come_to_rest((settle, progress), self.time_s(), watch)?;
         self.settling_at_s = None;
         if !came_to_rest {
@@ -263,9 +254,9 @@ impl Simulation {
 struct Progress {
     damper: Damper,
     oscillation: Oscillation,
-    /// What `load_j` is of the blocks that can move, where the scene bears its loads already and its own speed is no measure; otherwise
-    /// zero [J]. Compared is then also with the speed that loads alone would bring in a quarter of the slowest oscillation: about the
-    /// largest one of a scene that is released without stress, whatever the step.
+    /// Part of `load_j` of the blocks that can move, in the course of a run; zero before it begins [J]. A scene in equilibrium hardly moves,
+    /// so its speed is compared with the one that loads alone would bring in a quarter of the slowest oscillation: about the largest speed
+    /// of the same scene released without stress, whatever the step.
     moving_j: f64,
     /// Kinetic energy that loads alone would give free blocks in a step [J].
     load_j: f64,
@@ -284,7 +275,7 @@ impl Progress {
             Damping::Kinetic => Damper::Kinetic,
             Damping::Local { factor } => Damper::Local(LocalDamping::new(factor)),
         };
-        let load_j = simulation.load_energy_j();
+        let load_j = simulation.blocks().ids().map(|block| simulation.load_energy_j(block)).sum();
         Self { damper, oscillation: Oscillation::default(), moving_j: 0.0, load_j, highest_j: load_j }
     }
 
