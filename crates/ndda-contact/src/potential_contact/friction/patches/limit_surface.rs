@@ -101,7 +101,7 @@ impl LimitSurface {
     }
 
     /// Whether a force is within the limit for sure: within the hull of all forces without torque and all torques without force.
-    fn holds(&self, force: &Vec3) -> bool {
+    pub(super) fn holds(&self, force: &Vec3) -> bool {
         let along = (force.x * force.x + force.y * force.y).sqrt();
         along * self.most_twist_n + force.z.abs() * self.most_n <= self.most_n * self.most_twist_n
     }
@@ -122,35 +122,37 @@ impl LimitSurface {
 
     /// Friction on a patch that would slip at s without, and slips at σ = s + A⁻¹ F with it: the σ of least ½ (σ − s)·A (σ − s) + D(σ).
     /// Sought from `start`, which is near σ unless it `is_first`; gives F, to `tolerance_n`: D alone is too coarse a measure of it where the slip of a
-    /// step is far from what friction changes.
+    /// step is far from what friction changes. Also gives −∂F/∂s = A − A (A + D″)⁻¹ A.
     pub(super) fn friction(
         &self,
         stiffness: &Mat3,
         (free_slip, start): (&Vec3, &Vec3),
         tolerance_n: f64,
         is_first: bool,
-    ) -> Vec3 {
+    ) -> (Vec3, Mat3) {
         let stopping = -(stiffness * free_slip);
         if self.holds(&stopping) {
-            return stopping;
+            return (stopping, *stiffness);
         }
         let surface = self.for_slip(free_slip);
-        let mut slip = *start;
+        let (mut slip, mut curvature) = (*start, *stiffness);
         for &smoothing in &SMOOTHING[usize::from(!is_first)..] {
-            slip = surface.least(stiffness, (free_slip, slip), smoothing * free_slip.norm(), tolerance_n);
+            let smoothing = smoothing * free_slip.norm();
+            (slip, curvature) = surface.least(stiffness, (free_slip, slip), smoothing, tolerance_n);
         }
         let force = stiffness * (slip - free_slip);
-        self.shortened(force)
+        let response = curvature.try_inverse().map(|inverse| stiffness - stiffness * inverse * stiffness);
+        (self.shortened(force), response.unwrap_or_default())
     }
 
-    /// Newton's method with a line search.
+    /// Newton's method with a line search: the slip, and A + D″ there.
     fn least(
         &self,
         stiffness: &Mat3,
         (free_slip, start): (&Vec3, Vec3),
         smoothing: f64,
         tolerance_n: f64,
-    ) -> Vec3 {
+    ) -> (Vec3, Mat3) {
         let smoothing2 = smoothing * smoothing;
         let value = |slip: &Vec3| {
             let gap = slip - free_slip;
@@ -182,7 +184,7 @@ impl LimitSurface {
             slip -= part * step;
             (least, slope, curvature) = next;
         }
-        slip
+        (slip, curvature)
     }
 
     /// A force no longer than μN: Newton's method ends a rounding beyond.

@@ -28,6 +28,7 @@ use crate::friction::law_table::FrictionLawTable;
 use crate::friction::patches::nodal::{Nodal, NodalSide};
 use crate::friction::patches::opposite::Opposite;
 use crate::friction::patches::patch::{ContactPatch, Moved, PatchSummary, Remembered};
+use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::{CoupledPatch, Motion};
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments};
@@ -111,6 +112,8 @@ pub(crate) struct FrictionPatches {
     /// Room for their solution, by block.
     most_n: Vec<f64>,
     pushed: Vec<u32>,
+    active: Vec<u32>,
+    newton: Newton,
     new_faces: Vec<FaceMemory>,
     gaps_j: Vec<f64>,
     /// Second moments of each facet about its own centre of pressure [m²].
@@ -257,7 +260,7 @@ impl FrictionPatches {
         let Self { nodal, is_asked, adjacency, runs, order, patches, sides, own_m2, .. } = self;
         sides.clear();
         sides.resize(patches.len(), [None; 2]);
-        nodal.begin(scene.input.blocks, scene.input.velocity.len());
+        nodal.begin(scene.input.blocks.len(), scene.input.velocity.len());
         let Some(deformation) = scene.input.deformation else { return };
         let bodies = scene.input.bodies;
         for (block, body) in scene.input.blocks.ids().zip(bodies) {
@@ -282,7 +285,7 @@ impl FrictionPatches {
     /// Friction of the patches.
     fn solve(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
         self.ask_blocks(scene, forces);
-        let Self { patches, bodies, coupled, nodal, sides, most_n, pushed, .. } = self;
+        let Self { patches, bodies, coupled, nodal, sides, most_n, pushed, active, newton, .. } = self;
         let ContactInput { blocks, velocity, bodies: start, dt_s, is_iterated, .. } = *scene.input;
         let tolerance = scene.joints.tolerance;
         coupled.clear();
@@ -292,9 +295,20 @@ impl FrictionPatches {
             }
         }
         coupled.iter().for_each(|patch| patch.push_nodes(nodal));
-        let mut motion =
-            Motion { blocks, start: velocity, bodies, nodal, dt_s, is_iterated, tolerance, most_n, pushed };
-        solve::solve(coupled, start, &mut motion);
+        let start_m_s = velocity;
+        let mut motion = Motion {
+            blocks,
+            start: start_m_s,
+            bodies,
+            nodal,
+            dt_s,
+            is_iterated,
+            tolerance,
+            most_n,
+            pushed,
+            active,
+        };
+        solve::solve(coupled, start, (&mut motion, newton));
         for found in coupled.iter() {
             let patch = &mut patches[found.patch as usize];
             let (force_n, torque_n_m, slides) = found.friction();

@@ -49,10 +49,10 @@ pub(super) struct Nodal {
 
 impl Nodal {
     /// Forgets the last step.
-    pub(super) fn begin(&mut self, all: &BlockSet, nodes: usize) {
+    pub(super) fn begin(&mut self, blocks: usize, nodes: usize) {
         self.weights.clear();
         self.blocks.clear();
-        self.columns.resize_with(all.len(), Vec::new);
+        self.columns.resize_with(blocks, Vec::new);
         self.columns.iter_mut().for_each(Vec::clear);
         self.place_of.resize(nodes, 0);
     }
@@ -159,14 +159,18 @@ impl Nodal {
 
     /// v ← v + s U f.
     pub(super) fn push(&mut self, side: &NodalSide, force: &Vec3, part: f64) {
-        let nodes = side.nodes as usize;
-        let (velocity, answers) = self.columns[side.block.index()].split_at_mut(nodes);
-        let start = side.column(0).start - nodes;
-        let (first, rest) = answers[start..start + 3 * nodes].split_at(nodes);
-        let (second, third) = rest.split_at(nodes);
-        let force = part * force;
-        for (((v, a), b), c) in velocity.iter_mut().zip(first).zip(second).zip(third) {
-            *v += force.x * a + force.y * b + force.z * c;
+        side.push(&mut self.columns[side.block.index()], force, part);
+    }
+
+    /// The columns of all blocks.
+    pub(super) fn columns_mut(&mut self) -> &mut [Vec<Vec3>] {
+        &mut self.columns
+    }
+
+    /// Does something with the velocities of each block that deforms.
+    pub(super) fn each_velocity(&mut self, all: &BlockSet, mut work: impl FnMut(&mut [Vec3])) {
+        for &block in &self.blocks {
+            work(&mut self.columns[block.index()][..all.nodes_of(block).len()]);
         }
     }
 
@@ -182,6 +186,24 @@ impl Nodal {
 }
 
 impl NodalSide {
+    /// Adds what a force changes the velocities of its block by, the first of the columns.
+    pub(super) fn push(&self, columns: &mut [Vec3], force: &Vec3, part: f64) {
+        let nodes = self.nodes as usize;
+        let (velocity, answers) = columns.split_at_mut(nodes);
+        let start = self.column(0).start - nodes;
+        let (first, rest) = answers[start..start + 3 * nodes].split_at(nodes);
+        let (second, third) = rest.split_at(nodes);
+        let force = part * force;
+        for (((v, a), b), c) in velocity.iter_mut().zip(first).zip(second).zip(third) {
+            *v += force.x * a + force.y * b + force.z * c;
+        }
+    }
+
+    /// The velocities of its block among the columns.
+    pub(super) fn velocities<'a>(&self, columns: &'a mut [Vec3]) -> &'a mut [Vec3] {
+        &mut columns[..self.nodes as usize]
+    }
+
     fn range(&self) -> std::ops::Range<usize> {
         self.weights[0] as usize..self.weights[1] as usize
     }

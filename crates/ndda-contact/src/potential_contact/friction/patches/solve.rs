@@ -9,14 +9,15 @@
 //! ```
 //!
 //! (Alexander 1977: of second order, and a patch that sticks has no slip at the end) is a minimum of ½ u·M u − … + γ Δt Σ D_i, found
-//! patch by patch (Gauss–Seidel), from the friction of the last step. For blocks that deform Δt M⁻¹ is how their nodes answer within the whole
-//! step, elasticity included (`nodal.rs`).
+//! patch by patch (Gauss–Seidel), from the friction of the last step, and for all together where that takes long (`newton.rs`). For blocks that
+//! deform Δt M⁻¹ is how their nodes answer within the whole step, elasticity included (`nodal.rs`).
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::friction::patches::limit_surface::LimitSurface;
 use crate::friction::patches::nodal::{Nodal, NodalSide};
 use crate::friction::patches::patch::ContactPatch;
+use crate::friction::patches::solve::newton::Newton;
 use crate::model::Body;
 
 /// γ of Alexander's method.
@@ -31,6 +32,10 @@ const REGULAR: f64 = 1e-9;
 /// Sweeps over all patches, and patches looked at in them where these are few.
 const MOST_SWEEPS: usize = 100;
 const MOST_VISITS: usize = 20_000;
+
+/// Sweeps before Newton's method for all patches together, and its steps, a sweep after each: where these do not do, sweeps alone go on.
+const SWEEPS_ALONE: usize = 16;
+const NEWTON_STEPS: usize = 20;
 
 /// One patch among others.
 #[derive(Clone, Copy, Debug, Default)]
@@ -57,6 +62,10 @@ pub(super) struct CoupledPatch {
     /// Friction of this stage, and of the first.
     force: Vec3,
     first: Vec3,
+    /// Change of friction per change of −`free_slip` when that was found.
+    response: Mat3,
+    /// Whether the friction is that of `free_slip`.
+    is_found: bool,
 }
 
 impl CoupledPatch {
@@ -128,18 +137,29 @@ impl CoupledPatch {
 
     /// Adds what a force of this patch changes velocities by in some time.
     fn push(&self, motion: &mut Motion, force: &Vec3, time_s: f64) {
-        let along = self.axes[0] * force.x + self.axes[1] * force.y;
-        let torque = self.axes[2] * (force.z * self.surface.radius_m);
-        for (k, block, sign) in [(0, self.owner, 1.0), (1, self.target, -1.0)] {
-            if let Some(side) = &self.sides[k] {
-                motion.nodal.push(side, force, sign * time_s / motion.dt_s);
-                continue;
-            }
-            let (body, arm) = (&mut motion.bodies[block.index()], &self.arms[k]);
-            if body.mass_kg.is_finite() {
-                body.velocity_m_s += sign * time_s / body.mass_kg * along;
-                body.spin_rad_s += body.inverse_inertia * (sign * time_s * (arm.cross(&along) + torque));
-            }
+        for (k, block) in [self.owner, self.target].into_iter().enumerate() {
+            let body = &mut motion.bodies[block.index()];
+            let columns = motion.nodal.columns_mut().get_mut(block.index()).map_or(&mut [][..], |all| all);
+            self.push_side(k, (body, columns), force, (time_s, time_s / motion.dt_s));
+        }
+    }
+
+    /// The same for one of both blocks; the time is also given as a part of the step.
+    fn push_side(
+        &self,
+        k: usize,
+        (body, columns): (&mut Body, &mut [Vec3]),
+        force: &Vec3,
+        (time_s, part): (f64, f64),
+    ) {
+        let sign = [1.0, -1.0][k];
+        if let Some(side) = &self.sides[k] {
+            side.push(columns, force, sign * part);
+        } else if body.mass_kg.is_finite() {
+            let along = self.axes[0] * force.x + self.axes[1] * force.y;
+            let torque = self.axes[2] * (force.z * self.surface.radius_m);
+            body.velocity_m_s += sign * time_s / body.mass_kg * along;
+            body.spin_rad_s += body.inverse_inertia * (sign * time_s * (self.arms[k].cross(&along) + torque));
         }
     }
 
@@ -183,17 +203,23 @@ pub(super) struct Motion<'a> {
     pub most_n: &'a mut Vec<f64>,
     /// When each block was pushed last by more than a tolerance.
     pub pushed: &'a mut Vec<u32>,
+    /// Patches whose friction matters.
+    pub active: &'a mut Vec<u32>,
 }
 
 /// Finds the friction of all patches; `motion` comes with the velocities at the end of the step under all loads, normal forces and the patches'
 /// friction of the last step, `start` with those at its start. Gives the sweeps.
-pub(super) fn solve(patches: &mut [CoupledPatch], start: &[Body], motion: &mut Motion) -> usize {
+pub(super) fn solve(
+    patches: &mut [CoupledPatch],
+    start: &[Body],
+    (motion, newton): (&mut Motion, &mut Newton),
+) -> usize {
     motion.set_tolerances(patches);
     motion.change(start, |from, to| from + GAMMA * (to - from));
-    let first = solve_stage(patches, motion);
+    let first = solve_stage(patches, motion, newton);
     motion.change(start, |from, to| from + (to - from) / GAMMA);
     patches.iter_mut().for_each(|patch| patch.first = patch.force);
-    first + solve_stage(patches, motion)
+    first + solve_stage(patches, motion, newton)
 }
 
 impl Motion<'_> {
@@ -207,13 +233,15 @@ impl Motion<'_> {
             }
         }
         let tolerance = if self.is_iterated { ITERATED_TOLERANCE } else { self.tolerance };
-        for patch in patches {
+        for patch in &mut *patches {
             let of = |block: BlockId| {
                 let is_held = self.bodies[block.index()].mass_kg.is_infinite();
                 if is_held { f64::INFINITY } else { self.most_n[block.index()] }
             };
             patch.tolerance_n = tolerance * of(patch.owner).min(of(patch.target));
         }
+        self.active.clear();
+        self.active.extend((0..).zip(patches).filter(|(_, patch)| !patch.is_slight()).map(|(k, _)| k));
     }
 
     fn change(&mut self, start: &[Body], change: impl Fn(Vec3, Vec3) -> Vec3) {
@@ -226,7 +254,7 @@ impl Motion<'_> {
 }
 
 /// One of both minima.
-fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
+fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, newton: &mut Newton) -> usize {
     let time_s = GAMMA * motion.dt_s;
     motion.pushed.clear();
     motion.pushed.resize(motion.bodies.len(), 0);
@@ -238,17 +266,27 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion) -> usize {
     };
     for sweep in 0..most_sweeps {
         let mut changes = false;
+        let active = std::mem::take(motion.active);
         let mut advance = |patch: &mut CoupledPatch| {
             now += 1;
             changes |= patch.advance(motion, time_s, (now, sweep == 0));
         };
-        if sweep % 2 == 0 {
+        if sweep == 0 {
             patches.iter_mut().for_each(&mut advance);
+        } else if sweep % 2 == 0 {
+            active.iter().for_each(|k| advance(&mut patches[*k as usize]));
         } else {
-            patches.iter_mut().rev().for_each(&mut advance);
+            active.iter().rev().for_each(|k| advance(&mut patches[*k as usize]));
         }
+        *motion.active = active;
         if !changes {
             return sweep;
+        }
+        if sweep + 1 == SWEEPS_ALONE {
+            newton.begin(patches, motion.active, motion.bodies.len());
+        }
+        if (SWEEPS_ALONE..=SWEEPS_ALONE + NEWTON_STEPS).contains(&(sweep + 1)) {
+            newton.step(patches, motion, time_s);
         }
     }
     most_sweeps
@@ -263,22 +301,25 @@ impl CoupledPatch {
     /// Friction of this patch while that of the others stays; whether it had to change.
     fn advance(&mut self, motion: &mut Motion, time_s: f64, (now, is_first): (u32, bool)) -> bool {
         let pushed = motion.pushed[self.owner.index()].max(motion.pushed[self.target.index()]);
-        if !is_first && (pushed <= self.seen || self.is_slight()) {
+        if !is_first && pushed <= self.seen {
             return false;
         }
         self.seen = now;
         let slip = self.slip(motion);
         let free_slip = slip - GAMMA * (self.flexibility * self.force);
-        if !is_first && (self.stiffness * (free_slip - self.free_slip)).amax() <= GAMMA * self.tolerance_n {
+        let change_n = (self.stiffness * (free_slip - self.free_slip)).amax() / GAMMA;
+        if !is_first && self.is_found && change_n <= self.tolerance_n {
             return false;
         }
-        self.free_slip = free_slip;
+        (self.free_slip, self.is_found) = (free_slip, true);
         let stiffness = self.stiffness / GAMMA;
         let force = if self.is_slight() {
             self.surface.held_back(-(stiffness * free_slip))
         } else {
-            let tolerance_n = LOCAL_TOLERANCE * self.tolerance_n;
-            self.surface.friction(&stiffness, (&free_slip, &slip), tolerance_n, is_first)
+            let (start, tolerance_n) = ((&free_slip, &slip), LOCAL_TOLERANCE * self.tolerance_n);
+            let (force, response) = self.surface.friction(&stiffness, start, tolerance_n, is_first);
+            self.response = response;
+            force
         };
         let change = force - self.force;
         self.force = force;
@@ -293,5 +334,6 @@ impl CoupledPatch {
     }
 }
 
+pub(super) mod newton;
 #[cfg(test)]
 mod tests;

@@ -63,9 +63,10 @@ fn patches() -> Vec<ContactPatch> {
     all
 }
 
-/// Friction, the velocities with it, and how many patches were slight.
-fn solved(tolerance: f64) -> (Vec<Vec3>, Vec<Body>, usize) {
+/// Friction, the velocities with it, how many patches were slight, and the sweeps.
+fn solved(tolerance: f64) -> (Vec<Vec3>, Vec<Body>, usize, usize) {
     let (start, mut end, mut nodal) = (bodies(), bodies(), Nodal::default());
+    nodal.begin(start.len(), 0);
     let found = patches();
     let mut coupled: Vec<_> = (0..)
         .zip(&found)
@@ -81,18 +82,37 @@ fn solved(tolerance: f64) -> (Vec<Vec3>, Vec<Body>, usize) {
         tolerance,
         most_n: &mut Vec::new(),
         pushed: &mut Vec::new(),
+        active: &mut Vec::new(),
     };
-    solve(&mut coupled, &start, &mut motion);
+    let sweeps = solve(&mut coupled, &start, (&mut motion, &mut Newton::default()));
     let slight = coupled.iter().filter(|patch| patch.is_slight()).count();
-    (coupled.iter().map(|patch| patch.friction().0).collect(), end, slight)
+    assert_alone_would_not_change(&mut coupled, &mut motion);
+    (coupled.iter().map(|patch| patch.friction().0).collect(), end, slight, sweeps)
+}
+
+/// Each patch, looked at alone while the others keep their friction, has found its own.
+fn assert_alone_would_not_change(patches: &mut [CoupledPatch], motion: &mut Motion) {
+    for patch in patches.iter().filter(|patch| !patch.is_slight()) {
+        let (slip, stiffness) = (patch.slip(motion), patch.stiffness / GAMMA);
+        let free_slip = slip - GAMMA * (patch.flexibility * patch.force);
+        let (alone, _) = patch.surface.friction(&stiffness, (&free_slip, &slip), 0.0, true);
+        let off_n = (alone - patch.force).amax();
+        assert!(off_n <= 20.0 * patch.tolerance_n, "{off_n} N of {} N", patch.tolerance_n);
+    }
+}
+
+#[test]
+fn friction_of_a_wall_is_found_in_few_sweeps_however_close_it_is_asked_for() {
+    let sweeps = [1e-6, 1e-10].map(|tolerance| solved(tolerance).3);
+    assert!(sweeps[1] <= sweeps[0] + 10, "{sweeps:?} sweeps, of both stages");
 }
 
 /// The reference has no slight patches, and a hundred thousandth of the tolerance.
 #[test]
 fn slight_patches_leave_the_friction_of_others_within_the_tolerance() {
     let tolerance = 1e-4;
-    let (exact, exact_end, none) = solved(1e-9);
-    let (friction, end, slight) = solved(tolerance);
+    let (exact, exact_end, none, _) = solved(1e-9);
+    let (friction, end, slight, _) = solved(tolerance);
     assert_eq!((none, slight), (0, COLUMNS * ROWS));
     let most_n = 15e3 * ROWS as f64;
     let off = friction.iter().zip(&exact).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
