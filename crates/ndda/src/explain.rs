@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use crate::forecast::{cost, step};
 use crate::judge::reference;
+use crate::numbers::counted;
 use crate::run::fields;
 use crate::{Model, build};
 
@@ -111,7 +112,11 @@ fn outputs(scene: &Scene, monitors: usize) -> [Part; 7] {
     [
         Part::included(
             "history",
-            format!("{} rows at most, with {monitors} monitor(s)", output.history_rows),
+            format!(
+                "{} rows at most, with {}",
+                output.history_rows,
+                counted(monitors, "monitor", "monitors")
+            ),
         ),
         Part::of(
             "fields",

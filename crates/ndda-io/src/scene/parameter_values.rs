@@ -17,8 +17,12 @@ pub(crate) fn read(text: &str, tree: &Node) -> Result<Parameters, Vec<Diagnostic
     };
     let mut found = Vec::new();
     if node.opening != Some('(') || node.children.iter().any(|child| child.key.is_none()) {
-        let refused =
-            Diagnostic::error(Code::WrongType, FIELD, "are no names with values", Some(node.span.clone()));
+        let refused = Diagnostic::error(
+            Code::WrongType,
+            FIELD,
+            "parameters must be names with values",
+            Some(node.span.clone()),
+        );
         return Err(vec![refused.with_help("write parameters: (height_m: 10, dip_deg: 35)")]);
     }
     for child in &node.children {

@@ -3,6 +3,7 @@
 use ndda_io::summary::{Course, Judgement, LabelWord, Motion, StageEnd, Summary, Verdict};
 
 use crate::columns::columns;
+use crate::numbers::counted;
 
 /// The first answers: whether the result is to be trusted, what moved, the error against a closed form, and the
 /// checks that failed.
@@ -65,7 +66,7 @@ pub fn time(time_s: f64) -> f64 {
 }
 
 /// Which blocks moved, and how far.
-fn moved(motion: &Motion) -> String {
+pub fn moved(motion: &Motion) -> String {
     let Motion { can_move, moved, farthest, farthest_m, speed_m_s, course } = motion;
     let course = match course {
         Course::AtRest => "at rest".to_string(),
@@ -75,7 +76,8 @@ fn moved(motion: &Motion) -> String {
     // A large block may go far by less than what counts.
     let by = if *moved == 0 { " by more than 1 % of their radius" } else { "" };
     format!(
-        "{moved} of {can_move} blocks moved{by}; farthest `{farthest}`: {} at the end, {course}\n",
+        "{moved} of {} moved{by}; farthest `{farthest}`: {} at the end, {course}\n",
+        counted(*can_move, "block", "blocks"),
         length(*farthest_m)
     )
 }
@@ -86,7 +88,7 @@ fn speed(speed_m_s: f64) -> String {
 }
 
 /// A length in a unit that suits it.
-fn length(length_m: f64) -> String {
+pub fn length(length_m: f64) -> String {
     match length_m {
         l if l >= 1.0 => format!("{} m", figures(l)),
         l if l >= 1e-3 => format!("{} mm", figures(1e3 * l)),
@@ -125,17 +127,17 @@ pub fn text(summary: &Summary) -> String {
     let mut text = format!("{}: {}\n", summary.scene, summary.title);
     let speed = summary.steps as f64 / summary.wall_s;
     text.push_str(&format!(
-        "{} steps of {:e} s to t = {} s in {:.2} s ({speed:.0} steps/s, {} thread(s)); {} blocks, {} tets, {} dofs, \
-         {} factor(s)\n",
+        "{} steps of {:e} s to t = {} s in {:.2} s ({speed:.0} steps/s, {}); {}, {} tetrahedra, \
+         {}, {}\n",
         summary.steps,
         summary.step_s,
         time(summary.end_s),
         summary.wall_s,
-        summary.threads,
-        summary.counts.blocks,
+        counted(summary.threads, "thread", "threads"),
+        counted(summary.counts.blocks, "block", "blocks"),
         summary.counts.tets,
-        summary.counts.dofs,
-        summary.counts.factors,
+        counted(summary.counts.dofs, "unknown", "unknowns"),
+        counted(summary.counts.factors, "factored matrix", "factored matrices"),
     ));
     let verdicts = verdict_table(summary.verdicts.0.iter());
     for part in [stage_table(summary), verdicts, monitor_table(summary), block_table(summary)] {
