@@ -27,9 +27,11 @@ pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 #[command(
     name = "ndda",
     version,
-    after_help = "Examples:\n  ndda run --example sliding_45\n  ndda new slide\n  ndda run scenes/sliding_45.ron --set time.step_s=1e-3 \
-                  --out out/coarse\n  ndda check scenes/sliding_45.ron\n  ndda mesh scenes/column_phi0.ron\n  ndda report out/sliding_45\n\nExit codes: 0 done · 1 ran, a criterion \
-                  failed · 2 usage · 3 bad input · 4 numerical stop · 5 input/output · 6 resources · 130 interrupted"
+    after_help = "First steps:\n  ndda run --example sliding_45      run a built-in example\n  ndda view out/sliding_45           look at it in the browser\n  \
+                  ndda new slide                     write a scene of your own\n  ndda check slide.ron               errors, warnings, time and files of a run\n  \
+                  ndda run slide.ron --set parameters.dip_deg=40 --out out/steeper\n  ndda picture out/steeper           draw the blocks that moved\n\nExit codes: 0 done · 1 ended, but not accurate (--strict), or cases of a \
+                  study failed · 2 wrong command line · 3 wrong scene or mesh · 4 stopped numerically · 5 files cannot be written · 6 too little memory or threads · 130 \
+                  interrupted"
 )]
 pub struct Cli {
     /// Memory limit, such as 8GB: scenes that would need more are refused before they are built [default: the free memory of the machine].

@@ -158,7 +158,7 @@ impl fmt::Display for Guess {
         let steps = self.timed_steps;
         write!(
             f,
-            "a run would take about {:.1} s (from {steps} timed steps; longer if more blocks come to touch)",
+            "a run would take about {:.1} s ({steps} steps timed; longer if more blocks come to touch)",
             self.run_s
         )?;
         if let Some(twin_s) = self.twin_s {

@@ -154,12 +154,6 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
             worst.max_h
         ));
     }
-    if worst.max_penetration_ratio > 0.05 {
-        advice.push(format!(
-            "penetration reached {:.1} % of an element size: raise penalty_pa",
-            100.0 * worst.max_penetration_ratio
-        ));
-    }
     if worst.energy_gain > 0.01 {
         advice.push(format!(
             "numerical error added {:.2} % to the energy: reduce step_s",

@@ -74,12 +74,12 @@ pub fn moved(motion: &Motion) -> String {
         Course::Accelerating => format!("still accelerating, {}", speed(*speed_m_s)),
     };
     // A large block may go far by less than what counts.
-    let by = if *moved == 0 { " by more than 1 % of their radius" } else { "" };
-    format!(
-        "{moved} of {} moved{by}; farthest `{farthest}`: {} at the end, {course}\n",
-        counted(*can_move, "block", "blocks"),
-        length(*farthest_m)
-    )
+    let many = match (moved, can_move) {
+        (0, 0..2) => "no block moved by more than 1 % of its radius".into(),
+        (0, _) => format!("none of {can_move} blocks moved by more than 1 % of its radius"),
+        _ => format!("{moved} of {} moved", counted(*can_move, "block", "blocks")),
+    };
+    format!("{many}; farthest `{farthest}`: {} at the end, {course}\n", length(*farthest_m))
 }
 
 /// A speed in m/s, or in a smaller unit if it is below a centimetre in a second.

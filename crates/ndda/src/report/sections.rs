@@ -26,7 +26,7 @@ pub fn header(summary: &Summary) -> Markup {
                 (status(summary))
                 (label(summary))
                 @if failed + warned > 0 {
-                    span.badge class=(if failed > 0 { "fail" } else { "warn" }) {
+                    span class={ "badge " (if failed > 0 { "fail" } else { "warn" }) } {
                         (counted(failed + warned, "check", "checks")) " beyond " (if failed + warned == 1 { "its limit" } else { "their limits" })
                     }
                 } @else if passed > 0 {

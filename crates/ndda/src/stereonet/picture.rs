@@ -204,11 +204,11 @@ fn key(
         line(svg, &|svg, at| svg.ring(at, 6.0, 1.6, FACE, ""), "plane that may slide or topple");
         line(svg, &|_, _| (), "");
         for (name, count, of) in [
-            ("plane sliding", checks.plane_sliding, "planes"),
-            ("wedge sliding", checks.wedge_sliding, "intersections"),
-            ("toppling", checks.flexural_toppling, "planes"),
+            ("plane sliding on", checks.plane_sliding, "planes"),
+            ("wedge sliding along", checks.wedge_sliding, "lines"),
+            ("toppling on", checks.flexural_toppling, "planes"),
         ] {
-            line(svg, &|_, _| (), &format!("{name}: {}", count.of_all(of)));
+            line(svg, &|_, _| (), &format!("{name} {}", count.of_all(of)));
         }
     }
 }
