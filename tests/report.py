@@ -45,7 +45,7 @@ def browser_of(playwright):
 
 def picture_of(page):
     """What the blocks look like now, as a fingerprint."""
-    return hashlib.sha256(page.locator("#view canvas").screenshot()).hexdigest()
+    return hashlib.sha256(page.locator("#view canvas:not(.overlay)").screenshot()).hexdigest()
 
 
 def go_to(page, frame):
@@ -55,7 +55,7 @@ def go_to(page, frame):
 
 def check_blocks(page, pictures):
     """The slider moves the blocks, colours change them, and it plays to the end."""
-    require(page.locator("#view canvas").count() == 1, "no canvas: " + page.locator("#view").inner_text())
+    require(page.locator("#view canvas:not(.overlay)").count() == 1, "no canvas: " + page.locator("#view").inner_text())
     last = int(page.locator("#slider").get_attribute("max"))
     require(page.locator("#slider").input_value() == str(last), "it does not open at the last frame")
     opened = page.locator("#colour").evaluate("choice => choice.selectedOptions[0].textContent")

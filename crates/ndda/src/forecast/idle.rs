@@ -97,8 +97,11 @@ fn records(scene: &Scene, folder: &Path) -> Vec<String> {
     found
 }
 
-/// Files, rows and gaps of all records of a scene that can be read.
-fn rows(scene: &Scene, folder: &Path) -> Vec<(String, Vec<(f64, f64)>, Option<Gap>)> {
+/// File, rows and longest gap of a record.
+type Known = (String, Vec<(f64, f64)>, Option<Gap>);
+
+/// All records of a scene that can be read.
+fn rows(scene: &Scene, folder: &Path) -> Vec<Known> {
     let prepared = |record: &Record| {
         let prepared = record::prepare(record, folder).ok()?;
         Some((record.file.clone(), prepared.rows, prepared.gap))
