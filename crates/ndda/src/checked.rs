@@ -58,9 +58,10 @@ impl fmt::Display for Checked<'_> {
         let warnings = counted(*warnings, "warning", "warnings");
         writeln!(f, "{}: no errors, {warnings}", self.scene.display())?;
         let blocks = counted(*blocks, "block", "blocks");
+        let tets = counted(*tets, "tetrahedron", "tetrahedra");
         let unknowns = counted(*unknowns, "unknown", "unknowns");
         let factors = counted(*factors, "factored matrix", "factored matrices");
-        write!(f, "{blocks}, {nodes} nodes, {tets} tetrahedra, {unknowns}, {factors}; ")?;
+        write!(f, "{blocks}, {nodes} nodes, {tets}, {unknowns}, {factors}; ")?;
         write!(f, "{}", counted(*steps as usize, "step", "steps"))?;
         self.rock.iter().try_for_each(|rock| write!(f, "\n{rock}"))?;
         write!(f, "{}", self.bolts)?;

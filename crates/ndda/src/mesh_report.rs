@@ -105,10 +105,10 @@ impl fmt::Display for MeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.fixes.iter().try_for_each(|fix| writeln!(f, "fixed {fix}"))?;
         let Self { blocks, nodes, quality, triangles, volume_m3, block_size: size, .. } = self;
-        let tets = quality.tets;
+        let tets = counted(quality.tets, "tetrahedron", "tetrahedra");
         writeln!(
             f,
-            "{}, {nodes} nodes, {tets} tetrahedra, {triangles} boundary triangles, {} m³",
+            "{}, {nodes} nodes, {tets}, {triangles} boundary triangles, {} m³",
             counted(*blocks, "block", "blocks"),
             four_figures(*volume_m3)
         )?;

@@ -20,9 +20,9 @@ impl fmt::Display for Explanation {
             let kind = format!("{:?}", plan.kind);
             writeln!(
                 f,
-                "  {kind:8} {}, {} tetrahedra, {}",
+                "  {kind:8} {}, {}, {}",
                 counted(plan.blocks, "block", "blocks"),
-                plan.tets,
+                counted(plan.tets, "tetrahedron", "tetrahedra"),
                 counted(plan.unknowns, "unknown", "unknowns")
             )?;
         }

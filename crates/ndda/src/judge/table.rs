@@ -127,7 +127,7 @@ pub fn text(summary: &Summary) -> String {
     let mut text = format!("{}: {}\n", summary.scene, summary.title);
     let speed = summary.steps as f64 / summary.wall_s;
     text.push_str(&format!(
-        "{} steps of {:e} s to t = {} s in {:.2} s ({speed:.0} steps/s, {}); {}, {} tetrahedra, \
+        "{} steps of {:e} s to t = {} s in {:.2} s ({speed:.0} steps/s, {}); {}, {}, \
          {}, {}\n",
         summary.steps,
         summary.step_s,
@@ -135,7 +135,7 @@ pub fn text(summary: &Summary) -> String {
         summary.wall_s,
         counted(summary.threads, "thread", "threads"),
         counted(summary.counts.blocks, "block", "blocks"),
-        summary.counts.tets,
+        counted(summary.counts.tets, "tetrahedron", "tetrahedra"),
         counted(summary.counts.dofs, "unknown", "unknowns"),
         counted(summary.counts.factors, "factored matrix", "factored matrices"),
     ));
