@@ -29,14 +29,21 @@ pub fn ending(summary: &Summary) -> String {
         |(_, verdict): &&(String, Verdict)| matches!(verdict.verdict, Judgement::Warn | Judgement::Fail);
     let bad: Vec<_> = summary.verdicts.0.iter().filter(failed).collect();
     let passed = summary.verdicts.0.iter().filter(|(_, v)| v.verdict == Judgement::Pass).count();
-    if bad.is_empty() {
+    if bad.is_empty() && passed > 0 {
         text.push_str(&format!("{passed} checks passed\n"));
-    } else {
+    } else if !bad.is_empty() {
         text.push_str(&format!(
             "{passed} checks passed, {} did not:\n{}\n",
             bad.len(),
             verdict_table(bad.into_iter())
         ));
+    }
+    if let Some(steps) = summary.unsettled_steps {
+        text.push_str(&format!(
+            "{steps} steps of settling, time has not begun, in {:.2} s\n",
+            summary.wall_s
+        ));
+        return text;
     }
     text.push_str(&format!(
         "{} steps of {:e} s to t = {} s in {:.2} s\n",
