@@ -45,7 +45,7 @@ def browser_of(playwright):
 
 def picture_of(page):
     """What the blocks look like now, as a fingerprint."""
-    return hashlib.sha256(page.locator("#view canvas").screenshot()).hexdigest()
+    return hashlib.sha256(page.locator("#view canvas:not(.overlay)").screenshot()).hexdigest()
 
 
 def go_to(page, frame):
@@ -55,8 +55,14 @@ def go_to(page, frame):
 
 def check_blocks(page, pictures):
     """The slider moves the blocks, colours change them, and it plays to the end."""
-    require(page.locator("#view canvas").count() == 1, "no canvas: " + page.locator("#view").inner_text())
+    require(page.locator("#view canvas:not(.overlay)").count() == 1, "no canvas: " + page.locator("#view").inner_text())
     last = int(page.locator("#slider").get_attribute("max"))
+    require(page.locator("#slider").input_value() == str(last), "it does not open at the last frame")
+    opened = page.locator("#colour").evaluate("choice => choice.selectedOptions[0].textContent")
+    require(opened == "displacement", f"it opens coloured by {opened}")
+    with page.expect_download() as saved:
+        page.locator("#save").click()
+    require(saved.value.suggested_filename.endswith(".png"), "no picture is saved")
     require(last > 0, "one frame only: nothing can move")
     go_to(page, 0)
     first, time = picture_of(page), page.locator("#time").inner_text()
@@ -80,6 +86,15 @@ def check_blocks(page, pictures):
     return f"{last + 1} frames, colours: {', '.join(choices)}"
 
 
+def check_narrow(page):
+    """Nothing is wider than the screen of a telephone."""
+    page.set_viewport_size({"width": 390, "height": 844})
+    page.wait_for_timeout(200)
+    wide = page.evaluate("document.documentElement.scrollWidth")
+    require(wide <= 390, f"on a screen of 390 px the page is {wide} px wide")
+    page.set_viewport_size(SIZE)
+
+
 def check(browser, path, folder, scheme):
     context = browser.new_context(viewport=SIZE, color_scheme=scheme, offline=True)
     page = context.new_page()
@@ -92,6 +107,7 @@ def check(browser, path, folder, scheme):
     page.wait_for_selector("html[data-ready=yes]", state="attached", timeout=60_000)
     pictures = str(folder / f"{path.parent.name}_{scheme}") if folder else None
     found = check_blocks(page, pictures) if page.locator("#view").count() else "no blocks"
+    check_narrow(page)
     curves = page.locator("#charts canvas").count()
     require(curves > 0, "no curves are drawn")
     if pictures:

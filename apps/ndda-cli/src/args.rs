@@ -27,12 +27,14 @@ pub use trial::{CertifyArgs, TrialHow, TuneArgs};
 #[command(
     name = "ndda",
     version,
-    after_help = "Examples:\n  ndda run --example sliding_45\n  ndda new slide\n  ndda run scenes/sliding_45.ron --set time.step_s=1e-3 \
-                  --out out/coarse\n  ndda check scenes/sliding_45.ron\n  ndda mesh scenes/column_phi0.ron\n  ndda report out/sliding_45\n\nExit codes: 0 done · 1 ran, a criterion \
-                  failed · 2 usage · 3 bad input · 4 numerical stop · 5 input/output · 6 resources · 130 interrupted"
+    after_help = "First steps:\n  ndda run --example sliding_45      run a built-in example\n  ndda view out/sliding_45           look at it in the browser\n  \
+                  ndda new slide                     write a scene of your own\n  ndda check slide.ron               errors, warnings, time and files of a run\n  \
+                  ndda run slide.ron --set parameters.dip_deg=40 --out out/steeper\n  ndda picture out/steeper           draw the blocks that moved\n\nExit codes: 0 done · 1 ended, but not accurate (--strict), or cases of a \
+                  study failed · 2 wrong command line · 3 wrong scene or mesh · 4 stopped numerically · 5 files cannot be written · 6 too little memory or threads · 130 \
+                  interrupted"
 )]
 pub struct Cli {
-    /// Most memory to use, such as 8GB: what would take more is refused before it is built [default: what the machine has left].
+    /// Memory limit, such as 8GB: scenes that would need more are refused before they are built [default: the free memory of the machine].
     #[arg(long, global = true, value_name = "SIZE", value_parser = ndda::forecast::memory::parse)]
     pub memory: Option<u64>,
     /// The command.
@@ -45,19 +47,19 @@ pub struct Cli {
 pub enum Verb {
     /// Run a scene and write its results.
     ///
-    /// Writes summary.json (numbers and verdicts), history.csv (monitors, energies, momentum over time), run.log and
-    /// fields.pvd with its frames (open it in ParaView).
+    /// Writes summary.json (numbers and checks), history.csv (monitors, energies, momentum over time), blocks.csv (motion of each block), run.log and
+    /// fields.pvd with its frames (open it in ParaView). Ctrl-C ends it after a step, with all files; `ndda resume` goes on.
     Run(RunArgs),
-    /// Go on with a run that was interrupted, from its last checkpoint: the same bits as if it never had been.
+    /// Continue an interrupted run from its last checkpoint; the results are the same, to the last bit, as without the interruption.
     Resume(ResumeArgs),
-    /// Read and check a scene without running it: all errors at once, each with its place; and, from a few timed steps,
-    /// what a run will take and write.
+    /// Check a scene without running it: all errors with their places, warnings, and, from a few timed steps, the time, memory and files
+    /// of a run.
     Check(CheckArgs),
-    /// Say what a run of a scene will do and what it leaves out, and why.
+    /// List what a run of a scene will compute and what it will leave out, with the reasons.
     Explain(ExplainArgs),
     /// Write a commented scene to begin with.
     New(NewArgs),
-    /// Print what a scene may say, as JSON Schema.
+    /// Print the fields of a scene and their types, as JSON Schema.
     #[cfg(feature = "schema")]
     Schema(SchemaArgs),
     /// Not in this program, which was built without the feature `schema`.
@@ -75,14 +77,14 @@ pub enum Verb {
     /// Not in this program, which was built without the feature `shell`.
     #[cfg(not(feature = "shell"))]
     Man(AbsentArgs),
-    /// Build or read the blocks of a scene or a mesh file, check and measure them, and draw histograms of them.
+    /// Show the blocks of a scene or a mesh file before any run: how many, how large, how good their tetrahedra, and a picture.
     ///
-    /// Prints counts, volumes, how large blocks are, how good their tetrahedra are (histograms, and the worst ten with
-    /// their places), the steps that contact of each material requires, and writes blocks.vtu (open it in ParaView and colour it by block_id), mesh.json and mesh.svg (histograms). `ndda picture` draws the blocks.
-    /// Tetrahedra with dihedral angles of a few degrees or an aspect above 50 make runs inexact or short of steps:
-    /// use larger spacings, another `fill`, or `sliver_width_m`.
+    /// Prints counts, volumes, histograms of sizes and of the quality of tetrahedra, the ten worst tetrahedra with their places, and the step that
+    /// contact of each material requires. Writes blocks.png (a picture), mesh.svg (the histograms), mesh.json, and blocks.vtu for ParaView.
+    /// Tetrahedra with angles of a few degrees or an aspect above 50 make results inexact or steps short: use larger spacings, another `fill`, or
+    /// `sliver_width_m`.
     Mesh(MeshArgs),
-    /// Write a run as one HTML page: verdicts, curves, and the blocks moving in 3D; it needs no network.
+    /// Write a run as one HTML page: the blocks moving in 3D, curves, and the checks; it needs no network.
     #[cfg(feature = "report")]
     Report(ReportArgs),
     /// Not in this program, which was built without the feature `report`.
@@ -94,12 +96,12 @@ pub enum Verb {
     /// Not in this program, which was built without the feature `report`.
     #[cfg(not(feature = "report"))]
     View(AbsentArgs),
-    /// Run a scene over and over with other steps, integrators, meshes, …: error against time, as tables and pictures.
+    /// Run a scene many times with other values, steps, integrators or meshes: tables and pictures of results, errors, times and probabilities.
     ///
     /// Writes study.csv, study.json, time_to_error.csv and pictures; the same command goes on where it was interrupted.
     /// How to write a study and read its results: docs/guide/study.md.
     Study(StudyArgs),
-    /// Give every answer of a scene its error bar, from runs with steps that halve.
+    /// Find the error bar of every result of a scene, from runs with the step halved and halved again.
     ///
     /// Runs the scene with Δt, Δt/2 and Δt/4 (and with finer meshes and stiffer contact, if asked), and gives each monitor,
     /// the place and velocity of each block and the energies as value ± error: extrapolated where results converge, the
@@ -127,7 +129,7 @@ pub enum Verb {
     Stereonet(StereonetArgs),
     /// Show a record of ground motion: motion over time, response spectrum, intensity, and slip of a rigid block.
     Record(RecordArgs),
-    /// Draw columns of histories.
+    /// Draw curves from the tables of one or more runs.
     #[cfg(feature = "plots")]
     Plot(PlotArgs),
     /// Not in this program, which was built without the feature `plots`.
@@ -202,7 +204,7 @@ pub struct PlotArgs {
     /// Column to draw against.
     #[arg(long, default_value = "time_s", value_name = "NAME")]
     pub against: String,
-    /// Logarithms of values; what is not above zero is left out.
+    /// Logarithmic scale of values; what is not above zero is left out.
     #[arg(long)]
     pub log: bool,
     /// The picture, .svg or .png.
@@ -259,7 +261,7 @@ pub struct SceneArgs {
     /// Scene file (RON; see docs/reference/scene.md), or - for standard input.
     #[arg(required_unless_present = "example")]
     pub scene: Option<PathBuf>,
-    /// Take an example that is in the program instead of a file; without a name, list them.
+    /// Use a built-in example instead of a file; without a name, list the examples.
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "", conflicts_with = "scene")]
     pub example: Option<String>,
     /// Override a value of the scene by its path; may be repeated.
@@ -292,11 +294,11 @@ pub struct HowArgs {
     /// Threads; results do not depend on it [default: all cores].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Exit with code 1 when a run is not accurate by its own label, or an invariant is beyond its limit.
+    /// Exit with code 1 when a run is labelled inaccurate or sensitive, or a check is beyond its limit.
     #[arg(long)]
     pub strict: bool,
-    /// Run a twin that begins hardly different after an accurate run, to see whether the motion is sensitive, which doubles the time: auto,
-    /// where three or more blocks move; always; or never.
+    /// After an accurate run, run the scene once more from a hardly different start, to see whether small differences grow, which doubles the
+    /// time: auto (where three or more blocks move), always or never.
     #[arg(long, value_name = "WHEN", default_value = "auto")]
     pub sensitivity: Sensitivity,
     /// Print nothing but errors.

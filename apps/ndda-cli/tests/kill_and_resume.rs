@@ -71,6 +71,12 @@ const STAGED: (&str, &[&str]) = (
     ],
 );
 
+/// A scene that settles first: a run may be killed while it does, with either kind of damping.
+const SETTLING: [(&str, &[&str]); 2] = [
+    ("extreme/overlap", &["time.end_s=0.01", "settle=(tolerance: 1e-9)"]),
+    ("extreme/overlap", &["time.end_s=0.01", "settle=(tolerance: 1e-9, damping: Local())"]),
+];
+
 /// Everything that must come out the same: history, index and frames, and the fingerprint of the final state.
 fn results(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
     let mut files = vec![folder.join("history.csv"), folder.join("fields.pvd")];
@@ -97,6 +103,11 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
 #[test]
 fn a_run_that_is_killed_in_a_stage_goes_on_in_it_to_the_same_bytes() {
     killed_and_resumed(&[STAGED], 6);
+}
+
+#[test]
+fn a_run_that_is_killed_while_it_settles_goes_on_to_the_same_bytes() {
+    killed_and_resumed(&SETTLING, 8);
 }
 
 /// Kills runs of some scenes, `NDDA_KILLS` or so many, and compares what they end in after they are resumed.
@@ -170,4 +181,53 @@ fn an_interrupted_run_leaves_a_summary_and_goes_on() {
     assert!(summary.contains("\"interrupted\""), "{summary}");
     assert!(ndda(&["resume", &out.display().to_string()]).wait().expect("an end").success());
     assert!(results(&out) == results(&whole), "an interrupted run ends otherwise");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_that_is_interrupted_while_it_settles_leaves_all_its_files_and_goes_on() {
+    let place = tempfile::tempdir().expect("a folder");
+    let (scene, out) = (scene("extreme/overlap"), place.path().join("out"));
+    // It does not come to rest as exactly as this.
+    let endless = ["time.end_s=0.01", "settle=(tolerance: 1e-300)"];
+    let mut child = run(&scene, &endless, &out, "1");
+    while !out.join("checkpoint.ndda").exists() {
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    interrupt(&child);
+    assert_eq!(child.wait().expect("an end").code(), Some(130));
+    let summary: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(out.join("summary.json")).expect("a summary"))
+            .expect("JSON");
+    let settled = summary["unsettled_steps"].as_u64().expect("steps");
+    assert!(settled > 0 && summary["status"] == "interrupted" && summary["steps"] == 0, "{summary}");
+    assert!(
+        summary["label"]["reasons"][0]
+            .as_str()
+            .expect("a reason")
+            .contains("before the scene had come to rest")
+    );
+    // How it was at the start, and how it is now.
+    assert_eq!(fs::read_dir(out.join("fields")).expect("frames").count(), 2);
+    assert_eq!(fs::read_to_string(out.join("history.csv")).expect("a history").lines().count(), 3);
+    let mut child = ndda(&["resume", &out.display().to_string()]);
+    std::thread::sleep(Duration::from_millis(300));
+    interrupt(&child);
+    assert_eq!(child.wait().expect("an end").code(), Some(130));
+    let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+    assert!(summary["unsettled_steps"].as_u64() > Some(settled), "it has begun anew: {summary}");
+}
+
+#[test]
+fn a_scene_that_does_not_come_to_rest_leaves_a_summary_and_where_its_blocks_went() {
+    let place = tempfile::tempdir().expect("a folder");
+    let out = place.path().join("out");
+    let never = ["time.end_s=0.01", "settle=(tolerance: 1e-12, most_steps: 50)"];
+    assert_eq!(run(&scene("extreme/overlap"), &never, &out, "1").wait().expect("an end").code(), Some(4));
+    let summary = fs::read_to_string(out.join("summary.json")).expect("a summary");
+    let summary: serde_json::Value = serde_json::from_str(&summary).expect("JSON");
+    assert!(summary["status"] == "stopped" && summary["unsettled_steps"] == 50, "{summary}");
+    assert!(summary["stopped_by"].as_str().expect("a cause").contains("[not-settled]"), "{summary}");
+    assert_eq!(fs::read_dir(out.join("fields")).expect("frames").count(), 2);
 }

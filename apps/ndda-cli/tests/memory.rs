@@ -58,12 +58,12 @@ fn what_does_not_fit_is_refused_with_its_figures_and_nothing_is_built() {
     let check = ["check"];
     refused(&cube(300, ""), &check, &["too-large", "blocks[0].shape", "1.6e8 tetrahedra", "use fewer cells"]);
     refused(&cube(300, "body: Rigid"), &check, &["1.6e8 tetrahedra"]);
-    refused(&rock(100.0, &sets(1.0, "")), &check, &["rock[0].joints", "1.0e6 block(s)", "wider spacings"]);
-    refused(&rock(1000.0, &sets(1.0, "")), &check, &["rock[0].joints", "1.0e9 block(s)"]);
+    refused(&rock(100.0, &sets(1.0, "")), &check, &["rock[0].joints", "1.0e6 blocks", "wider spacings"]);
+    refused(&rock(1000.0, &sets(1.0, "")), &check, &["rock[0].joints", "1.0e9 blocks"]);
     refused(
         &rock(1.0, "voronoi: (count: 1000000)"),
         &check,
-        &["rock[0].voronoi", "1.0e6 block(s)", "smaller count"],
+        &["rock[0].voronoi", "1.0e6 blocks", "smaller count"],
     );
     refused(&rock(1.0, "fill: Size(size_m: 1e-3)"), &check, &["1.2e10 tetrahedra"]);
     let round = "blocks: [(name: \"a\", material: \"r\", shape: Sphere(radius_m: 1, levels: 6))]";

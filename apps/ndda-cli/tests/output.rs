@@ -149,7 +149,7 @@ fn the_log_says_what_ran_on_what() {
     let out = run_ramp(place.path(), &[]);
     let log = fs::read_to_string(out.join("run.log")).unwrap();
     for part in
-        ["ndda 0.", "rustc", "features", "thread(s)", "CRC-32", "end_s: 0.01", "energy gained", "contact"]
+        ["ndda 0.", "rustc", "features", "thread", "CRC-32", "end_s: 0.01", "energy gained", "contact"]
     {
         assert!(log.contains(part), "{part} is missing in\n{log}");
     }

@@ -190,3 +190,31 @@ fn what_cannot_be_drawn_is_refused_with_figures() {
         assert_eq!(picture(&out, &words).0, 2, "{words:?}");
     }
 }
+
+#[test]
+fn the_joints_of_a_scene_have_a_colour_each_and_those_of_a_run_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("rock.ron");
+    let joints = r#"joints: [Plane(name: "bed", dip_deg: 10, dip_direction_deg: 90, point_m: (1, 1, 1)),
+        Set(name: "steep", dip_deg: 80, dip_direction_deg: 0, spacing_m: 0.8)]"#;
+    let text = |joints: &str| {
+        format!(
+            "(title: \"Joints\", time: (step_s: 1e-3, end_s: 0.002), contact: Potential(penalty_pa: 1e8),
+            materials: [(name: \"granite\", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2650)],
+            rock: [(name: \"rock\", material: \"granite\", body: Rigid, domain: Box(min_m: (0, 0, 0), max_m: (2, 2, 2)), {joints})],
+            output: (frames: 2))"
+        )
+    };
+    fs::write(&scene, text(joints)).unwrap();
+    let (code, said, _) = picture(&scene, &["--color", "joint", "-o", "joints.svg"]);
+    assert!(code == exit::DONE && said.contains("joints.svg: 1200 x 800 pixels, 2 joints or sets"), "{said}");
+    let svg = fs::read_to_string(folder.path().join("joints.svg")).unwrap();
+    assert!(svg.contains("bed") && svg.contains("steep") && !svg.contains("x_min"));
+    let out = folder.path().join("out");
+    let mut run = ndda();
+    run.arg("run").arg(&scene).arg("--out").arg(&out).args(["--force", "--quiet"]);
+    assert!(run.output().unwrap().status.success());
+    assert!(picture(&out, &["--color", "joint"]).2.contains("name the scene file to see them"));
+    fs::write(&scene, text("joints: []")).unwrap();
+    assert!(picture(&scene, &["--color", "joint"]).2.contains("has no block with a face on a joint"));
+}

@@ -62,8 +62,8 @@ fn a_slope_without_friction_is_checked_for_directions_alone() {
     let text = "dip_deg,dip_direction_deg\n10,180\n70,180\n10,0\n";
     fs::write(folder.path().join("joints.csv"), text).unwrap();
     let (code, said, _) = stereonet(folder.path(), "joints.csv", &["--slope", "60/180"]);
-    assert!(code == exit::DONE && said.contains("directions alone"), "{said}");
-    assert!(said.contains("plane sliding      1 of 3"), "{said}");
+    assert!(code == exit::DONE && said.contains("friction not considered"), "{said}");
+    assert!(said.contains("plane sliding      on 1 of 3"), "{said}");
 }
 
 #[test]

@@ -81,10 +81,10 @@ pub enum StepError {
     },
     /// A scene that was to settle first does not.
     #[error(
-        "the scene has not come to rest in {steps} steps (speed {speed_ratio:.1e} of the largest). Block `{block}` has gone {gone_m:.2e} m \
-         towards ({:.2}, {:.2}, {:.2}), and {others} other(s) at least half as far: see whether anything holds them. \
+        "the scene has not come to rest in {steps} steps ({}). Block `{block}` has gone {gone_m:.2e} m \
+         towards ({:.2}, {:.2}, {:.2}), and {} at least half as far: see whether anything holds them. \
          Settling ends after settle.most_steps, or when a block has gone farther than all blocks extend",
-        towards[0], towards[1], towards[2]
+        speed_left(*speed_ratio), towards[0], towards[1], towards[2], other_blocks(*others)
     )]
     NotSettled {
         /// Steps done.
@@ -130,6 +130,20 @@ impl StepError {
             Self::NotSettled { .. } => "not-settled",
             Self::Inverted { .. } => "element-inverted",
         }
+    }
+}
+
+/// Speed that is left of a scene that settles.
+fn speed_left(ratio: f64) -> String {
+    if ratio.is_finite() { format!("speed {ratio:.1e} of the largest") } else { "speeds still rise".into() }
+}
+
+/// So many other blocks, in words.
+fn other_blocks(count: usize) -> String {
+    match count {
+        0 => "no other block".into(),
+        1 => "one other block".into(),
+        _ => format!("{count} other blocks"),
     }
 }
 

@@ -109,7 +109,7 @@ pub use step::implicit_contact::ImplicitContact;
 pub use step::local_damping::LocalDamping;
 pub use step::plan::{FactorPlan, KindPlan, Plan};
 pub use step::report::{Iterations, StageTimes, StepCounts, StepReport};
-pub use step::settle::{Damping, Settle, Settled};
+pub use step::settle::{Damping, Settle, Settled, Settling};
 pub use step::setup::Setup;
 pub use step::snapshot::{RestoreError, Snapshot, SnapshotView};
 pub use step::stage::{LeaveOutError, StageStart};

@@ -5,6 +5,8 @@ use std::fmt;
 use ndda_solver::Simulation;
 use serde::Serialize;
 
+use crate::numbers::counted;
+
 /// Names of bolts listed at most.
 const LISTED: usize = 8;
 
@@ -56,7 +58,8 @@ impl fmt::Display for BoltReports {
         let bonded = self.0.iter().map(|bolt| bolt.bonded_m);
         let (least_m, most_m) =
             bonded.fold((f64::INFINITY, 0.0f64), |(least, most), m| (least.min(m), most.max(m)));
-        write!(f, "\n{} bolt(s), each bonded over {least_m:.3} to {most_m:.3} m", self.0.len())?;
+        let bolts = counted(self.0.len(), "bolt", "bolts");
+        write!(f, "\n{bolts}, each bonded over {least_m:.3} to {most_m:.3} m")?;
         for bolt in self.0.iter().take(LISTED) {
             write!(f, "\n  {}: {:.3} m in {}", bolt.name, bolt.bonded_m, bolt.blocks.join(", "))?;
             if bolt.outside_m > 1e-6 * bolt.bonded_m {

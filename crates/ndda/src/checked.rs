@@ -10,6 +10,7 @@ use crate::bolt_report::BoltReports;
 use crate::build::RockReport;
 use crate::forecast::cost::Guess;
 use crate::forecast::step::Advice;
+use crate::numbers::counted;
 
 /// Findings in a scene without errors.
 #[derive(Serialize)]
@@ -54,12 +55,14 @@ pub struct Checked<'a> {
 impl fmt::Display for Checked<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { blocks, nodes, tets, unknowns, factors, steps, warnings, .. } = self;
-        writeln!(f, "{}: no errors, {warnings} warning(s)", self.scene.display())?;
-        write!(
-            f,
-            "{blocks} block(s), {nodes} nodes, {tets} tets, {unknowns} unknowns, {factors} factor(s); "
-        )?;
-        write!(f, "{steps} steps")?;
+        let warnings = counted(*warnings, "warning", "warnings");
+        writeln!(f, "{}: no errors, {warnings}", self.scene.display())?;
+        let blocks = counted(*blocks, "block", "blocks");
+        let tets = counted(*tets, "tetrahedron", "tetrahedra");
+        let unknowns = counted(*unknowns, "unknown", "unknowns");
+        let factors = counted(*factors, "factored matrix", "factored matrices");
+        write!(f, "{blocks}, {nodes} nodes, {tets}, {unknowns}, {factors}; ")?;
+        write!(f, "{}", counted(*steps as usize, "step", "steps"))?;
         self.rock.iter().try_for_each(|rock| write!(f, "\n{rock}"))?;
         write!(f, "{}", self.bolts)?;
         self.records.iter().try_for_each(|record| write!(f, "\nrecord {record}"))?;

@@ -7,13 +7,14 @@ mod text;
 use std::collections::BTreeMap;
 
 use ndda_contact::Part;
-use ndda_io::folder;
 use ndda_io::scene::{Scene, TableFormat};
+use ndda_io::{OutputFolder, folder};
 use ndda_solver::{FactorPlan, KindPlan, Plan, Simulation};
 use serde::Serialize;
 
 use crate::forecast::{cost, step};
 use crate::judge::reference;
+use crate::numbers::counted;
 use crate::run::fields;
 use crate::{Model, build};
 
@@ -111,7 +112,11 @@ fn outputs(scene: &Scene, monitors: usize) -> [Part; 7] {
     [
         Part::included(
             "history",
-            format!("{} rows at most, with {monitors} monitor(s)", output.history_rows),
+            format!(
+                "{} rows at most, with {}",
+                output.history_rows,
+                counted(monitors, "monitor", "monitors")
+            ),
         ),
         Part::of(
             "fields",
@@ -166,6 +171,9 @@ fn files(scene: &Scene) -> Vec<String> {
             files.push(parquet.into());
         }
     }
+    files.extend(scene.output.blocks.then(|| folder::BLOCKS.into()));
+    files.extend((!scene.bolts.is_empty()).then(|| folder::BOLTS.into()));
+    files.extend(scene.stages.iter().map(|stage| OutputFolder::stage_checkpoint_name(&stage.name)));
     if scene.output.frames > 0 {
         let last = folder::frame_name(cost::frames(scene) as usize - 1);
         let fields = folder::FIELDS_FOLDER;

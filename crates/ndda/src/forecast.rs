@@ -4,6 +4,7 @@ pub mod admit;
 pub mod cost;
 pub mod creep;
 pub mod doubts;
+mod idle;
 pub mod lumped;
 pub mod memory;
 pub mod rounding;

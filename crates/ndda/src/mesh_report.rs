@@ -11,6 +11,7 @@ use serde::Serialize;
 
 use crate::build::RockReport;
 use crate::forecast::step::AdvisedStep;
+use crate::numbers::{counted, four_figures};
 
 /// Most bars of the histogram of volumes.
 const MOST_BARS: i32 = 24;
@@ -104,10 +105,12 @@ impl fmt::Display for MeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.fixes.iter().try_for_each(|fix| writeln!(f, "fixed {fix}"))?;
         let Self { blocks, nodes, quality, triangles, volume_m3, block_size: size, .. } = self;
-        let tets = quality.tets;
+        let tets = counted(quality.tets, "tetrahedron", "tetrahedra");
         writeln!(
             f,
-            "{blocks} block(s), {nodes} nodes, {tets} tets, {triangles} boundary triangles, {volume_m3:.6e} m³"
+            "{}, {nodes} nodes, {tets}, {triangles} boundary triangles, {} m³",
+            counted(*blocks, "block", "blocks"),
+            four_figures(*volume_m3)
         )?;
         for rock in &self.rock {
             writeln!(f, "{rock}")?;
@@ -115,8 +118,10 @@ impl fmt::Display for MeshReport {
         let ((smallest, first), (largest, last)) = (&size.smallest_m3, &size.largest_m3);
         writeln!(
             f,
-            "blocks of {smallest:.3e} m³ ({first}) to {largest:.3e} m³ ({last}), median {:.3e} m³",
-            size.median_m3
+            "blocks of {} m³ ({first}) to {} m³ ({last}), median {} m³",
+            four_figures(*smallest),
+            four_figures(*largest),
+            four_figures(size.median_m3)
         )?;
         size.volume_m3.show(f, "volume of blocks [m³]")?;
         write!(f, "{quality}")?;

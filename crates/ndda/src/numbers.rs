@@ -1,4 +1,24 @@
-//! Numbers as command lines take them.
+//! Numbers as command lines take them, and counts as people read them.
+
+/// A count with its noun: `1 block`, `2 blocks`, `no blocks`.
+pub fn counted(count: usize, one: &str, many: &str) -> String {
+    match count {
+        0 => format!("no {many}"),
+        1 => format!("1 {one}"),
+        _ => format!("{count} {many}"),
+    }
+}
+
+/// A number in four figures, or all those before the point.
+pub fn four_figures(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        v if (1e-3..1e7).contains(&v) => {
+            format!("{value:.*}", (3 - v.log10().floor() as i32).max(0) as usize)
+        }
+        _ => format!("{value:.3e}"),
+    }
+}
 
 /// Reads a relative error, above 0 and below 1.
 ///

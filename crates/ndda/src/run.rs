@@ -14,6 +14,7 @@ pub mod recorder;
 mod resume;
 pub mod run_log;
 pub mod schedule;
+pub mod settling;
 pub(crate) mod stage_log;
 mod stages;
 pub(crate) mod twin;
@@ -59,6 +60,7 @@ pub struct Run {
     /// The simulation as it was built, from which a twin begins; taken late in a run that is new.
     built: Option<Snapshot>,
     tell: Box<dyn Fn(&str) + Send>,
+    on_the_way: Option<settling::OnTheWay>,
     started: Instant,
     stop: Arc<AtomicBool>,
 }
@@ -97,7 +99,20 @@ impl Run {
         let (started, stop) = (Instant::now(), Arc::default());
         let (recording, strict, sensitivity, built) = (None, false, Sensitivity::default(), None);
         let tell = Box::new(|_: &str| {});
-        Self { model, comparison, name, recording, strict, sensitivity, built, tell, started, stop }
+        let on_the_way = None;
+        Self {
+            model,
+            comparison,
+            name,
+            recording,
+            strict,
+            sensitivity,
+            built,
+            tell,
+            on_the_way,
+            started,
+            stop,
+        }
     }
 
     /// Records the run in a folder: history, fields, contacts, checkpoints, log and summary, as the scene's `output` asks.
@@ -185,16 +200,21 @@ impl Run {
         settling: &mut dyn FnMut(&Settled),
     ) -> Result<Outcome, RunError> {
         let began = Instant::now();
-        if self.sensitivity != Sensitivity::Never && self.built.is_none() {
+        let settles = self.recording.is_some() && self.model.loaded.scene.settle.is_some();
+        if (self.sensitivity != Sensitivity::Never || settles) && self.built.is_none() {
             self.built = Some(self.model.simulation.snapshot());
         }
+        let earlier_s = self.on_the_way.as_ref().map_or(0.0, |way| way.wall_s);
         if let Err(error) = self.settle(settling) {
             self.log_line(&error.to_string())?;
             return Err(error);
         }
+        if self.sensitivity == Sensitivity::Never {
+            self.built = None;
+        }
         let steps = self.model.steps();
         self.log_line(&format!("from step {} of {steps}", self.model.simulation.state().step))?;
-        self.step_to_end(steps, began.elapsed().as_secs_f64(), observers)
+        self.step_to_end(steps, earlier_s + began.elapsed().as_secs_f64(), observers)
     }
 
     fn log_line(&mut self, text: &str) -> Result<(), WriteError> {
@@ -203,24 +223,6 @@ impl Run {
 
     fn goes_on(&self) -> bool {
         self.recording.as_ref().is_some_and(|recording| recording.earlier.is_some())
-    }
-
-    /// Brings the scene to rest, if it is to settle and has not yet.
-    fn settle(&mut self, settling: &mut dyn FnMut(&Settled)) -> Result<(), RunError> {
-        let Some(settle) = self.model.loaded.scene.settle.filter(|_| !self.goes_on()) else { return Ok(()) };
-        let settle = crate::build::settle(settle);
-        let stop = self.stop.clone();
-        let mut watch = |settled: &Settled| {
-            settling(settled);
-            unless_stopped(&stop)
-        };
-        let settled =
-            self.model.simulation.settle_watched(&settle, &mut watch).map_err(RunError::Settling)?;
-        if self.stop.load(Ordering::Relaxed) {
-            return Err(RunError::InterruptedWhileSettling);
-        }
-        settling(&settled);
-        Ok(self.log_line(&format!("settled in {} steps", settled.steps))?)
     }
 
     /// Steps, and writes all that there is to be known.
@@ -246,7 +248,7 @@ impl Run {
         };
         let earlier = place.as_ref().and_then(|(_, _, earlier)| earlier.as_ref());
         let (earlier_s, goes_on) = (earlier.map_or(0.0, |earlier| earlier.wall_s), earlier.is_some());
-        let course = Course { steps, started, stop: self.stop.clone() };
+        let course = Course { steps, started, stop: self.stop.clone(), checkpoints: true };
         let mut outputs =
             Outputs::new((scene, &simulation), (monitors, comparison), place, observers, course)?;
         let setup_s = started.elapsed().as_secs_f64() - settled_s;
@@ -285,7 +287,7 @@ impl Run {
             loaded.scene.stages.is_empty() && is_whole(&summary) && sensitivity.wants_twin(&simulation);
         if let Some(built) = built.filter(|_| has_twin) {
             tell(
-                "a twin with other velocities, by 1e-4 of the largest speed, shows whether the motion is sensitive",
+                "running the scene once more with velocities changed by 1e-4 of the largest speed, to see whether small differences grow (--sensitivity never leaves this out)",
             );
             let settle = loaded.scene.settle.map(crate::build::settle);
             twin::judge(&mut summary, &mut simulation, &built, settle.as_ref(), (&stop, self.strict));

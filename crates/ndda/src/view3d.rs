@@ -33,6 +33,7 @@ use ndda_io::WriteError;
 use ndda_mesh::BlockSet;
 use serde::Serialize;
 
+use crate::numbers::counted;
 pub use camera::View;
 pub use error::ViewError;
 use film::Film;
@@ -54,6 +55,8 @@ pub enum Colour {
     Block,
     /// A colour per material.
     Material,
+    /// A colour per joint or set of joints, of a scene.
+    Joint,
     /// An array of the frames, by its name or the beginning of it.
     Field(String),
 }
@@ -68,6 +71,7 @@ impl FromStr for Colour {
             "stress" => Self::Stress,
             "block" => Self::Block,
             "material" => Self::Material,
+            "joint" => Self::Joint,
             other => Self::Field(other.into()),
         })
     }
@@ -81,6 +85,7 @@ impl fmt::Display for Colour {
             Self::Stress => "stress",
             Self::Block => "block",
             Self::Material => "material",
+            Self::Joint => "joint",
             Self::Field(name) => name,
         })
     }
@@ -119,14 +124,20 @@ pub struct Written {
     /// Whether it is of a scene before its run.
     #[serde(skip)]
     pub is_scene: bool,
+    /// Joints, and sets of them, that it shows in colours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joints: Option<usize>,
 }
 
 impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { picture, frames, size: (width, height), blocks, moving, is_scene } = self;
+        let Self { picture, frames, size: (width, height), blocks, moving, is_scene, joints } = self;
         write!(f, "{}: {width} x {height} pixels, ", picture.display())?;
         if *frames > 1 {
             write!(f, "{frames} frames, ")?;
+        }
+        if let Some(joints) = joints {
+            return write!(f, "{}", counted(*joints, "joint or set", "joints or sets"));
         }
         write!(f, "{moving} of {blocks} blocks {}", if *is_scene { "may move" } else { "moved" })
     }
@@ -150,12 +161,14 @@ pub fn draw(request: &Request, out: &Path) -> Result<Written, ViewError> {
         true => animation::write(&film, request.look, request.per_second, out)?,
         _ => write_picture(&film, request.look, out)?,
     }
+    let moving = film.moves.iter().filter(|moves| **moves).count();
     Ok(Written {
+        joints: (request.colour == Some(Colour::Joint)).then_some(moving),
         picture: out.to_path_buf(),
         frames: film.moments.len(),
         size: request.look.size,
         blocks: film.moves.len(),
-        moving: film.moves.iter().filter(|moves| **moves).count(),
+        moving,
         is_scene: film.moments[0].time_s.is_none(),
     })
 }

@@ -24,7 +24,7 @@ pub struct PictureArgs {
     /// north and above the horizontal.
     #[arg(long, value_name = "VIEW", default_value = "iso", allow_hyphen_values = true)]
     pub view: View,
-    /// Quantity shown by colours: displacement, velocity, stress (von Mises), block, material, or the name of an array of the frames
+    /// Quantity shown by colours: displacement, velocity, stress (von Mises), block, material, joint (of a scene), or the name of an array of the frames
     /// [default: displacement of a run, blocks of a scene].
     #[arg(long, visible_alias = "colour", value_name = "QUANTITY")]
     pub color: Option<Colour>,

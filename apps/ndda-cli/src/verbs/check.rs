@@ -24,7 +24,7 @@ pub fn check(args: &CheckArgs) -> u8 {
         events.doubt(&loaded.errors(loaded.warnings.clone()));
     }
     let advice = step::advise(&loaded.scene, &mut model.simulation);
-    let doubts = doubts::doubts(&loaded.scene, &model.simulation, advice.as_ref());
+    let doubts = doubts::doubts(&loaded.scene, &model.simulation, advice.as_ref(), &model.folder);
     doubts.iter().for_each(|doubt| events.warn(doubt));
     let guess = cost::guess(&loaded.scene, &mut model.simulation);
     let file = input::file(&args.input);

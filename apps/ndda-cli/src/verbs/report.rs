@@ -53,8 +53,8 @@ pub fn view(args: &ViewArgs) -> u8 {
     if !args.json {
         say(&format!("opening {}", file.display()));
     }
-    if let Err(error) = open::that(&file) {
-        events.warn(&format!("no program was found that shows it ({error}): open it in a browser"));
+    if open::that(&file).is_err() {
+        events.warn(&format!("no browser could be started: open {} in one", file.display()));
     }
     events.emit("finished", &Finished { exit_code: exit::DONE, report: &file });
     exit::DONE

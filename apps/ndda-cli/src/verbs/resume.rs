@@ -23,7 +23,10 @@ fn resume_here(folder: &Path, options: &Options) -> u8 {
     warnings.iter().for_each(|warning| options.events.warn(warning));
     if !options.quiet {
         let (step, steps) = (run.model().simulation.state().step, run.model().steps());
-        say(&format!("going on from step {step} of {steps}"));
+        say(&match run.settling_steps() {
+            Some(settled) => format!("going on with settling after {settled} steps"),
+            None => format!("going on from step {step} of {steps}"),
+        });
     }
     execute(run, folder, options)
 }

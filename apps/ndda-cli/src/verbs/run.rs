@@ -4,8 +4,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use ndda::judge::table;
-use ndda::run::Sensitivity;
+use ndda::run::{Sensitivity, settling};
 use ndda::{Run, RunError, places};
+use ndda_io::folder::SUMMARY;
 use ndda_io::summary::{Judgement, LabelWord, Status, Summary};
 use ndda_io::{OutputFolder, WriteError};
 use ndda_solver::Settled;
@@ -88,6 +89,8 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
     let run = run.strict(options.strict).stop_when(interrupt::watch());
     let run = run.sensitivity(options.sensitivity).tell(complain_unless(options.quiet));
     let (steps, simulation) = (run.model().steps(), &run.model().simulation);
+    // Steps of settling are none of the run.
+    let first = run.settling_steps().map_or(simulation.state().step, |_| 0);
     options.events.emit(
         "started",
         &serde_json::json!({
@@ -96,7 +99,7 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
             "title": run.model().loaded.scene.title,
             "folder": folder,
             "threads": rayon::current_num_threads(),
-            "step": simulation.state().step,
+            "step": first,
             "steps": steps,
             "step_s": simulation.step_s(),
             "blocks": simulation.blocks().len(),
@@ -104,29 +107,24 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
             "unknowns": simulation.unknowns(),
         }),
     );
-    let mut progress = Progress::new(simulation.state().step, steps, options.quiet, options.events);
+    let mut progress = Progress::new(first, steps, options.quiet, options.events);
     let until = run.model().loaded.scene.settle.map(|settle| settle.tolerance);
     let mut said = Instant::now();
-    let mut settling = |settled: &Settled| {
+    let mut to_rest = |settled: &Settled| {
         let Some(until) = until.filter(|_| !options.quiet) else { return };
-        let Settled { steps, speed_ratio, .. } = settled;
-        if *speed_ratio <= until {
-            complain(&format!("settled in {steps} steps"));
-        } else if said.elapsed() >= SAY_SETTLING {
+        if settled.speed_ratio <= until || said.elapsed() >= SAY_SETTLING {
             said = Instant::now();
-            complain(&format!(
-                "settling: {steps} steps, speed {speed_ratio:.1e} of the largest, until {until:e}"
-            ));
+            complain(&settling::progress(settled, until));
         }
     };
-    let outcome = run.finish_watched(&mut [&mut progress], &mut settling);
+    let outcome = run.finish_watched(&mut [&mut progress], &mut to_rest);
     progress.finish();
     match outcome {
         Ok(outcome) => {
             if !options.quiet {
                 say_result(&outcome.summary, folder, options.verbose);
             }
-            conclude(&outcome.summary, options)
+            conclude(&outcome.summary, folder, options)
         }
         Err(error) => {
             let code = match &error {
@@ -136,7 +134,12 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
                 RunError::Write(WriteError::NotFinite { .. }) => exit::STOPPED,
                 RunError::Write(_) => exit::INPUT_OUTPUT,
             };
-            options.events.fail(code, &error.to_string())
+            let code = options.events.fail(code, &error.to_string());
+            if !options.quiet && folder.join(SUMMARY).exists() {
+                let goes_on = if code == exit::INTERRUPTED { "resume" } else { "picture" };
+                say(&format!("results in {0}; next: ndda {goes_on} {0}", folder.display()));
+            }
+            code
         }
     }
 }
@@ -171,7 +174,7 @@ struct Finished<'a> {
 }
 
 /// Says what is beyond its limit, and gives the exit code.
-fn conclude(summary: &Summary, options: &Options) -> u8 {
+fn conclude(summary: &Summary, folder: &Path, options: &Options) -> u8 {
     for (name, _) in summary.verdicts.0.iter().filter(|(_, v)| v.verdict == Judgement::Fail) {
         options.events.warn(&format!("{name} is beyond its limit: do not use this result"));
     }
@@ -180,7 +183,7 @@ fn conclude(summary: &Summary, options: &Options) -> u8 {
         Status::Failed => exit::FAILED,
         Status::Interrupted => {
             let end_s = table::time(summary.end_s);
-            complain(&format!("interrupted at t = {end_s} s: `ndda resume` goes on from here"));
+            complain(&format!("interrupted at t = {end_s} s; to go on: ndda resume {}", folder.display()));
             exit::INTERRUPTED
         }
         Status::Stopped => {

@@ -154,9 +154,14 @@ impl OutputFolder {
         self.path.join(WAITING)
     }
 
+    /// Name of the checkpoint at the end of a stage.
+    pub fn stage_checkpoint_name(stage: &str) -> String {
+        format!("{OF_STAGE}{stage}{ENDING}")
+    }
+
     /// Path of the checkpoint at the end of a stage.
     pub fn stage_checkpoint(&self, stage: &str) -> PathBuf {
-        self.path.join(format!("{OF_STAGE}{stage}{ENDING}"))
+        self.path.join(Self::stage_checkpoint_name(stage))
     }
 
     /// Path of the summary.

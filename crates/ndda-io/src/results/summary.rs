@@ -48,6 +48,9 @@ pub struct Summary {
     pub slow_error_m_s: Option<f64>,
     /// Steps done.
     pub steps: u64,
+    /// Steps of settling after which the run ended, before the scene had come to rest; time had then not begun. Left out of other runs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unsettled_steps: Option<u64>,
     /// Step Δt \[s\].
     pub step_s: f64,
     /// Values that the scene leaves out and that were chosen for it. Left out where there are none.
@@ -209,6 +212,7 @@ mod tests {
             label: Label { word: LabelWord::Inaccurate, reasons: vec!["too deep".into()] },
             slow_error_m_s: None,
             steps: 10_000,
+            unsettled_steps: None,
             step_s: 1e-4,
             chosen: Vec::new(),
             end_s: 1.0,

@@ -255,8 +255,8 @@ impl Check<'_> {
             self.warn(
                 Code::UnitSlip,
                 "output.frames",
-                format!("{frames} frames are as many files"),
-                "are that many needed?",
+                format!("{frames} frames make {frames} files"),
+                "reduce output.frames unless all are needed",
             );
         }
     }

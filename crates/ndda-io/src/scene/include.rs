@@ -210,7 +210,7 @@ mod tests {
             ("poisson: 0.25)]", "poissen: 0.25)]", "granite.ron:2:", "there is no field `poissen`"),
             ("poisson: 0.25)]", "poisson: 0.75)]", "granite.ron:2:89: [0].poisson: 0.75", "must lie between"),
             ("e_gpa))", "e_pga))", "granite.ron:2:71", "in `2 * e_pga`: there is no parameter"),
-            ("e_gpa: 20", "e_gpa: 20, unused: 1", "scene.ron:1:", "nothing is computed"),
+            ("e_gpa: 20", "e_gpa: 20, unused: 1", "scene.ron:1:", "no number of the scene uses"),
             ("\"granite.ron\"]", "\"../rocks/all.ron\"]", "all.ron:1:12", "includes itself"),
             ("\"shale\"", "\"granite\"", "granite.ron:2:", "granite"),
             ("rocks/all.ron", "rocks", "scene.ron:1:", "is a folder"),

@@ -17,8 +17,12 @@ pub(crate) fn read(text: &str, tree: &Node) -> Result<Parameters, Vec<Diagnostic
     };
     let mut found = Vec::new();
     if node.opening != Some('(') || node.children.iter().any(|child| child.key.is_none()) {
-        let refused =
-            Diagnostic::error(Code::WrongType, FIELD, "are no names with values", Some(node.span.clone()));
+        let refused = Diagnostic::error(
+            Code::WrongType,
+            FIELD,
+            "parameters must be names with values",
+            Some(node.span.clone()),
+        );
         return Err(vec![refused.with_help("write parameters: (height_m: 10, dip_deg: 35)")]);
     }
     for child in &node.children {
@@ -116,7 +120,12 @@ mod tests {
             ("parameters: (a: -1e400),", "1", "s.ron:1:30", "one finite number"),
             ("parameters: (a_m: Degrees(2)),", "1", "s.ron:1:32", "no unit of a length"),
             ("parameters: [3],", "1", "s.ron:1:26", "height_m"),
-            ("parameters: (dip_deg: 35),", "1", "s.ron:1:27: warning[no-effect]", "nothing is computed"),
+            (
+                "parameters: (dip_deg: 35),",
+                "1",
+                "s.ron:1:27: warning[no-effect]",
+                "no number of the scene uses",
+            ),
         ] {
             let said = match load_text("s.ron", &scene(parameters, dip), &[], None) {
                 Ok(loaded) => loaded.errors(loaded.warnings.clone()).render(false),

@@ -93,7 +93,7 @@ impl Parameters {
             let found = Diagnostic::error(
                 Code::NoEffect,
                 format!("{FIELD}.{name}"),
-                "nothing is computed from it",
+                "no number of the scene uses this parameter",
                 at,
             );
             Diagnostic { severity: Severity::Warning, ..found }

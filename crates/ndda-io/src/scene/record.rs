@@ -76,6 +76,32 @@ pub struct Prepared {
     pub rows: Vec<(f64, f64)>,
     /// What it is and what was done with it, in words.
     pub told: String,
+    /// The longest gap in the file.
+    pub gap: Option<Gap>,
+}
+
+/// A time without rows, far longer than others.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gap {
+    /// The row before it [s].
+    pub from_s: f64,
+    /// Time to the next row [s].
+    pub length_s: f64,
+    /// Median of the spacings of rows [s].
+    pub usual_s: f64,
+}
+
+/// A spacing that is so many times the median is a gap.
+const GAP: f64 = 10.0;
+
+/// The longest gap between rows, if there is any.
+pub fn gap(rows: &[(f64, f64)]) -> Option<Gap> {
+    let mut spacings: Vec<(f64, f64)> =
+        rows.windows(2).map(|pair| (pair[1].0 - pair[0].0, pair[0].0)).collect();
+    spacings.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let usual_s = spacings.get(spacings.len() / 2)?.0;
+    let (length_s, from_s) = *spacings.last()?;
+    (length_s > GAP * usual_s).then_some(Gap { from_s, length_s, usual_s })
 }
 
 /// Reads a record and does with it what the scene says; `folder` is that of the scene.
@@ -89,6 +115,7 @@ pub fn prepare(record: &Record, folder: &Path) -> Result<Prepared, RecordError> 
     let factor = record.factor * unit.m_s2();
     rows.iter_mut().for_each(|row| row.1 *= factor);
     check_speed(&file, &rows, 1.0)?;
+    let gap = gap(&rows);
     let (count, end_s) = (rows.len(), rows[rows.len() - 1].0);
     let mut told = format!("{}: {count} rows to {end_s:.6} s", file.display());
     let needed_s = record.filter_hz.and_then(|_| uneven(&rows));
@@ -116,7 +143,7 @@ pub fn prepare(record: &Record, folder: &Path) -> Result<Prepared, RecordError> 
     }
     let peak = rows.iter().map(|row| row.1.abs()).fold(0.0, f64::max);
     told += &format!("; peak {peak:.4} m/s²");
-    Ok(Prepared { rows, told })
+    Ok(Prepared { rows, told, gap })
 }
 
 /// The shortest spacing of rows [s]; none where all are even, to the digits that files have.
@@ -226,6 +253,21 @@ mod tests {
     fn a_record_is_read_with_comments_and_spaces() {
         let text = "# Somewhere, 1 January\ntime_s, acceleration_m_s2\n0, 0.5\n0.01, -1e-1\n";
         assert_eq!(read_text(text), Ok(vec![(0.0, 0.5), (0.01, -0.1)]));
+    }
+
+    #[test]
+    fn a_gap_between_even_rows_is_found_and_uneven_rows_are_none() {
+        let even = |count: i32| (0..count).map(|i| (f64::from(i) * 0.01, 0.0));
+        let rows: Vec<_> = even(10).chain([(0.5, 0.0), (0.51, 0.0)]).collect();
+        let Gap { from_s, length_s, usual_s } = gap(&rows).unwrap();
+        assert!(
+            (from_s - 0.09).abs() < 1e-12
+                && (length_s - 0.41).abs() < 1e-12
+                && (usual_s - 0.01).abs() < 1e-12
+        );
+        assert_eq!(gap(&[(0.0, 0.0), (1.0, 1.0), (4.0, 0.0), (4.5, 1.0)]), None);
+        assert_eq!(gap(&even(10).collect::<Vec<_>>()), None);
+        assert_eq!(gap(&[(0.0, 1.0)]), None);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Local damping: what is out of balance is damped, and nothing else.
 
 use ndda_mesh::{BlockId, Vec3};
+use serde::{Deserialize, Serialize};
 
 use crate::bodies::kind::BodyKind;
 use crate::error::StepError;
@@ -13,7 +14,7 @@ use crate::step::report::StepReport;
 /// v ← v max(0, 1 − α ‖Δv‖/‖v‖), where ‖v‖² is twice the kinetic energy. Vibrations are damped whatever their frequency; blocks at rest and
 /// in steady motion are not, and equilibrium is that of the scene without damping. A block that vibrates while it slides is slowed down in its
 /// sliding, too: where it matters whether a block slides, use [`of_vibrations`](Self::of_vibrations).
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LocalDamping {
     factor: f64,
     /// Velocities before the step, then what the step changed them by.

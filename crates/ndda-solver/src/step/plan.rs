@@ -118,7 +118,8 @@ impl Simulation {
                 self.any_shape(deforms),
                 match count {
                     0 => "of all blocks".into(),
-                    n => format!("of all blocks but {n} rigid or fixed one(s) of {tets} tets"),
+                    1 => format!("of all blocks but one that is rigid or fixed ({tets} tetrahedra)"),
+                    n => format!("of all blocks but {n} that are rigid or fixed ({tets} tetrahedra)"),
                 },
                 "no block deforms",
             ),
@@ -176,11 +177,8 @@ impl Simulation {
 
     fn contact_parts(&self) -> Vec<Part> {
         let Some(model) = &self.contact else {
-            let why = if self.problem.blocks.len() < 2 {
-                "one block has nothing to touch"
-            } else {
-                "the scene has none"
-            };
+            let why =
+                if self.problem.blocks.len() < 2 { "there is one block only" } else { "the scene has none" };
             return vec![Part::left_out("contact", why)];
         };
         let mut parts =

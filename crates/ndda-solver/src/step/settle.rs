@@ -59,8 +59,31 @@ pub struct Settled {
     pub speed_ratio: f64,
 }
 
+/// A scene on its way to rest: all that settling keeps between two steps, besides the state of the simulation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Settling {
+    settled: Settled,
+    /// Positions at which settling began.
+    from: Vec<Vec3>,
+    /// Velocities with which time begins.
+    start: Vec<Vec3>,
+    progress: Progress,
+}
+
+impl Settling {
+    fn new(simulation: &Simulation, progress: Progress, start: Vec<Vec3>) -> Self {
+        let settled = Settled { steps: 0, speed_ratio: f64::INFINITY };
+        Self { settled, from: simulation.state.position.clone(), start, progress }
+    }
+
+    /// How far it has come.
+    pub fn settled(&self) -> Settled {
+        self.settled
+    }
+}
+
 /// The oscillations of the whole scene.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct Oscillation {
     energy_j: f64,
     /// Largest energy at which it was stopped, older ones counting less; none before the first time.
@@ -132,44 +155,63 @@ impl Simulation {
         settle: &Settle,
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<Settled, StepError> {
-        let start = std::mem::take(&mut self.state.velocity);
-        self.state.velocity = vec![Vec3::zeros(); start.len()];
-        let progress = Progress::new(self, settle.damping);
-        let (settled, came_to_rest) = self.come_to_rest((settle, progress), 0.0, watch)?;
-        if came_to_rest {
-            let force = std::mem::take(&mut self.scratch.force);
-            let kept = self.keep_static_reactions(&force);
-            self.scratch.force = force;
-            kept?;
-            self.begin_at_rest(start);
+        let mut settling = self.begin_to_settle(settle);
+        self.go_on_settling(settle, &mut settling, watch)?;
+        Ok(settling.settled)
+    }
+
+    /// A scene that is about to settle: velocities are kept for later, and blocks start from rest.
+    pub fn begin_to_settle(&mut self, settle: &Settle) -> Settling {
+        let nodes = self.state.velocity.len();
+        let start = std::mem::replace(&mut self.state.velocity, vec![Vec3::zeros(); nodes]);
+        Settling::new(self, Progress::new(self, settle.damping), start)
+    }
+
+    /// Goes on until the scene is at rest, and time begins there; false where `watch` has broken it off, after a step from which it can go on.
+    /// It also goes on, bit for bit, from a [`Snapshot`](crate::Snapshot) that was taken together with `settling`.
+    ///
+    /// # Errors
+    /// As [`settle`](Self::settle).
+    pub fn go_on_settling(
+        &mut self,
+        settle: &Settle,
+        settling: &mut Settling,
+        watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
+    ) -> Result<bool, StepError> {
+        if !self.come_to_rest((settle, settling), 0.0, watch)? {
+            return Ok(false);
         }
-        Ok(settled)
+        let force = std::mem::take(&mut self.scratch.force);
+        let kept = self.keep_static_reactions(&force);
+        self.scratch.force = force;
+        kept?;
+        self.begin_at_rest(std::mem::take(&mut settling.start));
+        Ok(true)
     }
 
     /// Runs with damping until all blocks are at rest, while loads and prescribed motions are those of a time [s]; whether they came to rest
     /// before somebody broke it off.
     fn come_to_rest(
         &mut self,
-        (settle, mut progress): (&Settle, Progress),
+        (settle, settling): (&Settle, &mut Settling),
         at_s: f64,
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
-    ) -> Result<(Settled, bool), StepError> {
+    ) -> Result<bool, StepError> {
         self.settling_at_s = Some(at_s);
-        let from = self.state.position.clone();
-        let extent_m = Aabb::around(&from).diagonal();
-        let mut settled = Settled { speed_ratio: f64::INFINITY, ..Settled::default() };
+        let Settling { settled, from, progress, .. } = settling;
+        let extent_m = Aabb::around(from.iter()).diagonal();
         while settled.speed_ratio > settle.tolerance {
             let looks = settled.steps % LOOK == LOOK - 1;
-            if settled.steps == settle.most_steps || looks && self.farthest(&from)[0].0 > extent_m {
-                return Err(self.not_settled(&settled, &from));
+            if settled.steps == settle.most_steps || looks && self.farthest(from)[0].0 > extent_m {
+                return Err(self.not_settled(settled, from));
             }
             settled.speed_ratio = progress.step(self)?;
             settled.steps += 1;
-            if watch(&settled).is_break() {
-                return Ok((settled, false));
+            if watch(settled).is_break() {
+                return Ok(false);
             }
         }
-        Ok((settled, true))
+        Ok(true)
     }
 
     /// Brings the scene to rest in the course of a run, time standing still, and goes on from there: displacements and what contact remembers
@@ -188,10 +230,11 @@ impl Simulation {
         let moves = |block: &BlockId| self.shape(*block).kind != BodyKind::Fixed;
         let moving_j = self.blocks().ids().filter(moves).map(|block| self.load_energy_j(block)).sum();
         let progress = Progress { moving_j, ..Progress::new(self, settle.damping) };
-        let (settled, came_to_rest) = self.come_to_rest((settle, progress), self.time_s(), watch)?;
+        let mut settling = Settling::new(self, progress, Vec::new());
+        let came_to_rest = self.come_to_rest((settle, &mut settling), self.time_s(), watch)?;
         self.settling_at_s = None;
         if !came_to_rest {
-            return Ok(settled);
+            return Ok(settling.settled);
         }
         self.state.velocity.fill(Vec3::zeros());
         self.state.step = step;
@@ -206,7 +249,7 @@ impl Simulation {
             self.stop_past_centroid(&contact)?;
             self.audit.ledger.watch_depth(contact.max_penetration_ratio);
         }
-        Ok(settled)
+        Ok(settling.settled)
     }
 
     /// How far the centre of each block has gone [m], the farthest first.
@@ -250,7 +293,8 @@ impl Simulation {
     }
 }
 
-/// A scene on its way to rest.
+/// How a scene comes to rest, step by step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 struct Progress {
     damper: Damper,
     oscillation: Oscillation,
@@ -264,6 +308,7 @@ struct Progress {
     highest_j: f64,
 }
 
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Damper {
     Kinetic,
     Local(LocalDamping),

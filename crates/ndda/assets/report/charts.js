@@ -18,7 +18,7 @@ class Charts {
     this.boxes.forEach((box) => box.replaceChildren());
     this.plots = this.data.charts.map((chart, i) => {
       const curves = chart.curves.map((curve) => curve.values);
-      const plot = new uPlot(this.options(chart, this.boxes[i]), [this.data.time_s, ...curves], this.boxes[i]);
+      const plot = new uPlot(this.options(chart, this.boxes[i]), [chart.time_s || this.data.time_s, ...curves], this.boxes[i]);
       plot.over.addEventListener("click", () => this.pickTime(plot.posToVal(plot.cursor.left, "x")));
       return plot;
     });

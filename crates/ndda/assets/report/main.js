@@ -20,33 +20,61 @@
   document.documentElement.dataset.ready = "yes";
 })();
 
+/** More ways than these are not drawn unless asked for. */
+const MOST_PATHS = 200;
+
+/** A block's name, and how far its farthest node is from where it began. */
+function pickedText(motion, frame, block, names) {
+  const moved = motion.displacements(frame);
+  let farthest = 0;
+  motion.triangles.forEach((node, c) => {
+    if (motion.blocks[Math.floor(c / 3)] === block) {
+      farthest = Math.max(farthest, Math.hypot(...moved.subarray(3 * node, 3 * node + 3)));
+    }
+  });
+  return `${names[block] || `block ${block}`}: ${withUnit(farthest, "m")}`;
+}
+
 async function showBlocks(byId, data, charts) {
   const motion = new Motion(data.motion, await inflated(byId("numbers").textContent));
   const viewer = new Viewer(byId("view"), motion);
+  const overlay = new Overlay(viewer, byId("view"));
   const choices = colourChoices(motion);
   byId("colour").append(...choices.map((choice, i) => new Option(choice.label, i)));
-  byId("colour").value = 0;
+  // What moved is what a reader looks for first.
+  byId("colour").value = motion.about.moved.top > 0 ? 1 : 0;
+  byId("paths").checked = viewer.tracks.count <= MOST_PATHS;
   const player = new Player(byId, motion.about.times_s, (frame) => {
     const choice = choices[byId("colour").value];
-    viewer.show(frame, choice, Number(byId("factor").value), byId("rest").value);
+    viewer.show(frame, choice, Number(byId("factor").value), { rest: byId("rest").value, paths: byId("paths").checked });
     charts.setTime(motion.about.times_s[frame]);
   });
   const recolour = () => {
     showBar(byId, choices[byId("colour").value]);
     player.show();
   };
-  for (const id of ["colour", "factor", "rest"]) byId(id).addEventListener("change", recolour);
+  for (const id of ["colour", "factor", "rest", "paths"]) byId(id).addEventListener("change", recolour);
   for (const button of document.querySelectorAll("[data-view]")) {
     button.addEventListener("click", () => viewer.look(button.dataset.view));
   }
+  byId("whole").addEventListener("change", () => {
+    viewer.showsWhole = byId("whole").checked;
+    viewer.look(viewer.view || "iso");
+  });
+  byId("save").addEventListener("click", () => {
+    const factor = Number(byId("factor").value);
+    const below = byId("time").textContent + (factor === 1 ? "" : `, displacements × ${factor}`);
+    overlay.save(data.title, below, choices[byId("colour").value]);
+  });
   for (const button of document.querySelectorAll("[data-time]")) {
     button.addEventListener("click", () => player.jumpTo(Number(button.dataset.time)));
   }
   byId("view").addEventListener("pointermove", (event) => {
     if (event.buttons !== 0) return;
     const block = viewer.blockAt(event.clientX, event.clientY);
-    byId("picked").textContent = block === null ? "" : data.block_names[block] || `block ${block}`;
+    byId("picked").textContent = block === null ? "" : pickedText(motion, player.frame, block, data.block_names);
   });
+  byId("slider").value = motion.frames - 1;
   recolour();
   if (viewer.hidesMotion()) {
     byId("rest").value = "glass";
@@ -59,17 +87,22 @@ async function showBlocks(byId, data, charts) {
 function showBar(byId, choice) {
   byId("bar").hidden = !choice.values;
   if (!choice.values) return;
-  const { least, bottom = least, top, largest } = choice.range;
+  const { top, largest } = choice.range;
   const stops = VIRIDIS.map((hex) => `#${hex}`);
   byId("bar-title").textContent = choice.label;
   byId("bar-colours").style.background = `linear-gradient(to right, ${stops})`;
-  const numbers = [withUnit(bottom, choice.unit), (top < largest ? "≥ " : "") + withUnit(top, choice.unit)];
-  byId("bar-numbers").replaceChildren(...numbers.map((text) => {
+  byId("bar-numbers").replaceChildren(...scaleEnds(choice).map((text) => {
     const number = document.createElement("span");
     number.textContent = text;
     return number;
   }));
   byId("bar-numbers").title = top < largest ? `largest: ${withUnit(largest, choice.unit)}` : "";
+}
+
+/** Least and largest value of a scale of colours, in words. */
+function scaleEnds(choice) {
+  const { least, bottom = least, top, largest } = choice.range;
+  return [withUnit(bottom, choice.unit), (top < largest ? "≥ " : "") + withUnit(top, choice.unit)];
 }
 
 /** Slider, play and keys. */

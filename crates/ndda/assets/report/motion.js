@@ -29,6 +29,31 @@ class Motion {
     return decoded(this.moved, frame, this.frames, this.about.moved);
   }
 
+  /** The centres of the blocks that move in all frames, three numbers per block and frame, and the box of all their nodes. */
+  tracks() {
+    const blockOf = new Int32Array(this.start.length / 3).fill(-1);
+    this.triangles.forEach((node, c) => { blockOf[node] = this.blocks[Math.floor(c / 3)]; });
+    const moving = [...new Set(this.blocks)].filter((block) => !this.still.has(block));
+    const place = new Map(moving.map((block, i) => [block, i]));
+    const count = moving.length;
+    const centres = new Float32Array(3 * count * this.frames);
+    const nodes = new Uint32Array(count);
+    blockOf.forEach((block) => { if (place.has(block)) nodes[place.get(block)] += 1; });
+    const box = { least: [Infinity, Infinity, Infinity], most: [-Infinity, -Infinity, -Infinity] };
+    for (let frame = 0; frame < this.frames; frame += 1) {
+      const moved = this.displacements(frame);
+      for (let i = 0; i < moved.length; i += 1) {
+        const block = place.get(blockOf[Math.floor(i / 3)]);
+        if (block === undefined) continue;
+        const [axis, x] = [i % 3, this.start[i] + moved[i]];
+        centres[3 * (count * frame + block) + axis] += x / nodes[block];
+        box.least[axis] = Math.min(box.least[axis], x);
+        box.most[axis] = Math.max(box.most[axis], x);
+      }
+    }
+    return { count, centres, box };
+  }
+
   /** Blocks that are not there in a frame. */
   absent(frame) {
     return new Set(this.about.absent ? this.about.absent[frame] : []);

@@ -3,6 +3,10 @@
 
 const VIEWS = { iso: [0.55, -1, 0.7], front: [0, -1, 0.001], side: [1, 0, 0.001], top: [0, -0.001, 1] };
 
+const LENS_DEG = 6;
+/** Around the blocks that move, this part of their largest side is shown. */
+const SURROUNDINGS = 0.35;
+
 class Viewer {
   constructor(box, motion) {
     this.box = box;
@@ -11,10 +15,12 @@ class Viewer {
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
     box.prepend(this.renderer.domElement);
     this.scene = new THREE.Scene();
-    this.camera = new THREE.PerspectiveCamera(35, 1, 0.01, 100);
+    // From far away through a long lens: lengths hardly depend on how near they are, and one scale bar does.
+    this.camera = new THREE.PerspectiveCamera(LENS_DEG, 1, 0.01, 100);
     this.camera.up.set(0, 0, 1);
     this.addLight();
     this.addBlocks();
+    this.addPaths();
     this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
     // A camera that somebody has moved stays where it is when the window changes.
@@ -59,6 +65,39 @@ class Viewer {
     this.scene.add(this.faces, this.edges);
   }
 
+  /** The ways of the centres of blocks that move, a piece for each frame; blocks do not hide them. */
+  addPaths() {
+    const { frames } = this.motion;
+    this.tracks = this.motion.tracks();
+    this.pathEnds = new THREE.BufferAttribute(new Float32Array(6 * this.tracks.count * Math.max(frames - 1, 0)), 3);
+    const paths = new THREE.BufferGeometry();
+    paths.setAttribute("position", this.pathEnds);
+    this.paths = new THREE.LineSegments(paths, new THREE.LineBasicMaterial(
+      { color: 0xb3261e, transparent: true, opacity: 0.9, depthTest: false }));
+    this.paths.frustumCulled = false;
+    this.paths.renderOrder = 1;
+    this.scene.add(this.paths);
+  }
+
+  /** Draws the ways up to a frame, displacements times `factor`. */
+  showPaths(frame, factor, areShown) {
+    const { count, centres } = this.tracks;
+    this.paths.visible = areShown && frame > 0;
+    this.paths.geometry.setDrawRange(0, 2 * count * frame);
+    if (this.pathFactor === factor) return;
+    this.pathFactor = factor;
+    const ends = this.pathEnds.array;
+    const at = (f, i) => centres[i] + factor * (centres[3 * count * f + i] - centres[i]);
+    for (let f = 1; f < this.motion.frames; f += 1) {
+      for (let i = 0; i < 3 * count; i += 1) {
+        const piece = 6 * (count * (f - 1) + Math.floor(i / 3)) + (i % 3);
+        ends[piece] = at(f - 1, i);
+        ends[piece + 3] = at(f, i);
+      }
+    }
+    this.pathEnds.needsUpdate = true;
+  }
+
   /** Runs of triangles of blocks that move, and of those that do not. */
   groupByRest(faces) {
     const { blocks, still } = this.motion;
@@ -78,7 +117,7 @@ class Viewer {
   }
 
   /** Puts all blocks where they are in a frame, displacements times `factor`, coloured by a choice; `rest` says how blocks at rest look. */
-  show(frame, choice, factor, rest) {
+  show(frame, choice, factor, { rest, paths }) {
     this.makeGlass(rest === "glass");
     const { motion, positions } = this;
     const moved = motion.displacements(frame);
@@ -94,6 +133,7 @@ class Viewer {
       corners[3 * c + 2] = positions[node + 2];
     }
     this.paint(choice.values ? choice.values(frame) : null, choice, rest === "plain");
+    this.showPaths(frame, factor, paths);
     for (const changed of [this.corners, this.colours, this.nodes]) {
       changed.needsUpdate = true;
     }
@@ -132,23 +172,33 @@ class Viewer {
     }
   }
 
-  /** Looks from one side so that all blocks fit at all times. */
+  /** The box that is to fit into the picture at all times: what moves and its surroundings, or everything. */
+  framed() {
+    const half = this.motion.about.extent_m.map((s) => s / 2);
+    const whole = { least: half.map((h) => -h), most: half };
+    const { least, most } = this.tracks.box;
+    if (this.showsWhole || this.tracks.count === 0) return whole;
+    const more = SURROUNDINGS * Math.max(...most.map((m, i) => m - least[i]));
+    return { least: least.map((x, i) => Math.max(x - more, whole.least[i])), most: most.map((x, i) => Math.min(x + more, whole.most[i])) };
+  }
+
+  /** Looks from one side so that the framed blocks fit. */
   look(name) {
     this.view = name;
-    const { extent_m: size } = this.motion.about;
+    const { least, most } = this.framed();
+    const size = most.map((m, i) => m - least[i]);
+    const middle = most.map((m, i) => (m + least[i]) / 2);
     const radius = Math.max(0.5 * Math.hypot(...size), 1e-6);
-    this.camera.near = radius / 200;
-    this.camera.far = radius * 40;
-    this.camera.updateProjectionMatrix();
     const direction = new THREE.Vector3(...VIEWS[name]).normalize();
-    const target = new THREE.Vector3();
-    let distance = 6 * radius;
+    const target = new THREE.Vector3(...middle);
+    let distance = radius / Math.tan((LENS_DEG / 360) * Math.PI);
     // Each round centres the box in the picture and takes up what is left of it; a few are enough.
     for (let round = 0; round < 8; round += 1) {
       this.camera.position.copy(direction).multiplyScalar(distance).add(target);
       this.camera.lookAt(target);
+      this.fitDepth();
       this.camera.updateMatrixWorld();
-      const seen = boxCorners(size).map((corner) => corner.project(this.camera));
+      const seen = boxCorners(size, middle).map((corner) => corner.project(this.camera));
       const [left, right] = bounds(seen.map((corner) => corner.x));
       const [below, above] = bounds(seen.map((corner) => corner.y));
       const depth = target.clone().project(this.camera).z;
@@ -200,14 +250,32 @@ class Viewer {
     else this.draw();
   }
 
+  /** Depths between which all blocks are, magnified ones included. */
+  fitDepth() {
+    const reach = 2 * Math.hypot(...this.motion.about.extent_m) * Math.max(this.pathFactor || 1, 1) + 1e-6;
+    const distance = this.camera.position.length();
+    this.camera.near = Math.max(distance - reach, 1e-3 * distance);
+    this.camera.far = distance + reach;
+    this.camera.updateProjectionMatrix();
+  }
+
+  /** Pixels of the page that a metre is long at the middle of the view. */
+  pixelsPerMetre() {
+    const distance = this.camera.position.distanceTo(this.controls.target);
+    return this.box.clientHeight / (2 * distance * Math.tan((LENS_DEG / 360) * Math.PI));
+  }
+
   draw() {
+    this.fitDepth();
     this.renderer.render(this.scene, this.camera);
+    if (this.drawn) this.drawn();
   }
 }
 
 const bounds = (values) => [Math.min(...values), Math.max(...values)];
 
-/** Corners of a box about the origin. */
-function boxCorners(size) {
-  return [0, 1, 2, 3, 4, 5, 6, 7].map((i) => new THREE.Vector3(...size.map((s, axis) => ((i >> axis) & 1 ? 0.5 : -0.5) * s)));
+/** Corners of a box. */
+function boxCorners(size, middle) {
+  const corner = (i) => size.map((s, axis) => middle[axis] + ((i >> axis) & 1 ? 0.5 : -0.5) * s);
+  return [0, 1, 2, 3, 4, 5, 6, 7].map((i) => new THREE.Vector3(...corner(i)));
 }

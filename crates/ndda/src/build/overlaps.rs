@@ -59,8 +59,11 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
     let listed: Vec<String> = pairs.iter().take(MOST_LISTED).map(one).collect();
     let more = pairs.len().saturating_sub(MOST_LISTED);
     let more = if more > 0 { format!("; and {more} more") } else { String::new() };
-    let message =
-        format!("{} pair(s) of blocks overlap at the start: {}{more}", pairs.len(), listed.join("; "));
+    let what = match pairs.len() {
+        1 => "two blocks overlap at the start".into(),
+        n => format!("{n} pairs of blocks overlap at the start"),
+    };
+    let message = format!("{what}: {}{more}", listed.join("; "));
     let help = "move them apart, or let them come to rest before the run begins: `settle: ()`";
     Ok(Some(loaded.diagnose_as(Code::Overlap, "blocks", message).with_help(help)))
 }

@@ -17,6 +17,7 @@ use serde::Serialize;
 
 use super::{Fault, solid, vec3};
 use crate::forecast::admit;
+use crate::numbers::{counted, four_figures};
 use joints::Discs;
 
 /// Blocks that a rock was cut into, and what was left out.
@@ -46,22 +47,28 @@ pub struct RockReport {
 impl fmt::Display for RockReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, blocks, domain_m3, merged, slivers, thin, removed, refused, discs } = self;
-        write!(f, "rock {name}: {domain_m3:.6e} m³ in {blocks} block(s)")?;
+        write!(f, "rock {name}: {} m³ in {}", four_figures(*domain_m3), counted(*blocks, "block", "blocks"))?;
         let counts = [
-            ("sliver(s) united with neighbours", merged),
-            ("sliver(s) left out", slivers),
-            ("part(s) removed", removed),
+            ("sliver", "united with neighbours", merged),
+            ("sliver", "left out", slivers),
+            ("part", "removed", removed),
         ];
-        for (what, (count, volume)) in counts {
+        for (noun, what, (count, m3)) in counts {
             if *count > 0 {
-                write!(f, ", {count} {what} ({volume:.3e} m³)")?;
+                write!(
+                    f,
+                    ", {} {what} ({} m³)",
+                    counted(*count, noun, &format!("{noun}s")),
+                    four_figures(*m3)
+                )?;
             }
         }
         if *thin > 0 {
-            write!(f, ", {thin} sliver(s) kept")?;
+            write!(f, ", {} kept", counted(*thin, "sliver", "slivers"))?;
         }
         if *refused > 0 {
-            write!(f, ", {refused} cut(s) refused as needles")?;
+            let cuts = counted(*refused, "cut", "cuts");
+            write!(f, ", {cuts} not made because they would leave needles")?;
         }
         discs.as_ref().map_or(Ok(()), |discs| write!(f, "\n  {discs}"))
     }

@@ -12,7 +12,7 @@ pub enum CertifyError {
     Run(#[from] StudyError),
     /// Runs stop, whatever the step.
     #[error(
-        "the run of steps of {step_s:e} s stopped ({reason}): certify a scene that runs; `ndda check` advises a \
+        "the run with steps of {step_s:e} s stopped ({reason}): certify a scene that runs; `ndda check` advises a \
          step, --set time.step_s=… tries a shorter one"
     )]
     Stopped {

@@ -139,7 +139,7 @@ fn levels(launch: &Launch, plan: &Plan, remarks: &mut Vec<String>) -> Result<u32
             return Err(CertifyError::Stopped { step_s, reason });
         }
         remarks.push(format!(
-            "the run of steps of {step_s:e} s stopped: {reason}; the errors are those of shorter steps"
+            "the run with steps of {step_s:e} s stopped: {reason}; the errors are those of shorter steps"
         ));
         first = level + 1;
     }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::Explanation;
+use crate::numbers::counted;
 
 impl fmt::Display for Explanation {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -19,8 +20,10 @@ impl fmt::Display for Explanation {
             let kind = format!("{:?}", plan.kind);
             writeln!(
                 f,
-                "  {kind:8} {} block(s), {} tets, {} unknowns",
-                plan.blocks, plan.tets, plan.unknowns
+                "  {kind:8} {}, {}, {}",
+                counted(plan.blocks, "block", "blocks"),
+                counted(plan.tets, "tetrahedron", "tetrahedra"),
+                counted(plan.unknowns, "unknown", "unknowns")
             )?;
         }
         self.write_factors(f)?;
@@ -29,7 +32,8 @@ impl fmt::Display for Explanation {
         writeln!(f, "\nfiles\n  {}", self.files.join("\n  "))?;
         let features: Vec<String> =
             self.features.iter().map(|(name, on)| format!("{}{name}", if *on { "+" } else { "-" })).collect();
-        writeln!(f, "\n{} thread(s); features {}", self.threads, features.join(" "))
+        let threads = counted(self.threads, "thread", "threads");
+        writeln!(f, "\n{threads}; features {}", features.join(" "))
     }
 }
 
@@ -53,7 +57,7 @@ impl Explanation {
     }
 
     fn write_parts(&self, f: &mut fmt::Formatter, included: bool) -> fmt::Result {
-        writeln!(f, "\n{}", if included { "in" } else { "left out" })?;
+        writeln!(f, "\n{}", if included { "computed" } else { "left out, and why" })?;
         let chosen: Vec<_> = self.parts.iter().filter(|part| part.included == included).collect();
         let widest = chosen.iter().map(|part| part.name.chars().count()).max().unwrap_or(0);
         chosen.iter().try_for_each(|part| writeln!(f, "  {:widest$}  {}", part.name, part.reason))

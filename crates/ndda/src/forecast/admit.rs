@@ -11,6 +11,7 @@ use super::memory::{self, readable};
 use super::size::{
     BLOCK_B, Count, PROGRAM_B, Part, TET_B, bytes, filled, parts, rounded, tets_of_file, times,
 };
+use crate::numbers::counted;
 
 /// Building for longer is announced [s].
 const LONG_S: f64 = 60.0;
@@ -34,7 +35,10 @@ pub fn admit(loaded: &LoadedScene, folder: &Path) -> Result<(), Diagnostic> {
                 readable(budget)
             );
             let found = loaded.diagnose_as(Code::TooLarge, &largest.path, message);
-            Err(found.with_help(format!("{}; `--memory 64GB` says how much there is", largest.cure)))
+            Err(found.with_help(format!(
+                "{}; if the machine has more memory than that, give --memory 64GB",
+                largest.cure
+            )))
         }
         _ => Ok(()),
     }
@@ -50,8 +54,8 @@ pub fn admit_file(file: &Path) -> Result<(), String> {
     let bytes = PROGRAM_B + tets * TET_B;
     match memory::budget() {
         Some(budget) if bytes > budget as f64 => Err(format!(
-            "{}: about {} tetrahedra would take {} of memory; there is {}: use a coarser mesh; `--memory 64GB` says how much \
-             there is",
+            "{}: about {} tetrahedra would take {} of memory; there is {}: use a coarser mesh; if the machine has more memory than that, \
+             give --memory 64GB",
             file.display(),
             rounded(tets),
             readable(bytes as u64),
@@ -72,7 +76,8 @@ pub fn slow_build(loaded: &LoadedScene, folder: &Path) -> Option<String> {
 
 fn figures(part: &Part) -> String {
     let Count { blocks, tets, .. } = part.count;
-    format!("about {} block(s) and {} tetrahedra", rounded(blocks), rounded(tets))
+    let noun = if blocks == 1.0 { "block" } else { "blocks" };
+    format!("about {} {noun} and {} tetrahedra", rounded(blocks), rounded(tets))
 }
 
 /// Most blocks that a cut may make in the memory that there is.
@@ -89,7 +94,8 @@ pub fn admit_fill(blocks: usize, fill: &Fill, volume_m3: f64) -> Result<(), Stri
     let bytes = count.blocks * BLOCK_B + count.tets * TET_B;
     match memory::budget() {
         Some(budget) if bytes > budget as f64 => Err(format!(
-            "{blocks} block(s) of {} tetrahedra in all would take {} of memory; there is {}: use a coarser fill",
+            "{} of {} tetrahedra in all would take {} of memory; there is {}: use a coarser fill",
+            counted(blocks, "block", "blocks"),
             rounded(count.tets),
             readable(bytes as u64),
             readable(budget)

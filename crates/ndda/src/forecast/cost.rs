@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::{Duration, Instant};
 
 use ndda_io::scene::Scene;
-use ndda_io::{checkpoint, folder};
+use ndda_io::{OutputFolder, checkpoint, folder};
 use ndda_solver::{Simulation, SinkError};
 use serde::Serialize;
 
@@ -12,7 +12,7 @@ use super::memory::readable;
 use crate::run::fields::FieldWriter;
 use crate::run::recorder::{Extras, columns, held_blocks};
 use crate::run::schedule::{events, is_due};
-use crate::run::{contact_rows, motion, stage_log, twin};
+use crate::run::{bolts, contact_rows, motion, stage_log, twin};
 use crate::{build, machine};
 
 /// Steps are timed this long, but at least a few of them: a check of a small scene is to be felt as instant.
@@ -128,6 +128,14 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
         let rows = blocks * events(build::all_steps(scene), output.frames.into());
         files.push(file(folder::BLOCKS, 1, rows * motion::COLUMNS.len() as u64 * NUMBER_BYTES));
     }
+    let pieces = bolt_pieces(simulation);
+    if pieces > 0 {
+        let rows = pieces * events(build::all_steps(scene), output.frames.into());
+        files.push(file(folder::BOLTS, 1, rows * bolts::COLUMNS.len() as u64 * NUMBER_BYTES));
+    }
+    for stage in &scene.stages {
+        files.push(file(&OutputFolder::stage_checkpoint_name(&stage.name), 1, saved));
+    }
     if output.contacts {
         let pairs = ndda_contact::resultants(simulation.blocks(), &mut simulation.contacts().to_vec()).len();
         let numbers = (pairs * contact_rows::COLUMNS.len()) as u64;
@@ -136,12 +144,25 @@ fn files(scene: &Scene, simulation: &Simulation, (rows, frames): (u64, u64), fra
     files
 }
 
+/// Rows of a frame in the table of bolts.
+fn bolt_pieces(simulation: &Simulation) -> u64 {
+    let mut pieces = Vec::new();
+    if simulation.bolt_count() > 0 {
+        simulation.bolt_pieces(&mut pieces);
+    }
+    pieces.len() as u64
+}
+
 impl fmt::Display for Guess {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let steps = self.timed_steps;
-        write!(f, "a run would take {:.1} s ({steps} steps timed; more as contacts grow)", self.run_s)?;
+        write!(
+            f,
+            "a run would take about {:.1} s ({steps} steps timed; longer if more blocks come to touch)",
+            self.run_s
+        )?;
         if let Some(twin_s) = self.twin_s {
-            write!(f, ", {twin_s:.1} s more to see how sensitive the motion is if three blocks move,")?;
+            write!(f, ", {twin_s:.1} s more for the check of sensitivity if three or more blocks move,")?;
         }
         if let Some(bytes) = self.memory_bytes {
             write!(f, " and {} of memory", readable(bytes))?;
@@ -186,10 +207,13 @@ mod tests {
     fn a_twin_is_foreseen_where_three_blocks_can_move() {
         let two = guess_of(2);
         assert_eq!(two.twin_s, None);
-        assert!(!two.to_string().contains("sensitive"), "{two}");
+        assert!(!two.to_string().contains("sensitiv"), "{two}");
         let three = guess_of(3);
         let twin_s = three.twin_s.unwrap();
         assert!(0.0 < twin_s && twin_s <= three.run_s, "{three:?}");
-        assert!(three.to_string().contains("sensitive the motion is if three blocks move"), "{three}");
+        assert!(
+            three.to_string().contains("for the check of sensitivity if three or more blocks move"),
+            "{three}"
+        );
     }
 }

@@ -1,9 +1,12 @@
 //! Parts of a scene that are probably not meant: no error, and worth a question before a long run.
 
+use std::path::Path;
+
 use ndda_io::scene::{Contact, Friction, Material, Potential, Scene};
 use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
 
+use super::idle;
 use super::step::Advice;
 use crate::waves;
 
@@ -11,12 +14,13 @@ use crate::waves;
 const SOFT: f64 = 1e-6;
 const HARD: f64 = 1.0;
 
-/// Doubts about a scene; `advice` is the forecast of its contact.
-pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>) -> Vec<String> {
+/// Doubts about a scene whose files are in `folder`; `advice` is the forecast of its contact.
+pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, folder: &Path) -> Vec<String> {
     let unstable = advice.filter(|advice| advice.worst().h > advice.bound).map(ToString::to_string);
     let mut doubts: Vec<String> = unstable.into_iter().collect();
     let coarse = waves::findings(simulation).into_iter().filter(|found| found.value > found.limit);
     doubts.extend(coarse.map(|found| found.reason));
+    doubts.extend(idle::findings(scene, simulation.blocks(), folder));
     let falls = scene.gravity_m_s2 != [0.0; 3];
     let blocks = simulation.blocks();
     let free = || blocks.ids().filter(|&block| simulation.shape(block).is_free());
@@ -36,7 +40,7 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>) -
         || rock_joints.iter().any(|l| has_friction(&l.friction));
     if falls && !has_friction {
         doubts.push(
-            "blocks slide on each other without friction: give contact.friction, if that is not meant".into(),
+            "contact has no friction, so blocks slide freely on each other: give contact.friction: (friction_deg: 30) if that is not meant".into(),
         );
     }
     let touch = advice.is_some_and(|advice| advice.at_start.is_some());
@@ -63,12 +67,12 @@ fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &
     let ratio = per_metre_pa / stiffest_pa;
     let what = match ratio {
         _ if !deforms => return None,
-        r if r < SOFT => "soft: blocks sink deep into each other",
-        r if r > HARD => "hard: steps have to be short, and nothing is gained",
+        r if r < SOFT => "soft for this rock: blocks sink deep into each other",
+        r if r > HARD => "stiff for this rock: steps have to be short, and nothing is gained",
         _ => return None,
     };
     let (from, to) = (1e-4 * stiffest_pa, 1e-2 * stiffest_pa);
     Some(format!(
-        "contact of {ratio:.0e} of Young's modulus for each metre of depth is {what}; penalty_pa from {from:.0e} to {to:.0e} suits most scenes"
+        "contact is very {what} (per metre of penetration {ratio:.0e} of Young's modulus); a penalty_pa of {from:.0e} to {to:.0e} suits most scenes"
     ))
 }

@@ -24,7 +24,8 @@ pub fn warning(loaded: &LoadedScene, simulation: &Simulation) -> Option<Diagnost
     }
     let others = match errors.len() - named.len() {
         0 => String::new(),
-        others => format!(", less for {others} other kind(s) of blocks"),
+        1 => ", and less for one other kind of block".into(),
+        others => format!(", and less for {others} other kinds of blocks"),
     };
     let message =
         format!("lumped masses have too large an inertia of rotation: by {}{others}", named.join(", "));

@@ -32,7 +32,7 @@ pub fn warning(loaded: &LoadedScene, blocks: &BlockSet) -> Option<Diagnostic> {
         "coordinates are so large that {lost} of 16 digits are lost: they are rounded by {rounding:.0e} of the smallest block"
     );
     let mut found =
-        loaded.diagnose(path, message).with_help("count coordinates from a point near the blocks");
+        loaded.diagnose(path, message).with_help("move the origin of coordinates near the blocks");
     (found.code, found.severity) = (Code::Inexact, Severity::Warning);
     Some(found)
 }

@@ -95,7 +95,7 @@ impl fmt::Display for Advice {
             }
             _ => write!(
                 f,
-                "{verdict}: contact stability number {to:.2} (limit {bound}) at block {block}; largest safe time step {step_s:.1e} s."
+                "{verdict}: contact stability number {to:.2} (limit {bound}) at block `{block}`; largest safe time step {step_s:.1e} s."
             )?,
         }
         match to {

@@ -64,6 +64,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
         label,
         slow_error_m_s: verdict::slow_error_m_s(simulation),
         steps: simulation.state().step,
+        unsettled_steps: None,
         step_s: simulation.step_s(),
         chosen: ending.chosen,
         end_s: simulation.time_s(),
@@ -127,7 +128,7 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
     {
         let step_s = simulation.step_s() * bound / worst.max_h;
         advice.push(format!(
-            "h = ω_c Δt reached {:.2}, bound {bound}: contact may be unstable; step_s = {step_s:.1e} would be safe",
+            "the contact stability number reached {:.2}, limit {bound}: contact may be unstable; step_s = {step_s:.1e} would be safe",
             worst.max_h
         ));
     }
@@ -141,27 +142,21 @@ fn advice(simulation: &Simulation, scene: &Scene) -> Vec<String> {
     }
     if worst.iterations_max > 0 {
         advice.push(format!(
-            "contact was solved for with at most {} evaluations in a step",
+            "Newton's method for contact took at most {} evaluations in a step",
             worst.iterations_max
         ));
     }
     if matches!(scene.time.integrator, Integrator::Newmark { .. }) && worst.max_h > 0.0 {
         let restitution = (std::f64::consts::FRAC_PI_4 * worst.max_h).exp();
         advice.push(format!(
-            "Newmark takes contact at the previous positions, which adds energy at every Δt: restitution up to \
-             {restitution:.4} at h = {:.3}; Midpoint does not",
+            "Newmark takes contact at the previous positions, which adds energy at every Δt: blocks rebound with up to \
+             {restitution:.4} of their speed at a contact stability number of {:.3}; use Midpoint, which does not",
             worst.max_h
-        ));
-    }
-    if worst.max_penetration_ratio > 0.05 {
-        advice.push(format!(
-            "penetration reached {:.1} % of an element size: raise penalty_pa",
-            100.0 * worst.max_penetration_ratio
         ));
     }
     if worst.energy_gain > 0.01 {
         advice.push(format!(
-            "{:.2} % of the energy came from nowhere: reduce step_s",
+            "numerical error added {:.2} % to the energy: reduce step_s",
             100.0 * worst.energy_gain
         ));
     }

@@ -3,6 +3,7 @@
 use ndda_io::summary::{Course, Judgement, LabelWord, Motion, StageEnd, Summary, Verdict};
 
 use crate::columns::columns;
+use crate::numbers::counted;
 
 /// The first answers: whether the result is to be trusted, what moved, the error against a closed form, and the
 /// checks that failed.
@@ -28,14 +29,21 @@ pub fn ending(summary: &Summary) -> String {
         |(_, verdict): &&(String, Verdict)| matches!(verdict.verdict, Judgement::Warn | Judgement::Fail);
     let bad: Vec<_> = summary.verdicts.0.iter().filter(failed).collect();
     let passed = summary.verdicts.0.iter().filter(|(_, v)| v.verdict == Judgement::Pass).count();
-    if bad.is_empty() {
+    if bad.is_empty() && passed > 0 {
         text.push_str(&format!("{passed} checks passed\n"));
-    } else {
+    } else if !bad.is_empty() {
         text.push_str(&format!(
             "{passed} checks passed, {} did not:\n{}\n",
             bad.len(),
             verdict_table(bad.into_iter())
         ));
+    }
+    if let Some(steps) = summary.unsettled_steps {
+        text.push_str(&format!(
+            "{steps} steps of settling, time has not begun, in {:.2} s\n",
+            summary.wall_s
+        ));
+        return text;
     }
     text.push_str(&format!(
         "{} steps of {:e} s to t = {} s in {:.2} s\n",
@@ -65,7 +73,7 @@ pub fn time(time_s: f64) -> f64 {
 }
 
 /// Which blocks moved, and how far.
-fn moved(motion: &Motion) -> String {
+pub fn moved(motion: &Motion) -> String {
     let Motion { can_move, moved, farthest, farthest_m, speed_m_s, course } = motion;
     let course = match course {
         Course::AtRest => "at rest".to_string(),
@@ -73,11 +81,12 @@ fn moved(motion: &Motion) -> String {
         Course::Accelerating => format!("still accelerating, {}", speed(*speed_m_s)),
     };
     // A large block may go far by less than what counts.
-    let by = if *moved == 0 { " by more than 1 % of their radius" } else { "" };
-    format!(
-        "{moved} of {can_move} blocks moved{by}; farthest `{farthest}`: {} at the end, {course}\n",
-        length(*farthest_m)
-    )
+    let many = match (moved, can_move) {
+        (0, 0..2) => "no block moved by more than 1 % of its radius".into(),
+        (0, _) => format!("none of {can_move} blocks moved by more than 1 % of its radius"),
+        _ => format!("{moved} of {} moved", counted(*can_move, "block", "blocks")),
+    };
+    format!("{many}; farthest `{farthest}`: {} at the end, {course}\n", length(*farthest_m))
 }
 
 /// A speed in m/s, or in a smaller unit if it is below a centimetre in a second.
@@ -86,7 +95,7 @@ fn speed(speed_m_s: f64) -> String {
 }
 
 /// A length in a unit that suits it.
-fn length(length_m: f64) -> String {
+pub fn length(length_m: f64) -> String {
     match length_m {
         l if l >= 1.0 => format!("{} m", figures(l)),
         l if l >= 1e-3 => format!("{} mm", figures(1e3 * l)),
@@ -125,17 +134,17 @@ pub fn text(summary: &Summary) -> String {
     let mut text = format!("{}: {}\n", summary.scene, summary.title);
     let speed = summary.steps as f64 / summary.wall_s;
     text.push_str(&format!(
-        "{} steps of {:e} s to t = {} s in {:.2} s ({speed:.0} steps/s, {} thread(s)); {} blocks, {} tets, {} dofs, \
-         {} factor(s)\n",
+        "{} steps of {:e} s to t = {} s in {:.2} s ({speed:.0} steps/s, {}); {}, {}, \
+         {}, {}\n",
         summary.steps,
         summary.step_s,
         time(summary.end_s),
         summary.wall_s,
-        summary.threads,
-        summary.counts.blocks,
-        summary.counts.tets,
-        summary.counts.dofs,
-        summary.counts.factors,
+        counted(summary.threads, "thread", "threads"),
+        counted(summary.counts.blocks, "block", "blocks"),
+        counted(summary.counts.tets, "tetrahedron", "tetrahedra"),
+        counted(summary.counts.dofs, "unknown", "unknowns"),
+        counted(summary.counts.factors, "factored matrix", "factored matrices"),
     ));
     let verdicts = verdict_table(summary.verdicts.0.iter());
     for part in [stage_table(summary), verdicts, monitor_table(summary), block_table(summary)] {

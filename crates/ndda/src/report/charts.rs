@@ -3,12 +3,15 @@
 use ndda_io::results::Table;
 use serde::Serialize;
 
+use super::motion::Motion;
 use crate::field::split_unit;
 
 /// Rows of a history that a page holds; longer ones are thinned.
 const MOST_ROWS: usize = 2000;
 /// Monitors that have curves.
 const MOST_MONITORS: usize = 12;
+/// Blocks whose displacement has a curve.
+const MOST_BLOCKS: usize = 6;
 const TIME: &str = "time_s";
 
 /// Curves of a page.
@@ -29,6 +32,9 @@ pub struct Chart {
     pub title: String,
     unit: &'static str,
     is_log: bool,
+    /// Its own times [s], where they are not those of the history.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time_s: Option<Vec<f64>>,
     curves: Vec<Curve>,
 }
 
@@ -77,7 +83,7 @@ impl Charts {
                 Some(chart) => chart.curves.push(curve),
                 None => {
                     let Place { title, unit, is_log, .. } = place;
-                    charts.push(Chart { title, unit, is_log, curves: vec![curve] });
+                    charts.push(Chart { title, unit, is_log, time_s: None, curves: vec![curve] });
                 }
             }
         }
@@ -88,6 +94,29 @@ impl Charts {
         }
         charts.sort_by_key(|chart| rank(&chart.title));
         Self { time_s: kept.iter().map(|&row| history.columns[time][row]).collect(), charts, notes }
+    }
+}
+
+impl Charts {
+    /// With the displacements of the blocks that went farthest, by the frames of a run.
+    pub fn with_motion(mut self, motion: Option<&Motion>, block_names: &[&str]) -> Self {
+        let Some(motion) = motion else { return self };
+        let mut blocks = motion.displacements();
+        let end = |curve: &[f32]| curve.iter().copied().fold(0.0, f32::max);
+        blocks.sort_by(|a, b| end(&b.1).total_cmp(&end(&a.1)).then(a.0.cmp(&b.0)));
+        let moved = blocks.into_iter().take(MOST_BLOCKS).filter(|(_, curve)| end(curve) > 0.0);
+        let curves: Vec<Curve> = moved
+            .map(|(block, values)| Curve {
+                label: block_names.get(block).map_or_else(|| format!("block {block}"), ToString::to_string),
+                values,
+            })
+            .collect();
+        if !curves.is_empty() {
+            let title = "Displacement of the blocks that went farthest".into();
+            let time_s = Some(motion.times_s.clone());
+            self.charts.insert(0, Chart { title, unit: "m", is_log: false, time_s, curves });
+        }
+        self
     }
 }
 
@@ -111,7 +140,12 @@ fn rank(title: &str) -> usize {
 
 fn place(name: &str) -> Place {
     if name == "h" {
-        return Place { title: "h = ω_c Δt of contact".into(), label: "h".into(), unit: "", is_log: false };
+        return Place {
+            title: "Contact stability number".into(),
+            label: "h".into(),
+            unit: "",
+            is_log: false,
+        };
     }
     let (words, unit) = split_unit(name);
     let (title, label) = match words.rsplit_once('.') {

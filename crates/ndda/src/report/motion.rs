@@ -143,19 +143,42 @@ impl Motion {
 
     /// Farthest that a node of each block was from where it began [m].
     fn largest_motions(&self) -> Vec<f64> {
-        let step = f64::from(self.moved.largest - self.moved.least) / f64::from(u16::MAX);
-        let metres = |code: u16| f64::from(self.moved.least) + step * f64::from(code);
         let mut largest = vec![0.0; self.surface.block_count()];
         for frame in &self.moved.frames {
-            for (corners, &block) in self.surface.triangles.iter().zip(&self.surface.blocks) {
-                for &node in corners {
-                    let u = &frame[3 * node as usize..][..3];
-                    let length = Vec3::new(metres(u[0]), metres(u[1]), metres(u[2])).norm();
-                    largest[block as usize] = f64::max(largest[block as usize], length);
-                }
-            }
+            let now = self.farthest_nodes(frame);
+            largest
+                .iter_mut()
+                .zip(now)
+                .for_each(|(largest, now): (&mut f64, f64)| *largest = largest.max(now));
         }
         largest
+    }
+
+    /// How far the farthest node of each block that moves is from where it began [m], with the block's number, frame by frame.
+    pub fn displacements(&self) -> Vec<(usize, Vec<f32>)> {
+        let frames: Vec<Vec<f64>> =
+            self.moved.frames.iter().map(|frame| self.farthest_nodes(frame)).collect();
+        let of_block = |block: usize| frames.iter().map(|frame| frame[block] as f32).collect();
+        let blocks: Vec<(usize, Vec<f32>)> =
+            (0..self.surface.block_count()).map(|block| (block, of_block(block))).collect();
+        let most = |curve: &[f32]| curve.iter().copied().fold(0.0f32, f32::max);
+        let farthest = blocks.iter().map(|(_, curve)| most(curve)).fold(0.0, f32::max);
+        blocks.into_iter().filter(|(_, curve)| most(curve) >= STILL as f32 * farthest).collect()
+    }
+
+    /// How far the farthest node of each block is in a frame from where it began [m].
+    fn farthest_nodes(&self, frame: &[u16]) -> Vec<f64> {
+        let step = f64::from(self.moved.largest - self.moved.least) / f64::from(u16::MAX);
+        let metres = |code: u16| f64::from(self.moved.least) + step * f64::from(code);
+        let mut farthest = vec![0.0; self.surface.block_count()];
+        for (corners, &block) in self.surface.triangles.iter().zip(&self.surface.blocks) {
+            for &node in corners {
+                let u = &frame[3 * node as usize..][..3];
+                let length = Vec3::new(metres(u[0]), metres(u[1]), metres(u[2])).norm();
+                farthest[block as usize] = f64::max(farthest[block as usize], length);
+            }
+        }
+        farthest
     }
 }
 

@@ -1,7 +1,7 @@
 //! The page: its skeleton, and the scripts and numbers in it. `maud` escapes every text that comes from a scene.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
-use ndda_io::summary::StageEnd;
+use ndda_io::summary::{StageEnd, Summary};
 use serde::Serialize;
 
 use super::certificate;
@@ -14,11 +14,12 @@ const STYLES: [&str; 2] =
     [include_str!("../../assets/vendor/uplot.min.css"), include_str!("../../assets/report/report.css")];
 const DRAWING: [&str; 2] =
     [include_str!("../../assets/vendor/uplot.min.js"), include_str!("../../assets/report/charts.js")];
-const BLOCKS: [&str; 4] = [
+const BLOCKS: [&str; 5] = [
     include_str!("../../assets/vendor/three.min.js"),
     include_str!("../../assets/report/motion.js"),
     include_str!("../../assets/report/colours.js"),
     include_str!("../../assets/report/viewer.js"),
+    include_str!("../../assets/report/overlay.js"),
 ];
 const MAIN: &str = include_str!("../../assets/report/main.js");
 /// A page that requires nothing from anywhere.
@@ -28,6 +29,7 @@ const POLICY: &str =
 /// Data of the scripts beside the numbers of the motion.
 #[derive(Serialize)]
 struct Data<'a> {
+    title: &'a str,
     charts: &'a Charts,
     motion: Option<super::motion::Description>,
     block_names: Vec<&'a str>,
@@ -36,10 +38,10 @@ struct Data<'a> {
 /// The whole page.
 pub fn page(input: &Input, motion: Option<&Motion>) -> String {
     let summary = &input.summary;
-    let charts = Charts::new(&input.history);
+    let charts = Charts::new(&input.history).with_motion(motion, &names_of(summary));
     let (description, numbers) = motion.map(Motion::describe).unzip();
-    let block_names = summary.blocks.0.iter().map(|(name, _)| name.as_str()).collect();
-    let data = json(&Data { charts: &charts, motion: description, block_names });
+    let (title, block_names) = (summary.title.as_str(), names_of(summary));
+    let data = json(&Data { title, charts: &charts, motion: description, block_names });
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -47,15 +49,17 @@ pub fn page(input: &Input, motion: Option<&Motion>) -> String {
             body {
                 (sections::header(summary))
                 main {
+                    (sections::outcome(summary))
                     (sections::warnings(summary))
                     div.columns {
                         div.wide { (stage(input, motion)) }
-                        div.narrow { (sections::facts(summary)) (sections::verdicts(summary)) }
+                        div.narrow { (sections::farthest(summary)) (sections::facts(summary)) }
                     }
                     (certificate::certificate(input.certificate.as_ref(), summary))
                     (curves(&charts))
                     div.columns.even { (sections::stages(summary)) (sections::monitors(summary)) }
                     (sections::construction(summary))
+                    (sections::verdicts(summary))
                     (sections::blocks(summary))
                 }
                 (sections::footer(summary))
@@ -70,7 +74,7 @@ pub fn page(input: &Input, motion: Option<&Motion>) -> String {
 pub fn viewer(title: &str, block_names: &[String], motion: &Motion) -> String {
     let (description, numbers) = motion.describe();
     let block_names = block_names.iter().map(String::as_str).collect();
-    let data = json(&Data { charts: &Charts::default(), motion: Some(description), block_names });
+    let data = json(&Data { title, charts: &Charts::default(), motion: Some(description), block_names });
     let page = html! {
         (DOCTYPE)
         html lang="en" {
@@ -82,6 +86,10 @@ pub fn viewer(title: &str, block_names: &[String], motion: &Motion) -> String {
         }
     };
     page.into_string()
+}
+
+fn names_of(summary: &Summary) -> Vec<&str> {
+    summary.blocks.0.iter().map(|(name, _)| name.as_str()).collect()
 }
 
 fn head(title: &str) -> Markup {
@@ -143,10 +151,13 @@ fn player(motion: &Motion, all: usize, stages: &[StageEnd]) -> Markup {
                         }
                     }
                 }
+                label { input #paths type="checkbox"; " Paths of block centres" }
+                label { input #whole type="checkbox"; " Whole model" }
                 span.views {
                     @for (view, name) in [("iso", "3D"), ("front", "Front"), ("side", "Side"), ("top", "Top")] {
                         button type="button" data-view=(view) { (name) }
                     }
+                    button #save type="button" { "Save picture" }
                 }
             }
             div #view tabindex="0" aria-label="Blocks in 3D: drag to turn, wheel to zoom, right button to shift" {

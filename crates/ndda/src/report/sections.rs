@@ -1,15 +1,21 @@
 //! The parts of the page that are text: what was run, what became of it, what it cost.
 
 use maud::{Markup, html};
-use ndda_io::summary::{Judgement, LabelWord, StageEnd, Status, Summary, Verdict};
+use ndda_io::summary::{BlockEnd, Judgement, LabelWord, StageEnd, Status, Summary, Verdict};
 
+use crate::frames::STILL;
+use crate::judge::table;
+use crate::numbers::counted;
+
+/// Blocks that are listed beside the picture.
+const MOST_FARTHEST: usize = 8;
 /// Blocks that are listed; a table of more is no help.
 const MOST_BLOCKS: usize = 200;
 
 /// Title and badges.
 pub fn header(summary: &Summary) -> Markup {
     let count = |wanted: Judgement| summary.verdicts.0.iter().filter(|(_, v)| v.verdict == wanted).count();
-    let (warned, failed) = (count(Judgement::Warn), count(Judgement::Fail));
+    let (passed, warned, failed) = (count(Judgement::Pass), count(Judgement::Warn), count(Judgement::Fail));
     html! {
         header {
             div {
@@ -18,12 +24,16 @@ pub fn header(summary: &Summary) -> Markup {
             }
             p.badges {
                 (status(summary))
-                @if failed > 0 { span.badge.fail { (failed) " beyond the limit" } }
-                @if warned > 0 { span.badge.warn { (warned) " to look at" } }
                 (label(summary))
-                @if failed + warned == 0 { span.badge.pass { "invariants hold" } }
+                @if failed + warned > 0 {
+                    span class={ "badge " (if failed > 0 { "fail" } else { "warn" }) } {
+                        (counted(failed + warned, "check", "checks")) " beyond " (if failed + warned == 1 { "its limit" } else { "their limits" })
+                    }
+                } @else if passed > 0 {
+                    span.badge.pass { (counted(passed, "check", "checks")) " passed" }
+                }
                 @if let Some(reference) = &summary.reference {
-                    span.badge.info { "error " (format!("{:.1e}", reference.error_end)) }
+                    span.badge.info { "error against the closed form " (format!("{:.1e}", reference.error_end)) }
                 }
             }
         }
@@ -57,10 +67,51 @@ pub fn warnings(summary: &Summary) -> Markup {
     html! {
         @if let Some(cause) = &summary.stopped_by { p.alert.fail { strong { "Stopped " } (cause) } }
         @if matches!(summary.label.word, LabelWord::Sensitive | LabelWord::Inaccurate) {
-            @for reason in &summary.label.reasons { p.alert.warn { strong { "Inaccurate " } (reason) } }
+            @let word = if summary.label.word == LabelWord::Sensitive { "Sensitive " } else { "Inaccurate " };
+            @for reason in &summary.label.reasons { p.alert.warn { strong { (word) } (reason) } }
         }
         @for warning in &summary.warnings { p.alert.warn { (warning) } }
     }
+}
+
+/// Which blocks moved.
+pub fn outcome(summary: &Summary) -> Markup {
+    let moved = summary.motion.as_ref().map(table::moved);
+    html! { @if let Some(moved) = moved { p.outcome { (moved.trim_end().replace('`', "")) } } }
+}
+
+/// The blocks that went farthest, if any did.
+pub fn farthest(summary: &Summary) -> Markup {
+    let blocks = by_distance(summary);
+    let farthest_m = blocks.first().map_or(0.0, |(_, end)| end.motion.farthest_m);
+    let moves = |end: &BlockEnd| end.motion.farthest_m > 0.0 && end.motion.farthest_m >= STILL * farthest_m;
+    let first: Vec<_> = blocks.into_iter().take(MOST_FARTHEST).filter(|(_, end)| moves(end)).collect();
+    html! {
+        @if !first.is_empty() {
+            section.card {
+                h2 { "Blocks that went farthest" }
+                table {
+                    thead { tr { th { "" } th.number { "farthest point" } th.number { "rotation" } } }
+                    tbody {
+                        @for (name, end) in first {
+                            tr {
+                                td { (name) }
+                                td.number { (table::length(end.motion.farthest_m)) }
+                                td.number { (format!("{:.2}°", end.motion.rotation_deg)) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Blocks, the farthest first.
+fn by_distance(summary: &Summary) -> Vec<&(String, BlockEnd)> {
+    let mut blocks: Vec<_> = summary.blocks.0.iter().collect();
+    blocks.sort_by(|a, b| b.1.motion.farthest_m.total_cmp(&a.1.motion.farthest_m));
+    blocks
 }
 
 /// Facts of the run.
@@ -70,10 +121,17 @@ pub fn facts(summary: &Summary) -> Markup {
     let mut rows = vec![
         ("Simulated", format!("{} s", number(summary.end_s))),
         ("Steps", format!("{} of {} s", grouped(summary.steps as usize), number(summary.step_s))),
-        ("Run", format!("{} on {} thread(s)", seconds(summary.wall_s), summary.threads)),
+        ("Run", format!("{} on {}", seconds(summary.wall_s), counted(summary.threads, "thread", "threads"))),
         ("Speed", format!("{} steps/s", grouped(speed.round() as usize))),
         ("Blocks", format!("{}, {} tetrahedra", grouped(counts.blocks), grouped(counts.tets))),
-        ("Unknowns", format!("{}, {} factor(s)", grouped(counts.dofs), grouped(counts.factors))),
+        (
+            "Unknowns",
+            format!(
+                "{} in {}",
+                grouped(counts.dofs),
+                counted(counts.factors, "factored matrix", "factored matrices")
+            ),
+        ),
         ("Contact", format!("{} pairs at most", grouped(counts.contact_pairs_max))),
     ];
     if let Some(reference) = &summary.reference {
@@ -99,17 +157,21 @@ pub fn facts(summary: &Summary) -> Markup {
 pub fn verdicts(summary: &Summary) -> Markup {
     let shown = |value: Option<f64>| value.map_or(String::new(), brief);
     html! {
-        section.card {
-            h2 { "Invariants" }
-            table {
-                thead { tr { th { "" } th.number { "worst" } th.number { "limit" } th { "" } } }
-                tbody {
-                    @for (name, verdict) in &summary.verdicts.0 {
-                        tr {
-                            td { (name) }
-                            td.number { (shown(verdict.value)) }
-                            td.number { (shown(verdict.limit)) }
-                            td { (judgement(verdict)) }
+        @if !summary.verdicts.0.is_empty() {
+            section.card.checks {
+                h2 { "Checks of the run" }
+                div.scroll {
+                    table {
+                        thead { tr { th { "" } th.number { "largest value" } th.number { "limit" } th { "" } } }
+                        tbody {
+                            @for (name, verdict) in &summary.verdicts.0 {
+                                tr {
+                                    td { (name) }
+                                    td.number { (shown(verdict.value)) }
+                                    td.number { (shown(verdict.limit)) }
+                                    td { (judgement(verdict)) }
+                                }
+                            }
                         }
                     }
                 }
@@ -169,7 +231,7 @@ pub fn stages(summary: &Summary) -> Markup {
     let share = |s: f64| if summary.wall_s > 0.0 { 100.0 * s / summary.wall_s } else { 0.0 };
     html! {
         section.card {
-            h2 { "Where the time went" }
+            h2 { "Computing time" }
             table.shares {
                 tbody {
                     @for (name, s) in &summary.stages_s.0 {
@@ -220,21 +282,32 @@ pub fn blocks(summary: &Summary) -> Markup {
             div.scroll {
                 table {
                     thead {
-                        tr { th { "" } th.number { "mass [kg]" } th.number { "velocity [m/s]" } th.number { "volume / at rest" } }
+                        tr {
+                            th { "" }
+                            th.number { "displacement [m]" }
+                            th.number { "farthest point" }
+                            th.number { "largest" }
+                            th.number { "rotation" }
+                            th.number { "velocity [m/s]" }
+                            th.number { "mass [kg]" }
+                        }
                     }
                     tbody {
-                        @for (name, end) in summary.blocks.0.iter().take(MOST_BLOCKS) {
+                        @for (name, end) in by_distance(summary).into_iter().take(MOST_BLOCKS) {
                             tr {
                                 td { (name) }
-                                td.number { (number(end.mass)) }
+                                td.number { (triple(&end.motion.displacement_m)) }
+                                td.number { (table::length(end.motion.farthest_m)) }
+                                td.number { (table::length(end.motion.largest_m)) }
+                                td.number { (format!("{:.2}°", end.motion.rotation_deg)) }
                                 td.number { (triple(&end.velocity)) }
-                                td.number { (format!("{:.9}", end.volume_ratio)) }
+                                td.number { (number(end.mass)) }
                             }
                         }
                     }
                 }
             }
-            @if all > MOST_BLOCKS { p.note { "The first " (MOST_BLOCKS) " of " (all) "; summary.json has them all." } }
+            @if all > MOST_BLOCKS { p.note { "The " (MOST_BLOCKS) " of " (all) " blocks that went farthest; summary.json has them all." } }
         }
     }
 }

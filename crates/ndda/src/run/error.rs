@@ -10,7 +10,7 @@ pub enum RunError {
     #[error("stopped [{}] {}", .0.code(), .0)]
     Settling(StepError),
     /// Somebody asked the run to end before its first step.
-    #[error("interrupted while the scene settled: run it again")]
+    #[error("interrupted while the scene settled")]
     InterruptedWhileSettling,
     /// A result cannot be written.
     #[error(transparent)]
@@ -18,7 +18,7 @@ pub enum RunError {
 }
 
 /// A numerical stop in words, after its code.
-fn stop(error: &StepError) -> String {
+pub(super) fn stop(error: &StepError) -> String {
     format!("[{}] {error}", error.code())
 }
 

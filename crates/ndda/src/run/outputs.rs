@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use ndda_io::scene::Scene;
 use ndda_io::table::Table;
 use ndda_io::{OutputFolder, WriteError, checkpoint};
-use ndda_solver::{Simulation, Sink, SinkError, Snapshot, View};
+use ndda_solver::{Settling, Simulation, Sink, SinkError, Snapshot, View};
 use serde::{Deserialize, Serialize};
 
 use super::bolts::{BoltTable, SavedBolts};
@@ -24,17 +24,19 @@ use crate::judge::reference::{self, Comparison};
 
 /// Everything that `ndda resume` needs.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct SavedRun<S = Snapshot> {
+pub struct SavedRun<S = Snapshot, W = Settling> {
     /// The scene.
     pub identity: Identity,
     /// State and ledger.
     pub snapshot: S,
-    /// How far the outputs had come.
+    /// How far the outputs had come; they have not begun where the scene is still on its way to rest.
     pub earlier: Earlier,
+    /// The way to rest, before time begins.
+    pub settling: Option<W>,
 }
 
 /// State of the outputs of a run that is resumed.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Earlier {
     /// The history.
     pub recorder: SavedRecorder,
@@ -69,6 +71,8 @@ pub struct Outputs<'a, 'b> {
     started: Instant,
     /// Raised when somebody asks the run to end.
     stop: Arc<AtomicBool>,
+    /// Whether there are checkpoints.
+    checkpoints: bool,
 }
 
 /// Files of a recorded run besides its history.
@@ -97,6 +101,8 @@ pub struct Course {
     pub started: Instant,
     /// Raised when somebody asks the run to end.
     pub stop: Arc<AtomicBool>,
+    /// Whether checkpoints are written.
+    pub checkpoints: bool,
 }
 
 /// Where a run is recorded, and how far it had come before.
@@ -112,7 +118,7 @@ impl<'a, 'b> Outputs<'a, 'b> {
         (monitors, comparison): (Vec<Monitor>, Option<Comparison>),
         place: Option<Place>,
         observers: &'a mut [&'b mut dyn Sink],
-        Course { steps, started, stop }: Course,
+        Course { steps, started, stop, checkpoints }: Course,
     ) -> Result<Self, WriteError> {
         let after_s = scene.reference.as_ref().map_or(0.0, |r| reference::kind(r).1);
         let stage_ends = stage_log::ends(scene);
@@ -164,7 +170,18 @@ impl<'a, 'b> Outputs<'a, 'b> {
         )?;
         let stage_names = scene.stages.iter().map(|stage| stage.name.clone()).collect();
         let stages = stage_log;
-        Ok(Self { recorder, stages, stage_names, stage_ends, files, observers, steps, started, stop })
+        Ok(Self {
+            recorder,
+            stages,
+            stage_names,
+            stage_ends,
+            files,
+            observers,
+            steps,
+            started,
+            stop,
+            checkpoints,
+        })
     }
 
     /// Closes the tables, and waits until fields are on the disk.
@@ -211,7 +228,7 @@ impl<'a, 'b> Outputs<'a, 'b> {
 
     /// Writes a checkpoint, and another one that is kept by the name of a stage that ends.
     fn write_checkpoint(&mut self, simulation: &Simulation, stage: Option<&str>) -> Result<(), WriteError> {
-        let Some(files) = &mut self.files else { return Ok(()) };
+        let Some(files) = self.files.as_mut().filter(|_| self.checkpoints) else { return Ok(()) };
         let started = Instant::now();
         let saved = SavedRun {
             identity: files.identity.clone(),
@@ -225,6 +242,7 @@ impl<'a, 'b> Outputs<'a, 'b> {
                 bolts: files.bolts.as_mut().map(BoltTable::save).transpose()?,
                 wall_s: files.earlier_s + self.started.elapsed().as_secs_f64(),
             },
+            settling: None::<Settling>,
         };
         checkpoint::write(&files.folder, &saved)?;
         if let Some(stage) = stage {

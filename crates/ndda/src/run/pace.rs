@@ -56,7 +56,7 @@ impl fmt::Display for Pace {
         let (depth, gain) = (100.0 * self.penetration_ratio, 100.0 * self.energy_gain);
         write!(
             f,
-            "t = {time_s:.4} s  {contacts} contacts  h = {h:.2}  depth {depth:.2} %  energy +{gain:.1e} %"
+            "t = {time_s:.4} s  {contacts} contacts  stability {h:.2}  penetration {depth:.2} %  energy error {gain:.1e} %"
         )
     }
 }

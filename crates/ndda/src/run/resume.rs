@@ -1,6 +1,7 @@
 //! A run from its last checkpoint.
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::{OutputFolder, WriteError, checkpoint, outside_files, read};
@@ -10,6 +11,7 @@ use super::Run;
 use super::identity::Identity;
 use super::outputs::SavedRun;
 use super::run_log;
+use super::settling::OnTheWay;
 use crate::build::Choices;
 use crate::places::name_of;
 use crate::{Model, model};
@@ -26,7 +28,7 @@ pub struct Resumed {
 #[derive(Debug, thiserror::Error)]
 pub enum ResumeError {
     /// The run has reached its end.
-    #[error("{} has run to its end: nothing to resume", .0.display())]
+    #[error("the run in {} has reached its end: there is nothing to resume", .0.display())]
     HasEnded(PathBuf),
     /// The folder, its checkpoints or the files of its scene cannot be used.
     #[error("{0}")]
@@ -67,10 +69,11 @@ impl Run {
         let loaded = read::load_text(&name, &saved.identity.text, &[], Some(meshes))?;
         let mut run = Self::new(Model::resuming_with(loaded, meshes, choices)?);
         // Killed between its last step and its summary, a run still owes the summary.
-        if saved.snapshot.state.step >= run.model.steps() && folder.summary().exists() {
+        let steps = run.model.steps();
+        if saved.settling.is_none() && saved.snapshot.state.step >= steps && folder.summary().exists() {
             return Err(ResumeError::HasEnded(folder.path().to_path_buf()));
         }
-        let SavedRun { identity, snapshot, earlier } = saved;
+        let SavedRun { identity, snapshot, earlier, settling } = saved;
         if earlier.stages.at > 0 {
             let (loaded, blocks) = (&run.model.loaded, run.model.simulation.blocks().clone());
             run.model.simulation = model::in_stage(loaded, meshes, blocks, earlier.stages.at)?;
@@ -79,7 +82,15 @@ impl Run {
         run.built = Some(run.model.simulation.snapshot());
         let restored = run.model.simulation.restore(snapshot);
         restored.map_err(|error| ResumeError::DoesNotFit(error.to_string()))?;
-        let run = run.record_as(identity, folder, Some(earlier))?;
+        let wall_s = earlier.wall_s;
+        run.on_the_way = settling.map(|settling| OnTheWay { settling, wall_s });
+        // Outputs begin when the scene is at rest.
+        let earlier = Some(earlier).filter(|_| run.on_the_way.is_none());
+        if earlier.is_none() {
+            let before = Duration::from_secs_f64(wall_s);
+            run.started = run.started.checked_sub(before).unwrap_or(run.started);
+        }
+        let run = run.record_as(identity, folder, earlier)?;
         Ok(Resumed { run, warnings })
     }
 }
@@ -91,7 +102,13 @@ impl Run {
     /// [`ResumeError`] when there is none that can be used.
     pub(crate) fn last_checkpoint(folder: &Path) -> Result<(Identity, Snapshot), ResumeError> {
         let folder = OutputFolder::open(folder)?;
-        let SavedRun { identity, snapshot, .. } = last_checkpoint(&folder, &mut Vec::new())?;
+        let SavedRun { identity, snapshot, settling, .. } = last_checkpoint(&folder, &mut Vec::new())?;
+        if settling.is_some() {
+            let folder = folder.path().display();
+            return Err(ResumeError::Unusable(format!(
+                "the run in {folder} was interrupted while its scene settled: `ndda resume {folder}` goes on with it"
+            )));
+        }
         Ok((identity, snapshot))
     }
 }

@@ -9,6 +9,7 @@ use ndda_io::{OutputFolder, WriteError};
 
 use super::identity::Identity;
 use crate::machine;
+use crate::numbers::counted;
 
 /// Text before the scene's fingerprint.
 const CRC32: &str = "CRC-32 of its text ";
@@ -52,7 +53,7 @@ impl RunLog {
         let (commit, rustc, features) = (machine::COMMIT, machine::RUSTC, machine::FEATURES);
         let now = humantime::format_rfc3339_seconds(SystemTime::now());
         self.line(&format!("ndda {version}, commit {commit}, {rustc}, features: {features}"))?;
-        self.line(&format!("{now}, {} on {threads} thread(s)", machine::processor()))?;
+        self.line(&format!("{now}, {} on {}", machine::processor(), counted(threads, "thread", "threads")))?;
         let crc32 = identity.crc32();
         self.line(&format!("scene {}, {CRC32}{crc32:08x}:", identity.file.display()))?;
         self.block(&identity.text)

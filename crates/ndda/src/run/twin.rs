@@ -13,6 +13,8 @@ use ndda_mesh::{BlockId, TetId, Vec3};
 use ndda_solver::{BodyKind, Settle, Simulation, Snapshot, StepError};
 
 use super::unless_stopped;
+use crate::judge::table::length;
+use crate::numbers::counted;
 
 /// Whether a twin of the run is run after it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -98,7 +100,7 @@ pub(super) fn judge(
         Ok(None) if stop.load(Ordering::Relaxed) => {
             summary
                 .warnings
-                .push("the twin was interrupted: whether the motion is sensitive is not known".into());
+                .push("the second run, which shows whether the motion is sensitive, was interrupted: this is not known".into());
         }
         Ok(None) => {}
         Ok(Some(parted)) => {
@@ -106,7 +108,8 @@ pub(super) fn judge(
             summary.status = if strict { Status::Failed } else { summary.status };
         }
         Err(error) => {
-            let reason = format!("a twin with other velocities, by 1e-4 of the largest speed, stops {error}");
+            let reason =
+                format!("a second run whose start differs by 1e-4 of the largest speed stops {error}");
             summary.label = Label { word: LabelWord::Sensitive, reasons: vec![reason] };
             summary.status = if strict { Status::Failed } else { summary.status };
         }
@@ -121,8 +124,10 @@ impl fmt::Display for Parted {
         let Self { block, apart_m, blocks } = self;
         write!(
             f,
-            "velocities that differ by 1e-4 of the largest speed at the start bring {blocks} block(s) elsewhere, `{block}` by {apart_m:.2e} m; \
-             use statistics of several runs (ndda certify), not the positions of single blocks"
+            "a start that differs by 1e-4 of the largest speed ends elsewhere: {} differ, `{block}` by {}; believe the \
+             overall behaviour or statistics of several runs (ndda certify), not the positions of single blocks",
+            counted(*blocks, "block", "blocks"),
+            length(*apart_m)
         )
     }
 }

@@ -84,5 +84,5 @@ pub(super) fn read(record: &Record) -> Result<Prepared, ShakingError> {
         pairs.map(|(t, v)| (0.5 * (t[0] + t[1]), record.factor * (v[1] - v[0]) / (t[1] - t[0]))).collect();
     let peak = rows.iter().map(|row| row.1.abs()).fold(0.0, f64::max);
     let told = format!("{}: {column}, {} rows; peak {peak:.4} m/s²", file.display(), rows.len());
-    Ok(Prepared { rows, told })
+    Ok(Prepared { rows, told, gap: None })
 }

@@ -203,12 +203,12 @@ fn key(
     if let Some(checks) = stereonet.checks {
         line(svg, &|svg, at| svg.ring(at, 6.0, 1.6, FACE, ""), "plane that may slide or topple");
         line(svg, &|_, _| (), "");
-        for (name, count) in [
-            ("plane sliding", checks.plane_sliding),
-            ("wedge sliding", checks.wedge_sliding),
-            ("flexural toppling", checks.flexural_toppling),
+        for (name, count, of) in [
+            ("plane sliding on", checks.plane_sliding, "planes"),
+            ("wedge sliding along", checks.wedge_sliding, "lines"),
+            ("toppling on", checks.flexural_toppling, "planes"),
         ] {
-            line(svg, &|_, _| (), &format!("{name}: {count}"));
+            line(svg, &|_, _| (), &format!("{name} {}", count.of_all(of)));
         }
     }
 }

@@ -16,11 +16,12 @@ impl fmt::Display for Orientation {
     }
 }
 
-impl fmt::Display for Count {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+impl Count {
+    /// How many of all are critical: `3 of 10 planes (30 %)`.
+    pub(super) fn of_all(&self, what: &str) -> String {
         let Self { critical, of } = self;
         let part = 100.0 * *critical as f64 / (*of).max(1) as f64;
-        write!(f, "{critical} of {of} ({part:.0} %)")
+        format!("{critical} of {of} {what} ({part:.0} %)")
     }
 }
 
@@ -32,18 +33,18 @@ impl fmt::Display for Stereonet {
         writeln!(f, "{}", columns(header.to_vec(), rows))?;
         if self.sets.len() > listed.len() {
             let more = self.sets.len() - listed.len();
-            writeln!(f, "and {more} more sets of fewer planes or as many, which --json lists")?;
+            writeln!(f, "and {more} more sets with no more planes than these; --json lists all")?;
         }
         self.wedges_in_words(f)?;
         if let (Some(slope), Some(checks)) = (&self.slope, &self.checks) {
             let friction = match self.has_friction {
                 true => format!("friction {}°", slope.friction_deg),
-                false => "no --friction given, so of directions alone".into(),
+                false => "friction not considered (--friction is not given)".into(),
             };
-            writeln!(f, "slope {}, {friction}: directions that allow", slope.face)?;
-            writeln!(f, "  plane sliding      {} planes", checks.plane_sliding)?;
-            writeln!(f, "  wedge sliding      {} intersections", checks.wedge_sliding)?;
-            writeln!(f, "  flexural toppling  {} planes", checks.flexural_toppling)?;
+            writeln!(f, "slope {}, {friction}: possible by their directions are", slope.face)?;
+            writeln!(f, "  plane sliding      on {}", checks.plane_sliding.of_all("planes"))?;
+            writeln!(f, "  wedge sliding      along {}", checks.wedge_sliding.of_all("intersections"))?;
+            writeln!(f, "  flexural toppling  on {}", checks.flexural_toppling.of_all("planes"))?;
         }
         match &self.picture {
             Some(file) => write!(f, "{}", file.display()),
@@ -72,7 +73,7 @@ impl Stereonet {
         }
         match self.wedges.len() - wedges.len() {
             0 => Ok(()),
-            more => writeln!(f, "and {more} more intersections, which --json lists"),
+            more => writeln!(f, "and {more} more intersections; --json lists all"),
         }
     }
 }

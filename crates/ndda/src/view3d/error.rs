@@ -22,6 +22,12 @@ pub enum ViewError {
     /// A table of joints.
     #[error("{} is a table: `ndda stereonet {}` draws its planes", .0.display(), .0.display())]
     Table(PathBuf),
+    /// A scene without joints.
+    #[error("--color joint: {} has no block with a face on a joint: give its rock `joints`, or choose block or material", .0.display())]
+    NoJoints(PathBuf),
+    /// Colours of joints were requested of a run.
+    #[error("--color joint: the frames of a run do not hold the joints: name the scene file to see them")]
+    JointsOfRun,
     /// The folder has no frames.
     #[error(
         "{} holds no frames of blocks ({} is missing or empty): name the output folder of a run whose scene has output.frames above 0",
@@ -68,7 +74,7 @@ pub enum ViewError {
     },
     /// A scene before its run has no fields.
     #[error(
-        "--color {0}: a scene has no results before it is run: choose block or material, or name the output folder of a run"
+        "--color {0}: a scene has no results before it is run: choose block, material or joint, or name the output folder of a run"
     )]
     NoResults(String),
     /// Values of a scene are set in one that has run.

@@ -198,6 +198,7 @@ impl Source {
             Colour::Displacement => Ok(Self::Displacement),
             Colour::Velocity => of_array(VELOCITY, ": add Velocity to output.fields of the scene"),
             Colour::Stress => of_array("von Mises", ": add VonMises or Stress to output.fields of the scene"),
+            Colour::Joint => Err(ViewError::JointsOfRun),
             Colour::Field(name) => of_array(name, ""),
             Colour::Block => {
                 let of_block = (0..surface.block_count() as u32).collect();

@@ -1,9 +1,11 @@
 //! Blocks of a scene before any run.
 
+use std::collections::HashMap;
 use std::path::Path;
 
 use ndda_io::read;
 use ndda_io::results::{Array, FieldFrame};
+use ndda_io::scene::{Discontinuity, Scene};
 use ndda_mesh::BlockSet;
 
 use super::Colour;
@@ -25,6 +27,9 @@ pub fn read(file: &Path, overrides: &[String], colour: &Colour) -> Result<Film, 
         loaded.errors(diagnostics)
     })?;
     let scene = &loaded.scene;
+    if *colour == Colour::Joint {
+        return by_joint(scene, &blocks).ok_or_else(|| ViewError::NoJoints(file.to_path_buf()));
+    }
     let colouring = match colour {
         Colour::Block => by_block(&blocks, false),
         Colour::Material => Colouring::Groups {
@@ -50,6 +55,55 @@ pub fn of_blocks(title: &str, blocks: &BlockSet) -> Film {
 fn by_block(blocks: &BlockSet, with_resting: bool) -> Colouring {
     let of_block = (0..blocks.names.len() as u32).collect();
     Colouring::Groups { names: blocks.names.clone(), plural: "blocks", of_block, with_resting }
+}
+
+/// Names of the faces of a domain and of cells, which no joint made.
+const NO_JOINTS: [&str; 12] = [
+    "x_min", "x_max", "y_min", "y_max", "z_min", "z_max", "terrain", "base", "side", "start", "end", "cells",
+];
+
+/// The names of surfaces that joints made: those that the scene gives, and of tables of discs all that are no faces of the domain.
+fn is_joint(scene: &Scene, name: &str) -> bool {
+    let joints = || scene.rock.iter().flat_map(|rock| &rock.joints);
+    let has_table = joints().any(|joint| matches!(joint, Discontinuity::Discs { .. }));
+    joints().any(|joint| joint.name() == name)
+        || has_table && !NO_JOINTS.contains(&name) && !name.starts_with("side_")
+}
+
+/// Faces on joints, in a colour for each joint or set, in rock that is seen through where it hides them; none where no face is on a joint. The
+/// faces of each joint are what the picture takes for a block.
+fn by_joint(scene: &Scene, blocks: &BlockSet) -> Option<Film> {
+    let known = |surface: &u32| is_joint(scene, &blocks.surface_names[*surface as usize]);
+    let mut joints: Vec<u32> = blocks.triangle_surface.iter().flatten().copied().filter(known).collect();
+    joints.sort_unstable();
+    joints.dedup();
+    let sorted = |mut corners: [u32; 3]| {
+        corners.sort_unstable();
+        corners
+    };
+    let joint_of: HashMap<[u32; 3], u32> = blocks
+        .triangles
+        .iter()
+        .zip(&blocks.triangle_surface)
+        .filter_map(|(corners, surface)| {
+            let place = joints.binary_search(&(*surface)?).ok()?;
+            Some((sorted(corners.map(|node| node.0)), place as u32))
+        })
+        .collect();
+    let mut names: Vec<String> =
+        joints.iter().map(|&surface| blocks.surface_names[surface as usize].clone()).collect();
+    let rock = (!names.is_empty()).then_some(names.len() as u32)?;
+    names.push("rock".into());
+    let moves = (0..=rock).map(|part| part < rock).collect();
+    let of_block = (0..=rock).collect();
+    let colouring = Colouring::Groups { names, plural: "joints", of_block, with_resting: false };
+    let mut film = film(scene.title.clone(), blocks, colouring, moves);
+    let Surface { nodes, triangles, blocks: parts, .. } = &mut film.surface;
+    for (part, corners) in parts.iter_mut().zip(triangles.iter()) {
+        let corners = sorted(corners.map(|place| nodes[place as usize]));
+        *part = joint_of.get(&corners).copied().unwrap_or(rock);
+    }
+    Some(film)
 }
 
 fn film(title: String, blocks: &BlockSet, colouring: Colouring, moves: Vec<bool>) -> Film {

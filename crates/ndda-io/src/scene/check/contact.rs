@@ -11,7 +11,11 @@ impl Check<'_> {
         match &self.scene.contact {
             None if several => {
                 let help = "write `contact: Potential(penalty_pa: …)` or `contact: Off`";
-                self.misfit("contact", "more than one block, and no word on contact", help);
+                self.misfit(
+                    "contact",
+                    "the scene has several blocks and does not say whether they touch",
+                    help,
+                );
             }
             Some(Contact::Potential {
                 penalty_pa,
@@ -35,8 +39,8 @@ impl Check<'_> {
                     self.warn(
                         Code::NoEffect,
                         "contact",
-                        "one block has nothing to touch",
-                        "contact is left out of this run",
+                        "the scene has one block, so that contact has no effect",
+                        "leave out `contact`, or add blocks",
                     );
                 }
             }

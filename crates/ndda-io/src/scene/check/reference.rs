@@ -32,7 +32,7 @@ impl Check<'_> {
                 }
                 if slope_deg.to_radians().tan() <= friction_deg.to_radians().tan() {
                     let message = "the block does not slide: the closed form is 0 and has no relative error";
-                    self.misfit(path("friction_deg"), message, "compare a slope that is steeper than φ");
+                    self.misfit(path("friction_deg"), message, "choose slope_deg larger than friction_deg");
                 }
                 if let Some(thickness) = thickness_m {
                     self.positive(path("thickness_m"), *thickness, "m");

@@ -15,7 +15,7 @@ impl Check<'_> {
         self.names("stages", &names);
         self.names_apart_in_case(&names);
         if !matches!(scene.time.integrator, Integrator::Midpoint { .. }) {
-            let message = "remembers accelerations, which jump where blocks are taken out";
+            let message = "this integrator carries accelerations from step to step, and they jump when a stage takes blocks out";
             self.misfit("time.integrator", message, "use Midpoint() in a scene with stages");
         }
         if scene.reference.is_some() {
@@ -97,7 +97,7 @@ impl Check<'_> {
         if stage.laws.is_some() && !matches!(self.scene.contact, Some(Contact::Potential { .. })) {
             self.misfit(
                 path("laws"),
-                "there is no contact that they could be of",
+                "the scene has no contact whose laws could change",
                 "give contact: Potential(…)",
             );
         }

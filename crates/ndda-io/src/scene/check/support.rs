@@ -83,8 +83,9 @@ impl Check<'_> {
         let unseen = |i: &usize| times[i + 1] - times[i - 1] < step_s && turns_at(*i);
         if let Some(i) = (1..times.len().saturating_sub(1)).find(unseen) {
             let gap_s = times[i + 1] - times[i - 1];
-            let message = format!("turns back within {gap_s:.3e} s, less than a step of {step_s:.3e} s");
-            let help = "a step knows its mean only: reduce time.step_s to see what is between";
+            let message =
+                format!("the motion turns back within {gap_s:.3e} s, less than a step of {step_s:.3e} s");
+            let help = "a step follows its mean only: reduce time.step_s to follow it in full";
             self.warn(Code::Inexact, format!("{path}[{i}].time_s"), message, help);
         }
     }

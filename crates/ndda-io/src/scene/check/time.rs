@@ -60,7 +60,7 @@ impl Check<'_> {
                 self.error("time.contact_at.tolerance", message, "1e-8 is a step more than 1e-4");
             }
             if most_iterations == 0 {
-                let message = "no evaluation of contact at all";
+                let message = "0 evaluations of contact solve nothing";
                 self.error("time.contact_at.most_iterations", message, "100 is seldom reached");
             }
         }

@@ -47,7 +47,11 @@ impl Check<'_> {
             }
             Pressure::Least(fields) => {
                 if fields.is_empty() {
-                    self.error(path, "is the least of nothing", "give one linear pressure at least");
+                    self.error(
+                        path,
+                        "is an empty list, which has no least pressure",
+                        "give one linear pressure at least",
+                    );
                 }
                 for (i, field) in fields.iter().enumerate() {
                     self.numbers(&format!("{path}[{i}].pressure_pa"), &[field.pressure_pa]);

@@ -11,6 +11,7 @@ use ndda_mesh::cut::{
 use serde::Serialize;
 
 use crate::build::vec3;
+use crate::numbers::{counted, four_figures};
 
 /// Discs of a rock in numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,11 +43,18 @@ impl Discs {
 impl fmt::Display for Discs {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { discs, idle, cuts, ends_in_cut, left_whole, disc_m2, joint_m2 } = self;
+        let left_whole = match left_whole {
+            0 => "never".into(),
+            n => counted(*n, "time", "times"),
+        };
         write!(
             f,
-            "{discs} disc(s), {idle} of which cut nothing: {cuts} cut(s), {ends_in_cut} of them larger than the disc, which ends in the \
-             block; {left_whole} time(s) a disc ends in a block and leaves it whole; {disc_m2:.4e} m² of discs in the rock, {joint_m2:.4e} m² of \
-             joints"
+            "{}, {idle} of which cut nothing: {}, {ends_in_cut} of them larger than the disc, which ends in the \
+             block; {left_whole} a disc ends in a block and leaves it whole; {} m² of discs in the rock, {} m² of joints",
+            counted(*discs, "disc", "discs"),
+            counted(*cuts, "cut", "cuts"),
+            four_figures(*disc_m2),
+            four_figures(*joint_m2)
         )
     }
 }

@@ -1,0 +1,139 @@
+//! Bringing a scene to rest before time begins: with checkpoints on the way, and results where it ends on the way.
+
+use std::sync::atomic::Ordering;
+use std::time::{Duration, Instant};
+
+use ndda_io::summary::{Invariants, Label, LabelWord, Named, Summary};
+use ndda_io::{WriteError, checkpoint};
+use ndda_solver::{Settled, Settling, StepError, StepReport};
+
+use super::outputs::{Course, Earlier, Outputs, SavedRun};
+use super::{Recording, Run, RunError, error, write_results};
+use crate::judge::summary::{Ending, summarise};
+
+/// A scene that was on its way to rest when its run was interrupted.
+pub(super) struct OnTheWay {
+    pub settling: Settling,
+    /// Seconds that it had taken.
+    pub wall_s: f64,
+}
+
+/// How far a scene has come on its way to rest, in words.
+pub fn progress(settled: &Settled, tolerance: f64) -> String {
+    let Settled { steps, speed_ratio } = settled;
+    match *speed_ratio {
+        left if left <= tolerance => format!("settled in {steps} steps"),
+        left if left.is_finite() => {
+            format!("settling: {steps} steps, speed {left:.1e} of the largest, until {tolerance:e}")
+        }
+        _ => format!("settling: {steps} steps, speeds still rise"),
+    }
+}
+
+impl Run {
+    /// Steps of settling that the run has behind it, where it goes on before its first step.
+    pub fn settling_steps(&self) -> Option<u64> {
+        self.on_the_way.as_ref().map(|way| way.settling.settled().steps)
+    }
+
+    /// Brings the scene to rest, if it is to settle and has not yet.
+    pub(super) fn settle(&mut self, watch: &mut dyn FnMut(&Settled)) -> Result<(), RunError> {
+        let scene = &self.model.loaded.scene;
+        let Some(given) = scene.settle.filter(|_| !self.goes_on()) else { return Ok(()) };
+        let (settle, stop) = (crate::build::settle(given), self.stop.clone());
+        let every = Duration::from_secs_f64(scene.output.checkpoint_wall_s);
+        let writes = self.recording.is_some() && !every.is_zero();
+        let mut settling = match self.on_the_way.take() {
+            Some(way) => way.settling,
+            None => self.model.simulation.begin_to_settle(&settle),
+        };
+        loop {
+            let began = Instant::now();
+            let mut goes_on = |settled: &Settled| {
+                watch(settled);
+                match stop.load(Ordering::Relaxed) || writes && began.elapsed() >= every {
+                    true => std::ops::ControlFlow::Break(()),
+                    false => std::ops::ControlFlow::Continue(()),
+                }
+            };
+            match self.model.simulation.go_on_settling(&settle, &mut settling, &mut goes_on) {
+                Ok(true) => break,
+                Ok(false) => self.save_on_the_way(&settling)?,
+                Err(error) => {
+                    self.leave_unsettled(&settling, Some(&error))?;
+                    return Err(RunError::Settling(error));
+                }
+            }
+            if stop.load(Ordering::Relaxed) {
+                self.leave_unsettled(&settling, None)?;
+                return Err(RunError::InterruptedWhileSettling);
+            }
+        }
+        Ok(self.log_line(&progress(&settling.settled(), given.tolerance))?)
+    }
+
+    /// A checkpoint from which settling goes on.
+    fn save_on_the_way(&mut self, settling: &Settling) -> Result<(), WriteError> {
+        let Some(Recording { identity, folder, .. }) = &self.recording else { return Ok(()) };
+        let earlier = Earlier { wall_s: self.started.elapsed().as_secs_f64(), ..Earlier::default() };
+        let snapshot = self.model.simulation.snapshot_view();
+        let saved = SavedRun { identity: identity.clone(), snapshot, earlier, settling: Some(settling) };
+        checkpoint::write(folder, &saved)
+    }
+
+    /// Summary, history and frames of a run that ends before its scene has come to rest: how it was at the start, and how it is now. Their
+    /// times are those that the steps of settling would have taken.
+    fn leave_unsettled(&mut self, settling: &Settling, error: Option<&StepError>) -> Result<(), WriteError> {
+        let Some(Recording { identity, folder, mut log, .. }) = self.recording.take() else { return Ok(()) };
+        let (settled, started) = (settling.settled(), self.started);
+        let (loaded, simulation) = (&self.model.loaded, &mut self.model.simulation);
+        let monitors = std::mem::take(&mut self.model.monitors);
+        let course = Course { steps: settled.steps, started, stop: self.stop.clone(), checkpoints: false };
+        let place = Some((identity, folder.clone(), None));
+        let mut outputs =
+            Outputs::new((&loaded.scene, simulation), (monitors, None), place, &mut [], course)?;
+        let now = simulation.snapshot();
+        let states = self.built.take().into_iter().chain([now]);
+        for state in states {
+            simulation.restore(state).expect("it is of this simulation");
+            let report = StepReport::default();
+            match ndda_solver::show(simulation, settled.steps, &report, &mut [&mut outputs]) {
+                Ok(_) => {}
+                // A state whose contact cannot be computed, or that has numbers that are not finite, is not shown.
+                Err(failed) => drop(error::numerical_stop(failed)?),
+            }
+        }
+        outputs.flush()?;
+        let ending = Ending {
+            scene: &loaded.scene,
+            name: &self.name,
+            chosen: loaded.chosen.clone(),
+            stopped_by: error.map(error::stop),
+            interrupted: true,
+            wall_s: started.elapsed().as_secs_f64(),
+            threads: rayon::current_num_threads(),
+            stages: vec![("output".into(), outputs.output_s())],
+            warnings: loaded.warnings.iter().map(|w| w.message.clone()).collect(),
+            strict: false,
+            state_crc32: checkpoint::fingerprint(simulation.state()),
+        };
+        let mut summary = summarise(simulation, &outputs.recorder, ending);
+        summary.warnings.truncate(loaded.warnings.len());
+        unjudged(&mut summary, &progress(&settled, loaded.scene.settle.map_or(0.0, |s| s.tolerance)));
+        write_results(&folder, &loaded.scene.output, &summary, &mut log)
+    }
+}
+
+/// The way to rest is not judged: its energy is taken on purpose.
+fn unjudged(summary: &mut Summary, progress: &str) {
+    summary.unsettled_steps = Some(summary.steps);
+    (summary.steps, summary.end_s) = (0, 0.0);
+    summary.verdicts = Named(Vec::new());
+    let Invariants { max_penetration_ratio, max_h, .. } = summary.invariants;
+    summary.invariants = Invariants { max_penetration_ratio, max_h, ..Invariants::default() };
+    (summary.slow_error_m_s, summary.reference) = (None, None);
+    if summary.label.word != LabelWord::Stopped {
+        let reason = format!("the run ended before the scene had come to rest ({progress})");
+        summary.label = Label { word: LabelWord::Inaccurate, reasons: vec![reason] };
+    }
+}
