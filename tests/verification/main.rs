@@ -6,6 +6,7 @@ mod blast;
 mod block_on_a_slope;
 mod body_kinds;
 mod bolts;
+mod bolts_in_stages;
 mod bonded_bar;
 mod bonded_plate;
 mod bouncing_block;

@@ -188,21 +188,21 @@ pub fn simulation_with(
     folder: &Path,
     choices: Choices,
 ) -> Result<Simulation, Vec<Fault>> {
-    simulation_of(scene, blocks, folder, choices, &|_| {})
+    simulation_of(scene, blocks, folder, choices, (0, &|_| {}))
 }
 
-/// The same with bodies that are changed before they are built.
+/// The same in a stage of construction, with bodies that are changed before they are built.
 fn simulation_of(
     scene: &Scene,
     blocks: BlockSet,
     folder: &Path,
     mut choices: Choices,
-    change: &dyn Fn(&mut [BodySetup]),
+    (stage, change): (usize, &dyn Fn(&mut [BodySetup])),
 ) -> Result<Simulation, Vec<Fault>> {
     let contact = contact_model(scene, &blocks, &mut choices).map_err(|fault| vec![fault])?;
     let mut bodies = bodies::bodies(scene, &blocks, folder, &choices.materials)?;
     change(&mut bodies);
-    let bolts = bolts::bolts(scene, &blocks)?;
+    let bolts = bolts::bolts(scene, &blocks, stage)?;
     let setup = Setup {
         blocks,
         bodies,

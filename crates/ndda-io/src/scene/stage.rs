@@ -6,13 +6,14 @@ use super::{
     Contact, Force, Friction, JointLaw, MaterialPair, Scene, Settle, SettleDamping, Support, Traction, Water,
 };
 
-/// A stage of construction: blocks are taken out and added, supports, loads and laws change, then time goes on or the scene comes to rest.
+/// A stage of construction: blocks are taken out and added, bolts installed and released, supports, loads and laws change, then time goes on or the scene comes to rest.
 ///
 /// Stages follow each other after `time.end_s`. What a stage changes stays changed in those after it; lists replace the whole list.
 ///
 /// ```text
 /// stages: [
 ///     (name: "heading", remove: ["heading_*"], over_s: 0.05, then: Settle()),
+///     (name: "bolts", install: ["roof_bolts"], then: Settle()),
 ///     (name: "lining", add: ["lining_*"], then: Settle()),
 ///     (name: "bench", remove: ["bench_*"], over_s: 0.05, reset_displacements: true, then: Run(0.5)),
 /// ],
@@ -29,6 +30,13 @@ pub struct Stage {
     /// Blocks that are put in, without stress and at rest where they were meshed; until then they are not there. Default: none.
     #[serde(default)]
     pub add: Vec<String>,
+    /// Bolts that are installed in the rock as it lies when the stage begins, by the name of their entry in `bolts`, or many as in a support; until
+    /// then they are not there. Default: none.
+    #[serde(default)]
+    pub install: Vec<String>,
+    /// Bolts that are let go; their forces ramp down over `over_s`. Default: none.
+    #[serde(default)]
+    pub release: Vec<String>,
     /// Supports from now on, in the place of all before. Default: as before.
     #[serde(default)]
     pub supports: Option<Vec<Support>>,
@@ -47,7 +55,7 @@ pub struct Stage {
     /// Laws of contact from now on. Default: as before.
     #[serde(default)]
     pub laws: Option<StageLaws>,
-    /// Time over which forces of removed blocks fall to nothing, and loads change to the new ones [s]: ten periods of what moves leave it at rest;
+    /// Time over which forces of removed blocks and released bolts fall to nothing, and loads and pretension change to the new ones [s]: ten periods of what moves leave it at rest;
     /// 0 changes them at once, as a blast does. Default: 0.
     #[serde(default)]
     pub over_s: f64,

@@ -44,6 +44,8 @@ impl Crossing {
 #[derive(Clone, Debug)]
 pub(crate) struct Bolt {
     pub name: String,
+    /// Whether it is there now: before it is installed and once it is released, it does nothing.
+    pub is_installed: bool,
     /// From head to end [m].
     pub length_m: f64,
     /// Distance of each node of the bar from the head [m].
@@ -138,8 +140,8 @@ impl Bolt {
         self.chain_of((slip_m, yielded_m, broken), rock_m).solve(displacement_m, room);
     }
 
-    /// Displacements of the rock along the bolt.
-    fn follow_rock(&self, position: &[Vec3], work: &mut Work) {
+    /// Displacements of the rock along the bolt since it was installed.
+    fn follow_rock(&self, position: &[Vec3], start_m: &[f64], work: &mut Work) {
         let mut along_m = 0.0;
         work.along_m[0] = 0.0;
         let mut before = self.points[0].place(position);
@@ -152,9 +154,24 @@ impl Bolt {
             work.along_m[k + 1] = along_m;
             before = here;
         }
-        for (rock_m, point) in work.rock_m.iter_mut().zip(&self.held_at) {
-            *rock_m = work.along_m[*point as usize];
+        for ((rock_m, point), start_m) in work.rock_m.iter_mut().zip(&self.held_at).zip(start_m) {
+            *rock_m = work.along_m[*point as usize] - start_m;
         }
+    }
+
+    /// Installs the bolt where the rock is now: nothing but its pretension strains it.
+    pub(crate) fn install(&self, position: &[Vec3], memory: MemoryOf, work: &mut Work) {
+        memory.displacement_m.fill(0.0);
+        memory.slip_m.fill(0.0);
+        memory.start_m.fill(0.0);
+        memory.yielded_m.fill(0.0);
+        memory.broken.fill(false);
+        self.follow_rock(position, memory.start_m, work);
+        memory.start_m.copy_from_slice(&work.rock_m[..self.holders.len()]);
+        for (crossing, slip_m) in self.each_crossing().zip(memory.dowel_slip_m.iter_mut()) {
+            *slip_m = crossing.frame(position).across_m();
+        }
+        self.tension(position, memory, work);
     }
 
     /// Tensions the bolt with its plate as a jack, and locks it: what slips in this is slip from the start on.
@@ -162,8 +179,8 @@ impl Bolt {
         if self.pretension_n == 0.0 {
             return;
         }
-        self.follow_rock(position, work);
-        let plate = self.holders.len() - 1;
+        self.follow_rock(position, memory.start_m, work);
+        let (plate, taken_j) = (self.holders.len() - 1, *memory.dissipated_j);
         let mut jacked = self.clone();
         let stiffness_n_m = self.holders[plate].law.stiffness_n_m;
         jacked.holders[plate].law = Law::constant(stiffness_n_m, self.pretension_n);
@@ -171,12 +188,12 @@ impl Bolt {
         let head_m = memory.displacement_m[0] - work.rock_m[plate];
         memory.slip_m[plate] = head_m - self.pretension_n / stiffness_n_m;
         self.yield_parts(&mut memory, work);
-        *memory.dissipated_j = 0.0;
+        *memory.dissipated_j = taken_j;
     }
 
     /// Balances the bar where the rock is now; what yields or breaks is remembered. Adds forces to the nodes.
     pub(crate) fn act(&self, position: &[Vec3], mut memory: MemoryOf, work: &mut Work, force: &mut [Vec3]) {
-        self.follow_rock(position, work);
+        self.follow_rock(position, memory.start_m, work);
         self.balance(&mut memory, &work.rock_m, &mut work.room);
         self.yield_parts(&mut memory, work);
         while self.break_steel(&mut memory, work) {}
@@ -295,7 +312,7 @@ impl Bolt {
 
     /// Energy stored and work of yielding further, with the rock at `position` [J]; nothing is remembered.
     pub(crate) fn potential_j(&self, position: &[Vec3], memory: &MemoryOf, work: &mut Work) -> f64 {
-        self.follow_rock(position, work);
+        self.follow_rock(position, memory.start_m, work);
         let Work { room, rock_m, trial, .. } = work;
         let rock_m = &rock_m[..];
         let u = &mut trial[..self.nodes_m.len()];

@@ -17,13 +17,19 @@ pub struct Portion {
     pub to_m: f64,
 }
 
-/// Distance from a point along a line at which it first meets a block [m]; none where it meets none.
-pub fn first_rock_m(blocks: &BlockSet, from_m: &Vec3, to_m: &Vec3) -> Option<f64> {
+/// Distance from a point along a line at which it first meets a block that is there [m]; none where it meets none.
+pub fn first_rock_m(
+    blocks: &BlockSet,
+    is_there: impl Fn(BlockId) -> bool,
+    from_m: &Vec3,
+    to_m: &Vec3,
+) -> Option<f64> {
     let line = Line { from_m: *from_m, to_m: *to_m };
     let around = Aabb::around([from_m, to_m]);
     let near =
         |block: &BlockId| Aabb::around(&blocks.rest_position[blocks.nodes_of(*block)]).touches(&around);
-    let tets = blocks.ids().filter(near).flat_map(|block| blocks.tets_of(block));
+    let tets =
+        blocks.ids().filter(|block| is_there(*block) && near(block)).flat_map(|block| blocks.tets_of(block));
     let meets =
         tets.filter_map(|tet| line.inside(&blocks.tet_corners(TetId(tet as u32), &blocks.rest_position)));
     meets.map(|(enters_m, _)| enters_m).min_by(f64::total_cmp)
@@ -86,14 +92,18 @@ impl Line {
         (enters < leaves).then_some((enters * length_m, leaves * length_m))
     }
 
-    /// Its pieces in the blocks, in order.
+    /// Its pieces in the blocks that are there, in order.
     ///
     /// # Errors
     /// The two blocks in whose contact face it runs, or that overlap along it.
-    pub(crate) fn portions(&self, blocks: &BlockSet) -> Result<Vec<Portion>, (BlockId, BlockId)> {
+    pub(crate) fn portions(
+        &self,
+        blocks: &BlockSet,
+        absent: &[BlockId],
+    ) -> Result<Vec<Portion>, (BlockId, BlockId)> {
         let (mut found, short_m) = (Vec::new(), SHORT * self.length_m());
         let around = Aabb::around(&[self.from_m, self.to_m]).inflated(short_m);
-        for block in blocks.ids() {
+        for block in blocks.ids().filter(|block| absent.binary_search(block).is_err()) {
             if Aabb::around(&blocks.rest_position[blocks.nodes_of(block)]).touches(&around) {
                 self.add_portions(blocks, block, short_m, &mut found);
             }
@@ -164,7 +174,7 @@ mod tests {
     fn a_line_is_in_each_block_where_it_should_be() {
         let blocks = two_boxes(0.1);
         let line = Line { from_m: Vec3::new(0.31, 0.42, 2.0), to_m: Vec3::new(0.31, 0.42, 0.25) };
-        let found = line.portions(&blocks).expect("no overlap");
+        let found = line.portions(&blocks, &[]).expect("no overlap");
         assert_eq!(found.iter().map(|p| p.block.0).collect::<Vec<_>>(), [1, 0]);
         for (portion, (from_m, to_m)) in found.iter().zip([(0.4, 0.9), (1.0, 1.75)]) {
             assert!((portion.from_m - from_m).abs() < 1e-12 && (portion.to_m - to_m).abs() < 1e-12);
@@ -180,7 +190,7 @@ mod tests {
     fn a_line_along_edges_and_faces_of_tetrahedra_is_found_once() {
         let blocks = two_boxes(0.0);
         let line = Line { from_m: Vec3::new(0.5, 1.0 / 3.0, 1.5), to_m: Vec3::new(0.5, 1.0 / 3.0, 0.0) };
-        let found = line.portions(&blocks).expect("no overlap");
+        let found = line.portions(&blocks, &[]).expect("no overlap");
         assert_eq!(found.len(), 2);
         assert!((found[1].from_m - 0.5).abs() < 1e-12 && (found[1].to_m - 1.5).abs() < 1e-12);
     }
@@ -189,6 +199,6 @@ mod tests {
     fn a_line_in_the_contact_face_of_two_blocks_is_refused() {
         let blocks = two_boxes(0.0);
         let line = Line { from_m: Vec3::new(0.1, 0.3, 1.0), to_m: Vec3::new(0.9, 0.4, 1.0) };
-        assert_eq!(line.portions(&blocks), Err((BlockId(1), BlockId(0))));
+        assert_eq!(line.portions(&blocks, &[]), Err((BlockId(1), BlockId(0))));
     }
 }

@@ -9,6 +9,8 @@ pub struct BoltMemory {
     displacement_m: Vec<f64>,
     /// Slip of grout and plates [m].
     slip_m: Vec<f64>,
+    /// Displacement of the rock there when the bolt was installed [m].
+    start_m: Vec<f64>,
     /// What has yielded of each piece of steel [m].
     yielded_m: Vec<f64>,
     broken: Vec<bool>,
@@ -33,6 +35,7 @@ pub(crate) struct Sizes {
 pub(crate) struct MemoryOf<'a> {
     pub displacement_m: &'a mut [f64],
     pub slip_m: &'a mut [f64],
+    pub start_m: &'a mut [f64],
     pub yielded_m: &'a mut [f64],
     pub broken: &'a mut [bool],
     pub dowel_slip_m: &'a mut [[f64; 2]],
@@ -47,6 +50,7 @@ impl BoltMemory {
         Self {
             displacement_m: vec![0.0; count(|bolt| bolt.nodes)],
             slip_m: vec![0.0; count(|bolt| bolt.holders)],
+            start_m: vec![0.0; count(|bolt| bolt.holders)],
             yielded_m: vec![0.0; pieces],
             broken: vec![false; pieces],
             dowel_slip_m: vec![[0.0; 2]; count(|bolt| bolt.crossings)],
@@ -70,6 +74,7 @@ impl BoltMemory {
     pub(crate) fn copy_from(&mut self, other: &Self) {
         self.displacement_m.copy_from_slice(&other.displacement_m);
         self.slip_m.copy_from_slice(&other.slip_m);
+        self.start_m.copy_from_slice(&other.start_m);
         self.yielded_m.copy_from_slice(&other.yielded_m);
         self.broken.copy_from_slice(&other.broken);
         self.dowel_slip_m.copy_from_slice(&other.dowel_slip_m);
@@ -90,13 +95,14 @@ impl BoltMemory {
     pub(crate) fn each(&mut self, bolts: &[Sizes], mut work: impl FnMut(usize, MemoryOf)) {
         let (mut displacement_m, mut slip_m) = (&mut self.displacement_m[..], &mut self.slip_m[..]);
         let (mut yielded_m, mut broken) = (&mut self.yielded_m[..], &mut self.broken[..]);
-        let mut dowel_slip_m = &mut self.dowel_slip_m[..];
+        let (mut start_m, mut dowel_slip_m) = (&mut self.start_m[..], &mut self.dowel_slip_m[..]);
         for (index, (bolt, dissipated_j)) in bolts.iter().zip(&mut self.dissipated_j).enumerate() {
             work(
                 index,
                 MemoryOf {
                     displacement_m: take(&mut displacement_m, bolt.nodes),
                     slip_m: take(&mut slip_m, bolt.holders),
+                    start_m: take(&mut start_m, bolt.holders),
                     yielded_m: take(&mut yielded_m, bolt.nodes - 1),
                     broken: take(&mut broken, bolt.nodes - 1),
                     dowel_slip_m: take(&mut dowel_slip_m, bolt.crossings),

@@ -46,7 +46,7 @@ impl Bolts {
             pairs: Vec::with_capacity(list.iter().map(|bolt| bolt.spans.len()).sum()),
         };
         let mut rows = Vec::new();
-        for bolt in &list {
+        for bolt in list.iter().filter(|bolt| bolt.is_installed) {
             bolt.add_row_sums(kinds, &mut rows);
             // Nodes that it acts on without stiffness are listed too.
             let nodes = bolt.points.iter().flat_map(|point| point.nodes);
@@ -65,7 +65,11 @@ impl Bolts {
         });
         let sizes: Vec<Sizes> = list.iter().map(Bolt::sizes).collect();
         let mut memory = BoltMemory::new(&sizes);
-        memory.each(&sizes, |k, memory| list[k].tension(&blocks.rest_position, memory, &mut work));
+        memory.each(&sizes, |k, memory| {
+            if list[k].is_installed {
+                list[k].tension(&blocks.rest_position, memory, &mut work);
+            }
+        });
         let force = vec![Vec3::zeros(); blocks.rest_position.len()];
         Ok((Self { list, sizes, rows, work, force, before: memory.clone() }, memory))
     }

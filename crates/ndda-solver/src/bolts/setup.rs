@@ -86,6 +86,10 @@ pub struct BoltSetup {
     pub plate: Option<Plate>,
     /// Longest segment of its bonded length [m]; an eighth of 1/λ without.
     pub segment_m: Option<f64>,
+    /// Whether it is there: a bolt that a later stage installs, or an earlier one has released, does nothing.
+    pub is_installed: bool,
+    /// Blocks that are not there when it is installed, ascending: it passes through them unbonded.
+    pub absent: Vec<BlockId>,
 }
 
 /// Why a bolt cannot be set.
@@ -164,9 +168,11 @@ impl BoltSetup {
     /// # Errors
     /// [`BoltError`] when it lies in none, or in two at once.
     pub fn portions(&self, blocks: &BlockSet) -> Result<Vec<Portion>, BoltError> {
-        let found = self.line().portions(blocks).map_err(|(first, second)| BoltError::BetweenBlocks {
-            first: blocks.names[first.index()].clone(),
-            second: blocks.names[second.index()].clone(),
+        let found = self.line().portions(blocks, &self.absent).map_err(|(first, second)| {
+            BoltError::BetweenBlocks {
+                first: blocks.names[first.index()].clone(),
+                second: blocks.names[second.index()].clone(),
+            }
         })?;
         if found.is_empty() { Err(BoltError::Nowhere) } else { Ok(found) }
     }
@@ -378,6 +384,7 @@ impl<'a> Maker<'a> {
         let gauge_m = self.setup.gauge_m();
         Bolt {
             name: self.setup.name.clone(),
+            is_installed: self.setup.is_installed,
             length_m: self.line.length_m(),
             rest_m: lengths_m.iter().map(|h| strain * h).collect(),
             steel,

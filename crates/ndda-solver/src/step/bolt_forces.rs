@@ -21,7 +21,11 @@ impl Simulation {
         let Bolts { list, sizes, rows, work, force, .. } = &mut *bolts;
         rows.iter().for_each(|(node, _)| force[*node as usize] = Vec3::zeros());
         work.pairs.clear();
-        self.state.bolts.each(sizes, |k, memory| list[k].act(position, memory, work, force));
+        self.state.bolts.each(sizes, |k, memory| {
+            if list[k].is_installed {
+                list[k].act(position, memory, work, force);
+            }
+        });
         self.scratch.seen_position = room;
         self.bolts = Some(bolts);
     }
@@ -62,10 +66,31 @@ impl Simulation {
             seen(&self.problem.blocks, &self.state.contact_offset, &self.state.position, &mut room);
         let mut stored_j = 0.0;
         let Bolts { list, sizes, work, .. } = &mut *bolts;
-        self.state.bolts.each(sizes, |k, memory| stored_j += list[k].potential_j(position, &memory, work));
+        self.state.bolts.each(sizes, |k, memory| {
+            if list[k].is_installed {
+                stored_j += list[k].potential_j(position, &memory, work);
+            }
+        });
         self.scratch.seen_position = room;
         self.bolts = Some(bolts);
         (stored_j, self.state.bolts.dissipated_j())
+    }
+
+    /// Installs the bolts that were not there before, where the rock is now.
+    pub(crate) fn install_bolts(&mut self, before: &Self) {
+        let Some(mut bolts) = self.bolts.take() else { return };
+        let mut room = take(&mut self.scratch.seen_position);
+        let position =
+            seen(&self.problem.blocks, &self.state.contact_offset, &self.state.position, &mut room);
+        let was_installed = |k: usize| before.bolts.as_ref().is_some_and(|bolts| bolts.list[k].is_installed);
+        let Bolts { list, sizes, work, .. } = &mut *bolts;
+        self.state.bolts.each(sizes, |k, memory| {
+            if list[k].is_installed && !was_installed(k) {
+                list[k].install(position, memory, work);
+            }
+        });
+        self.scratch.seen_position = room;
+        self.bolts = Some(bolts);
     }
 
     /// Whether there are bolts.

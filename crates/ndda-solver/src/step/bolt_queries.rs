@@ -10,6 +10,11 @@ impl Simulation {
         self.bolts.as_ref().map_or(0, |bolts| bolts.list.len())
     }
 
+    /// Whether a bolt is there: installed, and not released.
+    pub fn is_installed(&self, index: usize) -> bool {
+        self.bolts.as_ref().and_then(|bolts| bolts.list.get(index)).is_some_and(|bolt| bolt.is_installed)
+    }
+
     /// Name of a bolt, and its pieces in blocks.
     pub fn bolt(&self, index: usize) -> Option<(&str, &[Portion])> {
         let bolt = self.bolts.as_ref()?.list.get(index)?;
@@ -27,13 +32,15 @@ impl Simulation {
         bolt.map_or(0.0, |bolt| bolt.bonded.iter().map(|part| part.to_m - part.from_m).sum())
     }
 
-    /// Replaces `out` by the pieces of all bolts as they were when forces were last taken, at the present places of blocks.
+    /// Replaces `out` by the pieces of all bolts that are there, as they were when forces were last taken, at the present places of blocks.
     pub fn bolt_pieces(&self, out: &mut Vec<BoltPiece>) {
         out.clear();
         let Some(bolts) = &self.bolts else { return };
         let mut memory = self.state.bolts.clone();
         memory.each(&bolts.sizes, |k, memory| {
-            bolts.list[k].add_pieces(k, &self.state.position, &memory, out);
+            if bolts.list[k].is_installed {
+                bolts.list[k].add_pieces(k, &self.state.position, &memory, out);
+            }
         });
     }
 

@@ -1,4 +1,5 @@
-//! Forces that act on in the place of blocks and supports that a stage takes away, and ramp down.
+//! Forces that act on in the place of blocks, supports and bolts that a stage takes away, and ramp down; those of bolts with pretension that it installs
+//! ramp up likewise.
 
 use ndda_contact::FacetContact;
 use ndda_fem::Table;
@@ -54,7 +55,11 @@ impl Simulation {
         let kept = (self.state.contact.clone(), std::mem::take(&mut self.scratch.force));
         self.scratch.force = vec![Vec3::zeros(); nodes];
         self.scratch.contact_position.copy_from_slice(&self.state.position);
-        let found = if self.contact.is_some() { self.add_contact_forces(None).map(|_| ()) } else { Ok(()) };
+        let found = if self.contact.is_some() || self.has_bolts() {
+            self.add_contact_forces(None).map(|_| ())
+        } else {
+            Ok(())
+        };
         let mut facets = Vec::new();
         self.add_facets(&mut facets);
         self.state.contact = kept.0;

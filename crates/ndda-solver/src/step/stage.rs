@@ -79,8 +79,8 @@ impl Simulation {
     /// Continues from the state of another simulation of the same blocks, of which others are absent, under the loads, supports and laws of this one.
     ///
     /// Forces of blocks that are taken out act on and ramp down, and so does the difference of the loads, over `start.over_s`. Blocks that are
-    /// added are where they were meshed, at rest and without stress. The energy of what is taken out, added, and of their contact is in the
-    /// balance as energy removed; what else changes at once is work of loads.
+    /// added are where they were meshed, at rest and without stress. Bolts are installed in the rock as it lies now, strained by their pretension only. The energy of what is taken out, added, and of their contact is in the
+    /// balance as energy removed, and so is that of bolts that are released, less that of those installed; what else changes at once is work of loads.
     ///
     /// # Errors
     /// [`TakeOverError`]; this simulation is then not to be used.
@@ -99,10 +99,12 @@ impl Simulation {
         let snapshot = before.snapshot();
         self.restore(snapshot.clone())?;
         self.change_places(before, (&released, &added), start);
+        self.install_bolts(before);
         let rest = self.contact_now()?;
         // Laws that keep other numbers of each facet have refused the history by now; what the evaluation left behind goes.
         self.restore(snapshot)?;
         self.change_places(before, (&released, &added), start);
+        self.install_bolts(before);
         self.stop_held_nodes(before);
         if start.over_s > 0.0 {
             let pairs = before.contact_between(&contact, &released);
@@ -115,7 +117,7 @@ impl Simulation {
         for block in &added {
             removed_j -= self.block_energy_j(*block)?;
         }
-        removed_j += old.contact_j - new.contact_j;
+        removed_j += old.contact_j - new.contact_j + (old.bolt_j - new.bolt_j);
         self.audit.ledger.add_work(0.0, 0.0, new.total_j() - old.total_j() + removed_j, 0.0);
         self.audit.ledger.add_removed(removed_j);
         self.audit.ledger.add_jump_of_momentum(&old, &new);

@@ -1,25 +1,83 @@
 //! Bolts of a scene: rows become single bolts, and heads go to the face.
 
-use ndda_io::scene::{Bolt, BoltPlace, Scene};
+use ndda_io::scene::{Bolt, BoltPlace, Scene, Stage, matches};
 use ndda_mesh::geometry::Aabb;
-use ndda_mesh::{BlockSet, Vec3};
+use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{BoltSetup, Dowel, Grout, Plate, Steel, first_rock_m};
 
+use super::stages::Presence;
 use super::{Fault, vec3};
 
-/// All bolts of a scene one by one, in the coordinates of the blocks.
-pub(super) fn bolts(scene: &Scene, blocks: &BlockSet) -> Result<Vec<BoltSetup>, Vec<Fault>> {
+/// All bolts of a scene one by one, in the coordinates of the blocks; those of other stages, too.
+pub(super) fn bolts(scene: &Scene, blocks: &BlockSet, stage: usize) -> Result<Vec<BoltSetup>, Vec<Fault>> {
     let (mut found, mut faults) = (Vec::new(), Vec::new());
     for (i, bolt) in scene.bolts.iter().enumerate() {
-        match places(bolt, blocks) {
+        let life = Life::of(scene, &bolt.name);
+        let absent = absent_at(scene, blocks, life.from)?;
+        match places(bolt, blocks, &absent) {
             Ok(places) => {
-                let setups = places.into_iter().map(|(name, from_m, to_m)| setup(bolt, name, (from_m, to_m)));
+                let setups = places.into_iter().map(|(name, from_m, to_m)| BoltSetup {
+                    is_installed: life.holds(stage),
+                    absent: absent.clone(),
+                    ..setup(bolt, name, (from_m, to_m))
+                });
                 found.extend(setups);
             }
             Err(message) => faults.push(Fault::new(format!("bolts[{i}].at"), message)),
         }
     }
     if faults.is_empty() { Ok(found) } else { Err(faults) }
+}
+
+/// The stages, counted from 1, between which a bolt is there; 0 is before the first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Life {
+    /// That it is installed in.
+    pub from: usize,
+    /// That releases it.
+    pub until: Option<usize>,
+}
+
+impl Life {
+    /// Of an entry of `bolts`.
+    pub(super) fn of(scene: &Scene, name: &str) -> Self {
+        let first = |patterns: fn(&Stage) -> &Vec<String>| {
+            let speaks = |stage: &Stage| patterns(stage).iter().any(|pattern| matches(pattern, name));
+            scene.stages.iter().position(speaks).map(|k| k + 1)
+        };
+        Self { from: first(|stage| &stage.install).unwrap_or(0), until: first(|stage| &stage.release) }
+    }
+
+    fn holds(self, stage: usize) -> bool {
+        self.from <= stage && self.until.is_none_or(|until| stage < until)
+    }
+}
+
+/// Blocks that are not there in a stage, ascending.
+fn absent_at(scene: &Scene, blocks: &BlockSet, stage: usize) -> Result<Vec<BlockId>, Vec<Fault>> {
+    let presence = Presence::of(scene, blocks, stage)?;
+    Ok(blocks.ids().filter(|block| presence.absent[block.index()]).collect())
+}
+
+/// Refuses bolts that are bonded in a block which is not there in a stage, counted from 1.
+pub(super) fn refuse_loose(scene: &Scene, blocks: &BlockSet, stage: usize) -> Result<(), Vec<Fault>> {
+    let absent = absent_at(scene, blocks, stage)?;
+    let mut faults = Vec::new();
+    for setup in bolts(scene, blocks, stage)?.iter().filter(|setup| setup.is_installed) {
+        // What is wrong with a bolt itself is said when it is built.
+        let Ok(portions) = setup.portions(blocks) else { continue };
+        if let Some(portion) = portions.iter().find(|portion| absent.binary_search(&portion.block).is_ok()) {
+            let (name, entry) = (&setup.name, entry(scene, &setup.name));
+            let (block, stage) = (&blocks.names[portion.block.index()], &scene.stages[stage - 1].name);
+            let message = format!(
+                "bolt `{name}` is bonded in block `{block}`, which is not there in stage `{stage}`: release it in that stage or before \
+                 (`release: [\"{}\"]`), install it later, or end it before that block",
+                scene.bolts[entry].name
+            );
+            faults.push(Fault::new(format!("bolts[{entry}]"), message));
+        }
+    }
+    if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
 /// The entry of a scene that a bolt comes from.
@@ -35,7 +93,7 @@ pub(super) fn entry(scene: &Scene, name: &str) -> usize {
 
 type Place = (String, Vec3, Vec3);
 
-fn places(bolt: &Bolt, blocks: &BlockSet) -> Result<Vec<Place>, String> {
+fn places(bolt: &Bolt, blocks: &BlockSet, absent: &[BlockId]) -> Result<Vec<Place>, String> {
     match &bolt.at {
         BoltPlace::Line { from_m, to_m } => {
             let (from_m, to_m) = (vec3(*from_m) - blocks.origin_m, vec3(*to_m) - blocks.origin_m);
@@ -52,7 +110,8 @@ fn places(bolt: &Bolt, blocks: &BlockSet) -> Result<Vec<Place>, String> {
                     let up_axis = up.try_normalize(0.0).unwrap_or_default();
                     let point = vec3(*corner_m) - blocks.origin_m + offset * along_axis + rise * up_axis;
                     let name = format!("{}_{}_{}", bolt.name, row + 1, column + 1);
-                    let ahead_m = first_rock_m(blocks, &point, &(point + reach_m * direction));
+                    let is_there = |block: BlockId| absent.binary_search(&block).is_err();
+                    let ahead_m = first_rock_m(blocks, is_there, &point, &(point + reach_m * direction));
                     let Some(ahead_m) = ahead_m else {
                         let [x, y, z]: [f64; 3] = (point + blocks.origin_m).into();
                         return Err(format!(
@@ -106,5 +165,7 @@ fn setup(bolt: &Bolt, name: String, (from_m, to_m): (Vec3, Vec3)) -> BoltSetup {
         pretension_n: bolt.pretension_n,
         plate: bolt.plate.map(|plate| Plate { strength_n: never(plate.strength_n) }),
         segment_m: bolt.segment_m,
+        is_installed: true,
+        absent: Vec::new(),
     }
 }

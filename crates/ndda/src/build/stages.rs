@@ -6,7 +6,7 @@ use ndda_io::scene::{Scene, Stage, Then, matches};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{BodyKind, BodySetup, Simulation};
 
-use super::{Choices, Fault, bodies, simulation_of, simulation_with};
+use super::{Choices, Fault, bodies, bolts, simulation_of, simulation_with};
 
 /// Which blocks are there in a stage.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -126,35 +126,10 @@ pub fn simulation_in_stage(
     }
     let presence = Presence::of(scene, &blocks, stage)?;
     let apply = |bodies: &mut [BodySetup]| presence.apply(bodies);
-    let built = simulation_of(&scene.in_stage(stage), blocks, folder, choices, &apply);
+    let built = simulation_of(&scene.in_stage(stage), blocks, folder, choices, (stage, &apply));
     let mut simulation = built.map_err(|faults| at_stage(scene, stage, faults))?;
-    if stage == 0 {
-        refuse_loose_bolts(&simulation, scene)?;
-    }
     simulation.leave_out(presence.absent.clone()).map_err(|error| vec![Fault::new("stages", error)])?;
     Ok(simulation)
-}
-
-/// Bolts hold from the start on, in blocks that are there in all stages.
-fn refuse_loose_bolts(simulation: &Simulation, scene: &Scene) -> Result<(), Vec<Fault>> {
-    let blocks = simulation.blocks();
-    let mut faults = Vec::new();
-    for bolt in 0..simulation.bolt_count() {
-        let Some((name, portions)) = simulation.bolt(bolt) else { continue };
-        let comes_or_goes = |block: BlockId| {
-            let name = &blocks.names[block.index()];
-            scene.stages.iter().any(|stage| stage.remove.iter().chain(&stage.add).any(|p| matches(p, name)))
-        };
-        if let Some(portion) = portions.iter().find(|portion| comes_or_goes(portion.block)) {
-            let block = &blocks.names[portion.block.index()];
-            let message = format!(
-                "bolt `{name}` is bonded in block `{block}`, which is not always there: bolts hold from the start on and stages cannot let them go, \
-                 so end the bolt before that block"
-            );
-            faults.push(Fault::new("bolts", message));
-        }
-    }
-    if faults.is_empty() { Ok(()) } else { Err(faults) }
 }
 
 /// Looks at what all stages need: their blocks, and parts of these.
@@ -166,6 +141,7 @@ pub(crate) fn refuse(scene: &Scene, blocks: &BlockSet, folder: &Path) -> Result<
         Presence::of(scene, blocks, stage)?;
         let bodies = bodies::bodies(&scene.in_stage(stage), blocks, folder, &[]);
         bodies.map_err(|faults| at_stage(scene, stage, faults))?;
+        bolts::refuse_loose(scene, blocks, stage)?;
     }
     Ok(())
 }
@@ -207,7 +183,13 @@ mod tests {
             )],
             stages: [(name: "out", remove: ["top"], over_s: 1e-3, then: Run(2e-3))],
         )"#;
-        let message = Model::from_text(text).err().expect("nothing lets the bolt go").to_string();
+        let refused = |text: &str| Model::from_text(text).err().map(|error| error.to_string());
+        let message = refused(text).expect("nothing lets the bolt go");
         assert!(message.contains("bolt `anchor` is bonded in block `top`"), "{message}");
+        assert!(message.contains("release: [\"anchor\"]"), "{message}");
+        let let_go = text.replace("remove: [\"top\"]", "remove: [\"top\"], release: [\"anchor\"]");
+        assert_eq!(refused(&let_go), None);
+        let later = text.replace("remove: [\"top\"]", "remove: [\"top\"], install: [\"anchor\"]");
+        assert_eq!(refused(&later), None, "it ends in the foot");
     }
 }

@@ -199,7 +199,7 @@ fn bolt_ends(simulation: &Simulation) -> Named<BoltEnd> {
         let BoltStatus { axial_n, utilisation, shear_n, debonded, .. } = status;
         (name, BoltEnd { axial_n, utilisation, shear_n, state: status.state.name().into(), debonded })
     };
-    all.into_iter().enumerate().map(end).collect()
+    all.into_iter().enumerate().filter(|(index, _)| simulation.is_installed(*index)).map(end).collect()
 }
 
 fn reference_error(scene: &Scene, recorder: &Recorder) -> Option<ReferenceError> {

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::{Check, Code, MOST_STEPS, problems};
-use crate::scene::{By, Contact, Integrator, Scene, SettleDamping, Stage, Support, Then, is_unset};
+use crate::scene::{By, Contact, Integrator, Scene, SettleDamping, Stage, Support, Then, is_unset, matches};
 
 impl Check<'_> {
     pub(super) fn stages(&mut self, folder: Option<&Path>) {
@@ -26,6 +26,62 @@ impl Check<'_> {
             self.stage(k, stage);
             self.in_stage(k, stage, folder);
         }
+        self.bolts_in_stages();
+    }
+
+    /// Bolts are installed once, and released once after that.
+    fn bolts_in_stages(&mut self) {
+        let scene = self.scene;
+        let mut times = vec![[None; 2]; scene.bolts.len()];
+        for (k, stage) in scene.stages.iter().enumerate() {
+            let install = stage.install.iter().enumerate().map(|(i, pattern)| ("install", i, pattern));
+            let release = stage.release.iter().enumerate().map(|(i, pattern)| ("release", i, pattern));
+            for (list, i, pattern) in install.chain(release) {
+                let path = format!("stages[{k}].{list}[{i}]");
+                let is_named = |bolt: &usize| matches(pattern, &scene.bolts[*bolt].name);
+                let named: Vec<usize> = (0..scene.bolts.len()).filter(is_named).collect();
+                if named.is_empty() {
+                    self.unknown_bolts(&path, pattern);
+                }
+                for bolt in named {
+                    if let Some(message) = self.repeated(bolt, (k, list), times[bolt]) {
+                        let help = "each entry is installed once and released once: give `bolts` a second entry for a second time";
+                        self.misfit(&path, message, help);
+                    }
+                    times[bolt][usize::from(list == "release")].get_or_insert(k);
+                }
+            }
+        }
+    }
+
+    /// What is wrong with a stage that installs or releases bolts which stages have installed and released before.
+    fn repeated(&self, bolt: usize, (k, list): (usize, &str), times: [Option<usize>; 2]) -> Option<String> {
+        let (name, stages) = (&self.scene.bolts[bolt].name, &self.scene.stages);
+        let in_stage = |k: usize| format!("stage `{}`", stages[k].name);
+        match (list, times) {
+            ("install", [Some(first), _]) => {
+                Some(format!("bolts `{name}` are installed in {} already", in_stage(first)))
+            }
+            ("install", [None, Some(first)]) => {
+                Some(format!("{} releases bolts `{name}` before they are installed", in_stage(first)))
+            }
+            ("release", [_, Some(first)]) => {
+                Some(format!("bolts `{name}` are released in {} already", in_stage(first)))
+            }
+            ("release", [Some(first), None]) if first == k => {
+                Some(format!("bolts `{name}` are installed in this stage"))
+            }
+            _ => None,
+        }
+    }
+
+    fn unknown_bolts(&mut self, path: &str, pattern: &str) {
+        let names: Vec<&str> = self.scene.bolts.iter().map(|bolt| bolt.name.as_str()).collect();
+        let help = match names.is_empty() {
+            true => "the scene has no `bolts`".into(),
+            false => format!("the entries of `bolts` are {}", names.join(", ")),
+        };
+        self.report(Code::UnknownName, path, format!("there are no bolts `{pattern}`"), help);
     }
 
     /// Refuses names that differ in case only: each becomes the name of a checkpoint, and not every file system tells them apart.
