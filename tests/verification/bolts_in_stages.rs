@@ -4,7 +4,7 @@ use ndda::Model;
 use ndda::run::{Outcome, Run};
 use ndda_io::summary::LabelWord;
 
-use crate::evidence::Answer::{AtMost, Near, Within};
+use crate::evidence::Answer::{AtMost, Within};
 use crate::evidence::row;
 
 const EA_N: f64 = 98.6e9 * 181e-6;

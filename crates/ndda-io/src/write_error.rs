@@ -18,7 +18,7 @@ pub enum WriteError {
     },
     /// A number is infinite or not a number; nothing was written.
     #[error(
-        "{array}{} is not a finite number, so {} was not written: the run has lost its way before this, \
+        "{array}{} is not a finite number, so {} was not written: the run became unstable before this; \
          reduce time.step_s",
         bracketed(*index),
         path.display()

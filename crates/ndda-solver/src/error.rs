@@ -1,6 +1,6 @@
 //! Why a run stops.
 
-use crate::bolts::setup::BoltError;
+use crate::bolts::error::BoltError;
 use crate::linear::linear_solver::SolveError;
 use ndda_contact::ContactError;
 use ndda_fem::quiet::NoWave;

@@ -81,9 +81,10 @@ pub use bodies::prototype::{
 pub use bodies::step_damping::StepDamping;
 pub use bodies::unknowns::Unknowns;
 pub use bolts::embedding::{Portion, first_rock_m};
+pub use bolts::error::BoltError;
 pub use bolts::memory::BoltMemory;
 pub use bolts::report::{BoltPiece, BoltStatus, PieceState};
-pub use bolts::setup::{BoltError, BoltSetup, Grout, Plate, Steel};
+pub use bolts::setup::{BoltSetup, Grout, Plate, Steel};
 pub use bolts::span::Dowel;
 pub use diagnostics::energies::Sample;
 pub use diagnostics::invariants::Invariants;

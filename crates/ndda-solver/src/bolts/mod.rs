@@ -8,6 +8,7 @@
 pub(crate) mod bolt;
 pub(crate) mod chain;
 pub(crate) mod embedding;
+pub(crate) mod error;
 pub(crate) mod law;
 pub(crate) mod memory;
 pub(crate) mod report;

@@ -5,8 +5,9 @@ use ndda_mesh::{BlockSet, Vec3};
 use crate::bodies::kind::BodyKind;
 use crate::bolts::bolt::{Bolt, Work};
 use crate::bolts::chain::Room;
+use crate::bolts::error::BoltError;
 use crate::bolts::memory::{BoltMemory, Sizes};
-use crate::bolts::setup::{BoltError, BoltSetup};
+use crate::bolts::setup::BoltSetup;
 use crate::error::SetupError;
 
 /// All bolts, and memory that every step uses again.
