@@ -1,6 +1,7 @@
 //! Exit codes, so that scripts can tell what happened.
 
 use ndda::certify::error::CertifyError;
+use ndda::rockfall::RockfallError;
 use ndda::safety::SafetyError;
 use ndda::study::error::StudyError;
 use ndda::tune::TuneError;
@@ -73,6 +74,17 @@ pub fn of_safety(error: &SafetyError) -> u8 {
         SafetyError::Interrupted => INTERRUPTED,
         SafetyError::Write(error) => of_write(error),
         _ => BAD_INPUT,
+    }
+}
+
+/// Of a rockfall that cannot be run.
+pub fn of_rockfall(error: &RockfallError) -> u8 {
+    match error {
+        RockfallError::Scene(_) | RockfallError::NoRockfall => BAD_INPUT,
+        RockfallError::Folder { .. } => INPUT_OUTPUT,
+        RockfallError::Threads(_) => RESOURCE,
+        RockfallError::Interrupted { .. } => INTERRUPTED,
+        RockfallError::Write(error) => of_write(error),
     }
 }
 

