@@ -12,11 +12,16 @@ mod fall;
 pub mod files;
 pub mod map;
 mod passage;
+#[cfg(feature = "plots")]
+mod pictures;
 pub mod profile;
 mod release;
 mod report;
 pub mod result;
+pub mod spread;
 mod terrain;
+#[cfg(test)]
+mod tests;
 mod window;
 
 pub use accuracy::Accuracy;
@@ -44,6 +49,8 @@ const SAY: Duration = Duration::from_secs(2);
 /// Most points of all paths together, and fewest of one.
 const MOST_POINTS: usize = 1_000_000;
 const FEWEST_POINTS: usize = 64;
+/// Points of a path along the longer side of the terrain, at least.
+const PATH_POINTS: f64 = 500.0;
 /// Most cells of the map of reach.
 const MOST_CELLS: f64 = 1.6e7;
 
@@ -117,6 +124,8 @@ pub fn make(
         let wall_s = started.elapsed().as_secs_f64();
         let outcome = Outcome::new(&model, &places::name_of(&request.file), &falls, wall_s);
         files::write(&model, &outcome, &falls, out)?;
+        #[cfg(feature = "plots")]
+        pictures::draw(&model, &outcome, &falls, out)?;
         Ok(outcome)
     })
 }
@@ -169,13 +178,15 @@ impl Model {
         let material = materials.iter().find(|material| material.name == self.rockfall.boulders.material);
         let step_m = self.terrain.step_m[0].min(self.terrain.step_m[1]);
         let cell_m = self.cell_m();
+        let [least, most] = self.terrain.bounds_m();
+        let side_m = (most[0] - least[0]).max(most[1] - least[1]);
         fall::Case {
             scene: &self.loaded.scene,
             rockfall: &self.rockfall,
             terrain: &self.terrain,
             material: material.expect("names of materials have been checked"),
             seed: self.rockfall.seed,
-            path_m: self.rockfall.detail.path_m.unwrap_or(0.5 * step_m),
+            path_m: self.rockfall.detail.path_m.unwrap_or((0.5 * step_m).min(side_m / PATH_POINTS)),
             most_points: (MOST_POINTS / self.rockfall.count as usize).max(FEWEST_POINTS),
             cell_m,
             cells: self.reach_cells(),

@@ -292,7 +292,7 @@ pub struct RockfallDetail {
     /// Speed along the normal of the ground up to which a boulder goes no deeper than 5 % of its diameter when it hits with a face [m/s]: the contact is as
     /// stiff as that takes. Larger values give shorter steps. Default: 15.
     pub impact_m_s: f64,
-    /// Distance of the points that are kept of a path [m]. Default: half a step of the terrain.
+    /// Distance of the points that are kept of a path [m]. Default: half a step of the terrain, or less where it has few.
     pub path_m: Option<f64>,
     /// Side of the cells in which the probability of reach is counted [m]. Default: the step of the terrain.
     pub cell_m: Option<f64>,

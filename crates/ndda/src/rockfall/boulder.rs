@@ -49,6 +49,12 @@ impl Boulder {
         Self::of_shape(&boulders.shapes[which as usize], volume_m3, draw)
     }
 
+    /// A cube of a volume [m³].
+    #[cfg(test)]
+    pub(super) fn cube(volume_m3: f64) -> Self {
+        Self::of_shape(&BoulderShape::Cuboid { axes: [1.0; 3] }, volume_m3, &Draw::new(0, 0))
+    }
+
     fn of_shape(shape: &BoulderShape, volume_m3: f64, draw: &Draw) -> Self {
         let (axes, surface) = match shape {
             BoulderShape::Cuboid { axes } => (axes, Surface::between(&cube())),

@@ -191,9 +191,10 @@ impl Watch<'_> {
             self.keep();
         }
         let end = loop {
-            if let Err(error) = simulation.step() {
-                break Some(End::Stopped(error.to_string()));
-            }
+            let touches = match simulation.step() {
+                Ok(report) => report.contact.contact_pairs > 0,
+                Err(error) => break Some(End::Stopped(error.to_string())),
+            };
             self.fall.steps += 1;
             let time_s = since_s + simulation.time_s();
             let end = self.see(simulation, time_s);
@@ -201,7 +202,8 @@ impl Watch<'_> {
                 break end;
             }
             let center = Vec3::from(self.last.at_m);
-            if !cells.hold(self.case.terrain, &center, self.radius_m) {
+            let more = if touches { 0.0 } else { window::FEW_CELLS };
+            if !cells.hold(self.case.terrain, &center, self.radius_m, more) {
                 break None;
             }
         };

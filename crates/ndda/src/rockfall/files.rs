@@ -8,7 +8,8 @@ use ndda_io::{WriteError, atomic};
 use super::fall::{End, Fall};
 use super::passage::Moment;
 use super::profile::{self, Station};
-use super::result::{AtLine, Outcome, Spread};
+use super::result::Outcome;
+use super::spread::{AtLine, Spread};
 use super::{Model, map};
 use crate::documents::write_json;
 
@@ -22,7 +23,7 @@ pub fn write(model: &Model, outcome: &Outcome, falls: &[Fall], out: &Path) -> Re
     text("boulders.csv", boulders(model, falls))?;
     text("trajectories.csv", trajectories(falls))?;
     text("lines.csv", lines(model, falls))?;
-    text("profiles.csv", profiles(&profile::stations(model, outcome, falls)))?;
+    text("profiles.csv", profiles(&profile::stations(model, (&outcome.profile_m, outcome.part_m), falls)))?;
     text("reach.asc", map::esri_grid(model, &map::reach(model, falls)))
 }
 

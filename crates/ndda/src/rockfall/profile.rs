@@ -3,7 +3,7 @@
 use super::Model;
 use super::fall::Fall;
 use super::passage::{Moment, chainage_m, length_m, point_at};
-use super::result::{AtLine, Outcome};
+use super::spread::AtLine;
 
 /// Most stations.
 pub(super) const MOST_STATIONS: f64 = 1e4;
@@ -45,15 +45,14 @@ pub(super) fn corners_m(model: &Model, falls: &[Fall]) -> Vec<[f64; 2]> {
     [back, front].map(|way| [from[0] + way * unit[0], from[1] + way * unit[1]]).to_vec()
 }
 
-/// All stations of the profile, from its start.
-pub fn stations(model: &Model, outcome: &Outcome, falls: &[Fall]) -> Vec<Station> {
-    let line_m = &outcome.profile_m;
-    let count = (length_m(line_m) / outcome.part_m + 1e-9).floor() as usize + 1;
+/// All stations of a profile through corners [m], from its start on, at distances of `part_m`.
+pub fn stations(model: &Model, (line_m, part_m): (&[[f64; 2]], f64), falls: &[Fall]) -> Vec<Station> {
+    let count = (length_m(line_m) / part_m + 1e-9).floor() as usize + 1;
     let mut moments: Vec<Vec<Moment>> = vec![Vec::new(); count];
     for fall in falls {
         let mut is_passed = vec![false; count];
         for pair in fall.path.windows(2) {
-            let [a, b] = [0, 1].map(|k| chainage_m(line_m, pair[k].map_m()) / outcome.part_m);
+            let [a, b] = [0, 1].map(|k| chainage_m(line_m, pair[k].map_m()) / part_m);
             let (low, high) = (a.min(b), a.max(b));
             for station in low.ceil() as usize..=(high.floor() as usize).min(count - 1) {
                 if !std::mem::replace(&mut is_passed[station], true) && high > low {
@@ -63,7 +62,7 @@ pub fn stations(model: &Model, outcome: &Outcome, falls: &[Fall]) -> Vec<Station
         }
     }
     let station = |(k, moments): (usize, &Vec<Moment>)| {
-        let chainage_m = k as f64 * outcome.part_m;
+        let chainage_m = k as f64 * part_m;
         Station {
             chainage_m,
             ground_m: model.terrain.at(point_at(line_m, chainage_m)).map(|(z, _)| z),

@@ -2,7 +2,8 @@
 
 use std::fmt::{self, Write as _};
 
-use super::result::{Ends, Outcome, Spread};
+use super::result::{Ends, Outcome};
+use super::spread::Spread;
 use crate::columns::columns;
 
 impl fmt::Display for Outcome {

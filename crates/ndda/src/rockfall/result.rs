@@ -6,6 +6,7 @@ use super::accuracy::Accuracy;
 use super::fall::{End, Fall};
 use super::passage::{Moment, length_m};
 use super::profile;
+use super::spread::{AtLine, Spread};
 use super::{Model, map};
 
 /// Schema of [`Outcome`].
@@ -61,31 +62,6 @@ pub struct Ends {
     pub stopped: usize,
 }
 
-/// Median, 95th percentile and largest of some values.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Spread {
-    /// Median.
-    pub median: f64,
-    /// The value that 95 % do not exceed.
-    pub percentile_95: f64,
-    /// The largest.
-    pub largest: f64,
-}
-
-impl Spread {
-    /// Of values in any order, between which percentiles are linear; none of none.
-    pub fn of(mut values: Vec<f64>) -> Option<Self> {
-        values.sort_by(f64::total_cmp);
-        let largest = *values.last()?;
-        let at = |part: f64| {
-            let place = part * (values.len() - 1) as f64;
-            let (low, rest) = (place.floor() as usize, place.fract());
-            values[low] + rest * (values[(low + 1).min(values.len() - 1)] - values[low])
-        };
-        Some(Self { median: at(0.5), percentile_95: at(0.95), largest })
-    }
-}
-
 /// Boulders at a line.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LineResult {
@@ -99,35 +75,6 @@ pub struct LineResult {
     pub confidence_95: [f64; 2],
     /// What those had when they first reached it; none if none did.
     pub first: Option<AtLine>,
-}
-
-/// Heights, speeds and energies at a line.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct AtLine {
-    /// Height of the mass centre above the ground [m].
-    pub height_m: Spread,
-    /// Height of the highest point of the boulder [m].
-    pub top_m: Spread,
-    /// Speed [m/s].
-    pub speed_m_s: Spread,
-    /// Kinetic energy [J].
-    pub energy_j: Spread,
-    /// Its part of rotation [J].
-    pub rotation_j: Spread,
-}
-
-impl AtLine {
-    /// Of boulders at a moment each; none of none.
-    pub fn of(moments: &[Moment]) -> Option<Self> {
-        let spread = |of: &dyn Fn(&Moment) -> f64| Spread::of(moments.iter().map(of).collect());
-        Some(Self {
-            height_m: spread(&|m| m.height_m)?,
-            top_m: spread(&|m| m.top_m)?,
-            speed_m_s: spread(&Moment::speed_m_s)?,
-            energy_j: spread(&Moment::energy_j)?,
-            rotation_j: spread(&|m| m.rotation_j)?,
-        })
-    }
 }
 
 /// Falls that are not accurate.
@@ -212,14 +159,6 @@ pub fn wilson(successes: usize, trials: usize) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn percentiles_are_between_values() {
-        let spread = Spread::of((0..=100).rev().map(f64::from).collect()).expect("values");
-        assert_eq!((spread.median, spread.percentile_95, spread.largest), (50.0, 95.0, 100.0));
-        assert_eq!(Spread::of(vec![3.0]).expect("a value").median, 3.0);
-        assert_eq!(Spread::of(Vec::new()), None);
-    }
 
     #[test]
     fn confidence_is_that_of_wilson() {

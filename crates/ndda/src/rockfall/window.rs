@@ -18,6 +18,9 @@ const AHEAD_S: f64 = 0.4;
 const MOST_CELLS: f64 = 7.0;
 /// Fewest cells, so that a boulder that turns on the spot does not leave it.
 const LEAST_CELLS: f64 = 2.0;
+/// Cells around a boulder, with fewer of which its window is changed as soon as it does not touch the ground: what contact remembers of the last step
+/// is lost with the window.
+pub(super) const FEW_CELLS: f64 = 1.0;
 
 /// What a boulder and the ground below it do in contact.
 pub(super) struct Laws {
@@ -83,12 +86,15 @@ impl Cells {
         cells.each().all(|(i, j)| terrain.has(i, j)).then_some(cells)
     }
 
-    /// Whether these cells hold all those below a boulder.
-    pub(super) fn hold(&self, terrain: &Terrain, center: &Vec3, radius_m: f64) -> bool {
+    /// Whether these cells hold all those below a boulder, and so many more around them unless the terrain ends there.
+    pub(super) fn hold(&self, terrain: &Terrain, center: &Vec3, radius_m: f64, more: f64) -> bool {
         (0..2).all(|axis| {
             let at = (center[axis] - terrain.origin_m[axis]) / terrain.step_m[axis];
             let reach = radius_m / terrain.step_m[axis];
-            at - reach >= self.from[axis] as f64 && at + reach <= self.to[axis] as f64
+            let (first, last) = (self.from[axis], self.to[axis]);
+            let before = if first == 0 { 0.0 } else { more };
+            let beyond = if last == terrain.cells()[axis] { 0.0 } else { more };
+            at - reach - before >= first as f64 && at + reach + beyond <= last as f64
         })
     }
 
@@ -200,7 +206,7 @@ pub(super) fn simulation(
         contact: Some(Box::new(contact)),
         implicit_contact: None,
         solver: Box::new(Direct),
-        auto_step: Some(AutoStep { safety: 0.5, energy: 1e-3, most_halvings: 12 }),
+        auto_step: Some(AutoStep { safety: 0.5, energy: 1e-4, most_halvings: 12 }),
         bolts: Vec::new(),
     })
     .map_err(|error| error.to_string())

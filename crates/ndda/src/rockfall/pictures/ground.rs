@@ -30,7 +30,7 @@ pub(super) fn draw(svg: &mut Svg, axes: &Axes, terrain: &Terrain) {
         }
     }
     for (level, path) in paths.iter().enumerate().filter(|(_, path)| !path.is_empty()) {
-        let grey = 120.0 + 132.0 * level as f64 / (LEVELS - 1) as f64;
+        let grey = 158.0 + 94.0 * level as f64 / (LEVELS - 1) as f64;
         let colour = hex([grey, 0.995 * grey, 0.98 * grey].map(|c| c.round() as u8));
         svg.raw(&format!("<path d=\"{path}\" fill=\"{colour}\" shape-rendering=\"crispEdges\"/>"));
     }

@@ -6,7 +6,8 @@ use crate::picture::svg::{Anchor, Svg};
 use crate::rockfall::Model;
 use crate::rockfall::fall::Fall;
 use crate::rockfall::passage::Moment;
-use crate::rockfall::result::{Outcome, Spread};
+use crate::rockfall::result::Outcome;
+use crate::rockfall::spread::Spread;
 
 /// Width of the picture, room at the left, above and between, and size of a histogram [px].
 const WIDTH: f64 = 1100.0;

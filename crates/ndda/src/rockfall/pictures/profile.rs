@@ -9,7 +9,8 @@ use crate::rockfall::Model;
 use crate::rockfall::fall::Fall;
 use crate::rockfall::passage::{chainage_m, crossing, length_m, point_at};
 use crate::rockfall::profile::{Station, stations};
-use crate::rockfall::result::{AtLine, Outcome, Spread};
+use crate::rockfall::result::Outcome;
+use crate::rockfall::spread::{AtLine, Spread};
 use crate::view3d::viridis;
 
 /// Width of the picture, room at both sides, and heights of the section and of each envelope [px].
@@ -29,7 +30,7 @@ const POINTS: usize = 600;
 
 /// Draws the profile.
 pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> String {
-    let stations = stations(model, outcome, falls);
+    let stations = stations(model, (&outcome.profile_m, outcome.part_m), falls);
     let line = &outcome.profile_m;
     let length = length_m(line);
     let at = |k: usize| length * k as f64 / POINTS as f64;
@@ -74,7 +75,7 @@ pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> String {
         axes.frame(&mut svg);
         axes.name(&mut svg, name);
         if k == 0 {
-            key(&mut svg, [WIDTH - RIGHT - 330.0, top - 11.0]);
+            key(&mut svg, [WIDTH - RIGHT - 364.0, top - 11.0]);
         }
         if k == 2 {
             axes.name_below(&mut svg, "distance along the profile [m]");
