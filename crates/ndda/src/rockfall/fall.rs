@@ -22,6 +22,10 @@ const STEP_S: f64 = 2e-3;
 /// corner, and z/√3 below the nearest face.
 const STIFFNESS: f64 = 7.2e4;
 
+/// Energy that a step may gain over the largest of the fall; of the largest in its window never more than the second, while a boulder that is slow gains
+/// little that matters to its fall.
+const STEP_ENERGY: f64 = 1e-4;
+const MOST_STEP_ENERGY: f64 = 0.02;
 /// Angles that friction is cut off at [°].
 const MOST_FRICTION_DEG: (f64, f64) = (0.0, 89.0);
 
@@ -102,6 +106,7 @@ impl Case<'_> {
             density_kg_m3,
             gravity_m_s2: self.scene.gravity_m_s2[2],
             step_s: self.step_s(),
+            energy: STEP_ENERGY,
         }
     }
 
@@ -140,7 +145,9 @@ impl Case<'_> {
             Ok(motion) => motion,
             Err(reason) => return Fall { end: End::Stopped(reason), ..fall },
         };
-        let laws = self.laws(&boulder, &draw);
+        let mut laws = self.laws(&boulder, &draw);
+        let mut largest_j = 0.0f64;
+        let fall_mass_kg = fall.mass_kg;
         let mut watch = Watch {
             case: self,
             radius_m: boulder.radius_m,
@@ -155,6 +162,9 @@ impl Case<'_> {
             let Some(cells) = Cells::around(self.terrain, &motion, boulder.radius_m) else {
                 break End::LeftTerrain;
             };
+            let now_j = 0.5 * fall_mass_kg * motion.velocity_m_s.norm_squared();
+            largest_j = largest_j.max(now_j);
+            laws.energy = (STEP_ENERGY * largest_j / now_j.max(f64::MIN_POSITIVE)).clamp(STEP_ENERGY, MOST_STEP_ENERGY);
             let set_up = window::simulation((self.terrain, cells), (&boulder.mesh.tets, &motion), &laws);
             let mut simulation = match set_up {
                 Ok(simulation) => simulation,

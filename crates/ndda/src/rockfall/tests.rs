@@ -31,6 +31,7 @@ fn laws(restitution: f64, friction_deg: f64) -> Laws {
         density_kg_m3: DENSITY_KG_M3,
         gravity_m_s2: -G,
         step_s: 1e-3,
+        energy: 1e-4,
     }
 }
 

@@ -22,6 +22,10 @@ const LEAST_CELLS: f64 = 2.0;
 /// is lost with the window.
 pub(super) const FEW_CELLS: f64 = 1.0;
 
+/// Part of μN to which friction of all triangles of the ground together is found: they all act on one boulder, and to find it to more digits takes hundreds
+/// of sweeps where it turns on the spot.
+const FRICTION: f64 = 1e-3;
+
 /// What a boulder and the ground below it do in contact.
 pub(super) struct Laws {
     /// Pressure of the contact at a depth of 1 m [Pa].
@@ -36,6 +40,8 @@ pub(super) struct Laws {
     pub gravity_m_s2: f64,
     /// Longest step [s].
     pub step_s: f64,
+    /// Energy that a step may gain over the largest in the window.
+    pub energy: f64,
 }
 
 /// Where a boulder is and how it moves.
@@ -192,7 +198,7 @@ pub(super) fn simulation(
         velocity_m_s,
         spin_rad_s,
     };
-    Simulation::new(Setup {
+    let mut simulation = Simulation::new(Setup {
         blocks,
         bodies: vec![
             body(BodyKind::Rigid, motion.velocity_m_s, motion.spin_rad_s),
@@ -206,10 +212,12 @@ pub(super) fn simulation(
         contact: Some(Box::new(contact)),
         implicit_contact: None,
         solver: Box::new(Direct),
-        auto_step: Some(AutoStep { safety: 0.5, energy: 1e-4, most_halvings: 12 }),
+        auto_step: Some(AutoStep { safety: 0.5, energy: laws.energy, most_halvings: 12 }),
         bolts: Vec::new(),
     })
-    .map_err(|error| error.to_string())
+    .map_err(|error| error.to_string())?;
+    simulation.go_on_course();
+    Ok(simulation)
 }
 
 /// Contact with the laws of each ground on the triangles of its surface.
@@ -219,6 +227,7 @@ fn contact(laws: &Laws) -> PotentialContact {
         let law = || -> Box<dyn FrictionLaw> { Box::new(VelocityCoulomb::new(friction_deg)) };
         friction.set_on(&[surface], (friction_deg > 0.0).then(law));
     }
+    friction.tolerance = FRICTION;
     let model = PotentialContact::new(laws.penalty_pa)
         .with_potential(Box::new(BoulderDepth))
         .with_broad_phase(Box::new(GroundBelow))
