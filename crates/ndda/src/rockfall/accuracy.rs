@@ -15,12 +15,15 @@ const MOST_FRICTION: f64 = 0.01;
 /// Errors of a fall, and their limits.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
-    /// Energy that came from nowhere or vanished over all windows, over the largest kinetic energy.
+    /// Energy that had come from nowhere or vanished since the release, at worst, over the largest kinetic energy.
     pub energy: f64,
     /// Energy by which friction was off Coulomb's law, over the same.
     pub friction: f64,
     /// Largest depth of a contact over the width of the boulder.
     pub depth: f64,
+    /// Balance of energy since the release [J].
+    #[serde(skip)]
+    balance_j: f64,
 }
 
 impl Accuracy {
@@ -29,7 +32,8 @@ impl Accuracy {
         let worst = simulation.invariants();
         let mass_kg = simulation.shape(super::contact::BOULDER).operator.mass_kg;
         let scale_j = 0.5 * mass_kg * simulation.speed_scale_m_s().powi(2);
-        self.energy += sample.balance_j.abs();
+        self.balance_j += sample.balance_j;
+        self.energy = self.energy.max(self.balance_j.abs());
         self.friction += worst.unresolved_friction.value * scale_j;
         self.depth = self.depth.max(worst.max_penetration_ratio);
     }
@@ -41,6 +45,7 @@ impl Accuracy {
             self.energy /= largest_j;
             self.friction /= largest_j;
         }
+        self.balance_j = 0.0;
     }
 
     /// Whether all errors are within their limits.
@@ -83,6 +88,7 @@ impl Accuracy {
             energy: self.energy.max(other.energy),
             friction: self.friction.max(other.friction),
             depth: self.depth.max(other.depth),
+            balance_j: 0.0,
         }
     }
 }

@@ -12,10 +12,10 @@ use crate::rockfall::spread::Spread;
 /// Width of the picture, room at the left, above and between, and size of a histogram [px].
 const WIDTH: f64 = 1100.0;
 const LEFT: f64 = 56.0;
-const TOP: f64 = 104.0;
+const TOP: f64 = 112.0;
 const GAP: f64 = 62.0;
 const SIZE: [f64; 2] = [300.0, 170.0];
-const ROW: f64 = 268.0;
+const ROW: f64 = 276.0;
 /// Most lines that are drawn.
 const MOST_LINES: usize = 8;
 /// Most bars of a histogram.
@@ -47,9 +47,9 @@ pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> Option<S
             outcome.count,
             100.0 * line.probability
         );
-        svg.words([LEFT, top - 30.0], 14.0, Anchor::Start, INK, WIDTH - 2.0 * LEFT, &words);
+        svg.words([LEFT, top - 34.0], 14.0, Anchor::Start, INK, WIDTH - 2.0 * LEFT, &words);
         let columns: [(&str, f64, fn(&Moment) -> f64); 3] = [
-            ("height of the mass centre above the ground [m]", 1.0, |m| m.height_m),
+            ("height of the mass centre [m]", 1.0, |m| m.height_m),
             ("speed [m/s]", 1.0, Moment::speed_m_s),
             ("kinetic energy [kJ]", 1e3, Moment::energy_j),
         ];
@@ -60,6 +60,12 @@ pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> Option<S
         }
     }
     Some(svg.finish())
+}
+
+/// A number to three digits.
+fn three_digits(value: f64) -> String {
+    let digits = 2 - value.abs().max(1e-300).log10().floor() as i32;
+    format!("{value:.*}", digits.clamp(0, 6) as usize)
 }
 
 /// A histogram with its median and its 95th percentile.
@@ -79,15 +85,13 @@ fn histogram(svg: &mut Svg, at: [f64; 2], name: &str, values: Vec<f64>) {
         svg.rect([left + 0.6, top], [right - left - 1.2, bottom - top], [126, 160, 184]);
     }
     let Some(spread) = Spread::of(values) else { return };
-    for (value, colour, words, row) in
-        [(spread.median, MEDIAN, "median", 0.0), (spread.percentile_95, PERCENTILE, "95 %", 1.0)]
+    for (value, colour, words, left) in
+        [(spread.median, MEDIAN, "median", 0.0), (spread.percentile_95, PERCENTILE, "95th percentile", 120.0)]
     {
         let [place, _] = axes.place([value, 0.0]);
         svg.line([place, at[1]], [place, at[1] + SIZE[1]], 2.2, colour);
-        let is_right = place > at[0] + 0.62 * SIZE[0];
-        let (anchor, shift) = if is_right { (Anchor::End, -6.0) } else { (Anchor::Start, 6.0) };
-        let label = format!("{words} {value:.2}");
-        svg.words([place + shift, at[1] + 12.0 + 16.0 * row], 12.0, anchor, colour, 140.0, &label);
+        let label = format!("{words} {}", three_digits(value));
+        svg.words([at[0] + left, at[1] - 10.0], 12.0, Anchor::Start, colour, 190.0, &label);
     }
     axes.frame(svg);
     axes.name_below(svg, name);

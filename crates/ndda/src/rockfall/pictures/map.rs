@@ -79,13 +79,16 @@ impl<'a> Map<'a> {
             points.join(" "),
             hex(INK)
         ));
-        for line in &self.model.rockfall.lines {
+        for (k, line) in (0..).zip(&self.model.rockfall.lines) {
             let points: Vec<[f64; 2]> =
                 line.points_m.iter().map(|corner| axes.place(self.within(*corner))).collect();
             self.svg.polyline(&points, 5.0, [255; 3]);
             self.svg.polyline(&points, 2.6, [190, 20, 40]);
-            if let Some([x, y]) = points.first() {
-                let at = [x + 6.0, y - 9.0];
+            // Names of lines side by side stand one above the other.
+            if let [[x, y], [to_x, to_y], ..] = points[..] {
+                let length = (to_x - x).hypot(to_y - y).max(1.0);
+                let part = ((14.0 + 22.0 * f64::from(k)) / length).min(0.5);
+                let at = [x + part * (to_x - x) + 7.0, y + part * (to_y - y)];
                 halo(&mut self.svg, at, &line.name);
                 self.svg.words(at, 13.0, Anchor::Start, [150, 10, 30], 200.0, &line.name);
             }

@@ -132,7 +132,7 @@ fn section_of(
 
 /// Where lines cross the profile, with their names if asked for.
 fn lines(svg: &mut Svg, axes: &Axes, model: &Model, outcome: &Outcome, with_names: bool) {
-    for line in &model.rockfall.lines {
+    for (k, line) in (0..).zip(&model.rockfall.lines) {
         for piece in outcome.profile_m.windows(2) {
             let Some(part) = crossing(&line.points_m, piece[0], piece[1]) else { continue };
             let at = [0, 1].map(|i| piece[0][i] + part * (piece[1][i] - piece[0][i]));
@@ -143,7 +143,7 @@ fn lines(svg: &mut Svg, axes: &Axes, model: &Model, outcome: &Outcome, with_name
                 axes.at[1] + axes.size[1]
             ));
             if with_names {
-                svg.words([x + 5.0, axes.at[1] + 12.0], 12.0, Anchor::Start, [150, 10, 30], 160.0, &line.name);
+                svg.words([x + 5.0, axes.at[1] + 12.0 + 16.0 * f64::from(k)], 12.0, Anchor::Start, [150, 10, 30], 160.0, &line.name);
             }
             break;
         }
