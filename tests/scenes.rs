@@ -101,9 +101,11 @@ fn scenes_of_extreme_cases_and_failures_load_and_say_what_is_expected() {
         if text.contains("\n    scene: \"") {
             study::load(&path).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
         } else if text.contains("\n    rockfall: (") {
-            let loaded = read::load(&path, &[]).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
+            let loaded =
+                read::load(&path, &[]).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
             assert!(loaded.warnings.is_empty(), "{name}: {:?}", loaded.warnings);
-            rockfall::Model::new(loaded, path.parent().unwrap(), (None, None)).unwrap_or_else(|e| panic!("{name}: {e}"));
+            rockfall::Model::new(loaded, path.parent().unwrap(), (None, None))
+                .unwrap_or_else(|e| panic!("{name}: {e}"));
         } else {
             Model::open(&path, &[]).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
         }

@@ -85,10 +85,16 @@ fn boulders_reach_a_line_as_often_as_their_speeds_say() {
     let reached = falls.iter().filter(flew).count();
     let probability = (25.0 - 30.0 / flight_s) / 20.0;
     let [low, high] = wilson(reached, falls.len());
-    assert!((low..=high).contains(&probability), "{reached} of {}: {low} to {high}, exact {probability}", falls.len());
+    assert!(
+        (low..=high).contains(&probability),
+        "{reached} of {}: {low} to {high}, exact {probability}",
+        falls.len()
+    );
     row(CASE, "probability of reach in flight", reached as f64 / 300.0, Near(probability, 0.06));
     // Speeds at the wall: horizontal as released, vertical by the height that is left.
-    let at_wall = |fall: &Fall| fall.passages.iter().find(|(_, m)| m.time_s < flight_s).map(|(_, m)| (fall.path[0], *m));
+    let at_wall = |fall: &Fall| {
+        fall.passages.iter().find(|(_, m)| m.time_s < flight_s).map(|(_, m)| (fall.path[0], *m))
+    };
     for (start, moment) in falls.iter().filter_map(at_wall).take(20) {
         let t = (50.0 - 20.0) / start.velocity_m_s[0];
         let speed = start.velocity_m_s[0].hypot(G * t);

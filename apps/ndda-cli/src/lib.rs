@@ -20,7 +20,8 @@ use verbs::schema;
 #[cfg(feature = "shell")]
 use verbs::shell;
 use verbs::{
-    certify, check, explain, joint, mesh, new, processes, record, resume, rockfall, run, safety, stereonet, study, tune,
+    certify, check, explain, joint, mesh, new, processes, record, resume, rockfall, run, safety, stereonet,
+    study, tune,
 };
 #[cfg(feature = "plots")]
 use verbs::{picture, plot};

@@ -37,6 +37,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use ndda_io::WriteError;
+use ndda_io::code::Code;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::read::LoadedScene;
 use ndda_io::scene::Rockfall;
@@ -155,18 +156,25 @@ impl Model {
         rockfall.count = count.unwrap_or(rockfall.count);
         rockfall.seed = seed.unwrap_or(rockfall.seed);
         let refuse = |path: &str, message: String| {
-            let mut found = loaded.diagnose(path, message);
-            found.help = None;
+            let found = loaded.diagnose_as(Code::CannotBuild, path, message);
             RockfallError::Scene(loaded.errors(vec![found]))
         };
         let terrain = Terrain::new(&rockfall.terrain, folder, &rockfall.zones)
             .map_err(|message| refuse("rockfall.terrain", message))?;
         let model = Self { rockfall, terrain, loaded };
+        let cells = model.reach_cells().map(|n| n as f64);
+        if cells[0] * cells[1] > MOST_CELLS {
+            let message = format!(
+                "a map of {} × {} cells is more than memory should hold: give a larger side",
+                cells[0], cells[1]
+            );
+            let found = model.loaded.diagnose_as(Code::OutOfRange, "rockfall.detail.cell_m", message);
+            return Err(RockfallError::Scene(model.loaded.errors(vec![found])));
+        }
         let refused = (0..model.rockfall.count).into_par_iter().find_map_first(|k| model.case().refusal(k));
         if let Some((release, reason)) = refused {
             let path = format!("rockfall.releases[{release}].from");
-            let mut found = model.loaded.diagnose(&path, reason);
-            found.help = None;
+            let found = model.loaded.diagnose_as(Code::CannotBuild, &path, reason);
             return Err(RockfallError::Scene(model.loaded.errors(vec![found])));
         }
         Ok(model)
@@ -201,11 +209,7 @@ impl Model {
     /// Side of the cells of the map of reach [m].
     pub fn cell_m(&self) -> f64 {
         let step_m = self.terrain.step_m[0].max(self.terrain.step_m[1]);
-        let asked = self.rockfall.detail.cell_m.unwrap_or(step_m);
-        // No more cells than memory has room for.
-        let [least, most] = self.terrain.bounds_m();
-        let area_m2 = (most[0] - least[0]) * (most[1] - least[1]);
-        asked.max((area_m2 / MOST_CELLS).sqrt())
+        self.rockfall.detail.cell_m.unwrap_or(step_m)
     }
 
     /// Cells of the map of reach along x and y.

@@ -9,7 +9,7 @@ use super::SceneArgs;
 /// Arguments of `ndda rockfall`.
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Examples:\n  ndda rockfall scenes/works/rockfall.ron\n  ndda rockfall slope.ron --count 2000 --seed 7 --out out/more"
+    after_help = "Example:\n  ndda rockfall scenes/works/rockfall.ron --count 50 --seed 7 --out out/few"
 )]
 pub struct RockfallArgs {
     /// The scene.

@@ -1,9 +1,13 @@
 //! `ndda rockfall`: boulders that fall over terrain.
 
-use ndda::places;
-use ndda::rockfall::{Request, RockfallError, make};
+use std::path::Path;
 
-use crate::args::RockfallArgs;
+use ndda::places;
+use ndda::rockfall::{Model, Request, RockfallError, make};
+use ndda_io::read;
+use serde_json::json;
+
+use crate::args::{RockfallArgs, SceneArgs};
 use crate::terminal::console::{complain_unless, say};
 use crate::terminal::events::Events;
 use crate::terminal::interrupt;
@@ -28,10 +32,35 @@ pub fn rockfall(args: &RockfallArgs) -> u8 {
         jobs: args.jobs.map_or(0, usize::from),
     };
     match make(loaded, &request, &interrupt::watch(), &complain_unless(args.quiet)) {
-        Ok(outcome) if args.json => say(&serde_json::to_string_pretty(&outcome).expect("an outcome has no NaN")),
+        Ok(outcome) if args.json => {
+            say(&serde_json::to_string_pretty(&outcome).expect("an outcome has no NaN"))
+        }
         Ok(outcome) => say(&format!("{outcome}results in {}", request.out.display())),
-        Err(RockfallError::Scene(errors)) => return events.refuse(&errors),
-        Err(error) => return events.fail(exit::of_rockfall(&error), &error.to_string()),
+        Err(error) => return fail(&error, events),
     }
     exit::DONE
+}
+
+/// Checks a scene of boulders; nothing if it is another one, or cannot be read.
+pub fn check(input: &SceneArgs, events: Events) -> Option<u8> {
+    let file = input::file(input);
+    let loaded = read::load(&file, &input.overrides).ok().filter(|found| found.scene.rockfall.is_some())?;
+    let checked = Model::new(loaded, file.parent().unwrap_or(Path::new(".")), (None, None));
+    Some(match checked {
+        Ok(model) => {
+            events.emit("finished", &json!({"exit_code": exit::DONE, "scene": file}));
+            if !events.are_read() {
+                say(&format!("{}: no errors; {model}", file.display()));
+            }
+            exit::DONE
+        }
+        Err(error) => fail(&error, events),
+    })
+}
+
+fn fail(error: &RockfallError, events: Events) -> u8 {
+    match error {
+        RockfallError::Scene(errors) => events.refuse(errors),
+        error => events.fail(exit::of_rockfall(error), &error.to_string()),
+    }
 }

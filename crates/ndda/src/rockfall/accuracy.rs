@@ -7,8 +7,8 @@ use super::passage::Moment;
 
 /// Energy that may come from nowhere or vanish, over the largest kinetic energy: speeds are as its root, and may be off by 1 %.
 const MOST_ENERGY: f64 = 0.02;
-/// Depth of a contact over the width of the boulder.
-const MOST_DEPTH: f64 = 0.05;
+/// Depth of a contact over the width of the boulder: it leaves the boulder up to π d/2 from where it should be, which is less than ground is known to.
+const MOST_DEPTH: f64 = 0.1;
 /// Energy by which friction may be off Coulomb's law, over the largest kinetic energy.
 const MOST_FRICTION: f64 = 0.01;
 
@@ -27,19 +27,23 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// Adds the errors of a window [J], which is over.
-    pub(super) fn add(&mut self, simulation: &Simulation, sample: &Sample) {
+    /// Adds the errors of a window [J], which is over. Within a contact the balance is off by what comes back when it ends, so that it counts only where the
+    /// boulder does not touch the ground.
+    pub(super) fn add(&mut self, simulation: &Simulation, sample: &Sample, touches: bool) {
         let worst = simulation.invariants();
         let mass_kg = simulation.shape(super::contact::BOULDER).operator.mass_kg;
         let scale_j = 0.5 * mass_kg * simulation.speed_scale_m_s().powi(2);
         self.balance_j += sample.balance_j;
-        self.energy = self.energy.max(self.balance_j.abs());
+        if !touches {
+            self.energy = self.energy.max(self.balance_j.abs());
+        }
         self.friction += worst.unresolved_friction.value * scale_j;
         self.depth = self.depth.max(worst.max_penetration_ratio);
     }
 
     /// Turns energies into parts of the largest kinetic energy.
     pub(super) fn close(&mut self, path: &[Moment]) {
+        self.energy = self.energy.max(self.balance_j.abs());
         let largest_j = path.iter().map(Moment::energy_j).fold(0.0, f64::max);
         if largest_j > 0.0 {
             self.energy /= largest_j;

@@ -104,8 +104,7 @@ impl Surface {
         }
         let ring = |n: &Vec3| {
             let on = |x: &Vec3| (n.dot(x) - 1.0).abs() <= 2.0 * SAME * x.norm().max(1.0) * n.norm();
-            let mut ring: Vec<u32> =
-                (0..).zip(&corners).filter(|(_, x)| on(x)).map(|(k, _)| k).collect();
+            let mut ring: Vec<u32> = (0..).zip(&corners).filter(|(_, x)| on(x)).map(|(k, _)| k).collect();
             let middle = ring.iter().map(|&k| corners[k as usize]).sum::<Vec3>() / ring.len().max(1) as f64;
             let east = n.cross(&Vec3::ith(n.iamin(), 1.0));
             let north = n.cross(&east);

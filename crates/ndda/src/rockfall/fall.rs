@@ -164,7 +164,8 @@ impl Case<'_> {
             };
             let now_j = 0.5 * fall_mass_kg * motion.velocity_m_s.norm_squared();
             largest_j = largest_j.max(now_j);
-            laws.energy = (STEP_ENERGY * largest_j / now_j.max(f64::MIN_POSITIVE)).clamp(STEP_ENERGY, MOST_STEP_ENERGY);
+            laws.energy =
+                (STEP_ENERGY * largest_j / now_j.max(f64::MIN_POSITIVE)).clamp(STEP_ENERGY, MOST_STEP_ENERGY);
             let set_up = window::simulation((self.terrain, cells), (&boulder.mesh.tets, &motion), &laws);
             let mut simulation = match set_up {
                 Ok(simulation) => simulation,
@@ -200,8 +201,9 @@ impl Watch<'_> {
             self.last = self.moment(simulation, 0.0);
             self.keep();
         }
+        let mut touches = false;
         let end = loop {
-            let touches = match simulation.step() {
+            touches = match simulation.step() {
                 Ok(report) => report.contact.contact_pairs > 0,
                 Err(error) => break Some(End::Stopped(error.to_string())),
             };
@@ -219,7 +221,7 @@ impl Watch<'_> {
         };
         // What cannot be sampled has stopped the run already.
         if let Ok(sample) = simulation.sample() {
-            self.fall.accuracy.add(simulation, &sample);
+            self.fall.accuracy.add(simulation, &sample, touches);
         }
         end
     }

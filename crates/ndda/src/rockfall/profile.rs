@@ -28,7 +28,8 @@ pub(super) fn corners_m(model: &Model, falls: &[Fall]) -> Vec<[f64; 2]> {
     }
     let middle = |of: &dyn Fn(&Fall) -> Option<Moment>| {
         let moments: Vec<Moment> = falls.iter().filter_map(of).collect();
-        let mean = |axis: usize| moments.iter().map(|m| m.at_m[axis]).sum::<f64>() / moments.len().max(1) as f64;
+        let mean =
+            |axis: usize| moments.iter().map(|m| m.at_m[axis]).sum::<f64>() / moments.len().max(1) as f64;
         [mean(0), mean(1)]
     };
     let (from, to) = (middle(&|fall| fall.path.first().copied()), middle(&|fall| fall.path.last().copied()));

@@ -66,7 +66,8 @@ pub(super) fn start(
             on_map()
         ));
     }
-    let value = |of, scatter: &Option<Scatter>, limits| scatter.as_ref().map(|s| draw.value(of, 0, s, limits));
+    let value =
+        |of, scatter: &Option<Scatter>, limits| scatter.as_ref().map(|s| draw.value(of, 0, s, limits));
     let all = (f64::NEG_INFINITY, f64::INFINITY);
     let height_m = value(Of::Height, &release.height_m, (0.0, f64::INFINITY)).unwrap_or(0.0);
     let speed = value(Of::Speed, &release.speed_m_s, (0.0, f64::INFINITY)).unwrap_or(0.0);

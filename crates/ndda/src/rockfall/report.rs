@@ -2,6 +2,7 @@
 
 use std::fmt::{self, Write as _};
 
+use super::Model;
 use super::result::{Ends, Outcome};
 use super::spread::Spread;
 use crate::columns::columns;
@@ -9,6 +10,24 @@ use crate::columns::columns;
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&text(self))
+    }
+}
+
+impl fmt::Display for Model {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (rockfall, terrain) = (&self.rockfall, &self.terrain);
+        let (low, high) = terrain.heights_m();
+        write!(
+            f,
+            "{} boulders over {} triangles, {:.2} to {:.2} m high; {} zone(s), {} line(s); steps of at most {:.1e} s",
+            rockfall.count,
+            terrain.triangles(),
+            low,
+            high,
+            rockfall.zones.len(),
+            rockfall.lines.len(),
+            self.step_s()
+        )
     }
 }
 
@@ -37,7 +56,10 @@ fn text(outcome: &Outcome) -> String {
         let rows = outcome.lines.iter().map(|line| {
             let [low, high] = line.confidence_95;
             let spread = |of: Option<Spread>, unit: f64| {
-                of.map_or_else(|| "–".into(), |s| format!("{} · {}", number(s.median / unit), number(s.percentile_95 / unit)))
+                of.map_or_else(
+                    || "–".into(),
+                    |s| format!("{} · {}", number(s.median / unit), number(s.percentile_95 / unit)),
+                )
             };
             let first = line.first.as_ref();
             vec![
@@ -51,7 +73,10 @@ fn text(outcome: &Outcome) -> String {
             ]
         });
         let _ = writeln!(text, "{}", columns(header.map(String::from).to_vec(), rows.collect()));
-        let _ = writeln!(text, "median · 95th percentile at the first passage; height of the mass centre and of the highest point above the ground");
+        let _ = writeln!(
+            text,
+            "median · 95th percentile at the first passage; height of the mass centre and of the highest point above the ground"
+        );
     }
     let accuracy = &outcome.accuracy;
     if accuracy.inaccurate > 0 {

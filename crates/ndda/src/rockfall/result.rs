@@ -134,7 +134,8 @@ fn ends(falls: &[Fall]) -> Ends {
 
 fn lines(model: &Model, falls: &[Fall]) -> Vec<LineResult> {
     let result = |(k, line): (usize, &ndda_io::scene::CountingLine)| {
-        let first = |fall: &Fall| fall.passages.iter().find(|(line, _)| *line == k).map(|(_, moment)| *moment);
+        let first =
+            |fall: &Fall| fall.passages.iter().find(|(line, _)| *line == k).map(|(_, moment)| *moment);
         let moments: Vec<Moment> = falls.iter().filter_map(first).collect();
         LineResult {
             name: line.name.clone(),

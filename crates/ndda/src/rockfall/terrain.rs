@@ -50,7 +50,9 @@ impl Terrain {
             Self { origin_m: grid.origin_m, step_m: grid.step_m, size, heights_m, zones: Vec::new() };
         let cells = terrain.cells();
         if !(0..cells[1]).any(|j| (0..cells[0]).any(|i| terrain.has(i, j))) {
-            return Err("no cell of the grid has a height at all four corners: give a grid with fewer gaps".into());
+            return Err(
+                "no cell of the grid has a height at all four corners: give a grid with fewer gaps".into()
+            );
         }
         terrain.zones = terrain.zones_of(zones);
         Ok(terrain)
@@ -81,7 +83,9 @@ impl Terrain {
     /// Whether a cell has heights at all four corners.
     pub fn has(&self, i: usize, j: usize) -> bool {
         let [nx, ny] = self.cells();
-        i < nx && j < ny && [(0, 0), (1, 0), (0, 1), (1, 1)].iter().all(|(a, b)| self.node_m(i + a, j + b).is_finite())
+        i < nx
+            && j < ny
+            && [(0, 0), (1, 0), (0, 1), (1, 1)].iter().all(|(a, b)| self.node_m(i + a, j + b).is_finite())
     }
 
     /// Zones of the triangle south-east of the diagonal of a cell, and of that north-west of it.

@@ -53,8 +53,7 @@ fn moved(terrain: &Terrain, boulder: &Boulder, start: Motion, laws: &Laws, time_
     let (mut now, mut left, mut spurious_j) = (start, (time_s / laws.step_s).round() as u32, 0.0);
     while left > 0 {
         let cells = Cells::around(terrain, &now, boulder.radius_m).expect("on the terrain");
-        let mut running =
-            simulation((terrain, cells), (&boulder.mesh.tets, &now), laws).expect("a window");
+        let mut running = simulation((terrain, cells), (&boulder.mesh.tets, &now), laws).expect("a window");
         while left > 0 {
             running.step().expect("a step");
             left -= 1;

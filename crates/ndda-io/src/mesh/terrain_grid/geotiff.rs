@@ -40,17 +40,27 @@ const METRE: u64 = 9001;
 pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
     let ifd = Ifd::read(bytes)?;
     let keys = ifd.get(GEO_KEYS).map(Entry::whole_numbers).transpose()?.unwrap_or_default();
-    let key = |id: u64| keys.get(4..)?.chunks_exact(4).find(|key| key[0] == id && key[1] == 0).map(|key| key[3]);
+    let key =
+        |id: u64| keys.get(4..)?.chunks_exact(4).find(|key| key[0] == id && key[1] == 0).map(|key| key[3]);
     if key(MODEL_TYPE) == Some(GEOGRAPHIC) {
-        return Err(not_read("a grid in degrees", "project it to metres, as with gdalwarp -t_srs and an EPSG code of the country"));
+        return Err(not_read(
+            "a grid in degrees",
+            "project it to metres, as with gdalwarp -t_srs and an EPSG code of the country",
+        ));
     }
     if let Some(unit) = key(LINEAR_UNITS).filter(|unit| *unit != METRE) {
-        return Err(not_read(format!("a grid in the unit of EPSG {unit}"), "project it to metres, as with gdalwarp"));
+        return Err(not_read(
+            format!("a grid in the unit of EPSG {unit}"),
+            "project it to metres, as with gdalwarp",
+        ));
     }
     let size = [ifd.number(WIDTH)?, ifd.number(HEIGHT)?];
     if size.iter().any(|n| *n < 2) || size[0].saturating_mul(size[1]) > MOST_HEIGHTS {
         let what = format!("a grid of {} × {} heights", size[0], size[1]);
-        return Err(not_read(what, "give at least 2 × 2 and at most 16 777 216: resample it, or cut out the part you need"));
+        return Err(not_read(
+            what,
+            "give at least 2 × 2 and at most 16 777 216: resample it, or cut out the part you need",
+        ));
     }
     let (origin_m, step_m) = place(&ifd, size, key(RASTER_TYPE) == Some(PIXEL_IS_POINT))?;
     let no_data = ifd.get(GDAL_NO_DATA).map(Entry::text).transpose()?;
@@ -78,7 +88,10 @@ fn place(ifd: &Ifd, size: [u64; 2], is_point: bool) -> Result<([f64; 2], [f64; 2
     let tie = needed(TIE_POINT, "ModelTiepoint", 6)?;
     let step_m = [scale[0], scale[1]];
     if step_m.iter().any(|step| *step <= 0.0) {
-        return Err(not_read(format!("a grid of steps {} × {}", step_m[0], step_m[1]), "turn it north up, as with gdalwarp"));
+        return Err(not_read(
+            format!("a grid of steps {} × {}", step_m[0], step_m[1]),
+            "turn it north up, as with gdalwarp",
+        ));
     }
     // The tie point is of a corner of a pixel, or of its middle; heights belong to the middles.
     let middle = if is_point { 0.0 } else { 0.5 };
@@ -98,7 +111,12 @@ mod tests {
     use std::path::Path;
 
     /// A file of 3 × 2 numbers of a kind; `change` takes entries as (tag, type, count, value or place).
-    fn file(format: (u16, u16), data: &[u8], compression: u16, change: impl Fn(&mut Vec<(u16, u16, u32, u32)>)) -> Vec<u8> {
+    fn file(
+        format: (u16, u16),
+        data: &[u8],
+        compression: u16,
+        change: impl Fn(&mut Vec<(u16, u16, u32, u32)>),
+    ) -> Vec<u8> {
         let mut bytes = b"II\x2a\x00\x08\x00\x00\x00".to_vec();
         let tail = 8 + 2 + 12 * 13 + 4;
         let scale = [2.0f64, 5.0, 0.0];
@@ -146,7 +164,8 @@ mod tests {
     #[test]
     fn numbers_of_all_kinds_are_heights_of_the_middles_of_pixels() {
         assert_eq!(read(&file((3, 32), &floats(), 1, |_| ())).unwrap(), expected());
-        let doubles: Vec<u8> = [4.0f64, 5.0, -1.0, 1.0, 2.0, 3.0].iter().flat_map(|x| x.to_le_bytes()).collect();
+        let doubles: Vec<u8> =
+            [4.0f64, 5.0, -1.0, 1.0, 2.0, 3.0].iter().flat_map(|x| x.to_le_bytes()).collect();
         assert_eq!(read(&file((3, 64), &doubles, 1, |_| ())).unwrap(), expected());
         let whole: Vec<u8> = [4i16, 5, -1, 1, 2, 3].iter().flat_map(|x| x.to_le_bytes()).collect();
         assert_eq!(read(&file((2, 16), &whole, 1, |_| ())).unwrap(), expected());
@@ -180,13 +199,16 @@ mod tests {
     #[test]
     fn what_is_not_read_is_refused_with_a_cure() {
         let said = |bytes: &[u8]| read(bytes).unwrap_err().of(Path::new("a.tif")).to_string();
-        let with = |change: &dyn Fn(&mut Vec<(u16, u16, u32, u32)>)| said(&file((3, 32), &floats(), 1, change));
+        let with =
+            |change: &dyn Fn(&mut Vec<(u16, u16, u32, u32)>)| said(&file((3, 32), &floats(), 1, change));
         assert!(said(b"II\x2b\x00").contains("gdal_translate"));
         assert!(said(b"PK").contains("TIFF"));
         assert!(with(&|e| e[3].3 = 7).contains("gdal_translate"));
         assert!(with(&|e| e[5].3 = 3).contains("one band"));
         assert!(with(&|e| e[0].3 = 60_000).contains("truncated"));
-        assert!(with(&|e| (e[0].1, e[0].3, e[1].1, e[1].3) = (4, u32::MAX, 4, u32::MAX)).contains("resample"));
+        assert!(
+            with(&|e| (e[0].1, e[0].3, e[1].1, e[1].3) = (4, u32::MAX, 4, u32::MAX)).contains("resample")
+        );
         assert!(with(&|e| e.retain(|entry| entry.0 != PIXEL_SCALE)).contains("ModelPixelScale"));
         assert!(with(&|e| e[4].3 = u32::MAX).contains("truncated"));
     }

@@ -30,20 +30,30 @@ pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
     let axes = [axis(&points, 0), axis(&points, 1)];
     let [Some((x0, dx, nx)), Some((y0, dy, ny))] = axes else {
         let what = "points on one line".to_string();
-        return Err(FileProblem::NotRead { what, cure: "give points of a grid with at least two rows and columns" }.into());
+        return Err(FileProblem::NotRead {
+            what,
+            cure: "give points of a grid with at least two rows and columns",
+        }
+        .into());
     };
     let places = nx.saturating_mul(ny);
     if places > MOST_HEIGHTS || places > MOST_SPARSE * points.len() as u64 {
         let what = format!("{} points that would need a grid of {nx} × {ny}", points.len());
-        return Err(FileProblem::NotRead { what, cure: "they are not on a regular grid: resample them, as with gdal_grid" }.into());
+        return Err(FileProblem::NotRead {
+            what,
+            cure: "they are not on a regular grid: resample them, as with gdal_grid",
+        }
+        .into());
     }
     let mut heights_m = vec![vec![None; nx as usize]; ny as usize];
     for (number, [x, y, z]) in points {
         let [u, v] = [(x - x0) / dx, (y - y0) / dy];
         if (u - u.round()).abs() > OFF || (v - v.round()).abs() > OFF {
             let what = format!("a point ({x}, {y}) beside the grid of {dx} × {dy} m from ({x0}, {y0})");
-            let problem =
-                FileProblem::NotRead { what, cure: "give points of a regular grid: resample them, as with gdal_grid" };
+            let problem = FileProblem::NotRead {
+                what,
+                cure: "give points of a regular grid: resample them, as with gdal_grid",
+            };
             return Err(Fault::at(number, problem));
         }
         let height = &mut heights_m[v.round() as usize][u.round() as usize];

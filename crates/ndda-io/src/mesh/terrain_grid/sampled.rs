@@ -23,11 +23,8 @@ pub(super) fn sample(surface: &Surface, sample_m: Option<f64>) -> Result<Terrain
         return Err(FileProblem::NotRead { what, cure: "give a distance of samples that fits it" }.into());
     }
     let [nx, ny] = counts.map(|n| n as usize);
-    let mut grid = TerrainGrid {
-        origin_m: [low.x, low.y],
-        step_m: [step; 2],
-        heights_m: vec![vec![None; nx]; ny],
-    };
+    let mut grid =
+        TerrainGrid { origin_m: [low.x, low.y], step_m: [step; 2], heights_m: vec![vec![None; nx]; ny] };
     for face in &surface.faces {
         for k in 1..face.vertices.len().saturating_sub(1) {
             let corners = [0, k, k + 1].map(|c| surface.vertices[face.vertices[c] as usize]);
@@ -63,7 +60,11 @@ fn add(grid: &mut TerrainGrid, [a, b, c]: &[Vec3; 3], same: f64) -> Result<(), F
             let height = &mut grid.heights_m[j][i];
             if let Some(known) = height.filter(|known| (known - z).abs() > same) {
                 let what = format!("an overhang at ({x}, {y}), with ground at {known} and {z} m");
-                return Err(FileProblem::NotRead { what, cure: "cut it off: ground has one height at each place" }.into());
+                return Err(FileProblem::NotRead {
+                    what,
+                    cure: "cut it off: ground has one height at each place",
+                }
+                .into());
             }
             *height = Some(z);
         }
@@ -98,7 +99,14 @@ mod tests {
 
     #[test]
     fn overhangs_and_steps_that_do_not_fit_are_refused() {
-        let corners = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0], [0.0, 0.0, 3.0], [4.0, 0.0, 3.0], [0.0, 4.0, 3.0]];
+        let corners = [
+            [0.0, 0.0, 0.0],
+            [4.0, 0.0, 0.0],
+            [0.0, 4.0, 0.0],
+            [0.0, 0.0, 3.0],
+            [4.0, 0.0, 3.0],
+            [0.0, 4.0, 3.0],
+        ];
         let twice = surface(&corners, &[[0, 1, 2], [3, 4, 5]]);
         let said = |fault: Fault| fault.of(Path::new("a.stl")).to_string();
         assert!(said(sample(&twice, Some(1.0)).unwrap_err()).contains("an overhang at (0, 0)"));

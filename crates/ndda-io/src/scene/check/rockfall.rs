@@ -10,6 +10,8 @@ use crate::scene::{ContactAt, Mass};
 
 /// More boulders than this are a slip of the keyboard.
 const MOST_BOULDERS: u32 = 1_000_000;
+/// More zones than this have no numbers.
+const MOST_ZONES: usize = 10_000;
 /// Fewest and most faces of a random polyhedron.
 const FACES: std::ops::RangeInclusive<u32> = 6..=24;
 /// Most that one axis of a boulder may be longer than another.
@@ -46,8 +48,15 @@ impl Check<'_> {
         for (i, line) in rockfall.lines.iter().enumerate() {
             self.corners(&format!("rockfall.lines[{i}].points_m"), &line.points_m, 2);
         }
-        if !rockfall.profile_m.is_empty() {
+        if let Some(first) = rockfall.profile_m.first() {
             self.corners("rockfall.profile_m", &rockfall.profile_m, 2);
+            if rockfall.profile_m.iter().all(|corner| corner == first) {
+                self.error("rockfall.profile_m", "has no length", "give corners that are apart");
+            }
+        }
+        if rockfall.zones.len() > MOST_ZONES {
+            let message = format!("{} zones are more than {MOST_ZONES}", rockfall.zones.len());
+            self.error("rockfall.zones", message, "join those of the same ground");
         }
         if rockfall.count == 0 || rockfall.count > MOST_BOULDERS {
             self.error("rockfall.count", format!("{} boulders", rockfall.count), "give 1 to 1e6");
@@ -146,7 +155,8 @@ impl Check<'_> {
         let path = format!("rockfall.boulders.size.{field}");
         let (least, most) = boulders.within.unwrap_or((0.0, f64::INFINITY));
         if !(0.0 <= least && least < most) {
-            let message = format!("({least}, {most}): the least size comes first, and is less than the largest");
+            let message =
+                format!("({least}, {most}): the least size comes first, and is less than the largest");
             self.error("rockfall.boulders.within", message, "exchange the two");
         }
         self.scattered(&path, size, (0.0, f64::INFINITY));

@@ -35,7 +35,8 @@ pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> Option<S
     let words = format!("first passages of lines · {}", subtitle(outcome));
     svg.words([LEFT, 45.0], 13.0, Anchor::Start, GREY, WIDTH - 2.0 * LEFT, &words);
     for (row, &k) in reached.iter().enumerate() {
-        let first = |fall: &Fall| fall.passages.iter().find(|(line, _)| *line == k).map(|(_, moment)| *moment);
+        let first =
+            |fall: &Fall| fall.passages.iter().find(|(line, _)| *line == k).map(|(_, moment)| *moment);
         let moments: Vec<Moment> = falls.iter().filter_map(first).collect();
         let top = TOP + ROW * row as f64;
         let line = &outcome.lines[k];

@@ -143,7 +143,14 @@ fn lines(svg: &mut Svg, axes: &Axes, model: &Model, outcome: &Outcome, with_name
                 axes.at[1] + axes.size[1]
             ));
             if with_names {
-                svg.words([x + 5.0, axes.at[1] + 12.0 + 16.0 * f64::from(k)], 12.0, Anchor::Start, [150, 10, 30], 160.0, &line.name);
+                svg.words(
+                    [x + 5.0, axes.at[1] + 12.0 + 16.0 * f64::from(k)],
+                    12.0,
+                    Anchor::Start,
+                    [150, 10, 30],
+                    160.0,
+                    &line.name,
+                );
             }
             break;
         }
@@ -152,11 +159,8 @@ fn lines(svg: &mut Svg, axes: &Axes, model: &Model, outcome: &Outcome, with_name
 
 /// Largest values, 95th percentiles and medians at the stations that boulders passed.
 fn envelope(svg: &mut Svg, axes: &Axes, stations: &[Station], of: impl Fn(&AtLine) -> Spread, unit: f64) {
-    let lines: [(fn(&Spread) -> f64, _, f64); 3] = [
-        (|s| s.largest, LARGEST, 1.4),
-        (|s| s.percentile_95, PERCENTILE, 2.2),
-        (|s| s.median, MEDIAN, 2.2),
-    ];
+    let lines: [(fn(&Spread) -> f64, _, f64); 3] =
+        [(|s| s.largest, LARGEST, 1.4), (|s| s.percentile_95, PERCENTILE, 2.2), (|s| s.median, MEDIAN, 2.2)];
     for (value, colour, width) in lines {
         for run in stations.chunk_by(|a, b| a.first.is_some() == b.first.is_some()) {
             let at = |s: &Station| s.first.as_ref().map(|f| [s.chainage_m, value(&of(f)) / unit]);

@@ -50,12 +50,23 @@ impl<'a> Ifd<'a> {
         let is_little = match all.get(..2) {
             Some(b"II") => true,
             Some(b"MM") => false,
-            _ => return Err(Fault::unexpected(1, "`II` or `MM`, with which a TIFF begins", &all[..all.len().min(4)])),
+            _ => {
+                return Err(Fault::unexpected(
+                    1,
+                    "`II` or `MM`, with which a TIFF begins",
+                    &all[..all.len().min(4)],
+                ));
+            }
         };
         let bytes = Bytes { all, is_little };
         match bytes.whole(bytes.part(2, 2)?) {
             42 => {}
-            43 => return Err(not_read("a BigTIFF", "save it as a plain TIFF, as with gdal_translate -co BIGTIFF=NO")),
+            43 => {
+                return Err(not_read(
+                    "a BigTIFF",
+                    "save it as a plain TIFF, as with gdal_translate -co BIGTIFF=NO",
+                ));
+            }
             found => {
                 let (expected, found) = ("42, the mark of a TIFF".into(), found.to_string());
                 return Err(FileProblem::Unexpected { expected, found }.into());

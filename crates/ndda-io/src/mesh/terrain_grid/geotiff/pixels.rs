@@ -59,7 +59,10 @@ pub(super) fn read(ifd: &Ifd, [width, height]: [usize; 2]) -> Result<Vec<f64>, F
     };
     let needed = columns.saturating_mul(rows).saturating_mul(kind.size() as u64);
     if needed == 0 || needed > MOST_BYTES {
-        return Err(not_read(format!("an image in pieces of {columns} × {rows}"), "save it again, as with gdal_translate"));
+        return Err(not_read(
+            format!("an image in pieces of {columns} × {rows}"),
+            "save it again, as with gdal_translate",
+        ));
     }
     let [columns, rows] = [columns, rows].map(|n| n as usize);
     let tags = if is_tiled { (TILE_OFFSETS, TILE_BYTES) } else { (STRIP_OFFSETS, STRIP_BYTES) };
@@ -184,7 +187,8 @@ fn undo(piece: &mut [u8], predictor: u64, kind: Kind, columns: usize, is_little:
                     for byte in 0..size {
                         // The lowest byte first, whatever the order in the file.
                         let place = if is_little { byte } else { size - 1 - byte };
-                        let sum = u16::from(row[k * size + place]) + u16::from(row[(k - 1) * size + place]) + carry;
+                        let sum =
+                            u16::from(row[k * size + place]) + u16::from(row[(k - 1) * size + place]) + carry;
                         row[k * size + place] = sum as u8;
                         carry = sum >> 8;
                     }
