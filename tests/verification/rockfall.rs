@@ -12,11 +12,11 @@ use crate::evidence::row;
 const CASE: &str = "rockfall";
 const G: f64 = 9.81;
 
-/// A scene on ground with heights along x, the same for all y from 0 to 100 m.
-fn scene(heights: &[f64], step_x_m: f64, more: &str) -> Model {
+/// A scene on ground with heights along x, the same for all y from 0 to 100 m, in which boulders fall for a time.
+fn scene((heights, step_x_m): (&[f64], f64), end_s: f64, more: &str) -> Model {
     let row = heights.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
     let text = format!(
-        "(title: \"rockfall\", gravity_m_s2: (0, 0, -{G}), time: (end_s: 40),
+        "(title: \"rockfall\", gravity_m_s2: (0, 0, -{G}), time: (end_s: {end_s}),
           materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 50e9, poisson: 0.25)],
           rockfall: (terrain: Heights(origin_m: (0, 0), step_m: ({step_x_m}, 50), heights_m: [[{row}], [{row}], [{row}]]), {more}))"
     );
@@ -31,11 +31,11 @@ fn falls(model: &Model) -> Vec<Fall> {
 #[test]
 fn a_boulder_flies_along_a_parabola_and_lands_where_it_meets_the_slope() {
     let model = scene(
-        &[100.0, 60.0, 20.0],
-        100.0,
+        (&[100.0, 60.0, 20.0], 100.0),
+        5.0,
         "ground: (restitution: Always(0.3), friction_deg: Always(35)),
          boulders: (material: \"rock\", size: Diameter(diameter_m: Always(0.1)), shapes: [Ellipsoid()]),
-         releases: [(name: \"top\", from: Points([(20, 50)]), height_m: Always(5), speed_m_s: Always(12), azimuth_deg: Always(90), dip_deg: Always(-10))],
+         releases: [(name: \"top\", place: Points([(20, 50)]), height_m: Always(5), speed_m_s: Always(12), azimuth_deg: Always(90), dip_deg: Always(-10))],
          count: 1",
     );
     let fall = &falls(&model)[0];
@@ -72,12 +72,12 @@ fn boulders_reach_a_line_as_often_as_their_speeds_say() {
     let mut heights = vec![0.0; 21];
     heights[0] = 0.01;
     let model = scene(
-        &heights,
-        5.0,
+        (&heights, 5.0),
+        2.1,
         "ground: (restitution: Always(0), friction_deg: Always(60)),
          boulders: (material: \"rock\", size: Diameter(diameter_m: Always(0.2)), shapes: [Cuboid()]),
-         releases: [(name: \"edge\", from: Line([(20, 10), (20, 90)]), height_m: Always(20), speed_m_s: Uniform(5, 25), azimuth_deg: Always(90))],
-         lines: [(name: \"wall\", points_m: [(50, 0), (50, 100)])], count: 300",
+         releases: [(name: \"edge\", place: Line([(20, 10), (20, 90)]), height_m: Always(20), speed_m_s: Uniform(5, 25), azimuth_deg: Always(90))],
+         lines: [(name: \"wall\", points_m: [(50, 0), (50, 100)])], count: 200",
     );
     let falls = falls(&model);
     let flight_s = (2.0 * 20.0 / G).sqrt();
@@ -90,7 +90,7 @@ fn boulders_reach_a_line_as_often_as_their_speeds_say() {
         "{reached} of {}: {low} to {high}, exact {probability}",
         falls.len()
     );
-    row(CASE, "probability of reach in flight", reached as f64 / 300.0, Near(probability, 0.06));
+    row(CASE, "probability of reach in flight", reached as f64 / 200.0, Near(probability, 0.06));
     // Speeds at the wall: horizontal as released, vertical by the height that is left.
     let at_wall = |fall: &Fall| {
         fall.passages.iter().find(|(_, m)| m.time_s < flight_s).map(|(_, m)| (fall.path[0], *m))
@@ -106,12 +106,12 @@ fn boulders_reach_a_line_as_often_as_their_speeds_say() {
 fn slope(zones: &str, count: u32) -> Model {
     let heights: Vec<f64> = (0..=40).map(|i| (60.0 - 3.0 * f64::from(i)).max(0.0)).collect();
     scene(
-        &heights,
-        4.0,
+        (&heights, 4.0),
+        6.0,
         &format!(
             "ground: (restitution: Always(0.35), friction_deg: Always(30)), zones: [{zones}],
              boulders: (material: \"rock\", size: Diameter(diameter_m: Uniform(0.5, 1.5))),
-             releases: [(name: \"top\", from: Line([(8, 20), (8, 80)]), height_m: Uniform(0.5, 3))],
+             releases: [(name: \"top\", place: Line([(8, 20), (8, 80)]), height_m: Uniform(0.5, 3))],
              lines: [(name: \"road\", points_m: [(90, 0), (90, 100)])], count: {count}"
         ),
     )
@@ -144,11 +144,11 @@ fn falls_depend_on_their_number_alone() {
 #[test]
 fn a_boulder_that_leaves_the_terrain_is_said() {
     let model = scene(
-        &[60.0, 30.0, 0.0],
-        30.0,
+        (&[60.0, 30.0, 0.0], 30.0),
+        40.0,
         "ground: (restitution: Always(0.5), friction_deg: Always(20)),
          boulders: (material: \"rock\", size: Diameter(diameter_m: Always(1))),
-         releases: [(name: \"top\", from: Points([(10, 50)]), speed_m_s: Always(5))], count: 2",
+         releases: [(name: \"top\", place: Points([(10, 50)]), speed_m_s: Always(5))], count: 2",
     );
     let falls = falls(&model);
     assert!(falls.iter().all(|fall| fall.end == End::LeftTerrain), "{:?}", falls[0].end);

@@ -173,7 +173,7 @@ impl Model {
         }
         let refused = (0..model.rockfall.count).into_par_iter().find_map_first(|k| model.case().refusal(k));
         if let Some((release, reason)) = refused {
-            let path = format!("rockfall.releases[{release}].from");
+            let path = format!("rockfall.releases[{release}].place");
             let found = model.loaded.diagnose_as(Code::CannotBuild, &path, reason);
             return Err(RockfallError::Scene(model.loaded.errors(vec![found])));
         }

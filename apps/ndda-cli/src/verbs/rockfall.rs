@@ -32,9 +32,7 @@ pub fn rockfall(args: &RockfallArgs) -> u8 {
         jobs: args.jobs.map_or(0, usize::from),
     };
     match make(loaded, &request, &interrupt::watch(), &complain_unless(args.quiet)) {
-        Ok(outcome) if args.json => {
-            say(&serde_json::to_string_pretty(&outcome).expect("an outcome has no NaN"))
-        }
+        Ok(outcome) if args.json => say(&format!("{:#}", json!(outcome))),
         Ok(outcome) => say(&format!("{outcome}results in {}", request.out.display())),
         Err(error) => return fail(&error, events),
     }
@@ -45,8 +43,7 @@ pub fn rockfall(args: &RockfallArgs) -> u8 {
 pub fn check(input: &SceneArgs, events: Events) -> Option<u8> {
     let file = input::file(input);
     let loaded = read::load(&file, &input.overrides).ok().filter(|found| found.scene.rockfall.is_some())?;
-    let checked = Model::new(loaded, file.parent().unwrap_or(Path::new(".")), (None, None));
-    Some(match checked {
+    Some(match Model::new(loaded, file.parent().unwrap_or(Path::new(".")), (None, None)) {
         Ok(model) => {
             events.emit("finished", &json!({"exit_code": exit::DONE, "scene": file}));
             if !events.are_read() {

@@ -223,7 +223,7 @@ pub struct Release {
     /// Its name.
     pub name: String,
     /// Where.
-    pub from: ReleasePlace,
+    pub place: ReleasePlace,
     /// Weight against the other releases [-]. Default: 1.
     #[serde(default = "super::one")]
     pub share: f64,

@@ -26,7 +26,7 @@ pub(super) fn release_of(rockfall: &Rockfall, boulder: u32) -> usize {
 }
 
 /// A place on the map [m].
-fn place(from: &ReleasePlace, boulder: u32, draw: &Draw) -> Option<[f64; 2]> {
+fn place_on_map(from: &ReleasePlace, boulder: u32, draw: &Draw) -> Option<[f64; 2]> {
     let mut stream = draw.stream(Of::Place, 0);
     match from {
         ReleasePlace::Points(points) => points.get(boulder as usize % points.len()).copied(),
@@ -52,7 +52,7 @@ pub(super) fn start(
     terrain: &Terrain,
     draw: &Draw,
 ) -> Result<Motion, String> {
-    let at = place(&release.from, number, draw)
+    let at = place_on_map(&release.place, number, draw)
         .ok_or("no place was found within the area: its corners enclose next to nothing")?;
     let on_map = || format!("({}, {})", at[0], at[1]);
     let (ground_m, slope) = terrain

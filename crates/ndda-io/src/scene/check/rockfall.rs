@@ -190,10 +190,10 @@ impl Check<'_> {
 
     fn release(&mut self, path: &str, release: &Release) {
         let at = |field: &str| format!("{path}.{field}");
-        match &release.from {
-            ReleasePlace::Points(points) => self.corners(&at("from"), points, 1),
-            ReleasePlace::Line(points) => self.corners(&at("from"), points, 2),
-            ReleasePlace::Area(points) => self.corners(&at("from"), points, 3),
+        match &release.place {
+            ReleasePlace::Points(points) => self.corners(&at("place"), points, 1),
+            ReleasePlace::Line(points) => self.corners(&at("place"), points, 2),
+            ReleasePlace::Area(points) => self.corners(&at("place"), points, 3),
         }
         self.positive(at("share"), release.share, "");
         let limits = [
