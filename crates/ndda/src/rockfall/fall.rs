@@ -22,6 +22,10 @@ const STEP_S: f64 = 2e-3;
 /// corner, and z/√3 below the nearest face.
 const STIFFNESS: f64 = 7.2e4;
 
+/// Parts of a step near the ground; steps on the way to the ground from which on it is near, and on the way from it.
+const NEAR_PARTS: f64 = 8.0;
+const NEAR_STEPS: f64 = 2.0;
+const FAR_STEPS: f64 = 4.0;
 /// Energy that a step may gain over the largest of the fall; of the largest in its window never more than the second, while a boulder that is slow gains
 /// little that matters to its fall.
 const STEP_ENERGY: f64 = 1e-4;
@@ -162,6 +166,8 @@ impl Case<'_> {
             let Some(cells) = Cells::around(self.terrain, &motion, boulder.radius_m) else {
                 break End::LeftTerrain;
             };
+            let span = Span::new(self, cells, &motion, boulder.radius_m);
+            laws.step_s = if span.is_near { self.step_s() / NEAR_PARTS } else { self.step_s() };
             let now_j = 0.5 * fall_mass_kg * motion.velocity_m_s.norm_squared();
             largest_j = largest_j.max(now_j);
             laws.energy =
@@ -171,7 +177,7 @@ impl Case<'_> {
                 Ok(simulation) => simulation,
                 Err(reason) => break End::Stopped(reason),
             };
-            let end = watch.within(&mut simulation, cells, time_s);
+            let end = watch.within(&mut simulation, &span, time_s);
             time_s += simulation.time_s();
             motion = window::motion(&simulation);
             if let Some(end) = end {
@@ -179,6 +185,37 @@ impl Case<'_> {
             }
         };
         watch.finish(end)
+    }
+}
+
+/// The cells of a window, and whether the ground is near in it.
+struct Span {
+    cells: Cells,
+    /// Cosine of the steepest slope.
+    cosine: f64,
+    /// Whether the boulder may touch the ground within a few steps: these are then shorter from the start. One that meets the ground in a long step would be
+    /// deep in it before any force has acted, and how often it is halved depends on where in the step that happens.
+    is_near: bool,
+}
+
+impl Span {
+    fn new(case: &Case, cells: Cells, motion: &Motion, radius_m: f64) -> Self {
+        let ground_m =
+            case.terrain.at([motion.center.x, motion.center.y]).map_or(motion.center.z, |(z, _)| z);
+        let mut span = Self { cells, cosine: cells.steepest_cosine(case.terrain), is_near: false };
+        let clearance_m = span.clearance_m(motion.center.z - ground_m, radius_m);
+        span.is_near = clearance_m < NEAR_STEPS * case.step_s() * motion.velocity_m_s.norm();
+        span
+    }
+
+    /// Least distance from the ground of a boulder whose centre is at a height above it [m].
+    fn clearance_m(&self, height_m: f64, radius_m: f64) -> f64 {
+        self.cosine * height_m - radius_m
+    }
+
+    /// Whether steps have another length at this distance from the ground.
+    fn is_over(&self, clearance_m: f64, way_m: f64) -> bool {
+        if self.is_near { clearance_m > FAR_STEPS * way_m } else { clearance_m < NEAR_STEPS * way_m }
     }
 }
 
@@ -195,8 +232,8 @@ struct Watch<'a> {
 }
 
 impl Watch<'_> {
-    /// Steps until the boulder leaves the cells, where the answer is none, or ends its fall.
-    fn within(&mut self, simulation: &mut Simulation, cells: Cells, since_s: f64) -> Option<End> {
+    /// Steps until the boulder leaves the cells or steps have another length, where the answer is none, or it ends its fall.
+    fn within(&mut self, simulation: &mut Simulation, span: &Span, since_s: f64) -> Option<End> {
         if self.fall.path.is_empty() {
             self.last = self.moment(simulation, 0.0);
             self.keep();
@@ -215,7 +252,11 @@ impl Watch<'_> {
             }
             let center = Vec3::from(self.last.at_m);
             let more = if touches { 0.0 } else { window::FEW_CELLS };
-            if !cells.hold(self.case.terrain, &center, self.radius_m, more) {
+            let clearance_m = span.clearance_m(self.last.height_m, self.radius_m);
+            let way_m = self.case.step_s() * self.last.speed_m_s();
+            if !span.cells.hold(self.case.terrain, &center, self.radius_m, more)
+                || (!touches && span.is_over(clearance_m, way_m))
+            {
                 break None;
             }
         };

@@ -107,6 +107,19 @@ impl Cells {
         })
     }
 
+    /// Cosine of the angle of the steepest triangle of these cells: a height above the ground times it is no more than the distance from the ground.
+    pub(super) fn steepest_cosine(&self, terrain: &Terrain) -> f64 {
+        let [dx, dy] = terrain.step_m;
+        let rise = |(i, j): (usize, usize)| {
+            let [a, b, c, d] =
+                [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| terrain.node_m(i, j));
+            let [one, other] = [((b - a) / dx, (c - b) / dy), ((c - d) / dx, (d - a) / dy)];
+            one.0.hypot(one.1).max(other.0.hypot(other.1))
+        };
+        let steepest = self.each().filter(|&(i, j)| terrain.has(i, j)).map(rise).fold(0.0, f64::max);
+        1.0 / steepest.hypot(1.0)
+    }
+
     fn each(self) -> impl Iterator<Item = (usize, usize)> {
         (self.from[1]..self.to[1]).flat_map(move |j| (self.from[0]..self.to[0]).map(move |i| (i, j)))
     }
