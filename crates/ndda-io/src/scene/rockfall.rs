@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::study::Distribution;
 
 /// Boulders that are released one by one over terrain; `ndda rockfall` runs them. Each moves until it rests, leaves the terrain, or `time.end_s` has
-/// passed. `time.step_s` is then the longest step, 2 ms by default: steps are divided while a boulder touches the ground.
+/// passed. `time.step_s` is then the longest step, 2 ms by default: steps are an eighth of it near the ground, and shorter while a boulder touches it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
@@ -289,7 +289,7 @@ impl Default for RockfallRest {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct RockfallDetail {
-    /// Speed along the normal of the ground up to which a boulder goes no deeper than 5 % of its diameter when it hits with a face [m/s]: the contact is as
+    /// Speed along the normal of the ground up to which a boulder that hits with a corner goes no deeper than 5 % of its width [m/s]: the contact is as
     /// stiff as that takes. Larger values give shorter steps. Default: 15.
     pub impact_m_s: f64,
     /// Distance of the points that are kept of a path [m]. Default: half a step of the terrain, or less where it has few.

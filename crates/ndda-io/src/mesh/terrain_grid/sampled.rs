@@ -18,7 +18,8 @@ pub(super) fn sample(surface: &Surface, sample_m: Option<f64>) -> Result<Terrain
     let extent = high - low;
     let step = sample_m.unwrap_or(extent.x.max(extent.y) / SAMPLES);
     let counts = [extent.x, extent.y].map(|side| (side / step * (1.0 + 1e-12)).floor() as u64 + 1);
-    if !(step > 0.0) || counts[0] < 2 || counts[1] < 2 || counts[0].saturating_mul(counts[1]) > MOST_HEIGHTS {
+    let is_step = step > 0.0;
+    if !is_step || counts[0] < 2 || counts[1] < 2 || counts[0].saturating_mul(counts[1]) > MOST_HEIGHTS {
         let what = format!("a surface of {:.4} × {:.4} m at every {step} m", extent.x, extent.y);
         return Err(FileProblem::NotRead { what, cure: "give a distance of samples that fits it" }.into());
     }
