@@ -2984,7 +2984,8 @@ class Rockfall(Builder):
     """Boulders that are released one by one over terrain; `ndda rockfall` runs them.
 
     Each moves until it rests, leaves the terrain, or `time.end_s` has passed. `time.step_s` is then the
-    longest step, 2 ms by default: steps are divided while a boulder touches the ground.
+    longest step, 2 ms by default: steps are an eighth of it near the ground, and shorter while a boulder
+    touches it.
 
     Parameters
     ----------
@@ -3042,9 +3043,9 @@ class RockfallDetail(Builder):
     Parameters
     ----------
     impact_m_s : float, optional
-        Speed along the normal of the ground up to which a boulder goes no deeper than 5 % of its diameter
-        when it hits with a face [m/s]: the contact is as stiff as that takes. Larger values give shorter
-        steps. Default: 15.
+        Speed along the normal of the ground up to which a boulder that hits with a corner goes no deeper than
+        5 % of its width [m/s]: the contact is as stiff as that takes. Larger values give shorter steps.
+        Default: 15.
     path_m : float, optional
         Distance of the points that are kept of a path [m]. Default: half a step of the terrain, or less where
         it has few.
