@@ -8,9 +8,9 @@ mod evidence;
 
 use evidence::Answer::AtMost;
 use evidence::row;
-use ndda::{Model, Run};
+use ndda::{Model, Run, rockfall};
 use ndda_io::summary::Status;
-use ndda_io::{OutputFolder, study};
+use ndda_io::{OutputFolder, read, study};
 use serde_json::Value;
 
 /// Row of the manual, scene, largest `error_end` and largest `error_max` that its header allows.
@@ -100,6 +100,12 @@ fn scenes_of_extreme_cases_and_failures_load_and_say_what_is_expected() {
         let text = std::fs::read_to_string(&path).unwrap();
         if text.contains("\n    scene: \"") {
             study::load(&path).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
+        } else if text.contains("\n    rockfall: (") {
+            let loaded =
+                read::load(&path, &[]).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
+            assert!(loaded.warnings.is_empty(), "{name}: {:?}", loaded.warnings);
+            rockfall::Model::new(loaded, path.parent().unwrap(), (None, None))
+                .unwrap_or_else(|e| panic!("{name}: {e}"));
         } else {
             Model::open(&path, &[]).unwrap_or_else(|errors| panic!("{name}: {}", errors.render(false)));
         }
@@ -146,6 +152,19 @@ fn scenes_of_many_blocks_begin_without_a_complaint() {
         }
         assert_eq!(summary["label"]["word"], "accurate", "{scene}");
     }
+}
+
+#[test]
+fn boulders_of_the_rockfall_end_their_falls() {
+    let path = scenes().join("works/rockfall.ron");
+    let loaded = read::load(&path, &[]).unwrap_or_else(|errors| panic!("{}", errors.render(false)));
+    let model = rockfall::Model::new(loaded, path.parent().unwrap(), (Some(6), None)).unwrap();
+    let falls = model.falls(&Default::default(), &|_| ()).unwrap();
+    let outcome = rockfall::Outcome::new(&model, "rockfall", &falls, 0.0);
+    let ends = outcome.ends;
+    assert_eq!((ends.rest + ends.left_terrain, ends.still_moving, ends.stopped), (6, 0, 0));
+    assert!(outcome.accuracy.inaccurate <= 1, "{:?}", outcome.accuracy);
+    assert_eq!(outcome.triangles, 20_000);
 }
 
 fn has_the_promised_keys(scene: &str, summary: &Value) {

@@ -47,6 +47,7 @@ mod quiet_oblique;
 mod random_impacts;
 mod release_of_initial_stress;
 mod restitution;
+mod rockfall;
 mod rocking_block;
 mod roof_wedge;
 mod safety_factor;

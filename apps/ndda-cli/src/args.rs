@@ -4,6 +4,7 @@ mod joint;
 #[cfg(feature = "plots")]
 mod picture;
 mod record;
+mod rockfall;
 mod safety;
 mod stereonet;
 mod study;
@@ -17,6 +18,7 @@ use ndda::run::Sensitivity;
 #[cfg(feature = "plots")]
 pub use picture::PictureArgs;
 pub use record::RecordArgs;
+pub use rockfall::RockfallArgs;
 pub use safety::{SafetyArgs, SafetyBy};
 pub use stereonet::StereonetArgs;
 pub use study::{Emit, Spread, StudyArgs, StudyCaseArgs, StudyHow, StudyPart};
@@ -129,6 +131,10 @@ pub enum Verb {
     Stereonet(StereonetArgs),
     /// Show a record of ground motion: motion over time, response spectrum, intensity, and slip of a rigid block.
     Record(RecordArgs),
+    /// Let boulders fall over terrain: how far they get, what they reach, and how high, fast and strong they pass lines.
+    ///
+    /// Writes rockfall.json, tables of boulders, paths, lines and the profile, a map of reach, and pictures. Scenes: docs/guide/rockfall.md.
+    Rockfall(RockfallArgs),
     /// Draw curves from the tables of one or more runs.
     #[cfg(feature = "plots")]
     Plot(PlotArgs),

@@ -1,6 +1,7 @@
 //! Exit codes, so that scripts can tell what happened.
 
 use ndda::certify::error::CertifyError;
+use ndda::rockfall::RockfallError;
 use ndda::safety::SafetyError;
 use ndda::study::error::StudyError;
 use ndda::tune::TuneError;
@@ -34,25 +35,11 @@ pub fn of_write(error: &WriteError) -> u8 {
 /// Of a study that cannot go on.
 pub fn of_study(error: &StudyError) -> u8 {
     match error {
-        StudyError::Scene(_)
-        | StudyError::SceneAlone(_)
-        | StudyError::Names(_)
-        | StudyError::NoReference(_)
-        | StudyError::NoMonitor(..)
-        | StudyError::NoCase(_)
-        | StudyError::IsSweep
-        | StudyError::Condition { .. }
-        | StudyError::Correlation(_)
-        | StudyError::Samples(_)
-        | StudyError::Idle(_)
-        | StudyError::NoQuantity { .. }
-        | StudyError::AmbiguousCondition { .. }
-        | StudyError::Difference { .. }
-        | StudyError::NoProcessorTime => BAD_INPUT,
         StudyError::Reference { .. } => STOPPED,
         StudyError::Table(_) | StudyError::Write(_) | StudyError::Record { .. } => INPUT_OUTPUT,
         StudyError::Start(_) => RESOURCE,
         StudyError::Interrupted => INTERRUPTED,
+        _ => BAD_INPUT,
     }
 }
 
@@ -71,8 +58,20 @@ pub fn of_safety(error: &SafetyError) -> u8 {
     match error {
         SafetyError::NotSettled { .. } => STOPPED,
         SafetyError::Interrupted => INTERRUPTED,
+        SafetyError::Folder { .. } => INPUT_OUTPUT,
         SafetyError::Write(error) => of_write(error),
         _ => BAD_INPUT,
+    }
+}
+
+/// Of a rockfall that cannot be run.
+pub fn of_rockfall(error: &RockfallError) -> u8 {
+    match error {
+        RockfallError::Scene(_) | RockfallError::NoRockfall => BAD_INPUT,
+        RockfallError::Folder { .. } => INPUT_OUTPUT,
+        RockfallError::Threads(_) => RESOURCE,
+        RockfallError::Interrupted { .. } => INTERRUPTED,
+        RockfallError::Write(error) => of_write(error),
     }
 }
 

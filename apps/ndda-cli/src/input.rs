@@ -58,8 +58,5 @@ fn text(name: &str, events: Events) -> Result<&'static str, u8> {
         say(&examples::list());
         return Err(exit::DONE);
     }
-    examples::find(name).ok_or_else(|| {
-        let names: Vec<&str> = examples::EXAMPLES.iter().map(|(name, _)| *name).collect();
-        events.fail(exit::USAGE, &format!("there is no example `{name}`: {}", read::suggest(name, &names)))
-    })
+    examples::text(name).map_err(|message| events.fail(exit::USAGE, &message))
 }

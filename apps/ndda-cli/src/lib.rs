@@ -20,7 +20,8 @@ use verbs::schema;
 #[cfg(feature = "shell")]
 use verbs::shell;
 use verbs::{
-    certify, check, explain, joint, mesh, new, processes, record, resume, run, safety, stereonet, study, tune,
+    certify, check, explain, joint, mesh, new, processes, record, resume, rockfall, run, safety, stereonet,
+    study, tune,
 };
 #[cfg(feature = "plots")]
 use verbs::{picture, plot};
@@ -72,6 +73,7 @@ pub fn run_command(args: Vec<OsString>, program: Vec<OsString>) -> u8 {
         Verb::Tune(args) => tune::tune(&args),
         Verb::Stereonet(args) => stereonet::stereonet(&args),
         Verb::Record(args) => record::record(&args),
+        Verb::Rockfall(args) => rockfall::rockfall(&args),
         Verb::Study(args) => study::study(&args),
         #[cfg(feature = "plots")]
         Verb::Plot(args) => plot::plot(&args),

@@ -15,6 +15,7 @@ pub mod record;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod resume;
+pub mod rockfall;
 pub mod run;
 pub mod safety;
 #[cfg(feature = "schema")]

@@ -26,6 +26,7 @@ pub mod record;
 mod reference;
 mod renamed;
 mod rock;
+mod rockfall;
 #[cfg(feature = "schema")]
 pub mod schema;
 mod shaking;
@@ -57,6 +58,8 @@ pub use quiet::{IncidentWave, Quiet, RecordedAs, Tie, WaveKind};
 pub use reference::Reference;
 pub use rock::{Axis, DiscRule, Discontinuity, Domain, Excavation, OrientationScatter};
 pub use rock::{Rock, Slivers, SpacingScatter, Voronoi, Whereabouts};
+pub use rockfall::{BoulderShape, BoulderSize, Boulders, CountingLine, Ground, GroundLaw, Release};
+pub use rockfall::{ReleasePlace, Rockfall, RockfallDetail, RockfallRest, Scatter, Zone};
 pub use shaking::{AccelerationUnit, Baseline, Component, Record};
 pub use shape::{Fill, Grading, Pattern, Shape, Towards};
 pub use stage::{Stage, StageLaws, Then};
@@ -131,6 +134,9 @@ pub struct Scene {
     /// Stages of construction, one after the other from `time.end_s` on. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub stages: Vec<Stage>,
+    /// Boulders that fall over terrain, one by one, in the place of blocks and rock; `ndda rockfall` runs them. Default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rockfall: Option<Rockfall>,
     /// Points whose motion is recorded. Default: none.
     #[serde(default)]
     pub monitors: Vec<Monitor>,

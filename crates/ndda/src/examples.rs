@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use ndda_io::locate;
+use ndda_io::read::suggest;
 
 /// Names and texts.
 pub const EXAMPLES: [(&str, &str); 27] = [
@@ -48,6 +49,15 @@ pub fn list() -> String {
         writeln!(out, "{name:widest$}  {}", title.trim_matches('"')).expect("a string takes all");
         out
     })
+}
+
+/// The text of an example.
+///
+/// # Errors
+/// There is none of that name; the message says which there are.
+pub fn text(name: &str) -> Result<&'static str, String> {
+    let names: Vec<&str> = EXAMPLES.iter().map(|(name, _)| *name).collect();
+    find(name).ok_or_else(|| format!("there is no example `{name}`: {}", suggest(name, &names)))
 }
 
 #[cfg(test)]

@@ -36,6 +36,7 @@
 //! | [`sweep`] | quantities over values and distributions of parameters: tables, probability of failure |
 //! | [`certify`] | every result as value ± error |
 //! | [`safety`] | the factor of safety of a slope, and how its blocks fail |
+//! | [`rockfall`] | boulders over terrain: paths, reach, heights, speeds and energies at lines |
 //! | [`joint`] | direct shear and closure of one joint, without blocks |
 //! | [`stereonet`] | orientations of joints on a net, and kinematic checks of a slope |
 //! | [`shaking`] | records of ground motion: measures, response spectra, slip of a rigid block |
@@ -79,6 +80,7 @@ pub mod places;
 pub mod plot;
 #[cfg(feature = "report")]
 pub mod report;
+pub mod rockfall;
 pub mod run;
 pub mod safety;
 pub mod shaking;

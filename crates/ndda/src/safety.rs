@@ -150,6 +150,22 @@ pub enum SafetyError {
     /// Somebody asked to end.
     #[error("interrupted: the same command goes on with the trials that are done")]
     Interrupted,
+    /// The folder has the answer of another scene.
+    #[error("{} has the answer of the scene `{scene}`: name another --out, or replace it by --force", folder.display())]
+    OtherScene {
+        /// The folder.
+        folder: PathBuf,
+        /// The scene.
+        scene: String,
+    },
+    /// The folder of the answer cannot be made.
+    #[error("cannot make the folder {}: {source}", folder.display())]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
     /// The answer cannot be written, or an earlier one not be read.
     #[error(transparent)]
     Write(#[from] WriteError),
@@ -204,8 +220,23 @@ pub fn file(out: &Path) -> PathBuf {
     out.join("safety.json")
 }
 
+/// Makes the folder of an answer; with `anew`, without the trials of an earlier call.
+///
+/// # Errors
+/// The folder has the answer of another scene and is not to begin anew, or cannot be made.
+pub fn make_folder(out: &Path, name: &str, anew: bool) -> Result<(), SafetyError> {
+    if let Some(scene) = other_scene(out, name).filter(|_| !anew) {
+        return Err(SafetyError::OtherScene { folder: out.to_path_buf(), scene });
+    }
+    // An empty file is no earlier answer to go on from.
+    let forget = || if anew { std::fs::write(file(out), "") } else { Ok(()) };
+    std::fs::create_dir_all(out)
+        .and_then(|()| forget())
+        .map_err(|source| SafetyError::Folder { folder: out.to_path_buf(), source })
+}
+
 /// Name of the scene whose answer is in a folder, if that is another one.
-pub fn other_scene(out: &Path, name: &str) -> Option<String> {
+fn other_scene(out: &Path, name: &str) -> Option<String> {
     let text = std::fs::read_to_string(file(out)).ok()?;
     let earlier: Safety = serde_json::from_str(&text).ok()?;
     Some(earlier.scene).filter(|scene| scene != name)

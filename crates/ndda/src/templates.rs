@@ -1,5 +1,9 @@
 //! Commented scenes to begin with.
 
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
 use serde::Serialize;
 
 /// A scene to begin with.
@@ -15,6 +19,32 @@ pub struct Template {
     /// Files that it refers to: name and content.
     #[serde(skip)]
     pub files: &'static [(&'static str, &'static str)],
+}
+
+impl Template {
+    /// Writes the scene to a file, and beside it the files that it refers to.
+    ///
+    /// # Errors
+    /// The file that cannot be written, or that is there already, unless it is to be replaced.
+    pub fn write(&self, scene: &Path, replace: bool) -> Result<(), String> {
+        let folder = scene.parent().unwrap_or(Path::new(""));
+        let beside = self.files.iter().map(|(name, content)| (folder.join(name), *content));
+        let files: Vec<(PathBuf, &str)> = beside.chain([(scene.to_path_buf(), self.scene)]).collect();
+        if let Some((there, _)) = files.iter().find(|(file, _)| !replace && file.exists()) {
+            return Err(format!(
+                "{} is there already; --force replaces it, --out names another",
+                there.display()
+            ));
+        }
+        for (file, content) in files {
+            let mut options = OpenOptions::new();
+            let opened = options.write(true).create(true).create_new(!replace).truncate(true).open(&file);
+            opened
+                .and_then(|mut opened| opened.write_all(content.as_bytes()))
+                .map_err(|error| format!("{} cannot be written: {error}", file.display()))?;
+        }
+        Ok(())
+    }
 }
 
 const fn template(name: &'static str, about: &'static str, scene: &'static str) -> Template {

@@ -40,6 +40,7 @@ use film::Film;
 pub use from_run::{FrameChoice, Frames};
 pub use image::Look;
 use image::{LARGEST_PX, MOST_PX, Picture, SMALLEST_PX};
+pub(crate) use paint::viridis;
 pub use stage::Resting;
 
 /// Quantity that blocks are coloured by.

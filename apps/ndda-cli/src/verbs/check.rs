@@ -10,11 +10,15 @@ use ndda::{build, choose};
 use crate::args::CheckArgs;
 use crate::terminal::console::say;
 use crate::terminal::events::{self, Events};
+use crate::verbs::rockfall;
 use crate::{exit, input};
 
 /// Runs `ndda check`; returns the exit code.
 pub fn check(args: &CheckArgs) -> u8 {
     let events = Events::new(args.json, events::CHECK);
+    if let Some(code) = rockfall::check(&args.input, events) {
+        return code;
+    }
     let mut model = match input::model(&args.input, events) {
         Ok(model) => model,
         Err(code) => return code,

@@ -11,7 +11,7 @@ use ndda_io::diagnostic::SceneErrors;
 use ndda_io::read::load;
 use ndda_io::scene::Scene;
 use ndda_mesh::BlockSet;
-use serde::Serialize;
+use serde_json::json;
 
 use crate::args::{Fix, MeshArgs};
 use crate::terminal::console::say;
@@ -69,24 +69,13 @@ pub fn mesh(args: &MeshArgs) -> u8 {
             finish(args, events, &measured, &input, &blocks)
         }
         Err(error) => {
-            events.emit("measured", &Measured { report: &measured });
+            events.emit("measured", &json!({"report": measured}));
             if !args.json {
                 say(&measured.to_string());
             }
             events.fail(exit::BAD_INPUT, &mesh_report::refusal(&args.input, &error))
         }
     }
-}
-
-#[derive(Serialize)]
-struct Measured<'a> {
-    report: &'a MeshReport,
-}
-
-#[derive(Serialize)]
-struct Finished<'a> {
-    exit_code: u8,
-    folder: &'a Path,
 }
 
 fn is_scene(path: &Path) -> bool {
@@ -132,8 +121,8 @@ fn finish(args: &MeshArgs, events: Events, measured: &MeshReport, input: &Input,
     };
     match written.write(&folder, args.force, blocks) {
         Ok(files) => {
-            events.emit("measured", &Measured { report: measured });
-            events.emit("finished", &Finished { exit_code: exit::DONE, folder: &folder });
+            events.emit("measured", &json!({"report": measured}));
+            events.emit("finished", &json!({"exit_code": exit::DONE, "folder": folder}));
             if !args.json {
                 say(&format!("{}: no errors\n{measured}{files}", args.input.display()));
             }

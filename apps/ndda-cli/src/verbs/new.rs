@@ -1,12 +1,10 @@
 //! `ndda new`: a commented scene to begin with.
 
-use std::fs::OpenOptions;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use ndda::templates::{TEMPLATES, Template};
+use ndda::templates::TEMPLATES;
 use ndda_io::read::suggest;
-use serde::Serialize;
+use serde_json::json;
 
 use crate::args::NewArgs;
 use crate::exit;
@@ -27,15 +25,15 @@ pub fn new(args: &NewArgs) -> u8 {
     };
     if args.out.as_deref() == Some(Path::new("-")) {
         match args.json {
-            true => events.emit("finished", &Text { exit_code: exit::DONE, text: template.scene }),
+            true => events.emit("finished", &json!({"exit_code": exit::DONE, "text": template.scene})),
             false => say(template.scene.trim_end()),
         }
         return exit::DONE;
     }
     let scene = args.out.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.ron")));
-    match write(template, &scene, args.force) {
+    match template.write(&scene, args.force) {
         Ok(()) => {
-            events.emit("finished", &Finished { exit_code: exit::DONE, scene: &scene });
+            events.emit("finished", &json!({"exit_code": exit::DONE, "scene": scene}));
             if !args.json {
                 say(&format!("{} is written; next: ndda run {}", scene.display(), scene.display()));
             }
@@ -45,50 +43,11 @@ pub fn new(args: &NewArgs) -> u8 {
     }
 }
 
-#[derive(Serialize)]
-struct Listed {
-    exit_code: u8,
-    templates: &'static [Template],
-}
-
-#[derive(Serialize)]
-struct Text {
-    exit_code: u8,
-    text: &'static str,
-}
-
-#[derive(Serialize)]
-struct Finished<'a> {
-    exit_code: u8,
-    scene: &'a Path,
-}
-
 fn list(events: Events) -> u8 {
-    events.emit("finished", &Listed { exit_code: exit::DONE, templates: &TEMPLATES });
+    events.emit("finished", &json!({"exit_code": exit::DONE, "templates": TEMPLATES}));
     if !events.are_read() {
         let lines: Vec<String> = TEMPLATES.iter().map(|t| format!("{:8} {}", t.name, t.about)).collect();
         say(&lines.join("\n"));
     }
     exit::DONE
-}
-
-/// The scene, and beside it the files that it refers to.
-fn write(template: &Template, scene: &Path, force: bool) -> Result<(), String> {
-    let folder = scene.parent().unwrap_or(Path::new(""));
-    let beside = template.files.iter().map(|(name, content)| (folder.join(name), *content));
-    let files: Vec<(PathBuf, &str)> = beside.chain([(scene.to_path_buf(), template.scene)]).collect();
-    if let Some((there, _)) = files.iter().find(|(file, _)| !force && file.exists()) {
-        return Err(format!(
-            "{} is there already; --force replaces it, --out names another",
-            there.display()
-        ));
-    }
-    for (file, content) in files {
-        let mut options = OpenOptions::new();
-        let opened = options.write(true).create(true).create_new(!force).truncate(true).open(&file);
-        opened
-            .and_then(|mut opened| opened.write_all(content.as_bytes()))
-            .map_err(|error| format!("{} cannot be written: {error}", file.display()))?;
-    }
-    Ok(())
 }

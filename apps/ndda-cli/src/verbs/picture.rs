@@ -3,18 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use ndda::view3d::{self, Frames, Look, Request, ViewError};
-use serde::Serialize;
+use serde_json::json;
 
 use crate::args::PictureArgs;
 use crate::exit;
 use crate::terminal::console::say;
 use crate::terminal::events::{self, Events};
-
-#[derive(Serialize)]
-struct Finished<'a> {
-    exit_code: u8,
-    picture: &'a Path,
-}
 
 /// Runs `ndda picture`; returns the exit code.
 pub fn picture(args: &PictureArgs) -> u8 {
@@ -23,7 +17,7 @@ pub fn picture(args: &PictureArgs) -> u8 {
     match view3d::draw(&request(args), &out) {
         Ok(written) => {
             events.emit("written", &written);
-            events.emit("finished", &Finished { exit_code: exit::DONE, picture: &out });
+            events.emit("finished", &json!({"exit_code": exit::DONE, "picture": out}));
             if !args.json {
                 say(&written.to_string());
             }

@@ -1,21 +1,13 @@
 //! `ndda report` and `ndda view`: a run as one page that needs no network.
 
-use std::path::Path;
-
 use ndda::report::{self, ReportError, Written};
 use ndda_io::folder::REPORT;
-use serde::Serialize;
+use serde_json::json;
 
 use crate::args::{ReportArgs, ViewArgs};
 use crate::exit;
 use crate::terminal::console::say;
 use crate::terminal::events::{self, Events};
-
-#[derive(Serialize)]
-struct Finished<'a> {
-    exit_code: u8,
-    report: &'a Path,
-}
 
 /// Says what was written, in words or as an event.
 fn tell(written: &Written, events: Events) {
@@ -32,7 +24,7 @@ pub fn report(args: &ReportArgs) -> u8 {
     match report::write(&args.folder, &file, args.frames) {
         Ok(written) => {
             tell(&written, events);
-            events.emit("finished", &Finished { exit_code: exit::DONE, report: &file });
+            events.emit("finished", &json!({"exit_code": exit::DONE, "report": file}));
             exit::DONE
         }
         Err(error) => failed(events, &error),
@@ -56,7 +48,7 @@ pub fn view(args: &ViewArgs) -> u8 {
     if open::that(&file).is_err() {
         events.warn(&format!("no browser could be started: open {} in one", file.display()));
     }
-    events.emit("finished", &Finished { exit_code: exit::DONE, report: &file });
+    events.emit("finished", &json!({"exit_code": exit::DONE, "report": file}));
     exit::DONE
 }
 

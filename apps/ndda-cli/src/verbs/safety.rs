@@ -14,14 +14,13 @@ use crate::{exit, input};
 /// Finds the factor of safety; the result is the exit code.
 pub fn safety(args: &SafetyArgs) -> u8 {
     let threads = args.threads.map_or(0, usize::from);
-    let pool = match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool,
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(|| find(args)),
         Err(error) => {
             complain(&format!("error: cannot start {threads} threads: {error}; use a smaller --threads"));
-            return exit::RESOURCE;
+            exit::RESOURCE
         }
-    };
-    pool.install(|| find(args))
+    }
 }
 
 fn find(args: &SafetyArgs) -> u8 {
@@ -35,18 +34,9 @@ fn find(args: &SafetyArgs) -> u8 {
     }
     let file = input::file(&args.input);
     let (name, out) = (places::name_of(&file), places::folder_for(args.out.as_deref(), &file, "_safety"));
-    if let Some(other) = safety::other_scene(&out, &name).filter(|_| !args.force) {
-        complain(&format!(
-            "error: {} has the answer of the scene `{other}`: name another --out, or replace it by --force",
-            out.display()
-        ));
-        return exit::BAD_INPUT;
-    }
-    // An empty file is no earlier answer to go on from.
-    let forget = || if args.force { std::fs::write(safety::file(&out), "") } else { Ok(()) };
-    if let Err(error) = std::fs::create_dir_all(&out).and_then(|()| forget()) {
-        complain(&format!("error: cannot make the folder {}: {error}", out.display()));
-        return exit::INPUT_OUTPUT;
+    if let Err(error) = safety::make_folder(&out, &name, args.force) {
+        complain(&format!("error: {error}"));
+        return exit::of_safety(&error);
     }
     if args.towards.is_some() && args.by != SafetyBy::Gravity {
         complain("error: --towards is where gravity is tilted to: give --by gravity with it");

@@ -575,6 +575,173 @@ class BoltSteel(Builder):
     _kinds: ClassVar[Mapping[str, str]] = {"young_pa": "num", "area_m2": "num", "yield_n": "num", "break_strain": "num"}
 
 
+class BoulderShape:
+    """Shape of boulders: convex, of at most 24 faces.
+
+    Examples
+    --------
+    >>> BoulderShape.Cuboid().to_ron()
+    'Cuboid()'
+    """
+
+    @dataclass(kw_only=True)
+    class Cuboid(Builder):
+        """A box.
+
+        Parameters
+        ----------
+        axes : Sequence[float], optional
+            Its edges relative to each other [-]. Default: (1, 1, 1).
+
+        Examples
+        --------
+        >>> BoulderShape.Cuboid().to_ron()
+        'Cuboid()'
+        """
+
+        axes: Sequence[float] | None = None
+        _kinds: ClassVar[Mapping[str, str]] = {"axes": "(num)"}
+        _variant: ClassVar[str] = "Cuboid"
+
+    @dataclass(kw_only=True)
+    class Ellipsoid(Builder):
+        """A ball or ellipsoid of 20 triangles.
+
+        Parameters
+        ----------
+        axes : Sequence[float], optional
+            Its axes relative to each other [-]. Default: (1, 1, 1).
+
+        Examples
+        --------
+        >>> BoulderShape.Ellipsoid().to_ron()
+        'Ellipsoid()'
+        """
+
+        axes: Sequence[float] | None = None
+        _kinds: ClassVar[Mapping[str, str]] = {"axes": "(num)"}
+        _variant: ClassVar[str] = "Ellipsoid"
+
+    @dataclass(kw_only=True)
+    class Polyhedron(Builder):
+        """A convex polyhedron with faces at random, another one for each boulder.
+
+        Parameters
+        ----------
+        faces : int, optional
+            Number of faces, 6 to 24. Default: 14.
+        axes : Sequence[float], optional
+            Axes of the ellipsoid that its faces are about, relative to each other [-]. Default: (1, 0.8,
+            0.65).
+
+        Examples
+        --------
+        >>> BoulderShape.Polyhedron().to_ron()
+        'Polyhedron()'
+        """
+
+        faces: int | None = None
+        axes: Sequence[float] | None = None
+        _kinds: ClassVar[Mapping[str, str]] = {"faces": "int", "axes": "(num)"}
+        _variant: ClassVar[str] = "Polyhedron"
+
+
+class BoulderSize:
+    """Size of boulders.
+
+    Examples
+    --------
+    >>> BoulderSize.Diameter(diameter_m=Scatter.Always(1.0)).to_ron()
+    'Diameter(diameter_m: Always(1.0))'
+    """
+
+    @dataclass(kw_only=True)
+    class Diameter(Builder):
+        """By the diameter of a sphere of the same volume.
+
+        Parameters
+        ----------
+        diameter_m : ScatterChoice
+            Diameter [m].
+
+        Examples
+        --------
+        >>> BoulderSize.Diameter(diameter_m=Scatter.Always(1.0)).to_ron()
+        'Diameter(diameter_m: Always(1.0))'
+        """
+
+        diameter_m: ScatterChoice
+        _kinds: ClassVar[Mapping[str, str]] = {"diameter_m": "Scatter"}
+        _variant: ClassVar[str] = "Diameter"
+
+    @dataclass(kw_only=True)
+    class Volume(Builder):
+        """By volume.
+
+        Parameters
+        ----------
+        volume_m3 : ScatterChoice
+            Volume [m³].
+
+        Examples
+        --------
+        >>> BoulderSize.Volume(volume_m3=Scatter.Always(1.0)).to_ron()
+        'Volume(volume_m3: Always(1.0))'
+        """
+
+        volume_m3: ScatterChoice
+        _kinds: ClassVar[Mapping[str, str]] = {"volume_m3": "Scatter"}
+        _variant: ClassVar[str] = "Volume"
+
+    @dataclass(kw_only=True)
+    class Mass(Builder):
+        """By mass.
+
+        Parameters
+        ----------
+        mass_kg : ScatterChoice
+            Mass [kg].
+
+        Examples
+        --------
+        >>> BoulderSize.Mass(mass_kg=Scatter.Always(1.0)).to_ron()
+        'Mass(mass_kg: Always(1.0))'
+        """
+
+        mass_kg: ScatterChoice
+        _kinds: ClassVar[Mapping[str, str]] = {"mass_kg": "Scatter"}
+        _variant: ClassVar[str] = "Mass"
+
+
+@dataclass(kw_only=True)
+class Boulders(Builder):
+    """What falls.
+
+    Parameters
+    ----------
+    material : str
+        Name of their material; its density counts, they do not deform.
+    size : BoulderSizeChoice
+        Size.
+    within : Sequence[float], optional
+        Least and largest size, in the unit of the size: the distribution is cut off there. Default: as it is.
+    shapes : list[BoulderShapeChoice], optional
+        Shapes, of which each boulder has one at random. Default: random polyhedra of 14 faces with axes as 1
+        : 0.8 : 0.65.
+
+    Examples
+    --------
+    >>> Boulders(material="name", size=BoulderSize.Diameter(diameter_m=Scatter.Always(1.0))).to_ron()
+    '(material: "name", size: Diameter(diameter_m: Always(1.0)))'
+    """
+
+    material: str
+    size: BoulderSizeChoice
+    within: Sequence[float] | None = None
+    shapes: list[BoulderShapeChoice] | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"material": "str", "size": "BoulderSize", "within": "(num)", "shapes": "[BoulderShape]"}
+
+
 class By:
     """How a support is imposed.
 
@@ -723,6 +890,28 @@ class ContactAt:
         most_iterations: int | None = None
         _kinds: ClassVar[Mapping[str, str]] = {"tolerance": "num", "most_iterations": "int"}
         _variant: ClassVar[str] = "End"
+
+
+@dataclass(kw_only=True)
+class CountingLine(Builder):
+    """A line on the map at which boulders are counted.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    points_m : Sequence[Sequence[float]]
+        Its corners on the map (x, y) [m].
+
+    Examples
+    --------
+    >>> CountingLine(name="name", points_m=[(1.0, 1.0, 1.0)]).to_ron()
+    '(name: "name", points_m: [(1.0, 1.0, 1.0)])'
+    """
+
+    name: str
+    points_m: Sequence[Sequence[float]]
+    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "points_m": "[(num)]"}
 
 
 @dataclass(kw_only=True)
@@ -1088,7 +1277,9 @@ class Domain:
 
     @dataclass(kw_only=True)
     class TerrainFile(Builder):
-        """Rock under heights in an ESRI ASCII grid, `.asc`; faces as of `Terrain`.
+        """Rock under heights in a file: an ESRI ASCII grid (`.asc`), points of a regular grid (`.xyz`,
+        `.txt`, `.csv`), a GeoTIFF (`.tif`, `.tiff`), or a surface of triangles (`.stl`), sampled at a two-
+        hundredth of its longer side; faces as of `Terrain`.
 
         Cells with a corner without height are left out.
 
@@ -1410,6 +1601,92 @@ class Grading(Builder):
     size_m: float
     growth: float | None = None
     _kinds: ClassVar[Mapping[str, str]] = {"towards": "Towards", "size_m": "num", "growth": "num"}
+
+
+class Ground:
+    """The ground of a rockfall: heights on a regular grid, two triangles in each cell.
+
+    Examples
+    --------
+    >>> Ground.File(file="name").to_ron()
+    'File(file: "name")'
+    """
+
+    @dataclass(kw_only=True)
+    class File(Builder):
+        """Heights in a file: an ESRI ASCII grid (`.asc`), points of a regular grid (`.xyz`, `.txt`, `.csv`),
+        a GeoTIFF (`.tif`, `.tiff`), or a surface of triangles (`.stl`).
+
+        Parameters
+        ----------
+        file : str
+            Path, relative to the scene file.
+        origin_m : Sequence[float], optional
+            Point (x, y) of the map that is (0, 0) in the scene [m]. Default: (0, 0).
+        sample_m : float, optional
+            Distance of the heights that a surface of triangles is sampled at by vertical rays [m]; files of
+            heights have their own. Default: a two-hundredth of the longer side of the surface.
+
+        Examples
+        --------
+        >>> Ground.File(file="name").to_ron()
+        'File(file: "name")'
+        """
+
+        file: str
+        origin_m: Sequence[float] | None = None
+        sample_m: float | None = None
+        _kinds: ClassVar[Mapping[str, str]] = {"file": "str", "origin_m": "(num)", "sample_m": "num"}
+        _variant: ClassVar[str] = "File"
+
+    @dataclass(kw_only=True)
+    class Heights(Builder):
+        """Heights that are written out.
+
+        Parameters
+        ----------
+        origin_m : Sequence[float]
+            Place of the first height (x, y) [m].
+        step_m : Sequence[float]
+            Distance of heights along x and y [m].
+        heights_m : Sequence[Sequence[float]]
+            Rows of heights along x, one row after the other along y [m].
+
+        Examples
+        --------
+        >>> Ground.Heights(origin_m=(1.0, 1.0), step_m=(1.0, 1.0), heights_m=[[1.0]]).to_ron()
+        'Heights(origin_m: (1.0, 1.0), step_m: (1.0, 1.0), heights_m: [[1.0]])'
+        """
+
+        origin_m: Sequence[float]
+        step_m: Sequence[float]
+        heights_m: Sequence[Sequence[float]]
+        _kinds: ClassVar[Mapping[str, str]] = {"origin_m": "(num)", "step_m": "(num)", "heights_m": "[[num]]"}
+        _variant: ClassVar[str] = "Heights"
+
+
+@dataclass(kw_only=True)
+class GroundLaw(Builder):
+    """How ground answers to a boulder.
+
+    Parameters
+    ----------
+    restitution : ScatterChoice
+        Coefficient of restitution e from 0 to 1: speed along the normal of the ground after a central impact
+        over that before.
+    friction_deg : ScatterChoice
+        Friction angle φ between boulder and ground [°]; what a boulder loses along the ground follows from it
+        and from its spin.
+
+    Examples
+    --------
+    >>> GroundLaw(restitution=Scatter.Always(1.0), friction_deg=Scatter.Always(1.0)).to_ron()
+    '(restitution: Always(1.0), friction_deg: Always(1.0))'
+    """
+
+    restitution: ScatterChoice
+    friction_deg: ScatterChoice
+    _kinds: ClassVar[Mapping[str, str]] = {"restitution": "Scatter", "friction_deg": "Scatter"}
 
 
 class Hold:
@@ -2499,6 +2776,119 @@ class Region:
 
 
 @dataclass(kw_only=True)
+class Release(Builder):
+    """Where boulders start, and how.
+
+    They are turned at random.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    place : ReleasePlaceChoice
+        Where.
+    share : float, optional
+        Weight against the other releases [-]. Default: 1.
+    height_m : ScatterChoice, optional
+        Height of the lowest point of the boulder above the ground at its start [m]. Default: none, it touches
+        the ground.
+    speed_m_s : ScatterChoice, optional
+        Speed at the start [m/s]. Default: none.
+    azimuth_deg : ScatterChoice, optional
+        Direction of the speed on the map, clockwise from north (y) [°]. Default: down the steepest slope at
+        the start.
+    dip_deg : ScatterChoice, optional
+        Dip of the speed below the horizontal [°]; negative is upward. Default: along the ground for a speed
+        without `azimuth_deg`, else 0.
+    spin_rad_s : ScatterChoice, optional
+        Rate of forward rotation about a horizontal axis across the speed, or across the steepest slope where
+        there is none [rad/s]. Default: none.
+
+    Examples
+    --------
+    >>> Release(name="name", place=ReleasePlace.Points([(1.0, 1.0, 1.0)])).to_ron()
+    '(name: "name", place: Points([(1.0, 1.0, 1.0)]))'
+    """
+
+    name: str
+    place: ReleasePlaceChoice
+    share: float | None = None
+    height_m: ScatterChoice | None = None
+    speed_m_s: ScatterChoice | None = None
+    azimuth_deg: ScatterChoice | None = None
+    dip_deg: ScatterChoice | None = None
+    spin_rad_s: ScatterChoice | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "place": "ReleasePlace", "share": "num", "height_m": "Scatter", "speed_m_s": "Scatter", "azimuth_deg": "Scatter", "dip_deg": "Scatter", "spin_rad_s": "Scatter"}
+
+
+class ReleasePlace:
+    """Where boulders start on the map.
+
+    Examples
+    --------
+    >>> ReleasePlace.Points([(1.0, 1.0, 1.0)]).to_ron()
+    'Points([(1.0, 1.0, 1.0)])'
+    """
+
+    @dataclass
+    class Points(Builder):
+        """At points (x, y) [m], one after the other.
+
+        Parameters
+        ----------
+        value : Sequence[Sequence[float]]
+            At points (x, y) [m], one after the other.
+
+        Examples
+        --------
+        >>> ReleasePlace.Points([(1.0, 1.0, 1.0)]).to_ron()
+        'Points([(1.0, 1.0, 1.0)])'
+        """
+
+        value: Sequence[Sequence[float]]
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "[(num)]"}
+        _variant: ClassVar[str] = "Points"
+
+    @dataclass
+    class Line(Builder):
+        """Anywhere on a line through these corners (x, y) [m].
+
+        Parameters
+        ----------
+        value : Sequence[Sequence[float]]
+            Anywhere on a line through these corners (x, y) [m].
+
+        Examples
+        --------
+        >>> ReleasePlace.Line([(1.0, 1.0, 1.0)]).to_ron()
+        'Line([(1.0, 1.0, 1.0)])'
+        """
+
+        value: Sequence[Sequence[float]]
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "[(num)]"}
+        _variant: ClassVar[str] = "Line"
+
+    @dataclass
+    class Area(Builder):
+        """Anywhere in the area within these corners (x, y) [m].
+
+        Parameters
+        ----------
+        value : Sequence[Sequence[float]]
+            Anywhere in the area within these corners (x, y) [m].
+
+        Examples
+        --------
+        >>> ReleasePlace.Area([(1.0, 1.0, 1.0)]).to_ron()
+        'Area([(1.0, 1.0, 1.0)])'
+        """
+
+        value: Sequence[Sequence[float]]
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "[(num)]"}
+        _variant: ClassVar[str] = "Area"
+
+
+@dataclass(kw_only=True)
 class Residual(Builder):
     """Strength of a joint that has slipped.
 
@@ -2590,6 +2980,117 @@ class Rock(Builder):
 
 
 @dataclass(kw_only=True)
+class Rockfall(Builder):
+    """Boulders that are released one by one over terrain; `ndda rockfall` runs them.
+
+    Each moves until it rests, leaves the terrain, or `time.end_s` has passed. `time.step_s` is then the
+    longest step, 2 ms by default: steps are an eighth of it near the ground, and shorter while a boulder
+    touches it.
+
+    Parameters
+    ----------
+    terrain : GroundChoice
+        The ground.
+    ground : GroundLaw
+        Ground outside of all zones.
+    boulders : Boulders
+        What falls.
+    releases : list[Release]
+        Where boulders start; one after the other takes its boulder, as often as its `share` says.
+    zones : list[Zone], optional
+        Parts of the terrain with ground of their own; where they overlap, the later one counts. Default:
+        none.
+    count : int, optional
+        How many boulders are released. Default: 100.
+    seed : int, optional
+        Seed of all that is drawn. A boulder depends on it and on its own number, not on how many there are.
+        Default: 1.
+    lines : list[CountingLine], optional
+        Lines on the map at which boulders are counted and measured, such as a road or a barrier. Default:
+        none.
+    profile_m : Sequence[Sequence[float]], optional
+        Corners of the profile on the map (x, y), along which results are given over the distance from its
+        start [m]. Default: from the middle of the releases to the middle of the ends.
+    rest : RockfallRest, optional
+        When a boulder has come to rest.
+    detail : RockfallDetail, optional
+        How the ground resists, and what is written.
+
+    Examples
+    --------
+    >>> Rockfall(terrain=Ground.File(file="name"), ground=GroundLaw(restitution=Scatter.Always(1.0), friction_deg=Scatter.Always(1.0)), boulders=Boulders(material="name", size=BoulderSize.Diameter(diameter_m=Scatter.Always(1.0))), releases=[Release(name="name", place=ReleasePlace.Points([(1.0, 1.0, 1.0)]))]).to_ron()
+    '(terrain: File(file: "name"), ground: (restitution: Always(1.0), friction_deg: Always(1.0)), boulders: (material: "name", size: Diameter(diameter_m: Always(1.0))), releases: [(name: "name", place: Points([(1.0, 1.0, 1.0)]))])'
+    """
+
+    terrain: GroundChoice
+    ground: GroundLaw
+    boulders: Boulders
+    releases: list[Release]
+    zones: list[Zone] | None = None
+    count: int | None = None
+    seed: int | None = None
+    lines: list[CountingLine] | None = None
+    profile_m: Sequence[Sequence[float]] | None = None
+    rest: RockfallRest | None = None
+    detail: RockfallDetail | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"terrain": "Ground", "ground": "GroundLaw", "zones": "[Zone]", "boulders": "Boulders", "releases": "[Release]", "count": "int", "seed": "int", "lines": "[CountingLine]", "profile_m": "[(num)]", "rest": "RockfallRest", "detail": "RockfallDetail"}
+
+
+@dataclass(kw_only=True)
+class RockfallDetail(Builder):
+    """How the ground resists, and what is written.
+
+    Parameters
+    ----------
+    impact_m_s : float, optional
+        Speed along the normal of the ground up to which a boulder that hits with a corner goes no deeper than
+        5 % of its width [m/s]: the contact is as stiff as that takes. Larger values give shorter steps.
+        Default: 15.
+    path_m : float, optional
+        Distance of the points that are kept of a path [m]. Default: half a step of the terrain, or less where
+        it has few.
+    cell_m : float, optional
+        Side of the cells in which the probability of reach is counted [m]. Default: the step of the terrain.
+    part_m : float, optional
+        Length of the parts of the profile in which heights, speeds and energies are collected [m]. Default: a
+        hundredth of the profile.
+
+    Examples
+    --------
+    >>> RockfallDetail().to_ron()
+    '()'
+    """
+
+    impact_m_s: float | None = None
+    path_m: float | None = None
+    cell_m: float | None = None
+    part_m: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"impact_m_s": "num", "path_m": "num", "cell_m": "num", "part_m": "num"}
+
+
+@dataclass(kw_only=True)
+class RockfallRest(Builder):
+    """When a boulder has come to rest.
+
+    Parameters
+    ----------
+    speed_m_s : float, optional
+        No point of it is faster than this [m/s] … Default: 0.2.
+    over_s : float, optional
+        … for this time [s]. Default: 0.5.
+
+    Examples
+    --------
+    >>> RockfallRest().to_ron()
+    '()'
+    """
+
+    speed_m_s: float | None = None
+    over_s: float | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"speed_m_s": "num", "over_s": "num"}
+
+
+@dataclass(kw_only=True)
 class Roughness(Builder):
     """Roughness of a joint after Barton and Bandis (1982).
 
@@ -2624,6 +3125,111 @@ class Roughness(Builder):
     mobilised: bool | None = None
     strength_factor: float | None = None
     _kinds: ClassVar[Mapping[str, str]] = {"jrc": "num", "jcs_pa": "num", "sample_m": "num", "length_m": "num", "mobilised": "bool", "strength_factor": "num"}
+
+
+class Scatter:
+    """A number that may differ from boulder to boulder, in the unit of its field.
+
+    Examples
+    --------
+    >>> Scatter.Always(1.0).to_ron()
+    'Always(1.0)'
+    """
+
+    @dataclass
+    class Always(Builder):
+        """The same for all.
+
+        Parameters
+        ----------
+        value : float
+            The same for all.
+
+        Examples
+        --------
+        >>> Scatter.Always(1.0).to_ron()
+        'Always(1.0)'
+        """
+
+        value: float
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "num"}
+        _variant: ClassVar[str] = "Always"
+
+    @dataclass
+    class Normal(Builder):
+        """Mean and standard deviation.
+
+        Parameters
+        ----------
+        value : Sequence[float]
+            Mean and standard deviation.
+
+        Examples
+        --------
+        >>> Scatter.Normal((1.0, 1.0)).to_ron()
+        'Normal((1.0, 1.0))'
+        """
+
+        value: Sequence[float]
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "(num)"}
+        _variant: ClassVar[str] = "Normal"
+
+    @dataclass
+    class LogNormal(Builder):
+        """Mean and standard deviation of the number itself, not of its logarithm.
+
+        Parameters
+        ----------
+        value : Sequence[float]
+            Mean and standard deviation of the number itself, not of its logarithm.
+
+        Examples
+        --------
+        >>> Scatter.LogNormal((1.0, 1.0)).to_ron()
+        'LogNormal((1.0, 1.0))'
+        """
+
+        value: Sequence[float]
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "(num)"}
+        _variant: ClassVar[str] = "LogNormal"
+
+    @dataclass
+    class Uniform(Builder):
+        """Least and largest value.
+
+        Parameters
+        ----------
+        value : Sequence[float]
+            Least and largest value.
+
+        Examples
+        --------
+        >>> Scatter.Uniform((1.0, 1.0)).to_ron()
+        'Uniform((1.0, 1.0))'
+        """
+
+        value: Sequence[float]
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "(num)"}
+        _variant: ClassVar[str] = "Uniform"
+
+    @dataclass
+    class Triangular(Builder):
+        """Least, most likely and largest value.
+
+        Parameters
+        ----------
+        value : Sequence[float]
+            Least, most likely and largest value.
+
+        Examples
+        --------
+        >>> Scatter.Triangular((1.0, 1.0, 1.0)).to_ron()
+        'Triangular((1.0, 1.0, 1.0))'
+        """
+
+        value: Sequence[float]
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "(num)"}
+        _variant: ClassVar[str] = "Triangular"
 
 
 @dataclass(kw_only=True)
@@ -2677,6 +3283,9 @@ class Scene(Builder):
         Contact between blocks. Must be said when there is more than one block.
     stages : list[Stage], optional
         Stages of construction, one after the other from `time.end_s` on. Default: none.
+    rockfall : Rockfall, optional
+        Boulders that fall over terrain, one by one, in the place of blocks and rock; `ndda rockfall` runs
+        them. Default: none.
     monitors : list[Monitor], optional
         Points whose motion is recorded. Default: none.
     output : Output, optional
@@ -2711,10 +3320,11 @@ class Scene(Builder):
     forces: list[Force] | None = None
     contact: ContactChoice | None = None
     stages: list[Stage] | None = None
+    rockfall: Rockfall | None = None
     monitors: list[Monitor] | None = None
     output: Output | None = None
     reference: ReferenceChoice | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"title": "str", "parameters": "{num}", "time": "Time", "gravity_m_s2": "(num)", "gravity_ramp_s": "num", "in_situ": "InSitu", "settle": "Settle", "include": "[str]", "materials": "[Material]", "blocks": "[Block]", "rock": "[Rock]", "supports": "[Support]", "tractions": "[Traction]", "water": "[Water]", "quiet": "[Quiet]", "ties": "[Tie]", "blasts": "[Blast]", "bolts": "[Bolt]", "forces": "[Force]", "contact": "Contact", "stages": "[Stage]", "monitors": "[Monitor]", "output": "Output", "reference": "Reference"}
+    _kinds: ClassVar[Mapping[str, str]] = {"title": "str", "parameters": "{num}", "time": "Time", "gravity_m_s2": "(num)", "gravity_ramp_s": "num", "in_situ": "InSitu", "settle": "Settle", "include": "[str]", "materials": "[Material]", "blocks": "[Block]", "rock": "[Rock]", "supports": "[Support]", "tractions": "[Traction]", "water": "[Water]", "quiet": "[Quiet]", "ties": "[Tie]", "blasts": "[Blast]", "bolts": "[Bolt]", "forces": "[Force]", "contact": "Contact", "stages": "[Stage]", "rockfall": "Rockfall", "monitors": "[Monitor]", "output": "Output", "reference": "Reference"}
 
 
 @dataclass(kw_only=True)
@@ -3776,6 +4386,35 @@ class Whereabouts:
         _variant: ClassVar[str] = "Beyond"
 
 
+@dataclass(kw_only=True)
+class Zone(Builder):
+    """A part of the terrain with ground of its own.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    outline_m : Sequence[Sequence[float]]
+        Corners of its outline on the map (x, y) [m]; a triangle of the terrain is in the zone if its middle
+        is.
+    restitution : ScatterChoice
+        Coefficient of restitution e from 0 to 1.
+    friction_deg : ScatterChoice
+        Friction angle φ between boulder and ground [°].
+
+    Examples
+    --------
+    >>> Zone(name="name", outline_m=[(1.0, 1.0, 1.0)], restitution=Scatter.Always(1.0), friction_deg=Scatter.Always(1.0)).to_ron()
+    '(name: "name", outline_m: [(1.0, 1.0, 1.0)], restitution: Always(1.0), friction_deg: Always(1.0))'
+    """
+
+    name: str
+    outline_m: Sequence[Sequence[float]]
+    restitution: ScatterChoice
+    friction_deg: ScatterChoice
+    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "outline_m": "[(num)]", "restitution": "Scatter", "friction_deg": "Scatter"}
+
+
 AccelerationUnitChoice: TypeAlias = Literal["G"] | Literal["MetrePerSecondSquared"] | Literal["CentimetrePerSecondSquared"]
 AtChoice: TypeAlias = Literal["Centre"] | At.Point | At.Largest
 AxisChoice: TypeAlias = Literal["X"] | Literal["Y"] | Literal["Z"]
@@ -3784,6 +4423,8 @@ BlastPressureChoice: TypeAlias = BlastPressure.Rows | BlastPressure.Duvall
 BlastWallChoice: TypeAlias = BlastWall.Part | BlastWall.Hole
 BodyChoice: TypeAlias = Literal["Elastic"] | Literal["Affine"] | Literal["Rigid"] | Literal["Fixed"]
 BoltPlaceChoice: TypeAlias = BoltPlace.Line | BoltPlace.Rows
+BoulderShapeChoice: TypeAlias = BoulderShape.Cuboid | BoulderShape.Ellipsoid | BoulderShape.Polyhedron
+BoulderSizeChoice: TypeAlias = BoulderSize.Diameter | BoulderSize.Volume | BoulderSize.Mass
 ByChoice: TypeAlias = Literal["Elimination"] | By.Springs
 ContactChoice: TypeAlias = Literal["Off"] | Contact.Potential
 ContactAtChoice: TypeAlias = Literal["Predicted"] | ContactAt.End
@@ -3793,6 +4434,7 @@ DomainChoice: TypeAlias = Domain.Box | Domain.Column | Domain.Polyhedron | Domai
 FieldChoice: TypeAlias = Literal["Displacement"] | Literal["Velocity"] | Literal["Acceleration"] | Literal["Stress"] | Literal["VonMises"] | Literal["ContactForce"] | Literal["ContactTraction"] | Literal["FrictionState"] | Literal["BlockId"] | Literal["Material"]
 FieldFormatChoice: TypeAlias = Literal["Compressed"] | Literal["Appended"] | Literal["Base64"]
 FillChoice: TypeAlias = Literal["Fewest"] | Literal["Centre"] | Fill.Size | Fill.TetGen
+GroundChoice: TypeAlias = Ground.File | Ground.Heights
 HoldChoice: TypeAlias = Literal["Fixed"] | Literal["Normal"] | Hold.Direction | Hold.Motion | Hold.Acceleration | Hold.Shaking
 IntegratorChoice: TypeAlias = Integrator.Midpoint | Integrator.GeneralizedAlpha | Integrator.Newmark
 MassChoice: TypeAlias = Literal["Consistent"] | Literal["Lumped"]
@@ -3805,6 +4447,8 @@ PressureChoice: TypeAlias = Pressure.Level | Pressure.Linear | Pressure.Points |
 RecordedAsChoice: TypeAlias = Literal["Upgoing"] | Literal["Outcrop"] | Literal["Within"]
 ReferenceChoice: TypeAlias = Reference.SlidingBlock | Reference.Collision | Reference.FreeFall | Reference.FreeSpin | Reference.BarImpact | Reference.Displacement
 RegionChoice: TypeAlias = Literal["All"] | Region.Plane | Region.Set
+ReleasePlaceChoice: TypeAlias = ReleasePlace.Points | ReleasePlace.Line | ReleasePlace.Area
+ScatterChoice: TypeAlias = Scatter.Always | Scatter.Normal | Scatter.LogNormal | Scatter.Uniform | Scatter.Triangular
 SettleDampingChoice: TypeAlias = Literal["Kinetic"] | SettleDamping.Local
 ShapeChoice: TypeAlias = Shape.Box | Shape.Prism | Shape.Hexahedron | Shape.Voussoir | Shape.Cylinder | Shape.Sphere | Shape.Polyhedron | Shape.Surface | Shape.Mesh
 SliversChoice: TypeAlias = Literal["Merge"] | Literal["Remove"]
@@ -3836,10 +4480,14 @@ __all__ = [
     "BoltPlace",
     "BoltPlate",
     "BoltSteel",
+    "BoulderShape",
+    "BoulderSize",
+    "Boulders",
     "By",
     "Component",
     "Contact",
     "ContactAt",
+    "CountingLine",
     "Damping",
     "Dilation",
     "DiscRule",
@@ -3854,6 +4502,8 @@ __all__ = [
     "FractureEnergy",
     "Friction",
     "Grading",
+    "Ground",
+    "GroundLaw",
     "Hold",
     "InSitu",
     "IncidentWave",
@@ -3877,9 +4527,15 @@ __all__ = [
     "RecordedAs",
     "Reference",
     "Region",
+    "Release",
+    "ReleasePlace",
     "Residual",
     "Rock",
+    "Rockfall",
+    "RockfallDetail",
+    "RockfallRest",
     "Roughness",
+    "Scatter",
     "Scene",
     "Settle",
     "SettleDamping",
@@ -3905,4 +4561,5 @@ __all__ = [
     "WaveKind",
     "Wet",
     "Whereabouts",
+    "Zone",
 ]

@@ -52,6 +52,12 @@ pub fn read(path: &Path, tolerance: f64) -> Result<Surface, MeshFileError> {
     parse(&ending(path), &bytes, tolerance).map_err(|fault| fault.of(path))
 }
 
+/// The triangles of an STL as they are, whether or not they close a surface.
+pub(crate) fn open_stl(bytes: &[u8]) -> Result<Surface, Fault> {
+    let surface = stl::read(bytes)?;
+    if surface.faces.is_empty() { Err(FileProblem::NoFaces.into()) } else { Ok(surface) }
+}
+
 fn parse(ending: &str, bytes: &[u8], tolerance: f64) -> Result<Surface, Fault> {
     let raw = match ending {
         "stl" => stl::read(bytes)?,

@@ -1,12 +1,18 @@
-//! Heights of terrain in ESRI ASCII grids (`.asc`), as geographic information systems write them.
+//! Heights of terrain on regular grids: ESRI ASCII grids (`.asc`), points (`.xyz`, `.txt`, `.csv`), GeoTIFF (`.tif`, `.tiff`), and surfaces of triangles (`.stl`)
+//! that are sampled.
 //!
-//! A header of keys and numbers, then heights in rows along x, the northernmost row first. `xllcorner` and `yllcorner` are the corner of the
+//! An ESRI ASCII grid, as geographic information systems write it, is a header of keys and numbers, then heights in rows along x, the northernmost row first. `xllcorner` and `yllcorner` are the corner of the
 //! south-western cell, `xllcenter` and `yllcenter` its centre; heights belong to the centres of cells.
+
+mod geotiff;
+mod points;
+mod sampled;
 
 use std::path::Path;
 
 use super::error::{Fault, FileProblem, MeshFileError, ending};
 use super::lines::{Line, Lines, parse, real};
+use super::surface_file;
 use crate::limited;
 
 /// Most heights of a grid: more would need gigabytes once they are rock.
@@ -26,18 +32,33 @@ pub struct TerrainGrid {
     pub heights_m: Vec<Vec<Option<f64>>>,
 }
 
-/// Reads an ESRI ASCII grid.
+/// Reads heights, by the ending of `path`; a surface of triangles is sampled at a two-hundredth of its longer side.
 ///
 /// # Errors
-/// [`MeshFileError`] with the line when the file cannot be read or understood, or holds more or fewer heights than its header says.
+/// [`MeshFileError`] with the line of a text when the file cannot be read or understood, or holds no regular grid of heights in metres.
 pub fn read(path: &Path) -> Result<TerrainGrid, MeshFileError> {
-    if ending(path) != "asc" {
-        let problem = FileProblem::Extension { found: ending(path), known: ".asc" };
-        return Err(Fault::from(problem).of(path));
-    }
+    read_sampled(path, None)
+}
+
+/// Reads heights as [`read`] does, and samples a surface of triangles at this distance [m].
+///
+/// # Errors
+/// As [`read`].
+pub fn read_sampled(path: &Path, sample_m: Option<f64>) -> Result<TerrainGrid, MeshFileError> {
+    let ending = ending(path);
+    let parse: fn(&[u8], Option<f64>) -> Result<TerrainGrid, Fault> = match ending.as_str() {
+        "asc" => |bytes, _| grid(bytes),
+        "xyz" | "txt" | "csv" => |bytes, _| points::read(bytes),
+        "tif" | "tiff" => |bytes, _| geotiff::read(bytes),
+        "stl" => |bytes, sample_m| sampled::sample(&surface_file::open_stl(bytes)?, sample_m),
+        _ => {
+            let known = ".asc, .xyz, .txt, .csv, .tif, .tiff, .stl";
+            return Err(Fault::from(FileProblem::Extension { found: ending, known }).of(path));
+        }
+    };
     let bytes = limited::file(path)
         .map_err(|error| Fault::from(FileProblem::Unreadable(error.to_string())).of(path))?;
-    grid(&bytes).map_err(|fault| fault.of(path))
+    parse(&bytes, sample_m).map_err(|fault| fault.of(path))
 }
 
 fn grid(bytes: &[u8]) -> Result<TerrainGrid, Fault> {

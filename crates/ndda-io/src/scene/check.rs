@@ -10,6 +10,7 @@ mod quiet;
 mod reference;
 mod restitution;
 mod rock;
+mod rockfall;
 mod shape;
 mod stage;
 mod support;
@@ -51,6 +52,7 @@ pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> 
     check.bolts();
     check.contact();
     check.stages(folder);
+    check.rockfall(folder);
     check.monitors();
     check.reference();
     check.output();

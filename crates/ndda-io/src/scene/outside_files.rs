@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::limited;
-use crate::scene::{Discontinuity, Domain, Hold, Scene, Shape};
+use crate::scene::{Discontinuity, Domain, Ground, Hold, Scene, Shape};
 
 /// Bytes read at a time.
 const CHUNK: usize = 1 << 16;
@@ -87,6 +87,10 @@ fn names(scene: &Scene) -> Vec<&str> {
         _ => None,
     });
     let components = shaking.flatten().map(|component| component.record.file.as_str());
+    let terrain = scene.rockfall.iter().filter_map(|rockfall| match &rockfall.terrain {
+        Ground::File { file, .. } => Some(file.as_str()),
+        Ground::Heights { .. } => None,
+    });
     let materials = scene.include.iter().map(String::as_str);
     shapes
         .chain(domains)
@@ -94,6 +98,7 @@ fn names(scene: &Scene) -> Vec<&str> {
         .chain(records)
         .chain(waves)
         .chain(components)
+        .chain(terrain)
         .chain(materials)
         .collect()
 }

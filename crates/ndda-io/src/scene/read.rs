@@ -38,7 +38,7 @@ impl LoadedScene {
             Some(Contact::Potential { penalty_pa, .. }) => is_unset(penalty_pa),
             _ => false,
         };
-        !penalty && !is_unset(&self.scene.time.step_s)
+        self.scene.rockfall.is_some() || !penalty && !is_unset(&self.scene.time.step_s)
     }
 
     /// The scene with values that were chosen for it, also in its text.

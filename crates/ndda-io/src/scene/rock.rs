@@ -118,7 +118,8 @@ pub enum Domain {
         /// Height of the base [m].
         base_m: f64,
     },
-    /// Rock under heights in an ESRI ASCII grid, `.asc`; faces as of `Terrain`. Cells with a corner without height are left out.
+    /// Rock under heights in a file: an ESRI ASCII grid (`.asc`), points of a regular grid (`.xyz`, `.txt`, `.csv`), a GeoTIFF (`.tif`, `.tiff`), or a surface of
+    /// triangles (`.stl`), sampled at a two-hundredth of its longer side; faces as of `Terrain`. Cells with a corner without height are left out.
     TerrainFile {
         /// Path, relative to the scene file.
         file: String,

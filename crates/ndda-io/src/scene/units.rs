@@ -20,6 +20,8 @@ pub use dimensions::{DIMENSIONS, Dimension, Unit, dimension_of};
 const PLACE: &str = "Point";
 /// Field of a scene, or of a file of materials, that names files.
 pub(crate) const INCLUDE: &str = "include";
+/// Numbers that scatter, whose parameters are in the unit of the field.
+const SCATTER: [&str; 5] = ["Always", "Normal", "LogNormal", "Uniform", "Triangular"];
 /// An expression: `Calc(90 - dip_deg)`.
 const CALC: &str = "Calc";
 
@@ -151,7 +153,7 @@ impl Resolver<'_> {
         }
         let places = node.children.iter().all(|child| child.key.is_none());
         match own {
-            Some(dimension) if !word.is_empty() && places => {
+            Some(dimension) if !word.is_empty() && places && !SCATTER.contains(&word) => {
                 let close = nearest(word, &dimension.unit_names());
                 let help =
                     close.map_or_else(|| units_of(dimension), |name| format!("did you mean `{name}`?"));
@@ -284,6 +286,7 @@ mod tests {
             ("(stress_pa: Megapascal((xx: -5, yy: 1)))", "(stress_pa: (xx: -5e6, yy: 1e6))"),
             ("(at: Point(Millimetre(1, 2, 3)))", "(at: Point((1e-3, 2e-3, 3e-3)))"),
             ("(origin_m: Some(Metre(3)))", "(origin_m: Some(3e0))"),
+            ("(diameter_m: Normal(Centimetre(80), 0.2))", "(diameter_m: Normal(8e-1, 0.2))"),
         ] {
             assert_eq!(resolved(source).errors, []);
             assert_eq!(resolved(source).text, plain);

@@ -32,6 +32,7 @@ pub use joints::{Disc, Discontinuity, JointSet, OrientationScatter, SpacingScatt
 pub use merge::Merged;
 pub use plane::{Plane, dip_normal, sin_cos};
 pub use polyhedron::{Face, Polyhedron};
+pub use random::Stream;
 pub(crate) use random::frame as plane_frame;
 pub use split::{Split, Tolerance, split};
 pub use surfaces::{Neighbour, Surface, SurfaceKind};

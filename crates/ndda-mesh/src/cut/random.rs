@@ -6,11 +6,11 @@ use crate::Vec3;
 
 /// A stream of numbers: SplitMix64 (Steele, Lea & Flood 2014). A stream is named by its keys.
 #[derive(Clone, Debug)]
-pub(crate) struct Stream(u64);
+pub struct Stream(u64);
 
 impl Stream {
     /// The stream of a seed and of what it is for.
-    pub(crate) fn new(seed: u64, keys: &[u64]) -> Self {
+    pub fn new(seed: u64, keys: &[u64]) -> Self {
         Self(keys.iter().fold(mix(seed), |state, &key| mix(state ^ mix(key.wrapping_add(GOLDEN)))))
     }
 
@@ -20,27 +20,27 @@ impl Stream {
     }
 
     /// Uniform in [0, 1).
-    pub(crate) fn uniform(&mut self) -> f64 {
+    pub fn uniform(&mut self) -> f64 {
         (self.bits() >> 11) as f64 * 2f64.powi(-53)
     }
 
     /// Uniform in [low, high).
-    pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.uniform()
     }
 
     /// Standard normal: Box & Muller (1958).
-    pub(crate) fn normal(&mut self) -> f64 {
+    pub fn normal(&mut self) -> f64 {
         (-2.0 * (1.0 - self.uniform()).ln()).sqrt() * (TAU * self.uniform()).cos()
     }
 
     /// Exponential with mean 1.
-    pub(crate) fn exponential(&mut self) -> f64 {
+    pub fn exponential(&mut self) -> f64 {
         -(1.0 - self.uniform()).ln()
     }
 
     /// A unit vector about `mean` after Fisher (1953): p(θ) ∝ exp(κ cos θ) sin θ.
-    pub(crate) fn fisher(&mut self, mean: &Vec3, kappa: f64) -> Vec3 {
+    pub fn fisher(&mut self, mean: &Vec3, kappa: f64) -> Vec3 {
         // 1 − cos θ, by inversion; the second term in the logarithm vanishes for large κ.
         let u = self.uniform();
         let versine = -((1.0 - u) + u * (-2.0 * kappa).exp()).ln() / kappa;
@@ -48,7 +48,7 @@ impl Stream {
     }
 
     /// `mean` turned by the angle of that cosine, in a uniformly drawn direction.
-    pub(crate) fn tilted(&mut self, mean: &Vec3, cosine: f64) -> Vec3 {
+    pub fn tilted(&mut self, mean: &Vec3, cosine: f64) -> Vec3 {
         let [u, v] = frame(mean);
         let (sin, cos) = (TAU * self.uniform()).sin_cos();
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();

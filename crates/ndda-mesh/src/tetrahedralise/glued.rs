@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use super::star::best_triangles;
 use super::{Fill, FillError, Filled, SizeField, named, refine};
-use crate::cut::{Blocks, Polyhedron};
+use crate::cut::{Blocks, Neighbour, Polyhedron};
 use crate::geometry::Aabb;
 use crate::validate::{self, first_twins};
 use crate::{BlockMesh, Vec3};
@@ -19,19 +19,21 @@ impl Blocks {
     /// Blocks that are glued to each other, directly or through others, by rising first index; most have one member.
     pub fn groups(&self) -> Vec<Vec<u32>> {
         let mut leader: Vec<u32> = (0..self.blocks.len() as u32).collect();
-        let root = |leader: &[u32], mut block: u32| {
+        // Each look halves the way, so that long chains are walked once.
+        let root = |leader: &mut [u32], mut block: u32| {
             while leader[block as usize] != block {
+                leader[block as usize] = leader[leader[block as usize] as usize];
                 block = leader[block as usize];
             }
             block
         };
         for neighbour in self.neighbours.iter().filter(|neighbour| neighbour.glued) {
-            let [a, b] = neighbour.blocks.map(|block| root(&leader, block));
+            let [a, b] = neighbour.blocks.map(|block| root(&mut leader, block));
             leader[a.max(b) as usize] = a.min(b);
         }
         let mut groups: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for block in 0..self.blocks.len() as u32 {
-            groups.entry(root(&leader, block)).or_default().push(block);
+            groups.entry(root(&mut leader, block)).or_default().push(block);
         }
         groups.into_values().collect()
     }
@@ -52,7 +54,10 @@ impl Blocks {
         };
         let parts: Vec<&Polyhedron> = group.iter().map(|&block| &self.blocks[block as usize]).collect();
         let union = Union::new(&parts);
-        let shared = self.neighbours.iter().filter(|n| n.glued && n.blocks.iter().all(|b| group.contains(b)));
+        let mut is_part = vec![false; blocks];
+        group.iter().for_each(|&block| is_part[block as usize] = true);
+        let is_inside = |n: &&Neighbour| n.glued && n.blocks.iter().all(|&block| is_part[block as usize]);
+        let shared = self.neighbours.iter().filter(is_inside);
         if shared.count() != union.faces.iter().filter(|face| face.is_inner).count() {
             return Err(FillError::NotFaceToFace { block: first as usize, parts: parts.len() });
         }

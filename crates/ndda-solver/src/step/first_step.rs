@@ -17,6 +17,11 @@ impl Simulation {
         if self.needs_offset() { self.set_contact_offsets() } else { Ok(()) }
     }
 
+    /// Takes blocks for being on their course: they go on from where another simulation has brought them, and contact has no offset in the first step.
+    pub fn go_on_course(&mut self) {
+        self.state.start.clone_from(&self.problem.blocks.rest_position);
+    }
+
     /// Whether this is the first step, and one by a scheme of that kind. A scene that settled is on its course, with no load to carry all at
     /// once.
     fn needs_offset(&self) -> bool {

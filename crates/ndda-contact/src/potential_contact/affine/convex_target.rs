@@ -58,6 +58,8 @@ pub struct ConvexBlocks {
     /// First face of each block; one that is concave or round has none.
     start: Vec<u32>,
     whole: Vec<Option<Box<AffineConvexTarget>>>,
+    /// Which blocks move by affine maps; blocks beyond the list do not.
+    is_affine: Vec<bool>,
     /// How many blocks are affine convex targets.
     affine: usize,
     /// The faces of each block once more, by rows, and where those of each row are.
@@ -92,6 +94,8 @@ impl ConvexBlocks {
         self.row_start.clear();
         self.row_start.push(0);
         self.contactors.clear(blocks);
+        self.is_affine.clear();
+        self.is_affine.extend_from_slice(affine);
         for (block, surface) in blocks.ids().zip(surfaces) {
             let count = surface.planes.len();
             let is_affine = affine.get(block.index()) == Some(&true);
@@ -183,6 +187,12 @@ impl ConvexBlocks {
     #[inline]
     pub(crate) fn affine_target(&self, block: BlockId) -> Option<&AffineConvexTarget> {
         self.whole.get(block.index()).and_then(Option::as_deref)
+    }
+
+    /// Whether a block moves by affine maps: what is apart in it then never meets.
+    #[inline]
+    pub(crate) fn keeps_its_shape(&self, block: BlockId) -> bool {
+        self.is_affine.get(block.index()) == Some(&true)
     }
 
     /// The faces of a block as contactors in another; none where it is put into that triangle by triangle.

@@ -273,6 +273,9 @@ impl Near<'_> {
 
     /// Adds the pairs of triangles of `block` that reach into the box of `other` and its tetrahedra.
     fn find(&self, block: BlockId, other: BlockId, found: &mut Fresh) {
+        if block == other && self.scene.hulls.keeps_its_shape(block) {
+            return;
+        }
         if block != other && (self.is_apart(block, other) || self.is_apart(other, block)) {
             return;
         }

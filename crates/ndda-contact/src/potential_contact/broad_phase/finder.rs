@@ -83,9 +83,9 @@ impl BroadScene<'_> {
     }
 
     /// Whether a triangle and a tetrahedron of one block are too near each other at rest to be contact later: they
-    /// share a node, or are no further apart than they are large, or the block is an affine convex target.
+    /// share a node, or are no further apart than they are large, or the block moves by affine maps, under which parts that are apart stay so.
     pub fn are_neighbours(&self, triangle: usize, tet: usize) -> bool {
-        if self.hulls.affine_target(self.blocks.tet_block[tet]).is_some() {
+        if self.hulls.keeps_its_shape(self.blocks.tet_block[tet]) {
             return true;
         }
         let rest = |nodes: &[NodeId]| {

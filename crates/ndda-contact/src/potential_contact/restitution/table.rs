@@ -10,6 +10,7 @@ use crate::restitution::law::factor_of;
 ///
 /// Each side of a contact has the restitution of its own face: of the surface that the face is part of, if that has one, else of the two
 /// materials. Where two faces of different surfaces meet, each damps the pressure that its side bears, about half.
+#[derive(Clone, Debug, PartialEq)]
 pub struct RestitutionTable {
     /// Material of each block; blocks beyond the list have material 0.
     material: Vec<u32>,

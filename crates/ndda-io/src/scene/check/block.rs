@@ -8,8 +8,8 @@ use crate::scene::Body;
 impl Check<'_> {
     pub(super) fn blocks(&mut self, folder: Option<&Path>) {
         let scene = self.scene;
-        if scene.blocks.is_empty() && scene.rock.is_empty() {
-            self.misfit("blocks", "there is no block", "a scene has `blocks` or `rock`");
+        if scene.blocks.is_empty() && scene.rock.is_empty() && scene.rockfall.is_none() {
+            self.misfit("blocks", "there is no block", "a scene has `blocks`, `rock` or `rockfall`");
         }
         self.names("blocks", &scene.blocks.iter().map(|b| b.name.as_str()).collect::<Vec<_>>());
         let materials: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();

@@ -60,7 +60,8 @@ impl Check<'_> {
             }
             let of_rock = scene.rock.iter().any(|rock| rock.material == material.name);
             let beyond = scene.quiet.iter().any(|quiet| quiet.beyond.as_ref() == Some(&material.name));
-            if !of_rock && !beyond && !scene.blocks.iter().any(|b| b.material == material.name) {
+            let falls = scene.rockfall.iter().any(|rockfall| rockfall.boulders.material == material.name);
+            if !of_rock && !beyond && !falls && !scene.blocks.iter().any(|b| b.material == material.name) {
                 self.warn(
                     Code::NoEffect,
                     path("name"),

@@ -1,0 +1,114 @@
+//! Heights as points (x, y, z) of a regular grid, a line each, in any order.
+
+use super::{MOST_HEIGHTS, TerrainGrid};
+use crate::mesh::error::{Fault, FileProblem};
+use crate::mesh::lines::{Lines, parse};
+
+/// How far a point may be from its place in the grid, in steps of that.
+const OFF: f64 = 0.01;
+/// Distance of coordinates over their extent, below which they are the same.
+const SAME: f64 = 1e-7;
+/// Places of a grid per point, above which points are on none.
+const MOST_SPARSE: u64 = 64;
+
+/// Reads points of a regular grid; words in the first line are names of columns.
+pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
+    // As Lines have it, but that semicolons separate numbers, too.
+    let text: Vec<u8> = bytes.iter().map(|&b| if b == b';' { b' ' } else { b }).collect();
+    let mut points: Vec<(usize, [f64; 3])> = Vec::new();
+    for (k, mut line) in Lines::new(&text, b'#').enumerate() {
+        if k == 0 && line.clone().word().is_some_and(|word| parse::<f64>(word).is_none()) {
+            continue;
+        }
+        let number = line.number;
+        let point = line.point()?;
+        points.push((number, [point.x, point.y, point.z]));
+    }
+    if points.len() < 4 {
+        return Err(Fault::truncated(format!("point {} of at least 4", points.len() + 1)));
+    }
+    let axes = [axis(&points, 0), axis(&points, 1)];
+    let [Some((x0, dx, nx)), Some((y0, dy, ny))] = axes else {
+        let what = "points on one line".to_string();
+        return Err(FileProblem::NotRead {
+            what,
+            cure: "give points of a grid with at least two rows and columns",
+        }
+        .into());
+    };
+    let places = nx.saturating_mul(ny);
+    if places > MOST_HEIGHTS || places > MOST_SPARSE * points.len() as u64 {
+        let what = format!("{} points that would need a grid of {nx} × {ny}", points.len());
+        return Err(FileProblem::NotRead {
+            what,
+            cure: "they are not on a regular grid: resample them, as with gdal_grid",
+        }
+        .into());
+    }
+    let mut heights_m = vec![vec![None; nx as usize]; ny as usize];
+    for (number, [x, y, z]) in points {
+        let [u, v] = [(x - x0) / dx, (y - y0) / dy];
+        if (u - u.round()).abs() > OFF || (v - v.round()).abs() > OFF {
+            let what = format!("a point ({x}, {y}) beside the grid of {dx} × {dy} m from ({x0}, {y0})");
+            let problem = FileProblem::NotRead {
+                what,
+                cure: "give points of a regular grid: resample them, as with gdal_grid",
+            };
+            return Err(Fault::at(number, problem));
+        }
+        let height = &mut heights_m[v.round() as usize][u.round() as usize];
+        if height.replace(z).is_some_and(|known| known != z) {
+            let what = format!("a second height at ({x}, {y})");
+            return Err(Fault::at(number, FileProblem::NotRead { what, cure: "leave one of them" }));
+        }
+    }
+    Ok(TerrainGrid { origin_m: [x0, y0], step_m: [dx, dy], heights_m })
+}
+
+/// First coordinate along an axis, the least distance of two, and how many places that makes; none if all are the same.
+fn axis(points: &[(usize, [f64; 3])], axis: usize) -> Option<(f64, f64, u64)> {
+    let mut along: Vec<f64> = points.iter().map(|(_, point)| point[axis]).collect();
+    along.sort_by(f64::total_cmp);
+    let (first, last) = (along[0], along[along.len() - 1]);
+    let same = SAME * (last - first);
+    let gaps = along.windows(2).map(|pair| pair[1] - pair[0]).filter(|gap| *gap > same);
+    let least = gaps.fold(f64::INFINITY, f64::min);
+    // Of many steps the mean has more digits than one of them.
+    let count = ((last - first) / least).round();
+    (least.is_finite() && last > first).then(|| (first, (last - first) / count, count as u64 + 1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn error(text: &str) -> String {
+        read(text.as_bytes()).unwrap_err().of(Path::new("a.xyz")).to_string()
+    }
+
+    #[test]
+    fn points_in_any_order_with_gaps_make_a_grid() {
+        let text = "x;y;z\n12;20;3\n10;20;1\n11;20;2\n10;25;4\n12;25;6\n";
+        let grid = read(text.as_bytes()).unwrap();
+        assert_eq!((grid.origin_m, grid.step_m), ([10.0, 20.0], [1.0, 5.0]));
+        assert_eq!(grid.heights_m, [vec![Some(1.0), Some(2.0), Some(3.0)], vec![Some(4.0), None, Some(6.0)]]);
+        let commas = text.replace(';', ",");
+        assert_eq!(read(commas.as_bytes()).unwrap(), grid);
+    }
+
+    #[test]
+    fn points_beside_a_grid_are_refused_with_line_and_cure() {
+        for (text, part) in [
+            ("0 0 1\n1 0 1\n0 1 1\n1.4 1 1\n2.4 1 1", "a.xyz:4: a point (1.4, 1)"),
+            ("0 0 1\n1 0 1\n0 1 1\n0 1 2", "a.xyz:4: a second height at (0, 1)"),
+            ("0 0 1\n1 0 1\n2 0 1\n3 0 1", "at least two rows"),
+            ("0 0 1\n1 0 1\n0 1 x\n", "a.xyz:3: expected a coordinate"),
+            ("0 0 1\n1e-3 5e5 1\n1e6 1 1\n7 3.3 1", "gdal_grid"),
+            ("0 0 1\n", "point 2 of at least 4"),
+        ] {
+            let message = error(text);
+            assert!(message.contains(part), "{text}: {message}");
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! What all boulders together come to.
+
+use serde::{Deserialize, Serialize};
+
+use super::accuracy::Accuracy;
+use super::fall::{End, Fall};
+use super::passage::{Moment, length_m};
+use super::profile;
+use super::spread::{AtLine, Spread};
+use super::{Model, map};
+
+/// Schema of [`Outcome`].
+pub const SCHEMA: &str = "ndda.rockfall/1";
+/// Standard normal number that is exceeded in either direction with a probability of 5 %.
+const TWO_SIDED_95: f64 = 1.959_963_984_540_054;
+
+/// The answer, as `rockfall.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Outcome {
+    /// `ndda.rockfall/1`.
+    pub schema: String,
+    /// Version of ndda.
+    pub version: String,
+    /// Name of the scene: its file without the ending.
+    pub scene: String,
+    /// The scene's own title.
+    pub title: String,
+    /// Boulders.
+    pub count: u32,
+    /// Seed of all that was drawn.
+    pub seed: u64,
+    /// Triangles of the terrain.
+    pub triangles: usize,
+    /// How falls ended.
+    pub ends: Ends,
+    /// Distance on the map from the release to the end, of boulders that came to rest [m]; none if none did.
+    pub runout_m: Option<Spread>,
+    /// Lines, in the order of the scene.
+    pub lines: Vec<LineResult>,
+    /// Corners of the profile [m].
+    pub profile_m: Vec<[f64; 2]>,
+    /// Distance of the stations of the profile [m].
+    pub part_m: f64,
+    /// How accurate falls are.
+    pub accuracy: Inaccurate,
+    /// Steps of all falls.
+    pub steps: u64,
+    /// Wall-clock time of the falls [s].
+    pub wall_s: f64,
+}
+
+/// How falls ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Ends {
+    /// At rest.
+    pub rest: usize,
+    /// At the end of the terrain.
+    pub left_terrain: usize,
+    /// Still moving when the time was up.
+    pub still_moving: usize,
+    /// The computation could not go on.
+    pub stopped: usize,
+}
+
+/// Boulders at a line.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LineResult {
+    /// Its name.
+    pub name: String,
+    /// Boulders that reached it.
+    pub reached: usize,
+    /// Part of all boulders that did.
+    pub probability: f64,
+    /// Where the probability lies with a confidence of 95 % (Wilson 1927).
+    pub confidence_95: [f64; 2],
+    /// What those had when they first reached it; none if none did.
+    pub first: Option<AtLine>,
+}
+
+/// Falls that are not accurate.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Inaccurate {
+    /// How many.
+    pub inaccurate: usize,
+    /// The largest error of each kind over all falls.
+    pub worst: Accuracy,
+    /// What is beyond its limit at worst, and what to change.
+    pub reasons: Vec<String>,
+}
+
+impl Outcome {
+    /// The outcome of falls that took some time [s].
+    pub fn new(model: &Model, name: &str, falls: &[Fall], wall_s: f64) -> Self {
+        let profile_m = profile::corners_m(model, falls);
+        let part_m = model.rockfall.detail.part_m.unwrap_or(0.01 * length_m(&profile_m));
+        let worst = falls.iter().fold(Accuracy::default(), |worst, fall| worst.worst(fall.accuracy));
+        let rested = falls.iter().filter(|fall| fall.end == End::Rest);
+        Self {
+            schema: SCHEMA.into(),
+            version: env!("CARGO_PKG_VERSION").into(),
+            scene: name.into(),
+            title: model.loaded.scene.title.clone(),
+            count: model.rockfall.count,
+            seed: model.rockfall.seed,
+            triangles: model.terrain.triangles(),
+            ends: ends(falls),
+            runout_m: Spread::of(rested.map(map::runout_m).collect()),
+            lines: lines(model, falls),
+            part_m: part_m.max(length_m(&profile_m) / profile::MOST_STATIONS),
+            profile_m,
+            accuracy: Inaccurate {
+                inaccurate: falls.iter().filter(|fall| !fall.accuracy.is_accurate()).count(),
+                reasons: worst.reasons(model.step_s(), model.rockfall.detail.impact_m_s),
+                worst,
+            },
+            steps: falls.iter().map(|fall| fall.steps).sum(),
+            wall_s,
+        }
+    }
+}
+
+fn ends(falls: &[Fall]) -> Ends {
+    let mut ends = Ends::default();
+    for fall in falls {
+        match fall.end {
+            End::Rest => ends.rest += 1,
+            End::LeftTerrain => ends.left_terrain += 1,
+            End::StillMoving => ends.still_moving += 1,
+            End::Stopped(_) => ends.stopped += 1,
+        }
+    }
+    ends
+}
+
+fn lines(model: &Model, falls: &[Fall]) -> Vec<LineResult> {
+    let result = |(k, line): (usize, &ndda_io::scene::CountingLine)| {
+        let first =
+            |fall: &Fall| fall.passages.iter().find(|(line, _)| *line == k).map(|(_, moment)| *moment);
+        let moments: Vec<Moment> = falls.iter().filter_map(first).collect();
+        LineResult {
+            name: line.name.clone(),
+            reached: moments.len(),
+            probability: moments.len() as f64 / falls.len() as f64,
+            confidence_95: wilson(moments.len(), falls.len()),
+            first: AtLine::of(&moments),
+        }
+    };
+    model.rockfall.lines.iter().enumerate().map(result).collect()
+}
+
+/// Where a probability lies with a confidence of 95 % after so many of some trials (Wilson 1927).
+pub fn wilson(successes: usize, trials: usize) -> [f64; 2] {
+    let (n, z2) = (trials as f64, TWO_SIDED_95 * TWO_SIDED_95);
+    let part = successes as f64 / n;
+    let middle = (part + 0.5 * z2 / n) / (1.0 + z2 / n);
+    let half = TWO_SIDED_95 / (1.0 + z2 / n) * (part * (1.0 - part) / n + 0.25 * z2 / (n * n)).sqrt();
+    [(middle - half).max(0.0), (middle + half).min(1.0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn confidence_is_that_of_wilson() {
+        // Newcombe (1998), table I: 81 of 263.
+        let [low, high] = wilson(81, 263);
+        assert!((low - 0.2553).abs() < 5e-5 && (high - 0.3662).abs() < 5e-5, "{low} {high}");
+        assert_eq!(wilson(0, 10)[0], 0.0);
+    }
+}

@@ -1,0 +1,223 @@
+//! The ground as heights on a grid: two triangles in each cell, split from its south-western to its north-eastern corner.
+
+use std::path::Path;
+
+use ndda_io::mesh::terrain_grid::{self, TerrainGrid};
+use ndda_io::scene::{Ground, Zone};
+use ndda_mesh::Vec3;
+
+/// Heights on a grid, and the zone of each triangle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Terrain {
+    /// Place (x, y) of the south-western height [m].
+    pub origin_m: [f64; 2],
+    /// Distance of heights along x and y [m].
+    pub step_m: [f64; 2],
+    /// Heights along x and along y.
+    pub size: [usize; 2],
+    /// Heights, row by row from the south; not a number where there is none [m].
+    heights_m: Vec<f64>,
+    /// Zone of both triangles of each cell: 0 is ground outside of all, else one more than its place in the list.
+    zones: Vec<[u16; 2]>,
+}
+
+impl Terrain {
+    /// Reads or takes the heights of a scene, and finds the zone of each triangle.
+    ///
+    /// # Errors
+    /// What is wrong with the file, or that no cell has a height at all four corners.
+    pub fn new(ground: &Ground, folder: &Path, zones: &[Zone]) -> Result<Self, String> {
+        let grid = match ground {
+            Ground::File { file, origin_m, sample_m } => {
+                let read = terrain_grid::read_sampled(&folder.join(file), *sample_m);
+                let mut grid = read.map_err(|error| error.to_string())?;
+                grid.origin_m = [0, 1].map(|i| grid.origin_m[i] - origin_m[i]);
+                grid
+            }
+            Ground::Heights { origin_m, step_m, heights_m } => {
+                let some = |row: &Vec<f64>| row.iter().copied().map(Some).collect();
+                let heights_m = heights_m.iter().map(some).collect();
+                TerrainGrid { origin_m: *origin_m, step_m: *step_m, heights_m }
+            }
+        };
+        Self::of_grid(&grid, zones)
+    }
+
+    fn of_grid(grid: &TerrainGrid, zones: &[Zone]) -> Result<Self, String> {
+        let size = [grid.heights_m.first().map_or(0, Vec::len), grid.heights_m.len()];
+        let heights_m = grid.heights_m.iter().flatten().map(|z| z.unwrap_or(f64::NAN)).collect();
+        let mut terrain =
+            Self { origin_m: grid.origin_m, step_m: grid.step_m, size, heights_m, zones: Vec::new() };
+        let cells = terrain.cells();
+        if !(0..cells[1]).any(|j| (0..cells[0]).any(|i| terrain.has(i, j))) {
+            return Err(
+                "no cell of the grid has a height at all four corners: give a grid with fewer gaps".into()
+            );
+        }
+        terrain.zones = terrain.zones_of(zones);
+        Ok(terrain)
+    }
+
+    /// Cells along x and y.
+    pub fn cells(&self) -> [usize; 2] {
+        self.size.map(|n| n.saturating_sub(1))
+    }
+
+    /// Number of triangles.
+    pub fn triangles(&self) -> usize {
+        let [nx, ny] = self.cells();
+        2 * (0..ny).map(|j| (0..nx).filter(|&i| self.has(i, j)).count()).sum::<usize>()
+    }
+
+    /// A height of the grid; not a number where there is none [m].
+    pub fn node_m(&self, i: usize, j: usize) -> f64 {
+        self.heights_m[j * self.size[0] + i]
+    }
+
+    /// A corner of the grid [m].
+    pub fn corner_m(&self, i: usize, j: usize) -> Vec3 {
+        let [x, y] = self.map_m([i as f64, j as f64]);
+        Vec3::new(x, y, self.node_m(i, j))
+    }
+
+    /// Whether a cell has heights at all four corners.
+    pub fn has(&self, i: usize, j: usize) -> bool {
+        let [nx, ny] = self.cells();
+        i < nx
+            && j < ny
+            && [(0, 0), (1, 0), (0, 1), (1, 1)].iter().all(|(a, b)| self.node_m(i + a, j + b).is_finite())
+    }
+
+    /// Zones of the triangle south-east of the diagonal of a cell, and of that north-west of it.
+    pub fn zones_at(&self, i: usize, j: usize) -> [u16; 2] {
+        self.zones[j * self.cells()[0] + i]
+    }
+
+    /// Place on the map [m] of a place in steps of the grid.
+    pub fn map_m(&self, [u, v]: [f64; 2]) -> [f64; 2] {
+        [self.origin_m[0] + u * self.step_m[0], self.origin_m[1] + v * self.step_m[1]]
+    }
+
+    /// The cell that a place on the map is in, and where in it, from 0 to 1; none outside of the grid.
+    pub fn cell_at(&self, at_m: [f64; 2]) -> Option<([usize; 2], [f64; 2])> {
+        let mut cell = [0; 2];
+        let mut part = [0.0; 2];
+        for axis in 0..2 {
+            let steps = (at_m[axis] - self.origin_m[axis]) / self.step_m[axis];
+            let last = self.cells()[axis];
+            if !(0.0..=last as f64).contains(&steps) {
+                return None;
+            }
+            cell[axis] = (steps.floor() as usize).min(last - 1);
+            part[axis] = steps - cell[axis] as f64;
+        }
+        Some((cell, part))
+    }
+
+    /// Height of the ground, and its slope along x and y; none outside and where a cell has no heights.
+    pub fn at(&self, at_m: [f64; 2]) -> Option<(f64, [f64; 2])> {
+        let ([i, j], [u, v]) = self.cell_at(at_m)?;
+        if !self.has(i, j) {
+            return None;
+        }
+        let (a, d) = (self.node_m(i, j), self.node_m(i + 1, j + 1));
+        let (along_x, along_y) = match v <= u {
+            true => {
+                let b = self.node_m(i + 1, j);
+                (b - a, d - b)
+            }
+            false => {
+                let c = self.node_m(i, j + 1);
+                (d - c, c - a)
+            }
+        };
+        Some((a + u * along_x + v * along_y, [along_x / self.step_m[0], along_y / self.step_m[1]]))
+    }
+
+    /// Least and largest place on the map [m].
+    pub fn bounds_m(&self) -> [[f64; 2]; 2] {
+        [self.origin_m, self.map_m(self.cells().map(|n| n as f64))]
+    }
+
+    /// Least and largest height [m].
+    pub fn heights_m(&self) -> (f64, f64) {
+        let known = self.heights_m.iter().filter(|z| z.is_finite());
+        known.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(*z), b.max(*z)))
+    }
+
+    /// The last zone whose outline the middle of a triangle is in.
+    fn zones_of(&self, zones: &[Zone]) -> Vec<[u16; 2]> {
+        let [nx, ny] = self.cells();
+        let mut found = vec![[0; 2]; nx * ny];
+        if zones.is_empty() {
+            return found;
+        }
+        for (k, zones_of_cell) in found.iter_mut().enumerate() {
+            let (i, j) = ((k % nx) as f64, (k / nx) as f64);
+            for (half, [u, v]) in [[2.0 / 3.0, 1.0 / 3.0], [1.0 / 3.0, 2.0 / 3.0]].into_iter().enumerate() {
+                let middle = self.map_m([i + u, j + v]);
+                let last = zones.iter().rposition(|zone| is_inside(&zone.outline_m, middle));
+                zones_of_cell[half] = last.map_or(0, |place| place as u16 + 1);
+            }
+        }
+        found
+    }
+}
+
+/// Whether a point is within an outline: an odd number of its edges is crossed on the way to the east.
+pub(super) fn is_inside(outline_m: &[[f64; 2]], [x, y]: [f64; 2]) -> bool {
+    let mut inside = false;
+    let mut last = outline_m.len() - 1;
+    for (k, &[xk, yk]) in outline_m.iter().enumerate() {
+        let [xl, yl] = outline_m[last];
+        if (yk > y) != (yl > y) && x < xk + (y - yk) / (yl - yk) * (xl - xk) {
+            inside = !inside;
+        }
+        last = k;
+    }
+    inside
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndda_io::scene::Scatter;
+
+    fn terrain(zones: &[Zone]) -> Terrain {
+        let heights_m = vec![vec![0.0, 1.0, 3.0], vec![2.0, 5.0, 4.0]];
+        let ground = Ground::Heights { origin_m: [10.0, 20.0], step_m: [2.0, 4.0], heights_m };
+        Terrain::new(&ground, Path::new("."), zones).expect("a grid")
+    }
+
+    #[test]
+    fn heights_are_linear_in_both_triangles_of_a_cell() {
+        let terrain = terrain(&[]);
+        assert_eq!(terrain.triangles(), 4);
+        for (at, z, slope) in [
+            ([10.0, 20.0], 0.0, [0.5, 1.0]),
+            ([14.0, 24.0], 4.0, [1.0, 0.25]),
+            // South-east of the diagonal of the first cell: 0 + ½ · 1 + ¼ · 4.
+            ([11.0, 21.0], 1.5, [0.5, 1.0]),
+            // North-west of it: 0 + ¼ · 3 + ½ · 2.
+            ([10.5, 22.0], 1.75, [1.5, 0.5]),
+        ] {
+            assert_eq!(terrain.at(at), Some((z, slope)), "{at:?}");
+        }
+        assert_eq!(terrain.at([9.9, 21.0]), None);
+        assert_eq!(terrain.at([11.0, 24.1]), None);
+    }
+
+    #[test]
+    fn a_triangle_is_in_the_last_zone_that_its_middle_is_in() {
+        let zone = |name: &str, outline_m: Vec<[f64; 2]>| Zone {
+            name: name.into(),
+            outline_m,
+            restitution: Scatter::Always(0.5),
+            friction_deg: Scatter::Always(30.0),
+        };
+        let all = vec![[0.0, 0.0], [100.0, 0.0], [100.0, 100.0], [0.0, 100.0]];
+        let west = vec![[0.0, 0.0], [12.0, 0.0], [12.0, 100.0], [0.0, 100.0]];
+        let terrain = terrain(&[zone("all", all), zone("west", west)]);
+        assert_eq!((terrain.zones_at(0, 0), terrain.zones_at(1, 0)), ([2, 2], [1, 1]));
+    }
+}
