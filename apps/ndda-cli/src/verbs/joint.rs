@@ -32,9 +32,7 @@ pub fn joint(args: &JointArgs) -> u8 {
 fn test(args: &JointArgs) -> Result<TestOutcome, u8> {
     let needs_no_scene = args.test == JointTestKind::Closure && args.joint_stiffness.is_some();
     if args.scene.is_none() && args.example.is_none() && args.friction.is_none() && !needs_no_scene {
-        complain(
-            "error: no law to test: name a scene, or write a law with --friction; see ndda joint --help",
-        );
+        complain("error: no law to test: name a scene, or give --friction; see ndda joint --help");
         return Err(exit::USAGE);
     }
     let loaded = scene(args)?;
@@ -87,15 +85,6 @@ fn shear(args: &JointArgs, loaded: &LoadedScene, normal: NormalStiffness) -> Res
     };
     let path_m = joint::path(args.amplitude, args.cycles, args.steps).map_err(|error| error.to_string())?;
     let test = ShearTest { stress_pa: args.normal_stress, hold, normal, path_m };
-    TestOutcome::shear(&loaded.scene, (&which, &name(args, loaded)), &test)
-}
-
-/// Name of the joint in the output.
-fn name(args: &JointArgs, loaded: &LoadedScene) -> String {
-    match (&args.of, &args.between, &args.friction) {
-        (Some(name), ..) => format!("joint `{name}`"),
-        (_, Some((a, b)), _) => format!("joint of `{a}` and `{b}`"),
-        (.., Some(_)) => "a joint".into(),
-        _ => format!("all joints of `{}`", loaded.scene.title),
-    }
+    let title = args.friction.is_none().then_some(&*loaded.scene.title);
+    TestOutcome::shear(&loaded.scene, (&which, &which.describe(title)), &test)
 }

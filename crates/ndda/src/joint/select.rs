@@ -16,6 +16,18 @@ pub enum Which {
     Between(String, String),
 }
 
+impl Which {
+    /// In words, for the headings of results; a law that is no scene's own has no title.
+    pub fn describe(&self, title: Option<&str>) -> String {
+        match (self, title) {
+            (Self::Joint(name), _) => format!("joint `{name}`"),
+            (Self::Between(a, b), _) => format!("joint of `{a}` and `{b}`"),
+            (Self::Everywhere, Some(title)) => format!("all joints of `{title}`"),
+            (Self::Everywhere, None) => "a joint".into(),
+        }
+    }
+}
+
 /// Why there is no law to test.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum SelectError {
