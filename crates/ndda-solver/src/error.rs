@@ -81,10 +81,9 @@ pub enum StepError {
     },
     /// A scene that was to settle first does not.
     #[error(
-        "the scene has not come to rest in {steps} steps ({}). Block `{block}` has gone {gone_m:.2e} m \
-         towards ({:.2}, {:.2}, {:.2}), and {} at least half as far: see whether anything holds them. \
-         Settling ends after settle.most_steps, or when a block has gone farther than all blocks extend",
-        speed_left(*speed_ratio), towards[0], towards[1], towards[2], other_blocks(*others)
+        "the scene has not come to rest in {steps} steps ({}). Block `{block}` has moved {} \
+         towards ({:.2}, {:.2}, {:.2}), and {} at least half as far: hold them, or raise settle.most_steps if they are only slow",
+        speed_left(*speed_ratio), metres(*gone_m), towards[0], towards[1], towards[2], other_blocks(*others)
     )]
     NotSettled {
         /// Steps done.
@@ -136,6 +135,11 @@ impl StepError {
 /// Speed that is left of a scene that settles.
 fn speed_left(ratio: f64) -> String {
     if ratio.is_finite() { format!("speed {ratio:.1e} of the largest") } else { "speeds still rise".into() }
+}
+
+/// A length, without a power of ten where that is not needed.
+fn metres(length_m: f64) -> String {
+    if length_m >= 1e-3 { format!("{length_m:.3} m") } else { format!("{length_m:.2e} m") }
 }
 
 /// So many other blocks, in words.

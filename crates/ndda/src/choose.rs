@@ -192,7 +192,7 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
         true => (
             length_m * pressure_pa / (2.0 * *depth_ratio * block_m),
             format!(
-                "blocks of {} at rest under what lies {} above them are at most {depth_ratio:e} of their size in each other",
+                "blocks of {} overlap by at most {depth_ratio:e} of their size at rest under {} of rock",
                 metres(block_m),
                 metres(fall_m)
             ),
@@ -236,7 +236,7 @@ fn step_of(scene: &mut Scene, sizes: &Sizes, blocks: BlockSet, folder: &Path) ->
         let block = &advice.worst().block;
         limits.push((
             OF_ADVISED * advice.step_s,
-            format!("a quarter of what contact is stable at, for block `{block}`"),
+            format!("a quarter of the largest stable step of contact, at block `{block}`"),
         ));
     }
     let least = limits.into_iter().reduce(|a, b| if b.0 < a.0 { b } else { a });

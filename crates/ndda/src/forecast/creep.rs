@@ -13,7 +13,7 @@ pub fn warning(loaded: &LoadedScene) -> Option<Diagnostic> {
     if !is_sudden || !has_springs(scene) || is_damped(scene) {
         return None;
     }
-    let message = "gravity acts suddenly, so contact will vibrate; while it does, blocks on shear springs creep, even where friction could hold them";
+    let message = "gravity acts suddenly, so contact will vibrate; meanwhile blocks that shear springs hold may slip slightly, even where friction could hold them";
     let help = "give contacts a restitution below 1, begin with settle: (), apply gravity over gravity_ramp_s, or leave out shear_penalty_pa_m, so that friction acts on velocities";
     let mut found = loaded.diagnose("contact.friction.shear_penalty_pa_m", message.into()).with_help(help);
     (found.code, found.severity) = (Code::Inexact, Severity::Warning);

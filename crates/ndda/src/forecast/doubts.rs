@@ -26,7 +26,7 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
     let free = || blocks.ids().filter(|&block| simulation.shape(block).is_free());
     if falls && blocks.len() > 1 && free().count() == blocks.len() && scene.supports.is_empty() {
         doubts.push(
-            "nothing is held, so all blocks fall together: give a block `body: Fixed`, or supports".into(),
+            "nothing is held, so all blocks fall together: give a block `body: Fixed`, rock `fixed: […]`, or supports".into(),
         );
     }
     let Some(Contact::Potential { penalty_pa, potential, friction, material_pairs, rock_joints, .. }) =
@@ -73,6 +73,6 @@ fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &
     };
     let (from, to) = (1e-4 * stiffest_pa, 1e-2 * stiffest_pa);
     Some(format!(
-        "contact is very {what} (per metre of penetration {ratio:.0e} of Young's modulus); a penalty_pa of {from:.0e} to {to:.0e} suits most scenes"
+        "contact is very {what} (its pressure per metre of penetration is {ratio:.0e} of Young's modulus); a penalty_pa of {from:.0e} to {to:.0e} suits most scenes"
     ))
 }

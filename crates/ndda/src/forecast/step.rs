@@ -88,14 +88,14 @@ impl fmt::Display for Advice {
                 write!(
                     f,
                     "{verdict}: contact stability number between {from:.2} and {to:.2} (limit {bound}): {:.2} for the contacts at \
-                     the start (block {}), {:.2} for contacts face on face that may form later (block {}); largest safe time step \
-                     {at_start_s:.1e} s for the contacts at the start, {step_s:.1e} s for all.",
+                     the start (block {}), {:.2} for contacts face on face that may form later (block {}); recommended time step \
+                     at most {at_start_s:.1e} s for the contacts at the start, {step_s:.1e} s for all.",
                     first.h, first.block, last.h, last.block
                 )?;
             }
             _ => write!(
                 f,
-                "{verdict}: contact stability number {to:.2} (limit {bound}) at block `{block}`; largest safe time step {step_s:.1e} s."
+                "{verdict}: contact stability number {to:.2} (limit {bound}) at block `{block}`; recommended time step at most {step_s:.1e} s."
             )?,
         }
         match to {

@@ -80,7 +80,13 @@ pub fn moved(motion: &Motion) -> String {
         Course::Moving => format!("moving at {}", speed(*speed_m_s)),
         Course::Accelerating => format!("still accelerating, {}", speed(*speed_m_s)),
     };
-    // A large block may go far by less than what counts.
+    // A large block may go far by less than what counts, and may have only begun to slide.
+    if *moved == 0 && motion.course == Course::Accelerating {
+        let (gone, speed) = (length(*farthest_m), speed(*speed_m_s));
+        return format!(
+            "`{farthest}` is accelerating: {gone} at the end, {speed}; no block moved by more than 1 % of its radius yet\n"
+        );
+    }
     let many = match (moved, can_move) {
         (0, 0..2) => "no block moved by more than 1 % of its radius".into(),
         (0, _) => format!("none of {can_move} blocks moved by more than 1 % of its radius"),

@@ -90,7 +90,7 @@ impl<'a> Search<'a> {
         };
         if strength > 1.0 {
             answer.remarks.push(format!(
-                "the scene comes to rest with {strength} times its strength only; trials begin from there"
+                "as written the scene does not come to rest; it does with {strength} times its strength, and trials begin from there"
             ));
         }
         let mut known = Vec::new();

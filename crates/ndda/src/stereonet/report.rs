@@ -28,7 +28,8 @@ impl Count {
 impl fmt::Display for Stereonet {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let listed = self.listed();
-        let header = ["set", "planes", "mean dip/direction", "K", "95 % cone [°]"].map(String::from);
+        let header =
+            ["set", "planes", "mean dip/direction", "Fisher K", "95 % confidence cone [°]"].map(String::from);
         let rows = listed.iter().map(|&set| row(&self.sets[set])).collect();
         writeln!(f, "{}", columns(header.to_vec(), rows))?;
         if self.sets.len() > listed.len() {
@@ -64,7 +65,7 @@ impl Stereonet {
         for wedge in &wedges {
             let word = match wedge.critical {
                 Some(true) => ": a wedge may slide along it",
-                Some(false) => ": no wedge slides along it",
+                Some(false) => ": no wedge slides along it (flatter than φ, or not out of the face)",
                 None => "",
             };
             let [a, b] = &wedge.sets;

@@ -7,6 +7,10 @@ impl Check<'_> {
     pub(super) fn materials(&mut self) {
         let scene = self.scene;
         self.names("materials", &scene.materials.iter().map(|m| m.name.as_str()).collect::<Vec<_>>());
+        let is_known = |name: &String| scene.materials.iter().any(|material| material.name == *name);
+        // A misspelt name of a block is told as such.
+        let names_are_known = scene.blocks.iter().all(|block| is_known(&block.material))
+            && scene.rock.iter().all(|rock| is_known(&rock.material));
         for (i, material) in scene.materials.iter().enumerate() {
             let path = |field: &str| format!("materials[{i}].{field}");
             self.positive(path("young_pa"), material.young_pa, "Pa");
@@ -61,7 +65,12 @@ impl Check<'_> {
             let of_rock = scene.rock.iter().any(|rock| rock.material == material.name);
             let beyond = scene.quiet.iter().any(|quiet| quiet.beyond.as_ref() == Some(&material.name));
             let falls = scene.rockfall.iter().any(|rockfall| rockfall.boulders.material == material.name);
-            if !of_rock && !beyond && !falls && !scene.blocks.iter().any(|b| b.material == material.name) {
+            if names_are_known
+                && !of_rock
+                && !beyond
+                && !falls
+                && !scene.blocks.iter().any(|b| b.material == material.name)
+            {
                 self.warn(
                     Code::NoEffect,
                     path("name"),

@@ -15,8 +15,8 @@ impl Check<'_> {
         if time.step_s > 0.0 && time.end_s > 0.0 {
             if time.end_s < time.step_s {
                 let message =
-                    format!("{} s is before the end of the first step ({} s)", time.end_s, time.step_s);
-                self.error("time.end_s", message, "make it at least one step");
+                    format!("a step of {} s is longer than the run, end_s: {}", time.step_s, time.end_s);
+                self.error("time.step_s", message, "shorten the step, or end the run later");
             } else if time.end_s / time.step_s > MOST_STEPS {
                 let message = format!("{:.1e} steps", time.end_s / time.step_s);
                 self.error("time.step_s", message, "at most 1e9 steps are taken: make the step larger");
