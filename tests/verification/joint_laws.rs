@@ -22,7 +22,7 @@ fn law(text: &str) -> Friction {
     let scene = format!(
         "(title: \"joint\", time: (step_s: 1, end_s: 1), materials: [(name: \"rock\", young_pa: 1e9, poisson: 0.2, density_kg_m3: 2600)],
           blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
-          contact: Potential(penalty_pa: 1e9, friction: (shear_penalty_pa_m: {SHEAR_PA_M:e}, {text})))"
+          contact: Potential(penalty_pa: 1e9, potential: Smooth(), friction: (shear_penalty_pa_m: {SHEAR_PA_M:e}, {text})))"
     );
     let loaded = ndda_io::read::load_text("joint.ron", &scene, &[], None).unwrap_or_else(|e| panic!("{e}"));
     match loaded.scene {
@@ -31,7 +31,8 @@ fn law(text: &str) -> Friction {
     }
 }
 
-fn sheared(text: &str, stress_pa: f64, hold: Hold, path_m: &[f64]) -> Vec<ShearRow> {
+/// A joint with this law, sheared along a path.
+pub(crate) fn sheared(text: &str, stress_pa: f64, hold: Hold, path_m: &[f64]) -> Vec<ShearRow> {
     let normal = NormalStiffness::Linear { stiffness_pa_m: 10e9 };
     let test = ShearTest { stress_pa, hold, normal, path_m: path_m.to_vec() };
     test.run(joint_law(&law(text)).expect("a strength").as_ref()).expect("a test")

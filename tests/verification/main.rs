@@ -17,6 +17,7 @@ mod contact_patch;
 mod conveyor;
 mod damping;
 mod damping_beyond_the_step;
+mod dilation;
 mod driven_blocks;
 mod elastic_waves;
 mod end_contact;

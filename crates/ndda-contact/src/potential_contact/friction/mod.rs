@@ -11,6 +11,7 @@ pub(crate) mod law;
 pub(crate) mod law_table;
 pub(crate) mod memory;
 pub(crate) mod mohr_coulomb;
+pub(crate) mod openings;
 pub(crate) mod patches;
 pub(crate) mod softening_bond;
 pub(crate) mod softening_coulomb;
