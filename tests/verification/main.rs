@@ -10,6 +10,7 @@ mod bonded_bar;
 mod bonded_plate;
 mod bouncing_block;
 mod bound_of_contact;
+mod brazilian_disc;
 mod cantilever;
 mod cavity;
 mod contact_fields;
