@@ -19,3 +19,4 @@ pub mod testing;
 pub(crate) mod velocity_coulomb;
 
 pub use facet::FacetForce;
+pub use openings::Openings;
