@@ -2,9 +2,9 @@
 
 use ndda_mesh::BlockId;
 
-use crate::assembly::energy::OverlapParts;
 use crate::assembly::join_if::join_if;
 use crate::assembly::nodal_forces::{self, ScatterScene};
+use crate::assembly::overlap_parts::OverlapParts;
 use crate::contact_model::ContactModel;
 use crate::friction::facet::FacetScene;
 use crate::friction::law_table::FrictionLawTable;

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::affine::surface::BlockFaces;
-use crate::assembly::energy::OverlapParts;
 use crate::assembly::join_if::join_if;
+use crate::assembly::overlap_parts::OverlapParts;
 use crate::assembly::tangent::{self, Target};
 use crate::broad_phase::candidates::Candidates;
 use crate::friction::facet::{FacetForce, FacetScene};

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use crate::affine::convex_target::ConvexBlocks;
 use crate::assembly::block_shares::{BlockShares, SHARE_BLOCKS};
 use crate::assembly::facet_energy;
+use crate::assembly::overlap_parts::OverlapParts;
 use crate::broad_phase::candidates::Candidates;
 use crate::friction::openings::Openings;
 use crate::integration::integrals::Integrals;
@@ -27,21 +28,6 @@ use crate::potential::piece_table::PieceTable;
 const GRAIN_PAIRS: usize = 512;
 /// Pairs of blocks below which a second thread costs more than it brings.
 const GRAIN_BLOCK_PAIRS: usize = 4;
-
-/// Input of the integration of U.
-#[derive(Clone, Copy)]
-pub(crate) struct OverlapParts<'a> {
-    /// Pairs and facets.
-    pub candidates: &'a Candidates,
-    /// Integrals of the facets in contact.
-    pub integrals: &'a Integrals,
-    /// A frame for each of [`Candidates::tets`].
-    pub frames: &'a [TetFrame],
-    /// φ.
-    pub field: &'a PotentialField,
-    /// Blocks that are affine convex targets.
-    pub hulls: &'a ConvexBlocks,
-}
 
 /// U for each pair of blocks that may touch.
 #[derive(Default)]

@@ -8,7 +8,7 @@
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{TetId, Vec3};
 
-use crate::assembly::energy::OverlapParts;
+use crate::assembly::overlap_parts::OverlapParts;
 use crate::friction::openings::{Openings, moved_out};
 use crate::integration::overlap_pair::{ActiveFacet, OverlapPair};
 use crate::integration::quadrature::gauss_legendre;

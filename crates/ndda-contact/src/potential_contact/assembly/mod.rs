@@ -7,6 +7,7 @@ pub(crate) mod energy;
 pub(crate) mod facet_energy;
 pub(crate) mod join_if;
 pub(crate) mod nodal_forces;
+pub(crate) mod overlap_parts;
 pub(crate) mod report;
 pub(crate) mod tangent;
 
