@@ -210,11 +210,17 @@ fn a_run_of_damped_contacts_has_the_bits_of_one_that_was_never_killed() {
 }
 
 #[test]
-fn a_run_on_worn_and_closing_joints_has_the_bits_of_one_that_was_never_killed() {
-    let friction = "friction: (friction_deg: 30, shear_penalty_pa_m: 1e8, roughness: (jrc: 10, jcs_pa: 1e6, mobilised: true))";
+fn a_run_on_worn_opened_and_closing_joints_has_the_bits_of_one_that_was_never_killed() {
+    let worn = "friction: (friction_deg: 30, shear_penalty_pa_m: 1e8, roughness: (jrc: 10, jcs_pa: 1e6, mobilised: true))";
+    let opened =
+        "friction: (friction_deg: 10, shear_penalty_pa_m: 1e8, dilation: (psi_deg: 8, to_slip_m: 0.1))";
     for bodies in BODIES {
-        for (contact_at, potential) in [("Predicted", "Closure(max_closure_m: 0.02)"), ("End()", "Smooth()")]
-        {
+        for (contact_at, potential, friction) in [
+            ("Predicted", "Closure(max_closure_m: 0.02)", worn),
+            ("End()", "Smooth()", worn),
+            ("Predicted", "Smooth()", opened),
+            ("End()", "Closure(max_closure_m: 0.02)", opened),
+        ] {
             let (integrator, step) = ("Midpoint()", "Fixed");
             let cell = Cell { integrator, bodies, contact_at, potential, friction, step };
             let (differs, pairs) = first_difference(&cell, 5, 1);

@@ -5,7 +5,7 @@ use ndda::joint::{ClosureTest, Hold, NormalStiffness, ShearRow, ShearTest};
 use ndda::safety::Question;
 use ndda_io::scene::{Contact, Friction, Scene};
 use ndda_mesh::{BlockId, Vec3};
-use ndda_solver::Settle;
+use ndda_solver::{Settle, Simulation};
 
 use crate::evidence::Answer::{AtMost, Within};
 use crate::evidence::row;
@@ -22,7 +22,7 @@ fn law(text: &str) -> Friction {
     let scene = format!(
         "(title: \"joint\", time: (step_s: 1, end_s: 1), materials: [(name: \"rock\", young_pa: 1e9, poisson: 0.2, density_kg_m3: 2600)],
           blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
-          contact: Potential(penalty_pa: 1e9, friction: (shear_penalty_pa_m: {SHEAR_PA_M:e}, {text})))"
+          contact: Potential(penalty_pa: 1e9, potential: Smooth(), friction: (shear_penalty_pa_m: {SHEAR_PA_M:e}, {text})))"
     );
     let loaded = ndda_io::read::load_text("joint.ron", &scene, &[], None).unwrap_or_else(|e| panic!("{e}"));
     match loaded.scene {
@@ -31,7 +31,8 @@ fn law(text: &str) -> Friction {
     }
 }
 
-fn sheared(text: &str, stress_pa: f64, hold: Hold, path_m: &[f64]) -> Vec<ShearRow> {
+/// A joint with this law, sheared along a path.
+pub(crate) fn sheared(text: &str, stress_pa: f64, hold: Hold, path_m: &[f64]) -> Vec<ShearRow> {
     let normal = NormalStiffness::Linear { stiffness_pa_m: 10e9 };
     let test = ShearTest { stress_pa, hold, normal, path_m: path_m.to_vec() };
     test.run(joint_law(&law(text)).expect("a strength").as_ref()).expect("a test")
@@ -215,4 +216,50 @@ fn a_slab_on_a_rough_joint_has_the_factor_of_safety_of_its_strength() {
     let exact = tan(25.0 + 10.0 * (1e6 / stress_pa).log10()) / tan(SLOPE_DEG);
     let safety = safety_factor::found(&slab("", rough), Question::Strength);
     safety_factor::holds("slab on 35°, φ_r = 25°, JRC 10, JCS 1 MPa", &safety, exact);
+}
+
+/// A slab whose joint has softened from 40° to 25° over 5 mm slides on a ramp of 35° with g (sin α − cos α tan φ_r); before it has slipped it stands.
+#[test]
+fn a_slab_on_a_ramp_stands_until_it_is_pushed_and_then_slides_on_its_residual_friction() {
+    let (sin, cos) = 35f64.to_radians().sin_cos();
+    let run = |pushed_m_s: f64| {
+        let mut slab = simulation(&format!(
+            "(title: \"ramp\", time: (step_s: 1e-4, end_s: 1), gravity_m_s2: ({}, 0, {}),
+              materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+              blocks: [
+                  (name: \"ramp\", material: \"rock\", body: Fixed, shape: Box(size_m: (9, 3, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
+                  (name: \"slab\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 0.2), cells: (1, 1, 1)), velocity_m_s: ({pushed_m_s}, 0, 0)),
+              ],
+              contact: Potential(penalty_pa: 1e9, potential: Smooth(), friction: (friction_deg: 40, shear_penalty_pa_m: 1e9,
+                  residual: (friction_deg: 25, over_m: 5e-3))))",
+            9.81 * sin,
+            -9.81 * cos,
+        ));
+        let nodes = slab.blocks().nodes_of(BlockId(1));
+        let speed_m_s = |slab: &Simulation| {
+            slab.state().velocity[nodes.clone()].iter().map(|v| v.x).sum::<f64>() / nodes.len() as f64
+        };
+        slab.settle(&Settle::new(1e-8, 200_000)).unwrap();
+        let along_m = |slab: &Simulation| {
+            displacements(slab)[nodes.clone()].iter().map(|u| u.x).sum::<f64>() / nodes.len() as f64
+        };
+        let start_m = along_m(&slab);
+        advance(&mut slab, 2000);
+        let moved_m = along_m(&slab) - start_m;
+        let before_m_s = speed_m_s(&slab);
+        advance(&mut slab, 4000);
+        (moved_m, (speed_m_s(&slab) - before_m_s) / 0.4)
+    };
+    let (rested_m, _) = run(0.0);
+    row("softening", "slip of the slab at rest on 35° with a peak of 40° [m]", rested_m, AtMost(1e-5));
+    let (slipped_m, rate_m_s2) = run(0.5);
+    assert!(slipped_m > 5e-3, "it has softened after {slipped_m} m");
+    let exact_m_s2 = 9.81 * (sin - cos * tan(25.0));
+    assert!((exact_m_s2 - 1.87959).abs() < 1e-5);
+    row(
+        "softening",
+        "acceleration on 35° with a residual angle of 25° [m/s²]",
+        rate_m_s2,
+        Within(exact_m_s2, 5e-3),
+    );
 }

@@ -8,7 +8,7 @@ use ndda::safety::{self, Kind, Plan, Question, Safety, SafetyError, State, Watch
 use ndda_io::read;
 use ndda_mesh::Vec3;
 
-use crate::evidence::Answer::{AtLeast, AtMost, Within};
+use crate::evidence::Answer::{AtLeast, AtMost, Near, Within};
 use crate::evidence::row;
 
 const ERROR: f64 = 0.01;
@@ -99,6 +99,23 @@ fn a_wedge_slides_along_the_line_of_its_joints() {
         safety.moving_blocks[0].planes.iter().map(|plane| plane.joint.clone().unwrap()).collect();
     joints.sort();
     assert_eq!(joints, ["a", "b"]);
+}
+
+/// The friction angle at which the wedge has a factor of 1.
+#[test]
+fn a_wedge_at_its_critical_friction_angle_has_a_factor_of_1() {
+    let planes = [(40.0, 130.0), (60.0, 220.0)];
+    let (at_40, _) = limit_equilibrium(planes, 40.0);
+    let critical_deg = (40f64.to_radians().tan() / at_40).atan().to_degrees();
+    row(
+        "safety",
+        "critical friction angle of the wedge 40/130, 60/220 [°]",
+        critical_deg,
+        Near(33.357, 1e-3),
+    );
+    let safety = found(&wedge(planes, critical_deg), Question::Strength);
+    holds("wedge 40/130, 60/220 at its critical friction angle", &safety, 1.0);
+    assert_eq!(kind(&safety), Kind::Wedge);
 }
 
 /// Dip and dip direction of a joint whose normal is tilted from that of a mean, in a direction clockwise from the dip.

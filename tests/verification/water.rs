@@ -178,8 +178,14 @@ fn wedge(mean_pa: f64) -> f64 {
         edge * (top.dot(&far) / top.dot(&edge))
     };
     let (at_a, at_b) = (corner(&a), corner(&b));
-    let weight_n = 25e3 * far.dot(&at_a.cross(&at_b)).abs() / 6.0;
+    let volume_m3 = far.dot(&at_a.cross(&at_b)).abs() / 6.0;
+    let weight_n = 25e3 * volume_m3;
     let areas = [far.cross(&at_a).norm() / 2.0, far.cross(&at_b).norm() / 2.0];
+    let (plunge_deg, trend_deg) = ((-down.z).asin().to_degrees(), down.x.atan2(down.y).to_degrees());
+    let noted = [31.1965, 157.732, 6698.16, 885.141, 892.010];
+    for (found, noted) in [plunge_deg, trend_deg, volume_m3, areas[0], areas[1]].into_iter().zip(noted) {
+        assert!((found / noted - 1.0).abs() < 5e-6, "{found} instead of {noted}");
+    }
     let pull = -weight_n * Vec3::z();
     let across = pull - pull.dot(&line) * line;
     let cos = a.dot(&b);

@@ -143,6 +143,8 @@ pub struct ContactReport {
     /// Largest |force on contactor + force on target| / |force| over all pairs. Where a model does not say, the solver takes the sum of all its
     /// forces over the sum of their sizes.
     pub action_reaction_error: Option<f64>,
+    /// Energy that contact has taken up because joints opened by slip since it was evaluated last [J]; friction did that work.
+    pub dilation_work_j: f64,
     /// By how much the strength of a bond was exceeded that broke in this evaluation, over its strength without normal stress.
     pub bond_overload: f64,
 }

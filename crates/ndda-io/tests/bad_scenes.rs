@@ -226,6 +226,14 @@ fn joints_that_cannot_be_are_pointed_at() {
         ),
         (
             "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, dilation: @(psi_deg: 10, to_slip_m: 0.01)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9, roughness: (jrc: 10, jcs_pa: 1e8, dilates: @true)",
+        ),
+        (
+            "(friction_deg: 25, shear_penalty_pa_m: 2e9",
             "(friction_deg: 25, shear_penalty_pa_m: 2e9, roughness: (jrc: 10, jcs_pa: 1e8), dilation: @(psi_deg: 10, to_slip_m: 0.01)",
         ),
         (

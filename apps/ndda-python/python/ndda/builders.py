@@ -941,6 +941,8 @@ class Dilation(Builder):
     """Dilation of a joint: v = tan ψ min(|u_p|, u_zd), u_p being its slip beyond the stretch of its spring;
     it closes again where slip is reversed.
 
+    Faces of blocks are moved out by v before contact is found between them, so that blocks are pushed apart.
+
     Parameters
     ----------
     psi_deg : float
@@ -1557,9 +1559,8 @@ class Friction(Builder):
         Needs `shear_penalty_pa_m`, cohesion and tension, and no `residual`, `roughness` or `dilation`.
         Default: none.
     dilation : Dilation, optional
-        How the joint opens while it slips: `ndda joint` tests it, contact of blocks in a run does not open by
-        it. Needs `shear_penalty_pa_m`, and no `roughness`, which dilates by half of its own angle. Default:
-        none.
+        How the joint opens while it slips. Needs `shear_penalty_pa_m`, the potential `Smooth` or `Closure`,
+        `memory: Body`, and no `roughness`, which dilates by half of its own angle. Default: none.
 
     Examples
     --------
@@ -3109,6 +3110,10 @@ class Roughness(Builder):
         Whether roughness is mobilised and worn off by slip, from no strength at no slip over the peak at
         (L/500) (JRC/L)^0.33 to φ_r at a hundred times that; else the strength is that of the peak at any
         slip. Default: false.
+    dilates : bool, optional
+        Whether the joint opens by half of its roughness angle while it slips; `ndda joint` tests it in any
+        case. Needs `mobilised`, which ends it, the potential `Smooth` or `Closure`, and `memory: Body`.
+        Default: false.
     strength_factor : float, optional
         Factor of the shear strength, which `ndda safety` divides. Default: 1.
 
@@ -3123,8 +3128,9 @@ class Roughness(Builder):
     sample_m: float | None = None
     length_m: float | None = None
     mobilised: bool | None = None
+    dilates: bool | None = None
     strength_factor: float | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"jrc": "num", "jcs_pa": "num", "sample_m": "num", "length_m": "num", "mobilised": "bool", "strength_factor": "num"}
+    _kinds: ClassVar[Mapping[str, str]] = {"jrc": "num", "jcs_pa": "num", "sample_m": "num", "length_m": "num", "mobilised": "bool", "dilates": "bool", "strength_factor": "num"}
 
 
 class Scatter:

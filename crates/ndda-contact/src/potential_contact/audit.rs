@@ -24,7 +24,8 @@ impl ContactAudit for PotentialContact {
             let touch = &touching[t];
             let found = (integrals.overlaps_of(touch), integrals.sums_of(touch));
             let push = taken_pa.get(t).map_or(forces[t].push, |taken_pa| forces[t].push + taken_pa);
-            *work_j = push.dot(&relative_motion(touch, found, (blocks, moved)));
+            // What dilation takes from friction is stored in contact.
+            *work_j = push.dot(&relative_motion(touch, found, (blocks, moved))) - forces[t].dilation_work_j;
         };
         self.work_of_facet.resize(touching.len(), 0.0);
         for_each_facet(&mut self.work_of_facet, work_of);

@@ -2,12 +2,13 @@
 
 use ndda_mesh::BlockId;
 
-use crate::assembly::energy::OverlapParts;
 use crate::assembly::join_if::join_if;
 use crate::assembly::nodal_forces::{self, ScatterScene};
+use crate::assembly::overlap_parts::OverlapParts;
 use crate::contact_model::ContactModel;
 use crate::friction::facet::FacetScene;
 use crate::friction::law_table::FrictionLawTable;
+use crate::friction::openings::Moment;
 use crate::friction::patches::PatchScene;
 use crate::friction::{bond, bond_formation};
 use crate::integration::overlap_pair::ActiveFacet;
@@ -30,6 +31,7 @@ impl ContactModel for PotentialContact {
     ) -> Result<ContactReport, ContactError> {
         let state_len = self.joints.as_ref().map_or(0, FrictionLawTable::state_len);
         history.expect_state(state_len)?;
+        self.place_openings(input, history, Moment::Next);
         self.integrate(input)?;
         if let Some(joints) = self.joints.as_ref().filter(|joints| joints.hold_together() && !history.begun) {
             bond_formation::form(joints, (&self.candidates, &self.hulls), input, &mut history.bonds);
@@ -62,7 +64,8 @@ impl ContactModel for PotentialContact {
             on_host: &mut self.on_host,
             state: &mut self.state_of_facet,
         };
-        let facets = FacetScene { input, joints: self.joints.as_ref(), history };
+        let elastic_pa = self.penalty_pa;
+        let facets = FacetScene { input, joints: self.joints.as_ref(), history, elastic_pa };
         let damping = self.damping.as_deref().filter(|_| !input.bodies.is_empty());
         let left_pa = damping.map_or(&self.penalty_of_facet[..], ContactDamping::left_pa);
         let tilt_n_m = damping.map_or(&[][..], ContactDamping::tilt_n_m);
@@ -91,6 +94,9 @@ impl ContactModel for PotentialContact {
         if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
             bond::add_forces(joints, input, &history.bonds, output);
         }
+        if !self.openings.is_empty() {
+            report.dilation_work_j = self.forces.iter().map(|force| force.dilation_work_j).sum();
+        }
         if self.joints.is_some() {
             self.remember(input, history);
         }
@@ -101,10 +107,13 @@ impl ContactModel for PotentialContact {
         !self.forces.is_empty() || self.joints.as_ref().is_some_and(FrictionLawTable::hold_together)
     }
 
-    fn energy_j(&mut self, input: &ContactInput, _history: &ContactHistory) -> Result<f64, ContactError> {
+    /// Facets that are moved out by dilation have the energy of where they were clipped last.
+    fn energy_j(&mut self, input: &ContactInput, history: &ContactHistory) -> Result<f64, ContactError> {
+        self.place_openings(input, history, Moment::Last);
         let law = self.potential.law();
         match law {
-            OverlapLaw::Linear => self.find_pairs(input)?,
+            OverlapLaw::Linear if self.openings.is_empty() => self.find_pairs(input)?,
+            OverlapLaw::Linear => self.integrate(input)?,
             // The law is of what touches.
             OverlapLaw::Power { .. } => self.integrate(input)?,
         }
@@ -117,6 +126,9 @@ impl ContactModel for PotentialContact {
             hulls: &self.hulls,
         };
         self.overlaps.integrate(input, &parts, law);
+        if !self.openings.is_empty() {
+            self.overlaps.replace_opened(input, &parts, &self.openings);
+        }
         Ok(self.penalty_pa * self.overlaps.energy_m3(law))
     }
 
@@ -128,6 +140,8 @@ impl ContactModel for PotentialContact {
         history: &ContactHistory,
         stiffness: &mut Vec<PairStiffness>,
     ) -> Result<(), ContactError> {
+        // Where forces were added last: that has made these the last ones.
+        self.place_openings(input, history, Moment::Last);
         self.integrate(input)?;
         self.place_penalties(input);
         for t in 0..self.integrals.touching().len() {

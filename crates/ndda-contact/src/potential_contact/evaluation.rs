@@ -1,16 +1,18 @@
 //! Stages of an evaluation: candidate pairs, frames, penalties, forces of facets, and their stiffness.
 
 use ndda_mesh::Mat3;
+use ndda_mesh::geometry::triangle_area_vector;
 use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::affine::surface::BlockFaces;
-use crate::assembly::energy::OverlapParts;
 use crate::assembly::join_if::join_if;
+use crate::assembly::overlap_parts::OverlapParts;
 use crate::assembly::tangent::{self, Target};
 use crate::broad_phase::candidates::Candidates;
 use crate::friction::facet::{FacetForce, FacetScene};
 use crate::friction::law_table::FrictionLawTable;
+use crate::friction::openings::{self, Moment};
 use crate::integration::integrals::Integrals;
 use crate::integration::pair_moments::OnTarget;
 use crate::integration::scene::Scene;
@@ -34,7 +36,8 @@ impl PotentialContact {
         let Some((_, field)) = &self.field else { return Ok(()) };
         let (blocks, position) = (input.blocks, input.position);
         let (candidates, frames, hulls) = (&self.candidates, &self.frames[..], &self.hulls);
-        self.integrals.update(&Scene { blocks, position, candidates, frames, field, hulls });
+        let openings = &self.openings;
+        self.integrals.update(&Scene { blocks, position, candidates, frames, field, hulls, openings });
         Ok(())
     }
 
@@ -54,16 +57,23 @@ impl PotentialContact {
             }
             self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
         }
+        let opening_m = self.openings.most_m();
+        self.candidates.make_room(opening_m);
         self.candidates.update(input, &self.hulls);
         let Self { candidates, hulls, frames, .. } = self;
         let place_hulls = || {
             if candidates.pairs() > 0 {
                 hulls.place(input.blocks, input.position);
-                hulls.separate(input.blocks, input.position, &candidates.neighbours);
+                hulls.separate(input.blocks, input.position, &candidates.neighbours, opening_m);
             }
         };
         let many = candidates.tets.len() > GRAIN_FRAMES;
         join_if(many, place_hulls, || place_frames(frames, candidates, input)).1
+    }
+
+    /// Takes from what facets remember by how much they are moved out.
+    pub(super) fn place_openings(&mut self, input: &ContactInput, history: &ContactHistory, moment: Moment) {
+        self.openings.take(self.joints.as_ref(), input.blocks, history, moment);
     }
 
     /// k_n dw/dU of each touching facet's pair of blocks [Pa].
@@ -103,6 +113,7 @@ impl PotentialContact {
             input,
             integrals: &self.integrals,
             hulls: &self.hulls,
+            openings: &self.openings,
             joints: self.joints.as_ref(),
             penalty_pa: &self.penalty_of_facet,
             curvature_pa_m: &self.curvature_of_facet,
@@ -114,7 +125,7 @@ impl PotentialContact {
     pub(super) fn remember(&mut self, input: &ContactInput, history: &mut ContactHistory) {
         self.new_facets.clear();
         self.new_state.clear();
-        let scene = FacetScene { input, joints: self.joints.as_ref(), history };
+        let scene = FacetScene { input, joints: self.joints.as_ref(), history, elastic_pa: self.penalty_pa };
         let len = history.law_state_len as usize;
         for (t, (touch, force)) in self.integrals.touching().iter().zip(&self.forces).enumerate() {
             if let Some((shear_n, broken)) = force.memory {
@@ -129,9 +140,29 @@ impl PotentialContact {
                 });
             }
         }
+        if !self.openings.is_empty() {
+            self.keep_open_facets(input, history);
+        }
         std::mem::swap(&mut history.facets, &mut self.new_facets);
         std::mem::swap(&mut history.law_state, &mut self.new_state);
         history.begun = true;
+    }
+
+    /// Takes over what facets remember whose joints have opened by slip, and which do not touch now but may again.
+    #[inline(never)]
+    fn keep_open_facets(&mut self, input: &ContactInput, history: &ContactHistory) {
+        let Self { joints: Some(joints), new_facets, new_state, .. } = self else { return };
+        let key = |memory: &FacetMemory| (memory.facet, memory.target, memory.element);
+        let len = history.law_state_len as usize;
+        for (old, memory) in history.facets.iter().enumerate() {
+            let state = history.state_of(old);
+            if let Err(place) = new_facets.binary_search_by_key(&key(memory), key)
+                && openings::is_kept(joints, input, (memory, state))
+            {
+                new_facets.insert(place, FacetMemory { shear_n: [0.0; 2], area_m2: 0.0, ..*memory });
+                new_state.splice(place * len..place * len, state.iter().copied());
+            }
+        }
     }
 
     /// Stiffness of one facet's hits: normal contact, and the shear spring of a facet that sticks.
@@ -145,7 +176,12 @@ impl PotentialContact {
         let force = self.forces.binary_search_by_key(&touch.facet, |force| force.facet);
         let held = force.ok().map(|place| &self.forces[place]);
         let held = held.filter(|force| force.shear_slope > 0.0 && force.sticks);
-        let corners = input.blocks.triangle_corners(touch.triangle, input.position);
+        let mut corners = input.blocks.triangle_corners(touch.triangle, input.position);
+        if !self.openings.is_empty() {
+            let normal = triangle_area_vector(&corners).normalize();
+            let opening_m = self.openings.of(touch.triangle, touch.target);
+            corners = openings::moved_out(&corners, &normal, opening_m);
+        }
         let outline = self.hulls.outline(touch.triangle, touch.target);
         for overlap in self.integrals.overlaps_of(touch) {
             let tet = overlap.tet;

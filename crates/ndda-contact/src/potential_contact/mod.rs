@@ -43,6 +43,7 @@ use crate::assembly::report::Reporter;
 use crate::broad_phase::candidates::Candidates;
 use crate::broad_phase::finder::BroadPhase;
 use crate::friction::facet::FacetForce;
+use crate::friction::openings::Openings;
 use crate::friction::patches::FrictionPatches;
 use crate::integration::integrals::Integrals;
 use crate::integration::pair_moments::OnTarget;
@@ -97,6 +98,8 @@ pub struct PotentialContact {
     /// The friction laws' own numbers of each touching facet.
     state_of_facet: Vec<f64>,
     work_of_facet: Vec<f64>,
+    /// By how much facets are moved out before they are clipped.
+    openings: Openings,
 }
 
 impl PotentialContact {
@@ -124,6 +127,7 @@ impl PotentialContact {
             new_state: Vec::new(),
             state_of_facet: Vec::new(),
             work_of_facet: Vec::new(),
+            openings: Openings::default(),
         }
     }
 

@@ -6,7 +6,7 @@ use ndda_contact::assembly::BlockContactIndex;
 use ndda_contact::assembly::Reporter;
 use ndda_contact::assembly::{ScatterScene, add_nodal_forces};
 use ndda_contact::broad_phase::Candidates;
-use ndda_contact::friction::FacetForce;
+use ndda_contact::friction::{FacetForce, Openings};
 use ndda_contact::integration::Integrals;
 use ndda_contact::integration::Scene;
 use ndda_contact::integration::TetFrame;
@@ -40,7 +40,7 @@ impl Frictionless {
             self.hulls.fit(blocks, &BlockFaces::of_all(blocks), None, &[], true);
         }
         self.hulls.place(blocks, input.position);
-        self.hulls.separate(blocks, input.position, &self.candidates.neighbours);
+        self.hulls.separate(blocks, input.position, &self.candidates.neighbours, 0.0);
         self.frames.clear();
         let tets = self.candidates.tets.iter().zip(&self.candidates.order);
         self.frames.extend(tets.map(|(&tet, order)| {
@@ -49,8 +49,8 @@ impl Frictionless {
             frame
         }));
         let (candidates, frames, field) = (&self.candidates, &self.frames[..], &PotentialField::Element);
-        let hulls = &self.hulls;
-        self.integrals.update(&Scene { blocks, position: input.position, candidates, frames, field, hulls });
+        let (hulls, position, openings) = (&self.hulls, input.position, &Openings::default());
+        self.integrals.update(&Scene { blocks, position, candidates, frames, field, hulls, openings });
         let integrals = &self.integrals;
         let touching = integrals.touching();
         let report =

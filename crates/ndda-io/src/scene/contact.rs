@@ -105,8 +105,8 @@ pub struct Friction {
     /// `dilation`. Default: none.
     #[serde(default)]
     pub fracture: Option<FractureEnergy>,
-    /// How the joint opens while it slips: `ndda joint` tests it, contact of blocks in a run does not open by it. Needs `shear_penalty_pa_m`, and no
-    /// `roughness`, which dilates by half of its own angle. Default: none.
+    /// How the joint opens while it slips. Needs `shear_penalty_pa_m`, the potential `Smooth` or `Closure`, `memory: Body`, and no `roughness`, which dilates by half of its
+    /// own angle. Default: none.
     #[serde(default)]
     pub dilation: Option<Dilation>,
 }
@@ -141,12 +141,17 @@ pub struct Roughness {
     /// times that; else the strength is that of the peak at any slip. Default: false.
     #[serde(default)]
     pub mobilised: bool,
+    /// Whether the joint opens by half of its roughness angle while it slips; `ndda joint` tests it in any case. Needs `mobilised`, which ends it, the potential
+    /// `Smooth` or `Closure`, and `memory: Body`. Default: false.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub dilates: bool,
     /// Factor of the shear strength, which `ndda safety` divides. Default: 1.
     #[serde(default = "one")]
     pub strength_factor: f64,
 }
 
-/// Dilation of a joint: v = tan ψ min(|u_p|, u_zd), u_p being its slip beyond the stretch of its spring; it closes again where slip is reversed.
+/// Dilation of a joint: v = tan ψ min(|u_p|, u_zd), u_p being its slip beyond the stretch of its spring; it closes again where slip is reversed. Faces of blocks are
+/// moved out by v before contact is found between them, so that blocks are pushed apart.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

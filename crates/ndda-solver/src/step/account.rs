@@ -62,6 +62,9 @@ impl Simulation {
             rate2 = rate2.max(report.contact_rate2);
             speed_m_s = speed_m_s.max(report.speed_m_s);
         }
+        if contact.dilation_work_j != 0.0 {
+            friction_j += contact.dilation_work_j;
+        }
         let travel = self.travel_of_step(speed_m_s);
         let h = self.part_s * rate2.sqrt();
         self.audit.ledger.add_impulse(self.part_s, &self.weights, force, torque);

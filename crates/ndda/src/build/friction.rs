@@ -6,8 +6,18 @@ use ndda_contact::{
 };
 use ndda_io::scene;
 
-/// The law of the contacts of a run; `None` where nothing rubs. Contacts do not open by slip.
+/// The law of the contacts of a run; `None` where nothing rubs. Contacts open by slip where the scene says so.
 pub fn friction_law(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> {
+    let law = strength(friction)?;
+    let dilates = friction.roughness.as_ref().is_some_and(|roughness| roughness.dilates);
+    Some(match dilation(friction).filter(|dilation| *dilation != Dilation::Own || dilates) {
+        Some(dilation) => Box::new(Dilating::new(law, dilation)),
+        None => law,
+    })
+}
+
+/// The law without dilation.
+fn strength(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> {
     let scene::Friction { friction_deg, shear_penalty_pa_m, cohesion_pa, tension_pa, residual, .. } =
         *friction;
     if let (Some(rough), Some(shear)) = (&friction.roughness, shear_penalty_pa_m) {
@@ -37,16 +47,21 @@ pub fn friction_law(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> 
     })
 }
 
-/// The friction law with the dilation of the joint, for laboratory tests.
+/// The friction law with the dilation of the joint, for laboratory tests: a rough joint dilates there in any case.
 pub fn joint_law(friction: &scene::Friction) -> Option<Box<dyn FrictionLaw>> {
-    let law = friction_law(friction)?;
-    Some(match friction.dilation {
-        Some(scene::Dilation { psi_deg, to_slip_m }) => {
-            Box::new(Dilating::new(law, Dilation::Angle { psi_deg, to_slip_m }))
-        }
-        None if friction.roughness.is_some() => Box::new(Dilating::new(law, Dilation::Own)),
+    let law = strength(friction)?;
+    Some(match dilation(friction) {
+        Some(dilation) => Box::new(Dilating::new(law, dilation)),
         None => law,
     })
+}
+
+/// How a joint opens by slip, if it does.
+fn dilation(friction: &scene::Friction) -> Option<Dilation> {
+    match friction.dilation {
+        Some(scene::Dilation { psi_deg, to_slip_m }) => Some(Dilation::Angle { psi_deg, to_slip_m }),
+        None => friction.roughness.is_some().then_some(Dilation::Own),
+    }
 }
 
 /// Roughness of a joint at its own length.

@@ -12,7 +12,7 @@ use crate::build::friction::joint_law;
 /// Name and version of the JSON.
 const SCHEMA: &str = "ndda.joint/1";
 
-/// A scene for a law that is written by itself: two blocks, one on the other.
+/// A scene for a law that is written by itself: two blocks, one on the other, whose normal stiffness is left open.
 pub const SCENE_OF_A_LAW: &str = "Scene(
     title: \"a joint\", time: (step_s: 1e-3, end_s: 1),
     materials: [(name: \"rock\", young_pa: 50e9, poisson: 0.25, density_kg_m3: 2700)],
@@ -20,7 +20,7 @@ pub const SCENE_OF_A_LAW: &str = "Scene(
         (name: \"lower\", material: \"rock\", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
         (name: \"upper\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 1)),
     ],
-    contact: Potential(penalty_pa: 1e9, friction: (friction_deg: 30)),
+    contact: Potential(potential: Smooth(), friction: (friction_deg: 30)),
 )";
 
 /// A test and what came of it.

@@ -1,12 +1,13 @@
 //! The scene at rest, from which trials begin.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
 use ndda_io::read::LoadedScene;
 use ndda_io::scene::Scene;
 use ndda_mesh::Vec3;
-use ndda_solver::{Settle, Simulation, StepError};
+use ndda_solver::{Settle, Settled, Simulation, StepError};
 
 use super::free_blocks::free;
 use super::trial::Start;
@@ -39,13 +40,15 @@ pub fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(St
             return Err(SafetyError::NothingFree);
         }
         let settle = Settle { most_steps, ..crate::build::settle(settle) };
-        match rest(&mut simulation, &settle, watch) {
-            Ok(true) => {
+        let mut slide = (strength < STRENGTHS[STRENGTHS.len() - 1]).then(|| Slide::new(most_steps));
+        match rest(&mut simulation, &settle, watch, &mut slide) {
+            Ok(Rest::Slides) => {}
+            Ok(Rest::Reached) => {
                 let start = Start::new(&mut simulation, gravity_m_s2, softest);
                 let start = start.map_err(|source| SafetyError::NotSettled { strength, source })?;
                 return Ok((start, strength));
             }
-            Ok(false) => return Err(SafetyError::Interrupted),
+            Ok(Rest::Interrupted) => return Err(SafetyError::Interrupted),
             Err(source) => failed = Some(SafetyError::NotSettled { strength, source }),
         }
     }
@@ -58,13 +61,82 @@ fn most_steps(scene: &Scene) -> u64 {
     ((fall_s / scene.time.step_s) as u64).max(20_000)
 }
 
-/// Brings a simulation to rest; false if somebody asked to end.
-fn rest(simulation: &mut Simulation, settle: &Settle, watch: &Watch) -> Result<bool, StepError> {
-    simulation.settle_watched(settle, &mut |_| unless_stopped(watch.stop))?;
-    Ok(!watch.stop.load(Ordering::Relaxed))
+/// How bringing a scene to rest ended.
+enum Rest {
+    /// It rests.
+    Reached,
+    /// Blocks slide, and would until the steps are used up.
+    Slides,
+    /// Somebody asked to end.
+    Interrupted,
+}
+
+/// Part of the steps that a scene is given to come to rest, and how many times the steps before, in which one that oscillates comes past a peak of its energy.
+const SLIDES_FOR: u64 = 8;
+
+/// Watches for blocks that slide. What comes to rest oscillates, and its kinetic energy falls again and again; that of blocks that slide grows and grows.
+struct Slide {
+    least_steps: u64,
+    /// Step from which on the energy has been the largest so far.
+    since: u64,
+}
+
+impl Slide {
+    fn new(most_steps: u64) -> Self {
+        Self { least_steps: most_steps / SLIDES_FOR, since: 0 }
+    }
+
+    /// Whether blocks slide after this step: their energy has grown for an eighth of all steps, and for eight times as long as all went before.
+    fn is_seen(&mut self, settled: &Settled) -> bool {
+        if settled.speed_ratio < 1.0 {
+            self.since = settled.steps;
+        }
+        settled.steps - self.since >= self.least_steps.max(SLIDES_FOR * self.since)
+    }
+}
+
+/// Brings a simulation to rest, unless blocks are seen to slide.
+fn rest(
+    simulation: &mut Simulation,
+    settle: &Settle,
+    watch: &Watch,
+    slide: &mut Option<Slide>,
+) -> Result<Rest, StepError> {
+    let mut slides = false;
+    simulation.settle_watched(settle, &mut |settled| {
+        slides = slide.as_mut().is_some_and(|slide| slide.is_seen(settled));
+        if slides { ControlFlow::Break(()) } else { unless_stopped(watch.stop) }
+    })?;
+    Ok(match (slides, watch.stop.load(Ordering::Relaxed)) {
+        (_, true) => Rest::Interrupted,
+        (true, false) => Rest::Slides,
+        (false, false) => Rest::Reached,
+    })
 }
 
 /// Friction as exact as trials need it.
 pub fn choices() -> Choices {
     Choices { friction_tolerance: Some(FRICTION_TOLERANCE), ..Choices::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The step in which blocks are seen to slide, where the energy falls in these steps and grows in all others.
+    fn seen(most_steps: u64, falls: impl Fn(u64) -> bool) -> Option<u64> {
+        let mut slide = Slide::new(most_steps);
+        (1..=most_steps).find(|&steps| {
+            slide.is_seen(&Settled { steps, speed_ratio: if falls(steps) { 0.5 } else { 1.0 } })
+        })
+    }
+
+    #[test]
+    fn blocks_slide_whose_energy_grows_for_an_eighth_of_all_steps_and_eight_times_as_long_as_before() {
+        assert_eq!(seen(24_000, |_| false), Some(3000));
+        assert_eq!(seen(24_000, |step| step <= 100), Some(3100));
+        assert_eq!(seen(24_000, |step| step <= 1000), Some(9000));
+        // A pendulum comes past the peaks of its energy.
+        assert_eq!(seen(24_000, |step| step % 2000 == 0), None);
+    }
 }

@@ -139,3 +139,59 @@ impl Watched {
         near.map(speed).fold(0.0, f64::max)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One block that is looked at this many times, a second apart.
+    fn watched(looks: usize, gone_m: impl Fn(f64) -> f64) -> Watched {
+        let times_s: Vec<f64> = (0..looks).map(|k| k as f64).collect();
+        let gone_m = times_s.iter().map(|&t| vec![gone_m(t)]).collect();
+        Watched { start: Vec::new(), blocks: vec![BlockId(0)], times_s, gone_m, before: 0 }
+    }
+
+    #[test]
+    fn a_block_that_has_gone_far_and_goes_farther_in_each_third_fails() {
+        let falls = watched(13, |t| 0.5 * t * t);
+        assert_eq!(falls.accelerating(&[30.0]), Some((BlockId(0), 72.0)));
+        assert_eq!(falls.accelerating(&[100.0]), None, "it has not gone far");
+        assert!(!falls.slowing(&[30.0]));
+    }
+
+    #[test]
+    fn a_block_that_creeps_or_slows_down_does_not_fail() {
+        let creeps = watched(13, |t| 10.0 * t);
+        assert_eq!(creeps.accelerating(&[30.0]), None);
+        assert!(!creeps.slowing(&[30.0]), "nor does it come to rest");
+        let slows = watched(13, |t| 100.0 * (1.0 - (-0.5 * t).exp()));
+        assert_eq!(slows.accelerating(&[30.0]), None);
+        assert!(slows.slowing(&[30.0]));
+        // It need not slow down where it has not gone far.
+        assert!(creeps.slowing(&[1000.0]));
+    }
+
+    #[test]
+    fn a_block_that_vibrates_about_its_place_rests_and_is_not_fast() {
+        let rings = watched(33, |t| 1.0 + 0.4 * (1.5 * t).sin());
+        assert!(rings.rested(8, 1.0) && !rings.rested(8, 0.1) && !rings.rested(40, 1.0));
+        assert_eq!(rings.accelerating(&[30.0]), None);
+        let exact_m_s = (rings.gone_m[32][0] - rings.gone_m[24][0]).abs() / 8.0;
+        assert!((rings.speed_m_s(&[30.0]) - exact_m_s).abs() < 1e-12);
+        assert_eq!(
+            rings.speed_m_s(&[0.5]),
+            0.0,
+            "blocks that have gone far are judged by how they slow down"
+        );
+    }
+
+    #[test]
+    fn only_what_comes_after_the_push_is_compared() {
+        // It fell before it was pushed, and slows down from there.
+        let gone_m = |t: f64| if t < 12.0 { t * t } else { 144.0 + 60.0 * (1.0 - (-(t - 12.0) / 3.0).exp()) };
+        let mut pushed = watched(25, gone_m);
+        pushed.before = 12;
+        assert!(pushed.slowing(&[30.0]) && pushed.accelerating(&[30.0]).is_none());
+        assert_eq!(pushed.beyond(&pushed.farther_by(1.0)), None);
+    }
+}

@@ -131,12 +131,24 @@ impl ConvexBlocks {
         rows.map(|row| Planes::of(&self.faces[row.clone()])).collect_into_vec(&mut self.planes);
     }
 
-    /// Looks for a face between the two blocks of each pair.
-    pub fn separate(&mut self, blocks: &BlockSet, position: &[Vec3], pairs: &[(BlockId, BlockId)]) {
+    /// Looks for a face between the two blocks of each pair, that far from one of them at least [m].
+    pub fn separate(
+        &mut self,
+        blocks: &BlockSet,
+        position: &[Vec3],
+        pairs: &[(BlockId, BlockId)],
+        distance_m: f64,
+    ) {
         let mut are_apart = std::mem::take(&mut self.are_apart);
         are_apart.resize(pairs.len(), false);
         let arch = Arch::new();
-        let keeps = |block, other| self.keep_apart(arch, block, &position[blocks.nodes_of(other)]);
+        let keeps = |block, other| {
+            let nodes = &position[blocks.nodes_of(other)];
+            match distance_m {
+                0.0 => self.keep_apart(arch, block, nodes),
+                _ => self.faces_of(block).iter().any(|face| face.keeps_out(nodes, distance_m)),
+            }
+        };
         let look = |(apart, &(a, b)): (&mut bool, &(BlockId, BlockId))| *apart = keeps(a, b) || keeps(b, a);
         are_apart.par_iter_mut().zip(pairs).with_min_len(GRAIN_PAIRS).for_each(look);
         self.are_apart = are_apart;

@@ -74,6 +74,12 @@ impl Face {
         self.reach
     }
 
+    /// Whether the points are beyond by more than a distance [m].
+    pub(crate) fn keeps_out(&self, points: &[Vec3], distance_m: f64) -> bool {
+        let least = self.reach + distance_m * self.normal.norm();
+        points.iter().all(|x| self.normal.dot(&(x - self.point)) > least)
+    }
+
     /// A point of the plane [m].
     pub(crate) fn point(&self) -> &Vec3 {
         &self.point

@@ -11,7 +11,10 @@ use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::assembly::block_shares::{BlockShares, SHARE_BLOCKS};
+use crate::assembly::facet_energy;
+use crate::assembly::overlap_parts::OverlapParts;
 use crate::broad_phase::candidates::Candidates;
+use crate::friction::openings::Openings;
 use crate::integration::integrals::Integrals;
 use crate::integration::linear::Linear;
 use crate::integration::polyhedron::{EmbeddedPolyhedron, Polyhedron, faces_of};
@@ -25,21 +28,6 @@ use crate::potential::piece_table::PieceTable;
 const GRAIN_PAIRS: usize = 512;
 /// Pairs of blocks below which a second thread costs more than it brings.
 const GRAIN_BLOCK_PAIRS: usize = 4;
-
-/// Input of the integration of U.
-#[derive(Clone, Copy)]
-pub(crate) struct OverlapParts<'a> {
-    /// Pairs and facets.
-    pub candidates: &'a Candidates,
-    /// Integrals of the facets in contact.
-    pub integrals: &'a Integrals,
-    /// A frame for each of [`Candidates::tets`].
-    pub frames: &'a [TetFrame],
-    /// φ.
-    pub field: &'a PotentialField,
-    /// Blocks that are affine convex targets.
-    pub hulls: &'a ConvexBlocks,
-}
 
 /// U for each pair of blocks that may touch.
 #[derive(Default)]
@@ -99,6 +87,27 @@ impl BlockOverlaps {
             (PotentialField::Function(field), _) => {
                 self.list(candidates.neighbours.iter().copied());
                 self.add_cells(&Cells { input, table: &field.regions, function: Some(field), hulls });
+            }
+        }
+    }
+
+    /// Puts U of pairs of blocks between which facets are moved out in place of that of their overlap, which may be none.
+    #[inline(never)]
+    pub(crate) fn replace_opened(&mut self, input: &ContactInput, parts: &OverlapParts, openings: &Openings) {
+        let mut opened: Vec<(BlockId, BlockId)> = openings.pairs(input.blocks).collect();
+        opened.sort_unstable();
+        opened.dedup();
+        for &(a, b) in &opened {
+            if let Some(place) = self.place(a, b) {
+                self.overlap_m3[place] = 0.0;
+            }
+        }
+        for touch in parts.integrals.touching() {
+            let pair = (touch.owner.min(touch.target), touch.owner.max(touch.target));
+            if opened.binary_search(&pair).is_ok()
+                && let Some(place) = self.place(pair.0, pair.1)
+            {
+                self.overlap_m3[place] += facet_energy::energy_m3(touch, input, parts, openings);
             }
         }
     }

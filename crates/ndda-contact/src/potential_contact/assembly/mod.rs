@@ -4,8 +4,10 @@ pub(crate) mod adjacency;
 mod block_shares;
 pub(crate) mod couples;
 pub(crate) mod energy;
+pub(crate) mod facet_energy;
 pub(crate) mod join_if;
 pub(crate) mod nodal_forces;
+pub(crate) mod overlap_parts;
 pub(crate) mod report;
 pub(crate) mod tangent;
 

@@ -184,6 +184,11 @@ impl Candidates {
         self.neighbour_list.forget();
     }
 
+    /// Makes room for facets that are moved out so far before they are clipped [m].
+    pub(crate) fn make_room(&mut self, opening_m: f64) {
+        self.neighbour_list.make_room(opening_m);
+    }
+
     /// Leaves blocks out from the next update on, those that are `true`.
     pub(crate) fn leave_out(&mut self, absent: &[bool]) {
         self.absent.clear();

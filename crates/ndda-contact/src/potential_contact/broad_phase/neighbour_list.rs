@@ -36,6 +36,8 @@ pub(crate) struct NeighbourList {
     has_pairs: Vec<bool>,
     moved: Vec<bool>,
     renewed: Vec<BlockId>,
+    /// By how much facets may be moved out [m].
+    opening_m: f64,
     /// Of the set that all this is about; none makes the next record take all blocks.
     shape: Option<[usize; 4]>,
 }
@@ -44,6 +46,14 @@ impl NeighbourList {
     /// Makes the next [`renew`](Self::renew) take all blocks.
     pub(crate) fn forget(&mut self) {
         self.shape = None;
+    }
+
+    /// Makes the next [`renew`](Self::renew) take all blocks where facets are moved out by more than the margins have room for, with room for twice as much.
+    pub(crate) fn make_room(&mut self, opening_m: f64) {
+        if opening_m > self.opening_m {
+            self.opening_m = 2.0 * opening_m;
+            self.forget();
+        }
     }
 
     /// Records the positions of all blocks that have moved out of reach, and says whether it is the first time.
@@ -150,6 +160,9 @@ impl NeighbourList {
         self.reach_m[b] = travel.max(0.5 * SKIN * self.size_m[b]);
         let furthest = now.iter().map(|x| x.amax()).fold(0.0, f64::max);
         self.margin_m[b] = self.reach_m[b] + 8.0 * f64::EPSILON * furthest;
+        if self.opening_m > 0.0 {
+            self.margin_m[b] += self.opening_m;
+        }
     }
 
     /// Memory on the heap [B].

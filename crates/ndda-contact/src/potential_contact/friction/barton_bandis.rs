@@ -201,10 +201,14 @@ impl FrictionLaw for BartonBandis {
         self.shear_penalty_pa_m
     }
 
-    /// ½ JRC log₁₀(JCS/σ), of the roughness that is mobilised; nothing before φ_r is.
+    /// ½ JRC log₁₀(JCS/σ), of the roughness that is mobilised; nothing before φ_r is, and no more than the friction angle where strength is divided by a factor.
     fn dilation_deg(&self, slip: &FacetSlip, memory: &ShearMemory) -> f64 {
+        if slip.normal_n <= 0.0 {
+            return 0.0;
+        }
         let part = self.mobilised_part(memory.state.first().copied().unwrap_or(0.0)).max(0.0);
-        if slip.normal_n > 0.0 { part * self.roughness.dilation_deg(Self::stress_pa(slip)) } else { 0.0 }
+        let rubs_deg = (self.capacity_n(slip, memory) / slip.normal_n).atan().to_degrees();
+        (part * self.roughness.dilation_deg(Self::stress_pa(slip))).min(rubs_deg)
     }
 }
 

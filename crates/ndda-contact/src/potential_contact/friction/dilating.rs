@@ -22,14 +22,16 @@ pub enum Dilation {
 /// under cycles of shear. With a constant normal stress σ the dissipation is σ (tan φ − tan ψ) per slip while the joint opens, and
 /// σ (tan φ + tan ψ) while it closes. Friction, φ, is the total angle, dilation included.
 ///
-/// The opening is kept by the law, beside what the law within keeps: [`FrictionLaw::dilation_m`].
+/// The opening is kept by the law, beside what the law within keeps: [`FrictionLaw::dilation_m`]. Contact moves a facet out by it before it is clipped in the
+/// next step, so that blocks are pushed apart, and the work of that comes from friction ([`FrictionLaw::openings_m`]).
 pub struct Dilating {
     law: Box<dyn FrictionLaw>,
     dilation: Dilation,
 }
 
-/// Numbers that are kept beside those of the law within: plastic slip [m] along both axes, opening [m].
-const KEPT: usize = 3;
+/// Numbers that are kept beside those of the law within: plastic slip [m] along both axes, opening at which the facet was clipped last and that at which it will be
+/// clipped next [m].
+const KEPT: usize = 4;
 /// Most numbers that the law within may keep.
 const MOST_WITHIN: usize = 8;
 
@@ -86,7 +88,8 @@ impl FrictionLaw for Dilating {
         let from = [own[0], own[1]];
         let to = [0, 1].map(|i| from[i] + slip.slip_m[i] - elastic(i));
         let deg = self.law.dilation_deg(slip, &inner);
-        own[2] = self.opening_m(own[2], [from, to], deg);
+        own[2] = own[3];
+        own[3] = self.opening_m(own[2], [from, to], deg);
         own[..2].copy_from_slice(&to);
         (memory.shear_n, memory.broken) = (inner.shear_n, inner.broken);
     }
@@ -120,7 +123,16 @@ impl FrictionLaw for Dilating {
     }
 
     fn dilation_m(&self, memory: &ShearMemory) -> f64 {
-        memory.state[self.law.state_len() + KEPT - 1]
+        self.openings_m(memory.state)[1]
+    }
+
+    fn dilates(&self) -> bool {
+        true
+    }
+
+    fn openings_m(&self, state: &[f64]) -> [f64; 2] {
+        let first = self.law.state_len() + KEPT - 2;
+        [state[first], state[first + 1]]
     }
 }
 
@@ -154,7 +166,7 @@ mod tests {
         let elastic_m = 1e6 * 30f64.to_radians().tan() / SPRING_PA_M;
         for (to_slip_m, expected_mm) in [(1.0, 0.881_635), (3e-3, 0.528_981)] {
             let law = dilating(to_slip_m);
-            let mut state = [0.0; 3];
+            let mut state = [0.0; KEPT];
             let mut memory = ShearMemory { state: &mut state, ..ShearMemory::default() };
             law.advance(&pressed([5e-3 + elastic_m, 0.0]), &mut memory);
             let found_mm = 1e3 * law.dilation_m(&memory);
@@ -167,7 +179,7 @@ mod tests {
     #[test]
     fn cycles_do_not_ratchet_and_a_joint_that_comes_back_closes() {
         let law = dilating(1.0);
-        let mut state = [0.0; 3];
+        let mut state = [0.0; KEPT];
         let mut memory = ShearMemory { state: &mut state, ..ShearMemory::default() };
         let mut most_m = 0.0f64;
         for k in 0..4000u32 {

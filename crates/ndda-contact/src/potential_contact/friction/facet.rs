@@ -29,6 +29,8 @@ pub struct FacetForce {
     pub spring: Option<SpringSlip>,
     /// Shear force in the facet's basis [N], and whether cohesion is gone: what is kept where there is friction and contact.
     pub memory: Option<([f64; 2], bool)>,
+    /// Energy that contact has taken up because the facet was moved out since it was clipped last [J].
+    pub dilation_work_j: f64,
     /// Whether there is a force at all.
     pub touches: bool,
     /// Centre of pressure [m].
@@ -46,6 +48,8 @@ pub(crate) struct FacetScene<'a> {
     pub joints: Option<&'a FrictionLawTable>,
     /// Memory of the last step.
     pub history: &'a ContactHistory,
+    /// Normal penalty of contact without damping [Pa].
+    pub elastic_pa: f64,
 }
 
 impl FacetScene<'_> {
@@ -111,6 +115,11 @@ impl FacetScene<'_> {
             slip.normal_n *= part;
             slip.area_m2 *= part;
             slip.mean_area_m2 *= part;
+        }
+        if law.dilates() {
+            let [last_m, now_m] = law.openings_m(memory.state);
+            // Force times way, as the push of the step does its work on blocks.
+            force.dilation_work_j = self.elastic_pa * sums.pressure * (now_m - last_m);
         }
         law.advance(&slip, &mut memory);
         let [x, y] = memory.shear_n;

@@ -112,6 +112,17 @@ pub trait FrictionLaw: Send + Sync {
         0.0
     }
 
+    /// Whether a joint may open by slip at all.
+    fn dilates(&self) -> bool {
+        false
+    }
+
+    /// By how much a joint had opened by slip when it was clipped last, and by how much it is open from now on [m], from the law's own numbers; the facet is moved
+    /// out by the latter before it is clipped.
+    fn openings_m(&self, _state: &[f64]) -> [f64; 2] {
+        [0.0; 2]
+    }
+
     /// Whether the law acts on whole faces through [`FacetSlip::stopping_n`], not on each facet by its slip.
     fn acts_on_faces(&self) -> bool {
         false

@@ -161,6 +161,11 @@ impl FrictionLawTable {
         self.laws.iter().map(|law| law.state_len()).max().unwrap_or(0)
     }
 
+    /// Whether a law opens joints by slip.
+    pub fn dilate(&self) -> bool {
+        self.laws.iter().any(|law| law.dilates())
+    }
+
     /// Whether a law makes bonds.
     pub fn hold_together(&self) -> bool {
         self.laws.iter().any(|law| law.holds_together())

@@ -11,6 +11,7 @@ pub(crate) mod law;
 pub(crate) mod law_table;
 pub(crate) mod memory;
 pub(crate) mod mohr_coulomb;
+pub(crate) mod openings;
 pub(crate) mod patches;
 pub(crate) mod softening_bond;
 pub(crate) mod softening_coulomb;
@@ -18,3 +19,4 @@ pub mod testing;
 pub(crate) mod velocity_coulomb;
 
 pub use facet::FacetForce;
+pub use openings::Openings;

@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use crate::affine::half_spaces::HalfSpaces;
 use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::broad_phase::finder::FEW_NODES;
+use crate::friction::openings::moved_out;
 use crate::integration::affine_target::{EvaluateHalfSpaces, PushRegions};
 use crate::integration::clip::Outline;
 use crate::integration::function_moments::{Placed, add_function};
@@ -72,7 +73,7 @@ struct PendingPair {
     tet: TetId,
     /// Place of the tetrahedron in [`Candidates::tets`](crate::broad_phase::Candidates::tets).
     slot: u32,
-    /// λ_b of the target at the corners of the contactor's triangle, as `[b][a]`.
+    /// λ_b of the target at the corners of the contactor's triangle, as `[b][a]`: where its force acts.
     lambda: [[f64; 3]; 4],
     /// Range of ψ where the contactor is a face.
     range: Option<PsiRange>,
@@ -119,7 +120,7 @@ impl Chunk {
         scratch: &mut Scratch,
         (owner, numbers): (BlockId, Range<u32>),
     ) {
-        let (mut last, mut corners) = (None, Triangle::default());
+        let (mut last, mut corners, opens) = (None, Triangle::default(), !scene.openings.is_empty());
         for facet in scene.candidates.facets_within(owner, numbers) {
             if scene.hulls.are_apart(facet.neighbours) {
                 continue;
@@ -129,7 +130,11 @@ impl Chunk {
                 (last, corners) = (Some(facet.triangle), Triangle::new(scene, facet.triangle));
             }
             let first = scratch.seen.len() as u32;
-            scratch.add_facet(arch, scene, &facet, &corners);
+            if opens {
+                scratch.add_opened_facet(arch, scene, &facet, &corners);
+            } else {
+                scratch.add_facet(arch, scene, &facet, &corners);
+            }
             let overlaps = [first, scratch.seen.len() as u32];
             if overlaps[0] < overlaps[1] {
                 let (chunk, place) = (self.number, self.touching.len() as u32);
@@ -205,6 +210,21 @@ impl Scratch {
             let moments = PairMoments::default();
             self.seen.push(PendingPair { tet, slot, lambda, range: None, moments });
             self.add_regions(arch, scene, at, &Placed { tet, frame, lambda: &lambda, normal, area: *area });
+        }
+    }
+
+    /// A facet of a scene in which joints open by slip: it is moved out before it is clipped, and its force acts where it is.
+    #[inline(never)]
+    fn add_opened_facet(&mut self, arch: Arch, scene: &Scene, facet: &Facet, triangle: &Triangle) {
+        let opening_m = scene.openings.of(facet.triangle, facet.target);
+        if opening_m == 0.0 {
+            return self.add_facet(arch, scene, facet, triangle);
+        }
+        let first = self.seen.len();
+        let corners = moved_out(&triangle.corners, &triangle.normal, opening_m);
+        self.add_facet(arch, scene, facet, &Triangle { corners, ..*triangle });
+        for pair in &mut self.seen[first..] {
+            pair.lambda = scene.frames[pair.slot as usize].lambda(&triangle.corners);
         }
     }
 

@@ -59,7 +59,7 @@ fn tetrahedron(n: usize) -> Vec<([f64; 4], f64)> {
 }
 
 /// Points and weights of Gauss and Legendre on [0, 1]: the roots of P_n by Newton's method from Tricomi's estimate.
-fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
+pub(crate) fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
     let count = n as f64;
     let root = |k: usize| {
         let mut x = (std::f64::consts::PI * (k as f64 + 0.75) / (count + 0.5)).cos();

@@ -4,6 +4,7 @@ use ndda_mesh::{BlockSet, TetId, Vec3};
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::broad_phase::candidates::{Candidates, Facet};
+use crate::friction::openings::Openings;
 use crate::integration::tet_frame::TetFrame;
 use crate::potential::contact_potential::PotentialField;
 
@@ -22,6 +23,8 @@ pub struct Scene<'a> {
     pub field: &'a PotentialField,
     /// Convex blocks, whose faces exclude facets.
     pub hulls: &'a ConvexBlocks,
+    /// By how much facets are moved out before they are clipped.
+    pub openings: &'a Openings,
 }
 
 impl Scene<'_> {

@@ -132,7 +132,9 @@ impl ContactDamping {
     fn list(&mut self, scene: &DampingScene) {
         self.order.clear();
         for (t, touch) in (0..).zip(scene.integrals.touching()) {
-            let presses = self.push_pa[t as usize] != Vec3::zeros();
+            // Walls that ride on each other part without leaving each other.
+            let rides = scene.openings.have(touch.triangle, touch.target);
+            let presses = !rides && self.push_pa[t as usize] != Vec3::zeros();
             if presses && self.table.factor(scene.input.blocks, touch.triangle, touch.target) > 0.0 {
                 let pair = [touch.owner.min(touch.target), touch.owner.max(touch.target)];
                 self.order.push((pair, t));

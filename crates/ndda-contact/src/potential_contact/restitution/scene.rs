@@ -7,6 +7,7 @@ use crate::affine::convex_target::ConvexBlocks;
 use crate::friction::facet::relative_velocity;
 use crate::friction::law::facet_basis;
 use crate::friction::law_table::FrictionLawTable;
+use crate::friction::openings::Openings;
 use crate::friction::patches::moments::second_moment_m2;
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::ActiveFacet;
@@ -22,6 +23,8 @@ pub(crate) struct DampingScene<'a> {
     pub integrals: &'a Integrals,
     /// Blocks that are affine convex targets.
     pub hulls: &'a ConvexBlocks,
+    /// By how much facets are moved out.
+    pub openings: &'a Openings,
     /// Friction laws, if there are any.
     pub joints: Option<&'a FrictionLawTable>,
     /// k_n dw/dU of each touching facet [Pa].

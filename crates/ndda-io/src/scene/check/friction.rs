@@ -1,8 +1,7 @@
 //! Checks of friction.
 
 use super::Check;
-use crate::scene::code::Code;
-use crate::scene::{Dilation, FractureEnergy, Friction, Residual, Roughness};
+use crate::scene::{Contact, Dilation, FractureEnergy, Friction, Memory, Potential, Residual, Roughness};
 
 /// Largest roughness coefficient.
 const MOST_JRC: f64 = 20.0;
@@ -84,6 +83,17 @@ impl Check<'_> {
         if let Some(length_m) = roughness.length_m {
             self.positive(field("length_m"), length_m, "m");
         }
+        if roughness.dilates {
+            if !roughness.mobilised {
+                let help = "give mobilised: true, with which roughness wears off";
+                self.misfit(
+                    field("dilates"),
+                    "a joint whose roughness is not worn off would open for ever",
+                    help,
+                );
+            }
+            self.moves_faces_out(&field("dilates"));
+        }
         let factor = roughness.strength_factor;
         if !(factor > 0.0 && factor.is_finite()) {
             let message = format!("{factor}: must be positive");
@@ -157,7 +167,23 @@ impl Check<'_> {
             let help = "leave out dilation, or roughness";
             self.misfit(path.to_string(), "a rough joint dilates by half of its own angle", help);
         }
-        let message = "blocks in a run are not moved apart by dilation";
-        self.warn(Code::NoEffect, path, message, "`ndda joint` tests the law with its dilation");
+        self.moves_faces_out(path);
+    }
+
+    /// Joints that open by slip ask for a pressure that depends on the depth below faces, and for memory that crosses the borders of elements.
+    fn moves_faces_out(&mut self, path: &str) {
+        let Some(Contact::Potential { potential, memory, .. }) = &self.scene.contact else { return };
+        if !matches!(potential, Potential::Smooth { .. } | Potential::Closure { .. }) {
+            let help = "give contact.potential: Smooth(), or Closure(…)";
+            self.misfit(
+                path.to_string(),
+                "a joint opens by slip with the potentials Smooth and Closure",
+                help,
+            );
+        }
+        if *memory == Memory::Element {
+            let help = "give contact.memory: Body";
+            self.misfit(path.to_string(), "a joint that has opened would close at the next element", help);
+        }
     }
 }
