@@ -118,6 +118,21 @@ fn a_wedge_at_its_critical_friction_angle_has_a_factor_of_1() {
     assert_eq!(kind(&safety), Kind::Wedge);
 }
 
+/// What studies of many samples ask: a single factor, without a bracket.
+#[test]
+fn a_wedge_fails_just_below_its_critical_friction_and_stands_just_above() {
+    let planes = [(40.0, 130.0), (60.0, 220.0)];
+    let (at_40, _) = limit_equilibrium(planes, 40.0);
+    for (part, expected) in [(0.985, State::Fails), (1.015, State::Stands), (1.2, State::Stands)] {
+        let friction_deg = (part * 40f64.to_radians().tan() / at_40).atan().to_degrees();
+        let loaded = read::load_text("case.ron", &wedge(planes, friction_deg), &[], None).unwrap();
+        let (plan, stop) = (Plan { error: ERROR, ..Plan::default() }, Arc::default());
+        let watch = Watch { out: None, stop: &stop, tell: &|_| {} };
+        let state = safety::at(&loaded, ("case", Path::new(".")), 1.0, &plan, &watch).unwrap();
+        assert_eq!(state, expected, "{part} of the critical tan φ");
+    }
+}
+
 /// Dip and dip direction of a joint whose normal is tilted from that of a mean, in a direction clockwise from the dip.
 fn tilted((dip_deg, direction_deg): (f64, f64), tilt_deg: f64, turn_deg: f64) -> (f64, f64) {
     let mean = normal(dip_deg, direction_deg);

@@ -21,6 +21,8 @@ use crate::Model;
 
 /// Factor between the trials that look for a bracket.
 const STRIDE: f64 = 1.5;
+/// How far beyond a single factor blocks are looked at unpushed: what a push adds is far less.
+const BEYOND: f64 = 1.1;
 /// Trials inside a bracket that run side by side.
 const INSIDE: usize = 3;
 
@@ -138,9 +140,18 @@ impl<'a> Search<'a> {
         Ok(answer)
     }
 
-    /// Whether blocks stand at one factor on the strength.
+    /// Whether blocks stand at one factor on the strength. What stands at a larger one unpushed stands here, too; what fails there is pushed here
+    /// in the way in which it failed.
     pub fn at(&self, factor: f64) -> Result<State, SafetyError> {
-        Ok(self.try_factor(factor, &self.start.snapshot, &[], 0.0)?.state)
+        let start = &self.start.snapshot;
+        let beyond = match self.may_push() {
+            true => self.try_factor(BEYOND * factor, start, &[], 0.0)?,
+            false => return Ok(self.try_factor(factor, start, &[], 0.0)?.state),
+        };
+        match beyond.state {
+            State::Stands => Ok(State::Stands),
+            _ => Ok(self.try_factor(factor, start, &beyond.failing, 0.0)?.state),
+        }
     }
 
     /// Trials side by side, outwards until there is a bracket and inwards until it is narrow, all from the same start.
