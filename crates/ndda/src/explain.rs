@@ -59,6 +59,7 @@ pub fn explain(model: &mut Model) -> Explanation {
     let scene = &loaded.scene;
     let Plan { kinds, factors, mut parts } = simulation.plan();
     parts.extend(phases(scene));
+    parts.extend(works(scene, simulation.bolt_count()));
     parts.extend(outputs(scene, monitors.len()));
     Explanation {
         schema: SCHEMA,
@@ -103,6 +104,31 @@ fn phases(scene: &Scene) -> [Part; 1] {
         settles.unwrap_or_default(),
         "time begins as the scene is written",
     )]
+}
+
+/// What is done to the rock.
+fn works(scene: &Scene, bolts: usize) -> [Part; 3] {
+    let stages: Vec<&str> = scene.stages.iter().map(|stage| stage.name.as_str()).collect();
+    [
+        Part::of(
+            "water",
+            !scene.water.is_empty(),
+            format!("pressure by {}", counted(scene.water.len(), "entry", "entries")),
+            "the scene has no `water`",
+        ),
+        Part::of(
+            "bolts",
+            bolts > 0,
+            format!("{}, solved in every step", counted(bolts, "bolt", "bolts")),
+            "the scene has no `bolts`",
+        ),
+        Part::of(
+            "stages of construction",
+            !stages.is_empty(),
+            format!("{} after time.end_s: {}", counted(stages.len(), "stage", "stages"), stages.join(", ")),
+            "the scene has no `stages`",
+        ),
+    ]
 }
 
 fn outputs(scene: &Scene, monitors: usize) -> [Part; 7] {

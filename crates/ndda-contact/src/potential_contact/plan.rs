@@ -47,9 +47,8 @@ fn whole_blocks(model: &PotentialContact) -> Part {
         None => format!("the potential {} is defined per tetrahedron", model.potential.name()),
         Some(_) => "no convex block moves by an affine map, or friction history belongs to elements".into(),
     };
-    let what = format!(
-        "{count} convex blocks that move by affine maps are one target each, without tetrahedra, and faces contactors in them"
-    );
+    let what =
+        format!("{count} convex blocks are compared as a whole, by their faces, not by their tetrahedra");
     Part::of("affine convex targets", count > 0, what, why_not)
 }
 
