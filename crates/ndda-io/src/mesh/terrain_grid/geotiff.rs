@@ -110,13 +110,11 @@ mod tests {
     use super::*;
     use std::path::Path;
 
+    /// Tag, type, count, and value or place of each entry.
+    type Entries = Vec<(u16, u16, u32, u32)>;
+
     /// A file of 3 × 2 numbers of a kind; `change` takes entries as (tag, type, count, value or place).
-    fn file(
-        format: (u16, u16),
-        data: &[u8],
-        compression: u16,
-        change: impl Fn(&mut Vec<(u16, u16, u32, u32)>),
-    ) -> Vec<u8> {
+    fn file(format: (u16, u16), data: &[u8], compression: u16, change: impl Fn(&mut Entries)) -> Vec<u8> {
         let mut bytes = b"II\x2a\x00\x08\x00\x00\x00".to_vec();
         let tail = 8 + 2 + 12 * 13 + 4;
         let scale = [2.0f64, 5.0, 0.0];
@@ -199,8 +197,7 @@ mod tests {
     #[test]
     fn what_is_not_read_is_refused_with_a_cure() {
         let said = |bytes: &[u8]| read(bytes).unwrap_err().of(Path::new("a.tif")).to_string();
-        let with =
-            |change: &dyn Fn(&mut Vec<(u16, u16, u32, u32)>)| said(&file((3, 32), &floats(), 1, change));
+        let with = |change: &dyn Fn(&mut Entries)| said(&file((3, 32), &floats(), 1, change));
         assert!(said(b"II\x2b\x00").contains("gdal_translate"));
         assert!(said(b"PK").contains("TIFF"));
         assert!(with(&|e| e[3].3 = 7).contains("gdal_translate"));

@@ -21,6 +21,9 @@ const MOST_LINES: usize = 8;
 /// Most bars of a histogram.
 const MOST_BARS: f64 = 24.0;
 
+/// Name of a quantity, its unit, and its value.
+type Quantity = (&'static str, f64, fn(&Moment) -> f64);
+
 /// Draws a row of histograms for each line that was reached; nothing where none was.
 pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> Option<String> {
     let reached: Vec<usize> =
@@ -49,7 +52,7 @@ pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> Option<S
             100.0 * line.probability
         );
         svg.words([LEFT, top - 34.0], 14.0, Anchor::Start, INK, WIDTH - 2.0 * LEFT, &words);
-        let columns: [(&str, f64, fn(&Moment) -> f64); 3] = [
+        let columns: [Quantity; 3] = [
             ("height of the mass centre [m]", 1.0, |m| m.height_m),
             ("speed [m/s]", 1.0, Moment::speed_m_s),
             ("kinetic energy [kJ]", 1e3, Moment::energy_j),

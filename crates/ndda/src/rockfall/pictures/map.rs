@@ -23,6 +23,9 @@ const NEAR_PX: f64 = 1.2;
 /// Least probability with a colour of its own.
 const LEAST: f64 = 1e-3;
 
+/// Meaning of a mark, and how it is drawn at a place.
+type Mark<'a> = (&'a str, &'a dyn Fn(&mut Svg, [f64; 2]));
+
 /// A map with the ground, and room for a scale.
 struct Map<'a> {
     svg: Svg,
@@ -140,7 +143,7 @@ impl<'a> Map<'a> {
     }
 
     /// Names of zones and marks, from a height on.
-    fn key(&mut self, from_y: f64, marks: &[(&str, &dyn Fn(&mut Svg, [f64; 2]))]) {
+    fn key(&mut self, from_y: f64, marks: &[Mark]) {
         let x = self.axes.at[0] + self.axes.size[0] + 32.0;
         let mut y = from_y;
         for (words, mark) in marks {

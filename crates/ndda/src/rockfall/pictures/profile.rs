@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::axes::{Axes, from_zero};
 use super::{GREY, INK, LARGEST, MEDIAN, PERCENTILE, subtitle};
-use crate::picture::svg::{Anchor, Svg, hex};
+use crate::picture::svg::{Anchor, Rgb, Svg, hex};
 use crate::rockfall::Model;
 use crate::rockfall::fall::Fall;
 use crate::rockfall::passage::{chainage_m, crossing, length_m, point_at};
@@ -27,6 +27,11 @@ const MOST_PATHS: usize = 300;
 /// Classes of speed, and points of the ground.
 const CLASSES: usize = 24;
 const POINTS: usize = 600;
+
+/// Name of a quantity, its unit, and how it is spread.
+type Panel = (&'static str, f64, fn(&AtLine) -> Spread);
+/// A percentile with the colour and width of its line.
+type Curve = (fn(&Spread) -> f64, Rgb, f64);
 
 /// Draws the profile.
 pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> String {
@@ -60,7 +65,7 @@ pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> String {
     };
     section_of(&mut svg, &section, (model, outcome, falls), &ground);
     section.name(&mut svg, &name);
-    let panels: [(&str, f64, fn(&AtLine) -> Spread); 3] = [
+    let panels: [Panel; 3] = [
         ("height of the mass centre above the ground [m]", 1.0, |f| f.height_m),
         ("speed [m/s]", 1.0, |f| f.speed_m_s),
         ("kinetic energy [kJ]", 1e3, |f| f.energy_j),
@@ -70,7 +75,7 @@ pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> String {
         let values = stations.iter().filter_map(|s| s.first.as_ref().map(|f| of(f).largest / unit));
         let axes = Axes { at: [LEFT, top], size: [width, ENVELOPE], x: [0.0, length], y: from_zero(values) };
         axes.grid(&mut svg, k == 2);
-        envelope(&mut svg, &axes, &stations, |f| of(f), unit);
+        envelope(&mut svg, &axes, &stations, of, unit);
         lines(&mut svg, &axes, model, outcome, false);
         axes.frame(&mut svg);
         axes.name(&mut svg, name);
@@ -159,7 +164,7 @@ fn lines(svg: &mut Svg, axes: &Axes, model: &Model, outcome: &Outcome, with_name
 
 /// Largest values, 95th percentiles and medians at the stations that boulders passed.
 fn envelope(svg: &mut Svg, axes: &Axes, stations: &[Station], of: impl Fn(&AtLine) -> Spread, unit: f64) {
-    let lines: [(fn(&Spread) -> f64, _, f64); 3] =
+    let lines: [Curve; 3] =
         [(|s| s.largest, LARGEST, 1.4), (|s| s.percentile_95, PERCENTILE, 2.2), (|s| s.median, MEDIAN, 2.2)];
     for (value, colour, width) in lines {
         for run in stations.chunk_by(|a, b| a.first.is_some() == b.first.is_some()) {
