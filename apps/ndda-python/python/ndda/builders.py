@@ -3750,13 +3750,14 @@ class SpacingScatter:
 
 @dataclass(kw_only=True)
 class Stage(Builder):
-    """A stage of construction: blocks are taken out and added, supports, loads and laws change, then time
-    goes on or the scene comes to rest.
+    """A stage of construction: blocks are taken out and added, bolts installed and released, supports, loads
+    and laws change, then time goes on or the scene comes to rest.
 
     Stages follow each other after `time.end_s`. What a stage changes stays changed in those after it; lists
     replace the whole list. ```text stages: [ (name: "heading", remove: ["heading_*"], over_s: 0.05, then:
-    Settle()), (name: "lining", add: ["lining_*"], then: Settle()), (name: "bench", remove: ["bench_*"],
-    over_s: 0.05, reset_displacements: true, then: Run(0.5)), ], ```
+    Settle()), (name: "bolts", install: ["roof_bolts"], then: Settle()), (name: "lining", add: ["lining_*"],
+    then: Settle()), (name: "bench", remove: ["bench_*"], over_s: 0.05, reset_displacements: true, then:
+    Run(0.5)), ], ```
 
     Parameters
     ----------
@@ -3769,6 +3770,11 @@ class Stage(Builder):
     add : Sequence[str], optional
         Blocks that are put in, without stress and at rest where they were meshed; until then they are not
         there. Default: none.
+    install : Sequence[str], optional
+        Bolts that are installed in the rock as it lies when the stage begins, by the name of their entry in
+        `bolts`, or many as in a support; until then they are not there. Default: none.
+    release : Sequence[str], optional
+        Bolts that are let go; their forces ramp down over `over_s`. Default: none.
     supports : list[Support], optional
         Supports from now on, in the place of all before. Default: as before.
     tractions : list[Traction], optional
@@ -3782,8 +3788,9 @@ class Stage(Builder):
     laws : StageLaws, optional
         Laws of contact from now on. Default: as before.
     over_s : float, optional
-        Time over which forces of removed blocks fall to nothing, and loads change to the new ones [s]: ten
-        periods of what moves leave it at rest; 0 changes them at once, as a blast does. Default: 0.
+        Time over which forces of removed blocks and released bolts fall to nothing, and loads and pretension
+        change to the new ones [s]: ten periods of what moves leave it at rest; 0 changes them at once, as a
+        blast does. Default: 0.
     reset_displacements : bool, optional
         Whether displacements count from the beginning of this stage. Default: false.
 
@@ -3797,6 +3804,8 @@ class Stage(Builder):
     then: ThenChoice
     remove: Sequence[str] | None = None
     add: Sequence[str] | None = None
+    install: Sequence[str] | None = None
+    release: Sequence[str] | None = None
     supports: list[Support] | None = None
     tractions: list[Traction] | None = None
     forces: list[Force] | None = None
@@ -3805,7 +3814,7 @@ class Stage(Builder):
     laws: StageLaws | None = None
     over_s: float | None = None
     reset_displacements: bool | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "remove": "[str]", "add": "[str]", "supports": "[Support]", "tractions": "[Traction]", "forces": "[Force]", "water": "[Water]", "gravity_m_s2": "(num)", "laws": "StageLaws", "over_s": "num", "then": "Then", "reset_displacements": "bool"}
+    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "remove": "[str]", "add": "[str]", "install": "[str]", "release": "[str]", "supports": "[Support]", "tractions": "[Traction]", "forces": "[Force]", "water": "[Water]", "gravity_m_s2": "(num)", "laws": "StageLaws", "over_s": "num", "then": "Then", "reset_displacements": "bool"}
 
 
 @dataclass(kw_only=True)
