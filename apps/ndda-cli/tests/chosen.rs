@@ -84,7 +84,7 @@ fn what_is_chosen_is_as_if_it_were_written() {
         "{text}"
     );
     assert!(
-        text.contains("chosen: time.step_s = ") && text.contains("contact is stable at, for block `cube`"),
+        text.contains("chosen: time.step_s = ") && text.contains("stable step of contact, at block `cube`"),
         "{text}"
     );
     let file = fs::read_to_string(folder.path().join("s.ron")).unwrap();

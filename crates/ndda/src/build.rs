@@ -7,6 +7,7 @@ mod choices;
 pub mod friction;
 pub mod overlaps;
 mod pairs;
+pub(crate) mod presence;
 mod quiet;
 mod regions;
 mod rock;

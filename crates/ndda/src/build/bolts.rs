@@ -5,7 +5,7 @@ use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{BoltSetup, Dowel, Grout, Plate, Steel, first_rock_m};
 
-use super::stages::Presence;
+use super::presence::Presence;
 use super::{Fault, vec3};
 
 /// All bolts of a scene one by one, in the coordinates of the blocks; those of other stages, too.

@@ -7,7 +7,7 @@ use ndda_io::scene::{Hold, Record, Scene, Stage, matches};
 use ndda_mesh::BlockSet;
 
 use crate::build;
-use crate::build::stages::Presence;
+use crate::build::presence::Presence;
 
 /// Part of a record's peak that is worth a word when the run ends before it.
 const MATTERS: f64 = 0.01;

