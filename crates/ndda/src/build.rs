@@ -196,13 +196,16 @@ pub fn simulation_with(
     simulation_of(scene, blocks, folder, choices, (0, &|_| {}))
 }
 
+/// What is changed of bodies before they are built.
+type ChangeBodies<'a> = &'a dyn Fn(&mut [BodySetup]);
+
 /// The same in a stage of construction, with bodies that are changed before they are built.
 fn simulation_of(
     scene: &Scene,
     blocks: BlockSet,
     folder: &Path,
     mut choices: Choices,
-    (stage, change): (usize, &dyn Fn(&mut [BodySetup])),
+    (stage, change): (usize, ChangeBodies),
 ) -> Result<Simulation, Vec<Fault>> {
     let contact = contact_model(scene, &blocks, &mut choices).map_err(|fault| vec![fault])?;
     let mut bodies = bodies::bodies(scene, &blocks, folder, &choices.materials)?;
