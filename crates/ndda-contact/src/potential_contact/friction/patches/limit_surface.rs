@@ -122,17 +122,17 @@ impl LimitSurface {
 
     /// Friction on a patch that would slip at s without, and slips at σ = s + A⁻¹ F with it: the σ of least ½ (σ − s)·A (σ − s) + D(σ).
     /// Sought from `start`, which is near σ unless it `is_first`; gives F, to `tolerance_n`: D alone is too coarse a measure of it where the slip of a
-    /// step is far from what friction changes. Also gives −∂F/∂s = A − A (A + D″)⁻¹ A.
+    /// step is far from what friction changes. Also gives A + D″ there; none where it sticks.
     pub(super) fn friction(
         &self,
         stiffness: &Mat3,
         (free_slip, start): (&Vec3, &Vec3),
         tolerance_n: f64,
         is_first: bool,
-    ) -> (Vec3, Mat3) {
+    ) -> (Vec3, Option<Mat3>) {
         let stopping = -(stiffness * free_slip);
         if self.holds(&stopping) {
-            return (stopping, *stiffness);
+            return (stopping, None);
         }
         let surface = self.for_slip(free_slip);
         let (mut slip, mut curvature) = (*start, *stiffness);
@@ -141,8 +141,7 @@ impl LimitSurface {
             (slip, curvature) = surface.least(stiffness, (free_slip, slip), smoothing, tolerance_n);
         }
         let force = stiffness * (slip - free_slip);
-        let response = curvature.try_inverse().map(|inverse| stiffness - stiffness * inverse * stiffness);
-        (self.shortened(force), response.unwrap_or_default())
+        (self.shortened(force), Some(curvature))
     }
 
     /// Newton's method with a line search: the slip, and A + D″ there.

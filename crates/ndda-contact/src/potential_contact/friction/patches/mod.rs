@@ -307,6 +307,7 @@ impl FrictionPatches {
             most_n,
             pushed,
             active,
+            alone: solve::sweeps_alone(coupled.len()),
         };
         solve::solve(coupled, start, (&mut motion, newton));
         for found in coupled.iter() {

@@ -33,9 +33,14 @@ const REGULAR: f64 = 1e-9;
 const MOST_SWEEPS: usize = 100;
 const MOST_VISITS: usize = 20_000;
 
-/// Sweeps before Newton's method for all patches together, and its steps, a sweep after each: where these do not do, sweeps alone go on.
+/// Fewest sweeps before Newton's method for all patches together, and its steps, a sweep after each: where these do not do, sweeps alone go on.
 const SWEEPS_ALONE: usize = 16;
 const NEWTON_STEPS: usize = 20;
+
+/// Sweeps before Newton's method: few patches are found sooner by sweeps, many hardly at all.
+pub(super) fn sweeps_alone(patches: usize) -> usize {
+    SWEEPS_ALONE.max(MOST_VISITS / patches.max(1))
+}
 
 /// One patch among others.
 #[derive(Clone, Copy, Debug, Default)]
@@ -62,8 +67,8 @@ pub(super) struct CoupledPatch {
     /// Friction of this stage, and of the first.
     force: Vec3,
     first: Vec3,
-    /// Change of friction per change of −`free_slip` when that was found.
-    response: Mat3,
+    /// A + D″ where that was found; none where it sticks.
+    curvature: Option<Mat3>,
     /// Whether the friction is that of `free_slip`.
     is_found: bool,
 }
@@ -205,6 +210,8 @@ pub(super) struct Motion<'a> {
     pub pushed: &'a mut Vec<u32>,
     /// Patches whose friction matters.
     pub active: &'a mut Vec<u32>,
+    /// Sweeps before Newton's method.
+    pub alone: usize,
 }
 
 /// Finds the friction of all patches; `motion` comes with the velocities at the end of the step under all loads, normal forces and the patches'
@@ -259,11 +266,8 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, newton: &mut N
     motion.pushed.clear();
     motion.pushed.resize(motion.bodies.len(), 0);
     let mut now = 0;
-    let most_sweeps = if motion.is_iterated {
-        ITERATED_SWEEPS
-    } else {
-        MOST_SWEEPS.max(MOST_VISITS / patches.len().max(1))
-    };
+    let most_sweeps =
+        if motion.is_iterated { ITERATED_SWEEPS } else { MOST_SWEEPS.max(2 * sweeps_alone(patches.len())) };
     for sweep in 0..most_sweeps {
         let mut changes = false;
         let active = std::mem::take(motion.active);
@@ -282,10 +286,10 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, newton: &mut N
         if !changes {
             return sweep;
         }
-        if sweep + 1 == SWEEPS_ALONE {
+        if sweep + 1 == motion.alone {
             newton.begin(patches, motion.active, motion.bodies.len());
         }
-        if (SWEEPS_ALONE..=SWEEPS_ALONE + NEWTON_STEPS).contains(&(sweep + 1)) {
+        if (motion.alone..=motion.alone + NEWTON_STEPS).contains(&(sweep + 1)) {
             newton.step(patches, motion, time_s);
         }
     }
@@ -317,8 +321,8 @@ impl CoupledPatch {
             self.surface.held_back(-(stiffness * free_slip))
         } else {
             let (start, tolerance_n) = ((&free_slip, &slip), LOCAL_TOLERANCE * self.tolerance_n);
-            let (force, response) = self.surface.friction(&stiffness, start, tolerance_n, is_first);
-            self.response = response;
+            let (force, curvature) = self.surface.friction(&stiffness, start, tolerance_n, is_first);
+            self.curvature = curvature;
             force
         };
         let change = force - self.force;

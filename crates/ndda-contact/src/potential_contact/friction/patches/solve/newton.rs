@@ -7,7 +7,7 @@
 //! forces; with y_i for the slip that changes f_i = P_i y_i, it is symmetric, and conjugate gradients with the preconditioner P solve it. It is a
 //! semismooth Newton method (Qi & Sun 1993): sweeps before it find which patches stick, the one after it corrects what it has got wrong.
 
-use ndda_mesh::Vec3;
+use ndda_mesh::{Mat3, Vec3};
 use rayon::prelude::*;
 
 use crate::friction::patches::GRAIN_BODIES;
@@ -29,6 +29,8 @@ struct Row {
     patch: u32,
     /// Change of its friction.
     change: Vec3,
+    /// P.
+    response: Mat3,
     /// Slip that is left.
     residual: Vec3,
     /// f and y of the direction, and the change of slip that it brings, less that of y.
@@ -78,6 +80,16 @@ pub(in crate::friction::patches) struct Newton {
     before: Option<f64>,
 }
 
+impl CoupledPatch {
+    /// P = A − A (A + D″)⁻¹ A: how its friction answers to a change of its slip without it.
+    fn response(&self) -> Mat3 {
+        let stiffness = self.stiffness / GAMMA;
+        let Some(curvature) = &self.curvature else { return stiffness };
+        let inverse = curvature.try_inverse();
+        inverse.map_or(Mat3::zeros(), |inverse| stiffness - stiffness * inverse * stiffness)
+    }
+}
+
 impl Newton {
     /// Takes the patches of a stage whose friction matters.
     pub(super) fn begin(&mut self, patches: &[CoupledPatch], active: &[u32], blocks: usize) {
@@ -111,6 +123,7 @@ impl Newton {
             let patch = &patches[row.patch as usize];
             let free_slip = patch.slip(motion) - GAMMA * (patch.flexibility * patch.force);
             (row.residual, row.change) = (patch.free_slip - free_slip, Vec3::zeros());
+            row.response = patch.response();
             (row.direction, row.cause) = (Vec3::zeros(), Vec3::zeros());
         };
         self.rows.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(left);
@@ -122,7 +135,7 @@ impl Newton {
             patch.force += row.change;
             row.direction = row.change;
             // Its friction is to be looked at again, unless it sticks for sure.
-            patch.is_found = patch.response == patch.stiffness / GAMMA && patch.surface.holds(&patch.force);
+            patch.is_found = patch.curvature.is_none() && patch.surface.holds(&patch.force);
             if patch.is_found {
                 patch.free_slip = -GAMMA * (patch.flexibility * patch.force);
             }
@@ -153,7 +166,7 @@ impl Newton {
             let back = if step == 0 { 0.0 } else { now / old };
             old = now;
             self.rows.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(|row| {
-                row.direction = patches[row.patch as usize].response * row.residual + back * row.direction;
+                row.direction = row.response * row.residual + back * row.direction;
                 row.cause = row.residual + back * row.cause;
             });
             self.push(patches, motion, time_s, true);
@@ -177,9 +190,8 @@ impl Newton {
     fn left(&self, patches: &[CoupledPatch]) -> (f64, bool) {
         let (mut sum, mut is_found) = (0.0, true);
         for row in &self.rows {
-            let patch = &patches[row.patch as usize];
-            let change = patch.response * row.residual;
-            is_found &= change.amax() <= FOUND * patch.tolerance_n;
+            let change = row.response * row.residual;
+            is_found &= change.amax() <= FOUND * patches[row.patch as usize].tolerance_n;
             sum += row.residual.dot(&change);
         }
         (sum, is_found)

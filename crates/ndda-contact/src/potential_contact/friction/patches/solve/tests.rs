@@ -83,6 +83,7 @@ fn solved(tolerance: f64) -> (Vec<Vec3>, Vec<Body>, usize, usize) {
         most_n: &mut Vec::new(),
         pushed: &mut Vec::new(),
         active: &mut Vec::new(),
+        alone: SWEEPS_ALONE,
     };
     let sweeps = solve(&mut coupled, &start, (&mut motion, &mut Newton::default()));
     let slight = coupled.iter().filter(|patch| patch.is_slight()).count();
