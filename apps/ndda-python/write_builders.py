@@ -141,6 +141,8 @@ class Writer:
             hint = type_of(kind_of(fields[field]), self.choices)
             lines.append(f"{pad}    {field}: {hint}" + ("" if field in required else " | None = None"))
         kinds = ", ".join(f'"{field}": "{kind_of(fields[field])}"' for field in fields)
+        if is_value and "prefixItems" in definition:
+            kinds = kinds.replace("(", "<").replace(")", ">")
         lines.append(f"{pad}    _kinds: ClassVar[Mapping[str, str]] = {{{kinds}}}")
         if path != name:
             lines.append(f'{pad}    _variant: ClassVar[str] = "{name}"')

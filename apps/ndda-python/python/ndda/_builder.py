@@ -1,7 +1,7 @@
 """What all builders of scenes share: writing RON, reading dictionaries.
 
 The kind of a field is a word of its class's `_kinds`: ``num``, ``int``, ``str``, ``bool``, the name of a builder or a choice;
-``[kind]`` is a list, ``(kind)`` a tuple of fixed length, ``{kind}`` numbers by name.
+``[kind]`` is a list, ``(kind)`` a tuple of fixed length, ``<kind>`` the several values of a choice, ``{kind}`` numbers by name.
 """
 
 from __future__ import annotations
@@ -59,13 +59,13 @@ def _class(kind: str) -> Any:
 def _ron(kind: str, value: Any, where: str) -> str:
     if isinstance(value, Builder):
         return value.to_ron()
-    if kind[0] in "[(":
+    if kind[0] in "[(<":
         if hasattr(value, "tolist"):
             value = value.tolist()
         if isinstance(value, (str, Mapping)) or not hasattr(value, "__iter__"):
             raise TypeError(f"{where} is {value!r}: give a list or a tuple")
         inner = ", ".join(_ron(kind[1:-1], one, where) for one in value)
-        return f"{kind[0]}{inner}{kind[-1]}"
+        return inner if kind[0] == "<" else f"{kind[0]}{inner}{kind[-1]}"
     if kind[0] == "{":
         return f"({', '.join(f'{name}: {_ron(kind[1:-1], one, where)}' for name, one in value.items())})"
     if kind == "str":
@@ -88,7 +88,7 @@ def _built(kind: str, value: Any) -> Any:
         return value
     if kind[0] == "[":
         return [_built(kind[1:-1], one) for one in value]
-    if kind[0] == "(":
+    if kind[0] in "(<":
         return tuple(_built(kind[1:-1], one) for one in value)
     if not isinstance(value, Mapping) or kind[0] == "{":
         return dict(value) if kind[0] == "{" else value

@@ -3173,11 +3173,11 @@ class Scatter:
         Examples
         --------
         >>> Scatter.Normal((1.0, 1.0)).to_ron()
-        'Normal((1.0, 1.0))'
+        'Normal(1.0, 1.0)'
         """
 
         value: Sequence[float]
-        _kinds: ClassVar[Mapping[str, str]] = {"value": "(num)"}
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "<num>"}
         _variant: ClassVar[str] = "Normal"
 
     @dataclass
@@ -3192,11 +3192,11 @@ class Scatter:
         Examples
         --------
         >>> Scatter.LogNormal((1.0, 1.0)).to_ron()
-        'LogNormal((1.0, 1.0))'
+        'LogNormal(1.0, 1.0)'
         """
 
         value: Sequence[float]
-        _kinds: ClassVar[Mapping[str, str]] = {"value": "(num)"}
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "<num>"}
         _variant: ClassVar[str] = "LogNormal"
 
     @dataclass
@@ -3211,11 +3211,11 @@ class Scatter:
         Examples
         --------
         >>> Scatter.Uniform((1.0, 1.0)).to_ron()
-        'Uniform((1.0, 1.0))'
+        'Uniform(1.0, 1.0)'
         """
 
         value: Sequence[float]
-        _kinds: ClassVar[Mapping[str, str]] = {"value": "(num)"}
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "<num>"}
         _variant: ClassVar[str] = "Uniform"
 
     @dataclass
@@ -3230,11 +3230,11 @@ class Scatter:
         Examples
         --------
         >>> Scatter.Triangular((1.0, 1.0, 1.0)).to_ron()
-        'Triangular((1.0, 1.0, 1.0))'
+        'Triangular(1.0, 1.0, 1.0)'
         """
 
         value: Sequence[float]
-        _kinds: ClassVar[Mapping[str, str]] = {"value": "(num)"}
+        _kinds: ClassVar[Mapping[str, str]] = {"value": "<num>"}
         _variant: ClassVar[str] = "Triangular"
 
 
