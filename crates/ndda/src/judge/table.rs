@@ -84,7 +84,7 @@ pub fn moved(motion: &Motion) -> String {
     if *moved == 0 && motion.course == Course::Accelerating {
         let (gone, speed) = (length(*farthest_m), speed(*speed_m_s));
         return format!(
-            "`{farthest}` is accelerating: {gone} at the end, {speed}; no block moved by more than 1 % of its radius yet\n"
+            "`{farthest}` is accelerating: {gone} at the end, less than 1 % of its radius, {speed}\n"
         );
     }
     let many = match (moved, can_move) {
