@@ -45,6 +45,13 @@ pub fn scene(args: &SceneArgs, events: Events) -> Result<LoadedScene, u8> {
     loaded.and_then(complete).map_err(|errors| events.refuse(&errors))
 }
 
+/// Prints the warnings of a scene, if it has any.
+pub fn warn(loaded: &LoadedScene, events: Events) {
+    if !loaded.warnings.is_empty() {
+        events.doubt(&loaded.errors(loaded.warnings.clone()));
+    }
+}
+
 /// Says beforehand that building a scene takes long.
 pub fn warn_of_slow_build(loaded: &LoadedScene, folder: &Path) {
     if let Some(text) = forecast::admit::slow_build(loaded, folder) {

@@ -24,9 +24,7 @@ pub fn check(args: &CheckArgs) -> u8 {
         Err(code) => return code,
     };
     let loaded = &model.loaded;
-    if !loaded.warnings.is_empty() {
-        events.doubt(&loaded.errors(loaded.warnings.clone()));
-    }
+    input::warn(loaded, events);
     let advice = step::advise(&loaded.scene, &mut model.simulation);
     let doubts = doubts::doubts(&loaded.scene, &model.simulation, advice.as_ref(), &model.folder);
     doubts.iter().for_each(|doubt| events.warn(doubt));

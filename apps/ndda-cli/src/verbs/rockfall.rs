@@ -20,17 +20,12 @@ pub fn rockfall(args: &RockfallArgs) -> u8 {
         Ok(loaded) => loaded,
         Err(code) => return code,
     };
-    if !loaded.warnings.is_empty() && !args.quiet {
-        events.doubt(&loaded.errors(loaded.warnings.clone()));
+    if !args.quiet {
+        input::warn(&loaded, events);
     }
     let file = input::file(&args.input);
-    let request = Request {
-        out: places::folder_for(args.out.as_deref(), &file, ""),
-        file,
-        count: args.count,
-        seed: args.seed,
-        jobs: args.jobs.map_or(0, usize::from),
-    };
+    let (out, jobs) = (places::folder_for(args.out.as_deref(), &file, ""), args.jobs.map_or(0, usize::from));
+    let request = Request { out, file, count: args.count, seed: args.seed, jobs };
     match make(loaded, &request, &interrupt::watch(), &complain_unless(args.quiet)) {
         Ok(outcome) if args.json => say(&format!("{:#}", json!(outcome))),
         Ok(outcome) => say(&format!("{outcome}results in {}", request.out.display())),

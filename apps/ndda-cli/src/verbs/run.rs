@@ -69,8 +69,8 @@ fn run_here(args: &RunArgs, options: &Options) -> u8 {
         Ok(model) => model,
         Err(code) => return code,
     };
-    if !model.loaded.warnings.is_empty() && (!options.quiet || options.events.are_read()) {
-        options.events.doubt(&model.loaded.errors(model.loaded.warnings.clone()));
+    if !options.quiet || options.events.are_read() {
+        input::warn(&model.loaded, options.events);
     }
     let file = input::file(&args.input);
     let folder = places::folder_for(args.out.as_deref(), &file, "");

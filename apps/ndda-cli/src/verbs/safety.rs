@@ -29,8 +29,8 @@ fn find(args: &SafetyArgs) -> u8 {
         Ok(loaded) => loaded,
         Err(code) => return code,
     };
-    if !loaded.warnings.is_empty() && !args.quiet {
-        events.doubt(&loaded.errors(loaded.warnings.clone()));
+    if !args.quiet {
+        input::warn(&loaded, events);
     }
     let file = input::file(&args.input);
     let (name, out) = (places::name_of(&file), places::folder_for(args.out.as_deref(), &file, "_safety"));

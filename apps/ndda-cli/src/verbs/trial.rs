@@ -27,8 +27,8 @@ pub fn open(
 ) -> Result<(Trial, Model), u8> {
     let events = Events::default();
     let model = input::model(args, events)?;
-    if !model.loaded.warnings.is_empty() && !how.quiet {
-        events.doubt(&model.loaded.errors(model.loaded.warnings.clone()));
+    if !how.quiet {
+        input::warn(&model.loaded, events);
     }
     let file = input::file(args);
     let out = places::folder_for(how.out.as_deref(), &file, &format!("_{purpose}"));
