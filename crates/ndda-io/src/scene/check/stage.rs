@@ -54,7 +54,7 @@ impl Check<'_> {
         }
     }
 
-    /// What is wrong with a stage that installs or releases bolts which stages have installed and released before.
+    /// Why stage `k` cannot install or release these bolts: they have been installed or released before, in the stages `times`.
     fn repeated(&self, bolt: usize, (k, list): (usize, &str), times: [Option<usize>; 2]) -> Option<String> {
         let (name, stages) = (&self.scene.bolts[bolt].name, &self.scene.stages);
         let in_stage = |k: usize| format!("stage `{}`", stages[k].name);

@@ -149,7 +149,7 @@ impl CoupledPatch {
         }
     }
 
-    /// The same for one of both blocks; the time is also given as a part of the step.
+    /// Adds what a force of this patch changes the velocity of its owner (`k` = 0) or target (1) by, in `time_s`, which is `part` of the step.
     fn push_side(
         &self,
         k: usize,

@@ -22,7 +22,7 @@ const FOUND: f64 = 0.3;
 /// Patches below which a second thread costs more than it brings.
 const GRAIN_PATCHES: usize = 256;
 
-/// What conjugate gradients keep of a patch.
+/// One patch in the linear system of Newton's method.
 #[derive(Clone, Copy, Default)]
 struct Row {
     /// Its number.
@@ -76,7 +76,7 @@ pub(in crate::friction::patches) struct Newton {
     start: Vec<u32>,
     sides: Vec<(u32, u8)>,
     kept: KeptVelocities,
-    /// What was left before, of the first system of a stage none.
+    /// Residual r·P r with which the system before this one began; none for the first of a stage.
     before: Option<f64>,
 }
 
