@@ -36,7 +36,7 @@ def require(condition, message):
 def check_quotes():
     """Every file is quoted, word for word, after the line that links to it."""
     page = (DOCS / "guide" / "recipes.md").read_text(encoding="utf-8")
-    quoted = dict(re.findall(r"\]\(\.\./recipes/(\w+\.py)\)[^\n]*\n\n```python\n(.*?)```", page, re.DOTALL))
+    quoted = dict(re.findall(r"\]\(\.\./recipes/(\w+\.py)\)[^\n]*\n(?:[^\n]+\n)*\n```python\n(.*?)```", page, re.DOTALL))
     files = {path.name: path.read_text(encoding="utf-8") for path in RECIPES.glob("*.py")}
     require(quoted.keys() == files.keys(), f"recipes.md quotes {sorted(quoted)}, there are {sorted(files)}")
     for name, text in files.items():
