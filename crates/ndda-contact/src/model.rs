@@ -23,6 +23,8 @@ pub struct ContactInput<'a> {
     /// Whether the solver iterates on the forces of a step, and compares those of one evaluation with the next: whatever the model finds by
     /// iterations of its own must then be found to far below the solver's tolerance.
     pub is_iterated: bool,
+    /// Whether only normal forces and stiffness are asked for: friction that acts on velocities may be left out.
+    pub without_friction: bool,
 }
 
 /// Slip, force and work of the shear spring of a facet, or of several, in a step.
@@ -64,6 +66,7 @@ impl<'a> ContactInput<'a> {
             bodies: &[],
             deformation: None,
             is_iterated: false,
+            without_friction: false,
         }
     }
 }
@@ -145,6 +148,8 @@ pub struct ContactReport {
     pub action_reaction_error: Option<f64>,
     /// Energy that contact has taken up because joints opened by slip since it was evaluated last [J]; friction did that work.
     pub dilation_work_j: f64,
+    /// By how much friction still changed when the search for it ended, over the largest friction on the blocks; zero where it was found.
+    pub friction_left: f64,
     /// By how much the strength of a bond was exceeded that broke in this evaluation, over its strength without normal stress.
     pub bond_overload: f64,
 }

@@ -50,7 +50,7 @@ impl ContactModel for PotentialContact {
                 (history, &mut self.new_state),
             );
         }
-        let has_friction = self.rubs_faces() && !input.bodies.is_empty();
+        let has_friction = self.rubs_faces() && !input.bodies.is_empty() && !input.without_friction;
         self.damp(input, history);
         let Self { adjacency, faces, integrals, .. } = self;
         let sort = || {
@@ -76,7 +76,7 @@ impl ContactModel for PotentialContact {
             let bodies = damping.map_or(input.bodies, ContactDamping::bodies);
             let input = &ContactInput { bodies, ..*input };
             let scene = PatchScene { input, integrals: &self.integrals, joints, hulls: &self.hulls };
-            self.faces.add(&scene, &mut self.forces, history);
+            report.friction_left = self.faces.add(&scene, &mut self.forces, history);
         }
         let scene = ScatterScene {
             blocks: input.blocks,

@@ -140,6 +140,7 @@ impl Simulation {
             // While the end of the step is being found, how blocks answer to that is part of what is looked for.
             deformation: facet_velocity.is_none().then_some(&deformation as &dyn Deformation),
             is_iterated: facet_velocity.is_some(),
+            without_friction: self.scratch.is_without_friction,
         };
         let mut output = ContactOutput {
             force: &mut force,

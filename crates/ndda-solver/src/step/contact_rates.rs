@@ -26,7 +26,9 @@ impl Simulation {
                 self.scratch.contact_position[node] = x + swelling * (x - center);
             }
         }
+        self.scratch.is_without_friction = true;
         let found = self.add_contact_forces(None);
+        self.scratch.is_without_friction = false;
         (self.state.contact, self.scratch.force) = (untouched, force);
         self.put_bolts_back();
         found.map(|_| self.problem.blocks.ids().map(|block| self.contact_rate2(block)).collect())

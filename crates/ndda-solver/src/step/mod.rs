@@ -110,6 +110,8 @@ pub(crate) struct Scratch {
     pub(crate) contact_stiffness: Vec<f64>,
     /// Whether `friction_force` or `contact_stiffness` may hold values other than zero; if not, they are neither cleared nor read.
     pub(crate) contact_has_acted: bool,
+    /// Whether the stiffness of contact alone is asked for.
+    pub(crate) is_without_friction: bool,
     pub(crate) contact_position: Vec<Vec3>,
     /// Scratch for positions with contact offsets.
     pub(crate) seen_position: Vec<Vec3>,

@@ -77,6 +77,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(energy(simulation));
     entries.push(spurious_contact_energy(simulation));
     entries.push(friction(simulation));
+    entries.extend(friction_search(simulation));
     entries.extend(creep(simulation));
     entries.push(hops(simulation));
     entries.extend(contact(simulation));
@@ -153,6 +154,16 @@ fn energy(simulation: &Simulation) -> [Entry; 3] {
         Entry::new("energy lost", shown(worst.energy_loss), Judgement::Fail, String::new()),
         warned("lasting energy error", lasting, MOST_ENERGY, reason),
     ]
+}
+
+/// Whether friction was found in every step; said only where it was not.
+fn friction_search(simulation: &Simulation) -> Option<Entry> {
+    let left = simulation.invariants().friction_left;
+    let reason = format!(
+        "in some step the friction of all contacts together was found to {:.1e} of the largest friction of a block only, limit {SPEED}: reduce step_s",
+        left
+    );
+    (left > 0.0).then(|| warned("friction search error", left, SPEED, reason))
 }
 
 /// Energy that contact makes or takes, pair by pair.

@@ -25,11 +25,11 @@ use crate::assembly::join_if::join_if;
 use crate::friction::facet::FacetForce;
 use crate::friction::law::FrictionLaw;
 use crate::friction::law_table::FrictionLawTable;
-use crate::friction::patches::nodal::{Nodal, NodalSide};
+use crate::friction::patches::nodal::{Nodal, NodalSide, SideScene};
 use crate::friction::patches::opposite::Opposite;
 use crate::friction::patches::patch::{ContactPatch, Moved, PatchSummary, Remembered};
 use crate::friction::patches::solve::newton::Newton;
-use crate::friction::patches::solve::{CoupledPatch, Motion};
+use crate::friction::patches::solve::{CoupledPatch, Motion, Search};
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments};
 use crate::model::{Body, ContactHistory, ContactInput, FaceMemory};
@@ -112,7 +112,6 @@ pub(crate) struct FrictionPatches {
     /// Room for their solution, by block.
     most_n: Vec<f64>,
     pushed: Vec<u32>,
-    active: Vec<u32>,
     newton: Newton,
     new_faces: Vec<FaceMemory>,
     gaps_j: Vec<f64>,
@@ -160,19 +159,22 @@ impl FrictionPatches {
     }
 
     /// Adds the friction of faces whose law acts on faces to the facets' forces, and takes over what they remember; the facets are
-    /// [arranged](Self::arrange).
+    /// [arranged](Self::arrange). Gives the part of the largest friction on both of its blocks by which that of a patch still changed when the
+    /// search for it ended.
     pub(crate) fn add(
         &mut self,
         scene: &PatchScene,
         forces: &mut [FacetForce],
         history: &mut ContactHistory,
-    ) {
+    ) -> f64 {
         self.join_faces(scene, forces);
         self.find_patches(scene, forces, history);
         let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
         self.adjacency.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
+        let tolerance = solve::tolerance(scene.input.is_iterated, scene.joints.tolerance);
+        solve::find_tolerances(&mut self.summaries, scene.input.bodies, tolerance, &mut self.most_n);
         self.advance_bodies(scene);
-        self.solve(scene, forces);
+        let left = tolerance * self.solve(scene, forces).left;
         let Self { patches, runs, run_of, order, new_faces, own_m2, .. } = self;
         let spread = |((t, force), run): ((usize, &mut FacetForce), &u32)| {
             let FacetMoments { pressure, .. } = *scene.sums(t as u32);
@@ -201,6 +203,7 @@ impl FrictionPatches {
             },
         );
         std::mem::swap(&mut history.faces, &mut self.new_faces);
+        left
     }
 
     /// Where each face presses, how hard, and how it slips.
@@ -240,84 +243,77 @@ impl FrictionPatches {
                 self.is_asked[block] = true;
             }
         }
-        let (is_asked, adjacency, patches) = (&self.is_asked, &self.adjacency, &self.patches);
+        let Self { is_asked, adjacency, patches, summaries, bodies, .. } = self;
         let is_nodal = |body: &Body| scene.input.deformation.is_some() && body.deforms;
         let advance = |(block, body): (usize, &mut Body)| {
             if is_asked[block] && body.mass_kg.is_finite() && !is_nodal(body) {
                 body.add_gyroscopic_torque();
                 for (k, sign) in adjacency.at(BlockId(block as u32)) {
-                    patches[k as usize].apply_loads(body, sign);
-                    patches[k as usize].apply_previous_friction(body, sign);
+                    let (patch, summary) = (&patches[k as usize], &summaries[k as usize]);
+                    patch.apply_loads(body, sign);
+                    if !summary.is_slight() {
+                        patch.apply_previous_friction(body, sign);
+                    }
                 }
                 body.advance_velocity(scene.input.dt_s);
             }
         };
-        self.bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(advance);
+        bodies.par_iter_mut().enumerate().with_min_len(GRAIN_BODIES).for_each(advance);
     }
 
     /// How blocks that deform answer to the loads, and to the friction of patches, whose sides on them are found.
     fn ask_blocks(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
-        let Self { nodal, is_asked, adjacency, runs, order, patches, sides, own_m2, .. } = self;
+        let Self { nodal, is_asked, adjacency, runs, order, patches, summaries, sides, own_m2, .. } = self;
         sides.clear();
         sides.resize(patches.len(), [None; 2]);
-        nodal.begin(scene.input.blocks.len(), scene.input.velocity.len());
+        nodal.begin(scene.input.blocks.len());
         let Some(deformation) = scene.input.deformation else { return };
-        let bodies = scene.input.bodies;
-        for (block, body) in scene.input.blocks.ids().zip(bodies) {
-            if is_asked[block.index()] && body.deforms {
-                let at = adjacency.at(block).map(|(k, _)| &order[runs[k as usize].clone()]);
-                nodal.add_block(block, scene, forces, at);
-            }
-        }
-        for ((patch, run), sides) in patches.iter().zip(&*runs).zip(sides) {
-            if patch.has_friction() {
-                let side = |block: BlockId| {
-                    let found = (patch, &order[run.clone()]);
-                    let deforms = bodies[block.index()].deforms;
-                    deforms.then(|| nodal.add_side(block, scene, found, (forces, own_m2)))
-                };
-                *sides = [patch.owner, patch.target].map(side);
-            }
-        }
-        nodal.answer(deformation);
+        let patch = |(k, _): (u32, f64)| {
+            let (run, summary) = (runs[k as usize].clone(), &summaries[k as usize]);
+            let matters = summary.has_friction && !summary.is_slight();
+            (k, &patches[k as usize], &order[run], matters)
+        };
+        let is_nodal = |block: BlockId| is_asked[block.index()] && scene.input.bodies[block.index()].deforms;
+        let found = SideScene { scene: *scene, forces, own_m2 };
+        nodal.take_sides(&found, |block| is_nodal(block).then(|| adjacency.at(block).map(patch)));
+        nodal.answer(scene, deformation);
+        nodal.each_side(|block, number, side| {
+            let k = usize::from(patches[number as usize].owner != block);
+            sides[number as usize][k] = Some(side);
+        });
     }
 
     /// Friction of the patches.
-    fn solve(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
+    fn solve(&mut self, scene: &PatchScene, forces: &[FacetForce]) -> Search {
         self.ask_blocks(scene, forces);
-        let Self { patches, bodies, coupled, nodal, sides, most_n, pushed, active, newton, .. } = self;
-        let ContactInput { blocks, velocity, bodies: start, dt_s, is_iterated, .. } = *scene.input;
-        let tolerance = scene.joints.tolerance;
+        let Self { patches, summaries, bodies, coupled, nodal, sides, pushed, newton, .. } = self;
+        let ContactInput { bodies: start, dt_s, is_iterated, .. } = *scene.input;
         coupled.clear();
-        for ((number, patch), sides) in (0..).zip(&*patches).zip(&*sides) {
-            if patch.has_friction() {
-                coupled.extend(CoupledPatch::new((number, patch), (start, nodal), *sides, dt_s));
+        for (((number, patch), summary), sides) in (0..).zip(&*patches).zip(&*summaries).zip(&*sides) {
+            if summary.has_friction && !summary.is_slight() {
+                let patch = (number, patch, summary.tolerance_n);
+                coupled.extend(CoupledPatch::new(patch, (start, nodal), *sides, dt_s));
             }
         }
         coupled.iter().for_each(|patch| patch.push_nodes(nodal));
-        let start_m_s = velocity;
-        let mut motion = Motion {
-            blocks,
-            start: start_m_s,
-            bodies,
-            nodal,
-            dt_s,
-            is_iterated,
-            tolerance,
-            most_n,
-            pushed,
-            active,
-            alone: solve::sweeps_alone(coupled.len()),
-        };
-        solve::solve(coupled, start, (&mut motion, newton));
+        let alone = solve::sweeps_alone(coupled.len());
+        let mut motion = Motion { bodies, nodal, dt_s, is_iterated, pushed, alone };
+        let search = solve::solve(coupled, start, (&mut motion, newton));
         for found in coupled.iter() {
-            let patch = &mut patches[found.patch as usize];
-            let (force_n, torque_n_m, slides) = found.friction();
-            (patch.force_n, patch.torque_n_m) = (force_n, torque_n_m);
-            patch.turn_rad = Some(found.turn_rad(start, bodies, dt_s));
-            patch.memory =
-                FaceMemory { force_n, torque_n_m, slides, normal: patch.normal, ..FaceMemory::default() };
+            found.hand_over(&mut patches[found.patch as usize], (start, bodies), dt_s);
         }
+        let slight = |(patch, summary): (&mut ContactPatch, &PatchSummary)| {
+            if summary.has_friction && summary.is_slight() {
+                let alone =
+                    CoupledPatch::new((0, patch, summary.tolerance_n), (start, nodal), [None; 2], dt_s);
+                if let Some(mut alone) = alone {
+                    alone.slight_friction(bodies);
+                    alone.hand_over(patch, (start, bodies), dt_s);
+                }
+            }
+        };
+        patches.par_iter_mut().zip(&*summaries).with_min_len(GRAIN_PATCHES).for_each(slight);
+        search
     }
 
     /// How far friction of the last [`add`](Self::add) was from Coulomb's law over displacements of the nodes [m]: blocks and energy [J], one call for

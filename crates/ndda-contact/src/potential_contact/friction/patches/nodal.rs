@@ -4,18 +4,22 @@
 //! where the nodes would be without friction, v̂, and how the block answers to forces, with inertia and elasticity as the step has them:
 //! v = v̂ + Σ U f, U = A⁻¹ P. So a patch that sticks has no slip at the end of the step, a block as a whole or its surface alone
 //! may be what it takes to stop.
+//!
+//! Friction is found from the slips alone. Where a block has fewer patches than nodes, these are what is kept: Pᵀ v = Pᵀ v̂ + Σ (Pᵀ U) f, so that
+//! no mesh, however fine, makes the search for friction longer.
 
-use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
+use ndda_mesh::{BlockId, Mat3, Vec3};
+use rayon::prelude::*;
 
 use crate::friction::facet::FacetForce;
 use crate::friction::patches::patch::ContactPatch;
-use crate::friction::patches::{PatchScene, Place};
+use crate::friction::patches::{GRAIN_BODIES, PatchScene, Place};
 use crate::model::Deformation;
 
 /// Share of a node in the force of one facet of a patch.
 #[derive(Clone, Copy, Debug)]
 struct Weight {
-    /// Counted from the first of all blocks.
+    /// Counted from the first of the block.
     node: u32,
     /// ∫ φ N dA over that of the patch.
     share: f64,
@@ -23,136 +27,129 @@ struct Weight {
     twist: Vec3,
 }
 
-/// Ranges of the weights and answers of one side of a patch.
+/// One side of a patch, by its place among those of its block.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct NodalSide {
-    weights: [u32; 2],
     block: BlockId,
-    /// First node of the block, nodes, and the first of its three columns of answers.
-    first: u32,
-    nodes: u32,
-    column: u32,
+    place: u32,
+    /// Length of each column of the block.
+    rows: u32,
+}
+
+/// Number of a patch, where its weights end, and two of its axes.
+#[derive(Clone, Copy, Debug)]
+struct Side {
+    patch: u32,
+    end: u32,
+    axes: [Vec3; 2],
+}
+
+/// What the patches of one block are to its nodes.
+#[derive(Default)]
+struct BlockSides {
+    weights: Vec<Weight>,
+    sides: Vec<Side>,
+    /// Where among the weights the one of each node was put last.
+    place_of: Vec<u32>,
+    /// Length of a column: nodes, or sides of patches where these are no more.
+    rows: usize,
+    /// Velocities at the start of the step, or slips [m/s].
+    start: Vec<Vec3>,
+    /// Room for the rows of one column.
+    found: Vec<Vec3>,
 }
 
 /// Nodes of blocks that deform, and what their patches do to them.
 #[derive(Default)]
 pub(super) struct Nodal {
-    weights: Vec<Weight>,
-    /// Where among them the one of each node was put last.
-    place_of: Vec<u32>,
-    /// For each block that deforms and has coupled patches, one vector per node in each column: velocities at a time within the step [m/s], and U,
-    /// three columns for each side of a patch [m/s per N in a whole step]. Forces on the nodes until the solver has answered to them.
+    blocks: Vec<BlockSides>,
+    /// For each block that deforms and has friction, one vector per row in each column: velocities or slips at a time within the step [m/s], and what
+    /// they change by, three columns for each side of a patch [m/s per N in a whole step]. Until the solver has answered, rows are nodes, and forces
+    /// are in place of velocities.
     columns: Vec<Vec<Vec3>>,
-    /// These blocks.
-    blocks: Vec<BlockId>,
+}
+
+/// What sides of patches are found from.
+#[derive(Clone, Copy)]
+pub(super) struct SideScene<'a> {
+    pub scene: PatchScene<'a>,
+    pub forces: &'a [FacetForce],
+    pub own_m2: &'a [Mat3],
 }
 
 impl Nodal {
     /// Forgets the last step.
-    pub(super) fn begin(&mut self, blocks: usize, nodes: usize) {
-        self.weights.clear();
-        self.blocks.clear();
+    pub(super) fn begin(&mut self, blocks: usize) {
+        self.blocks.resize_with(blocks, BlockSides::default);
         self.columns.resize_with(blocks, Vec::new);
-        self.columns.iter_mut().for_each(Vec::clear);
-        self.place_of.resize(nodes, 0);
+        for (sides, columns) in self.blocks.iter_mut().zip(&mut self.columns) {
+            sides.begin();
+            columns.clear();
+        }
     }
 
-    /// A block with the forces of its contacts but for the friction of these patches, by runs of facets.
-    pub(super) fn add_block<'a>(
+    /// Lets each block that `patches_of` gives patches for take its sides of them: with the facets of each patch, and whether its friction matters.
+    pub(super) fn take_sides<'a, I: Iterator<Item = (u32, &'a ContactPatch, &'a [Place], bool)>>(
         &mut self,
-        block: BlockId,
-        scene: &PatchScene,
-        forces: &[FacetForce],
-        runs: impl Iterator<Item = &'a [Place]>,
+        found: &SideScene,
+        patches_of: impl Fn(BlockId) -> Option<I> + Sync,
     ) {
-        let nodes = scene.input.blocks.nodes_of(block);
-        let column = &mut self.columns[block.index()];
-        column.resize(nodes.len(), Vec3::zeros());
-        for run in runs {
-            for &(_, _, t) in run {
-                let FacetForce { push, shear, .. } = forces[t as usize];
-                let is_owner = scene.owner(t) == block;
-                let force = if is_owner { push + shear } else { -(push + shear) };
-                each_weight(scene, t, is_owner, |node, w| column[node - nodes.start] += w * force);
+        let blocks = self.blocks.par_iter_mut().zip(&mut self.columns).enumerate();
+        blocks.with_min_len(GRAIN_BODIES).for_each(|(block, (sides, columns))| {
+            let block = BlockId(block as u32);
+            let Some(patches) = patches_of(block) else { return };
+            columns.resize(found.scene.input.blocks.nodes_of(block).len(), Vec3::zeros());
+            for (number, patch, run, matters) in patches {
+                sides.add_forces(block, found, run, columns);
+                if matters {
+                    sides.add(block, found, (number, patch, run), columns);
+                }
             }
-        }
-        self.blocks.push(block);
+        });
     }
 
-    /// One side of a patch; the block has been [added](Self::add_block).
-    pub(super) fn add_side(
-        &mut self,
-        block: BlockId,
-        scene: &PatchScene,
-        (patch, run): (&ContactPatch, &[Place]),
-        (forces, own_m2): (&[FacetForce], &[Mat3]),
-    ) -> NodalSide {
-        let from = self.weights.len() as u32;
-        for &(_, _, t) in run {
-            let is_owner = scene.owner(t) == block;
-            let arm = forces[t as usize].center - patch.center;
-            let twist = patch.normal.cross(&arm) / patch.surface.radius_m;
-            each_weight(scene, t, is_owner, |node, w| {
-                let share = w / patch.pressure;
-                let weight = Weight { node: node as u32, share, twist: share * twist };
-                add_weight(&mut self.weights, &mut self.place_of, from, weight);
-            });
-            let (pressure, own_m2) = (scene.sums(t).pressure, own_m2[t as usize].trace());
-            if pressure > 0.0 {
-                let couple = pressure / patch.pressure * own_m2 / patch.surface.radius_m * patch.normal;
-                scene.couples().each_force(scene.touch(t), is_owner, &couple, |node, force| {
-                    let weight = Weight { node: node as u32, share: 0.0, twist: force };
-                    add_weight(&mut self.weights, &mut self.place_of, from, weight);
-                });
-            }
-        }
-        let nodes = scene.input.blocks.nodes_of(block);
-        let columns = &mut self.columns[block.index()];
-        let side = NodalSide {
-            weights: [from, self.weights.len() as u32],
-            block,
-            first: nodes.start as u32,
-            nodes: nodes.len() as u32,
-            column: (columns.len() / nodes.len()) as u32,
-        };
-        columns.resize(columns.len() + 3 * nodes.len(), Vec3::zeros());
-        for k in 0..3 {
-            let force = &mut columns[side.column(k)];
-            for weight in &self.weights[side.range()] {
-                force[weight.node as usize - nodes.start] += weight.column(&patch.axes, k);
-            }
-        }
-        side
-    }
-
-    /// Lets the solver answer for all blocks: velocities and U in place of forces.
-    pub(super) fn answer(&mut self, deformation: &dyn Deformation) {
+    /// Lets the solver answer for all blocks: velocities and U in place of forces, or slips and Pᵀ U; `start` are the velocities of all nodes.
+    pub(super) fn answer(&mut self, scene: &PatchScene, deformation: &dyn Deformation) {
         deformation.answer(&mut self.columns);
+        let blocks = self.blocks.par_iter_mut().zip(&mut self.columns).enumerate();
+        blocks.with_min_len(GRAIN_BODIES).for_each(|(block, (sides, columns))| {
+            if !columns.is_empty() {
+                let nodes = scene.input.blocks.nodes_of(BlockId(block as u32));
+                sides.keep_slips(&scene.input.velocity[nodes], columns);
+            }
+        });
+    }
+
+    /// Each side: its block, the number of its patch, and where it is.
+    pub(super) fn each_side(&self, mut work: impl FnMut(BlockId, u32, NodalSide)) {
+        for (block, found) in (0..).map(BlockId).zip(&self.blocks) {
+            for (place, side) in (0..).zip(&found.sides) {
+                work(block, side.patch, NodalSide { block, place, rows: found.rows as u32 });
+            }
+        }
     }
 
     /// Pᵀ v.
-    pub(super) fn slip(&self, side: &NodalSide, axes: &[Vec3; 3]) -> Vec3 {
-        let (mut shift, mut twist) = (Vec3::zeros(), 0.0);
-        let velocity = &self.columns[side.block.index()];
-        for weight in &self.weights[side.range()] {
-            let v = &velocity[(weight.node - side.first) as usize];
-            shift += weight.share * v;
-            twist += weight.twist.dot(v);
+    pub(super) fn slip(&self, side: &NodalSide) -> Vec3 {
+        let (block, velocity) = (&self.blocks[side.block.index()], &self.columns[side.block.index()]);
+        if block.has_slips() {
+            velocity[side.place as usize]
+        } else {
+            block.slip(side.place as usize, velocity)
         }
-        Vec3::new(axes[0].dot(&shift), axes[1].dot(&shift), twist)
     }
 
     /// Pᵀ U.
-    pub(super) fn flexibility(&self, side: &NodalSide, axes: &[Vec3; 3]) -> Mat3 {
+    pub(super) fn flexibility(&self, side: &NodalSide) -> Mat3 {
+        let (block, columns) = (&self.blocks[side.block.index()], &self.columns[side.block.index()]);
         let mut found = Mat3::zeros();
-        for (l, mut column) in found.column_iter_mut().enumerate() {
-            let answers = &self.columns[side.block.index()][side.column(l)];
-            for weight in &self.weights[side.range()] {
-                let u = &answers[(weight.node - side.first) as usize];
-                for k in 0..3 {
-                    column[k] += weight.column(axes, k).dot(u);
-                }
-            }
+        for (k, mut column) in found.column_iter_mut().enumerate() {
+            let answers = &columns[side.column(k)];
+            let slip = match block.has_slips() {
+                true => answers[side.place as usize],
+                false => block.slip(side.place as usize, answers),
+            };
+            column.copy_from(&slip);
         }
         0.5 * (found + found.transpose())
     }
@@ -167,32 +164,139 @@ impl Nodal {
         &mut self.columns
     }
 
-    /// Does something with the velocities of each block that deforms.
-    pub(super) fn each_velocity(&mut self, all: &BlockSet, mut work: impl FnMut(&mut [Vec3])) {
-        for &block in &self.blocks {
-            work(&mut self.columns[block.index()][..all.nodes_of(block).len()]);
+    /// Does something with the velocities or slips of each block that deforms, and with those at the start of the step.
+    pub(super) fn each_velocity(&mut self, mut work: impl FnMut(&mut [Vec3], &[Vec3])) {
+        for (block, columns) in self.blocks.iter().zip(&mut self.columns) {
+            work(&mut columns[..block.rows], &block.start);
+        }
+    }
+}
+
+impl BlockSides {
+    fn begin(&mut self) {
+        self.weights.clear();
+        self.sides.clear();
+        self.start.clear();
+        self.rows = 0;
+    }
+
+    /// Whether columns have slips in place of velocities.
+    fn has_slips(&self) -> bool {
+        self.rows == self.sides.len()
+    }
+
+    fn weights_of(&self, place: usize) -> &[Weight] {
+        let from = place.checked_sub(1).map_or(0, |before| self.sides[before].end);
+        &self.weights[from as usize..self.sides[place].end as usize]
+    }
+
+    /// Adds the forces of the facets of a patch to the nodes, but for its friction.
+    fn add_forces(&self, block: BlockId, found: &SideScene, run: &[Place], nodes: &mut [Vec3]) {
+        let first = found.scene.input.blocks.nodes_of(block).start;
+        for &(_, _, t) in run {
+            let FacetForce { push, shear, .. } = found.forces[t as usize];
+            let is_owner = found.scene.owner(t) == block;
+            let force = if is_owner { push + shear } else { -(push + shear) };
+            each_weight(&found.scene, t, is_owner, |node, w| nodes[node - first] += w * force);
         }
     }
 
-    /// Velocities from those at the start of the step and now.
-    pub(super) fn change(&mut self, all: &BlockSet, start: &[Vec3], change: impl Fn(Vec3, Vec3) -> Vec3) {
-        for &block in &self.blocks {
-            let velocity = &mut self.columns[block.index()];
-            for (v, from) in velocity.iter_mut().zip(&start[all.nodes_of(block)]) {
-                *v = change(*from, *v);
+    /// Adds a side, and the forces of its friction as columns.
+    fn add(
+        &mut self,
+        block: BlockId,
+        found: &SideScene,
+        (number, patch, run): (u32, &ContactPatch, &[Place]),
+        columns: &mut Vec<Vec3>,
+    ) {
+        let SideScene { scene, forces, own_m2 } = found;
+        let nodes = scene.input.blocks.nodes_of(block);
+        self.place_of.resize(nodes.len(), 0);
+        let from = self.weights.len() as u32;
+        for &(_, _, t) in run {
+            let is_owner = scene.owner(t) == block;
+            let arm = forces[t as usize].center - patch.center;
+            let twist = patch.normal.cross(&arm) / patch.surface.radius_m;
+            each_weight(scene, t, is_owner, |node, w| {
+                let share = w / patch.pressure;
+                self.add_weight(from, (node - nodes.start, share, share * twist));
+            });
+            let (pressure, own_m2) = (scene.sums(t).pressure, own_m2[t as usize].trace());
+            if pressure > 0.0 {
+                let couple = pressure / patch.pressure * own_m2 / patch.surface.radius_m * patch.normal;
+                scene.couples().each_force(scene.touch(t), is_owner, &couple, |node, force| {
+                    self.add_weight(from, (node - nodes.start, 0.0, force));
+                });
             }
         }
+        let axes = [patch.axes[0], patch.axes[1]];
+        self.sides.push(Side { patch: number, end: self.weights.len() as u32, axes });
+        for k in 0..3 {
+            let first = columns.len();
+            columns.resize(first + nodes.len(), Vec3::zeros());
+            for weight in &self.weights[from as usize..] {
+                columns[first + weight.node as usize] +=
+                    if k < 2 { weight.share * axes[k] } else { weight.twist };
+            }
+        }
+    }
+
+    /// Adds to the weight of a node, those of its patch beginning at `from`.
+    fn add_weight(&mut self, from: u32, (node, share, twist): (usize, f64, Vec3)) {
+        let (place, node) = (&mut self.place_of[node], node as u32);
+        match self.weights.get_mut(*place as usize).filter(|other| *place >= from && other.node == node) {
+            Some(other) => {
+                other.share += share;
+                other.twist += twist;
+            }
+            None => {
+                *place = self.weights.len() as u32;
+                self.weights.push(Weight { node, share, twist });
+            }
+        }
+    }
+
+    /// Puts slips in place of velocities, and Pᵀ U in place of U, where there are no more sides than nodes.
+    fn keep_slips(&mut self, start_m_s: &[Vec3], columns: &mut Vec<Vec3>) {
+        let (nodes, sides) = (start_m_s.len(), self.sides.len());
+        if sides > nodes {
+            self.rows = nodes;
+            self.start.extend_from_slice(start_m_s);
+            return;
+        }
+        self.rows = sides;
+        let (mut found, mut start) = (std::mem::take(&mut self.found), std::mem::take(&mut self.start));
+        for k in 0..=3 * sides {
+            found.clear();
+            found.extend((0..sides).map(|place| self.slip(place, &columns[k * nodes..][..nodes])));
+            columns[k * sides..][..sides].copy_from_slice(&found);
+        }
+        columns.truncate((1 + 3 * sides) * sides);
+        start.extend((0..sides).map(|place| self.slip(place, start_m_s)));
+        (self.found, self.start) = (found, start);
+    }
+
+    /// Pᵀ v of one side.
+    fn slip(&self, place: usize, velocity: &[Vec3]) -> Vec3 {
+        let (mut shift, mut twist) = (Vec3::zeros(), 0.0);
+        for weight in self.weights_of(place) {
+            let v = &velocity[weight.node as usize];
+            shift += weight.share * v;
+            twist += weight.twist.dot(v);
+        }
+        let [first, second] = &self.sides[place].axes;
+        Vec3::new(first.dot(&shift), second.dot(&shift), twist)
     }
 }
 
 impl NodalSide {
     /// Adds what a force changes the velocities of its block by, the first of the columns.
     pub(super) fn push(&self, columns: &mut [Vec3], force: &Vec3, part: f64) {
-        let nodes = self.nodes as usize;
-        let (velocity, answers) = columns.split_at_mut(nodes);
-        let start = self.column(0).start - nodes;
-        let (first, rest) = answers[start..start + 3 * nodes].split_at(nodes);
-        let (second, third) = rest.split_at(nodes);
+        let rows = self.rows as usize;
+        let (velocity, answers) = columns.split_at_mut(rows);
+        let start = self.column(0).start - rows;
+        let (first, rest) = answers[start..start + 3 * rows].split_at(rows);
+        let (second, third) = rest.split_at(rows);
         let force = part * force;
         for (((v, a), b), c) in velocity.iter_mut().zip(first).zip(second).zip(third) {
             *v += force.x * a + force.y * b + force.z * c;
@@ -201,38 +305,13 @@ impl NodalSide {
 
     /// The velocities of its block among the columns.
     pub(super) fn velocities<'a>(&self, columns: &'a mut [Vec3]) -> &'a mut [Vec3] {
-        &mut columns[..self.nodes as usize]
+        &mut columns[..self.rows as usize]
     }
 
-    fn range(&self) -> std::ops::Range<usize> {
-        self.weights[0] as usize..self.weights[1] as usize
-    }
-
+    /// What velocities change by with the k-th component of the friction of this side.
     fn column(&self, k: usize) -> std::ops::Range<usize> {
-        let start = (self.column as usize + k) * self.nodes as usize;
-        start..start + self.nodes as usize
-    }
-}
-
-impl Weight {
-    /// Force on the node for a unit of the k-th component of friction.
-    fn column(&self, axes: &[Vec3; 3], k: usize) -> Vec3 {
-        if k < 2 { self.share * axes[k] } else { self.twist }
-    }
-}
-
-/// Adds to the weight of a node, those of a patch beginning at `from`; `place_of` says where a node's may be.
-fn add_weight(weights: &mut Vec<Weight>, place_of: &mut [u32], from: u32, weight: Weight) {
-    let place = &mut place_of[weight.node as usize];
-    match weights.get_mut(*place as usize).filter(|other| *place >= from && other.node == weight.node) {
-        Some(other) => {
-            other.share += weight.share;
-            other.twist += weight.twist;
-        }
-        None => {
-            *place = weights.len() as u32;
-            weights.push(weight);
-        }
+        let start = (1 + 3 * self.place as usize + k) * self.rows as usize;
+        start..start + self.rows as usize
     }
 }
 

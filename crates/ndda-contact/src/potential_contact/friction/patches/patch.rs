@@ -18,8 +18,18 @@ const TIE: f64 = 1e-6;
 pub(super) struct PatchSummary {
     pub owner: BlockId,
     pub target: BlockId,
-    /// Whether there is friction on it.
+    /// Whether there is friction on it, and the most [N].
     pub has_friction: bool,
+    pub most_n: f64,
+    /// Change of its friction that does not matter to the blocks [N].
+    pub tolerance_n: f64,
+}
+
+impl PatchSummary {
+    /// Whether its friction changes by less than what matters to the blocks, whatever its slip: a block has many such patches along its edges.
+    pub(super) fn is_slight(&self) -> bool {
+        2.0 * self.most_n <= self.tolerance_n
+    }
 }
 
 /// How far a step moved the nodes, and what touched meanwhile.
@@ -98,7 +108,8 @@ impl ContactPatch {
     }
 
     pub(super) fn summary(&self) -> PatchSummary {
-        PatchSummary { owner: self.owner, target: self.target, has_friction: self.has_friction() }
+        let (has_friction, most_n) = (self.has_friction(), self.surface.most_n);
+        PatchSummary { owner: self.owner, target: self.target, has_friction, most_n, tolerance_n: 0.0 }
     }
 
     /// Whether there is friction on it.

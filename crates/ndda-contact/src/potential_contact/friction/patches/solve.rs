@@ -12,13 +12,13 @@
 //! patch by patch (Gauss–Seidel), from the friction of the last step, and for all together where that takes long (`newton.rs`). For blocks that
 //! deform Δt M⁻¹ is how their nodes answer within the whole step, elasticity included (`nodal.rs`).
 
-use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
+use ndda_mesh::{BlockId, Mat3, Vec3};
 
 use crate::friction::patches::limit_surface::LimitSurface;
 use crate::friction::patches::nodal::{Nodal, NodalSide};
-use crate::friction::patches::patch::ContactPatch;
+use crate::friction::patches::patch::{ContactPatch, PatchSummary};
 use crate::friction::patches::solve::newton::Newton;
-use crate::model::Body;
+use crate::model::{Body, FaceMemory};
 
 /// γ of Alexander's method.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
@@ -31,10 +31,10 @@ const LOCAL_TOLERANCE: f64 = 0.1;
 const REGULAR: f64 = 1e-9;
 /// Sweeps over all patches, and patches looked at in them where these are few.
 const MOST_SWEEPS: usize = 100;
-const MOST_VISITS: usize = 20_000;
+const MOST_VISITS: usize = 10_000;
 
 /// Fewest sweeps before Newton's method for all patches together, and its steps, a sweep after each: where these do not do, sweeps alone go on.
-const SWEEPS_ALONE: usize = 16;
+const SWEEPS_ALONE: usize = 8;
 const NEWTON_STEPS: usize = 20;
 
 /// Sweeps before Newton's method: few patches are found sooner by sweeps, many hardly at all.
@@ -76,7 +76,7 @@ pub(super) struct CoupledPatch {
 impl CoupledPatch {
     /// A patch with its friction of the last step; none where nothing it touches can move.
     pub(super) fn new(
-        (number, patch): (u32, &ContactPatch),
+        (number, patch, tolerance_n): (u32, &ContactPatch, f64),
         (bodies, nodal): (&[Body], &Nodal),
         sides: [Option<NodalSide>; 2],
         dt_s: f64,
@@ -92,11 +92,12 @@ impl CoupledPatch {
             arms,
             sides,
             surface,
+            tolerance_n,
             ..Self::default()
         };
         for ((body, arm), side) in [own, other].into_iter().zip(arms).zip(&sides) {
             found.flexibility += match side {
-                Some(side) => nodal.flexibility(side, &axes),
+                Some(side) => nodal.flexibility(side),
                 None => dt_s * found.flexibility_of(body, &arm),
             };
         }
@@ -127,7 +128,7 @@ impl CoupledPatch {
     /// (V₁, V₂, Ω r).
     fn slip(&self, motion: &Motion) -> Vec3 {
         let of = |block: BlockId, k: usize| match &self.sides[k] {
-            Some(side) => motion.nodal.slip(side, &self.axes),
+            Some(side) => motion.nodal.slip(side),
             None => self.slip_of(&motion.bodies[block.index()], &self.arms[k]),
         };
         of(self.owner, 0) - of(self.target, 1)
@@ -177,14 +178,31 @@ impl CoupledPatch {
         }
     }
 
+    /// Friction of a patch that is [slight](PatchSummary::is_slight): it opposes the slip of blocks that move as a whole.
+    pub(super) fn slight_friction(&mut self, bodies: &[Body]) {
+        let of = |block: BlockId, k: usize| self.slip_of(&bodies[block.index()], &self.arms[k]);
+        let slip = of(self.owner, 0) - of(self.target, 1);
+        self.force = self.surface.held_back(-(self.stiffness * slip));
+        self.first = self.force;
+    }
+
     /// Turn of the owner against the target about the normal in the step, at the mean of the spins at both ends.
     pub(super) fn turn_rad(&self, start: &[Body], end: &[Body], dt_s: f64) -> f64 {
         let spin = |block: BlockId| start[block.index()].spin_rad_s + end[block.index()].spin_rad_s;
         0.5 * dt_s * self.axes[2].dot(&(spin(self.owner) - spin(self.target)))
     }
 
+    /// Tells a patch what friction has been found.
+    pub(super) fn hand_over(&self, patch: &mut ContactPatch, (start, end): (&[Body], &[Body]), dt_s: f64) {
+        let (force_n, torque_n_m, slides) = self.friction();
+        (patch.force_n, patch.torque_n_m) = (force_n, torque_n_m);
+        patch.turn_rad = Some(self.turn_rad(start, end, dt_s));
+        patch.memory =
+            FaceMemory { force_n, torque_n_m, slides, normal: patch.normal, ..FaceMemory::default() };
+    }
+
     /// Friction of both stages: force [N] and torque about the normal [N m], and whether it is all that there may be.
-    pub(super) fn friction(&self) -> (Vec3, f64, bool) {
+    fn friction(&self) -> (Vec3, f64, bool) {
         let force = (1.0 - GAMMA) * self.first + GAMMA * self.force;
         let along = self.axes[0] * force.x + self.axes[1] * force.y;
         let slides = along.norm() >= (1.0 - 1e-6) * self.surface.most_n;
@@ -192,149 +210,144 @@ impl CoupledPatch {
     }
 }
 
+/// Friction is found when no patch changes its own by more than this part of the largest on both of its blocks.
+pub(super) fn tolerance(is_iterated: bool, tolerance: f64) -> f64 {
+    if is_iterated { ITERATED_TOLERANCE } else { tolerance }
+}
+
+/// A change of friction matters by what else acts on both blocks: the lesser of both largest, which `most_n` is room for.
+pub(super) fn find_tolerances(
+    patches: &mut [PatchSummary],
+    bodies: &[Body],
+    tolerance: f64,
+    most_n: &mut Vec<f64>,
+) {
+    most_n.clear();
+    most_n.resize(bodies.len(), 0.0);
+    for patch in patches.iter().filter(|patch| patch.has_friction) {
+        for block in [patch.owner.index(), patch.target.index()] {
+            most_n[block] = most_n[block].max(patch.most_n);
+        }
+    }
+    for patch in patches {
+        let of = |block: BlockId| {
+            let is_held = bodies[block.index()].mass_kg.is_infinite();
+            if is_held { f64::INFINITY } else { most_n[block.index()] }
+        };
+        patch.tolerance_n = tolerance * of(patch.owner).min(of(patch.target));
+    }
+}
+
+/// What a search for friction came to.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Search {
+    /// Sweeps over all patches.
+    pub sweeps: usize,
+    /// Largest change of a friction in the last sweep, over its tolerance; zero where friction was found.
+    pub left: f64,
+}
+
 /// All that moves.
 pub(super) struct Motion<'a> {
-    pub blocks: &'a BlockSet,
-    /// Of the nodes, at the start of the step [m/s].
-    pub start: &'a [Vec3],
     pub bodies: &'a mut [Body],
     pub nodal: &'a mut Nodal,
     pub dt_s: f64,
     /// Whether the solver compares forces of one evaluation with the next.
     pub is_iterated: bool,
-    /// Friction is found when no patch changes its own by more than this part of μN, or of the largest on both of its blocks.
-    pub tolerance: f64,
-    /// Largest friction that a patch of each block can carry [N].
-    pub most_n: &'a mut Vec<f64>,
     /// When each block was pushed last by more than a tolerance.
     pub pushed: &'a mut Vec<u32>,
-    /// Patches whose friction matters.
-    pub active: &'a mut Vec<u32>,
     /// Sweeps before Newton's method.
     pub alone: usize,
 }
 
-/// Finds the friction of all patches; `motion` comes with the velocities at the end of the step under all loads, normal forces and the patches'
-/// friction of the last step, `start` with those at its start. Gives the sweeps.
+/// Finds the friction of patches that are not slight; `motion` comes with the velocities at the end of the step under all loads, normal forces and
+/// the patches' friction of the last step, `start` with those at its start.
 pub(super) fn solve(
     patches: &mut [CoupledPatch],
     start: &[Body],
     (motion, newton): (&mut Motion, &mut Newton),
-) -> usize {
-    motion.set_tolerances(patches);
+) -> Search {
     motion.change(start, |from, to| from + GAMMA * (to - from));
     let first = solve_stage(patches, motion, newton);
     motion.change(start, |from, to| from + (to - from) / GAMMA);
     patches.iter_mut().for_each(|patch| patch.first = patch.force);
-    first + solve_stage(patches, motion, newton)
+    let second = solve_stage(patches, motion, newton);
+    Search { sweeps: first.sweeps + second.sweeps, left: first.left.max(second.left) }
 }
 
 impl Motion<'_> {
-    /// A change of friction matters by what else acts on both blocks: the lesser of both largest.
-    fn set_tolerances(&mut self, patches: &mut [CoupledPatch]) {
-        self.most_n.clear();
-        self.most_n.resize(self.bodies.len(), 0.0);
-        for patch in &*patches {
-            for block in [patch.owner.index(), patch.target.index()] {
-                self.most_n[block] = self.most_n[block].max(patch.surface.most_n);
-            }
-        }
-        let tolerance = if self.is_iterated { ITERATED_TOLERANCE } else { self.tolerance };
-        for patch in &mut *patches {
-            let of = |block: BlockId| {
-                let is_held = self.bodies[block.index()].mass_kg.is_infinite();
-                if is_held { f64::INFINITY } else { self.most_n[block.index()] }
-            };
-            patch.tolerance_n = tolerance * of(patch.owner).min(of(patch.target));
-        }
-        self.active.clear();
-        self.active.extend((0..).zip(patches).filter(|(_, patch)| !patch.is_slight()).map(|(k, _)| k));
-    }
-
     fn change(&mut self, start: &[Body], change: impl Fn(Vec3, Vec3) -> Vec3) {
         for (from, to) in start.iter().zip(&mut *self.bodies) {
             to.velocity_m_s = change(from.velocity_m_s, to.velocity_m_s);
             to.spin_rad_s = change(from.spin_rad_s, to.spin_rad_s);
         }
-        self.nodal.change(self.blocks, self.start, change);
+        self.nodal.each_velocity(|velocities, start| {
+            velocities.iter_mut().zip(start).for_each(|(to, from)| *to = change(*from, *to));
+        });
     }
 }
 
 /// One of both minima.
-fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, newton: &mut Newton) -> usize {
+fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, newton: &mut Newton) -> Search {
     let time_s = GAMMA * motion.dt_s;
     motion.pushed.clear();
     motion.pushed.resize(motion.bodies.len(), 0);
-    let mut now = 0;
+    let (mut now, mut left) = (0, 0.0);
     let most_sweeps =
         if motion.is_iterated { ITERATED_SWEEPS } else { MOST_SWEEPS.max(2 * sweeps_alone(patches.len())) };
     for sweep in 0..most_sweeps {
-        let mut changes = false;
-        let active = std::mem::take(motion.active);
+        left = 0.0;
         let mut advance = |patch: &mut CoupledPatch| {
             now += 1;
-            changes |= patch.advance(motion, time_s, (now, sweep == 0));
+            left = patch.advance(motion, time_s, (now, sweep == 0)).max(left);
         };
-        if sweep == 0 {
+        if sweep % 2 == 0 {
             patches.iter_mut().for_each(&mut advance);
-        } else if sweep % 2 == 0 {
-            active.iter().for_each(|k| advance(&mut patches[*k as usize]));
         } else {
-            active.iter().rev().for_each(|k| advance(&mut patches[*k as usize]));
+            patches.iter_mut().rev().for_each(&mut advance);
         }
-        *motion.active = active;
-        if !changes {
-            return sweep;
+        if left == 0.0 {
+            return Search { sweeps: sweep, left };
         }
         if sweep + 1 == motion.alone {
-            newton.begin(patches, motion.active, motion.bodies.len());
+            newton.begin(patches, motion.bodies.len());
         }
         if (motion.alone..=motion.alone + NEWTON_STEPS).contains(&(sweep + 1)) {
             newton.step(patches, motion, time_s);
         }
     }
-    most_sweeps
+    Search { sweeps: most_sweeps, left }
 }
 
 impl CoupledPatch {
-    /// Whether its friction changes by less than what matters to the blocks, whatever its slip: a block has many such patches along its edges.
-    fn is_slight(&self) -> bool {
-        2.0 * self.surface.most_n <= self.tolerance_n
-    }
-
-    /// Friction of this patch while that of the others stays; whether it had to change.
-    fn advance(&mut self, motion: &mut Motion, time_s: f64, (now, is_first): (u32, bool)) -> bool {
+    /// Friction of this patch while that of the others stays; by how many tolerances it had to change, zero where by less than one.
+    fn advance(&mut self, motion: &mut Motion, time_s: f64, (now, is_first): (u32, bool)) -> f64 {
         let pushed = motion.pushed[self.owner.index()].max(motion.pushed[self.target.index()]);
         if !is_first && pushed <= self.seen {
-            return false;
+            return 0.0;
         }
         self.seen = now;
         let slip = self.slip(motion);
         let free_slip = slip - GAMMA * (self.flexibility * self.force);
         let change_n = (self.stiffness * (free_slip - self.free_slip)).amax() / GAMMA;
         if !is_first && self.is_found && change_n <= self.tolerance_n {
-            return false;
+            return 0.0;
         }
         (self.free_slip, self.is_found) = (free_slip, true);
         let stiffness = self.stiffness / GAMMA;
-        let force = if self.is_slight() {
-            self.surface.held_back(-(stiffness * free_slip))
-        } else {
-            let (start, tolerance_n) = ((&free_slip, &slip), LOCAL_TOLERANCE * self.tolerance_n);
-            let (force, curvature) = self.surface.friction(&stiffness, start, tolerance_n, is_first);
-            self.curvature = curvature;
-            force
-        };
+        let (start, tolerance_n) = ((&free_slip, &slip), LOCAL_TOLERANCE * self.tolerance_n);
+        let (force, curvature) = self.surface.friction(&stiffness, start, tolerance_n, is_first);
+        self.curvature = curvature;
         let change = force - self.force;
         self.force = force;
         self.push(motion, &change, time_s);
         if change.amax() <= self.tolerance_n {
-            return false;
+            return 0.0;
         }
         for block in [self.owner, self.target] {
             motion.pushed[block.index()] = now;
         }
-        true
+        change.amax() / self.tolerance_n
     }
 }
 

@@ -25,8 +25,6 @@ const GRAIN_PATCHES: usize = 256;
 /// One patch in the linear system of Newton's method.
 #[derive(Clone, Copy, Default)]
 struct Row {
-    /// Its number.
-    patch: u32,
     /// Change of its friction.
     change: Vec3,
     /// P.
@@ -52,7 +50,7 @@ impl KeptVelocities {
         bodies.clear();
         bodies.extend(motion.bodies.iter().map(|body| [body.velocity_m_s, body.spin_rad_s]));
         nodes.clear();
-        motion.nodal.each_velocity(motion.blocks, |velocities| nodes.extend_from_slice(velocities));
+        motion.nodal.each_velocity(|velocities, _| nodes.extend_from_slice(velocities));
     }
 
     fn put_back(&self, motion: &mut Motion) {
@@ -60,7 +58,7 @@ impl KeptVelocities {
             [body.velocity_m_s, body.spin_rad_s] = *kept;
         }
         let mut left = &self.nodes[..];
-        motion.nodal.each_velocity(motion.blocks, |velocities| {
+        motion.nodal.each_velocity(|velocities, _| {
             let (first, rest) = left.split_at(velocities.len());
             velocities.copy_from_slice(first);
             left = rest;
@@ -91,15 +89,14 @@ impl CoupledPatch {
 }
 
 impl Newton {
-    /// Takes the patches of a stage whose friction matters.
-    pub(super) fn begin(&mut self, patches: &[CoupledPatch], active: &[u32], blocks: usize) {
+    /// Takes the patches of a stage.
+    pub(super) fn begin(&mut self, patches: &[CoupledPatch], blocks: usize) {
         self.before = None;
         self.rows.clear();
-        self.rows.extend(active.iter().map(|&patch| Row { patch, ..Row::default() }));
+        self.rows.resize(patches.len(), Row::default());
         self.start.clear();
         self.start.resize(blocks + 2, 0);
-        let each = || self.rows.iter().map(|row| &patches[row.patch as usize]);
-        for patch in each() {
+        for patch in patches {
             self.start[patch.owner.index() + 2] += 1;
             self.start[patch.target.index() + 2] += 1;
         }
@@ -108,7 +105,7 @@ impl Newton {
         }
         self.sides.clear();
         self.sides.resize(2 * self.rows.len(), (0, 0));
-        for (row, patch) in (0..).zip(each()) {
+        for (row, patch) in (0..).zip(patches) {
             for (k, block) in [(0, patch.owner), (1, patch.target)] {
                 let place = &mut self.start[block.index() + 1];
                 self.sides[*place as usize] = (row, k);
@@ -119,19 +116,17 @@ impl Newton {
 
     /// One of its steps, from what the last visit of each patch has found.
     pub(super) fn step(&mut self, patches: &mut [CoupledPatch], motion: &mut Motion, time_s: f64) {
-        let left = |row: &mut Row| {
-            let patch = &patches[row.patch as usize];
+        let left = |(row, patch): (&mut Row, &CoupledPatch)| {
             let free_slip = patch.slip(motion) - GAMMA * (patch.flexibility * patch.force);
             (row.residual, row.change) = (patch.free_slip - free_slip, Vec3::zeros());
             row.response = patch.response();
             (row.direction, row.cause) = (Vec3::zeros(), Vec3::zeros());
         };
-        self.rows.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(left);
+        self.rows.par_iter_mut().zip(&*patches).with_min_len(GRAIN_PATCHES).for_each(left);
         self.kept.keep(motion);
         self.iterate(patches, motion, time_s);
         self.kept.put_back(motion);
-        for row in &mut self.rows {
-            let patch = &mut patches[row.patch as usize];
+        for (row, patch) in self.rows.iter_mut().zip(&mut *patches) {
             patch.force += row.change;
             row.direction = row.change;
             // Its friction is to be looked at again, unless it sticks for sure.
@@ -142,8 +137,7 @@ impl Newton {
             patch.seen = 0;
         }
         self.push(patches, motion, time_s, false);
-        for row in &self.rows {
-            let patch = &patches[row.patch as usize];
+        for patch in &*patches {
             motion.pushed[patch.owner.index()] = motion.pushed[patch.owner.index()].max(1);
             motion.pushed[patch.target.index()] = motion.pushed[patch.target.index()].max(1);
         }
@@ -170,8 +164,8 @@ impl Newton {
                 row.cause = row.residual + back * row.cause;
             });
             self.push(patches, motion, time_s, true);
-            self.rows.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(|row| {
-                let patch = &patches[row.patch as usize];
+            let rows = self.rows.par_iter_mut().zip(patches).with_min_len(GRAIN_PATCHES);
+            rows.for_each(|(row, patch)| {
                 row.product = patch.slip(motion) + row.cause - GAMMA * (patch.flexibility * row.direction);
             });
             let work: f64 = self.rows.iter().map(|row| row.product.dot(&row.direction)).sum();
@@ -189,9 +183,9 @@ impl Newton {
     /// r·P r, and whether no patch would change its friction by what matters.
     fn left(&self, patches: &[CoupledPatch]) -> (f64, bool) {
         let (mut sum, mut is_found) = (0.0, true);
-        for row in &self.rows {
+        for (row, patch) in self.rows.iter().zip(patches) {
             let change = row.response * row.residual;
-            is_found &= change.amax() <= FOUND * patches[row.patch as usize].tolerance_n;
+            is_found &= change.amax() <= FOUND * patch.tolerance_n;
             sum += row.residual.dot(&change);
         }
         (sum, is_found)
@@ -206,18 +200,13 @@ impl Newton {
             let sides = &self.sides[range[0] as usize..range[1] as usize];
             if let (true, Some(&(row, k))) = (from_rest, sides.first()) {
                 (body.velocity_m_s, body.spin_rad_s) = (Vec3::zeros(), Vec3::zeros());
-                if let Some(side) = &patches[rows[row as usize].patch as usize].sides[usize::from(k)] {
+                if let Some(side) = &patches[row as usize].sides[usize::from(k)] {
                     side.velocities(columns).fill(Vec3::zeros());
                 }
             }
             for &(row, k) in sides {
-                let row = &rows[row as usize];
-                patches[row.patch as usize].push_side(
-                    usize::from(k),
-                    (body, columns),
-                    &row.direction,
-                    (time_s, part),
-                );
+                let (patch, direction) = (&patches[row as usize], &rows[row as usize].direction);
+                patch.push_side(usize::from(k), (body, columns), direction, (time_s, part));
             }
         });
     }
