@@ -124,7 +124,7 @@ pub enum Verb {
     /// Find the cheapest settings that reach an error: integrator, step, potential, kind of body and penalty.
     ///
     /// Tries settings by short runs that double their effort, judges them by the closed form of the scene or by certified
-    /// runs of it, and prints the front of error against time, the settings as --set lines, and what was tried. Writes
+    /// runs of it, and prints the best settings, as --set lines, too, and what was tried. Writes
     /// tune.json. The same command goes on where it was interrupted. How it searches: docs/guide/certify.md.
     Tune(TuneArgs),
     /// Draw joints on a stereonet: poles, mean and concentration of each set, and which may slide or topple out of a slope.
@@ -303,14 +303,14 @@ pub struct HowArgs {
     /// Exit with code 1 when a run is labelled inaccurate or sensitive, or a check is beyond its limit.
     #[arg(long)]
     pub strict: bool,
-    /// After an accurate run, run the scene once more from a hardly different start, to see whether small differences grow, which doubles the
+    /// After an accurate run, run the scene once more from a slightly different start, to see whether small differences grow, which doubles the
     /// time: auto (where three or more blocks move), always or never.
     #[arg(long, value_name = "WHEN", default_value = "auto")]
     pub sensitivity: Sensitivity,
     /// Print nothing but errors.
     #[arg(long, short)]
     pub quiet: bool,
-    /// Print all tables at the end: time by stage, every check, monitors and blocks. They are in run.log in any case.
+    /// Print all tables at the end: computing time, every check, monitors and blocks. They are in run.log in any case.
     #[arg(long, short, conflicts_with_all = ["quiet", "json"])]
     pub verbose: bool,
     /// Print events and results as JSON, one object per line (see docs/reference/json.md).

@@ -59,6 +59,23 @@ fn a_scene_is_measured_and_drawn() {
 /// A tetrahedron of edges 2 m along the axes.
 const OBJ: &str = "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
+/// `ndda mesh`, `check` and `run` say alike that nothing is held.
+#[test]
+fn blocks_that_nothing_holds_are_warned_of_by_all_who_build_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let falling = SCENE.replace("contact: Off,", "contact: Off, gravity_m_s2: (0, 0, -9.81),");
+    for (text, expected) in [(SCENE.to_string(), 0), (falling, 1)] {
+        let scene = written(folder.path(), "s.ron", &text);
+        for verb in ["mesh", "check", "run"] {
+            let mut command = ndda();
+            command.arg(verb).arg(&scene).current_dir(folder.path());
+            let done = command.args(if verb == "check" { &[][..] } else { &["--force"] }).output().unwrap();
+            let said = String::from_utf8(done.stdout).unwrap() + &String::from_utf8(done.stderr).unwrap();
+            assert_eq!(said.matches("nothing is held").count(), expected, "{verb}: {said}");
+        }
+    }
+}
+
 #[test]
 fn a_closed_surface_is_measured_and_one_that_is_open_refused() {
     let folder = tempfile::tempdir().unwrap();

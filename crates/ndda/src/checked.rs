@@ -6,6 +6,7 @@ use std::path::Path;
 use ndda_io::summary::Chosen;
 use serde::Serialize;
 
+use crate::bodies::Bodies;
 use crate::bolt_report::BoltReports;
 use crate::build::RockReport;
 use crate::forecast::cost::Guess;
@@ -27,10 +28,9 @@ pub struct Checked<'a> {
     pub nodes: usize,
     /// Their tetrahedra.
     pub tets: usize,
-    /// Unknowns that are solved for.
-    pub unknowns: usize,
-    /// Distinct factors.
-    pub factors: usize,
+    /// How they may move.
+    #[serde(flatten)]
+    pub bodies: Bodies,
     /// Steps of the run.
     pub steps: u64,
     /// Longest step that contact allows [s].
@@ -54,15 +54,16 @@ pub struct Checked<'a> {
 
 impl fmt::Display for Checked<'_> {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { blocks, nodes, tets, unknowns, factors, steps, warnings, .. } = self;
+        let Self { blocks, bodies, nodes, tets, steps, warnings, .. } = self;
         let warnings = counted(*warnings, "warning", "warnings");
         writeln!(f, "{}: no errors, {warnings}", self.scene.display())?;
         let blocks = counted(*blocks, "block", "blocks");
         let tets = counted(*tets, "tetrahedron", "tetrahedra");
-        let unknowns = counted(*unknowns, "unknown", "unknowns");
-        let factors = counted(*factors, "factored matrix", "factored matrices");
-        write!(f, "{blocks}, {nodes} nodes, {tets}, {unknowns}, {factors}; ")?;
-        write!(f, "{}", counted(*steps as usize, "step", "steps"))?;
+        write!(
+            f,
+            "{blocks} ({bodies}), {nodes} nodes, {tets}; {}",
+            counted(*steps as usize, "step", "steps")
+        )?;
         self.rock.iter().try_for_each(|rock| write!(f, "\n{rock}"))?;
         write!(f, "{}", self.bolts)?;
         self.records.iter().try_for_each(|record| write!(f, "\nrecord {record}"))?;

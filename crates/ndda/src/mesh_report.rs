@@ -3,14 +3,16 @@
 use std::fmt;
 use std::path::Path;
 
+use ndda_io::scene::Scene;
 use ndda_mesh::quality::{Histogram, QualityReport, quality};
 use ndda_mesh::stats::stats;
 use ndda_mesh::validate::problems;
-use ndda_mesh::{BlockMesh, MeshError};
+use ndda_mesh::{BlockMesh, BlockSet, MeshError};
 use serde::Serialize;
 
 use crate::build::RockReport;
-use crate::forecast::step::AdvisedStep;
+use crate::forecast::held;
+use crate::forecast::step::{self, AdvisedStep};
 use crate::numbers::{counted, four_figures};
 
 /// Most bars of the histogram of volumes.
@@ -46,6 +48,9 @@ pub struct MeshReport {
     pub rock: Vec<RockReport>,
     /// Changes made by `--fix`.
     pub fixes: Vec<String>,
+    /// Blocks of a scene that nothing holds, or that may leave through the rim of the model.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
 }
 
 /// Volumes of blocks.
@@ -80,7 +85,14 @@ impl MeshReport {
             steps: Vec::new(),
             rock: Vec::new(),
             fixes: Vec::new(),
+            warnings: Vec::new(),
         }
+    }
+
+    /// Adds what the scene of the blocks says about them.
+    pub fn of_scene(&mut self, scene: &Scene, blocks: &BlockSet) {
+        self.steps = step::advise_materials(scene, blocks);
+        self.warnings = held::sentences(scene, blocks);
     }
 
     /// The report as JSON.
@@ -103,6 +115,7 @@ fn sizes(mut volumes: Vec<(f64, &str)>) -> BlockSizes {
 
 impl fmt::Display for MeshReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "warning: {warning}"))?;
         self.fixes.iter().try_for_each(|fix| writeln!(f, "fixed {fix}"))?;
         let Self { blocks, nodes, quality, triangles, volume_m3, block_size: size, .. } = self;
         let tets = counted(quality.tets, "tetrahedron", "tetrahedra");

@@ -89,6 +89,12 @@ pub struct Safety {
     pub remarks: Vec<String>,
     /// Wall-clock time, all calls together [s].
     pub wall_s: f64,
+    /// Trials among them that were known from earlier calls.
+    #[serde(skip)]
+    pub known_trials: usize,
+    /// Wall-clock time of these calls [s].
+    #[serde(skip)]
+    pub earlier_s: f64,
 }
 
 /// Schema of [`Safety`].

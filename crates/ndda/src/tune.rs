@@ -13,6 +13,7 @@ use crate::certify::Trial;
 use crate::certify::error::CertifyError;
 use crate::certify::plan::Plan;
 use crate::certify::runs::{Ended, read};
+use crate::judge::reasons;
 use crate::study::case::{Case, plain};
 use crate::study::error::StudyError;
 use crate::study::front::{Point, front};
@@ -307,7 +308,7 @@ impl Trials for Runner<'_> {
         };
         let label = &ended.summary.label;
         if !self.takes_inaccurate && label.word == LabelWord::Inaccurate {
-            let reason = format!("calls itself inaccurate: {}", label.reasons.join("; "));
+            let reason = format!("inaccurate: {}", reasons::in_a_line(&label.reasons));
             return Ok(Outcome::Failed { reason, is_final: false });
         }
         Ok(Outcome::Done { time_s: cost_s(&ended), error: self.metric.error(&ended)? })

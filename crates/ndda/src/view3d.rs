@@ -120,8 +120,11 @@ pub struct Written {
     pub size: (u32, u32),
     /// Blocks.
     pub blocks: usize,
-    /// Blocks that have moved, or in a scene may.
+    /// Blocks that have moved, as the run counts them, or in a scene may.
     pub moving: usize,
+    /// Blocks that can move, where a run says so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub movable: Option<usize>,
     /// Whether it is of a scene before its run.
     #[serde(skip)]
     pub is_scene: bool,
@@ -132,7 +135,7 @@ pub struct Written {
 
 impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { picture, frames, size: (width, height), blocks, moving, is_scene, joints } = self;
+        let Self { picture, frames, size: (width, height), blocks, moving, movable, is_scene, joints } = self;
         write!(f, "{}: {width} x {height} pixels, ", picture.display())?;
         if *frames > 1 {
             write!(f, "{frames} frames, ")?;
@@ -140,7 +143,12 @@ impl fmt::Display for Written {
         if let Some(joints) = joints {
             return write!(f, "{}", counted(*joints, "joint or set", "joints or sets"));
         }
-        write!(f, "{moving} of {blocks} blocks {}", if *is_scene { "may move" } else { "moved" })
+        match movable {
+            Some(movable) => {
+                write!(f, "{moving} of {} moved", counted(*movable, "movable block", "movable blocks"))
+            }
+            None => write!(f, "{moving} of {blocks} blocks {}", if *is_scene { "may move" } else { "moved" }),
+        }
     }
 }
 
@@ -169,7 +177,8 @@ pub fn draw(request: &Request, out: &Path) -> Result<Written, ViewError> {
         frames: film.moments.len(),
         size: request.look.size,
         blocks: film.moves.len(),
-        moving,
+        moving: film.moved.unwrap_or(moving),
+        movable: film.movable,
         is_scene: film.moments[0].time_s.is_none(),
     })
 }

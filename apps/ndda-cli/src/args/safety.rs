@@ -23,7 +23,7 @@ pub struct SafetyArgs {
     /// With `--by gravity`: where gravity is tilted to, as x,y,z [default: down the steepest plane that blocks stand on].
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub towards: Option<[f64; 3]>,
-    /// Relative width of the bracket.
+    /// How near the two factors of the answer have to be, relative to each other.
     #[arg(long, value_name = "ERROR", default_value_t = 0.01, value_parser = relative_error)]
     pub error: f64,
     /// Output folder [default: out/ and the name of the scene with _safety].

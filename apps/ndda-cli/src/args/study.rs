@@ -62,7 +62,7 @@ pub struct SweepArgs {
     /// Correlate two random axes: a,b=-0.5; may be repeated.
     #[arg(long, value_name = "A,B=R", allow_hyphen_values = true)]
     pub correlate: Vec<String>,
-    /// Find how much each random axis matters (Sobol' indices): samples times the number of axes and two.
+    /// Find how much each random axis matters (Sobol' indices), by samples × (axes + 2) runs.
     #[arg(long)]
     pub sensitivity: bool,
 }

@@ -20,10 +20,10 @@ pub struct CertifyArgs {
     /// More quantities: columns of history.csv or blocks, by name or its beginning.
     #[arg(long, value_delimiter = ',', value_name = "NAME")]
     pub of: Vec<String>,
-    /// Estimate the error of the mesh as well, by N meshes of half the cells each.
+    /// Estimate the error of the mesh as well, by N runs, each with cells half as large as before.
     #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "1", value_parser = clap::value_parser!(u32).range(0..=2))]
     pub mesh: u32,
-    /// Estimate the error of the penalty as well, by N contacts four times as stiff each.
+    /// Estimate the error of the penalty as well, by N runs, each with contact four times as stiff as before.
     #[arg(long, value_name = "N", num_args = 0..=1, default_value_t = 0, default_missing_value = "1", value_parser = clap::value_parser!(u32).range(0..=2))]
     pub penalty: u32,
     /// Where and how.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use ndda::bodies::Bodies;
 use ndda::bolt_report::BoltReports;
 use ndda::checked::Checked;
 use ndda::forecast::{cost, doubts, step};
@@ -41,8 +42,7 @@ pub fn check(args: &CheckArgs) -> u8 {
         blocks: blocks.len(),
         nodes: blocks.rest_position.len(),
         tets: blocks.tets.len(),
-        unknowns: simulation.unknowns(),
-        factors: simulation.factors(),
+        bodies: Bodies::of(simulation),
         steps: model.steps(),
         advised_step_s: advice.as_ref().map(|advice| advice.step_s),
         contact_stability: advice.as_ref(),

@@ -64,8 +64,7 @@ pub fn mesh(args: &MeshArgs) -> u8 {
     }
     match BlockSet::new(meshes) {
         Ok(blocks) => {
-            measured.steps =
-                input.scene.as_ref().map_or(Vec::new(), |s| forecast::step::advise_materials(s, &blocks));
+            input.scene.iter().for_each(|scene| measured.of_scene(scene, &blocks));
             finish(args, events, &measured, &input, &blocks)
         }
         Err(error) => {

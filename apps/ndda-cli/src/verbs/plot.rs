@@ -32,7 +32,8 @@ fn plot_or_list(args: &PlotArgs) -> Result<(String, Value), PlotError> {
     if args.columns.is_empty() {
         let tables = plot::columns(&args.inputs)?;
         let list = |table: &Columns| format!("{}: {}", table.file.display(), table.columns.join(", "));
-        let words = tables.iter().map(list).collect::<Vec<_>>().join("\n");
+        let words = tables.iter().map(list).collect::<Vec<_>>().join("\n")
+            + "\nto draw some of them: --columns NAME,NAME";
         return Ok((words, json!({"exit_code": exit::DONE, "tables": tables})));
     }
     let (inputs, columns) = (args.inputs.clone(), args.columns.clone());

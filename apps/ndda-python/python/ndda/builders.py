@@ -1000,7 +1000,8 @@ class DiscRule:
 class Discontinuity:
     """Something that cuts rock.
 
-    x is east, y north, z up; dip is below horizontal, its direction clockwise from north.
+    x is east, y north, z up; dip is below the plane of x and y, whatever gravity is, its direction clockwise
+    from north.
 
     Examples
     --------

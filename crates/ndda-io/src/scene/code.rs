@@ -55,11 +55,13 @@ pub enum Code {
     Inexact,
     /// Something has no effect.
     NoEffect,
+    /// Nothing holds blocks that are probably to be held.
+    NotHeld,
 }
 
 impl Code {
     /// All codes.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 26] = [
         Self::Unreadable,
         Self::Syntax,
         Self::Truncated,
@@ -85,6 +87,7 @@ impl Code {
         Self::UnitSlip,
         Self::Inexact,
         Self::NoEffect,
+        Self::NotHeld,
     ];
 }
 

@@ -65,10 +65,21 @@ pub struct SceneErrors {
 }
 
 impl SceneErrors {
-    /// All messages as text: `file:line:column`, advice, and with the feature `fancy` the source line and a mark.
+    /// All messages as text: `file:line:column`, advice, and with the feature `fancy` the source line and a mark. Of several messages in the
+    /// same words, the first is explained, and of the others only the places are said.
     pub fn render(&self, colour: bool) -> String {
         let mut out = String::new();
-        for diagnostic in &self.diagnostics {
+        let alike = |a: &Diagnostic, b: &Diagnostic| {
+            (a.severity, a.code, &a.message, &a.help) == (b.severity, b.code, &b.message, &b.help)
+        };
+        for (i, diagnostic) in self.diagnostics.iter().enumerate() {
+            if self.diagnostics[..i].contains(diagnostic) {
+                continue;
+            }
+            if self.diagnostics[..i].iter().any(|earlier| alike(earlier, diagnostic)) {
+                out.push_str(&format!("{}: as above\n", self.place(diagnostic)));
+                continue;
+            }
             out.push_str(&self.headline(diagnostic));
             match self.picture(diagnostic, colour) {
                 Some(picture) => out.push_str(&picture),
@@ -91,6 +102,11 @@ impl SceneErrors {
 
     /// `file:line:column: error[code]: path: message`.
     fn headline(&self, diagnostic: &Diagnostic) -> String {
+        format!("{}: {}\n", self.place(diagnostic), diagnostic.message)
+    }
+
+    /// `file:line:column: error[code]: path`.
+    fn place(&self, diagnostic: &Diagnostic) -> String {
         let word = match diagnostic.severity {
             Severity::Error => "error",
             Severity::Warning => "warning",
@@ -99,8 +115,8 @@ impl SceneErrors {
             let (line, column) = line_column(&self.text, span.start);
             format!(":{line}:{column}")
         });
-        let path = if diagnostic.path.is_empty() { String::new() } else { format!("{}: ", diagnostic.path) };
-        format!("{}{place}: {word}[{}]: {path}{}\n", self.file, diagnostic.code, diagnostic.message)
+        let path = if diagnostic.path.is_empty() { String::new() } else { format!(": {}", diagnostic.path) };
+        format!("{}{place}: {word}[{}]{path}", self.file, diagnostic.code)
     }
 }
 
@@ -116,4 +132,25 @@ impl std::error::Error for SceneErrors {}
 pub fn line_column(text: &str, offset: usize) -> (usize, usize) {
     let before = text.char_indices().take_while(|(i, _)| *i < offset).map(|(_, c)| c);
     before.fold((1, 1), |(line, column), c| if c == '\n' { (line + 1, 1) } else { (line, column + 1) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_errors_are_explained_once() {
+        let error = |path: &str, at: usize| {
+            Diagnostic::error(Code::OutOfRange, path, "-1 m: must be positive", Some(at..at + 2))
+                .with_help("give a value above 0 m")
+        };
+        let diagnostics = vec![error("a", 4), error("b", 11), error("b", 11)];
+        let errors = SceneErrors { file: "s.ron".into(), text: "(a: -1,\nb: -1)".into(), diagnostics };
+        let text = errors.render(false);
+        for (sentence, times) in
+            [("must be positive", 1), ("give a value above", 1), (": as above", 1), ("s.ron:2:4", 1)]
+        {
+            assert_eq!(text.matches(sentence).count(), times, "{sentence}: {text}");
+        }
+    }
 }

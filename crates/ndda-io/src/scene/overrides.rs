@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
-use crate::scene::locate::{self, Node, current_segments};
+use crate::scene::locate::{self, Node, current_segments, segments};
 use crate::scene::parameters;
 use crate::scene::suggest::suggest;
+use crate::scene::units;
 
 /// Keys whose value is a choice: what is inside cannot be written without saying which.
 const CHOICES: [&str; 6] = ["integrator", "contact", "reference", "shape", "on", "hold"];
@@ -30,10 +31,79 @@ fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
     if names.is_empty() || value.is_empty() {
         return Err(refuse("needs a path and a value; write --set time.step_s=1e-3".into()));
     }
+    if let Some((number, unit)) = value.split_once(char::is_whitespace)
+        && number.parse::<f64>().is_ok()
+        && units::may_be_unit(unit.trim())
+    {
+        let field = names.iter().rev().find(|name| name.parse::<usize>().is_err()).unwrap_or(&"");
+        let help = units::advice(number, unit.trim(), field);
+        return Err(refuse(format!("`{value}`: {}", units::NOT_BEHIND)).with_help(help));
+    }
     locate::one_value(value).map_err(|reason| {
         refuse(format!("`{value}` {reason}")).with_help("write one value, and --set again for the next")
     })?;
-    put(text, path, value).map_err(refuse)
+    put(text, path, value).map_err(|reason| {
+        let elsewhere = elsewhere(&locate::tree(text), text, path, value);
+        Diagnostic { help: elsewhere, ..refuse(reason) }
+    })
+}
+
+/// Places of a scene that are often set and need not be written in it, by their last name.
+const OFTEN: [&str; 6] =
+    ["time.step_s", "time.end_s", "time.integrator", "contact.penalty_pa", "output.frames", "gravity_ramp_s"];
+/// Paths that are listed.
+const MOST_LISTED: usize = 5;
+
+/// Where the scene has the last name of a path that leads nowhere, as advice.
+fn elsewhere(tree: &Node, text: &str, path: &str, value: &str) -> Option<String> {
+    let leaf = *current_segments(path).last()?;
+    let mut found = Vec::new();
+    paths_of(tree, text, leaf, "", &mut found);
+    found.retain(|known| segments(known) != segments(path));
+    if found.is_empty() {
+        found.extend(
+            OFTEN.iter().filter(|often| segments(often).last() == Some(&leaf)).map(ToString::to_string),
+        );
+        found.retain(|known| segments(known) != segments(path));
+    }
+    // What is computed from a parameter is changed by that.
+    found.sort_by_key(|path| !path.starts_with(parameters::FIELD));
+    match found.as_slice() {
+        [] => None,
+        [one] => Some(format!("did you mean --set {one}={value}?")),
+        [first, ..] if first.starts_with(parameters::FIELD) => {
+            Some(format!("did you mean --set {first}={value}?"))
+        }
+        many if many.len() <= MOST_LISTED => Some(format!("`{leaf}` is at {}", many.join(", "))),
+        many => {
+            let listed = many[..MOST_LISTED].join(", ");
+            Some(format!("`{leaf}` is at {} places, such as {listed}", many.len()))
+        }
+    }
+}
+
+/// Paths of all fields of a name; items of lists go by their own `name`, or else by number.
+fn paths_of(node: &Node, text: &str, leaf: &str, path: &str, found: &mut Vec<String>) {
+    for (i, child) in node.children.iter().enumerate() {
+        let own = match (&child.key, child.child(text, "name").map(|name| &text[name.span.clone()])) {
+            (Some(key), _) if path.is_empty() => key.clone(),
+            (Some(key), _) => format!("{path}.{key}"),
+            (None, Some(name)) if is_plain(name) => format!("{path}.{}", name.trim_matches('"')),
+            (None, _) => format!("{path}[{i}]"),
+        };
+        if child.key.as_deref() == Some(leaf) {
+            found.push(own.clone());
+        }
+        paths_of(child, text, leaf, &own, found);
+    }
+}
+
+/// Whether a quoted name can be a part of a path, and needs no quotes in a shell.
+fn is_plain(name: &str) -> bool {
+    let inner = name.trim_matches('"');
+    !inner.is_empty()
+        && inner.parse::<usize>().is_err()
+        && inner.chars().all(|c| c.is_alphanumeric() || "_-".contains(c))
 }
 
 /// Puts a value, which may have a comment, at a path.
@@ -72,20 +142,77 @@ pub(crate) fn put(text: &str, path: &str, value: &str) -> Result<String, String>
 pub(crate) fn blame(found: &mut [Diagnostic], text: &str, overrides: &[String]) {
     let tree = locate::tree(text);
     for diagnostic in found {
-        let names = locate::segments(&diagnostic.path);
-        let put = overrides.iter().rev().find(|one| {
-            let path = one.split('=').next().unwrap_or_default();
-            let own = current_segments(path.trim());
-            let node = own.iter().try_fold(&tree, |node, name| node.child(text, name));
-            let is_within = |at: &Range<usize>| {
-                node.is_some_and(|node| node.span.start <= at.start && at.end <= node.span.end)
-            };
-            names.starts_with(&own) || diagnostic.span.as_ref().is_some_and(is_within)
-        });
-        if let Some(one) = put.filter(|one| diagnostic.path != format!("--set {one}")) {
-            diagnostic.message = format!("{} (set by --set {one})", diagnostic.message);
+        let blamed = to_blame(diagnostic, (&tree, text), overrides);
+        if blamed.is_empty() {
+            continue;
+        }
+        let sets: Vec<String> = blamed.iter().map(|one| format!("--set {one}")).collect();
+        diagnostic.message = format!("{} (set by {})", diagnostic.message, sets.join(", "));
+        if let Some((path, value)) = blamed[0].split_once('=')
+            && diagnostic.code == Code::UnknownField
+            && segments(&diagnostic.path) == current_segments(path.trim())
+        {
+            let found = elsewhere(&tree, text, path.trim(), value.trim());
+            diagnostic.help = found.or(diagnostic.help.take());
         }
     }
+}
+
+/// Overrides that a message is about: the last one of the value itself, those of parameters that it is computed from, and those of
+/// values beside it that the message names.
+fn to_blame<'a>(
+    diagnostic: &Diagnostic,
+    (tree, text): (&Node, &str),
+    overrides: &'a [String],
+) -> Vec<&'a String> {
+    if diagnostic.path.starts_with("--set ") {
+        return Vec::new();
+    }
+    let names = segments(&diagnostic.path);
+    let path_of = |one: &'a String| current_segments(one.split('=').next().unwrap_or_default().trim());
+    let is_own = |one: &&'a String| {
+        let own = path_of(one);
+        let node = own.iter().try_fold(tree, |node, name| node.child(text, name));
+        let is_within = |at: &Range<usize>| {
+            node.is_some_and(|node| node.span.start <= at.start && at.end <= node.span.end)
+        };
+        names.starts_with(&own) || diagnostic.span.as_ref().is_some_and(is_within)
+    };
+    let value = diagnostic.span.clone().map_or("", |span| &text[span]);
+    // An expression, and no struct that has some in it.
+    let used = if value.contains("Calc(") && !value.contains(':') { value } else { "" };
+    let used = parameters_of(used, tree, text);
+    let is_beside = |one: &&'a String| match path_of(one).as_slice() {
+        [parameters::FIELD, name] => used.contains(name),
+        [around @ .., last] => {
+            names.split_last().is_some_and(|(_, parent)| parent == around)
+                && words(&diagnostic.message).any(|word| word == *last)
+        }
+        [] => false,
+    };
+    let own = overrides.iter().rev().find(is_own);
+    let beside = overrides.iter().filter(is_beside).filter(|one| own != Some(one));
+    own.into_iter().chain(beside).collect()
+}
+
+/// Names in a text.
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|word| !word.is_empty())
+}
+
+/// Parameters that an expression is computed from, directly or by others.
+fn parameters_of<'a>(expression: &'a str, tree: &Node, text: &'a str) -> Vec<&'a str> {
+    let mut found: Vec<&str> = words(expression).collect();
+    let mut next = 0;
+    while let Some(name) = found.get(next) {
+        if let Some(node) = tree.child(text, parameters::FIELD).and_then(|all| all.child(text, name)) {
+            let more: Vec<&str> =
+                words(&text[node.span.clone()]).filter(|word| !found.contains(word)).collect();
+            found.extend(more);
+        }
+        next += 1;
+    }
+    found
 }
 
 /// That there is no such parameter: one that nothing is computed from would be of no use.
@@ -128,6 +255,7 @@ fn insert(text: &str, node: &Node, missing: &[&str], value: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::diagnostic::Severity;
 
     const TEXT: &str = "(time: (step_s: 1e-3,), blocks: [(name: \"A\", at_m: (1, 2, 3))])";
 
@@ -170,6 +298,60 @@ mod tests {
         {
             assert!(set(&format!("time.step_s={value}")).contains(&format!("step_s: {value}")), "{value}");
         }
+    }
+
+    /// Advice on an override of a scene with a parameter, two blocks and a material.
+    fn advice(one: &str) -> String {
+        let text = "(title: \"t\", parameters: (friction_deg: 30),
+            time: (end_s: 1),
+            materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 1e10, poisson: 0.25)],
+            blocks: [
+                (name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+                (name: \"b\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 2)),
+            ],
+            contact: Potential(penalty_pa: 1e9, friction: (friction_deg: Calc(friction_deg))))";
+        let errors = crate::scene::read::load_text("s.ron", text, &[one.to_string()], None).unwrap_err();
+        errors.diagnostics[0].help.clone().unwrap_or_default()
+    }
+
+    #[test]
+    fn a_name_without_its_path_is_answered_with_the_path() {
+        for (one, said) in [
+            ("friction_deg=20", "did you mean --set parameters.friction_deg=20?"),
+            ("contact.friction_deg=20", "did you mean --set parameters.friction_deg=20?"),
+            ("young_pa=2e10", "did you mean --set materials.rock.young_pa=2e10?"),
+            ("end_s=2", "did you mean --set time.end_s=2?"),
+            ("step_s=1e-3", "did you mean --set time.step_s=1e-3?"),
+            ("penalty_pa=1e8", "did you mean --set contact.penalty_pa=1e8?"),
+            ("size_m=(1, 2, 3)", "`size_m` is at blocks.a.shape.size_m, blocks.b.shape.size_m"),
+            ("materials.rock.young_pa=20 GPa", "write Gigapascal(20), or 2e10"),
+            ("materials.rock.young_pa=20GPa", "write Gigapascal(20), or 2e10"),
+        ] {
+            assert_eq!(advice(one), said, "{one}");
+        }
+        assert_eq!(advice("time.stop_s=3"), "did you mean `step_s`?");
+    }
+
+    #[test]
+    fn the_override_that_is_at_fault_is_named() {
+        let text = "(title: \"t\", parameters: (friction_deg: 30, twice: Calc(2 * friction_deg)), time: (step_s: 1e-3, end_s: 1),
+            materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 1e10, poisson: 0.25)],
+            blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+            contact: Potential(penalty_pa: 1e9, friction: (friction_deg: Calc(twice))))";
+        let message = |sets: &[&str]| {
+            let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
+            let errors = crate::scene::read::load_text("s.ron", text, &sets, None).unwrap_err();
+            let error = errors.diagnostics.iter().find(|found| found.severity == Severity::Error);
+            error.unwrap().message.clone()
+        };
+        let said = message(&["parameters.friction_deg=50", "time.end_s=2"]);
+        assert!(said.ends_with("(set by --set parameters.friction_deg=50)"), "{said}");
+        let said = message(&["time.end_s=1e-4"]);
+        assert!(said.ends_with("(set by --set time.end_s=1e-4)"), "{said}");
+        let said = message(&["time.step_s=1e-9", "time.end_s=1e6"]);
+        assert!(said.ends_with("(set by --set time.step_s=1e-9, --set time.end_s=1e6)"), "{said}");
+        let said = message(&["time.end_s=2", "materials.rock.young_pa=-1"]);
+        assert!(said.ends_with("(set by --set materials.rock.young_pa=-1)"), "{said}");
     }
 
     #[test]

@@ -6,6 +6,23 @@ use crate::scene::locate::Node;
 use crate::scene::parameters::{FIELD, Parameters};
 use crate::scene::units;
 
+/// That a unit stands behind the number of a parameter: `height_m: 8 m`.
+fn unit_behind(node: &Node, text: &str) -> Option<Diagnostic> {
+    node.children.windows(2).find_map(|pair| {
+        let [number, unit] = pair else { return None };
+        let (name, value) = (number.key.as_ref()?, &text[number.span.clone()]);
+        let symbol = &text[unit.span.clone()];
+        let is_behind = unit.key.is_none() && text[number.span.end..unit.span.start].trim().is_empty();
+        if !is_behind || value.parse::<f64>().is_err() || !units::may_be_unit(symbol) {
+            return None;
+        }
+        let message = format!("`{value} {symbol}`: {}", units::NOT_BEHIND);
+        let refused =
+            Diagnostic::error(Code::Syntax, format!("{FIELD}.{name}"), message, Some(unit.span.clone()));
+        Some(refused.with_help(units::advice(value, symbol, name)))
+    })
+}
+
 /// Reads the parameters of a scene; each may be computed from those before it.
 ///
 /// # Errors
@@ -17,6 +34,9 @@ pub(crate) fn read(text: &str, tree: &Node) -> Result<Parameters, Vec<Diagnostic
     };
     let mut found = Vec::new();
     if node.opening != Some('(') || node.children.iter().any(|child| child.key.is_none()) {
+        if let Some(refused) = unit_behind(node, text) {
+            return Err(vec![refused]);
+        }
         let refused = Diagnostic::error(
             Code::WrongType,
             FIELD,
@@ -99,6 +119,18 @@ mod tests {
         assert!(refused.contains("did you mean `dip_deg`"), "{refused}");
         let bare = load_text("s.ron", &scene("", "1"), &["parameters.dip_deg=40".into()], None);
         assert!(bare.unwrap_err().render(false).contains("has no parameters"));
+    }
+
+    #[test]
+    fn a_unit_behind_the_number_of_a_parameter_is_answered_with_how_it_is_written() {
+        for (written, said) in [
+            ("height_m: 8 m", "write 8, or Metre(8)"),
+            ("young_pa: 20 GPa, height_m: 8", "write Gigapascal(20), or 2e10"),
+        ] {
+            let text = format!("(parameters: ({written}))");
+            let found = super::read(&text, &crate::scene::locate::tree(&text)).err().unwrap();
+            assert!(found[0].help.as_ref().unwrap().contains(said), "{found:?}");
+        }
     }
 
     #[test]

@@ -156,7 +156,7 @@ pub enum Axis {
     Z,
 }
 
-/// Something that cuts rock. x is east, y north, z up; dip is below horizontal, its direction clockwise from north.
+/// Something that cuts rock. x is east, y north, z up; dip is below the plane of x and y, whatever gravity is, its direction clockwise from north.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]

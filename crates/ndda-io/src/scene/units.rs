@@ -5,6 +5,7 @@
 //! is mapped back to the text as it was written.
 
 mod dimensions;
+mod symbols;
 
 use std::ops::Range;
 
@@ -15,6 +16,7 @@ use crate::scene::parameters::{self, Parameters, number};
 use crate::scene::suggest::nearest;
 
 pub use dimensions::{DIMENSIONS, Dimension, Unit, dimension_of};
+pub(crate) use symbols::{NOT_BEHIND, advice, may_be_unit};
 
 /// A choice whose value is a place [m], though its name does not end in it.
 const PLACE: &str = "Point";

@@ -168,7 +168,7 @@ impl Simulation {
                 "supports by elimination",
                 held,
                 "held unknowns are not solved for",
-                "nothing is held so",
+                "no support fixes nodes",
             ),
             Part::of("supports by springs", springs, "part of the matrix", "there are none"),
             Part::of("prescribed motion", moved, "its work is recorded", "no support moves"),

@@ -96,7 +96,7 @@ fn enclosed(simulation: &Simulation) -> Option<(BlockId, BlockId)> {
 }
 
 /// Whether a point is in one of a block's tetrahedra: none of the four that it makes with their faces has negative volume.
-fn is_in_solid(blocks: &BlockSet, position: &[Vec3], block: BlockId, x: &Vec3) -> bool {
+pub(crate) fn is_in_solid(blocks: &BlockSet, position: &[Vec3], block: BlockId, x: &Vec3) -> bool {
     blocks.tets_of(block).any(|tet| {
         let corners = blocks.tets[tet].map(|n| position[n.index()]);
         let with_point = |k: usize| {

@@ -6,6 +6,7 @@ use super::certificate::{Certificate, Certified};
 use super::extrapolate::Behaviour;
 use super::quantities::BLOCK;
 use crate::columns::columns;
+use crate::numbers::counted;
 
 /// Blocks that are shown, those of the largest relative errors, unless others are asked for.
 const MOST_BLOCKS: usize = 3;
@@ -31,7 +32,8 @@ pub fn text(certificate: &Certificate, of: &[String]) -> String {
     if left_out > 0 {
         let _ = writeln!(
             text,
-            "{left_out} more quantities are in certificate.json; --of NAME shows those it begins"
+            "{} in certificate.json; --of NAME shows those whose names begin so",
+            counted(left_out, "more quantity is", "more quantities are")
         );
     }
     let _ = writeln!(text, "estimated: {}", certificate.estimates);

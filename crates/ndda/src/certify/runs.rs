@@ -11,6 +11,7 @@ use super::extrapolate::Behaviour;
 use super::plan::{Plan, finer, not_refined, order};
 use super::quantities::{quantities, unresolved_energy_j};
 use super::report::{named, vanishes};
+use crate::judge::reasons;
 use crate::study::case::Case;
 use crate::study::error::StudyError;
 use crate::study::launch::Launch;
@@ -267,8 +268,8 @@ fn remark(certificate: &mut Certificate, plan: &Plan, wanted: &Wanted, summary: 
     }
     if summary.label.word == LabelWord::Inaccurate {
         say(format!(
-            "the run of the shortest step calls itself inaccurate: {}",
-            summary.label.reasons.join("; ")
+            "the run of the shortest step is inaccurate: {}",
+            reasons::in_a_line(&summary.label.reasons)
         ));
     }
 }

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use ndda_solver::BodyKind;
+
 use super::Explanation;
 use crate::numbers::counted;
 
@@ -18,12 +20,16 @@ impl fmt::Display for Explanation {
         writeln!(f, "\nblocks")?;
         for plan in &self.blocks {
             let kind = format!("{:?}", plan.kind);
+            let moves = match plan.kind {
+                BodyKind::Fixed => "not moved by forces".into(),
+                BodyKind::Rigid => "six degrees of freedom each, no equations to solve".into(),
+                BodyKind::Affine | BodyKind::Elastic => counted(plan.unknowns, "unknown", "unknowns"),
+            };
             writeln!(
                 f,
-                "  {kind:8} {}, {}, {}",
+                "  {kind:8} {}, {}, {moves}",
                 counted(plan.blocks, "block", "blocks"),
-                counted(plan.tets, "tetrahedron", "tetrahedra"),
-                counted(plan.unknowns, "unknown", "unknowns")
+                counted(plan.tets, "tetrahedron", "tetrahedra")
             )?;
         }
         self.write_factors(f)?;
@@ -42,6 +48,9 @@ const MOST_FACTORS: usize = 10;
 
 impl Explanation {
     fn write_factors(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        if self.factors.is_empty() {
+            return writeln!(f, "\nequations: none to solve");
+        }
         writeln!(f, "\nequations, factored once: {} distinct", self.factors.len())?;
         for plan in self.factors.iter().take(MOST_FACTORS) {
             let alike = match plan.blocks {

@@ -35,6 +35,17 @@ pub struct FileGuess {
     pub bytes: u64,
 }
 
+impl FileGuess {
+    /// What there are several of: frames of a run, and a checkpoint beside the one before it.
+    fn several(&self) -> String {
+        match self.count {
+            0..2 => String::new(),
+            count if self.name == folder::CHECKPOINT => format!(" ({count}: the last and the one before)"),
+            count => format!(" ({count} frames)"),
+        }
+    }
+}
+
 /// Estimated time and output of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Guess {
@@ -162,18 +173,17 @@ impl fmt::Display for Guess {
             self.run_s
         )?;
         if let Some(twin_s) = self.twin_s {
-            write!(f, ", {twin_s:.1} s more for the check of sensitivity if three or more blocks move,")?;
+            write!(
+                f,
+                ", {twin_s:.1} s more for a second run, which shows whether small differences grow, if three or more blocks move,"
+            )?;
         }
         if let Some(bytes) = self.memory_bytes {
             write!(f, " and {} of memory", readable(bytes))?;
         }
-        for FileGuess { name, count, bytes } in &self.files {
-            write!(
-                f,
-                "\n  {:9} {name}{}",
-                readable(*bytes),
-                if *count > 1 { format!(" ({count})") } else { String::new() }
-            )?;
+        write!(f, "; it would write")?;
+        for file in &self.files {
+            write!(f, "\n  {:9} {}{}", readable(file.bytes), file.name, file.several())?;
         }
         Ok(())
     }
@@ -207,12 +217,14 @@ mod tests {
     fn a_twin_is_foreseen_where_three_blocks_can_move() {
         let two = guess_of(2);
         assert_eq!(two.twin_s, None);
-        assert!(!two.to_string().contains("sensitiv"), "{two}");
+        assert!(!two.to_string().contains("second run"), "{two}");
         let three = guess_of(3);
         let twin_s = three.twin_s.unwrap();
         assert!(0.0 < twin_s && twin_s <= three.run_s, "{three:?}");
         assert!(
-            three.to_string().contains("for the check of sensitivity if three or more blocks move"),
+            three.to_string().contains(
+                "for a second run, which shows whether small differences grow, if three or more blocks move"
+            ),
             "{three}"
         );
     }

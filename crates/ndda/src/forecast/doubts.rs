@@ -22,13 +22,6 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
     doubts.extend(coarse.map(|found| found.reason));
     doubts.extend(idle::findings(scene, simulation.blocks(), folder));
     let falls = scene.gravity_m_s2 != [0.0; 3];
-    let blocks = simulation.blocks();
-    let free = || blocks.ids().filter(|&block| simulation.shape(block).is_free());
-    if falls && blocks.len() > 1 && free().count() == blocks.len() && scene.supports.is_empty() {
-        doubts.push(
-            "nothing is held, so all blocks fall together: give a block `body: Fixed`, rock `fixed: […]`, or supports".into(),
-        );
-    }
     let Some(Contact::Potential { penalty_pa, potential, friction, material_pairs, rock_joints, .. }) =
         &scene.contact
     else {

@@ -2,6 +2,8 @@
 
 use ndda_io::summary::{Course, Judgement, LabelWord, Motion, StageEnd, Summary, Verdict};
 
+use super::reasons;
+use super::words::{SECOND_RUN, in_words};
 use crate::columns::columns;
 use crate::numbers::counted;
 
@@ -17,8 +19,7 @@ pub fn ending(summary: &Summary) -> String {
             format!("accurate: {speeds}, positions to a tenth of an element\n")
         }
         (LabelWord::Sensitive, reasons) => format!("sensitive: {}\n", reasons.join("; ")),
-        (LabelWord::Inaccurate, [reason]) => format!("inaccurate: {reason}\n"),
-        (LabelWord::Inaccurate, reasons) => format!("inaccurate:\n  {}\n", reasons.join("\n  ")),
+        (LabelWord::Inaccurate, reasons) => format!("inaccurate:{}\n", reasons::in_lines(reasons)),
         (LabelWord::Stopped, _) => format!("stopped at t = {} s\n", time(summary.end_s)),
     };
     text.extend(summary.chosen.iter().map(|chosen| format!("{chosen}\n")));
@@ -40,19 +41,35 @@ pub fn ending(summary: &Summary) -> String {
     }
     if let Some(steps) = summary.unsettled_steps {
         text.push_str(&format!(
-            "{steps} steps of settling, time has not begun, in {:.2} s\n",
+            "settling ended after {steps} steps in {:.2} s, before the time of the run began\n",
             summary.wall_s
         ));
         return text;
     }
     text.push_str(&format!(
-        "{} steps of {:e} s to t = {} s in {:.2} s\n",
+        "{} steps of {:e} s to t = {} s in {:.2} s",
         summary.steps,
         summary.step_s,
         time(summary.end_s),
-        summary.wall_s
+        own_s(summary)
     ));
+    if let Some(second_s) = second_run_s(summary) {
+        text.push_str(&format!(
+            ", and {second_s:.2} s for the second run, which shows whether small differences grow"
+        ));
+    }
+    text.push('\n');
     text
+}
+
+/// Seconds of the second run that shows whether the motion is sensitive, if there was one.
+fn second_run_s(summary: &Summary) -> Option<f64> {
+    summary.stages_s.0.iter().find(|(part, _)| part == SECOND_RUN).map(|(_, s)| *s)
+}
+
+/// Seconds of the run itself.
+fn own_s(summary: &Summary) -> f64 {
+    summary.wall_s - second_run_s(summary).unwrap_or(0.0)
 }
 
 /// How a stage ended, in a line.
@@ -89,8 +106,8 @@ pub fn moved(motion: &Motion) -> String {
     }
     let many = match (moved, can_move) {
         (0, 0..2) => "no block moved by more than 1 % of its radius".into(),
-        (0, _) => format!("none of {can_move} blocks moved by more than 1 % of its radius"),
-        _ => format!("{moved} of {} moved", counted(*can_move, "block", "blocks")),
+        (0, _) => format!("none of {can_move} movable blocks moved by more than 1 % of its radius"),
+        _ => format!("{moved} of {} moved", counted(*can_move, "movable block", "movable blocks")),
     };
     format!("{many}; farthest `{farthest}`: {} at the end, {course}\n", length(*farthest_m))
 }
@@ -138,19 +155,23 @@ fn error(summary: &Summary) -> String {
 /// Everything, as tables.
 pub fn text(summary: &Summary) -> String {
     let mut text = format!("{}: {}\n", summary.scene, summary.title);
-    let speed = summary.steps as f64 / summary.wall_s;
+    let speed = summary.steps as f64 / own_s(summary);
+    let solved = match summary.counts.dofs {
+        0 => "rigid or fixed (no equations to solve)".into(),
+        dofs => {
+            let factors = counted(summary.counts.factors, "factored matrix", "factored matrices");
+            format!("{}, {factors}", counted(dofs, "unknown", "unknowns"))
+        }
+    };
     text.push_str(&format!(
-        "{} steps of {:e} s to t = {} s in {:.2} s ({speed:.0} steps/s, {}); {}, {}, \
-         {}, {}\n",
+        "{} steps of {:e} s to t = {} s in {:.2} s ({speed:.0} steps/s, {}); {}, {}, {solved}\n",
         summary.steps,
         summary.step_s,
         time(summary.end_s),
-        summary.wall_s,
+        own_s(summary),
         counted(summary.threads, "thread", "threads"),
         counted(summary.counts.blocks, "block", "blocks"),
         counted(summary.counts.tets, "tetrahedron", "tetrahedra"),
-        counted(summary.counts.dofs, "unknown", "unknowns"),
-        counted(summary.counts.factors, "factored matrix", "factored matrices"),
     ));
     let verdicts = verdict_table(summary.verdicts.0.iter());
     for part in [stage_table(summary), verdicts, monitor_table(summary), block_table(summary)] {
@@ -168,21 +189,22 @@ fn framed(header: &[&str], rows: Vec<Vec<String>>) -> String {
 
 fn stage_table(summary: &Summary) -> String {
     let share = |s: f64| format!("{:.1} %", 100.0 * s / summary.wall_s);
-    let rows = summary.stages_s.0.iter().map(|(name, s)| vec![name.clone(), format!("{s:.3} s"), share(*s)]);
-    framed(&["stage", "time", "share"], rows.collect())
+    let row = |(part, s): &(String, f64)| vec![in_words(part).to_string(), format!("{s:.3} s"), share(*s)];
+    framed(&["time spent on", "time", "share"], summary.stages_s.0.iter().map(row).collect())
 }
 
 fn verdict_table<'a>(verdicts: impl Iterator<Item = &'a (String, Verdict)>) -> String {
     let number = |v: Option<f64>| v.map_or(String::new(), |v| format!("{v:.2e}"));
     let word = |verdict: &Verdict| match (verdict.verdict, verdict.limit) {
-        (Judgement::Pass, None) if verdict.value.is_some() => "shown",
+        (Judgement::Pass, None) if verdict.value.is_some() => "no limit",
         (Judgement::Pass, _) => "pass",
         (Judgement::Warn, _) => "WARN",
         (Judgement::Fail, _) => "FAIL",
         (Judgement::NotYet, _) => "not yet",
     };
-    let row =
-        |(name, v): &(String, Verdict)| vec![name.clone(), number(v.value), number(v.limit), word(v).into()];
+    let row = |(name, v): &(String, Verdict)| {
+        vec![in_words(name).into(), number(v.value), number(v.limit), word(v).into()]
+    };
     framed(&["check", "worst", "limit", "verdict"], verdicts.map(row).collect())
 }
 
@@ -209,4 +231,48 @@ fn block_table(summary: &Summary) -> String {
     });
     let header = ["block", "displacement [m]", "farthest point", "largest", "rotation", "velocity [m/s]"];
     framed(&header, rows.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Model, Run};
+
+    /// A block that hits a floor with a step that is far too long.
+    #[test]
+    fn a_run_of_a_step_that_is_too_long_says_the_cure_once() {
+        let text = "(title: \"hit\", time: (step_s: 4e-3, end_s: 0.4), gravity_m_s2: (0, 0, -9.81),
+            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+            blocks: [
+                (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (2, 2, 1), cells: (1, 1, 1)), at_m: (-0.5, -0.5, -1)),
+                (name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 0.2)),
+            ],
+            contact: Potential(penalty_pa: 1e9, potential: Smooth(), friction: (friction_deg: 30)))";
+        let run = Run::new(Model::from_text(text).unwrap()).finish(&mut []);
+        let summary = run.unwrap().summary;
+        assert!(summary.label.reasons.len() > 1, "{:?}", summary.label.reasons);
+        let text = ending(&summary);
+        let said = text.matches("reduce step_s").count() + text.matches("divide step_s").count();
+        assert_eq!(said, 1, "{text}");
+    }
+
+    #[test]
+    fn the_time_of_the_second_run_is_said_apart() {
+        let text = "(title: \"fall\", contact: Off, time: (step_s: 1e-3, end_s: 0.01), gravity_m_s2: (0, 0, -9.81),
+            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+            blocks: [(name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))])";
+        let mut summary = Run::new(Model::from_text(text).unwrap()).finish(&mut []).unwrap().summary;
+        summary.wall_s = 5.0;
+        assert!(
+            ending(&summary).contains("10 steps of 1e-3 s to t = 0.01 s in 5.00 s\n"),
+            "{}",
+            ending(&summary)
+        );
+        summary.stages_s.0.push((SECOND_RUN.into(), 2.0));
+        assert!(
+            ending(&summary).contains("in 3.00 s, and 2.00 s for the second run"),
+            "{}",
+            ending(&summary)
+        );
+    }
 }

@@ -5,6 +5,7 @@ use ndda_io::summary::{BlockEnd, Judgement, LabelWord, StageEnd, Status, Summary
 
 use crate::frames::STILL;
 use crate::judge::table;
+use crate::judge::words::in_words;
 use crate::numbers::counted;
 
 /// Blocks that are listed beside the picture.
@@ -166,7 +167,7 @@ pub fn verdicts(summary: &Summary) -> Markup {
                         tbody {
                             @for (name, verdict) in &summary.verdicts.0 {
                                 tr {
-                                    td { (name) }
+                                    td { (in_words(name)) }
                                     td.number { (shown(verdict.value)) }
                                     td.number { (shown(verdict.limit)) }
                                     td { (judgement(verdict)) }
@@ -217,7 +218,7 @@ pub fn construction(summary: &Summary) -> Markup {
 
 fn judgement(verdict: &Verdict) -> Markup {
     let (class, word) = match (verdict.verdict, verdict.limit, verdict.value) {
-        (Judgement::Pass, None, Some(_)) => ("info", "shown"),
+        (Judgement::Pass, None, Some(_)) => ("info", "no limit"),
         (Judgement::Pass, ..) => ("pass", "pass"),
         (Judgement::Warn, ..) => ("warn", "warn"),
         (Judgement::Fail, ..) => ("fail", "fail"),
@@ -236,7 +237,7 @@ pub fn stages(summary: &Summary) -> Markup {
                 tbody {
                     @for (name, s) in &summary.stages_s.0 {
                         tr {
-                            td { (name) }
+                            td { (in_words(name)) }
                             td.bar { div style={ "width:" (format!("{:.2}", share(*s).clamp(0.0, 100.0))) "%" } {} }
                             td.number { (format!("{:.1} %", share(*s))) }
                             td.number { (seconds(*s)) }

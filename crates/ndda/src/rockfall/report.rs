@@ -6,6 +6,7 @@ use super::Model;
 use super::result::{Ends, Outcome};
 use super::spread::Spread;
 use crate::columns::columns;
+use crate::numbers::counted;
 
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -19,13 +20,13 @@ impl fmt::Display for Model {
         let (low, high) = terrain.heights_m();
         write!(
             f,
-            "{} boulders over {} triangles, {:.2} to {:.2} m high; {} zone(s), {} line(s); steps of at most {:.1e} s",
+            "{} boulders over {} triangles, {:.2} to {:.2} m high; {}, {}; steps of at most {:.1e} s",
             rockfall.count,
             terrain.triangles(),
             low,
             high,
-            rockfall.zones.len(),
-            rockfall.lines.len(),
+            counted(rockfall.zones.len(), "zone", "zones"),
+            counted(rockfall.lines.len(), "line", "lines"),
             self.step_s()
         )
     }

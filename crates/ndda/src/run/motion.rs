@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::schedule::Schedule;
 
 /// A block has moved if a point of it has gone farther than this part of the distance from its mass centre to its farthest node.
-const MOVED: f64 = 0.01;
+pub(crate) const MOVED: f64 = 0.01;
 /// A block rests if it moves at less than this part of its own largest speed.
 const RESTS: f64 = 0.01;
 /// It accelerates if it moves at more than this part of that.

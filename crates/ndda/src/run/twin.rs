@@ -14,6 +14,7 @@ use ndda_solver::{BodyKind, Settle, Simulation, Snapshot, StepError};
 
 use super::unless_stopped;
 use crate::judge::table::length;
+use crate::judge::words::SECOND_RUN;
 use crate::numbers::counted;
 
 /// Whether a twin of the run is run after it.
@@ -116,7 +117,7 @@ pub(super) fn judge(
     }
     let spent_s = began.elapsed().as_secs_f64();
     summary.wall_s += spent_s;
-    summary.stages_s.0.push(("sensitivity".into(), spent_s));
+    summary.stages_s.0.push((SECOND_RUN.into(), spent_s));
 }
 
 impl fmt::Display for Parted {

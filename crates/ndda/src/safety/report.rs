@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use super::{Bracket, By, Safety, State};
 use crate::columns::columns;
+use crate::numbers::counted;
 
 /// Blocks that are named.
 const MOST_BLOCKS: usize = 12;
@@ -60,8 +61,21 @@ pub fn text(safety: &Safety) -> String {
     for remark in &safety.remarks {
         let _ = writeln!(text, "note: {remark}");
     }
-    let _ = writeln!(text, "time spent: {:.1} s in {} trials", safety.wall_s, safety.trials.len());
+    let _ = writeln!(text, "{}", time_spent(safety));
     text
+}
+
+/// Time and trials; those of earlier calls apart.
+fn time_spent(safety: &Safety) -> String {
+    let Safety { wall_s, earlier_s, known_trials, trials, .. } = safety;
+    let trials = counted(trials.len(), "trial", "trials");
+    match known_trials {
+        0 => format!("time spent: {wall_s:.1} s in {trials}"),
+        known => format!(
+            "{known} of {trials} known from an earlier run; time spent: {:.1} s now, {earlier_s:.1} s then",
+            wall_s - earlier_s
+        ),
+    }
 }
 
 /// The blocks' final state, in a word.
@@ -70,5 +84,48 @@ pub fn state(state: State) -> &'static str {
         State::Stands => "stand",
         State::Fails => "fail",
         State::Undecided => "undecided",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::safety::{SCHEMA, Trial};
+
+    #[test]
+    fn trials_of_earlier_calls_are_counted_apart() {
+        let trial = Trial {
+            factor: 1.0,
+            state: State::Stands,
+            reason: String::new(),
+            block: String::new(),
+            history: Vec::new(),
+            velocities: Vec::new(),
+            steps: 10,
+            wall_s: 1.0,
+        };
+        let mut safety = Safety {
+            schema: SCHEMA.into(),
+            version: String::new(),
+            scene: "s".into(),
+            title: "t".into(),
+            scene_crc32: String::new(),
+            by: By::Strength,
+            error: 0.01,
+            factor_of_safety: Bracket { lower: Some(1.0), upper: None },
+            mechanism: None,
+            moving_blocks: Vec::new(),
+            trials: vec![trial; 3],
+            remarks: Vec::new(),
+            wall_s: 30.0,
+            known_trials: 0,
+            earlier_s: 0.0,
+        };
+        assert_eq!(time_spent(&safety), "time spent: 30.0 s in 3 trials");
+        (safety.known_trials, safety.earlier_s) = (2, 20.0);
+        assert_eq!(
+            time_spent(&safety),
+            "2 of 3 trials known from an earlier run; time spent: 10.0 s now, 20.0 s then"
+        );
     }
 }

@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::atomic::Ordering;
 
+use ndda_io::code::Code;
 use ndda_io::read::LoadedScene;
 use ndda_io::scene::Scene;
 use ndda_mesh::Vec3;
@@ -35,7 +36,12 @@ pub fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(St
         } else {
             settle.most_steps
         };
-        let mut simulation = Model::with(changed, folder, choices())?.simulation;
+        let model = Model::with(changed, folder, choices())?;
+        if strength == STRENGTHS[0] {
+            let not_held = model.loaded.warnings.iter().filter(|warning| warning.code == Code::NotHeld);
+            not_held.for_each(|warning| (watch.tell)(&format!("warning: {}", warning.message)));
+        }
+        let mut simulation = model.simulation;
         if free(&simulation).next().is_none() {
             return Err(SafetyError::NothingFree);
         }

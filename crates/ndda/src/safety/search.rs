@@ -89,6 +89,8 @@ impl<'a> Search<'a> {
             trials: Vec::new(),
             remarks: Vec::new(),
             wall_s: 0.0,
+            known_trials: 0,
+            earlier_s: 0.0,
         };
         if strength > 1.0 {
             answer.remarks.push(format!(
@@ -134,6 +136,8 @@ impl<'a> Search<'a> {
             );
         }
         answer.wall_s = before_s + self.begun.elapsed().as_secs_f64();
+        answer.earlier_s = before_s;
+        answer.known_trials = answer.trials.iter().filter(|trial| self.earlier.contains(trial)).count();
         if let Some(out) = self.watch.out {
             write(out, &answer)?;
         }

@@ -98,7 +98,12 @@ impl Launch<'_> {
         let said = match &outcome {
             RunOutcome::Done { walls_s, processors_s, .. } => {
                 let times_s = clocked(self.loaded.study.clock, walls_s, processors_s)?;
-                format!("{:.3} s, the least of {}", least(times_s), walls_s.len())
+                let of = if walls_s.len() > 1 {
+                    format!(", the shortest of {} runs", walls_s.len())
+                } else {
+                    String::new()
+                };
+                format!("{:.3} s{of}", least(times_s))
             }
             RunOutcome::Failed { reason, .. } => format!("failed: {reason}"),
         };

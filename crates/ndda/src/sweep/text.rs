@@ -95,7 +95,11 @@ fn samples(text: &mut String, results: &Results, group: &Group) {
             [index.quantity.clone(), index.parameter.clone()].into_iter().chain(numbers).collect()
         };
         let rows = group.sensitivity.iter().map(row).collect();
-        let _ = writeln!(text, "parts of the variance\n{}", columns(header.to_vec(), rows));
+        let _ = writeln!(
+            text,
+            "parts of the variance that each parameter explains (Sobol' indices)\n{}",
+            columns(header.to_vec(), rows)
+        );
     }
 }
 

@@ -72,7 +72,10 @@ impl Tuned {
     pub fn text(&self) -> String {
         let mut text = format!("{}: {}\n", self.scene, self.title);
         let front = |point: &&TrialPoint| point.on_front;
-        text += &self.table("the front of error against time:", self.tried.iter().filter(front));
+        text += &self.table(
+            "the best settings, none of which another beats in both error and time:",
+            self.tried.iter().filter(front),
+        );
         text += &self.table("all that was tried:", self.tried.iter().filter(|point| point.error.is_some()));
         for point in self.tried.iter().filter(|point| point.reason.is_some()) {
             let reason = point.reason.as_deref().unwrap_or_default();
@@ -100,7 +103,7 @@ impl Tuned {
                 format!("{time:.3} s"),
             ]
         };
-        let header = ["setting", "step", "largest error", "time"].map(String::from).to_vec();
+        let header = ["setting", "step", "error", "time"].map(String::from).to_vec();
         format!("{title}\n{}\n", columns(header, points.iter().map(row).collect()))
     }
 

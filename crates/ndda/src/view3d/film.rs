@@ -6,6 +6,7 @@ use ndda_mesh::geometry::Aabb;
 use super::paint::{Theme, group_colour};
 use super::raster::Coat;
 use crate::frames::STILL;
+use crate::run::motion::MOVED;
 use crate::surface::Surface;
 
 /// A scale that begins below this part of its end begins at zero.
@@ -73,6 +74,10 @@ pub struct Film {
     pub colouring: Colouring,
     /// The moments, at least one.
     pub moments: Vec<Moment>,
+    /// Blocks that have moved by the last of the moments, as the run counts them; none before a run.
+    pub moved: Option<usize>,
+    /// Blocks that can move; none where that is not known.
+    pub movable: Option<usize>,
 }
 
 impl Film {
@@ -136,6 +141,29 @@ pub fn moving(surface: &Surface, start: &[Vec3], moments: &[Moment]) -> Vec<bool
     farthest.iter().map(|&moved| limit > 0.0 && moved >= limit).collect()
 }
 
+/// Blocks that have moved as a run counts them: by more than a part of the distance from their mass centre to their farthest node.
+pub fn moved(surface: &Surface, start: &[Vec3], moment: &Moment) -> usize {
+    let count = surface.block_count();
+    let (mut volume, mut moments) = (vec![0.0; count], vec![Vec3::zeros(); count]);
+    for (corners, &block) in surface.triangles.iter().zip(&surface.blocks) {
+        // Signed tetrahedra from the origin; a factor of six in both cancels.
+        let [a, b, c] = corners.map(|n| start[n as usize]);
+        let six = a.dot(&b.cross(&c));
+        volume[block as usize] += six;
+        moments[block as usize] += six * (a + b + c) / 4.0;
+    }
+    let (mut radius, mut gone) = (vec![0.0; count], vec![0.0; count]);
+    for (corners, &block) in surface.triangles.iter().zip(&surface.blocks) {
+        let block = block as usize;
+        for &node in corners {
+            let (now, then) = (moment.positions[node as usize], start[node as usize]);
+            radius[block] = f64::max(radius[block], (then - moments[block] / volume[block]).norm());
+            gone[block] = f64::max(gone[block], (now - then).norm());
+        }
+    }
+    gone.iter().zip(&radius).filter(|(gone, radius)| **gone > MOVED * **radius).count()
+}
+
 /// Ends of the scale: the least and the largest value that is drawn; zero in place of a least value near it, or of one that is
 /// nearly the largest.
 pub fn range(values: impl Iterator<Item = f32>) -> [f64; 2] {
@@ -151,6 +179,7 @@ pub fn range(values: impl Iterator<Item = f32>) -> [f64; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view3d::testing::boxes;
 
     #[test]
     fn a_scale_ends_at_the_least_and_the_largest_value() {
@@ -165,6 +194,18 @@ mod tests {
         assert_eq!(range([0.5, 4.0].into_iter()), [0.0, 4.0]);
         assert_eq!(range([4.0, 4.0].into_iter()), [0.0, 4.0]);
         assert_eq!(range([3.9, 4.0].into_iter()), [0.0, 4.0]);
+    }
+
+    #[test]
+    fn a_block_has_moved_when_it_has_gone_a_hundredth_of_its_own_radius() {
+        // A cube of 1 m has a radius of 0.866 m, whatever far larger blocks do; one of 10 m has ten times that.
+        let film = boxes(&[
+            ([0.0; 3], [1.0; 3], [0.0, 0.0, 0.0088]),
+            ([2.0, 0.0, 0.0], [1.0; 3], [0.0, 0.0, 0.0085]),
+            ([9.0, 0.0, 0.0], [10.0; 3], [0.05, 0.0, 0.0]),
+            ([99.0, 0.0, 0.0], [1.0; 3], [50.0, 0.0, 0.0]),
+        ]);
+        assert_eq!(moved(&film.surface, &film.start, &film.moments[0]), 2);
     }
 
     #[test]

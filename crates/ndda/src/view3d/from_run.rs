@@ -10,7 +10,7 @@ use ndda_mesh::geometry::Aabb;
 
 use super::Colour;
 use super::error::ViewError;
-use super::film::{Colouring, Film, Moment, moving, range};
+use super::film::{Colouring, Film, Moment, moved, moving, range};
 use crate::field::{Field, Place, fields};
 use crate::frames::{OtherBlocks, same_blocks, thinned};
 use crate::surface::Surface;
@@ -102,7 +102,16 @@ pub fn read(folder: &Path, frames: Frames, colour: &Colour) -> Result<Film, View
     }
     let moves = moving(&surface, &start, &moments);
     let colouring = source.colouring(&surface, &moves, &moments);
-    Ok(Film { title: title(folder), surface, start, moves, colouring, moments })
+    let motion = results::summary(&folder.join(SUMMARY)).ok().and_then(|summary| summary.motion);
+    let last = moments.last().expect("at least one frame is chosen");
+    let is_end = listed.last().map(|listed| listed.time_s) == last.time_s;
+    let moved = match &motion {
+        // Of stages, a run counts from the last that begins anew.
+        Some(motion) if is_end => motion.moved,
+        _ => moved(&surface, &start, last),
+    };
+    let movable = motion.map(|motion| motion.can_move);
+    Ok(Film { title: title(folder), surface, start, moves, colouring, moments, moved: Some(moved), movable })
 }
 
 /// The folder itself, or that of the failing run in it, which `ndda safety` writes.

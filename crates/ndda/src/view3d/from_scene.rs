@@ -111,7 +111,8 @@ fn film(title: String, blocks: &BlockSet, colouring: Colouring, moves: Vec<bool>
     let positions: Vec<_> = surface.nodes.iter().map(|&n| blocks.rest_position[n as usize]).collect();
     let moment =
         Moment { time_s: None, positions: positions.clone(), absent: Vec::new(), values: Vec::new() };
-    Film { title, surface, start: positions, moves, colouring, moments: vec![moment] }
+    let (moments, moved, movable) = (vec![moment], None, None);
+    Film { title, surface, start: positions, moves, colouring, moments, moved, movable }
 }
 
 /// Blocks as a frame of a run holds them.

@@ -39,6 +39,8 @@ pub fn boxes(boxes: &[Moved]) -> Film {
             range: [0.0; 2],
         },
         moments: Vec::new(),
+        moved: None,
+        movable: None,
         surface,
     };
     let of_node = film.block_of_node();

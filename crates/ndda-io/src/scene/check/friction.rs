@@ -3,6 +3,9 @@
 use super::Check;
 use crate::scene::{Contact, Dilation, FractureEnergy, Friction, Memory, Potential, Residual, Roughness};
 
+/// What friction angles are like.
+const TYPICAL: &str =
+    "typical are 25° to 40° for joints in rock, 10° to 20° with clay in them; μ = 0.6 is 31°";
 /// Largest roughness coefficient.
 const MOST_JRC: f64 = 20.0;
 
@@ -11,8 +14,8 @@ impl Check<'_> {
         let field = |name: &str| format!("{path}.{name}");
         let angle = friction.friction_deg;
         if !(0.0..90.0).contains(&angle) {
-            let message = format!("{angle}°: must be from 0 to below 90");
-            self.error(field("friction_deg"), message, "μ = tan φ");
+            let message = format!("{angle}°: a friction angle must be at least 0 and below 90°");
+            self.error(field("friction_deg"), message, TYPICAL);
         }
         if let Some(penalty) = friction.shear_penalty_pa_m {
             self.positive(field("shear_penalty_pa_m"), penalty, "Pa/m");

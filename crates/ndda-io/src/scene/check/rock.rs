@@ -11,6 +11,8 @@ use crate::scene::{Slivers, SpacingScatter, Whereabouts, matches};
 
 /// More points of Voronoi cells than this are a slip of the keyboard.
 const MOST_CELLS: u32 = 10_000_000;
+/// Level part of a gravity that is still upright: a twentieth of a degree.
+const LEVEL: f64 = 1e-3;
 /// How a table of discs is written.
 const DISC_COLUMNS: &str =
     "a table of discs has the columns dip_deg, dip_direction_deg, x_m, y_m, z_m, radius_m and perhaps set";
@@ -66,10 +68,26 @@ impl Check<'_> {
         }
     }
 
+    /// Dips are measured from the z axis, whatever gravity is.
+    fn dips(&mut self) {
+        let [x, y, z] = self.scene.gravity_m_s2;
+        let (level, whole) = (x.hypot(y), x.hypot(y).hypot(z));
+        let is_tilted = whole > 0.0 && (z >= 0.0 || level > LEVEL * whole);
+        if is_tilted && self.scene.rock.iter().any(|rock| !rock.joints.is_empty()) {
+            let tilt_deg = level.atan2(-z).to_degrees();
+            let message = format!(
+                "gravity is tilted by {tilt_deg:.1}° from −z, but dips of joints are measured from the plane of x and y, not from the horizontal of this gravity"
+            );
+            let help = "keep gravity along −z and turn the joints; or mean the dips as angles to the plane of x and y";
+            self.warn(Code::DoesNotFit, "gravity_m_s2", message, help);
+        }
+    }
+
     pub(super) fn rock(&mut self, folder: Option<&Path>) {
         let scene = self.scene;
         self.names("rock", &scene.rock.iter().map(|rock| rock.name.as_str()).collect::<Vec<_>>());
         self.excavations();
+        self.dips();
         let materials: Vec<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
         for (i, rock) in scene.rock.iter().enumerate() {
             let path = |field: &str| format!("rock[{i}].{field}");
@@ -261,5 +279,30 @@ impl Check<'_> {
             let message = format!("{length} m: must be from 0 to below the spacing of {spacing_m} m");
             self.error(format!("{path}.spacing_scatter.{name}"), message, "distances stay above 0");
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::read::load_text;
+
+    /// Warnings of a cube of rock with a joint, under a gravity.
+    fn warned(gravity: &str) -> Vec<String> {
+        let text = format!(
+            "(title: \"t\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: {gravity}, contact: Off,
+              materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 1e10, poisson: 0.25)],
+              rock: [(material: \"rock\", domain: Box(min_m: (0, 0, 0), max_m: (1, 1, 1)),
+                  joints: [Plane(name: \"a\", dip_deg: 30, dip_direction_deg: 90, point_m: (0.5, 0.5, 0.5))])])"
+        );
+        let warnings = load_text("s.ron", &text, &[], None).unwrap().warnings;
+        warnings.into_iter().filter(|w| w.path == "gravity_m_s2").map(|w| w.message).collect()
+    }
+
+    #[test]
+    fn dips_under_tilted_gravity_are_warned_of() {
+        assert_eq!(warned("(0, 0, -9.81)"), Vec::<String>::new());
+        assert_eq!(warned("(0, 0, 0)"), Vec::<String>::new());
+        let tilted = warned("(5, 0, -8.660254037844386)");
+        assert!(tilted.len() == 1 && tilted[0].contains("tilted by 30.0°"), "{tilted:?}");
     }
 }

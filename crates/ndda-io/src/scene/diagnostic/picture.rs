@@ -16,7 +16,11 @@ pub(crate) fn draw(errors: &SceneErrors, diagnostic: &Diagnostic, colour: bool) 
     diagnostic.span.as_ref().filter(|_| errors.text.lines().all(|line| line.len() <= LONGEST))?;
     let report = Located { diagnostic, source: NamedSource::new(&errors.file, errors.text.clone()) };
     let mut picture = String::new();
-    handler.render_report(&mut picture, &report).ok().map(|()| picture)
+    handler.render_report(&mut picture, &report).ok()?;
+    // The message is in the headline already.
+    let begins = [",-[", "╭─["].iter().find_map(|corner| picture.find(corner))?;
+    let line = picture[..begins].rfind('\n').map_or(0, |end| end + 1);
+    Some(picture.split_off(line))
 }
 
 /// A diagnostic with the text it is about, as miette wants it.

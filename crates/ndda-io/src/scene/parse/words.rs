@@ -4,9 +4,9 @@ use ron::error::{Error as RonError, Position, SpannedError};
 
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
-use crate::scene::locate::Node;
+use crate::scene::locate::{Node, segments};
 use crate::scene::suggest::suggest;
-use crate::scene::units::Resolved;
+use crate::scene::units::{self, Resolved};
 
 /// Counts, in words.
 const COUNTS: &str = "counts are whole numbers from 0 to 4294967295";
@@ -62,6 +62,11 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
         code => {
             if let Some((message, help)) = brackets_of_choice(code, text, start) {
                 return at(Code::WrongType, message).with_help(help);
+            }
+            if let Some((number, field, symbol)) = unit_behind(code, text, start, tree) {
+                let message = format!("`{number} {symbol}`: {}", units::NOT_BEHIND);
+                return Diagnostic { path: field.0, ..at(Code::Syntax, message) }
+                    .with_help(units::advice(number, symbol, &field.1));
             }
             let (kind, message, help) = no_count(code, &plain.text, begins)
                 .map(|message| (Code::WrongType, message, COUNTS))
@@ -125,23 +130,46 @@ fn no_count(error: &RonError, plain: &str, at: usize) -> Option<String> {
     })
 }
 
+/// That a unit stands at a byte, behind a number: the number, path and name of its field, and the unit.
+fn unit_behind<'a>(
+    error: &RonError,
+    text: &'a str,
+    at: usize,
+    tree: &Node,
+) -> Option<(&'a str, (String, String), &'a str)> {
+    let stops = [RonError::ExpectedComma, RonError::ExpectedStructLikeEnd, RonError::ExpectedArrayEnd];
+    let before = text[..at].trim_end();
+    let of_number = |c: char| c.is_ascii_digit() || "._eE+-".contains(c);
+    let begins = before.trim_end_matches(of_number).len();
+    let number = &before[begins..];
+    let is_unit = |c: char| !",()[]{}\n\"".contains(c);
+    let length = text[at..].find(|c: char| !is_unit(c)).unwrap_or(text.len() - at);
+    let mut symbol = text[at..at + length].split("//").next().unwrap_or_default().trim();
+    if symbol.contains(':') {
+        // A comma is missing, too.
+        symbol = symbol.split_whitespace().next().filter(|word| units::may_be_unit(word))?;
+    }
+    let starts = symbol.starts_with(|c: char| c.is_alphabetic() || c == '°');
+    if !stops.contains(error) || !starts || number.parse::<f64>().is_err() {
+        return None;
+    }
+    let path = tree.path_at(begins);
+    let named = |part: &&str| part.parse::<usize>().is_err();
+    let field = segments(&path).into_iter().rev().find(named).unwrap_or_default().to_string();
+    Some((number, (path, field), symbol))
+}
+
 /// Diagnosis of the character that stands where a comma should.
 fn comma(text: &str, at: usize) -> (Code, &'static str, &'static str) {
-    let after_number = text[..at].ends_with(|c: char| c.is_ascii_digit());
     // At the end, RON shows the bracket before it.
     let rest = text[at..].trim_start_matches([')', ']']).trim_start();
-    match text[at..].chars().next() {
-        _ if rest.is_empty() => (
+    match rest.is_empty() {
+        true => (
             Code::Truncated,
             "the file ends before the scene does",
             "a closing bracket is missing, or the file was cut off",
         ),
-        Some(c) if after_number && c.is_alphabetic() => (
-            Code::Syntax,
-            "a number has no unit after it",
-            "it is in the unit of the field's name; another one is written around it: Millisecond(0.1)",
-        ),
-        _ => (
+        false => (
             Code::Syntax,
             "expected a comma",
             "a comma is missing before this, a bracket is one too many, or a text above is not closed",

@@ -163,6 +163,11 @@ impl Dimension {
 }
 
 impl Unit {
+    /// Whether a number in it is a number in the field's own unit.
+    pub(super) fn is_own(&self) -> bool {
+        self.decimals == 0 && self.factor == 1.0
+    }
+
     /// A number in this unit, as text in the field's own. Powers of ten move the decimal point, so that
     /// `Gigapascal(20.7)` has the bits of 20.7e9.
     pub(super) fn in_field(&self, number: &str) -> Option<String> {

@@ -1,0 +1,79 @@
+//! Whether anything holds the blocks of a scene, and whether some may leave through the rim of the model.
+
+use ndda_io::code::Code;
+use ndda_io::diagnostic::{Diagnostic, Severity};
+use ndda_io::read::LoadedScene;
+use ndda_io::scene::Scene;
+use ndda_mesh::BlockSet;
+
+use super::rim;
+use crate::build;
+
+/// What is said where nothing is held.
+const NOTHING: &str = "nothing is held, so all blocks fall together";
+/// Its cure.
+const HOLD: &str = "give a block `body: Fixed`, rock `fixed: […]`, or supports";
+
+/// Whether all blocks of a scene with gravity are free to fall.
+fn nothing_is(scene: &Scene, blocks: &BlockSet) -> bool {
+    let held = !scene.supports.is_empty() || !scene.quiet.is_empty() || !scene.ties.is_empty();
+    let all_move = || build::moving(scene, blocks).iter().all(Option::is_some);
+    scene.gravity_m_s2 != [0.0; 3] && blocks.len() > 1 && !held && all_move()
+}
+
+/// Warnings about what holds the blocks of a scene: path, message and cure.
+fn found(scene: &Scene, blocks: &BlockSet) -> Vec<(String, String, &'static str)> {
+    let mut found = Vec::new();
+    if nothing_is(scene, blocks) {
+        let list = if scene.blocks.is_empty() { "rock" } else { "blocks" };
+        found.push((list.to_string(), NOTHING.to_string(), HOLD));
+    }
+    let rims = rim::leaving(scene, blocks);
+    found
+        .extend(rims.into_iter().map(|(rock, message)| (format!("rock[{rock}].domain"), message, rim::CURE)));
+    found
+}
+
+/// Warnings about what holds the blocks of a scene, each in a sentence.
+pub fn sentences(scene: &Scene, blocks: &BlockSet) -> Vec<String> {
+    found(scene, blocks).into_iter().map(|(_, message, cure)| format!("{message}: {cure}")).collect()
+}
+
+/// The same at their places in the scene.
+pub fn warnings(loaded: &LoadedScene, blocks: &BlockSet) -> Vec<Diagnostic> {
+    let warning = |(path, message, cure): (String, String, &str)| {
+        let found = loaded.diagnose_as(Code::NotHeld, &path, message).with_help(cure);
+        Diagnostic { severity: Severity::Warning, ..found }
+    };
+    found(&loaded.scene, blocks).into_iter().map(warning).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::Model;
+
+    /// Codes of the warnings of two blocks, one on the other; `more` is said of the lower one.
+    fn codes(more: &str, rest: &str) -> Vec<String> {
+        let block = |name: &str, z: f64, more: &str| {
+            format!(
+                "(name: \"{name}\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, {z}), {more}),"
+            )
+        };
+        let text = format!(
+            "(title: \"two\", time: (step_s: 1e-4, end_s: 1e-3), gravity_m_s2: (0, 0, -9.81),
+            materials: [(name: \"rock\", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+            blocks: [{}{}], contact: Potential(penalty_pa: 1e8, friction: (friction_deg: 30)), {rest})",
+            block("lower", 0.0, more),
+            block("upper", 1.0, "")
+        );
+        let model = Model::from_text(&text).unwrap();
+        model.loaded.warnings.iter().map(|warning| warning.code.to_string()).collect()
+    }
+
+    #[test]
+    fn blocks_that_all_fall_are_warned_of_wherever_a_scene_is_built() {
+        assert_eq!(codes("", ""), ["not-held"]);
+        assert_eq!(codes("body: Fixed", ""), Vec::<String>::new());
+        assert_eq!(codes("", "supports: [(block: \"lower\", on: All, hold: Fixed)]"), Vec::<String>::new());
+    }
+}
