@@ -110,11 +110,27 @@ impl Histogram {
     pub fn show(&self, f: &mut fmt::Formatter<'_>, title: &str) -> fmt::Result {
         let most = self.counts.iter().copied().max().unwrap_or(0).max(1);
         writeln!(f, "{title}")?;
-        for (border, count) in self.borders.iter().zip(&self.counts).filter(|(_, count)| **count > 0) {
+        for (i, count) in self.counts.iter().enumerate().filter(|(_, count)| **count > 0) {
             let bar = "#".repeat((count * LONGEST_BAR).div_ceil(most));
-            writeln!(f, "  from {border:>9.3e} {count:>9} {bar}")?;
+            let from = short(self.borders[i]);
+            match self.borders.get(i + 1) {
+                Some(&to) => writeln!(f, "  {from:>9} to {:<9} {count:>9} {bar}", short(to))?,
+                None => writeln!(f, "  {from:>9} and more   {count:>9} {bar}")?,
+            }
         }
         Ok(())
+    }
+}
+
+/// A number in four figures, without zeros at its end.
+fn short(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        v if (1e-3..1e6).contains(&v) => {
+            let text = format!("{value:.*}", (3 - v.log10().floor() as i32).max(0) as usize);
+            if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+        }
+        _ => format!("{value:.3e}"),
     }
 }
 
@@ -185,16 +201,21 @@ fn measure(block: &str, tet: u32, mesh: &BlockMesh, nodes: &[u32; 4]) -> Option<
 
 impl fmt::Display for QualityReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.dihedral_deg.show(f, "smallest dihedral angle of tetrahedra [°]")?;
-        self.aspect.show(f, "longest edge over smallest height")?;
-        self.height_m.show(f, "smallest height [m]")?;
-        writeln!(f, "worst")?;
+        self.dihedral_deg.show(f, "tetrahedra by smallest dihedral angle [°]")?;
+        self.aspect.show(f, "tetrahedra by longest edge over smallest height (1.22 at best)")?;
+        self.height_m.show(f, "tetrahedra by smallest height [m]")?;
+        writeln!(f, "worst tetrahedra: dihedral angles, longest edge over smallest height, smallest height")?;
         for w in &self.worst {
             let [x, y, z] = w.at_m;
             writeln!(
                 f,
-                "  tet {} of {:?} at ({x:.4}, {y:.4}, {z:.4}) m: {:.2}° to {:.2}°, aspect {:.1}, height {:.3e} m",
-                w.tet, w.block, w.dihedral_deg, w.largest_dihedral_deg, w.aspect, w.height_m
+                "  tet {} of {:?} at ({x:.4}, {y:.4}, {z:.4}) m: {:.2}° to {:.2}°, {:.1}, {} m",
+                w.tet,
+                w.block,
+                w.dihedral_deg,
+                w.largest_dihedral_deg,
+                w.aspect,
+                short(w.height_m)
             )?;
         }
         Ok(())
@@ -220,6 +241,14 @@ mod tests {
         let report = quality([("a", &mesh)]);
         assert!((report.worst[0].aspect - 1.5f64.sqrt()).abs() < 1e-14);
         assert_eq!(report.dihedral_deg.counts[14], 1);
+    }
+
+    #[test]
+    fn bars_are_named_by_both_of_their_borders() {
+        let shown = quality([("a", &box_block([1.0; 3], [1; 3], BoxPattern::Six).unwrap())]).to_string();
+        assert!(shown.contains("         45 to 50                6 ####"), "{shown}");
+        let numbers = [0.0, 5.0, 0.120_56, 128.0, 1234.6, 2e6, 4.2e-5].map(short);
+        assert_eq!(numbers, ["0", "5", "0.1206", "128", "1235", "2.000e6", "4.200e-5"]);
     }
 
     #[test]

@@ -136,7 +136,7 @@ impl fmt::Display for MeshReport {
             four_figures(*largest),
             four_figures(size.median_m3)
         )?;
-        size.volume_m3.show(f, "volume of blocks [m³]")?;
+        size.volume_m3.show(f, "blocks by volume [m³]")?;
         write!(f, "{quality}")?;
         self.steps.iter().try_for_each(|step| writeln!(f, "{step}"))
     }

@@ -12,7 +12,7 @@ const WORDS: [(&str, &str); 8] = [
     ("lasting energy error", "energy gained or lost for good"),
     ("spurious contact energy", "energy made or lost by contact"),
     ("hops that grow by friction", "rebounds in a row, each longer"),
-    ("action minus reaction", "action and reaction differ by / force"),
+    ("action minus reaction", "difference of action and reaction / force"),
 ];
 
 /// A check of a run, or a part of its computing time, as tables name it.

@@ -139,7 +139,8 @@ fn slight_patches_leave_the_friction_of_others_within_the_tolerance() {
     assert_eq!((exact.slight, found.slight), (0, COLUMNS * ROWS));
     assert_eq!((exact.search.left, found.search.left), (0.0, 0.0));
     let most_n = 15e3 * ROWS as f64;
-    let off = found.friction.iter().map(|(k, a)| (a - exact.friction[*k as usize].1).norm()).fold(0.0, f64::max);
+    let off =
+        found.friction.iter().map(|(k, a)| (a - exact.friction[*k as usize].1).norm()).fold(0.0, f64::max);
     assert!(off <= 10.0 * tolerance * most_n, "{off} N of {most_n} N");
     let stopped = 1e-4 * most_n / 2600.0;
     for (a, b) in found.end.iter().zip(&exact.end) {
