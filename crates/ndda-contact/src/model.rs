@@ -148,8 +148,8 @@ pub struct ContactReport {
     pub action_reaction_error: Option<f64>,
     /// Energy that contact has taken up because joints opened by slip since it was evaluated last [J]; friction did that work.
     pub dilation_work_j: f64,
-    /// By how much friction still changed when the search for it ended, over the largest friction on the blocks; zero where it was found.
-    pub friction_left: f64,
+    /// Largest change of a slip velocity by friction when the search for friction ended before it was found [m/s]; zero where it was found.
+    pub friction_left_m_s: f64,
     /// By how much the strength of a bond was exceeded that broke in this evaluation, over its strength without normal stress.
     pub bond_overload: f64,
 }

@@ -76,7 +76,7 @@ impl ContactModel for PotentialContact {
             let bodies = damping.map_or(input.bodies, ContactDamping::bodies);
             let input = &ContactInput { bodies, ..*input };
             let scene = PatchScene { input, integrals: &self.integrals, joints, hulls: &self.hulls };
-            report.friction_left = self.faces.add(&scene, &mut self.forces, history);
+            report.friction_left_m_s = self.faces.add(&scene, &mut self.forces, history);
         }
         let scene = ScatterScene {
             blocks: input.blocks,

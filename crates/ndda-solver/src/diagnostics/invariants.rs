@@ -27,9 +27,8 @@ pub struct Invariants {
     pub block_loss: Worst,
     /// largest energy by which friction of the lighter block of a pair was off Coulomb's law, summed over all steps, over ½ m V².
     pub unresolved_friction: Worst,
-    /// Largest change of the friction of a contact in the last sweep of a search that ended before it was found, over the largest friction on its
-    /// blocks.
-    pub friction_left: f64,
+    /// Changes of slip velocities by friction when the search for it ended before it was found: the sum over all steps of the largest [m/s].
+    pub friction_left_m_s: f64,
     /// penetration over tet height.
     pub max_penetration_ratio: f64,
     /// by how much the strength of a bond was exceeded where one broke, over its strength without normal stress.

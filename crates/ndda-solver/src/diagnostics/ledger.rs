@@ -81,7 +81,7 @@ impl Ledger {
             creep_place: Worst::default(),
             growing_hops: Worst::default(),
             action_reaction: 0.0,
-            friction_left: 0.0,
+            friction_left_m_s: 0.0,
             smallest_volume_ratio: 1.0,
             largest_strain: Worst::default(),
             max_h: 0.0,
@@ -252,7 +252,7 @@ impl Ledger {
         let (worst, contact) = (&mut self.worst, &report.contact);
         worst.max_penetration_ratio = worst.max_penetration_ratio.max(contact.max_penetration_ratio);
         worst.bond_overload = worst.bond_overload.max(contact.bond_overload);
-        worst.friction_left = worst.friction_left.max(contact.friction_left);
+        worst.friction_left_m_s += contact.friction_left_m_s;
         worst.action_reaction = worst.action_reaction.max(contact.action_reaction_error.unwrap_or(0.0));
         worst.candidate_pairs_max = worst.candidate_pairs_max.max(contact.candidate_pairs);
         worst.contact_pairs_max = worst.contact_pairs_max.max(contact.contact_pairs);

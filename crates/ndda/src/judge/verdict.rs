@@ -158,12 +158,13 @@ fn energy(simulation: &Simulation) -> [Entry; 3] {
 
 /// Whether friction was found in every step; said only where it was not.
 fn friction_search(simulation: &Simulation) -> Option<Entry> {
-    let left = simulation.invariants().friction_left;
+    let left = simulation.invariants().friction_left_m_s / simulation.speed_scale_m_s();
     let reason = format!(
-        "in some step the friction of all contacts together was found to {:.1e} of the largest friction of a block only, limit {SPEED}: reduce step_s",
-        left
+        "the friction of all contacts together was not found in some steps, and speeds may be wrong by {:.1} % of the largest, limit {:.0} %: reduce step_s",
+        100.0 * left,
+        100.0 * SPEED
     );
-    (left > 0.0).then(|| warned("friction search error", left, SPEED, reason))
+    (left > 0.0).then(|| warned("friction search error / largest speed", left, SPEED, reason))
 }
 
 /// Energy that contact makes or takes, pair by pair.

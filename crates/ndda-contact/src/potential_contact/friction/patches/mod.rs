@@ -159,8 +159,7 @@ impl FrictionPatches {
     }
 
     /// Adds the friction of faces whose law acts on faces to the facets' forces, and takes over what they remember; the facets are
-    /// [arranged](Self::arrange). Gives the part of the largest friction on both of its blocks by which that of a patch still changed when the
-    /// search for it ended.
+    /// [arranged](Self::arrange). Gives the largest change of a slip [m/s] when the search for friction ended before it was found.
     pub(crate) fn add(
         &mut self,
         scene: &PatchScene,
@@ -174,7 +173,7 @@ impl FrictionPatches {
         let tolerance = solve::tolerance(scene.input.is_iterated, scene.joints.tolerance);
         solve::find_tolerances(&mut self.summaries, scene.input.bodies, tolerance, &mut self.most_n);
         self.advance_bodies(scene);
-        let left = tolerance * self.solve(scene, forces).left;
+        let left_m_s = self.solve(scene, forces).left_m_s;
         let Self { patches, runs, run_of, order, new_faces, own_m2, .. } = self;
         let spread = |((t, force), run): ((usize, &mut FacetForce), &u32)| {
             let FacetMoments { pressure, .. } = *scene.sums(t as u32);
@@ -203,7 +202,7 @@ impl FrictionPatches {
             },
         );
         std::mem::swap(&mut history.faces, &mut self.new_faces);
-        left
+        left_m_s
     }
 
     /// Where each face presses, how hard, and how it slips.

@@ -243,8 +243,8 @@ pub(super) fn find_tolerances(
 pub(super) struct Search {
     /// Sweeps over all patches.
     pub sweeps: usize,
-    /// Largest change of a friction in the last sweep, over its tolerance; zero where friction was found.
-    pub left: f64,
+    /// Largest change of a slip in the last sweep [m/s]; zero where friction was found.
+    pub left_m_s: f64,
 }
 
 /// All that moves.
@@ -272,7 +272,7 @@ pub(super) fn solve(
     motion.change(start, |from, to| from + (to - from) / GAMMA);
     patches.iter_mut().for_each(|patch| patch.first = patch.force);
     let second = solve_stage(patches, motion, newton);
-    Search { sweeps: first.sweeps + second.sweeps, left: first.left.max(second.left) }
+    Search { sweeps: first.sweeps + second.sweeps, left_m_s: first.left_m_s.max(second.left_m_s) }
 }
 
 impl Motion<'_> {
@@ -292,22 +292,22 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, newton: &mut N
     let time_s = GAMMA * motion.dt_s;
     motion.pushed.clear();
     motion.pushed.resize(motion.bodies.len(), 0);
-    let (mut now, mut left) = (0, 0.0);
+    let (mut now, mut left_m_s) = (0, 0.0);
     let most_sweeps =
         if motion.is_iterated { ITERATED_SWEEPS } else { MOST_SWEEPS.max(2 * sweeps_alone(patches.len())) };
     for sweep in 0..most_sweeps {
-        left = 0.0;
+        left_m_s = 0.0;
         let mut advance = |patch: &mut CoupledPatch| {
             now += 1;
-            left = patch.advance(motion, time_s, (now, sweep == 0)).max(left);
+            left_m_s = patch.advance(motion, time_s, (now, sweep == 0)).max(left_m_s);
         };
         if sweep % 2 == 0 {
             patches.iter_mut().for_each(&mut advance);
         } else {
             patches.iter_mut().rev().for_each(&mut advance);
         }
-        if left == 0.0 {
-            return Search { sweeps: sweep, left };
+        if left_m_s == 0.0 {
+            return Search { sweeps: sweep, left_m_s };
         }
         if sweep + 1 == motion.alone {
             newton.begin(patches, motion.bodies.len());
@@ -316,11 +316,12 @@ fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, newton: &mut N
             newton.step(patches, motion, time_s);
         }
     }
-    Search { sweeps: most_sweeps, left }
+    Search { sweeps: most_sweeps, left_m_s }
 }
 
 impl CoupledPatch {
-    /// Friction of this patch while that of the others stays; by how many tolerances it had to change, zero where by less than one.
+    /// Friction of this patch while that of the others stays; by how much its slip changed [m/s], zero where its friction changed by less than
+    /// the tolerance.
     fn advance(&mut self, motion: &mut Motion, time_s: f64, (now, is_first): (u32, bool)) -> f64 {
         let pushed = motion.pushed[self.owner.index()].max(motion.pushed[self.target.index()]);
         if !is_first && pushed <= self.seen {
@@ -347,7 +348,7 @@ impl CoupledPatch {
         for block in [self.owner, self.target] {
             motion.pushed[block.index()] = now;
         }
-        change.amax() / self.tolerance_n
+        GAMMA * (self.flexibility * change).amax()
     }
 }
 

@@ -98,7 +98,7 @@ fn solved(tolerance: f64) -> Solved {
     };
     let search = solve(&mut coupled, &start, (&mut motion, &mut Newton::default()));
     let slight = summaries.iter().filter(|summary| summary.is_slight()).count();
-    if search.left == 0.0 {
+    if search.left_m_s == 0.0 {
         assert_alone_would_not_change(&mut coupled, &mut motion);
     }
     let friction = coupled.iter().map(|patch| (patch.patch, patch.friction().0)).collect();
@@ -118,17 +118,16 @@ fn assert_alone_would_not_change(patches: &mut [CoupledPatch], motion: &mut Moti
 
 #[test]
 fn newtons_method_ends_within_eight_steps_of_each_stage() {
-    let Search { sweeps, left } = solved(1e-10).search;
-    assert_eq!(left, 0.0);
+    let Search { sweeps, left_m_s } = solved(1e-10).search;
+    assert_eq!(left_m_s, 0.0);
     assert!(sweeps > 2 * SWEEPS_ALONE && sweeps <= 2 * (SWEEPS_ALONE + 8), "{sweeps} sweeps in both stages");
 }
 
 /// Rounding alone is more than such a tolerance.
 #[test]
 fn a_search_that_ends_before_friction_is_found_tells_how_much_it_still_changed() {
-    let tolerance = 1e-18;
-    let search = solved(tolerance).search;
-    assert!(search.left > 1.0 && search.left * tolerance < 1e-12, "{search:?}");
+    let search = solved(1e-18).search;
+    assert!(search.left_m_s > 0.0 && search.left_m_s < 1e-12, "{search:?}");
 }
 
 /// The reference has no slight patches, and a hundred thousandth of the tolerance.
@@ -137,7 +136,7 @@ fn slight_patches_leave_the_friction_of_others_within_the_tolerance() {
     let tolerance = 1e-4;
     let (exact, found) = (solved(1e-9), solved(tolerance));
     assert_eq!((exact.slight, found.slight), (0, COLUMNS * ROWS));
-    assert_eq!((exact.search.left, found.search.left), (0.0, 0.0));
+    assert_eq!((exact.search.left_m_s, found.search.left_m_s), (0.0, 0.0));
     let most_n = 15e3 * ROWS as f64;
     let off =
         found.friction.iter().map(|(k, a)| (a - exact.friction[*k as usize].1).norm()).fold(0.0, f64::max);
