@@ -3,6 +3,7 @@
 mod blast;
 mod bodies;
 mod bolts;
+mod bonded;
 mod choices;
 pub mod friction;
 pub mod overlaps;
@@ -32,6 +33,7 @@ use ndda_solver::{
 };
 
 use crate::run::monitor::Monitor;
+pub use bonded::Bonded;
 pub use choices::Choices;
 use friction::friction_law;
 use pairs::{add_glue, add_joint_laws, between_materials, restitution_table};
@@ -76,7 +78,12 @@ pub fn blocks_and_rock(scene: &Scene, folder: &Path) -> Result<(BlockSet, Vec<Ro
         let fault = |(name, problem): (String, _)| Fault::new(path_of(scene, &name, ".shape"), problem);
         error.problems.into_iter().map(fault).collect()
     })?;
-    Ok((blocks, rock.into_iter().map(|rock| rock.report).collect()))
+    let report = |(index, rock): (usize, CutRock)| RockReport {
+        bonded: Bonded::new(scene, index, &blocks),
+        ..rock.report
+    };
+    let reports = rock.into_iter().enumerate().map(report).collect();
+    Ok((blocks, reports))
 }
 
 /// The meshes of a scene before they are checked, and what each rock was cut into.

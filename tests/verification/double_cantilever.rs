@@ -1,0 +1,140 @@
+//! Two arms that are bonded along a part of their length and pulled apart at their ends (double cantilever beam).
+
+use ndda_mesh::{BlockId, Vec3};
+use ndda_solver::Simulation;
+
+use crate::evidence::Answer::Within;
+use crate::evidence::row;
+use crate::simulation;
+
+const YOUNG_PA: f64 = 30e9;
+const ENERGY_J_M2: f64 = 100.0;
+/// Height of an arm, and width of both.
+const SIDE_M: f64 = 0.01;
+const CRACK_M: f64 = 0.1;
+/// Bonded length.
+const BONDED_M: f64 = 0.03;
+/// Strength and stiffness of the joint: bonds break within some millimetres, hardly longer than elements, and give a hundred times less than the arms.
+const TENSION_PA: f64 = 50e6;
+const JOINT_PA_M: f64 = 1e14;
+/// Load at the end, over that of slender arms, and steps of the last part.
+const MOST: f64 = 1.1;
+const FIRST: f64 = 0.7;
+const STEPS: u32 = 120;
+
+/// √(G b E I) = P a of slender arms [N m].
+fn moment() -> f64 {
+    let inertia_m4 = SIDE_M.powi(4) / 12.0;
+    (ENERGY_J_M2 * SIDE_M * YOUNG_PA * inertia_m4).sqrt()
+}
+
+/// The arms with this many cells over their height; long steps of a scheme that damps are static.
+fn scene(cells: u32) -> String {
+    let size_m = SIDE_M / f64::from(cells);
+    let along = |length_m: f64| (length_m / size_m).round();
+    let length_m = CRACK_M + BONDED_M;
+    let arm = |name: &str, z: f64| {
+        format!(
+            "(name: \"{name}\", material: \"rock\", shape: Box(size_m: ({length_m}, {SIDE_M}, {SIDE_M}), cells: ({}, 1, {cells}), pattern: TwentyFour), at_m: (0, 0, {z})),",
+            along(length_m)
+        )
+    };
+    let held = |name: &str| {
+        format!(
+            "(block: \"{name}\", on: Plane(point_m: ({length_m}, 0, 0), normal: (1, 0, 0)), hold: Fixed),"
+        )
+    };
+    let pull = |name: &str, z: f64, sign: f64| {
+        let one = |y: f64| {
+            format!(
+                "(block: \"{name}\", at_m: (0, {y}, {z}), force_n: (0, 0, {}), factor: [(time_s: 0, factor: 0), (time_s: 10, factor: {FIRST}), (time_s: {}, factor: {MOST})]),",
+                sign * 0.5 * moment() / CRACK_M,
+                10 + STEPS
+            )
+        };
+        one(0.0) + &one(SIDE_M)
+    };
+    format!(
+        "(title: \"double cantilever\", time: (step_s: 1, end_s: {}, integrator: Newmark(alpha: 0.5, delta: 1), contact_at: End()),
+          materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: 0, density_kg_m3: 2500)],
+          blocks: [{}{}],
+          supports: [{}{}],
+          forces: [{}{}],
+          contact: Potential(penalty_pa: {:e}, potential: Smooth(), friction: (friction_deg: 30, shear_penalty_pa_m: {JOINT_PA_M:e},
+              cohesion_pa: 100e6, tension_pa: {TENSION_PA:e}, fracture: (tension_j_m2: {ENERGY_J_M2}, shear_j_m2: 400))))",
+        10 + STEPS,
+        arm("lower", 0.0),
+        arm("upper", SIDE_M),
+        held("lower"),
+        held("upper"),
+        pull("lower", 0.5 * SIDE_M, -1.0),
+        pull("upper", 1.5 * SIDE_M, 1.0),
+        0.5 * JOINT_PA_M,
+    )
+}
+
+/// Takes out the bonds along the crack.
+fn crack(arms: &mut Simulation) {
+    arms.step().unwrap();
+    let mut snapshot = arms.snapshot();
+    let blocks = arms.blocks();
+    let start = |bond: &ndda_contact::Bond| {
+        let corners = blocks.triangle_corners(bond.facet, &blocks.rest_position);
+        corners.iter().map(|x| x.x).fold(f64::INFINITY, f64::min) + blocks.origin_m.x
+    };
+    snapshot.state.contact.bonds.retain(|bond| start(bond) > CRACK_M - 1e-6);
+    arms.restore(snapshot).unwrap();
+}
+
+/// Load at which the first bonds have broken [N], and the slope of the arms there.
+fn breaks(cells: u32) -> [f64; 2] {
+    let mut arms = simulation(&scene(cells));
+    crack(&mut arms);
+    let bonds = arms.state().contact.bonds.len();
+    let slope = |arms: &Simulation| {
+        let blocks = arms.blocks();
+        let nodes = blocks.nodes_of(BlockId(1));
+        let ends: Vec<(Vec3, Vec3)> = nodes
+            .map(|n| (blocks.rest_position[n], arms.state().position[n]))
+            .filter(|(rest, _)| (rest + blocks.origin_m).x < 1e-9)
+            .collect();
+        let mean = |of: &dyn Fn(&(Vec3, Vec3)) -> f64| ends.iter().map(of).sum::<f64>() / ends.len() as f64;
+        let (z, u) = (mean(&|(rest, _)| rest.z), mean(&|(rest, now)| now.x - rest.x));
+        let above = |(rest, now): &(Vec3, Vec3)| (rest.z - z) * (now.x - rest.x - u);
+        mean(&above) / mean(&|(rest, _)| (rest.z - z).powi(2))
+    };
+    while arms.time_s() < f64::from(10 + STEPS) - 0.5 {
+        arms.step().unwrap();
+        let factor = if arms.time_s() <= 10.0 {
+            FIRST * arms.time_s() / 10.0
+        } else {
+            FIRST + (MOST - FIRST) * (arms.time_s() - 10.0) / f64::from(STEPS)
+        };
+        println!(
+            "{} {} {} {}",
+            arms.time_s(),
+            factor * moment() / CRACK_M,
+            slope(&arms),
+            arms.state().contact.bonds.len()
+        );
+        if arms.state().contact.bonds.len() < bonds {
+            return [factor * moment() / CRACK_M, slope(&arms)];
+        }
+    }
+    panic!("the arms hold {MOST} times the load of slender ones");
+}
+
+#[test]
+fn bonded_arms_part_at_the_load_of_their_fracture_energy() {
+    assert!((moment() / CRACK_M - 50.0).abs() < 1e-9);
+    for cells in [2, 4] {
+        let began = std::time::Instant::now();
+        let [load_n, slope] = breaks(cells);
+        println!(
+            "cells {cells}: P {load_n} slope {slope} J {} in {:?}",
+            2.0 * load_n * slope / SIDE_M,
+            began.elapsed()
+        );
+        row("double cantilever", "load [N]", load_n, Within(moment() / (CRACK_M + 0.64 * SIDE_M), 0.2));
+    }
+}
