@@ -77,8 +77,8 @@ fn a_bar_with_a_joint_across_breaks_by_its_fracture_energy() {
     }
 }
 
-/// Stress of a bar of some length that is pulled somewhat beyond its peak and held there [Pa], over its strength, and how far it was pulled [m]. Long steps of
-/// a scheme that damps are static, with contact at their end.
+/// Stress of a bar of some length that is pulled somewhat beyond its peak and held there, over its strength, and how far it was pulled [m]. Long steps of
+/// a scheme that damps are static, with contact at their end; nothing moves in the first, in which bonds form.
 fn held_beyond_the_peak(length_m: f64) -> [f64; 2] {
     let stiff_pa_m = 5e13;
     let peak_m = TENSION_PA * (length_m / YOUNG_PA + 1.0 / stiff_pa_m);
@@ -96,7 +96,7 @@ fn held_beyond_the_peak(length_m: f64) -> [f64; 2] {
           supports: [
               (block: \"lower\", on: Plane(point_m: (0, 0, 0), normal: (0, 0, 1)), hold: Fixed),
               (block: \"upper\", on: Plane(point_m: (0, 0, {length_m:e}), normal: (0, 0, 1)), hold: Motion([
-                  (time_s: 0, displacement_m: (0, 0, 0)), (time_s: 100, displacement_m: (0, 0, {pulled_m:e}))])),
+                  (time_s: 1, displacement_m: (0, 0, 0)), (time_s: 100, displacement_m: (0, 0, {pulled_m:e}))])),
           ],
           contact: Potential(penalty_pa: {:e}, potential: Smooth(), friction: (friction_deg: 30, shear_penalty_pa_m: {stiff_pa_m:e},
               cohesion_pa: 6e6, tension_pa: {TENSION_PA:e}, fracture: (tension_j_m2: {ENERGY_J_M2}, shear_j_m2: 400))))",

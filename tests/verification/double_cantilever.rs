@@ -28,7 +28,7 @@ fn moment() -> f64 {
     (ENERGY_J_M2 * SIDE_M * YOUNG_PA * inertia_m4).sqrt()
 }
 
-/// The arms with this many cells over their height; long steps of a scheme that damps are static.
+/// The arms with this many cells over their height; long steps of a scheme that damps are static. Nothing pulls in the first, in which bonds form.
 fn scene(cells: u32) -> String {
     let size_m = SIDE_M / f64::from(cells);
     let along = |length_m: f64| (length_m / size_m).round();
@@ -47,7 +47,7 @@ fn scene(cells: u32) -> String {
     let pull = |name: &str, z: f64, sign: f64| {
         let one = |y: f64| {
             format!(
-                "(block: \"{name}\", at_m: (0, {y}, {z}), force_n: (0, 0, {}), factor: [(time_s: 0, factor: 0), (time_s: 10, factor: {FIRST}), (time_s: {}, factor: {MOST})]),",
+                "(block: \"{name}\", at_m: (0, {y}, {z}), force_n: (0, 0, {}), factor: [(time_s: 1, factor: 0), (time_s: 10, factor: {FIRST}), (time_s: {}, factor: {MOST})]),",
                 sign * 0.5 * moment() / CRACK_M,
                 10 + STEPS
             )
@@ -106,7 +106,7 @@ fn breaks(cells: u32) -> [f64; 2] {
     while arms.time_s() < f64::from(10 + STEPS) - 0.5 {
         arms.step().unwrap();
         let factor = if arms.time_s() <= 10.0 {
-            FIRST * arms.time_s() / 10.0
+            FIRST * (arms.time_s() - 1.0) / 9.0
         } else {
             FIRST + (MOST - FIRST) * (arms.time_s() - 10.0) / f64::from(STEPS)
         };
