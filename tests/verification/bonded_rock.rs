@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::{DMatrix, DVector};
-use ndda::build;
+use ndda::build::{self, Bonds};
 use ndda_io::read::load_text;
 use ndda_mesh::geometry::{TET_FACES, tet_volume, triangle_area_vector};
 use ndda_mesh::tetrahedralise::TETRAHEDRA;
@@ -60,14 +60,20 @@ fn strain(blocks: &BlockSet, moved: impl Fn(usize) -> Vec3, axis: usize) -> f64 
 
 /// Young's modulus and Poisson's ratio of the cube at rest.
 fn found(cube: &mut Simulation, pull_pa: f64) -> [f64; 2] {
-    cube.settle(&Settle::new(1e-6, 200_000)).unwrap();
+    cube.settle(&Settle::new(1e-5, 200_000)).unwrap();
     let (now, blocks) = (&cube.state().position, cube.blocks());
     let strain = |axis| strain(blocks, |n| now[n] - blocks.rest_position[n], axis);
     [pull_pa / strain(2), -0.5 * (strain(0) + strain(1)) / strain(2)]
 }
 
-/// The same by one linear system of all nodes: tetrahedra of constant strain, and a spring over the whole of each face between two.
-fn solved(blocks: &BlockSet, young_pa: f64, poisson: f64, stiffness_pa_m: f64) -> [f64; 2] {
+/// The same by one linear system of all nodes: tetrahedra of constant strain, and a spring over the whole of each face between two; on `rollers` at
+/// three faces, which makes the cube an eighth of a larger one.
+fn solved(
+    blocks: &BlockSet,
+    (young_pa, poisson): (f64, f64),
+    stiffness_pa_m: f64,
+    rollers: bool,
+) -> [f64; 2] {
     let at: Vec<Vec3> = blocks.rest_position.iter().map(|x| x + blocks.origin_m).collect();
     let mut k = DMatrix::<f64>::zeros(3 * at.len(), 3 * at.len());
     let mut f = DVector::<f64>::zeros(3 * at.len());
@@ -115,6 +121,9 @@ fn solved(blocks: &BlockSet, young_pa: f64, poisson: f64, stiffness_pa_m: f64) -
     // Nothing but rigid motions feels springs as soft as these.
     let soft = 1e-9 * k.diagonal().max();
     (0..k.nrows()).for_each(|i| k[(i, i)] += soft);
+    for (n, x) in at.iter().enumerate().filter(|_| rollers) {
+        (0..3).filter(|&i| x[i].abs() < 1e-9).for_each(|i| k[(3 * n + i, 3 * n + i)] *= 1e9);
+    }
     let u = k.cholesky().expect("bonds hold all pieces").solve(&f);
     let strain = |axis| strain(blocks, |n| Vec3::new(u[3 * n], u[3 * n + 1], u[3 * n + 2]), axis);
     [PULL_PA / strain(2), -0.5 * (strain(0) + strain(1)) / strain(2)]
@@ -141,39 +150,52 @@ fn faces_between(blocks: &BlockSet, at: &[Vec3]) -> Vec<[[usize; 3]; 2]> {
 
 #[test]
 fn bonds_make_rock_as_much_softer_as_a_direct_solution_says_pulled_or_pressed() {
-    for (times, ways) in [(1.0, [PULL_PA, -PULL_PA]), (10.0, [PULL_PA, -PULL_PA])] {
+    for (times, pull_pa, way) in [(1.0, PULL_PA, "pulled"), (10.0, -PULL_PA, "pressed")] {
         let stiffness_pa_m = times * YOUNG_PA / SIZE_M;
-        for pull_pa in ways {
-            let mut cube = simulation(&scene(stiffness_pa_m, pull_pa, ""));
-            let [young_pa, poisson] = found(&mut cube, pull_pa);
-            let [exact_pa, exact] = solved(cube.blocks(), YOUNG_PA, POISSON, stiffness_pa_m);
-            let way = if pull_pa > 0.0 { "pulled" } else { "pressed" };
-            let what = |of: &str| format!("{of} with bonds of {times} E/h, {way}");
-            row("bonded rock", &what("E_eff/E"), young_pa / YOUNG_PA, Within(exact_pa / YOUNG_PA, 2e-3));
-            row("bonded rock", &what("ν_eff"), poisson, Within(exact, 5e-3));
-        }
+        let mut cube = simulation(&scene(stiffness_pa_m, pull_pa, ""));
+        let [young_pa, poisson] = found(&mut cube, pull_pa);
+        let [exact_pa, exact] = solved(cube.blocks(), (YOUNG_PA, POISSON), stiffness_pa_m, false);
+        let what = |of: &str| format!("{of} with bonds of {times} E/h, {way}");
+        row("bonded rock", &what("E_eff/E"), young_pa / YOUNG_PA, Within(exact_pa / YOUNG_PA, 2e-3));
+        row("bonded rock", &what("ν_eff"), poisson, Within(exact, 5e-3));
     }
+}
+
+/// The blocks of a scene, and what is stated of its bonds.
+fn stated(text: &str) -> (BlockSet, Bonds) {
+    let loaded = load_text("cube.ron", text, &[], None).unwrap_or_else(|e| panic!("{e}"));
+    let (blocks, rock) = build::blocks_and_rock(&loaded.scene, Path::new(".")).unwrap();
+    let bonded = rock[0].bonded.clone().expect("the rock is in pieces");
+    (blocks, bonded.bonds.expect("bonds hold them"))
 }
 
 #[test]
 fn the_modulus_that_is_stated_is_that_of_a_direct_solution() {
-    for (times, error) in [(1.0, 0.05), (3.0, 0.02), (10.0, 0.01), (100.0, 0.01)] {
+    for (times, error) in [(1.0, 0.05), (10.0, 0.01)] {
         let stiffness_pa_m = times * YOUNG_PA / SIZE_M;
-        let text = scene(stiffness_pa_m, PULL_PA, "");
-        let loaded = load_text("cube.ron", &text, &[], None).unwrap_or_else(|e| panic!("{e}"));
-        let (blocks, rock) = build::blocks_and_rock(&loaded.scene, Path::new(".")).unwrap();
-        let stated = rock[0].bonded.as_ref().and_then(|bonded| bonded.bonds.as_ref()).unwrap();
-        let [exact_pa, _] = solved(&blocks, YOUNG_PA, POISSON, stiffness_pa_m);
+        let (blocks, bonds) = stated(&scene(stiffness_pa_m, PULL_PA, ""));
+        let [exact_pa, _] = solved(&blocks, (YOUNG_PA, POISSON), stiffness_pa_m, true);
         let what = format!("E_eff/E as stated, bonds of {times} E/h");
-        row("bonded rock", &what, stated.rock_pa[0] / YOUNG_PA, Within(exact_pa / YOUNG_PA, error));
+        row("bonded rock", &what, bonds.rock_pa[0] / YOUNG_PA, Within(exact_pa / YOUNG_PA, error));
     }
 }
 
 #[test]
 fn stiffer_pieces_make_up_for_their_bonds() {
     let stiffness_pa_m = 10.0 * YOUNG_PA / SIZE_M;
-    let mut cube = simulation(&scene(stiffness_pa_m, PULL_PA, "compensate: true"));
-    let [young_pa, poisson] = found(&mut cube, PULL_PA);
-    row("bonded rock", "E_eff/E, made up for", young_pa / YOUNG_PA, Within(1.0, 0.03));
+    let text = scene(stiffness_pa_m, PULL_PA, "compensate: true");
+    let (blocks, bonds) = stated(&text);
+    let pieces = (bonds.pieces_pa, POISSON * bonds.pieces_pa / YOUNG_PA);
+    let [young_pa, poisson] = solved(&blocks, pieces, stiffness_pa_m, true);
+    row("bonded rock", "E_eff/E, made up for", young_pa / YOUNG_PA, Within(1.0, 0.02));
     row("bonded rock", "ν_eff, made up for", poisson, Within(POISSON, 0.05));
+    let mut cube = simulation(&text);
+    let [found_pa, _] = found(&mut cube, PULL_PA);
+    let [exact_pa, _] = solved(&blocks, pieces, stiffness_pa_m, false);
+    row(
+        "bonded rock",
+        "E_eff/E of a free cube, made up for",
+        found_pa / YOUNG_PA,
+        Within(exact_pa / YOUNG_PA, 2e-3),
+    );
 }

@@ -33,7 +33,7 @@ use ndda_solver::{
 };
 
 use crate::run::monitor::Monitor;
-pub use bonded::Bonded;
+pub use bonded::{Bonded, Bonds};
 pub use choices::Choices;
 use friction::friction_law;
 use pairs::{add_glue, add_joint_laws, between_materials, restitution_table};

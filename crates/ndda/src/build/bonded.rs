@@ -162,9 +162,18 @@ pub(super) fn stiffer(
         ));
     };
     if (pressed_pa_m / pulled_pa_m - 1.0).abs() > SAME {
+        let cure = match &scene.contact {
+            Some(Contact::Potential { potential: Potential::Smooth { reference_m }, .. }) => {
+                format!(
+                    "give penalty_pa: {:e}, which is ½ shear_penalty_pa_m L₀",
+                    0.5 * pulled_pa_m * reference_m
+                )
+            }
+            _ => "use the potential Smooth with penalty_pa = ½ shear_penalty_pa_m L₀".into(),
+        };
         return Err(format!(
             "bonds are {pressed_pa_m:.4e} Pa/m stiff while they are pressed, but {pulled_pa_m:.4e} Pa/m while they are pulled, so that no one modulus makes up for \
-             both: with the potential Smooth give penalty_pa = ½ shear_penalty_pa_m · reference_m"
+             both: {cure}"
         ));
     }
     let bonds_pa = bonds_pa(bonded.faces_per_m, pulled_pa_m, pulled_pa_m);
