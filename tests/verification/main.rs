@@ -21,7 +21,6 @@ mod conveyor;
 mod damping;
 mod damping_beyond_the_step;
 mod dilation;
-mod double_cantilever;
 mod driven_blocks;
 mod elastic_waves;
 mod end_contact;
