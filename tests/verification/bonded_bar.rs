@@ -77,10 +77,10 @@ fn a_bar_with_a_joint_across_breaks_by_its_fracture_energy() {
     }
 }
 
-/// Stiffness of the joint of long bars, beside which theirs hardly counts, and how long they are pulled and then held.
+/// Stiffness of the joint of long bars, and how long they are pulled, slowly where they are about to break, and then held.
 const STIFF_PA_M: f64 = 2e12;
-const LONG_STEP_S: f64 = 1e-7;
-const PULLED_S: f64 = 0.015;
+const LONG_STEP_S: f64 = 2e-7;
+const PULLED_S: f64 = 0.03;
 const HELD_S: f64 = 0.01;
 
 /// Stress over strength of a bar of some length that is pulled 1 % beyond its peak and held there, the same by its springs in a row, and the bonds that are left.
@@ -99,12 +99,13 @@ fn held_beyond_the_peak(length_m: f64) -> (f64, f64, usize) {
           supports: [
               (block: \"lower\", on: Plane(point_m: (0, 0, 0), normal: (0, 0, 1)), hold: Fixed),
               (block: \"upper\", on: Plane(point_m: (0, 0, {length_m:e}), normal: (0, 0, 1)), hold: Motion([
-                  (time_s: 0, displacement_m: (0, 0, 0)), (time_s: {PULLED_S}, displacement_m: (0, 0, {pulled_m:e}))])),
+                  (time_s: 0, displacement_m: (0, 0, 0)), (time_s: 0.01, displacement_m: (0, 0, {:e})), (time_s: {PULLED_S}, displacement_m: (0, 0, {pulled_m:e}))])),
           ],
           contact: Potential(penalty_pa: {:e}, potential: Smooth(), friction: (friction_deg: 30, shear_penalty_pa_m: {STIFF_PA_M:e},
               cohesion_pa: 6e6, tension_pa: {TENSION_PA:e}, fracture: (tension_j_m2: {ENERGY_J_M2}, shear_j_m2: 400))))",
         block("lower", 0.0),
         block("upper", half_m),
+        0.97 * gives_m,
         0.5 * STIFF_PA_M,
     ));
     let height_m = |n: &usize| bar.blocks().rest_position[*n].z + bar.blocks().origin_m.z;
