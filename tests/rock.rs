@@ -147,6 +147,17 @@ fn what_is_wrong_with_a_rock_is_found_at_its_place() {
             "rock[0].joints[0].spacing_m",
         ),
         (format!("(material: \"rock\", {domain}, fill: Size(size_m: -1))"), "rock[0].fill.size_m"),
+        (format!("(material: \"rock\", {domain}, into: Tetrahedra(size_m: 0))"), "rock[0].into.size_m"),
+        (
+            format!("(material: \"rock\", {domain}, fill: Centre, into: Tetrahedra(size_m: 1))"),
+            "rock[0].into",
+        ),
+        (
+            format!(
+                "(material: \"rock\", {domain}, body: Rigid, into: Tetrahedra(size_m: 1, compensate: true))"
+            ),
+            "rock[0].into.compensate",
+        ),
         (
             format!("(material: \"rock\", {domain}, fixed: [Beyond(point_m: (0, 0, 0), normal: (0, 0, 0))])"),
             "rock[0].fixed[0].normal",

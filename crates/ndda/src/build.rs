@@ -33,13 +33,12 @@ use ndda_solver::{
 };
 
 use crate::run::monitor::Monitor;
-pub use bonded::{Bonded, Bonds};
 pub use choices::Choices;
 use friction::friction_law;
 use pairs::{add_glue, add_joint_laws, between_materials, restitution_table};
 pub use quiet::records;
 use regions::{find, find_all};
-pub use rock::{CutRock, Meshes, RockReport};
+pub use rock::{Bonded, Bonds, CutRock, Meshes, RockReport};
 pub(crate) use settle::settle;
 
 /// A node is on a plane when it is nearer than this part of its block's size.
@@ -78,11 +77,7 @@ pub fn blocks_and_rock(scene: &Scene, folder: &Path) -> Result<(BlockSet, Vec<Ro
         let fault = |(name, problem): (String, _)| Fault::new(path_of(scene, &name, ".shape"), problem);
         error.problems.into_iter().map(fault).collect()
     })?;
-    let report = |(index, rock): (usize, CutRock)| RockReport {
-        bonded: Bonded::new(scene, index, &blocks),
-        ..rock.report
-    };
-    let reports = rock.into_iter().enumerate().map(report).collect();
+    let reports = rock::reports(scene, rock, &blocks);
     Ok((blocks, reports))
 }
 

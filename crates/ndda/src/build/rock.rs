@@ -16,7 +16,7 @@ use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::bonded::Bonded;
+pub use super::bonded::{Bonded, Bonds};
 use super::{Fault, solid, vec3};
 use crate::forecast::admit;
 use crate::numbers::{counted, four_figures};
@@ -87,6 +87,15 @@ pub struct CutRock {
     pub report: RockReport,
     /// The convex parts of the blocks that are left.
     pub blocks: Blocks,
+}
+
+/// What each rock of a scene was cut into, and how stiff it is where it is in pieces.
+pub(super) fn reports(scene: &Scene, rocks: Vec<CutRock>, blocks: &BlockSet) -> Vec<RockReport> {
+    let report = |(index, rock): (usize, CutRock)| RockReport {
+        bonded: Bonded::new(scene, index, blocks),
+        ..rock.report
+    };
+    rocks.into_iter().enumerate().map(report).collect()
 }
 
 /// Names and meshes of blocks.
