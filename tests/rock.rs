@@ -147,6 +147,17 @@ fn what_is_wrong_with_a_rock_is_found_at_its_place() {
             "rock[0].joints[0].spacing_m",
         ),
         (format!("(material: \"rock\", {domain}, fill: Size(size_m: -1))"), "rock[0].fill.size_m"),
+        (format!("(material: \"rock\", {domain}, into: Tetrahedra(size_m: 0))"), "rock[0].into.size_m"),
+        (
+            format!("(material: \"rock\", {domain}, fill: Centre, into: Tetrahedra(size_m: 1))"),
+            "rock[0].into",
+        ),
+        (
+            format!(
+                "(material: \"rock\", {domain}, body: Rigid, into: Tetrahedra(size_m: 1, compensate: true))"
+            ),
+            "rock[0].into.compensate",
+        ),
         (
             format!("(material: \"rock\", {domain}, fixed: [Beyond(point_m: (0, 0, 0), normal: (0, 0, 0))])"),
             "rock[0].fixed[0].normal",
@@ -308,4 +319,50 @@ fn terrain_from_a_file_in_coordinates_of_a_map_is_that_of_the_same_heights_in_th
     assert!((whole_m3 - volume_m3(&built(file).unwrap()) - corner_m3).abs() < 1e-9);
     std::fs::write(folder.path().join("hill.asc"), grid.replace("5 6", "-9999 6")).unwrap();
     assert!(built(file).unwrap_err().contains("fewer gaps"));
+}
+
+#[test]
+fn rock_comes_apart_into_blocks_of_one_element_and_keeps_the_names_of_its_joints() {
+    let rock = COLUMN.replace("fill: Centre,", "into: Tetrahedra(size_m: 1.5),");
+    let blocks = blocks(&load(&rock, ""));
+    assert_eq!(blocks.len(), blocks.tets.len());
+    assert!(blocks.len() > 8 * 12, "{}", blocks.len());
+    assert!((volume_m3(&blocks) - 128.0).abs() < 1e-9);
+    for name in ["bed", "up", "tetrahedra", "z_max"] {
+        assert!(blocks.surface_names.iter().any(|known| known == name), "{name}");
+    }
+    assert!(blocks.triangle_surface.iter().all(Option::is_some));
+}
+
+/// Rock whose pieces are to be made stiffer, with a law between them; what is wrong with it.
+fn refused(penalty_pa: &str, friction: &str) -> String {
+    let text = scene(
+        "(material: \"rock\", domain: Box(min_m: (0, 0, 0), max_m: (1, 1, 1)), into: Tetrahedra(size_m: 0.5, compensate: true))",
+        "",
+    );
+    let law = format!(
+        "penalty_pa: {penalty_pa}, potential: Smooth(), rock_joints: [(joint: \"tetrahedra\", friction: ({friction}))]"
+    );
+    let text = text.replace("penalty_pa: 1e8, potential: Smooth()", &law);
+    let loaded = load_text("t.ron", &text, &[], None).unwrap_or_else(|e| panic!("{e}"));
+    let blocks = blocks(&loaded);
+    let faults = build::simulation(&loaded.scene, blocks, Path::new(".")).map(drop).unwrap_err();
+    assert_eq!(faults[0].path, "rock[0].into.compensate");
+    faults[0].message.clone()
+}
+
+#[test]
+fn bonds_that_cannot_be_made_up_for_are_refused_with_what_to_change() {
+    let message = refused("1e11", "friction_deg: 30");
+    assert!(message.contains("nothing holds") && message.contains("cohesion_pa or tension_pa"), "{message}");
+    let bond = |shear: &str| {
+        format!("friction_deg: 30, shear_penalty_pa_m: {shear}, cohesion_pa: 1e6, tension_pa: 1e6")
+    };
+    let message = refused("1e11", &bond("1e12"));
+    assert!(message.contains("give penalty_pa: 5e11"), "{message}");
+    let message = refused("5e9", &bond("1e10"));
+    assert!(
+        message.contains("too soft") && message.contains("a shear_penalty_pa_m of at least"),
+        "{message}"
+    );
 }

@@ -3,7 +3,7 @@
 use ndda_mesh::BlockId;
 use ndda_solver::Simulation;
 
-use crate::evidence::Answer::Within;
+use crate::evidence::Answer::{AtMost, Within};
 use crate::evidence::row;
 use crate::simulation;
 
@@ -74,6 +74,62 @@ fn a_bar_with_a_joint_across_breaks_by_its_fracture_energy() {
         let what = format!("work of {across} [J]");
         row("bonded bar", &what, lost_j, Within(ENERGY_J_M2 * AREA_M2, 0.01));
         assert!(bar.state().contact.bonds.is_empty());
+    }
+}
+
+/// Stiffness of the joint of long bars, and how long they are pulled, slowly where they are about to break, and then held.
+const STIFF_PA_M: f64 = 2e12;
+const LONG_STEP_S: f64 = 2e-7;
+const PULLED_S: f64 = 0.03;
+const HELD_S: f64 = 0.01;
+
+/// Stress over strength of a bar of some length that is pulled 1 % beyond its peak and held there, the same by its springs in a row, and the bonds that are left.
+fn held_beyond_the_peak(length_m: f64) -> (f64, f64, usize) {
+    let gives_m = TENSION_PA * (length_m / YOUNG_PA + 1.0 / STIFF_PA_M);
+    let (pulled_m, half_m) = (1.01 * gives_m, 0.5 * length_m);
+    let block = |name: &str, z: f64| {
+        format!(
+            "(name: \"{name}\", material: \"rock\", shape: Box(size_m: (0.01, 0.01, {half_m:e}), cells: (1, 1, 1)), at_m: (0, 0, {z:e})),"
+        )
+    };
+    let mut bar = simulation(&format!(
+        "(title: \"long bar\", time: (step_s: {LONG_STEP_S:e}, end_s: 1, integrator: Newmark(alpha: 0.5, delta: 1)),
+          materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: 0, density_kg_m3: 2500, damping: (mass_per_s: 2000))],
+          blocks: [{}{}],
+          supports: [
+              (block: \"lower\", on: Plane(point_m: (0, 0, 0), normal: (0, 0, 1)), hold: Fixed),
+              (block: \"upper\", on: Plane(point_m: (0, 0, {length_m:e}), normal: (0, 0, 1)), hold: Motion([
+                  (time_s: 0, displacement_m: (0, 0, 0)), (time_s: 0.01, displacement_m: (0, 0, {:e})), (time_s: {PULLED_S}, displacement_m: (0, 0, {pulled_m:e}))])),
+          ],
+          contact: Potential(penalty_pa: {:e}, potential: Smooth(), friction: (friction_deg: 30, shear_penalty_pa_m: {STIFF_PA_M:e},
+              cohesion_pa: 6e6, tension_pa: {TENSION_PA:e}, fracture: (tension_j_m2: {ENERGY_J_M2}, shear_j_m2: 400))))",
+        block("lower", 0.0),
+        block("upper", half_m),
+        0.97 * gives_m,
+        0.5 * STIFF_PA_M,
+    ));
+    let height_m = |n: &usize| bar.blocks().rest_position[*n].z + bar.blocks().origin_m.z;
+    let end: Vec<usize> = bar.blocks().nodes_of(BlockId(0)).filter(|n| height_m(n) > 0.9 * half_m).collect();
+    for _ in 0..((PULLED_S + HELD_S) / LONG_STEP_S).round() as u32 {
+        bar.step().unwrap();
+    }
+    let last_m = 2.0 * ENERGY_J_M2 / TENSION_PA;
+    let found = stress_pa(&bar, &end) * LENGTH_M / length_m / TENSION_PA;
+    (found, (last_m - pulled_m) / (last_m - gives_m), bar.state().contact.bonds.len())
+}
+
+#[test]
+fn a_bar_snaps_that_stores_more_than_its_joint_takes() {
+    let most_m = 2.0 * YOUNG_PA * ENERGY_J_M2 / TENSION_PA.powi(2);
+    assert!((most_m - 0.6667).abs() < 1e-4);
+    for part in [0.9, 0.95, 1.05, 1.1] {
+        let (found, exact, bonds) = held_beyond_the_peak(part * most_m);
+        let what = |of: &str| format!("{of} 1 % beyond the peak, L = {part} of 2 E G_I/f_t²");
+        if part < 1.0 {
+            row("bonded bar", &what("stress over strength"), found, Within(exact, 0.02));
+        } else {
+            row("bonded bar", &what("bonds left"), bonds as f64, AtMost(0.0));
+        }
     }
 }
 

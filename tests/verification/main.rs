@@ -9,6 +9,7 @@ mod bolts;
 mod bolts_in_stages;
 mod bonded_bar;
 mod bonded_plate;
+mod bonded_rock;
 mod bouncing_block;
 mod bound_of_contact;
 mod brazilian_disc;

@@ -61,6 +61,18 @@ fn a_cube_on_a_plane_has_the_factor_tan_phi_over_tan_alpha() {
     row("safety", "the same by tilting gravity: upper end [-]", upper, Within(exact, ERROR));
 }
 
+/// It slides by a tenth of a metre, and comes to rest against a block that is fixed: it did not stand.
+#[test]
+fn a_cube_that_comes_to_rest_elsewhere_has_a_factor_below_1() {
+    let stop = "(name: \"stop\", material: \"rock\", body: Fixed, shape: Box(size_m: (0.5, 2, 0.5), cells: (1, 1, 1)), at_m: (1.1, -0.5, 0)),
+        (name: \"cube\"";
+    let text =
+        scene("plane_dry").replace("friction_deg: 40", "friction_deg: 20").replace("(name: \"cube\"", stop);
+    let safety = found(&text, Question::Strength);
+    let exact = 20f64.to_radians().tan() / 30f64.to_radians().tan();
+    holds("cube on 30°, φ = 20°, above a block that would stop it", &safety, exact);
+}
+
 /// A block so tall that it rocks while it slides, and still too wide to topple: vibration must not hold it.
 #[test]
 fn a_tall_block_that_rocks_slides_at_the_factor_of_its_plane() {

@@ -3,6 +3,7 @@
 mod blast;
 mod bodies;
 mod bolts;
+mod bonded;
 mod choices;
 pub mod friction;
 pub mod overlaps;
@@ -37,7 +38,7 @@ use friction::friction_law;
 use pairs::{add_glue, add_joint_laws, between_materials, restitution_table};
 pub use quiet::records;
 use regions::{find, find_all};
-pub use rock::{CutRock, Meshes, RockReport};
+pub use rock::{Bonded, Bonds, CutRock, Meshes, RockReport};
 pub(crate) use settle::settle;
 
 /// A node is on a plane when it is nearer than this part of its block's size.
@@ -76,7 +77,8 @@ pub fn blocks_and_rock(scene: &Scene, folder: &Path) -> Result<(BlockSet, Vec<Ro
         let fault = |(name, problem): (String, _)| Fault::new(path_of(scene, &name, ".shape"), problem);
         error.problems.into_iter().map(fault).collect()
     })?;
-    Ok((blocks, rock.into_iter().map(|rock| rock.report).collect()))
+    let reports = rock::reports(scene, rock, &blocks);
+    Ok((blocks, reports))
 }
 
 /// The meshes of a scene before they are checked, and what each rock was cut into.

@@ -2256,6 +2256,51 @@ class Pattern:
     TwentyFour: ClassVar[Literal["TwentyFour"]] = "TwentyFour"
 
 
+class Pieces:
+    """Pieces that each block of a rock is taken apart into, every one a block of its own.
+
+    What holds them together is the law that `contact.rock_joints` gives the joint `tetrahedra`: bonds, with a
+    fracture energy or without. Cracks run between pieces. ```text rock: [(material: "rock", domain:
+    Box(min_m: (0, 0, 0), max_m: (1, 1, 2)), into: Tetrahedra(size_m: 0.2, compensate: true))], contact:
+    Potential(penalty_pa: 5e11, potential: Smooth(), rock_joints: [ (joint: "tetrahedra", friction:
+    (friction_deg: 35, shear_penalty_pa_m: 1e12, cohesion_pa: 10e6, tension_pa: 5e6, fracture: (tension_j_m2:
+    50, shear_j_m2: 500))), ]), ```
+
+    Examples
+    --------
+    >>> Pieces.Tetrahedra(size_m=1.0).to_ron()
+    'Tetrahedra(size_m: 1.0)'
+    """
+
+    @dataclass(kw_only=True)
+    class Tetrahedra(Builder):
+        """Tetrahedra.
+
+        The faces between those of one block are the joint `tetrahedra`; faces on other joints keep their
+        names.
+
+        Parameters
+        ----------
+        size_m : float
+            Length of their edges, about [m].
+        compensate : bool, optional
+            Whether they are made stiffer than their material, so that the rock has its Young's modulus with
+            the bonds, which make it softer (`ndda check` says by how much). Needs bonds as stiff while they
+            are pressed as while they are pulled, `penalty_pa` = ½ `shear_penalty_pa_m` L₀ with the potential
+            `Smooth`. Default: false.
+
+        Examples
+        --------
+        >>> Pieces.Tetrahedra(size_m=1.0).to_ron()
+        'Tetrahedra(size_m: 1.0)'
+        """
+
+        size_m: float
+        compensate: bool | None = None
+        _kinds: ClassVar[Mapping[str, str]] = {"size_m": "num", "compensate": "bool"}
+        _variant: ClassVar[str] = "Tetrahedra"
+
+
 class Potential:
     """The potential φ inside a block; the pressure is k_n φ.
 
@@ -2949,6 +2994,8 @@ class Rock(Builder):
         Treatment of slivers. Default: `Merge`.
     fill : FillChoice, optional
         How blocks are filled with tetrahedra. Default: `Fewest`.
+    into : PiecesChoice, optional
+        Pieces that each block is taken apart into, which bonds hold together. Default: none.
     body : BodyChoice, optional
         How blocks may move. Default: `Elastic`.
     excavations : list[Excavation], optional
@@ -2974,11 +3021,12 @@ class Rock(Builder):
     sliver_width_m: float | None = None
     slivers: SliversChoice | None = None
     fill: FillChoice | None = None
+    into: PiecesChoice | None = None
     body: BodyChoice | None = None
     excavations: list[Excavation] | None = None
     removed: list[WhereaboutsChoice] | None = None
     fixed: list[WhereaboutsChoice] | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "material": "str", "domain": "Domain", "joints": "[Discontinuity]", "voronoi": "Voronoi", "seed": "int", "sliver_width_m": "num", "slivers": "Slivers", "fill": "Fill", "body": "Body", "excavations": "[Excavation]", "removed": "[Whereabouts]", "fixed": "[Whereabouts]"}
+    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "material": "str", "domain": "Domain", "joints": "[Discontinuity]", "voronoi": "Voronoi", "seed": "int", "sliver_width_m": "num", "slivers": "Slivers", "fill": "Fill", "into": "Pieces", "body": "Body", "excavations": "[Excavation]", "removed": "[Whereabouts]", "fixed": "[Whereabouts]"}
 
 
 @dataclass(kw_only=True)
@@ -4457,6 +4505,7 @@ MassChoice: TypeAlias = Literal["Consistent"] | Literal["Lumped"]
 MemoryChoice: TypeAlias = Literal["Body"] | Literal["Element"]
 OrientationScatterChoice: TypeAlias = Literal["None"] | OrientationScatter.Normal | OrientationScatter.Fisher | OrientationScatter.Uniform
 PatternChoice: TypeAlias = Literal["Six"] | Literal["TwentyFour"]
+PiecesChoice: TypeAlias = Pieces.Tetrahedra
 PotentialChoice: TypeAlias = Literal["Element"] | Potential.Smooth | Potential.Closure | Potential.Volume
 PrecisionChoice: TypeAlias = Literal["F32"] | Literal["F64"]
 PressureChoice: TypeAlias = Pressure.Level | Pressure.Linear | Pressure.Points | Pressure.Least
@@ -4535,6 +4584,7 @@ __all__ = [
     "OrientationScatter",
     "Output",
     "Pattern",
+    "Pieces",
     "Potential",
     "Precision",
     "Pressure",

@@ -20,6 +20,7 @@ mod water;
 use std::path::Path;
 
 use ndda_mesh::cut::CELLS;
+use ndda_mesh::tetrahedralise::TETRAHEDRA;
 
 use crate::results::tables;
 use crate::scene::code::Code;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Body, Fill, one};
+use super::{Body, Fill, Pieces, one};
 
 /// A piece of rock that is cut into blocks. They are named `rock_0001`, `rock_0002`, … after its name.
 ///
@@ -54,6 +54,9 @@ pub struct Rock {
     /// How blocks are filled with tetrahedra. Default: `Fewest`.
     #[serde(default)]
     pub fill: Fill,
+    /// Pieces that each block is taken apart into, which bonds hold together. Default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub into: Option<Pieces>,
     /// How blocks may move. Default: `Elastic`.
     #[serde(default)]
     pub body: Body,

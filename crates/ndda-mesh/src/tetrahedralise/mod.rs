@@ -5,6 +5,7 @@
 //! the smallest dihedral angle, each step only if all volumes stay positive (Freitag & Ollivier-Gooch 1997). Nodes on
 //! a face or edge of the block stay on it, so the surface is that of the block at any size.
 
+mod apart;
 mod glued;
 mod improve;
 mod pool;
@@ -13,6 +14,7 @@ mod size;
 mod star;
 mod weld;
 
+pub use apart::{TETRAHEDRA, taken_apart};
 pub use size::{Grading, Towards};
 
 use std::collections::BTreeMap;

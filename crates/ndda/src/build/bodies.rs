@@ -14,6 +14,7 @@ use ndda_mesh::{BlockId, BlockSet};
 use ndda_solver::{BodyKind, BodySetup, ForceSetup, TractionSetup};
 
 use super::blast::add_blasts;
+use super::bonded;
 use super::quiet::{add_quiet, add_ties};
 use super::regions::{in_region, loaded_triangles, region_nodes};
 use super::water::add_water;
@@ -40,10 +41,14 @@ pub(super) fn bodies(
     }
     let mut bodies = Vec::new();
     let sources = sources(scene, blocks);
+    let stiffened = stiffened(scene, blocks, &mut faults);
     for (id, source) in blocks.ids().zip(&sources) {
         let Some(source) = source else { continue };
         let used = scene.materials.iter().position(|m| m.name == source.material());
         let Some(material) = used.and_then(|i| materials[i].clone()) else { continue };
+        let own =
+            stiffened.iter().find(|(rock, _)| matches!(source, Source::Rock(r) if std::ptr::eq(*r, *rock)));
+        let material = own.map_or(material, |(_, stiffer)| stiffer.clone());
         bodies.push(body(scene, blocks, id, source, material));
     }
     if !faults.is_empty() {
@@ -186,6 +191,22 @@ fn materials(scene: &Scene, faults: &mut Vec<Fault>) -> Vec<Option<Arc<dyn Mater
         built.map_err(|error| faults.push(Fault::new(format!("materials[{i}]"), error))).ok()
     };
     scene.materials.iter().enumerate().map(&mut build).collect()
+}
+
+/// Materials of rock in bonded pieces that make up for their bonds.
+fn stiffened<'a>(
+    scene: &'a Scene,
+    blocks: &BlockSet,
+    faults: &mut Vec<Fault>,
+) -> Vec<(&'a scene::Rock, Arc<dyn Material>)> {
+    let mut build = |(index, rock): (usize, &'a scene::Rock)| {
+        let stiffer = bonded::stiffer(scene, index, blocks);
+        let built =
+            stiffer.and_then(|m| m.map(|m| material(&m).map_err(|error| error.to_string())).transpose());
+        let fault = |message| faults.push(Fault::new(format!("rock[{index}].into.compensate"), message));
+        built.map_err(fault).ok().flatten().map(|material| (rock, material))
+    };
+    scene.rock.iter().enumerate().filter_map(&mut build).collect()
 }
 
 fn material(m: &scene::Material) -> Result<Arc<dyn Material>, MaterialError> {

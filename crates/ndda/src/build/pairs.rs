@@ -51,7 +51,7 @@ pub(super) fn restitution_table(
 }
 
 /// Surfaces that a joint's name means.
-fn surfaces_of(joint: &str, blocks: &BlockSet) -> Vec<u32> {
+pub(super) fn surfaces_of(joint: &str, blocks: &BlockSet) -> Vec<u32> {
     let named = |(_, name): &(u32, &String)| scene::matches(joint, name);
     (0..).zip(&blocks.surface_names).filter(named).map(|(surface, _)| surface).collect()
 }
@@ -77,7 +77,7 @@ pub(super) fn add_glue(joints: &mut FrictionLawTable, scene: &Scene, penalty_pa:
 }
 
 /// Mean stiffness of normal contact on surfaces: pressure 4 k_n (1/H + 1/H) over depth, H being the heights of the tetrahedra behind their faces.
-fn contact_stiffness_pa_m(surfaces: &[u32], penalty_pa: f64, blocks: &BlockSet) -> f64 {
+pub(super) fn contact_stiffness_pa_m(surfaces: &[u32], penalty_pa: f64, blocks: &BlockSet) -> f64 {
     let (mut area_m2, mut volume_m3) = (0.0, 0.0);
     let mut of_triangle = std::collections::HashMap::new();
     for (triangle, surface) in blocks.triangles.iter().zip(&blocks.triangle_surface) {

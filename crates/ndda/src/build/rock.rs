@@ -11,10 +11,12 @@ use ndda_mesh::cut::{
     Axis, Blocks, CutOptions, Domain, Merged, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
 };
 use ndda_mesh::geometry::tet_volume;
+use ndda_mesh::tetrahedralise::taken_apart;
 use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 
+pub use super::bonded::{Bonded, Bonds};
 use super::{Fault, solid, vec3};
 use crate::forecast::admit;
 use crate::numbers::{counted, four_figures};
@@ -42,11 +44,14 @@ pub struct RockReport {
     /// What discs cut; left out where there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub discs: Option<Discs>,
+    /// How stiff it is where it is taken apart into pieces that bonds hold together; left out where it is not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub bonded: Option<Bonded>,
 }
 
 impl fmt::Display for RockReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, blocks, domain_m3, merged, slivers, thin, removed, refused, discs } = self;
+        let Self { name, blocks, domain_m3, merged, slivers, thin, removed, refused, discs, bonded } = self;
         write!(f, "rock {name}: {} m³ in {}", four_figures(*domain_m3), counted(*blocks, "block", "blocks"))?;
         let counts = [
             ("sliver", "united with neighbours", merged),
@@ -70,7 +75,8 @@ impl fmt::Display for RockReport {
             let cuts = counted(*refused, "cut", "cuts");
             write!(f, ", {cuts} not made because they would leave needles")?;
         }
-        discs.as_ref().map_or(Ok(()), |discs| write!(f, "\n  {discs}"))
+        discs.as_ref().map_or(Ok(()), |discs| write!(f, "\n  {discs}"))?;
+        bonded.as_ref().map_or(Ok(()), |bonded| write!(f, "\n  {bonded}"))
     }
 }
 
@@ -81,6 +87,15 @@ pub struct CutRock {
     pub report: RockReport,
     /// The convex parts of the blocks that are left.
     pub blocks: Blocks,
+}
+
+/// What each rock of a scene was cut into, and how stiff it is where it is in pieces.
+pub(super) fn reports(scene: &Scene, rocks: Vec<CutRock>, blocks: &BlockSet) -> Vec<RockReport> {
+    let report = |(index, rock): (usize, CutRock)| RockReport {
+        bonded: Bonded::new(scene, index, blocks),
+        ..rock.report
+    };
+    rocks.into_iter().enumerate().map(report).collect()
 }
 
 /// Names and meshes of blocks.
@@ -133,26 +148,33 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
         removed: (removed.len(), removed_m3),
         refused,
         discs: Discs::new(&blocks.report.discs),
+        bonded: None,
     };
     let mut faults = Vec::new();
     let groups = blocks.groups();
-    admit::admit_fill(groups.len(), &rock.fill, report.domain_m3 - sliver_m3 - removed_m3)
-        .map_err(|m| vec![Fault::new(at(".fill"), m)])?;
-    let filled: Vec<_> =
-        groups.par_iter().map(|group| solid::filled_group(&blocks, group, &rock.fill)).collect();
+    let (fill, kept_m3) = (rock.filling(), report.domain_m3 - sliver_m3 - removed_m3);
+    let fill_field = if rock.into.is_some() { ".into" } else { ".fill" };
+    admit::admit_fill(groups.len(), &fill, (kept_m3, rock.into.is_some()))
+        .map_err(|m| vec![Fault::new(at(fill_field), m)])?;
+    let filled: Vec<_> = groups.par_iter().map(|group| solid::filled_group(&blocks, group, &fill)).collect();
     let mut counts = vec![0; spaces.len() + 1];
     for (group, filled) in groups.iter().zip(filled) {
         let at_m = centroid(&blocks, group);
         let space = spaces.iter().position(|space| space.holds(&at_m));
         let stem = space.map_or(&rock.name, |k| &rock.excavations[k].name);
         let count = &mut counts[space.map_or(spaces.len(), |k| k)];
-        *count += 1;
-        let name = format!("{stem}_{count:04}");
+        let mut next = || {
+            *count += 1;
+            format!("{stem}_{count:04}")
+        };
         match filled {
-            Ok(mesh) => meshes.push((name, mesh)),
+            Ok(mesh) if rock.into.is_some() => {
+                meshes.extend(taken_apart(&mesh).into_iter().map(|piece| (next(), piece)));
+            }
+            Ok(mesh) => meshes.push((next(), mesh)),
             Err(error) => faults.push(Fault::new(
-                at(".fill"),
-                format!("block {name} cannot be filled: {error}; a larger `sliver_width_m` unites thin ones with neighbours"),
+                at(fill_field),
+                format!("block {} cannot be filled: {error}; a larger `sliver_width_m` unites thin ones with neighbours", next()),
             )),
         }
     }

@@ -44,7 +44,7 @@ pub(super) fn filled(surface: &Surface, flat_ratio: f64, fill: &scene::Fill) -> 
         return by_tetgen(surface, *size_m);
     }
     let domain = domain(surface, flat_ratio)?;
-    admit::admit_fill(1, fill, domain.volume_m3())?;
+    admit::admit_fill(1, fill, (domain.volume_m3(), false))?;
     let blocks = cut_blocks(&domain, &[], &Default::default()).map_err(|e| e.to_string())?;
     match blocks.groups().as_slice() {
         [whole] => filled_group(&blocks, whole, fill),

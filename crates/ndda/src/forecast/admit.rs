@@ -9,7 +9,7 @@ use ndda_io::scene::Fill;
 
 use super::memory::{self, readable};
 use super::size::{
-    BLOCK_B, Count, PROGRAM_B, Part, TET_B, bytes, filled, parts, rounded, tets_of_file, times,
+    BLOCK_B, Count, PROGRAM_B, Part, TET_B, bytes, filled, parts, rounded, taken_apart, tets_of_file, times,
 };
 use crate::numbers::counted;
 
@@ -85,12 +85,14 @@ pub fn most_blocks(otherwise: usize) -> usize {
     memory::budget().map_or(otherwise, |bytes| otherwise.min((bytes as f64 / BLOCK_B) as usize).max(1))
 }
 
-/// Holds what filling takes at least, once blocks are cut or a surface is read, against the memory that there is.
+/// Holds what filling takes at least, once blocks are cut or a surface is read, against the memory that there is; with `apart`, what tetrahedra take that
+/// become blocks of their own.
 ///
 /// # Errors
 /// A message with the figures.
-pub fn admit_fill(blocks: usize, fill: &Fill, volume_m3: f64) -> Result<(), String> {
+pub fn admit_fill(blocks: usize, fill: &Fill, (volume_m3, apart): (f64, bool)) -> Result<(), String> {
     let count = filled(times(Count::default(), blocks as f64), fill, volume_m3, 0.0);
+    let count = if apart { taken_apart(count) } else { count };
     let bytes = count.blocks * BLOCK_B + count.tets * TET_B;
     match memory::budget() {
         Some(budget) if bytes > budget as f64 => Err(format!(

@@ -58,8 +58,10 @@ fn penalty(scene: &Scene, simulation: &Simulation, penalty_pa: f64, potential: &
     let deforms = simulation.blocks().ids().any(|block| simulation.shape(block).kind != BodyKind::Fixed);
     let stiffest_pa = scene.materials.iter().map(|material: &Material| material.young_pa).fold(0.0, f64::max);
     let ratio = per_metre_pa / stiffest_pa;
+    // Contact of bonded pieces is to be as stiff as their bonds.
+    let is_bonded = scene.rock.iter().any(|rock| rock.into.is_some());
     let what = match ratio {
-        _ if !deforms => return None,
+        _ if !deforms || is_bonded => return None,
         r if r < SOFT => "soft for this rock: blocks sink deep into each other",
         r if r > HARD => "stiff for this rock: steps have to be short, and nothing is gained",
         _ => return None,

@@ -176,6 +176,21 @@ fn file_b(folder: &Path, file: impl AsRef<Path>) -> f64 {
 }
 
 fn of_rock(rock: &Rock, folder: &Path) -> (Count, &'static str, &'static str) {
+    let (count, field, cure) = of_cut_rock(rock, folder);
+    match rock.into {
+        Some(_) => (taken_apart(count), ".into", "use a larger size"),
+        None => (count, field, cure),
+    }
+}
+
+/// Blocks as pieces of one tetrahedron each.
+pub(super) fn taken_apart(count: Count) -> Count {
+    let each = 4.0 * count.tets;
+    Count { blocks: count.tets, nodes: each, triangles: each, ..count }
+}
+
+fn of_cut_rock(rock: &Rock, folder: &Path) -> (Count, &'static str, &'static str) {
+    let fill = &rock.filling();
     let (extent, parts) = of_domain(&rock.domain, folder);
     let (volume_m3, mut area_m2) = (volume(&extent), area(&extent));
     if let Some(voronoi) = rock.voronoi {
@@ -183,7 +198,7 @@ fn of_rock(rock: &Rock, folder: &Path) -> (Count, &'static str, &'static str) {
         let bare = Count { nodes: 27.0, tets: 35.0, triangles: 50.0, ..Count::default() };
         // A cell of volume v has a surface of 5.82 v^(2/3) (Meijering 1953).
         area_m2 += 5.82 * cells * (volume_m3 / cells).powf(2.0 / 3.0);
-        let mut count = filled(times(bare, cells.max(parts)), &rock.fill, volume_m3, area_m2);
+        let mut count = filled(times(bare, cells.max(parts)), fill, volume_m3, area_m2);
         count.build_s += CELL_S * cells;
         return (count, ".voronoi", "use a smaller count");
     }
@@ -192,7 +207,7 @@ fn of_rock(rock: &Rock, folder: &Path) -> (Count, &'static str, &'static str) {
     area_m2 += sets.iter().map(|(_, per_m)| 2.0 * volume_m3 * per_m).sum::<f64>();
     let bare = Count { nodes: 8.0, tets: 6.0, triangles: 12.0, ..Count::default() };
     (
-        filled(times(bare, blocks), &rock.fill, volume_m3, area_m2),
+        filled(times(bare, blocks), fill, volume_m3, area_m2),
         ".joints",
         "use wider spacings, or a coarser fill",
     )

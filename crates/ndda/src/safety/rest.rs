@@ -10,7 +10,7 @@ use ndda_io::scene::Scene;
 use ndda_mesh::Vec3;
 use ndda_solver::{Settle, Settled, Simulation, StepError};
 
-use super::free_blocks::free;
+use super::free_blocks::{Moved, free};
 use super::trial::Start;
 use super::{SafetyError, Watch, changes};
 use crate::Model;
@@ -23,8 +23,11 @@ const STRENGTHS: [f64; 8] = [1.0, 1.5, 2.25, 3.375, 5.0, 8.0, 16.0, 32.0];
 const FRICTION_TOLERANCE: f64 = 1e-4;
 
 /// The scene at rest, and with how many times its strength it came to rest.
+///
+/// Blocks that come to rest elsewhere, a toe that slides out until it lies on the ground, did not stand: the scene is brought to rest with more strength, and only where
+/// that does not hold them either do they count as being at rest.
 pub fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start, f64), SafetyError> {
-    let mut failed = None;
+    let (mut failed, mut elsewhere): (_, Option<(Start, f64)>) = (None, None);
     for strength in STRENGTHS {
         let mut changed = loaded.clone();
         changes::weaken(&mut changed.scene, 1.0 / strength);
@@ -45,20 +48,29 @@ pub fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(St
         if free(&simulation).next().is_none() {
             return Err(SafetyError::NothingFree);
         }
+        let begun = simulation.state().position.clone();
         let settle = Settle { most_steps, ..crate::build::settle(settle) };
         let mut slide = (strength < STRENGTHS[STRENGTHS.len() - 1]).then(|| Slide::new(most_steps));
         match rest(&mut simulation, &settle, watch, &mut slide) {
             Ok(Rest::Slides) => {}
             Ok(Rest::Reached) => {
+                let moved = Moved::farthest(&simulation, &begun);
                 let start = Start::new(&mut simulation, gravity_m_s2, softest);
                 let start = start.map_err(|source| SafetyError::NotSettled { strength, source })?;
-                return Ok((start, strength));
+                let Some(moved) = moved else { return Ok((start, strength)) };
+                let before = elsewhere.take();
+                let gained =
+                    before.as_ref().is_none_or(|(start, _)| moved.is_held_back_from(start.moved.as_ref()));
+                if !gained {
+                    return Ok(before.expect("there is one, or strength gained"));
+                }
+                elsewhere = Some((Start { moved: Some(moved), ..start }, strength));
             }
             Ok(Rest::Interrupted) => return Err(SafetyError::Interrupted),
             Err(source) => failed = Some(SafetyError::NotSettled { strength, source }),
         }
     }
-    Err(failed.expect("there are strengths"))
+    elsewhere.ok_or_else(|| failed.expect("there are strengths"))
 }
 
 /// Steps in which a scene that stands comes to rest: what a block needs to fall by a hundred metres, or to oscillate two thousand times.

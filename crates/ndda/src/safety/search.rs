@@ -11,6 +11,7 @@ use ndda_io::scene::Contact;
 use ndda_solver::Snapshot;
 use rayon::prelude::*;
 
+use super::free_blocks::Moved;
 use super::rest::{choices, settled};
 use super::trial::{Course, Start, State, Trial};
 use super::{
@@ -95,6 +96,11 @@ impl<'a> Search<'a> {
         if strength > 1.0 {
             answer.remarks.push(format!(
                 "as written the scene does not come to rest; it does with {strength} times its strength, and trials begin from there"
+            ));
+        }
+        if let Some(Moved { block, gone_m }) = &start.moved {
+            answer.remarks.push(format!(
+                "on the way to rest block `{block}` goes {gone_m:.2e} m, which more strength does not prevent: trials begin where it then is"
             ));
         }
         let mut known = Vec::new();

@@ -21,7 +21,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use super::failing::{self, BlockVelocity};
-use super::free_blocks::free;
+use super::free_blocks::{ELSEWHERE, Moved, free};
 use super::watched::Watched;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{LocalDamping, Settle, Simulation, Snapshot, StepError};
@@ -35,8 +35,6 @@ const NO_ACCELERATION: f64 = 0.02;
 /// Elastic displacements that it would bring within a trial, and that a block goes before it fails.
 const WITHIN: f64 = 10.0;
 const FAR: f64 = 30.0;
-/// Part of its radius that a block goes before it is in another place, where it may rest on others.
-const ELSEWHERE: f64 = 0.05;
 /// Windows in which no block moves by more than so many elastic displacements where all rest: less than what no acceleration would bring in them.
 const RESTED: usize = 8;
 const RESTED_WITHIN: f64 = WITHIN * (RESTED as f64 / WINDOWS as f64) * (RESTED as f64 / WINDOWS as f64);
@@ -111,6 +109,8 @@ pub struct Start {
     pub normals: Vec<Vec3>,
     /// CRC-32 of the blocks at rest.
     pub blocks_crc32: u32,
+    /// A block that came to rest elsewhere, whatever the strength.
+    pub moved: Option<Moved>,
 }
 
 impl Start {
@@ -148,7 +148,7 @@ impl Start {
         let normals = super::mechanism::normals(simulation);
         let rest: Vec<[f64; 3]> = simulation.blocks().rest_position.iter().map(|x| (*x).into()).collect();
         let blocks_crc32 = ndda_io::checkpoint::fingerprint(&rest);
-        Ok(Self { snapshot, position, elastic_m, gravity_m_s2, normals, blocks_crc32 })
+        Ok(Self { snapshot, position, elastic_m, gravity_m_s2, normals, blocks_crc32, moved: None })
     }
 }
 

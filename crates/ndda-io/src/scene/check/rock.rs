@@ -3,10 +3,10 @@
 use std::collections::HashSet;
 use std::path::Path;
 
-use super::{CELLS, Check};
+use super::{CELLS, Check, TETRAHEDRA};
 use crate::scene::code::Code;
 use crate::scene::joint_table;
-use crate::scene::{DiscRule, Discontinuity, Domain, OrientationScatter, Rock, Scene};
+use crate::scene::{Body, DiscRule, Discontinuity, Domain, Fill, OrientationScatter, Pieces, Rock, Scene};
 use crate::scene::{Slivers, SpacingScatter, Whereabouts, matches};
 
 /// More points of Voronoi cells than this are a slip of the keyboard.
@@ -29,6 +29,7 @@ pub(super) fn joint_names(scene: &Scene, folder: Option<&Path>) -> Option<Vec<St
     }
     names.extend(scene.rock.iter().flat_map(|rock| &rock.excavations).map(|space| space.name.clone()));
     names.extend(scene.rock.iter().filter(|rock| rock.voronoi.is_some()).map(|_| CELLS.to_string()));
+    names.extend(scene.rock.iter().filter(|rock| rock.into.is_some()).map(|_| TETRAHEDRA.to_string()));
     let mut seen = HashSet::new();
     names.retain(|name| seen.insert(name.clone()));
     Some(names)
@@ -95,6 +96,7 @@ impl Check<'_> {
             self.domain(&path("domain"), &rock.domain, folder);
             self.joints_of(&format!("rock[{i}]"), rock, folder);
             self.fill(&path("fill"), &rock.fill);
+            self.pieces(&path("into"), rock);
             if rock.slivers == Slivers::Remove && rock.sliver_width_m == 0.0 {
                 let help = "give sliver_width_m, the width below which a block is taken out";
                 self.misfit(path("slivers"), "no block is thinner than a sliver_width_m of 0", help);
@@ -118,6 +120,32 @@ impl Check<'_> {
                     "give the block or the rock another name",
                 );
             }
+        }
+    }
+
+    fn pieces(&mut self, path: &str, rock: &Rock) {
+        let Some(Pieces::Tetrahedra { size_m, compensate }) = rock.into else { return };
+        self.positive(format!("{path}.size_m"), size_m, "m");
+        if rock.fill != Fill::Fewest {
+            let help = "leave out fill: each tetrahedron is a block of one element";
+            self.misfit(path, "blocks are filled or taken apart, not both", help);
+        }
+        if compensate && matches!(rock.body, Body::Rigid | Body::Fixed) {
+            let help = "give body: Affine, or leave out compensate";
+            self.misfit(
+                format!("{path}.compensate"),
+                "blocks that do not deform cannot be made stiffer",
+                help,
+            );
+        }
+        let bedding = self.scene.materials.iter().find(|m| m.name == rock.material);
+        if compensate && bedding.is_some_and(|material| material.bedding.is_some()) {
+            let help = "leave out compensate, or the bedding of the material";
+            self.misfit(
+                format!("{path}.compensate"),
+                "bonds make bedded rock softer by another part in each direction",
+                help,
+            );
         }
     }
 
