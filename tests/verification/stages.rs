@@ -17,7 +17,11 @@ const WEIGHT_N: f64 = DENSITY * GRAVITY;
 
 /// Three blocks of 1 m³ on top of each other, with ν = 0 and no friction: bars in one dimension, with a spring of 2 k_n between each two.
 fn column(stages: &str) -> Outcome {
-    run(&format!(
+    run(&column_text(stages))
+}
+
+fn column_text(stages: &str) -> String {
+    format!(
         "(title: \"column\", time: (step_s: 1e-5, end_s: 1e-5), gravity_m_s2: (0, 0, -{GRAVITY}), settle: (tolerance: 1e-7),
           materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: 0, density_kg_m3: {DENSITY})],
           blocks: [{}],
@@ -29,7 +33,7 @@ fn column(stages: &str) -> Outcome {
         ["low", "mid", "top"].iter().enumerate().map(|(i, name)| format!(
             "(name: \"{name}\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 6)), at_m: (0, 0, {i})),"
         )).collect::<String>()
-    ))
+    )
 }
 
 fn run(text: &str) -> Outcome {
@@ -112,6 +116,36 @@ fn a_block_that_is_taken_out_at_once_lets_the_column_spring_to_twice_its_rise() 
     // It is highest after half a period, or one and a half.
     let periods = (values(&history, "time_s")[highest] - 1e-5) / period_s();
     row("stages", "time of that, over the period 4 L/c", periods % 1.0, Near(0.5, 3e-2));
+}
+
+/// A quiet foot rests on springs of ρ c/2Δt per area while the scene settles, and what they bear then stays.
+#[test]
+fn a_column_on_a_quiet_foot_comes_to_rest_in_a_stage_and_stays_there() {
+    let stages = "(name: \"take\", remove: [\"top\"], over_s: 1e-3, then: Settle(tolerance: 1e-8)), (name: \"stay\", then: Run(0.05))";
+    let held = "(block: \"low\", on: Set(\"z_min\"), hold: Fixed)],";
+    let text = column_text(stages).replace(held, "], quiet: [(block: \"low\", on: Set(\"z_min\"))],");
+    let outcome = run(&text);
+    let history = outcome.history.as_ref().unwrap();
+    let (rest_s, end_s) = (1e-5 + 1e-3, 1e-5 + 1e-3 + 0.05);
+    let foot_m = WEIGHT_N * 2e-5 / (DENSITY * (YOUNG_PA / DENSITY).sqrt());
+    let risen_m = at(history, "mid.displacement_z_m", rest_s);
+    row(
+        "stages",
+        "rise of a column on a quiet foot whose top is removed, at rest [m]",
+        risen_m,
+        Within(rise_m() + foot_m, 5e-3),
+    );
+    let drift_m = (at(history, "mid.displacement_z_m", end_s) - risen_m).abs();
+    row("stages", "drift of it in the time after [m]", drift_m, AtMost(1e-9));
+    let balance_j = at(history, "balance_j", end_s).abs();
+    let released_j = (WEIGHT_N * WEIGHT_N / (2.0 * YOUNG_PA)) * (2.0 + 2.0 * 2.0);
+    row(
+        "stages",
+        "balance of energy of it, over the energy that the removal released",
+        balance_j / released_j,
+        AtMost(1e-5),
+    );
+    assert_eq!(outcome.summary.label.word, LabelWord::Accurate, "{:?}", outcome.summary.label.reasons);
 }
 
 #[test]

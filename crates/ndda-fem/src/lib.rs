@@ -27,6 +27,7 @@
 //! | [`material`], [`linear_elastic`], [`transversely_isotropic`], [`damped`] | the contract of a material, and materials |
 //! | [`tet4`], [`block_operator`] | the four-node tetrahedron; K and M of a block in its rest frame |
 //! | [`frame`] | the rotation R of a block |
+//! | [`mobility`](mod@mobility) | how much contact can accelerate a block that moves as a whole |
 //! | [`loads`], [`pressure`], [`table`], [`motion`] | gravity, tractions, initial stress, pressure of water; values and motions over time |
 //! | [`supports`] | held nodes, springs and prescribed motion |
 //! | [`quiet`] | faces behind which rock goes on, and waves that arrive through them |
@@ -41,6 +42,7 @@ pub mod frame;
 pub mod linear_elastic;
 pub mod loads;
 pub mod material;
+pub mod mobility;
 pub mod motion;
 pub mod pressure;
 pub mod quiet;
@@ -57,6 +59,7 @@ pub use frame::{Frame, FrameError};
 pub use linear_elastic::{LinearElastic, MaterialError};
 pub use loads::InitialStress;
 pub use material::{Damping, Material, Voigt};
+pub use mobility::mobility;
 pub use motion::{Motion, Record};
 pub use pressure::{CutRoom, LinearField, PressureField, PressurePiece};
 pub use quiet::{PlaneWave, Quiet, QuietFaces};

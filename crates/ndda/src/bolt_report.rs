@@ -1,5 +1,6 @@
 //! What `ndda check` says of bolts: how many there are, in which blocks they are bonded, and which leave the rock.
 
+use std::collections::BTreeSet;
 use std::fmt;
 
 use ndda_solver::Simulation;
@@ -9,6 +10,13 @@ use crate::numbers::counted;
 
 /// Names of bolts listed at most.
 const LISTED: usize = 8;
+
+/// Length outside of the rock over that bonded in it which is rounding.
+const SHORT: f64 = 1e-6;
+
+fn lie(count: usize) -> String {
+    format!("{} {}", counted(count, "bolt", "bolts"), if count == 1 { "lies" } else { "lie" })
+}
 
 /// One bolt.
 #[derive(Clone, Debug, Serialize)]
@@ -44,6 +52,36 @@ impl BoltReports {
         Self((0..simulation.bolt_count()).filter_map(report).collect())
     }
 
+    /// Bolts that hold nothing together, and those that leave the rock, each with what to change. Of rows, some bolts may lie within one block, not all:
+    /// `entry` gives the same number for bolts of the same rows.
+    pub fn doubts(&self, entry: impl Fn(&str) -> usize) -> Vec<String> {
+        let crosses = |bolt: &BoltReport| bolt.blocks.len() > 1 || bolt.outside_m > SHORT * bolt.bonded_m;
+        let crossing: BTreeSet<usize> =
+            self.0.iter().filter(|bolt| crosses(bolt)).map(|bolt| entry(&bolt.name)).collect();
+        let alone = self.0.iter().filter(|bolt| !crossing.contains(&entry(&bolt.name)));
+        let outside = self.0.iter().filter(|bolt| bolt.outside_m > SHORT * bolt.bonded_m);
+        let (alone, outside): (Vec<&BoltReport>, Vec<&BoltReport>) = (alone.collect(), outside.collect());
+        let mut doubts = Vec::new();
+        if let Some(first) = alone.first() {
+            doubts.push(format!(
+                "{} within one block and {} no joint: `{}` in `{}`; take longer bolts or another direction, unless they are to stiffen a block that deforms",
+                lie(alone.len()),
+                if alone.len() == 1 { "crosses" } else { "cross" },
+                first.name,
+                first.blocks[0]
+            ));
+        }
+        if let Some(first) = outside.iter().max_by(|a, b| a.outside_m.total_cmp(&b.outside_m)) {
+            doubts.push(format!(
+                "{} in part in no block: `{}` over {:.3} m, where nothing holds it; shorten or move them",
+                lie(outside.len()),
+                first.name,
+                first.outside_m
+            ));
+        }
+        doubts
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
@@ -62,10 +100,46 @@ impl fmt::Display for BoltReports {
         write!(f, "\n{bolts}, each bonded over {least_m:.3} to {most_m:.3} m")?;
         for bolt in self.0.iter().take(LISTED) {
             write!(f, "\n  {}: {:.3} m in {}", bolt.name, bolt.bonded_m, bolt.blocks.join(", "))?;
-            if bolt.outside_m > 1e-6 * bolt.bonded_m {
+            if bolt.outside_m > SHORT * bolt.bonded_m {
                 write!(f, "; {:.3} m in no block", bolt.outside_m)?;
             }
         }
         if self.0.len() > LISTED { write!(f, "\n  and {} more", self.0.len() - LISTED) } else { Ok(()) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn doubts(to_m: &str) -> Vec<String> {
+        let text = format!(
+            r#"(
+                title: "A bolt through two blocks", time: (step_s: 1e-4, end_s: 1e-3),
+                materials: [(name: "rock", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+                blocks: [
+                    (name: "foot", material: "rock", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+                    (name: "top", material: "rock", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 1)),
+                ],
+                contact: Potential(penalty_pa: 1e9, friction: (friction_deg: 30)),
+                bolts: [(
+                    name: "anchor", at: Line(from_m: (0.4, 0.45, 1.9), to_m: {to_m}),
+                    steel: (young_pa: 200e9, area_m2: 5e-4), grout: (stiffness_n_m2: 1e9, strength_n_m: 2e5),
+                )],
+            )"#
+        );
+        BoltReports::new(&crate::Model::from_text(&text).unwrap().simulation).doubts(|_| 0)
+    }
+
+    #[test]
+    fn bolts_that_hold_nothing_together_or_leave_the_rock_are_doubted() {
+        assert_eq!(doubts("(0.4, 0.45, 0.2)"), Vec::<String>::new());
+        let within = doubts("(0.4, 0.45, 1.2)");
+        assert!(
+            matches!(&within[..], [one] if one.contains("crosses no joint") && one.contains("`top`")),
+            "{within:?}"
+        );
+        let outside = doubts("(0.4, 0.45, -0.5)");
+        assert!(matches!(&outside[..], [one] if one.contains("0.500 m")), "{outside:?}");
     }
 }

@@ -4,7 +4,8 @@
 //! smallest height of a tetrahedron for `Element`. A block of size s that hits another at the speed v goes v √(ρ s L/(2 k_n)) deep. With
 //! k_n = L (ρ (v² + 2 g H) + 2 σ_l)/(2 ε s) the first is at most ε s, and the second √ε s: ρ is the largest density, g gravity, H the height
 //! of the scene along it, v the largest initial speed, σ_l the largest pressure of loads, ε the `depth_ratio` of the scene. s is the size that
-//! blocks of a twentieth of the volume are below, so that a sliver does not decide. The result is rounded up to 1, 2 or 5 times a power of ten.
+//! blocks of a twentieth of the volume are below, so that a sliver does not decide. Under large loads k_n = E L/s is enough, where contact is as
+//! compliant as half a block. The result is rounded up to 1, 2 or 5 times a power of ten.
 //!
 //! **Step.** The smallest of these, rounded down in the same way: a quarter of what the contact stability number allows (half of the step that `forecast::step` advises), a
 //! hundredth of the run, a tenth of the ramp of gravity and of the shortest time between rows of loads, a tenth of the height of a
@@ -26,6 +27,8 @@ use crate::forecast::{admit, step};
 const SMALL: f64 = 0.05;
 /// Penalty of rock without loads or speeds, over Young's modulus, for a potential of the size of a block.
 const OF_YOUNG: f64 = 1e-3;
+/// The same for rock under large loads, at most: contact is then as compliant as half a block, E L₀/(2 k_n) = s/2.
+const MOST_OF_YOUNG: f64 = 1.0;
 /// Steps of a run, at least.
 const FEWEST_STEPS: f64 = 100.0;
 /// Steps in which gravity grows, or a load goes from row to row.
@@ -136,6 +139,15 @@ impl Sizes {
             load_pa: loads_pa(scene, block_m),
         }
     }
+
+    /// What presses on contacts, in words.
+    fn weight(&self) -> String {
+        let loads = match self.load_pa > 0.0 {
+            true => format!(" and loads of {:.1e} Pa", self.load_pa),
+            false => String::new(),
+        };
+        format!("{} of rock{loads}", metres(self.fall_m))
+    }
 }
 
 /// Largest pressure of tractions, forces on a face of a block, and stress in the ground [Pa].
@@ -188,22 +200,31 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
     };
     let Sizes { block_m, fall_m, gravity_m_s2: g, density_kg_m3: rho, speed_m_s: v, load_pa, .. } = *sizes;
     let pressure_pa = rho * (v * v + 2.0 * g * fall_m) + 2.0 * load_pa;
-    let (value, why) = match pressure_pa > 0.0 {
-        true => (
-            length_m * pressure_pa / (2.0 * *depth_ratio * block_m),
+    let shallow_pa = length_m * pressure_pa / (2.0 * *depth_ratio * block_m);
+    let stiff_pa = MOST_OF_YOUNG * sizes.young_pa * length_m / block_m;
+    let (value, why) = if pressure_pa <= 0.0 {
+        let why = "no loads and no speeds: ";
+        (
+            OF_YOUNG / MOST_OF_YOUNG * stiff_pa,
+            format!("{why}{OF_YOUNG:e} of Young's modulus for blocks of {}", metres(block_m)),
+        )
+    } else if shallow_pa > stiff_pa {
+        (
+            stiff_pa,
             format!(
-                "blocks of {} overlap by at most {depth_ratio:e} of their size at rest under {} of rock",
+                "contact is as compliant as half a block of {}, under {}",
                 metres(block_m),
-                metres(fall_m)
+                sizes.weight()
             ),
-        ),
-        false => (
-            OF_YOUNG * sizes.young_pa * length_m / block_m,
+        )
+    } else {
+        let (block, weight) = (metres(block_m), sizes.weight());
+        (
+            shallow_pa,
             format!(
-                "no loads and no speeds: {OF_YOUNG:e} of Young's modulus for blocks of {}",
-                metres(block_m)
+                "blocks of {block} overlap by at most {depth_ratio:e} of their size at rest under {weight}"
             ),
-        ),
+        )
     };
     *penalty_pa = rounded_up(value);
     Some(Chosen { path: "contact.penalty_pa".into(), value: *penalty_pa, reason: why })

@@ -1,24 +1,23 @@
-//! Whether the mesh and the step resolve the waves that arrive through quiet faces.
+//! Whether the mesh and the step resolve the waves that quiet faces let in, shaken bases send, and pressures such as those of blasts.
 //!
 //! Linear tetrahedra carry a wave of ten nodes a wavelength 1.6 % too fast or too slow, (k h)²/24, and coarser ones far worse (Kuhlemeyer & Lysmer 1973).
 //! The wave is judged at the frequency below which 95 % of its energy lies, which goes as the square of its velocity.
 
-use std::f64::consts::TAU;
+mod sources;
+mod spectrum;
+
 use std::fmt;
 
 use ndda_fem::quiet::speed_m_s;
 use ndda_fem::{Motion, PlaneWave};
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
+use sources::{Source, Way};
 
 /// Longest element along the way over the wavelength: ten nodes a wavelength.
 const MOST_ELEMENT: f64 = 0.1;
 /// Longest step over the period: Δt ω = 0.35 makes the period 1 % too long.
 const MOST_STEP: f64 = 0.055;
-/// Part of the energy of a wave that lies below the frequency at which it is judged.
-const ENERGY: f64 = 0.95;
-/// Most samples of a motion.
-const MOST_SAMPLES: usize = 1 << 20;
 
 /// How well something resolves waves.
 pub(crate) struct Finding {
@@ -32,11 +31,11 @@ pub(crate) struct Finding {
     pub reason: String,
 }
 
-/// How well the mesh and the step resolve the waves that arrive; empty where none do.
+/// How well the mesh and the step resolve the waves of a scene; empty where there are none, or no elastic blocks.
 pub(crate) fn findings(simulation: &Simulation) -> Vec<Finding> {
-    let waves = waves(simulation);
-    let highest_hz = waves.iter().map(|wave| wave.0).fold(0.0, f64::max);
-    let Some(coarsest) = coarsest(simulation, &waves) else { return Vec::new() };
+    let sources = sources::of(simulation);
+    let highest_hz = sources.iter().map(|source| source.hz).fold(0.0, f64::max);
+    let Some(coarsest) = coarsest(simulation, &sources) else { return Vec::new() };
     let step = highest_hz * simulation.step_s();
     let too_long = format!(
         "there are {:.1} steps in a period, fewer than {:.0}, of a wave with 95 % of its energy below {highest_hz:.3} Hz: take a step_s of {:.1e} or less",
@@ -44,7 +43,7 @@ pub(crate) fn findings(simulation: &Simulation) -> Vec<Finding> {
         1.0 / MOST_STEP,
         MOST_STEP / highest_hz
     );
-    let (value, reason) = (coarsest.element_m / coarsest.wavelength_m, coarsest.to_string());
+    let (value, reason) = (coarsest.part(), coarsest.to_string());
     vec![
         Finding { what: "element / wavelength", value, limit: MOST_ELEMENT, reason },
         Finding { what: "step / period of waves", value: step, limit: MOST_STEP, reason: too_long },
@@ -62,15 +61,23 @@ struct Coarsest {
     wavelength_m: f64,
     /// Longest extent of an element of the block along its way [m].
     element_m: f64,
+    /// What else helps.
+    cure: &'static str,
+}
+
+impl Coarsest {
+    fn part(&self) -> f64 {
+        self.element_m / self.wavelength_m
+    }
 }
 
 impl fmt::Display for Coarsest {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { block, hz, wavelength_m, element_m } = self;
+        let Self { block, hz, wavelength_m, element_m, cure } = self;
         write!(
             f,
             "the mesh of block `{block}` has {:.1} nodes a wavelength, fewer than {:.0}, for a wave with 95 % of its energy below {hz:.3} Hz: its wavelength \
-             is {wavelength_m:.3} m, and elements are up to {element_m:.3} m long on its way; take elements of {:.3} m, or filter the record (`filter_hz`)",
+             is {wavelength_m:.3} m, and elements are up to {element_m:.3} m long on its way; take elements of {:.3} m, or {cure}",
             wavelength_m / element_m,
             1.0 / MOST_ELEMENT,
             MOST_ELEMENT * wavelength_m
@@ -78,132 +85,62 @@ impl fmt::Display for Coarsest {
     }
 }
 
-/// The wave and the block of the fewest nodes a wavelength among elastic blocks; none where no waves arrive. Blocks that do not carry
+/// The wave and the block of the fewest nodes a wavelength among elastic blocks; none where there are no waves. Blocks that do not carry
 /// a wave of this polarisation are left out.
-fn coarsest(simulation: &Simulation, waves: &[(f64, (Vec3, Vec3))]) -> Option<Coarsest> {
+fn coarsest(simulation: &Simulation, sources: &[Source]) -> Option<Coarsest> {
     let mut worst: Option<Coarsest> = None;
-    for &(hz, (along, moves)) in waves {
-        let still = PlaneWave { motion: Motion::Rows(Vec::new()), along, from: Vec3::zeros(), moves };
+    for &Source { hz, way, cure } in sources {
         for block in simulation.blocks().ids() {
-            let shape = simulation.shape(block);
-            if shape.kind != BodyKind::Elastic {
+            if simulation.shape(block).kind != BodyKind::Elastic {
                 continue;
             }
-            let Ok(speed_m_s) = speed_m_s(shape.material.as_ref(), &still) else { continue };
-            let (wavelength_m, element_m) = (speed_m_s / hz, longest_m(simulation, block, &along));
-            if worst
-                .as_ref()
-                .is_none_or(|worst| element_m / wavelength_m > worst.element_m / worst.wavelength_m)
-            {
-                let block = simulation.blocks().names[block.index()].clone();
-                worst = Some(Coarsest { block, hz, wavelength_m, element_m });
+            let Some((speed_m_s, element_m)) = slowest(simulation, block, &way) else { continue };
+            let name = simulation.blocks().names[block.index()].clone();
+            let found = Coarsest { block: name, hz, wavelength_m: speed_m_s / hz, element_m, cure };
+            if worst.as_ref().is_none_or(|worst| found.part() > worst.part()) {
+                worst = Some(found);
             }
         }
     }
     worst
 }
 
-/// Frequency [Hz] and way of all different waves.
-fn waves(simulation: &Simulation) -> Vec<(f64, (Vec3, Vec3))> {
-    let mut known: Vec<(&Motion, (Vec3, Vec3))> = Vec::new();
-    for block in simulation.blocks().ids() {
-        let quiet = &simulation.shape(block).supports.quiet;
-        for (motion, way) in quiet.waves.iter().zip(&quiet.ways) {
-            if !known.iter().any(|known| known.1 == *way && known.0 == motion) {
-                known.push((motion, *way));
-            }
-        }
-    }
-    known.into_iter().filter_map(|(motion, way)| Some((highest_hz(motion)?, way))).collect()
-}
-
-/// Longest extent of an element along a direction [m].
-fn longest_m(simulation: &Simulation, block: BlockId, along: &Vec3) -> f64 {
-    let blocks = simulation.blocks();
-    let extent_m = |tet: &[ndda_mesh::NodeId; 4]| {
-        let places = tet.map(|node| blocks.rest_position[node.index()].dot(along));
-        places.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b))
-            - places.iter().fold(f64::INFINITY, |a, b| a.min(*b))
+/// Speed of a wave in a block [m/s] and the longest extent of an element on its way [m], where an element takes it longest to cross; none where the
+/// block does not carry it.
+fn slowest(simulation: &Simulation, block: BlockId, way: &Way) -> Option<(f64, f64)> {
+    let (blocks, material) = (simulation.blocks(), simulation.shape(block).material.as_ref());
+    let speed = |along: Vec3, moves: Vec3| {
+        let motion = Motion::Rows(Vec::new());
+        speed_m_s(material, &PlaneWave { motion, along, from: Vec3::zeros(), moves }).ok()
     };
-    blocks.tets[blocks.tets_of(block)].iter().map(extent_m).fold(0.0, f64::max)
-}
-
-/// Frequency below which 95 % of the energy of a motion lies, by the square of its velocity less a straight line between its ends [Hz]; none where
-/// nothing moves.
-fn highest_hz(motion: &Motion) -> Option<f64> {
-    let (start_s, end_s, rows) = motion.extent()?;
-    let samples = (2 * rows).max(256).next_power_of_two().min(MOST_SAMPLES);
-    let spacing_s = (end_s - start_s) / samples as f64;
-    let velocity = |i: usize| motion.velocity(start_s + (i as f64 + 0.5) * spacing_s);
-    let (first, last) = (velocity(0), velocity(samples - 1));
-    let even: Vec<Vec3> =
-        (0..samples).map(|i| velocity(i) - first.lerp(&last, i as f64 / (samples - 1) as f64)).collect();
-    // As many zeros behind it keep its end from its start.
-    let mut power = vec![0.0; samples];
-    for axis in 0..3 {
-        let mut real: Vec<f64> = even.iter().map(|v| v[axis]).collect();
-        real.resize(2 * samples, 0.0);
-        let mut imaginary = vec![0.0; 2 * samples];
-        transform(&mut real, &mut imaginary);
-        power.iter_mut().enumerate().for_each(|(k, power)| *power += real[k].powi(2) + imaginary[k].powi(2));
-    }
-    let total: f64 = power.iter().sum();
-    let mut below = 0.0;
-    let place = power.iter().position(|power| {
-        below += power;
-        below >= ENERGY * total
-    })?;
-    (total > 0.0 && total.is_finite()).then(|| place.max(1) as f64 / (2.0 * (end_s - start_s)))
-}
-
-/// The discrete Fourier transform of a power of two of values, in place (Cooley & Tukey 1965).
-fn transform(real: &mut [f64], imaginary: &mut [f64]) {
-    let n = real.len();
-    let bits = n.trailing_zeros();
-    for i in 0..n {
-        let j = i.reverse_bits() >> (usize::BITS - bits);
-        if i < j {
-            real.swap(i, j);
-            imaginary.swap(i, j);
+    let corners = blocks.tets_of(block).map(|tet| blocks.tets[tet].map(|n| blocks.rest_position[n.index()]));
+    match way {
+        Way::Plane { along, moves } => {
+            let longest_m = corners.map(|corners| extent_m(&corners, along)).fold(0.0, f64::max);
+            Some((speed(*along, *moves)?, longest_m))
+        }
+        Way::From(place) => {
+            let of_element = |corners: [Vec3; 4]| {
+                let along = (corners.iter().sum::<Vec3>() / 4.0 - place).try_normalize(0.0)?;
+                Some((speed(along, along)?, extent_m(&corners, &along)))
+            };
+            corners.filter_map(of_element).max_by(|a, b| (a.1 / a.0).total_cmp(&(b.1 / b.0)))
         }
     }
-    let mut half = 1;
-    while half < n {
-        for k in 0..half {
-            let (sin, cos) = (-TAU * k as f64 / (2 * half) as f64).sin_cos();
-            for i in (k..n).step_by(2 * half) {
-                let j = i + half;
-                let (re, im) = (cos * real[j] - sin * imaginary[j], cos * imaginary[j] + sin * real[j]);
-                (real[j], imaginary[j]) = (real[i] - re, imaginary[i] - im);
-                (real[i], imaginary[i]) = (real[i] + re, imaginary[i] + im);
-            }
-        }
-        half *= 2;
-    }
+}
+
+/// Extent of an element along a direction [m].
+fn extent_m(corners: &[Vec3; 4], along: &Vec3) -> f64 {
+    let places = corners.map(|x| x.dot(along));
+    places.iter().fold(f64::NEG_INFINITY, |a, b| a.max(*b))
+        - places.iter().fold(f64::INFINITY, |a, b| a.min(*b))
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use ndda_fem::Record;
+    use std::f64::consts::TAU;
 
-    #[test]
-    fn a_long_burst_has_its_energy_at_its_frequency_and_a_gaussian_where_its_integral_says() {
-        let rows =
-            |a: &dyn Fn(f64) -> f64| (0..=4000).map(|i| f64::from(i) * 1e-3).map(|t| (t, a(t))).collect();
-        let of = |rows: Vec<(f64, f64)>| highest_hz(&Motion::Record(Record::new(Vec3::x(), &rows))).unwrap();
-        let burst = of(rows(&|t| (TAU * 10.0 * t).cos()));
-        assert!((burst / 10.0 - 1.0).abs() < 0.05, "{burst}");
-        // v = exp(−½ (t/σ)²), |V|² = exp(−(ω σ)²): 95 % below ω σ = 1.3859, where erf is 0.95.
-        let sigma_s = 0.05;
-        let gaussian = of(rows(&|t| {
-            let u = (t - 2.0) / sigma_s;
-            -u / sigma_s * (-0.5 * u * u).exp()
-        }));
-        let exact = 1.3859 / (TAU * sigma_s);
-        assert!((gaussian / exact - 1.0).abs() < 0.05, "{gaussian} {exact}");
-        assert_eq!(highest_hz(&Motion::Record(Record::new(Vec3::x(), &[(0.0, 0.0), (1.0, 0.0)]))), None);
-    }
+    use super::*;
 
     #[test]
     fn elements_and_steps_are_measured_by_the_wave_that_arrives() {
@@ -229,5 +166,72 @@ mod tests {
         assert!((coarse[0].value / 0.25 - 1.0).abs() < 0.1, "{}", coarse[0].reason);
         assert!(coarse[0].value > coarse[0].limit && fine[0].value < fine[0].limit, "{}", fine[0].reason);
         assert!((fine[1].value / 0.05 - 1.0).abs() < 0.1, "{}", fine[1].reason);
+    }
+
+    /// A column of 100 m on what `foot` is, with elements of 10 or 2 m.
+    fn shaken(cells: u32, foot: &str) -> Vec<Finding> {
+        let folder = tempfile::tempdir().unwrap();
+        let rows: String = (0..=400)
+            .map(|i| f64::from(i) * 1e-3)
+            .map(|t| format!("{t},{}\n", (TAU * 50.0 * t).cos()))
+            .collect();
+        std::fs::write(folder.path().join("burst.csv"), format!("time_s,acceleration_m_s2\n{rows}")).unwrap();
+        let text = format!(
+            r#"(title: "A column", time: (step_s: 1e-3, end_s: 1e-2),
+                materials: [(name: "rock", density_kg_m3: 2500, young_pa: 25e9, poisson: 0.25)],
+                {})"#,
+            foot.replace("CELLS", &cells.to_string())
+        );
+        std::fs::write(folder.path().join("scene.ron"), text).unwrap();
+        findings(&crate::Model::open(&folder.path().join("scene.ron"), &[]).unwrap().simulation)
+    }
+
+    const COLUMN: &str =
+        r#"(name: "column", material: "rock", shape: Box(size_m: (1, 1, 100), cells: (1, 1, CELLS)))"#;
+
+    #[test]
+    fn waves_of_shaken_bases_are_judged_as_those_that_arrive() {
+        let record = r#"Shaking([(direction: (DIRECTION), record: (file: "burst.csv"))])"#;
+        let held =
+            format!(r#"blocks: [{COLUMN}], supports: [(block: "column", on: Set("z_min"), hold: {record})]"#);
+        let table = format!(
+            r#"blocks: [{COLUMN}, (name: "table", material: "rock", body: Fixed, at_m: (0, 0, -1), shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+               supports: [(block: "table", on: All, hold: {record})], contact: Potential(penalty_pa: 1e9)"#
+        );
+        // c_s = 2000 m/s and c_p = 3464 m/s: 40 and 69.28 m at 50 Hz.
+        for foot in [held, table] {
+            for (direction, wavelength_m) in [("1, 0, 0", 40.0), ("0, 0, 1", 69.28)] {
+                let foot = foot.replace("DIRECTION", direction);
+                let (coarse, fine) = (shaken(10, &foot), shaken(50, &foot));
+                assert!((coarse[0].value * wavelength_m / 10.0 - 1.0).abs() < 0.1, "{}", coarse[0].reason);
+                assert!(
+                    coarse[0].value > coarse[0].limit && fine[0].value < fine[0].limit,
+                    "{}",
+                    fine[0].reason
+                );
+                assert!((fine[1].value / 0.05 - 1.0).abs() < 0.1, "{}", fine[1].reason);
+            }
+        }
+        let slow = format!(
+            r#"blocks: [{COLUMN}], supports: [(block: "column", on: Set("z_min"), hold: Motion([(time_s: 0, displacement_m: (0, 0, 0)), (time_s: 1e-3, displacement_m: (0, 0, 1e-3))]))]"#
+        );
+        assert!(shaken(10, &slow).is_empty(), "a table of displacements is no record");
+    }
+
+    /// A triangle of 2 T = 20 ms has 95 % of its energy below 0.5004/T = 50.04 Hz.
+    #[test]
+    fn waves_of_blasts_are_judged_from_a_plane_and_from_a_hole() {
+        let blast = |on: &str| {
+            format!(
+                r#"blocks: [{COLUMN}], blasts: [(block: "column", on: {on}, pressure: Rows([(0, 0), (0.01, 1e6), (0.02, 0)]))]"#
+            )
+        };
+        // From the foot the way is along the column; from its whole surface it is to all sides of its middle, nearly the same for elements far off.
+        for on in [r#"Part(Set("z_min"))"#, "Part(All)"] {
+            let (coarse, fine) = (shaken(10, &blast(on)), shaken(50, &blast(on)));
+            assert!((coarse[0].value * 69.23 / 10.0 - 1.0).abs() < 0.1, "{}", coarse[0].reason);
+            assert!(coarse[0].value > coarse[0].limit && fine[0].value < fine[0].limit, "{}", fine[0].reason);
+            assert!(coarse[0].reason.contains("more slowly"), "{}", coarse[0].reason);
+        }
     }
 }

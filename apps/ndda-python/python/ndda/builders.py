@@ -1426,7 +1426,8 @@ class Fill:
     'Fewest'
     """
 
-    # As few as there can be; no node inside.
+    # As few as there can be; no node inside. Blocks of a rock with more than 13 faces are filled as with
+    # `Centre` where contact is `Smooth` or `Closure`.
     Fewest: ClassVar[Literal["Fewest"]] = "Fewest"
     # A star from one node at the centroid.
     Centre: ClassVar[Literal["Centre"]] = "Centre"

@@ -101,7 +101,18 @@ impl History {
     /// # Panics
     /// When there is not one value per column.
     pub fn push(&mut self, values: &[f64]) -> Result<(), WriteError> {
-        assert_eq!(values.len(), self.columns.len(), "values per row");
+        self.push_with_text(values, &[])
+    }
+
+    /// The same, with text in the last columns.
+    ///
+    /// # Errors
+    /// As [`push`](Self::push).
+    ///
+    /// # Panics
+    /// As [`push`](Self::push).
+    pub fn push_with_text(&mut self, values: &[f64], text: &[&str]) -> Result<(), WriteError> {
+        assert_eq!(values.len() + text.len(), self.columns.len(), "values per row");
         if let Some(column) = values.iter().position(|value| !value.is_finite()) {
             return Err(WriteError::not_finite(&self.path, &self.columns[column], Some(self.rows)));
         }
@@ -109,6 +120,9 @@ impl History {
             self.number.clear();
             write!(self.number, "{value:?}").expect("writing to memory");
             self.writer.write_field(&self.number).map_err(|e| self.csv_error(e))?;
+        }
+        for text in text {
+            self.writer.write_field(text).map_err(|e| self.csv_error(e))?;
         }
         self.writer.write_record(None::<&[u8]>).map_err(|e| self.csv_error(e))?;
         self.rows += 1;

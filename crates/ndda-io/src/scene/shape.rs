@@ -129,7 +129,7 @@ pub enum Pattern {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub enum Fill {
-    /// As few as there can be; no node inside.
+    /// As few as there can be; no node inside. Blocks of a rock with more than 13 faces are filled as with `Centre` where contact is `Smooth` or `Closure`.
     #[default]
     Fewest,
     /// A star from one node at the centroid.

@@ -11,6 +11,7 @@ use super::neighbours::neighbours;
 use super::polyhedron::Polyhedron;
 use super::split::{Split, Tolerance, split};
 use super::surfaces::Surface;
+use crate::Vec3;
 use crate::geometry::Aabb;
 
 /// The union of two blocks has their volume to this fraction, or it is not convex.
@@ -30,8 +31,18 @@ impl Blocks {
     /// they are convex stay, and remain in the report. Parts of concave blocks are left alone. Later blocks move up. The blocks are those of
     /// `domain`.
     pub fn merge_slivers(&mut self, domain: &Domain, sliver_width_m: f64) -> Merged {
+        self.merge_slivers_within(domain, sliver_width_m, &|_| 0)
+    }
+
+    /// The same, but blocks are united only where `region` gives the same number for their centroids: on one side of the border of an excavation.
+    pub fn merge_slivers_within(
+        &mut self,
+        domain: &Domain,
+        sliver_width_m: f64,
+        region: &dyn Fn(&Vec3) -> usize,
+    ) -> Merged {
         let tolerance = domain.tolerance();
-        let mut merging = Merging::new(self, sliver_width_m);
+        let mut merging = Merging::new(self, sliver_width_m, region);
         let merged = merging.run(&self.surfaces, tolerance);
         if merged.count > 0 {
             self.blocks = merging.blocks.into_iter().flatten().collect();
@@ -57,12 +68,14 @@ struct Merging {
     shared: Vec<Vec<Shared>>,
     /// Parts of concave blocks.
     glued: Vec<bool>,
+    /// Where each block is; a union is where its parts are.
+    region: Vec<usize>,
     /// Slivers by the bits of their width, which order as positive numbers do.
     thin: BTreeSet<(u64, u32)>,
 }
 
 impl Merging {
-    fn new(blocks: &Blocks, sliver_width_m: f64) -> Self {
+    fn new(blocks: &Blocks, sliver_width_m: f64, region: &dyn Fn(&Vec3) -> usize) -> Self {
         let count = blocks.blocks.len();
         let (mut shared, mut glued) = (vec![Vec::new(); count], vec![false; count]);
         for neighbour in &blocks.neighbours {
@@ -74,7 +87,9 @@ impl Merging {
                 (glued[a as usize], glued[b as usize]) = (true, true);
             }
         }
-        let mut merging = Self { sliver_width_m, blocks: Vec::new(), shared, glued, thin: BTreeSet::new() };
+        let region = blocks.blocks.iter().map(|block| region(&block.volume_and_centroid().1)).collect();
+        let (none, thin) = (Vec::new(), BTreeSet::new());
+        let mut merging = Self { sliver_width_m, blocks: none, shared, glued, region, thin };
         merging.blocks = blocks.blocks.iter().cloned().map(Some).collect();
         for sliver in &blocks.report.slivers {
             merging.note(sliver.block);
@@ -107,7 +122,10 @@ impl Merging {
     /// The neighbour with the largest shared face with which a sliver is convex, and both together.
     fn partner(&self, sliver: u32, surfaces: &[Surface], tolerance: Tolerance) -> Option<(u32, Polyhedron)> {
         let mut candidates = self.shared[sliver as usize].clone();
-        candidates.retain(|shared| !self.glued[shared.other as usize]);
+        let region = self.region[sliver as usize];
+        candidates.retain(|shared| {
+            !self.glued[shared.other as usize] && self.region[shared.other as usize] == region
+        });
         candidates.sort_by(|a, b| b.area_m2.total_cmp(&a.area_m2).then(a.other.cmp(&b.other)));
         let own = self.blocks[sliver as usize].as_ref()?;
         candidates.into_iter().find_map(|shared| {
@@ -150,7 +168,7 @@ fn union(
         a.faces.iter().chain(&b.faces).map(|face| face.surface).filter(|&s| s != between).collect();
     let corners: Vec<_> = a.vertices.iter().chain(&b.vertices).copied().collect();
     let mut cell = Polyhedron::around(&Aabb::around(&corners));
-    let inside = corners.iter().sum::<crate::Vec3>() / corners.len() as f64;
+    let inside = corners.iter().sum::<Vec3>() / corners.len() as f64;
     for surface in faces {
         let plane = &surfaces[surface as usize].plane;
         if let Split::Both { above, below } = split(&cell, plane, surface, tolerance) {
@@ -166,7 +184,6 @@ fn union(
 mod tests {
     use super::super::{CutOptions, Discontinuity, JointSet, cut_blocks};
     use super::*;
-    use crate::Vec3;
 
     fn slope(sliver_width_m: f64, persistence: f64) -> (Blocks, Domain) {
         let domain = Domain::cuboid(Vec3::zeros(), Vec3::new(9.0, 7.0, 8.0)).unwrap();
@@ -194,6 +211,22 @@ mod tests {
             assert_eq!(block.euler(), Some(2));
             assert!(left.contains(&index) || block.width_m() >= 0.5 && block.volume_m3() >= 0.125);
         }
+    }
+
+    #[test]
+    fn slivers_of_an_excavation_unite_on_their_side_of_its_border() {
+        let (mut blocks, domain) = slope(0.4, 1.0);
+        blocks.merge_slivers(&domain, 0.4);
+        let space = Domain::cuboid(Vec3::new(2.1, -1.0, 2.1), Vec3::new(6.3, 4.2, 5.9)).unwrap();
+        blocks.excavate(&domain, ("heading", &space), 0.4);
+        let inside_m3 = |blocks: &Blocks| {
+            let parts = blocks.blocks.iter().map(Polyhedron::volume_and_centroid);
+            parts.filter(|(_, at)| space.holds(at)).map(|(m3, _)| m3).sum::<f64>()
+        };
+        let slivers = blocks.report.slivers.len();
+        let merged = blocks.merge_slivers_within(&domain, 0.4, &|at| if space.holds(at) { 1 } else { 0 });
+        assert!(slivers > 20 && 5 * blocks.report.slivers.len() < slivers, "{slivers} {merged:?}");
+        assert!((inside_m3(&blocks) / (4.2 * 4.2 * 3.8) - 1.0).abs() < 1e-9, "{}", inside_m3(&blocks));
     }
 
     /// Every face inside the domain is covered by neighbours, from both sides.

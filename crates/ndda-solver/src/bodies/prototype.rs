@@ -6,12 +6,12 @@ use std::sync::Arc;
 use ndda_fem::frame::polar_rotation;
 use ndda_fem::{
     BlockOperator, BlockSupports, Frame, Hold, InitialStress, Material, NodeSupport, PressureField, Quiet,
-    QuietFaces, Table,
+    QuietFaces, Table, mobility,
 };
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::bodies::kind::BodyKind;
-use crate::bodies::rigid_inertia::RigidInertia;
+use crate::bodies::rigid_inertia::{RigidInertia, lumped, turn_per_n_m};
 use crate::bodies::step_damping::StepDamping;
 use crate::bodies::unknowns::Unknowns;
 use crate::diagnostics::worst::BlockScale;
@@ -124,6 +124,8 @@ pub struct Prototype {
     pub smallest_height_m: f64,
     /// r J⁻¹ at rest: the acceleration of the farthest node, at r from the mass centre, by a torque about that [m/s² per N m].
     pub turn_per_n_m: Mat3,
+    /// Of a block that moves as a whole, the mobility of its nodes [1/kg]; empty for others.
+    pub mobility: Vec<f64>,
     /// Trace of K [N/m].
     pub stiffness_n_m: f64,
     /// Largest part by which its inertia of rotation is too large about any axis, for lumped masses; zero for consistent ones.
@@ -177,6 +179,10 @@ impl Prototype {
             .iter()
             .flat_map(|tet| ndda_mesh::geometry::tet_heights(&tet.map(|n| operator.rest[n as usize])));
         let turn_per_n_m = turn_per_n_m(&operator);
+        let mobility = match kind {
+            BodyKind::Rigid | BodyKind::Affine => mobility(position, &operator.tets, operator.mass_kg),
+            BodyKind::Elastic | BodyKind::Fixed => Vec::new(),
+        };
         let smallest_height_m = heights.fold(f64::INFINITY, f64::min);
         let diagonal = |i: usize| operator.row(i).filter(move |(j, ..)| *j == i).map(|(_, k, _)| k.trace());
         let stiffness_n_m = match kind {
@@ -196,6 +202,7 @@ impl Prototype {
             rigid,
             smallest_height_m,
             turn_per_n_m,
+            mobility,
             stiffness_n_m,
             inertia_error,
         };
@@ -355,18 +362,6 @@ impl Prototype {
     }
 }
 
-/// The operator with lumped masses, and max |ω·(J − J₀) ω| / ω·J₀ ω over all axes ω for the inertias J with them and J₀ without: with
-/// J₀ = L Lᵀ the largest eigenvalue of L⁻¹ (J − J₀) L⁻ᵀ.
-fn lumped(operator: BlockOperator) -> (BlockOperator, f64) {
-    let exact = operator.inertia(&operator.rest, &operator.rest);
-    let operator = operator.with_lumped_mass();
-    let change = operator.inertia(&operator.rest, &operator.rest) - exact;
-    let factor = exact.cholesky().expect("a validated block is not flat").l();
-    let inverse = factor.try_inverse().expect("its factor is regular");
-    let relative = inverse * change * inverse.transpose();
-    (operator, relative.symmetric_eigenvalues().amax())
-}
-
 /// Whether a body of its kind can have the supports that are requested.
 fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
     let moves = |s: &NodeSupport| matches!(s.hold, Hold::Motion(_)) && s.spring_n_m.is_none();
@@ -380,6 +375,9 @@ fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
             Err("parts of an affine block cannot be moved: make it Elastic, or Fixed to move it as a whole")
         }
         BodyKind::Affine => Ok(()),
+        BodyKind::Rigid if setup.supports.iter().any(moves) => {
+            Err("a rigid block moves freely: make it Fixed to move it as a whole")
+        }
         BodyKind::Rigid if !setup.supports.is_empty() => {
             Err("a rigid block cannot be held in parts: make it Fixed, Affine or Elastic")
         }
@@ -389,11 +387,4 @@ fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
         }
         BodyKind::Fixed => Ok(()),
     }
-}
-
-/// r J⁻¹, r being the distance of the farthest node from the mass centre.
-fn turn_per_n_m(operator: &BlockOperator) -> Mat3 {
-    let inertia = operator.inertia(&operator.rest, &operator.rest);
-    let farthest_m = operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max);
-    farthest_m * inertia.try_inverse().expect("a validated block is not flat")
 }

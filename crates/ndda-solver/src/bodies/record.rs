@@ -54,13 +54,24 @@ impl BlockReport {
         for (friction, u) in context.friction_force.iter().zip(increment) {
             self.friction_work_j += friction.dot(u);
         }
-        for (stiffness, mass) in context.contact_stiffness.iter().zip(&shape.operator.node_mass) {
-            self.contact_rate2 = self.contact_rate2.max(stiffness / mass);
-        }
+        self.contact_rate2 = self.contact_rate2.max(shape.contact_rate2(context.contact_stiffness));
         self.drive = RigidForcing::of(shape, context, rotation, self);
         if self.contact_rate2 > 0.0 && context.direction_uncertainty > 0.0 {
             self.lateral_drift = LateralDrift::of(shape, context, self);
         }
+    }
+}
+
+impl Prototype {
+    /// ω_c² of contact with the stiffness of some row sums per node [1/s²]: at most the largest of these over the mass of its node, and in a block that
+    /// moves as a whole at most their sum, each times the mobility of its node.
+    pub(crate) fn contact_rate2(&self, stiffness: &[f64]) -> f64 {
+        let masses = &self.operator.node_mass;
+        let by_nodes = stiffness.iter().zip(masses).fold(0.0, |most: f64, (k, m)| most.max(k / m));
+        if self.mobility.is_empty() {
+            return by_nodes;
+        }
+        by_nodes.min(stiffness.iter().zip(&self.mobility).map(|(k, w)| k * w).sum())
     }
 }
 

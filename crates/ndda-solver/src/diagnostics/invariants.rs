@@ -49,7 +49,7 @@ pub struct Invariants {
     pub smallest_volume_ratio: f64,
     /// largest principal strain of an element at a sample, in the frame of its block; none below 0.01.
     pub largest_strain: Worst,
-    /// h = ω_c Δt, ω_c² bounded by the row sums of the contact stiffness over nodal masses.
+    /// h = ω_c Δt, ω_c² bounded by the row sums of the contact stiffness over nodal masses, or by those of whole blocks.
     pub max_h: f64,
     /// relative travel of two blocks that may meet in a step over the width of the thinner one.
     pub max_travel: Worst,

@@ -41,7 +41,7 @@ impl Simulation {
     /// Impulses, work and extremes of the step.
     pub(super) fn account_for_step(&mut self, contact: ContactReport, iterations: Iterations) -> StepReport {
         let (mut force, mut torque) = (self.loads.force(), Vec3::zeros());
-        self.audit.ledger.watch_load(force.norm());
+        let mut exchanged_n = self.loads.size_n();
         let (mut impulse, mut orbital) = (Vec3::zeros(), Vec3::zeros());
         let (mut rate2, mut speed_m_s) = (0.0f64, 0.0f64);
         let quadrature = self.quadrature();
@@ -51,6 +51,7 @@ impl Simulation {
             let report = &body.report;
             self.audit.ledger.blocks().add_ringing(k, &quadrature, &report.drive);
             force += report.reaction - report.motion_impulse / self.part_s;
+            exchanged_n += report.reaction.norm();
             torque += report.outside_torque;
             impulse += report.motion_impulse;
             orbital += report.orbital_impulse;
@@ -67,6 +68,7 @@ impl Simulation {
         }
         let travel = self.travel_of_step(speed_m_s);
         let h = self.part_s * rate2.sqrt();
+        self.audit.ledger.watch_load(exchanged_n);
         self.audit.ledger.add_impulse(self.part_s, &self.weights, force, torque);
         self.audit.ledger.add_whole_impulse(impulse, orbital);
         self.audit.ledger.add_work(friction_j, motion_j, load_j, damping_j);

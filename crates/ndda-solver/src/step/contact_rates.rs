@@ -39,7 +39,6 @@ impl Simulation {
         if shape.kind == BodyKind::Fixed {
             return 0.0;
         }
-        let stiffness = self.scratch.contact_stiffness[self.problem.blocks.nodes_of(block)].iter();
-        stiffness.zip(&shape.operator.node_mass).map(|(k, m)| k / m).fold(0.0, f64::max)
+        shape.contact_rate2(&self.scratch.contact_stiffness[self.problem.blocks.nodes_of(block)])
     }
 }

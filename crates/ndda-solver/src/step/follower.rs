@@ -50,6 +50,11 @@ impl FollowerPressure {
         Self { triangles, field, factor, pace_m_s2: force_n / mass_kg, room }
     }
 
+    /// Its faces and its factor over time, where it has one.
+    pub(crate) fn over_time(&self) -> Option<(&[[u32; 3]], &Table)> {
+        Some((&self.triangles, self.factor.as_ref()?))
+    }
+
     /// A node of its block.
     pub(crate) fn first_node(&self) -> Option<u32> {
         self.triangles.first().map(|triangle| triangle[0])

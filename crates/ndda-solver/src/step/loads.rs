@@ -44,8 +44,9 @@ pub(crate) struct Loads {
     /// Sum of the varying ones now; empty if there are none, and so is `total`.
     changing: Vec<Vec3>,
     total: Vec<Vec3>,
-    /// Sum over the nodes of all of them [N].
+    /// Sum over the nodes of all of them, and of how large each is [N].
     force: Vec3,
+    size_n: f64,
     /// Speed that the varying ones bring and take back unseen within the step [m/s].
     unresolved_m_s: f64,
 }
@@ -58,7 +59,7 @@ impl Loads {
         pressures: Vec<FollowerPressure>,
         rest: Places,
     ) -> Self {
-        let force = constant.iter().sum();
+        let (force, size_n) = sum_and_size(&constant);
         let nodes = if varying.is_empty() && pressures.is_empty() { 0 } else { constant.len() };
         let mut loads = Self {
             constant,
@@ -70,6 +71,7 @@ impl Loads {
             changing: vec![Vec3::zeros(); nodes],
             total: vec![Vec3::zeros(); nodes],
             force,
+            size_n,
             unresolved_m_s: 0.0,
         };
         loads.place(0.0, 0.0, rest);
@@ -103,7 +105,7 @@ impl Loads {
         }
         let sums = self.constant.iter().zip(&self.changing);
         self.total.iter_mut().zip(sums).for_each(|(total, (a, b))| *total = a + b);
-        self.force = self.total.iter().sum();
+        (self.force, self.size_n) = sum_and_size(&self.total);
     }
 
     /// Lets forces per node [N] act from now on, beside the others.
@@ -134,7 +136,7 @@ impl Loads {
         nodes.iter().for_each(|range| self.constant[range.clone()].fill(Vec3::zeros()));
         self.varying.iter_mut().for_each(|load| load.forces.retain(|(node, _)| is_there(*node)));
         self.pressures.retain(|pressure| pressure.first_node().is_none_or(is_there));
-        self.force = self.constant.iter().sum();
+        (self.force, self.size_n) = sum_and_size(&self.constant);
         self.place(0.0, 0.0, places);
     }
 
@@ -146,8 +148,13 @@ impl Loads {
         let sums = self.given.iter().zip(reactions);
         self.constant.iter_mut().zip(sums).for_each(|(sum, (given, kept))| *sum = given + kept);
         if self.changing.is_empty() {
-            self.force = self.constant.iter().sum();
+            (self.force, self.size_n) = sum_and_size(&self.constant);
         }
+    }
+
+    /// Faces of pressures that change over time, and their factors.
+    pub(crate) fn pressures_over_time(&self) -> impl Iterator<Item = (&[[u32; 3]], &Table)> {
+        self.pressures.iter().filter_map(FollowerPressure::over_time)
     }
 
     /// Whether a caller has set forces.
@@ -179,6 +186,16 @@ impl Loads {
     pub(crate) fn force(&self) -> Vec3 {
         self.force
     }
+
+    /// Sum of how large they are over all nodes, where they cancel too [N].
+    pub(crate) fn size_n(&self) -> f64 {
+        self.size_n
+    }
+}
+
+/// Sum of forces, and of how large each is.
+fn sum_and_size(forces: &[Vec3]) -> (Vec3, f64) {
+    (forces.iter().sum(), forces.iter().map(|force| force.norm()).sum())
 }
 
 impl Simulation {

@@ -2,6 +2,7 @@
 
 use crate::step::report::StageTimes;
 
+use ndda_fem::Table;
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 
 use crate::bodies::kind::BodyKind;
@@ -34,6 +35,11 @@ impl Simulation {
     /// The shape of a block: operator, supports, factor.
     pub fn shape(&self, block: BlockId) -> &Prototype {
         &self.problem.shapes[self.bodies[block.index()].shape]
+    }
+
+    /// Pressures that change over time: triangles by nodes, counter-clockwise seen from outside, and the factor.
+    pub fn pressures_over_time(&self) -> impl Iterator<Item = (&[[u32; 3]], &Table)> {
+        self.loads.pressures_over_time()
     }
 
     /// Number of factored matrices: distinct blocks with unknowns.

@@ -41,6 +41,36 @@ impl Simulation {
         Ok(())
     }
 
+    /// Lets the springs on which quiet faces rest while a scene settles begin where these are now.
+    pub(crate) fn rest_on_quiet_faces(&mut self) {
+        for block in self.problem.blocks.ids() {
+            let nodes = self.problem.blocks.nodes_of(block);
+            let body = &mut self.bodies[block.index()];
+            let shape = &self.problem.shapes[body.shape];
+            if let Some(elastic) = body.elastic() {
+                elastic.rest_here(shape, &self.state.position[nodes]);
+            }
+        }
+    }
+
+    /// Lets what these springs bear at the end act on as a constant force. The energy that this gives the loads is work of loads [J].
+    ///
+    /// # Errors
+    /// As [`keep_static_reactions`](Self::keep_static_reactions), or of a contact that cannot be computed.
+    pub(crate) fn keep_reactions_of_rest(&mut self) -> Result<f64, StepError> {
+        if !self.is_quiet() {
+            return Ok(0.0);
+        }
+        let (before, _) = self.look()?;
+        let force = std::mem::take(&mut self.scratch.force);
+        let kept = self.keep_static_reactions(&force);
+        self.scratch.force = force;
+        kept?;
+        let work_j = self.look()?.0.load_j - before.load_j;
+        self.audit.ledger.add_work(0.0, 0.0, work_j, 0.0);
+        Ok(work_j)
+    }
+
     /// Puts the static reactions of the state among the constant loads.
     pub(crate) fn place_kept_forces(&mut self) {
         if self.state.kept_force.is_empty() {

@@ -227,6 +227,7 @@ impl Simulation {
         let (step, (old, _)) = (self.state.step, self.look()?);
         let before = self.audit.ledger.clone();
         self.state.velocity.fill(Vec3::zeros());
+        self.rest_on_quiet_faces();
         let moves = |block: &BlockId| self.shape(*block).kind != BodyKind::Fixed;
         let moving_j = self.blocks().ids().filter(moves).map(|block| self.load_energy_j(block)).sum();
         let progress = Progress { moving_j, ..Progress::new(self, settle.damping) };
@@ -240,9 +241,10 @@ impl Simulation {
         self.state.step = step;
         let way = std::mem::replace(&mut self.audit.ledger, before);
         self.audit.ledger.begin_anew_at_contact();
+        let kept_j = self.keep_reactions_of_rest()?;
         let (new, books) = self.look()?;
         self.audit.ledger.blocks().rebase(&books);
-        self.audit.ledger.add_way_to_rest(&way, new.total_j() - old.total_j());
+        self.audit.ledger.add_way_to_rest(&way, new.total_j() - old.total_j() - kept_j);
         self.audit.ledger.add_jump_of_momentum(&old, &new);
         if self.has_contact() {
             let (contact, _) = self.contacts_at_start()?;

@@ -81,7 +81,7 @@ pub(super) fn refuse_loose(scene: &Scene, blocks: &BlockSet, stage: usize) -> Re
 }
 
 /// The entry of a scene that a bolt comes from.
-pub(super) fn entry(scene: &Scene, name: &str) -> usize {
+pub(crate) fn entry(scene: &Scene, name: &str) -> usize {
     let is_of = |bolt: &Bolt| {
         let rest = name.strip_prefix(&bolt.name);
         rest.is_some_and(|rest| {

@@ -6,7 +6,7 @@ use std::fmt;
 use std::path::Path;
 
 use ndda_io::mesh::terrain_grid::{self, TerrainGrid};
-use ndda_io::scene::{self, Rock, Scene, Slivers, Whereabouts};
+use ndda_io::scene::{self, Contact, Fill, Potential, Rock, Scene, Slivers, Whereabouts};
 use ndda_mesh::cut::{
     Axis, Blocks, CutOptions, Domain, Merged, VoronoiOptions, cut_blocks, random_seeds, voronoi_blocks,
 };
@@ -21,6 +21,9 @@ use super::{Fault, solid, vec3};
 use crate::forecast::admit;
 use crate::numbers::{counted, four_figures};
 use joints::Discs;
+
+/// Most faces of a block that tetrahedra without a node inside fill, where contact is `Smooth`.
+const FACES_OF_A_FAN: usize = 13;
 
 /// Blocks that a rock was cut into, and what was left out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -120,7 +123,7 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     let cut_field = if rock.voronoi.is_some() { ".voronoi" } else { ".joints" };
     let mut blocks = cut(rock, &domain, folder).map_err(|m| vec![Fault::new(at(cut_field), m)])?;
     let refused = blocks.report.refused.iter().map(|(_, count)| count).sum();
-    let (merged, slivers) = match rock.slivers {
+    let (mut merged, slivers) = match rock.slivers {
         _ if rock.sliver_width_m == 0.0 => (Merged::default(), Vec::new()),
         Slivers::Merge => (blocks.merge_slivers(&domain, rock.sliver_width_m), Vec::new()),
         Slivers::Remove => (Merged::default(), slivers(&blocks)),
@@ -136,6 +139,12 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     }
     let spaces = excavate(rock, &domain, &mut blocks)
         .map_err(|(k, message)| vec![Fault::new(at(&format!(".excavations[{k}]")), message)])?;
+    let space_of = |at_m: &Vec3| spaces.iter().position(|space| space.holds(at_m)).unwrap_or(spaces.len());
+    if !spaces.is_empty() && rock.sliver_width_m > 0.0 && rock.slivers == Slivers::Merge {
+        // Borders of excavations make slivers of their own, which stay on their side.
+        let more = blocks.merge_slivers_within(&domain, rock.sliver_width_m, &space_of);
+        merged = Merged { count: merged.count + more.count, volume_m3: merged.volume_m3 + more.volume_m3 };
+    }
     let thin = blocks.report.slivers.len();
     let mut meshes = Meshes::new();
     let mut report = RockReport {
@@ -152,17 +161,18 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     };
     let mut faults = Vec::new();
     let groups = blocks.groups();
-    let (fill, kept_m3) = (rock.filling(), report.domain_m3 - sliver_m3 - removed_m3);
+    let (filling, kept_m3) = (rock.filling(), report.domain_m3 - sliver_m3 - removed_m3);
     let fill_field = if rock.into.is_some() { ".into" } else { ".fill" };
-    admit::admit_fill(groups.len(), &fill, (kept_m3, rock.into.is_some()))
+    admit::admit_fill(groups.len(), &filling, (kept_m3, rock.into.is_some()))
         .map_err(|m| vec![Fault::new(at(fill_field), m)])?;
-    let filled: Vec<_> = groups.par_iter().map(|group| solid::filled_group(&blocks, group, &fill)).collect();
+    let fill_of =
+        |group: &Vec<u32>| solid::filled_group(&blocks, group, fill(scene, &filling, &blocks, group));
+    let filled: Vec<_> = groups.par_iter().map(fill_of).collect();
     let mut counts = vec![0; spaces.len() + 1];
     for (group, filled) in groups.iter().zip(filled) {
-        let at_m = centroid(&blocks, group);
-        let space = spaces.iter().position(|space| space.holds(&at_m));
-        let stem = space.map_or(&rock.name, |k| &rock.excavations[k].name);
-        let count = &mut counts[space.map_or(spaces.len(), |k| k)];
+        let space = space_of(&centroid(&blocks, group));
+        let stem = rock.excavations.get(space).map_or(&rock.name, |space| &space.name);
+        let count = &mut counts[space];
         let mut next = || {
             *count += 1;
             format!("{stem}_{count:04}")
@@ -187,6 +197,19 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     }
     report.blocks = meshes.len();
     if faults.is_empty() { Ok((meshes, CutRock { report, blocks })) } else { Err(faults) }
+}
+
+/// How a block is filled. A tetrahedron of a fan may be near all faces of its block, which for `Smooth` contact can be too many; one of a star is near few.
+fn fill<'a>(scene: &Scene, asked: &'a Fill, blocks: &Blocks, group: &[u32]) -> &'a Fill {
+    let is_smooth = matches!(
+        scene.contact,
+        Some(Contact::Potential { potential: Potential::Smooth { .. } | Potential::Closure { .. }, .. })
+    );
+    let faces = || group.iter().map(|&part| blocks.blocks[part as usize].faces.len()).max();
+    match asked {
+        Fill::Fewest if is_smooth && faces() > Some(FACES_OF_A_FAN) => &Fill::Centre,
+        _ => asked,
+    }
 }
 
 /// Slivers that are blocks of their own, not parts of a concave one.

@@ -92,8 +92,9 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
     let rows = events(steps, scene.output.history_rows.into());
     let frames = frames(scene);
     let run_s = first_s + steps as f64 * step_s + rows as f64 * row_s + frames as f64 * frame_s;
-    // The twin writes nothing.
-    let twin_s = twin::may_want_twin(simulation).then_some(first_s + steps as f64 * step_s);
+    // The twin writes nothing, and follows no stages.
+    let twin_s = (scene.stages.is_empty() && twin::may_want_twin(simulation))
+        .then_some(first_s + steps as f64 * step_s);
     let files = files(scene, simulation, (rows, frames), frame.len() as u64);
     Ok(Guess { timed_steps, run_s, twin_s, memory_bytes: machine::peak_memory_bytes(), files })
 }

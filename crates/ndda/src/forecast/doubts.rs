@@ -8,6 +8,8 @@ use ndda_solver::Simulation;
 
 use super::idle;
 use super::step::Advice;
+use crate::bolt_report::BoltReports;
+use crate::build;
 use crate::waves;
 
 /// Penalties over Young's modulus, for a potential of 1 m, outside of which contact is deep or requires short steps.
@@ -20,6 +22,7 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
     let mut doubts: Vec<String> = unstable.into_iter().collect();
     let coarse = waves::findings(simulation).into_iter().filter(|found| found.value > found.limit);
     doubts.extend(coarse.map(|found| found.reason));
+    doubts.extend(BoltReports::new(simulation).doubts(|name| build::bolt_entry(scene, name)));
     doubts.extend(idle::findings(scene, simulation.blocks(), folder));
     let falls = scene.gravity_m_s2 != [0.0; 3];
     let Some(Contact::Potential { penalty_pa, potential, friction, material_pairs, rock_joints, .. }) =

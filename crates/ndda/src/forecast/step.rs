@@ -1,4 +1,4 @@
-//! Forecast of contact stability, before anything has run: h = ω_c Δt with ω_c² = max Σ|k|/m over the nodes, as a run reports it.
+//! Forecast of contact stability, before anything has run: h = ω_c Δt with ω_c² = max Σ|k|/m over the nodes, or a bound of the whole block, as a run reports it.
 //!
 //! Two configurations are evaluated with the scene's contact model. *At the start*: blocks that touch where they are put, each
 //! swollen by a thousandth of its smallest tetrahedron. *Face on face*: each distinct block against a copy of itself, turned over
@@ -9,6 +9,7 @@ use std::fmt;
 
 use ndda_contact::affine::BlockFaces;
 use ndda_contact::{ContactHistory, ContactInput, ContactOutput};
+use ndda_fem::mobility;
 use ndda_io::scene::{Body, Contact, ContactAt, Scene, is_unset};
 use ndda_mesh::geometry::{tet_volume, triangle_area_vector};
 use ndda_mesh::stats::stats;
@@ -273,6 +274,7 @@ fn contact_rate2(scene: &Scene, trial: &Trial) -> Option<f64> {
     // Far from the origin, a set has one of its own.
     let mesh = &BlockMesh { nodes: alone.rest_position.clone(), ..mesh.clone() };
     let pair = scene_of_an_identical_pair(scene, trial.block, trial.name);
+    let whole = mobility(&mesh.nodes, &mesh.tets, node_mass.iter().sum());
     let mut largest = 0.0f64;
     for (centroid, normal) in largest_faces(&alone) {
         let like = turned_over(mesh, &centroid, &normal, DEPTH * trial.smallest_height_m);
@@ -290,8 +292,11 @@ fn contact_rate2(scene: &Scene, trial: &Trial) -> Option<f64> {
         let mut output =
             ContactOutput { force: &mut force, friction_force: &mut friction, stiffness: &mut stiffness };
         model.add_forces(&input, &mut ContactHistory::default(), &mut output).ok()?;
-        let masses = node_mass.iter().cycle();
-        largest = stiffness.iter().zip(masses).map(|(k, m)| k / m).fold(largest, f64::max);
+        for stiffness in stiffness.chunks(node_mass.len()) {
+            let by_nodes = stiffness.iter().zip(node_mass).map(|(k, m)| k / m).fold(0.0, f64::max);
+            let whole: f64 = stiffness.iter().zip(&whole).map(|(k, w)| k * w).sum();
+            largest = largest.max(if trial.is_affine { by_nodes.min(whole) } else { by_nodes });
+        }
     }
     Some(largest)
 }

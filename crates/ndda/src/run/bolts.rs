@@ -9,9 +9,21 @@ use serde::{Deserialize, Serialize};
 
 use crate::run::schedule::Schedule;
 
-/// Columns of the table; bolts, their pieces and blocks are numbered from 0, and states are 0 elastic, 1 debonded, 2 yielding, 3 broken.
-pub const COLUMNS: [&str; 10] =
-    ["time_s", "bolt", "piece", "block", "from_m", "to_m", "axial_n", "utilisation", "slip_m", "state"];
+/// Columns of the table; bolts, their pieces and blocks are numbered from 0, and states are 0 elastic, 1 debonded, 2 yielding, 3 broken. The last is the
+/// name of the bolt.
+pub const COLUMNS: [&str; 11] = [
+    "time_s",
+    "bolt",
+    "piece",
+    "block",
+    "from_m",
+    "to_m",
+    "axial_n",
+    "utilisation",
+    "slip_m",
+    "state",
+    "name",
+];
 
 /// How far the table and the lines had come.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -63,7 +75,7 @@ impl BoltTable {
         let (time_s, origin_m) = (simulation.time_s(), simulation.blocks().origin_m);
         for piece in &self.pieces {
             let [from_m, to_m] = piece.along_m;
-            self.table.push(&[
+            let numbers = [
                 time_s,
                 piece.bolt as f64,
                 piece.piece as f64,
@@ -74,7 +86,9 @@ impl BoltTable {
                 piece.utilisation,
                 piece.slip_m,
                 f64::from(piece.state as u8),
-            ])?;
+            ];
+            let name = simulation.bolt(piece.bolt).map_or("", |(name, _)| name);
+            self.table.push_with_text(&numbers, &[name])?;
         }
         let line = |piece: &BoltPiece| BoltLine {
             ends_m: piece.ends_m.map(|end| (end + origin_m).into()),

@@ -1,7 +1,10 @@
 //! The potential that grows with depth below the block's surface.
 
-use ndda_mesh::geometry::distance_to_triangle;
+use ndda_mesh::geometry::{Aabb, distance_to_triangle};
 use ndda_mesh::{BlockId, BlockSet, NodeId, TetId, Vec3};
+use parry3d_f64::bounding_volume::Aabb as ParryAabb;
+use parry3d_f64::math::Vector;
+use parry3d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhNode};
 
 use crate::affine::surface::{BlockFaces, Plane};
 use crate::potential::contact_potential::{ContactPotential, PotentialError, PotentialField};
@@ -113,15 +116,32 @@ fn keep_the_smallest(pieces: &[[f64; 4]], same: f64, kept: &mut Vec<[f64; 4]>) {
     }
 }
 
+fn vector(x: &Vec3) -> Vector {
+    Vector::new(x.x, x.y, x.z)
+}
+
 /// Distance of each node of a block to its surface in the rest shape [m]; exactly zero for nodes of the surface.
 fn depth_of_nodes(blocks: &BlockSet, block: BlockId) -> Vec<f64> {
     let range = blocks.nodes_of(block);
     let mut on_surface = vec![false; range.len()];
     let triangles = || blocks.triangles_of(block).map(|t| blocks.triangles[t]);
-    triangles().flatten().for_each(|n: NodeId| on_surface[n.index() - range.start] = true);
+    triangles().flatten().for_each(|n| on_surface[n.index() - range.start] = true);
+    let corners = |triangle: [NodeId; 3]| triangle.map(|n| blocks.rest_position[n.index()]);
+    let boxes = triangles().map(|triangle| {
+        let Aabb { min, max } = Aabb::around(&corners(triangle));
+        ParryAabb::new(vector(&min), vector(&max))
+    });
+    let tree = Bvh::from_iter(BvhBuildStrategy::Binned, boxes.enumerate());
+    let first = blocks.triangles_of(block).start;
     let distance = |x: &Vec3| {
-        let to = |t: [NodeId; 3]| distance_to_triangle(x, &t.map(|n| blocks.rest_position[n.index()]));
-        triangles().map(to).fold(f64::INFINITY, f64::min)
+        let to_box = |node: &BvhNode, _| {
+            let at = vector(x);
+            // Rounding must not hide a triangle behind its box.
+            (1.0 - 1e-9) * (at - at.max(node.mins()).min(node.maxs())).length()
+        };
+        let to =
+            |leaf: u32, _| Some(distance_to_triangle(x, &corners(blocks.triangles[first + leaf as usize])));
+        tree.find_best(f64::MAX, to_box, to).map_or(f64::INFINITY, |(_, distance)| distance)
     };
     let nodes = blocks.rest_position[range.clone()].iter();
     nodes.zip(&on_surface).map(|(x, &on)| if on { 0.0 } else { distance(x) }).collect()

@@ -126,10 +126,6 @@ impl Check<'_> {
                 }
             }
             Then::Settle { tolerance, most_steps, damping } => {
-                if !self.scene.quiet.is_empty() {
-                    let message = "quiet faces have no stiffness to come to rest on within a run";
-                    self.misfit(path("then"), message, "use Run(…) in a scene with `quiet`");
-                }
                 if !(0.0 < tolerance && tolerance < 1.0) {
                     let message = format!("{tolerance}: must be between 0 and 1");
                     self.error(

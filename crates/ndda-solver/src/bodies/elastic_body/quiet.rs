@@ -59,6 +59,13 @@ impl ElasticBody {
         }
     }
 
+    /// Springs of quiet faces begin at these places.
+    pub(crate) fn rest_here(&mut self, shape: &Prototype, position: &[Vec3]) {
+        let first = shape.supports.held.len() + shape.supports.springs.len();
+        let dashpots = shape.supports.quiet.dashpots.iter();
+        self.anchor[first..].iter_mut().zip(dashpots).for_each(|(at, d)| *at = position[d.node as usize]);
+    }
+
     /// kept ← what the nodes of quiet faces need to stay where they are under `force` [N].
     ///
     /// # Errors
