@@ -1,6 +1,6 @@
 //! Scenes moved as a whole, and compared with what they were.
 
-use ndda_io::scene::{Contact, Hold, Region, Scene, Turn};
+use ndda_io::scene::{Contact, ContactAt, Hold, Region, Scene, Turn};
 use ndda_mesh::{Mat3, Vec3};
 
 use crate::generator::{Case, build};
@@ -76,7 +76,8 @@ pub fn compare(case: &Case, twin: &Scene, map: &Map, reorder: impl Fn(&Motion) -
     let farthest_m = |motion: &Motion| motion.position.iter().map(|x| x.amax()).fold(length_m, f64::max);
     let coordinates = farthest_m(&end).max(farthest_m(&reorder(&Motion::of(&other.simulation)))) / length_m;
     let friction = if has_velocity_friction(&case.scene) { map.friction } else { 0.0 };
-    let bound = (ROUNDING * DISTURBED * coordinates + friction) * (1.0 + growth);
+    let searched = end_search_m_s(&case.scene) / speed_m_s;
+    let bound = (ROUNDING * DISTURBED * coordinates + friction + searched) * (1.0 + growth);
     if found <= bound {
         Found::Holds
     } else if growth > CHAOS {
@@ -86,6 +87,12 @@ pub fn compare(case: &Case, twin: &Scene, map: &Map, reorder: impl Fn(&Motion) -
             "apart by {found:.2e} of size and speed, rounding explains {bound:.1e}: a disturbance of 1e-9 grows {growth:.1e} times"
         ))
     }
+}
+
+/// What the tolerance of contact at the end of the step leaves open in a step: forces to a part of the weight, and so speeds to that of g Δt [m/s].
+fn end_search_m_s(scene: &Scene) -> f64 {
+    let ContactAt::End { tolerance, .. } = scene.time.contact_at else { return 0.0 };
+    tolerance * Vec3::from(scene.gravity_m_s2).norm() * scene.time.step_s
 }
 
 fn has_velocity_friction(scene: &Scene) -> bool {

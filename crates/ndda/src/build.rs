@@ -2,7 +2,7 @@
 
 mod blast;
 mod bodies;
-mod bolts;
+pub(crate) mod bolts;
 mod bonded;
 mod choices;
 pub mod friction;
@@ -33,7 +33,6 @@ use ndda_solver::{
 };
 
 use crate::run::monitor::Monitor;
-pub(crate) use bolts::entry as bolt_entry;
 pub use choices::Choices;
 use friction::friction_law;
 use pairs::{add_glue, add_joint_laws, between_materials, restitution_table};

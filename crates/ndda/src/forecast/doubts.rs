@@ -22,7 +22,7 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
     let mut doubts: Vec<String> = unstable.into_iter().collect();
     let coarse = waves::findings(simulation).into_iter().filter(|found| found.value > found.limit);
     doubts.extend(coarse.map(|found| found.reason));
-    doubts.extend(BoltReports::new(simulation).doubts(|name| build::bolt_entry(scene, name)));
+    doubts.extend(BoltReports::new(simulation).doubts(|name| build::bolts::entry(scene, name)));
     doubts.extend(idle::findings(scene, simulation.blocks(), folder));
     let falls = scene.gravity_m_s2 != [0.0; 3];
     let Some(Contact::Potential { penalty_pa, potential, friction, material_pairs, rock_joints, .. }) =
