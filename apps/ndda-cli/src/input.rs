@@ -61,7 +61,7 @@ pub fn warn_of_slow_build(loaded: &LoadedScene, folder: &Path) {
 
 /// The text of an example.
 fn text(name: &str, events: Events) -> Result<&'static str, u8> {
-    if name.is_empty() {
+    if name.is_empty() || name == "list" {
         say(&examples::list());
         return Err(exit::DONE);
     }

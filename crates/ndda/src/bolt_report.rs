@@ -97,7 +97,12 @@ impl fmt::Display for BoltReports {
         let (least_m, most_m) =
             bonded.fold((f64::INFINITY, 0.0f64), |(least, most), m| (least.min(m), most.max(m)));
         let bolts = counted(self.0.len(), "bolt", "bolts");
-        write!(f, "\n{bolts}, each bonded over {least_m:.3} to {most_m:.3} m")?;
+        let (least, most) = (format!("{least_m:.3}"), format!("{most_m:.3}"));
+        let each = if self.0.len() > 1 { "each " } else { "" };
+        match least == most {
+            true => write!(f, "\n{bolts}, {each}bonded over {most} m")?,
+            false => write!(f, "\n{bolts}, each bonded over {least} to {most} m")?,
+        }
         for bolt in self.0.iter().take(LISTED) {
             write!(f, "\n  {}: {:.3} m in {}", bolt.name, bolt.bonded_m, bolt.blocks.join(", "))?;
             if bolt.outside_m > SHORT * bolt.bonded_m {

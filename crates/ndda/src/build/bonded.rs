@@ -183,13 +183,13 @@ pub(super) fn stiffer(
     {
         return Err(if material.poisson >= MOST_POISSON {
             format!(
-                "Poisson's ratio {} is too near to ½ to make up for bonds: leave out compensate",
+                "Poisson's ratio {} is too near to ½ to compensate for bonds: leave out compensate",
                 material.poisson
             )
         } else {
             let needed_pa_m = pulled_pa_m * least_pa / bonds_pa;
             format!(
-                "bonds of {pulled_pa_m:.4e} Pa/m are too soft to make up for: give a shear_penalty_pa_m of at least {needed_pa_m:.1e}, or a larger size_m"
+                "bonds of {pulled_pa_m:.4e} Pa/m are too soft to compensate for: give a shear_penalty_pa_m of at least {needed_pa_m:.1e} and penalty_pa = ½ shear_penalty_pa_m L₀, or a larger size_m"
             )
         });
     }

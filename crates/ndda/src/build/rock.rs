@@ -134,7 +134,7 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     if let Some(k) =
         rock.fixed.iter().position(|place| chosen(&blocks, std::slice::from_ref(place)).is_empty())
     {
-        let message = "holds no block: no centroid lies in it; check its signs, or leave it out";
+        let message = "holds no block: no centroid lies in it; check its signs, or leave it out; where blocks are larger than the part that it describes, make that or the domain larger, or the spacing of joints smaller";
         return Err(vec![Fault::new(at(&format!(".fixed[{k}]")), message)]);
     }
     let spaces = excavate(rock, &domain, &mut blocks)

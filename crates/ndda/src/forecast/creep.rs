@@ -10,12 +10,15 @@ pub fn warning(loaded: &LoadedScene) -> Option<Diagnostic> {
     let scene = &loaded.scene;
     let has_gravity = scene.gravity_m_s2 != [0.0; 3];
     let is_sudden = has_gravity && scene.gravity_ramp_s == 0.0 && scene.settle.is_none();
-    if !is_sudden || !has_springs(scene) || is_damped(scene) {
-        return None;
-    }
+    let springs = springs(scene).filter(|_| is_sudden && !is_damped(scene))?;
     let message = "gravity acts suddenly, so contact will vibrate; meanwhile blocks that shear springs hold may slip slightly, even where friction could hold them";
-    let help = "give contacts a restitution below 1, begin with settle: (), apply gravity over gravity_ramp_s, or leave out shear_penalty_pa_m, so that friction acts on velocities";
-    let mut found = loaded.diagnose("contact.friction.shear_penalty_pa_m", message.into()).with_help(help);
+    let cures =
+        "give contacts a restitution below 1, begin with settle: (), or apply gravity over gravity_ramp_s";
+    let help = match springs.holds_together {
+        true => cures.into(),
+        false => format!("{cures}; or leave out shear_penalty_pa_m, so that friction acts on velocities"),
+    };
+    let mut found = loaded.diagnose(&springs.path, message.into()).with_help(help);
     (found.code, found.severity) = (Code::Inexact, Severity::Warning);
     Some(found)
 }
@@ -24,10 +27,26 @@ fn is_damped(scene: &Scene) -> bool {
     matches!(&scene.contact, Some(Contact::Potential { restitution, .. }) if *restitution < 1.0)
 }
 
-fn has_springs(scene: &Scene) -> bool {
-    let Some(Contact::Potential { friction, rock_joints, .. }) = &scene.contact else { return false };
-    let is_spring =
-        |friction: &Friction| friction.shear_penalty_pa_m.is_some() && friction.friction_deg > 0.0;
-    friction.as_ref().is_some_and(is_spring)
-        || rock_joints.iter().filter_map(|law| law.friction.as_ref()).any(is_spring)
+/// A law whose friction acts on springs.
+struct Springs {
+    /// Where its stiffness is in the scene.
+    path: String,
+    /// Whether it also holds blocks together, which needs the springs.
+    holds_together: bool,
+}
+
+/// The first law of a scene whose friction acts on springs.
+fn springs(scene: &Scene) -> Option<Springs> {
+    let Some(Contact::Potential { friction, rock_joints, .. }) = &scene.contact else { return None };
+    let of = |(path, friction): (String, &Friction)| {
+        let is_spring = friction.shear_penalty_pa_m.is_some() && friction.friction_deg > 0.0;
+        let holds_together = friction.cohesion_pa > 0.0 || friction.tension_pa > 0.0;
+        is_spring.then(|| Springs { path: format!("{path}.shear_penalty_pa_m"), holds_together })
+    };
+    let all = friction.iter().map(|friction| ("contact.friction".to_string(), friction));
+    let joints = rock_joints
+        .iter()
+        .enumerate()
+        .filter_map(|(i, law)| Some((format!("contact.rock_joints[{i}].friction"), law.friction.as_ref()?)));
+    all.chain(joints).find_map(of)
 }

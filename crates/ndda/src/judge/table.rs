@@ -1,6 +1,6 @@
 //! The end of a run: a few lines for a person, and tables of everything.
 
-use ndda_io::summary::{Course, Judgement, LabelWord, Motion, StageEnd, Summary, Verdict};
+use ndda_io::summary::{BoltEnd, Course, Judgement, LabelWord, Motion, StageEnd, Summary, Verdict};
 
 use super::reasons;
 use super::words::{SECOND_RUN, in_words};
@@ -25,6 +25,7 @@ pub fn ending(summary: &Summary) -> String {
     text.extend(summary.chosen.iter().map(|chosen| format!("{chosen}\n")));
     text.extend(summary.stages.iter().map(|end| format!("{}\n", stage(end))));
     text.extend(summary.motion.as_ref().map(moved));
+    text.push_str(&bolts(&summary.bolts.0));
     text.push_str(&error(summary));
     let failed =
         |(_, verdict): &&(String, Verdict)| matches!(verdict.verdict, Judgement::Warn | Judgement::Fail);
@@ -60,6 +61,27 @@ pub fn ending(summary: &Summary) -> String {
     }
     text.push('\n');
     text
+}
+
+/// How bolts fared, in a line; nothing where there are none.
+fn bolts(all: &[(String, BoltEnd)]) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let count = counted(all.len(), "bolt", "bolts");
+    let told = |(state, verb): (&str, &str)| {
+        let found: Vec<_> = all.iter().filter(|(_, end)| end.state == state).collect();
+        let (first, _) = found.first()?;
+        let others = if found.len() > 1 { ", …" } else { "" };
+        Some(format!("{} of {count} {verb} (`{first}`{others})", found.len()))
+    };
+    let states = [("broken", "broke"), ("yielding", "yielded"), ("debonded", "slipped in the grout")];
+    let told: Vec<_> = states.into_iter().filter_map(told).collect();
+    if told.is_empty() {
+        let most = all.iter().map(|(_, end)| end.utilisation).fold(0.0, f64::max);
+        return format!("{count} held, with at most {:.0} % of the yield force\n", 100.0 * most);
+    }
+    format!("{}\n", told.join("; "))
 }
 
 /// Seconds of the second run that shows whether the motion is sensitive, if there was one.
@@ -237,6 +259,21 @@ fn block_table(summary: &Summary) -> String {
 mod tests {
     use super::*;
     use crate::{Model, Run};
+
+    #[test]
+    fn bolts_that_broke_or_slipped_are_named_and_others_are_counted() {
+        let end = |state: &str, utilisation: f64| BoltEnd {
+            state: state.into(),
+            utilisation,
+            ..BoltEnd::default()
+        };
+        let mut all = vec![("a".to_string(), end("elastic", 0.2)), ("b".to_string(), end("elastic", 0.343))];
+        assert_eq!(bolts(&[]), "");
+        assert_eq!(bolts(&all), "2 bolts held, with at most 34 % of the yield force\n");
+        all.extend([("c".into(), end("broken", 1.1)), ("d".into(), end("broken", 1.0))]);
+        all.push(("e".into(), end("debonded", 0.1)));
+        assert_eq!(bolts(&all), "2 of 5 bolts broke (`c`, …); 1 of 5 bolts slipped in the grout (`e`)\n");
+    }
 
     /// A block that hits a floor with a step that is far too long.
     #[test]

@@ -298,7 +298,9 @@ impl Course<'_> {
             watched.begin(simulation);
             if let Some((block, gone_m)) = watched.beyond(far_m) {
                 let name = &simulation.blocks().names[block.index()];
-                let reason = format!("block `{name}` goes {gone_m:.2e} m and does not come to rest before");
+                let reason = format!(
+                    "block `{name}` goes {gone_m:.2e} m, farther than elastically, before the scene is at rest"
+                );
                 return Some(Ok(Some((State::Fails, reason))));
             }
             if !matches!(settled, Err(StepError::NotSettled { .. })) {
