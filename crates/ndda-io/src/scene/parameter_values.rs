@@ -45,8 +45,12 @@ pub(crate) fn read(text: &str, tree: &Node) -> Result<Parameters, Vec<Diagnostic
         );
         return Err(vec![refused.with_help("write parameters: (height_m: 10, dip_deg: 35)")]);
     }
+    // What is computed from a value that is wrong is not wrong itself.
+    let mut wrong: Vec<String> = Vec::new();
     for child in &node.children {
         let name = child.key.clone().unwrap_or_default();
+        let words = text[child.span.clone()].split(|c: char| !c.is_alphanumeric() && c != '_');
+        let follows = words.into_iter().any(|word| wrong.iter().any(|other| other == word));
         let name_refused = read.refuse_name(&name, child.key_span.clone());
         match (name_refused, value(text, tree, child, &read)) {
             (None, Ok(value)) => {
@@ -54,7 +58,10 @@ pub(crate) fn read(text: &str, tree: &Node) -> Result<Parameters, Vec<Diagnostic
             }
             (refused, value) => {
                 found.extend(refused);
-                found.extend(value.err().into_iter().flatten());
+                if let Err(mistakes) = value {
+                    wrong.push(name);
+                    found.extend(mistakes.into_iter().filter(|_| !follows));
+                }
             }
         }
     }
@@ -119,6 +126,15 @@ mod tests {
         assert!(refused.contains("did you mean `dip_deg`"), "{refused}");
         let bare = load_text("s.ron", &scene("", "1"), &["parameters.dip_deg=40".into()], None);
         assert!(bare.unwrap_err().render(false).contains("has no parameters"));
+    }
+
+    #[test]
+    fn a_parameter_that_is_wrong_is_not_said_to_be_missing_in_others() {
+        let text =
+            scene("parameters: (a_deg: Calc(1 / 0), b_deg: Calc(2 * a_deg), c_deg: Calc(b_deg)),", "0");
+        let refused = load_text("s.ron", &text, &[], None).unwrap_err();
+        let paths: Vec<_> = refused.diagnostics.iter().map(|found| found.path.as_str()).collect();
+        assert_eq!(paths, ["parameters.a_deg"]);
     }
 
     #[test]

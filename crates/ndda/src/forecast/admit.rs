@@ -15,6 +15,10 @@ use crate::numbers::counted;
 
 /// Building for longer is announced [s].
 const LONG_S: f64 = 60.0;
+/// Building for longer is not told in seconds [s].
+const A_DAY_S: f64 = 86_400.0;
+/// More memory than any machine has [GB].
+const MOST_GB: f64 = 1e5;
 
 /// Why the scene is not to be built in the memory that there is.
 ///
@@ -28,17 +32,21 @@ pub fn admit(loaded: &LoadedScene, folder: &Path) -> Result<(), Diagnostic> {
     match memory::budget() {
         Some(budget) if needed > budget as f64 => {
             let message = format!(
-                "{figures} would take {} of memory (the whole scene {}) and {:.0} s to build; there is {}",
-                readable(largest.bytes as u64),
-                readable(needed as u64),
-                build_s,
+                "{figures} would take {} of memory (the whole scene {}) and {} to build; there is {}",
+                size(largest.bytes),
+                size(needed),
+                if build_s < A_DAY_S { format!("{build_s:.0} s") } else { "more than a day".into() },
                 readable(budget)
             );
             let found = loaded.diagnose_as(Code::TooLarge, &largest.path, message);
-            Err(found.with_help(format!(
-                "{}; if the machine has more memory than that, give --memory 64GB",
-                largest.cure
-            )))
+            let enough = (1.1e-9 * needed).ceil();
+            Err(found.with_help(match enough <= MOST_GB {
+                true => format!(
+                    "{}; if the machine has that much memory, give --memory {enough:.0}GB",
+                    largest.cure
+                ),
+                false => largest.cure.into(),
+            }))
         }
         _ => Ok(()),
     }
@@ -72,6 +80,11 @@ pub fn slow_build(loaded: &LoadedScene, folder: &Path) -> Option<String> {
     let build_s = parts.iter().map(|part| part.count.build_s).sum::<f64>();
     let text = || format!("building {} takes about {:.0} min", figures(largest), build_s / 60.0);
     (build_s > LONG_S).then(text)
+}
+
+/// A size of memory in words, also of what no machine has.
+fn size(bytes: f64) -> String {
+    if bytes < 1e9 * MOST_GB { readable(bytes as u64) } else { format!("more than {MOST_GB} GB") }
 }
 
 fn figures(part: &Part) -> String {

@@ -262,7 +262,7 @@ fn grammar(error: &RonError, text: &str, at: usize) -> (Code, String, &'static s
         RonError::ExpectedInteger | RonError::IntegerOutOfBounds => (Code::WrongType, COUNTS),
         RonError::ExpectedFloat => (
             Code::WrongType,
-            "write a number, such as 1.5 or 20e9, or one with its unit, such as Megapascal(20)",
+            "write a number, such as 1.5 or 20e9, one with its unit, such as Megapascal(20), or an expression, Calc(2 * width_m)",
         ),
         RonError::ExpectedIdentifier | RonError::ExpectedDifferentLength { .. } => {
             (Code::WrongType, REFERENCE)
