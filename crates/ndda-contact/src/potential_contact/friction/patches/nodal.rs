@@ -231,12 +231,12 @@ impl BlockSides {
         }
         let axes = [patch.axes[0], patch.axes[1]];
         self.sides.push(Side { patch: number, end: self.weights.len() as u32, axes });
-        for k in 0..3 {
-            let first = columns.len();
-            columns.resize(first + nodes.len(), Vec3::zeros());
-            for weight in &self.weights[from as usize..] {
-                columns[first + weight.node as usize] +=
-                    if k < 2 { weight.share * axes[k] } else { weight.twist };
+        let first = columns.len();
+        columns.resize(first + 3 * nodes.len(), Vec3::zeros());
+        for weight in &self.weights[from as usize..] {
+            let forces = [weight.share * axes[0], weight.share * axes[1], weight.twist];
+            for (k, force) in forces.iter().enumerate() {
+                columns[first + k * nodes.len() + weight.node as usize] += force;
             }
         }
     }
