@@ -144,23 +144,10 @@ mod tests {
 
     #[test]
     fn elements_and_steps_are_measured_by_the_wave_that_arrives() {
-        let folder = tempfile::tempdir().unwrap();
-        let rows: String = (0..=400)
-            .map(|i| f64::from(i) * 1e-3)
-            .map(|t| format!("{t},{}\n", (TAU * 50.0 * t).cos()))
-            .collect();
-        std::fs::write(folder.path().join("burst.csv"), format!("time_s,acceleration_m_s2\n{rows}")).unwrap();
-        let found = |cells: u32| {
-            let text = format!(
-                r#"(title: "A column", time: (step_s: 1e-3, end_s: 1e-2),
-                    materials: [(name: "rock", density_kg_m3: 2500, young_pa: 25e9, poisson: 0.25)],
-                    blocks: [(name: "column", material: "rock", shape: Box(size_m: (1, 1, 100), cells: (1, 1, {cells})))],
-                    quiet: [(block: "column", on: Set("z_min"), incident: [(wave: S((1, 0, 0)), record: (file: "burst.csv"))])])"#
-            );
-            std::fs::write(folder.path().join("scene.ron"), text).unwrap();
-            let model = crate::Model::open(&folder.path().join("scene.ron"), &[]).unwrap();
-            findings(&model.simulation)
-        };
+        let quiet = format!(
+            r#"blocks: [{COLUMN}], quiet: [(block: "column", on: Set("z_min"), incident: [(wave: S((1, 0, 0)), record: (file: "burst.csv"))])]"#
+        );
+        let found = |cells: u32| on_foot(cells, &quiet);
         // c_s = 2000 m/s: 40 m at 50 Hz, of which elements of 10 and 2 m are 0.25 and 0.05; a step of 1 ms is 0.05 of the period.
         let (coarse, fine) = (found(10), found(50));
         assert!((coarse[0].value / 0.25 - 1.0).abs() < 0.1, "{}", coarse[0].reason);
@@ -168,8 +155,8 @@ mod tests {
         assert!((fine[1].value / 0.05 - 1.0).abs() < 0.1, "{}", fine[1].reason);
     }
 
-    /// A column of 100 m on what `foot` is, with elements of 10 or 2 m.
-    fn shaken(cells: u32, foot: &str) -> Vec<Finding> {
+    /// Findings on a column of 100 m in so many cells, on a foot that a scene describes and that may follow a burst at 50 Hz.
+    fn on_foot(cells: u32, foot: &str) -> Vec<Finding> {
         let folder = tempfile::tempdir().unwrap();
         let rows: String = (0..=400)
             .map(|i| f64::from(i) * 1e-3)
@@ -202,7 +189,7 @@ mod tests {
         for foot in [held, table] {
             for (direction, wavelength_m) in [("1, 0, 0", 40.0), ("0, 0, 1", 69.28)] {
                 let foot = foot.replace("DIRECTION", direction);
-                let (coarse, fine) = (shaken(10, &foot), shaken(50, &foot));
+                let (coarse, fine) = (on_foot(10, &foot), on_foot(50, &foot));
                 assert!((coarse[0].value * wavelength_m / 10.0 - 1.0).abs() < 0.1, "{}", coarse[0].reason);
                 assert!(
                     coarse[0].value > coarse[0].limit && fine[0].value < fine[0].limit,
@@ -215,7 +202,7 @@ mod tests {
         let slow = format!(
             r#"blocks: [{COLUMN}], supports: [(block: "column", on: Set("z_min"), hold: Motion([(time_s: 0, displacement_m: (0, 0, 0)), (time_s: 1e-3, displacement_m: (0, 0, 1e-3))]))]"#
         );
-        assert!(shaken(10, &slow).is_empty(), "a table of displacements is no record");
+        assert!(on_foot(10, &slow).is_empty(), "a table of displacements is no record");
     }
 
     /// A triangle of 2 T = 20 ms has 95 % of its energy below 0.5004/T = 50.04 Hz.
@@ -228,7 +215,7 @@ mod tests {
         };
         // From the foot the way is along the column; from its whole surface it is to all sides of its middle, nearly the same for elements far off.
         for on in [r#"Part(Set("z_min"))"#, "Part(All)"] {
-            let (coarse, fine) = (shaken(10, &blast(on)), shaken(50, &blast(on)));
+            let (coarse, fine) = (on_foot(10, &blast(on)), on_foot(50, &blast(on)));
             assert!((coarse[0].value * 69.23 / 10.0 - 1.0).abs() < 0.1, "{}", coarse[0].reason);
             assert!(coarse[0].value > coarse[0].limit && fine[0].value < fine[0].limit, "{}", fine[0].reason);
             assert!(coarse[0].reason.contains("more slowly"), "{}", coarse[0].reason);

@@ -55,7 +55,7 @@ pub enum Code {
     Inexact,
     /// Something has no effect.
     NoEffect,
-    /// Nothing holds blocks that are probably to be held.
+    /// Blocks that no support holds, although they were probably meant to be held.
     NotHeld,
 }
 

@@ -54,7 +54,7 @@ const OFTEN: [&str; 6] =
 /// Paths that are listed.
 const MOST_LISTED: usize = 5;
 
-/// Where the scene has the last name of a path that leads nowhere, as advice.
+/// Advice for a path that the scene does not have: its paths that end in the same name.
 fn elsewhere(tree: &Node, text: &str, path: &str, value: &str) -> Option<String> {
     let leaf = *current_segments(path).last()?;
     let mut found = Vec::new();
@@ -66,7 +66,7 @@ fn elsewhere(tree: &Node, text: &str, path: &str, value: &str) -> Option<String>
         );
         found.retain(|known| segments(known) != segments(path));
     }
-    // What is computed from a parameter is changed by that.
+    // A parameter comes first: setting it changes all values that are computed from it.
     found.sort_by_key(|path| !path.starts_with(parameters::FIELD));
     match found.as_slice() {
         [] => None,

@@ -3,7 +3,7 @@
 use super::Check;
 use crate::scene::{Contact, Dilation, FractureEnergy, Friction, Memory, Potential, Residual, Roughness};
 
-/// What friction angles are like.
+/// Typical friction angles, as advice.
 const TYPICAL: &str =
     "typical are 25° to 40° for joints in rock, 10° to 20° with clay in them; μ = 0.6 is 31°";
 /// Largest roughness coefficient.

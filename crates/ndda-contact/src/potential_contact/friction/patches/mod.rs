@@ -269,8 +269,7 @@ impl FrictionPatches {
         let Some(deformation) = scene.input.deformation else { return };
         let patch = |(k, _): (u32, f64)| {
             let (run, summary) = (runs[k as usize].clone(), &summaries[k as usize]);
-            let matters = summary.has_friction && !summary.is_slight();
-            (k, &patches[k as usize], &order[run], matters)
+            (k, &patches[k as usize], &order[run], summary.matters())
         };
         let is_nodal = |block: BlockId| is_asked[block.index()] && scene.input.bodies[block.index()].deforms;
         let found = SideScene { scene: *scene, forces, own_m2 };
@@ -289,7 +288,7 @@ impl FrictionPatches {
         let ContactInput { bodies: start, dt_s, is_iterated, .. } = *scene.input;
         coupled.clear();
         for (((number, patch), summary), sides) in (0..).zip(&*patches).zip(&*summaries).zip(&*sides) {
-            if summary.has_friction && !summary.is_slight() {
+            if summary.matters() {
                 let patch = (number, patch, summary.tolerance_n);
                 coupled.extend(CoupledPatch::new(patch, (start, nodal), *sides, dt_s));
             }

@@ -5,8 +5,8 @@
 //! v = v̂ + Σ U f, U = A⁻¹ P. So a patch that sticks has no slip at the end of the step, a block as a whole or its surface alone
 //! may be what it takes to stop.
 //!
-//! Friction is found from the slips alone. Where a block has fewer patches than nodes, these are what is kept: Pᵀ v = Pᵀ v̂ + Σ (Pᵀ U) f, so that
-//! no mesh, however fine, makes the search for friction longer.
+//! Friction is found from the slips alone. Where a block has no more patches than nodes, only slips are kept, Pᵀ v = Pᵀ v̂ + Σ (Pᵀ U) f:
+//! then a finer mesh does not make the search for friction longer.
 
 use ndda_mesh::{BlockId, Mat3, Vec3};
 use rayon::prelude::*;
@@ -36,7 +36,7 @@ pub(super) struct NodalSide {
     rows: u32,
 }
 
-/// Number of a patch, where its weights end, and two of its axes.
+/// A patch on a block: its number, the end of its weights, and its two axes in the plane of contact.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     patch: u32,
@@ -44,7 +44,7 @@ struct Side {
     axes: [Vec3; 2],
 }
 
-/// What the patches of one block are to its nodes.
+/// The sides of patches on one block, and the shares of its nodes in them.
 #[derive(Default)]
 struct BlockSides {
     weights: Vec<Weight>,
@@ -69,7 +69,7 @@ pub(super) struct Nodal {
     columns: Vec<Vec<Vec3>>,
 }
 
-/// What sides of patches are found from.
+/// Input from which the sides of patches are found.
 #[derive(Clone, Copy)]
 pub(super) struct SideScene<'a> {
     pub scene: PatchScene<'a>,
@@ -108,7 +108,7 @@ impl Nodal {
         });
     }
 
-    /// Lets the solver answer for all blocks: velocities and U in place of forces, or slips and Pᵀ U; `start` are the velocities of all nodes.
+    /// Lets the solver answer for all blocks: velocities and U in place of forces, or slips and Pᵀ U.
     pub(super) fn answer(&mut self, scene: &PatchScene, deformation: &dyn Deformation) {
         deformation.answer(&mut self.columns);
         let blocks = self.blocks.par_iter_mut().zip(&mut self.columns).enumerate();
@@ -308,7 +308,7 @@ impl NodalSide {
         &mut columns[..self.rows as usize]
     }
 
-    /// What velocities change by with the k-th component of the friction of this side.
+    /// Range of the column with the velocity changes per unit of the k-th friction component of this side.
     fn column(&self, k: usize) -> std::ops::Range<usize> {
         let start = (1 + 3 * self.place as usize + k) * self.rows as usize;
         start..start + self.rows as usize

@@ -30,6 +30,11 @@ impl PatchSummary {
     pub(super) fn is_slight(&self) -> bool {
         2.0 * self.most_n <= self.tolerance_n
     }
+
+    /// Whether its friction is searched for together with that of the others.
+    pub(super) fn matters(&self) -> bool {
+        self.has_friction && !self.is_slight()
+    }
 }
 
 /// How far a step moved the nodes, and what touched meanwhile.

@@ -238,7 +238,7 @@ pub(super) fn find_tolerances(
     }
 }
 
-/// What a search for friction came to.
+/// Result of a search for friction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Search {
     /// Sweeps over all patches.

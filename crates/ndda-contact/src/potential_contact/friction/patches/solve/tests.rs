@@ -83,7 +83,7 @@ fn solved(tolerance: f64) -> Solved {
     find_tolerances(&mut summaries, &start, tolerance, &mut Vec::new());
     let mut coupled: Vec<_> = (0..)
         .zip(found.iter().zip(&summaries))
-        .filter(|(_, (_, summary))| !summary.is_slight())
+        .filter(|(_, (_, summary))| summary.matters())
         .filter_map(|(k, (patch, summary))| {
             CoupledPatch::new((k, patch, summary.tolerance_n), (&start, &nodal), [None; 2], DT_S)
         })
