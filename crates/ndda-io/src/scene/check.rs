@@ -34,6 +34,8 @@ const MOST_STEPS: f64 = 1e9;
 const MOST_NODES: f64 = 5e7;
 /// Numbers beyond it, or below its inverse where they must be positive, have products that overflow.
 const HUGE: f64 = 1e50;
+/// Gravity beyond it is that of a centrifuge, or in another unit [m/s²].
+const MUCH_GRAVITY: f64 = 50.0;
 /// Speed of light [m/s].
 const LIGHT_M_S: f64 = 299_792_458.0;
 
@@ -41,7 +43,7 @@ const LIGHT_M_S: f64 = 299_792_458.0;
 pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> {
     let mut check = Check { scene, found: Vec::new(), joints: rock::joint_names(scene, folder) };
     check.time();
-    check.numbers("gravity_m_s2", &scene.gravity_m_s2);
+    check.gravity();
     check.materials();
     check.blocks(folder);
     check.rock(folder);
@@ -97,6 +99,17 @@ impl Check<'_> {
     ) {
         self.report(code, path, message, help);
         self.found.last_mut().into_iter().for_each(|d| d.severity = Severity::Warning);
+    }
+
+    fn gravity(&mut self) {
+        let gravity = self.scene.gravity_m_s2;
+        self.numbers("gravity_m_s2", &gravity);
+        let size = gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        if (MUCH_GRAVITY..HUGE).contains(&size) {
+            let message = format!("{size} m/s² is {:.0} times the gravity of the Earth", size / 9.81);
+            let help = "the unit is m/s²: (0, 0, -9.81); leave it so for a model in a centrifuge";
+            self.warn(Code::UnitSlip, "gravity_m_s2", message, help);
+        }
     }
 
     /// A number that must be positive and finite.

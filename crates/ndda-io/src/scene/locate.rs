@@ -3,6 +3,7 @@
 //! RON's parser forgets positions; this scanner keeps only them. It reads the shape of a text (structs, lists, maps,
 //! words) and nothing of its meaning, so that any text gives a tree and none gives a panic.
 
+mod around;
 mod keys;
 
 use std::ops::Range;
@@ -89,15 +90,6 @@ impl Node {
         self.children.iter().find(named)
     }
 
-    /// The innermost bracketed value around a byte.
-    pub(crate) fn innermost(&self, offset: usize) -> Option<&Self> {
-        if self.opening.is_none() || !(self.span.start <= offset && offset <= self.span.end) {
-            return None;
-        }
-        let inside = |c: &&Self| c.span.start < offset && offset < c.span.end;
-        self.children.iter().find(inside).and_then(|c| c.innermost(offset)).or(Some(self))
-    }
-
     /// The word before the bracket that opens it, as `Box` in `Box(…)`; empty for anything else.
     pub(crate) fn word<'a>(&self, text: &'a str) -> &'a str {
         let Some('(') = self.opening else { return "" };
@@ -122,13 +114,17 @@ impl Node {
         own.or(inside)
     }
 
+    /// The byte where it begins, with its name.
+    fn begun(&self) -> usize {
+        self.key.as_ref().map_or(self.span.start, |_| self.key_span.start)
+    }
+
     /// Path of the innermost value around or before a byte.
     pub(crate) fn path_at(&self, offset: usize) -> String {
         let mut path = String::new();
         let mut node = self;
-        let begun = |node: &Self| node.key.as_ref().map_or(node.span.start, |_| node.key_span.start);
         while let Some((i, child)) =
-            node.children.iter().enumerate().find(|(_, c)| begun(c) <= offset && offset <= c.span.end)
+            node.children.iter().enumerate().find(|(_, c)| c.begun() <= offset && offset <= c.span.end)
         {
             match &child.key {
                 Some(key) if path.is_empty() => path.push_str(key),

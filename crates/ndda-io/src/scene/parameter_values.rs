@@ -23,6 +23,17 @@ fn unit_behind(node: &Node, text: &str) -> Option<Diagnostic> {
     })
 }
 
+/// That a comma is missing between two parameters.
+fn comma_missing(node: &Node, text: &str) -> Option<Diagnostic> {
+    let missing = |pair: &&[Node]| !text[pair[0].span.end..pair[1].key_span.start].contains(',');
+    let pair = node.children.windows(2).find(missing)?;
+    let name = pair[1].key.as_deref().unwrap_or_default();
+    let at = pair[1].key_span.clone();
+    let refused =
+        Diagnostic::error(Code::Syntax, format!("{FIELD}.{name}"), "expected a comma before this", Some(at));
+    Some(refused.with_help("write a comma after each parameter"))
+}
+
 /// Reads the parameters of a scene; each may be computed from those before it.
 ///
 /// # Errors
@@ -44,6 +55,9 @@ pub(crate) fn read(text: &str, tree: &Node) -> Result<Parameters, Vec<Diagnostic
             Some(node.span.clone()),
         );
         return Err(vec![refused.with_help("write parameters: (height_m: 10, dip_deg: 35)")]);
+    }
+    if let Some(refused) = comma_missing(node, text) {
+        return Err(vec![refused]);
     }
     // What is computed from a value that is wrong is not wrong itself.
     let mut wrong: Vec<String> = Vec::new();
@@ -135,6 +149,13 @@ mod tests {
         let refused = load_text("s.ron", &text, &[], None).unwrap_err();
         let paths: Vec<_> = refused.diagnostics.iter().map(|found| found.path.as_str()).collect();
         assert_eq!(paths, ["parameters.a_deg"]);
+    }
+
+    #[test]
+    fn a_comma_that_is_missing_between_parameters_is_said() {
+        let refused = load_text("s.ron", &scene("parameters: (a_m: 1 b_m: 2),", "0"), &[], None).unwrap_err();
+        let found = &refused.diagnostics[0];
+        assert_eq!((found.path.as_str(), found.code), ("parameters.b_m", super::Code::Syntax));
     }
 
     #[test]

@@ -17,6 +17,8 @@ use crate::scene::parameters::Parameters;
 use crate::scene::units::{self, Resolved};
 use words::explain;
 
+/// Mistakes of fields and types that are told at once.
+const MOST_MISTAKES: usize = 20;
 /// Name of standard input in messages.
 const STANDARD_INPUT: &str = "standard input";
 
@@ -70,32 +72,90 @@ pub(crate) fn refuse_blank(text: &str) -> Result<(), (&str, Diagnostic)> {
 }
 
 /// Text of a scene, or of a file that it includes, to types: values in the units of their fields, expressions as numbers.
-/// Numbers that are none are found all at once, grammar and types one at a time.
+/// Numbers that are none, fields that do not exist and values of another type are found all at once, mistakes of grammar one at a time.
 pub(crate) fn parse_with<T: DeserializeOwned>(
     text: &str,
     tree: &Node,
     parameters: &Parameters,
 ) -> Result<T, Vec<Diagnostic>> {
     refuse_not_finite(tree, text)?;
-    types_of(&units::resolve(text, tree, parameters), text, tree)
+    types_of(units::resolve(text, tree, parameters), text, tree)
 }
 
 /// Text of a study to types; the values that it sets stay as they are written, and are read with the scene.
 pub(crate) fn parse<T: DeserializeOwned>(text: &str, tree: &Node) -> Result<T, Vec<Diagnostic>> {
     refuse_not_finite(tree, text)?;
-    types_of(&Resolved::unchanged(text), text, tree)
+    types_of(Resolved::unchanged(text), text, tree)
 }
 
-fn types_of<T: DeserializeOwned>(plain: &Resolved, text: &str, tree: &Node) -> Result<T, Vec<Diagnostic>> {
+/// A value of a text, or else its mistakes: fields that do not exist or are missing, and values of another type. Each is taken out of the
+/// text so that the next one can be found.
+fn types_of<T: DeserializeOwned>(mut plain: Resolved, text: &str, tree: &Node) -> Result<T, Vec<Diagnostic>> {
     let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
-    match options.from_str(&plain.text) {
-        Ok(value) if plain.errors.is_empty() => Ok(value),
-        // In a field that does not exist, no unit is right.
-        Err(e) if plain.errors.is_empty() || matches!(e.code, RonError::NoSuchStructField { .. }) => {
-            Err(vec![explain(&e, plain, text, tree)])
+    let (mut found, mut taken_out): (Vec<Diagnostic>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
+    while found.len() < MOST_MISTAKES {
+        let error = match options.from_str(&plain.text) {
+            Ok(value) if plain.errors.is_empty() && found.is_empty() => return Ok(value),
+            Ok(_) => break,
+            Err(error) => error,
+        };
+        let is_missing = matches!(error.code, RonError::MissingStructField { .. });
+        let is_unknown = matches!(error.code, RonError::NoSuchStructField { .. });
+        // Values whose units are wrong are of no type yet.
+        if !(is_missing || is_unknown || plain.errors.is_empty()) {
+            break;
         }
-        _ => Err(plain.errors.clone()),
+        let shape = locate::tree(&plain.text);
+        let stops = words::offset(&plain.text, &error.span.start);
+        let at = stops + (plain.text[stops..].len() - plain.text[stops..].trim_start().len());
+        // RON points at the closing bracket of a struct that lacks a field.
+        let whole = is_missing.then(|| shape.closed_at(at)).flatten();
+        let whole = whole.map_or(at..at, |node| node.span.clone());
+        // What is missing may be there with a mistake that is told.
+        if !taken_out.iter().any(|earlier| whole.contains(&earlier.start)) {
+            found.push(explain(&error, &plain, text, tree));
+        }
+        let Some(entry) = shape.entry_around(whole.start).filter(|_| is_of_types(&error.code)) else { break };
+        take_out(&mut plain.text, entry.clone());
+        taken_out.push(entry);
     }
+    // In a field that does not exist, no unit is right.
+    let unknown = found.iter().filter(|earlier| earlier.code == Code::UnknownField);
+    let unknown = unknown.filter_map(|earlier| tree.entry_around(earlier.span.as_ref()?.start));
+    let unknown: Vec<Range<usize>> = unknown.collect();
+    let stands = |mistake: &&Diagnostic| {
+        let at = mistake.span.as_ref().map(|span| span.start);
+        !unknown.iter().any(|field| at.is_some_and(|at| field.contains(&at)))
+    };
+    found.extend(plain.errors.iter().filter(stands).cloned());
+    sort(&mut found);
+    Err(found)
+}
+
+/// Whether a mistake is one of a field or a value, after which the rest of the text can still be read.
+fn is_of_types(error: &RonError) -> bool {
+    matches!(
+        error,
+        RonError::NoSuchStructField { .. }
+            | RonError::MissingStructField { .. }
+            | RonError::NoSuchEnumVariant { .. }
+            | RonError::InvalidValueForType { .. }
+            | RonError::ExpectedFloat
+            | RonError::ExpectedInteger
+            | RonError::IntegerOutOfBounds
+            | RonError::ExpectedString
+            | RonError::ExpectedBoolean
+    )
+}
+
+/// Puts blanks in the place of an entry and its comma, so that all others stay where they are.
+fn take_out(plain: &mut String, entry: Range<usize>) {
+    let rest = &plain[entry.end..];
+    let comma = rest.len() - rest.trim_start().len();
+    let end = if rest[comma..].starts_with(',') { entry.end + comma + 1 } else { entry.end };
+    let blank = |c: char| if c == '\n' { "\n".into() } else { " ".repeat(c.len_utf8()) };
+    let blanks: String = plain[entry.start..end].chars().map(blank).collect();
+    plain.replace_range(entry.start..end, &blanks);
 }
 
 /// Gives each message its place, and puts them in the order of the text.
@@ -139,4 +199,37 @@ fn refuse_not_finite(tree: &Node, text: &str) -> Result<(), Vec<Diagnostic>> {
         }
     });
     if found.is_empty() { Ok(()) } else { Err(found) }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::read::load_text;
+
+    /// Paths and codes of what is wrong with a scene.
+    fn mistakes(time: &str, material: &str, block: &str) -> Vec<String> {
+        let text = format!(
+            "(title: \"t\", time: ({time}),
+              materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 2e10, {material})],
+              blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), {block}))])"
+        );
+        let refused = load_text("s.ron", &text, &[], None).unwrap_err();
+        refused.diagnostics.iter().map(|found| format!("{} {}", found.path, found.code)).collect()
+    }
+
+    #[test]
+    fn mistakes_of_fields_and_values_are_told_at_once_and_what_follows_from_them_is_not() {
+        assert_eq!(
+            mistakes("stp_s: 1e-3, end: 1", "poison: 0.2", "cells: (1, 1, 1), foo: [1, (2)]"),
+            [
+                "time.stp_s unknown-field",
+                "time.end unknown-field",
+                "materials[0].poison unknown-field",
+                "blocks[0].shape.foo unknown-field"
+            ]
+        );
+        assert_eq!(
+            mistakes("step_s: 1e-3, end_s: 1", "poisson: \"0.2\"", ""),
+            ["materials[0].poisson wrong-type", "blocks[0].shape missing-field"]
+        );
+    }
 }

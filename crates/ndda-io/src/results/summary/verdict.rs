@@ -15,6 +15,13 @@ pub struct Verdict {
     pub verdict: Judgement,
 }
 
+impl Verdict {
+    /// Whether something was checked and passed; a number that is only shown was not.
+    pub fn is_passed(&self) -> bool {
+        self.verdict == Judgement::Pass && (self.limit.is_some() || self.value.is_none())
+    }
+}
+
 /// How a number compares with its limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Judgement {

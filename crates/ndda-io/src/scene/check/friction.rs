@@ -1,11 +1,14 @@
 //! Checks of friction.
 
 use super::Check;
+use crate::scene::code::Code;
 use crate::scene::{Contact, Dilation, FractureEnergy, Friction, Memory, Potential, Residual, Roughness};
 
 /// Typical friction angles, as advice.
 const TYPICAL: &str =
     "typical are 25° to 40° for joints in rock, 10° to 20° with clay in them; μ = 0.6 is 31°";
+/// Angles below it [°] are probably coefficients: no joint has one so small, and coefficients lie below it.
+const LEAST_LIKELY_DEG: f64 = 2.0;
 /// Largest roughness coefficient.
 const MOST_JRC: f64 = 20.0;
 
@@ -16,6 +19,11 @@ impl Check<'_> {
         if !(0.0..90.0).contains(&angle) {
             let message = format!("{angle}°: a friction angle must be at least 0 and below 90°");
             self.error(field("friction_deg"), message, TYPICAL);
+        } else if angle > 0.0 && angle < LEAST_LIKELY_DEG {
+            let degrees = format!("{:.1}", angle.atan().to_degrees());
+            let message = format!("{angle}° is less than any joint has");
+            let help = format!("if {angle} is meant as the coefficient tan φ, write {degrees}");
+            self.warn(Code::UnitSlip, field("friction_deg"), message, help);
         }
         if let Some(penalty) = friction.shear_penalty_pa_m {
             self.positive(field("shear_penalty_pa_m"), penalty, "Pa/m");

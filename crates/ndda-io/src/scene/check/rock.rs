@@ -35,6 +35,10 @@ pub(super) fn joint_names(scene: &Scene, folder: Option<&Path>) -> Option<Vec<St
     Some(names)
 }
 
+fn twelve_figures(number: f64) -> f64 {
+    format!("{number:.11e}").parse().unwrap_or(number)
+}
+
 impl Check<'_> {
     /// The name of a joint, or a pattern of such names.
     pub(super) fn known_joint(&mut self, path: String, name: &str) {
@@ -163,6 +167,8 @@ impl Check<'_> {
     fn extent(&mut self, path: &str, min_m: &[f64; 3], max_m: &[f64; 3]) {
         for (i, (min, max)) in min_m.iter().zip(max_m).enumerate() {
             if min >= max {
+                // Computed bounds have digits that nobody wrote.
+                let (min, max) = (twelve_figures(*min), twelve_figures(*max));
                 let message = format!("{max} m: must be above min_m[{i}], which is {min} m");
                 self.error(
                     format!("{path}.max_m[{i}]"),

@@ -42,8 +42,7 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
         }
         RonError::MissingStructField { field, outer } => {
             // RON points at the closing bracket; the struct is what lacks the field.
-            let inside = start.saturating_sub(1);
-            let span = tree.innermost(inside).map_or(span.clone(), |node| node.span.clone());
+            let span = tree.closed_at(start).map_or(span.clone(), |node| node.span.clone());
             let path = tree.path_at(span.start);
             let message = format!("the field `{field}`{} is missing", of(outer));
             Diagnostic::error(Code::MissingField, path, message, Some(span))
@@ -287,7 +286,7 @@ fn lowercase_first(text: &str) -> String {
 }
 
 /// Byte of a line and column, both from 1 and in characters.
-fn offset(text: &str, position: &Position) -> usize {
+pub(super) fn offset(text: &str, position: &Position) -> usize {
     let line_start =
         text.split_inclusive('\n').take(position.line.saturating_sub(1)).map(str::len).sum::<usize>();
     let line = &text[line_start.min(text.len())..];

@@ -1,0 +1,35 @@
+//! What is around a byte of a text.
+
+use std::ops::Range;
+
+use super::Node;
+
+impl Node {
+    /// The innermost bracketed value around a byte.
+    pub(crate) fn innermost(&self, offset: usize) -> Option<&Self> {
+        if self.opening.is_none() || !(self.span.start <= offset && offset <= self.span.end) {
+            return None;
+        }
+        let inside = |c: &&Self| c.span.start < offset && offset < c.span.end;
+        self.children.iter().find(inside).and_then(|c| c.innermost(offset)).or(Some(self))
+    }
+
+    /// Bytes of the innermost field or item of a list around a byte, the name of the field included.
+    pub(crate) fn entry_around(&self, offset: usize) -> Option<Range<usize>> {
+        let child = self.children.iter().find(|c| c.begun() <= offset && offset < c.span.end)?;
+        let is_entry = child.key.is_some() || self.opening == Some('[');
+        child.entry_around(offset).or(is_entry.then(|| child.begun()..child.span.end))
+    }
+
+    /// The value whose closing bracket stands at a byte, or else the innermost one around the byte before.
+    pub(crate) fn closed_at(&self, offset: usize) -> Option<&Self> {
+        let mut node = self;
+        while node.opening.is_none() || node.span.end != offset + 1 {
+            let Some(child) = node.children.iter().find(|c| c.span.contains(&offset)) else {
+                return self.innermost(offset.saturating_sub(1));
+            };
+            node = child;
+        }
+        Some(node)
+    }
+}
