@@ -9,6 +9,7 @@ mod failing;
 mod film;
 mod free_blocks;
 mod mechanism;
+mod remarks;
 mod report;
 mod rest;
 mod search;

@@ -4,6 +4,8 @@
 //! directions into which none of them keeps it from moving, the one that is nearest to that of gravity. It is gravity itself, its
 //! projection on one face, or the line of two.
 
+use std::collections::BTreeSet;
+
 use ndda_io::scene::{Axis, Domain, Rock, Scene, matches};
 use ndda_mesh::geometry::{Aabb, triangle_area_vector};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
@@ -13,6 +15,8 @@ use crate::build::overlaps::is_in_solid;
 
 /// Cosine between a direction of motion and the normal of the rim beyond which a block leaves through it, and does not slide along it.
 const OUT: f64 = 0.2;
+/// Cosine below which a direction of motion runs along a face.
+const ALONG: f64 = 0.02;
 /// Cosine between a direction of motion and gravity below which friction holds nearly any rock: its way dips less than 14.5°.
 const DOWN: f64 = 0.25;
 /// A face of a box whose normal makes less than this cosine's angle with the vertical, upwards, is the surface of the ground.
@@ -66,6 +70,35 @@ fn words(blocks: &BlockSet, out: &[(BlockId, &str)]) -> Option<String> {
     Some(format!(
         "{noun} {named} {verb} the side `{side}` of the model and {is} not held there, and may slide or fall out, though in nature there is rock beyond"
     ))
+}
+
+/// Faces of the rim that cut off blocks which move, each in a direction: the rock that they belong to goes on beyond. A slice between two
+/// parallel faces, along which it moves, stands for all of them and is left out.
+pub fn cut_off(scene: &Scene, blocks: &BlockSet, moving: &[(BlockId, Vec3)]) -> BTreeSet<&'static str> {
+    let gravity = Vec3::from(scene.gravity_m_s2);
+    let down = if gravity == Vec3::zeros() { -Vec3::z() } else { gravity.normalize() };
+    let mut found = BTreeSet::new();
+    for rock in &scene.rock {
+        let Some(rim) = rim_of(rock, &down) else { continue };
+        for (block, way) in moving.iter().filter(|(block, _)| rock.makes(&blocks.names[block.index()])) {
+            let on_rim = |triangle: usize| {
+                let corners = blocks.triangles[triangle].map(|n| blocks.rest_position[n.index()]);
+                Some((rim_at(blocks, &rim, triangle)?, triangle_area_vector(&corners).normalize()))
+            };
+            let cut: Vec<(&str, Vec3)> = blocks.triangles_of(*block).filter_map(on_rim).collect();
+            let is_slice = |normal: &Vec3| {
+                way.dot(normal).abs() < ALONG && cut.iter().any(|(_, other)| (other + normal).norm() < SAME)
+            };
+            found.extend(cut.iter().filter(|(_, normal)| !is_slice(normal)).map(|(name, _)| *name));
+        }
+    }
+    found
+}
+
+/// Name of the face of the rim that a triangle lies in.
+fn rim_at(blocks: &BlockSet, rim: &[&'static str], triangle: usize) -> Option<&'static str> {
+    let name = &blocks.surface_names[blocks.triangle_surface[triangle]? as usize];
+    rim.iter().find(|known| *known == name).copied()
 }
 
 /// Whether supports, quiet boundaries or ties hold a block.
@@ -148,10 +181,7 @@ impl<'a> Surroundings<'a> {
     /// The face of the rim through which a block may leave.
     fn leaves(&self, block: BlockId, rim: &[&'static str], down: &Vec3) -> Option<&'static str> {
         let blocks = self.blocks;
-        let rim_at = |triangle: usize| {
-            let name = &blocks.surface_names[blocks.triangle_surface[triangle]? as usize];
-            rim.iter().find(|known| *known == name).copied()
-        };
+        let rim_at = |triangle: usize| rim_at(blocks, rim, triangle);
         let triangles = blocks.triangles_of(block);
         if !triangles.clone().any(|triangle| rim_at(triangle).is_some()) {
             return None;
@@ -242,6 +272,32 @@ mod tests {
             .into_iter()
             .map(|(_, message)| message)
             .collect()
+    }
+
+    #[test]
+    fn a_side_cuts_off_what_moves_unless_it_is_a_slice() {
+        let text = "(title: \"slice\", time: (step_s: 1e-4, end_s: 1e-3), gravity_m_s2: (0, 0, -9.81),
+            materials: [(name: \"rock\", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+            rock: [(name: \"slope\", material: \"rock\", body: Rigid,
+                domain: Box(min_m: (0, 0, 0), max_m: (4, 1, 4)),
+                joints: [Plane(name: \"J\", dip_deg: 45, dip_direction_deg: 90, point_m: (2, 0, 2))],
+                removed: [Inside(min_m: (3, 0, 3), max_m: (3.1, 1, 3.1))],
+                fixed: [Inside(min_m: (0, 0, 0), max_m: (2, 1, 2))])],
+            contact: Potential(penalty_pa: 1e8, potential: Smooth(), friction: (friction_deg: 30)))";
+        let model = Model::from_text(text).unwrap();
+        let blocks = model.simulation.blocks();
+        let upper = blocks.ids().max_by(|a, b| {
+            let x = |block: &BlockId| {
+                blocks.rest_position[blocks.nodes_of(*block)].iter().map(|x| x.z).sum::<f64>()
+            };
+            x(a).total_cmp(&x(b))
+        });
+        let sides = |way: Vec3| {
+            let found = cut_off(&model.loaded.scene, blocks, &[(upper.unwrap(), way.normalize())]);
+            found.into_iter().collect::<Vec<_>>().join(", ")
+        };
+        assert_eq!(sides(Vec3::new(1.0, 0.0, -1.0)), "x_max");
+        assert_eq!(sides(Vec3::new(1.0, 0.5, -1.0)), "x_max, y_max, y_min");
     }
 
     #[test]

@@ -194,14 +194,16 @@ fn contacts_at_start(simulation: &mut Simulation) -> Option<(f64, String)> {
 }
 
 /// Steps for the contact of each material that moves, at the scene's penalty, a tenth of it and ten times as much; none
-/// without contact, or where contact is stable at any step or at none.
+/// without contact, of bonded pieces, or where contact is stable at any step or at none.
 pub fn advise_materials(scene: &Scene, blocks: &BlockSet) -> Vec<AdvisedStep> {
     let predicted = matches!(scene.time.contact_at, ContactAt::Predicted);
     let bound = build::integrator(&scene.time.integrator).contact_bound().filter(|_| predicted);
     let (Some(bound), Some(Contact::Potential { penalty_pa, .. })) = (bound, &scene.contact) else {
         return Vec::new();
     };
-    if is_unset(penalty_pa) {
+    // The step of bonded pieces is that of their bonds, which only all of them together show.
+    let is_bonded = scene.rock.iter().any(|rock| rock.into.is_some());
+    if is_unset(penalty_pa) || is_bonded {
         return Vec::new();
     }
     let moving = build::moving(scene, blocks);

@@ -8,6 +8,8 @@ use ndda_solver::Simulation;
 use serde::{Deserialize, Serialize};
 
 use super::free_blocks::{free, gone_m};
+use crate::Model;
+use crate::forecast::rim;
 use crate::run::motion;
 
 /// A block moves if it has gone farther than this part of the farthest.
@@ -97,10 +99,14 @@ pub struct Mechanism {
     pub kind: Kind,
     /// In words.
     pub words: String,
+    /// Sides of the model that cut off blocks which move, beyond which their rock goes on in nature.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub cut_off_by: Vec<String>,
 }
 
 /// The blocks that move, the farthest first, and what they do together; `start` is where nodes were [m].
-pub fn of(simulation: &Simulation, start: &[Vec3]) -> (Option<Mechanism>, Vec<MovingBlock>) {
+pub fn of(model: &Model, start: &[Vec3]) -> (Option<Mechanism>, Vec<MovingBlock>) {
+    let simulation = &model.simulation;
     let mut gone = gone_m(simulation, start);
     gone.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
     let Some(farthest_m) = gone.first().map(|first| first.1).filter(|gone| *gone > 0.0) else {
@@ -112,7 +118,11 @@ pub fn of(simulation: &Simulation, start: &[Vec3]) -> (Option<Mechanism>, Vec<Mo
         |&(block, gone_m): &(BlockId, f64)| moving_block(simulation, start, &moving, block, gone_m);
     let blocks: Vec<MovingBlock> = gone.iter().map(describe).collect();
     let words = words(&blocks);
-    (Some(Mechanism { kind: blocks[0].kind, words }), blocks)
+    let ways = moving.iter().zip(&blocks).map(|(block, moving)| (*block, Vec3::from(moving.direction)));
+    let ways: Vec<(BlockId, Vec3)> = ways.collect();
+    let sides = rim::cut_off(&model.loaded.scene, simulation.blocks(), &ways);
+    let cut_off_by = sides.into_iter().map(String::from).collect();
+    (Some(Mechanism { kind: blocks[0].kind, words, cut_off_by }), blocks)
 }
 
 fn moving_block(

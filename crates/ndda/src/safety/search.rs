@@ -16,7 +16,7 @@ use super::rest::{choices, settled};
 use super::trial::{Course, Start, State, Trial};
 use super::{
     BlockVelocity, Bracket, By, Mechanism, MovingBlock, Plan, SCHEMA, Safety, SafetyError, Watch, changes,
-    film, mechanism, write,
+    film, mechanism, remarks, write,
 };
 use crate::Model;
 
@@ -47,8 +47,10 @@ pub struct Search<'a> {
     /// How many times its strength the scene came to rest with.
     strength: f64,
     begun: Instant,
-    /// Trials of an earlier call that was interrupted.
+    /// Trials of an earlier call, which may have been interrupted.
     earlier: Vec<Trial>,
+    /// How blocks fail at a factor, where an earlier call came so far.
+    known_mechanism: Option<(f64, Mechanism, Vec<MovingBlock>)>,
     /// The answer so far.
     answer: Mutex<Safety>,
 }
@@ -103,8 +105,10 @@ impl<'a> Search<'a> {
                 "on the way to rest block `{block}` goes {gone_m:.2e} m, which more strength does not prevent: trials begin where it then is"
             ));
         }
-        let mut known = Vec::new();
-        if let Some(earlier) = watch.out.and_then(|out| earlier(out, &answer)) {
+        let (mut known, mut known_mechanism) = (Vec::new(), None);
+        if let Some(earlier) = watch.out.and_then(|out| earlier(out, &answer, watch)) {
+            let upper = earlier.factor_of_safety.upper;
+            known_mechanism = upper.zip(earlier.mechanism).map(|(at, how)| (at, how, earlier.moving_blocks));
             (known, answer.wall_s) = (earlier.trials, earlier.wall_s);
         }
         let folder = folder.to_path_buf();
@@ -118,6 +122,7 @@ impl<'a> Search<'a> {
             strength,
             begun,
             earlier: known,
+            known_mechanism,
             answer: Mutex::new(answer),
         })
     }
@@ -130,7 +135,7 @@ impl<'a> Search<'a> {
         let may_push = self.may_push();
         let mut answer = self.answer.into_inner().expect("no trial panics");
         (answer.mechanism, answer.moving_blocks) = (mechanism, moving);
-        answer.remarks.extend(remarks(&answer));
+        answer.remarks.extend(remarks::of(&answer));
         // Springs that slipped on the way to rest keep their friction at its limit, and nothing pushes them.
         let upper = answer.factor_of_safety.upper;
         let fails_at_once = upper.is_some_and(|upper| upper * self.strength <= 1.0 + self.plan.error);
@@ -276,12 +281,17 @@ impl<'a> Search<'a> {
     fn mechanism(&self, from: Snapshot) -> Result<(Option<Mechanism>, Vec<MovingBlock>), SafetyError> {
         let upper = self.answer.lock().expect("no trial panics").factor_of_safety.upper;
         let Some(factor) = upper else { return Ok((None, Vec::new())) };
+        if let Some((at, how, moving)) = &self.known_mechanism
+            && *at == factor
+        {
+            return Ok((Some(how.clone()), moving.clone()));
+        }
         let mut model = self.model(factor, &from)?;
         model.simulation.watch_contacts(true);
         let failing = self.failing();
         let trial =
             self.course(&failing).run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
-        let found = mechanism::of(&model.simulation, &self.start.position);
+        let found = mechanism::of(&model, &self.start.position);
         if let Some(out) = self.watch.out {
             film::record(self.model(factor, &from)?, &trial, out, self.watch.stop)?;
         }
@@ -289,12 +299,19 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Trials of an earlier call of the same question.
-fn earlier(out: &Path, asked: &Safety) -> Option<Safety> {
+/// The answer of an earlier call of the same question; says so where that of another one is replaced.
+fn earlier(out: &Path, asked: &Safety, watch: &Watch) -> Option<Safety> {
     let text = std::fs::read_to_string(super::file(out)).ok()?;
     let found: Safety = serde_json::from_str(&text).ok()?;
     let same = (&found.schema, &found.version, &found.scene_crc32, &found.by, found.error)
         == (&asked.schema, &asked.version, &asked.scene_crc32, &asked.by, asked.error);
+    if !same {
+        let file = super::file(out);
+        (watch.tell)(&format!(
+            "{} has the answer for other values, another --error or another version: it is replaced",
+            file.display()
+        ));
+    }
     same.then_some(found)
 }
 
@@ -341,35 +358,4 @@ fn inside(answer: &Safety, (lower, upper): (f64, f64), error: f64) -> Vec<f64> {
             .map(|(a, b)| between(a, b, 0.5))
             .collect(),
     }
-}
-
-/// Remarks to read before using the answer.
-fn remarks(answer: &Safety) -> Vec<String> {
-    let mut remarks = Vec::new();
-    let Bracket { lower, upper } = answer.factor_of_safety;
-    if let (Some(lower), Some(upper)) = (lower, upper) {
-        let width = upper / lower - 1.0;
-        if width > answer.error * (1.0 + 1e-9) {
-            remarks.push(format!(
-                "the bracket is {:.1} % wide, {:.1} % was asked for: between its ends blocks neither rest nor accelerate",
-                100.0 * width,
-                100.0 * answer.error
-            ));
-        }
-        if answer.trials.iter().any(|trial| trial.state == State::Stands && trial.factor > upper) {
-            remarks.push(
-                "blocks stand at some larger factors, too: the smallest factor at which they fail counts"
-                    .into(),
-            );
-        }
-    }
-    if let (None, Some(upper)) = (lower, upper) {
-        remarks.push(format!("blocks fail at every factor from {upper:.3} on that was tried"));
-    }
-    if let (Some(lower), None) = (lower, upper) {
-        remarks.push(format!(
-            "blocks stand at every factor up to {lower:.3}: what is changed does not make them fail"
-        ));
-    }
-    remarks
 }

@@ -244,7 +244,8 @@ impl Course<'_> {
             watched.look(simulation);
             if let Some((block, gone_m)) = watched.accelerating(&far_m) {
                 let name = &simulation.blocks().names[block.index()];
-                let reason = format!("block `{name}` has gone {gone_m:.2e} m and accelerates");
+                let reason =
+                    format!("block `{name}` accelerates; it had gone {gone_m:.2e} m when that was clear");
                 return Some(Ok((State::Fails, reason)));
             }
             resting = if fastest_m_s(simulation) < slow_m_s { resting + 1 } else { 0 };
@@ -333,8 +334,9 @@ impl Course<'_> {
         let name = watched.name(simulation);
         let has_rested = watched.rested(RESTED, RESTED_WITHIN * self.start.elastic_m);
         if has_rested && watched.beyond(&self.elsewhere_m(simulation)).is_none() {
-            let reason =
-                format!("all blocks rest after {time_s:.3} s; none has gone farther than {gone_m:.2e} m");
+            let reason = format!(
+                "all blocks came to rest within {time_s:.3} s; `{name}` went farthest, {gone_m:.2e} m"
+            );
             (State::Stands, reason)
         } else if watched.beyond(far_m).is_some() && !watched.slowing(far_m) {
             let reason = format!("block `{name}` has gone {gone_m:.2e} m, and neither rests nor accelerates");
@@ -343,7 +345,8 @@ impl Course<'_> {
             let reason = format!("blocks move at {speed_m_s:.2e} m/s after {time_s:.3} s, which is not rest");
             (State::Undecided, reason)
         } else {
-            let reason = format!("no block has gone farther than {gone_m:.2e} m after {time_s:.3} s");
+            let reason =
+                format!("no block went far within {time_s:.3} s; `{name}` went farthest, {gone_m:.2e} m");
             (State::Stands, reason)
         }
     }
