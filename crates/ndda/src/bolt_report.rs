@@ -31,6 +31,13 @@ pub struct BoltReport {
     pub outside_m: f64,
 }
 
+impl BoltReport {
+    /// Whether a joint or a gap lies along it.
+    fn crosses_a_joint(&self) -> bool {
+        self.blocks.len() > 1 || self.outside_m > SHORT * self.bonded_m
+    }
+}
+
 /// All bolts of a scene.
 #[derive(Clone, Debug, Serialize)]
 #[serde(transparent)]
@@ -55,9 +62,8 @@ impl BoltReports {
     /// Bolts that hold nothing together, and those that leave the rock, each with what to change. Of rows, some bolts may lie within one block, not all:
     /// `entry` gives the same number for bolts of the same rows.
     pub fn doubts(&self, entry: impl Fn(&str) -> usize) -> Vec<String> {
-        let crosses = |bolt: &BoltReport| bolt.blocks.len() > 1 || bolt.outside_m > SHORT * bolt.bonded_m;
         let crossing: BTreeSet<usize> =
-            self.0.iter().filter(|bolt| crosses(bolt)).map(|bolt| entry(&bolt.name)).collect();
+            self.0.iter().filter(|bolt| bolt.crosses_a_joint()).map(|bolt| entry(&bolt.name)).collect();
         let alone = self.0.iter().filter(|bolt| !crossing.contains(&entry(&bolt.name)));
         let outside = self.0.iter().filter(|bolt| bolt.outside_m > SHORT * bolt.bonded_m);
         let (alone, outside): (Vec<&BoltReport>, Vec<&BoltReport>) = (alone.collect(), outside.collect());
@@ -102,6 +108,12 @@ impl fmt::Display for BoltReports {
         match least == most {
             true => write!(f, "\n{bolts}, {each}bonded over {most} m")?,
             false => write!(f, "\n{bolts}, each bonded over {least} to {most} m")?,
+        }
+        let crossing = self.0.iter().filter(|bolt| bolt.crosses_a_joint()).count();
+        match self.0.len() - crossing {
+            0 => {}
+            _ if crossing == 0 => f.write_str(", within one block")?,
+            alone => write!(f, "; {alone} of them within one block, where they cross no joint")?,
         }
         for bolt in self.0.iter().take(LISTED) {
             write!(f, "\n  {}: {:.3} m in {}", bolt.name, bolt.bonded_m, bolt.blocks.join(", "))?;

@@ -8,7 +8,7 @@ pub mod held;
 mod idle;
 pub mod lumped;
 pub mod memory;
-mod rim;
+pub(crate) mod rim;
 pub mod rounding;
 pub mod size;
 pub mod step;

@@ -103,7 +103,7 @@ fn places(bolt: &Bolt, blocks: &BlockSet, absent: &[BlockId]) -> Result<Vec<Plac
             let (along, up) = (vec3(*along_m), vec3(*up_m));
             let direction = vec3(*direction).normalize();
             let reach_m = Aabb::around(&blocks.rest_position).diagonal() + along.norm() + up.norm();
-            let mut found = Vec::new();
+            let (mut found, mut missing) = (Vec::new(), Vec::new());
             for (row, rise) in spread(up.norm(), spacing_m.1).into_iter().enumerate() {
                 for (column, offset) in columns(along.norm(), spacing_m.0, *staggered && row % 2 == 1) {
                     let along_axis = along.try_normalize(0.0).unwrap_or_default();
@@ -113,18 +113,27 @@ fn places(bolt: &Bolt, blocks: &BlockSet, absent: &[BlockId]) -> Result<Vec<Plac
                     let is_there = |block: BlockId| absent.binary_search(&block).is_err();
                     let ahead_m = first_rock_m(blocks, is_there, &point, &(point + reach_m * direction));
                     let Some(ahead_m) = ahead_m else {
-                        let [x, y, z]: [f64; 3] = (point + blocks.origin_m).into();
-                        return Err(format!(
-                            "`{name}`, from ({x:.4}, {y:.4}, {z:.4}) along its direction, meets no block: move the rectangle or turn `direction`"
-                        ));
+                        missing.push((name, point + blocks.origin_m));
+                        continue;
                     };
                     let head = point + ahead_m * direction;
                     found.push((name, head, head + *length_m * direction));
                 }
             }
-            Ok(found)
+            if missing.is_empty() { Ok(found) } else { Err(meets_nothing(&missing, found.len())) }
         }
     }
+}
+
+/// That bolts of rows meet no block: their names and places, beside so many that do.
+fn meets_nothing(missing: &[(String, Vec3)], others: usize) -> String {
+    let (name, at) = &missing[0];
+    let first = format!("`{name}`, from ({:.4}, {:.4}, {:.4}) along its direction,", at.x, at.y, at.z);
+    let what = match missing.len() {
+        1 => format!("{first} meets no block"),
+        count => format!("{count} of its {} bolts meet no block, the first {first}", count + others),
+    };
+    format!("{}: move the rectangle or turn `direction`", what.trim_end_matches(','))
 }
 
 /// Distances along a side, what is left over being shared by both ends.

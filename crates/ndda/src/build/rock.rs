@@ -55,7 +55,8 @@ pub struct RockReport {
 impl fmt::Display for RockReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, blocks, domain_m3, merged, slivers, thin, removed, refused, discs, bonded } = self;
-        write!(f, "rock {name}: {} m³ in {}", four_figures(*domain_m3), counted(*blocks, "block", "blocks"))?;
+        let kept_m3 = domain_m3 - slivers.1 - removed.1;
+        write!(f, "rock {name}: {} of {} m³", counted(*blocks, "block", "blocks"), four_figures(kept_m3))?;
         let counts = [
             ("sliver", "united with neighbours", merged),
             ("sliver", "left out", slivers),

@@ -30,7 +30,7 @@ pub fn ending(summary: &Summary) -> String {
     let failed =
         |(_, verdict): &&(String, Verdict)| matches!(verdict.verdict, Judgement::Warn | Judgement::Fail);
     let bad: Vec<_> = summary.verdicts.0.iter().filter(failed).collect();
-    let passed = summary.verdicts.0.iter().filter(|(_, v)| v.verdict == Judgement::Pass).count();
+    let passed = summary.verdicts.0.iter().filter(|(_, v)| v.is_passed()).count();
     if bad.is_empty() && passed > 0 {
         text.push_str(&format!("{passed} checks passed\n"));
     } else if !bad.is_empty() {

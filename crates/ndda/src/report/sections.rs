@@ -16,7 +16,8 @@ const MOST_BLOCKS: usize = 200;
 /// Title and badges.
 pub fn header(summary: &Summary) -> Markup {
     let count = |wanted: Judgement| summary.verdicts.0.iter().filter(|(_, v)| v.verdict == wanted).count();
-    let (passed, warned, failed) = (count(Judgement::Pass), count(Judgement::Warn), count(Judgement::Fail));
+    let (warned, failed) = (count(Judgement::Warn), count(Judgement::Fail));
+    let passed = summary.verdicts.0.iter().filter(|(_, v)| v.is_passed()).count();
     html! {
         header {
             div {

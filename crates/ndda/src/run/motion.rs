@@ -74,10 +74,10 @@ impl LargestMotions {
         }
     }
 
-    /// The motion of the blocks, in one record; none where every block is fixed.
+    /// The motion of the blocks, in one record; none where every block is fixed or held.
     pub fn summary(&self, simulation: &Simulation) -> Option<Motion> {
         let blocks = simulation.blocks();
-        let free = || blocks.ids().filter(|&block| simulation.shape(block).kind != BodyKind::Fixed);
+        let free = || blocks.ids().filter(|&block| is_movable(simulation, block));
         let has_moved = |&block: &BlockId| {
             farthest_m(simulation, block) > MOVED * radius_m(&simulation.shape(block).operator)
         };
@@ -100,6 +100,16 @@ impl LargestMotions {
             speed_m_s,
             course,
         })
+    }
+}
+
+/// Whether forces can move a block: it is not fixed, and supports do not hold or drive all of its nodes.
+fn is_movable(simulation: &Simulation, block: BlockId) -> bool {
+    let shape = simulation.shape(block);
+    match shape.kind {
+        BodyKind::Fixed => false,
+        BodyKind::Rigid => true,
+        _ => shape.factor.is_some(),
     }
 }
 
