@@ -8,6 +8,7 @@ use ndda_io::{OutputFolder, checkpoint, folder};
 use ndda_solver::{Simulation, SinkError};
 use serde::Serialize;
 
+use super::doubts::has_friction;
 use super::memory::readable;
 use crate::run::fields::FieldWriter;
 use crate::run::recorder::{Extras, columns, held_blocks};
@@ -20,6 +21,8 @@ const TIMED: Duration = Duration::from_millis(10);
 const FEWEST_STEPS: u64 = 3;
 /// A run that takes longer than this [s] is timed for `TIMED_LONGER`, and by its later steps: contacts and the rounds of friction grow.
 const LONG_S: f64 = 10.0;
+/// The same where several blocks rub against each other: in the first steps contacts bear little, and friction costs little.
+const LONG_WITH_FRICTION_S: f64 = 1.0;
 const TIMED_LONGER: Duration = Duration::from_secs(1);
 /// A number in a table and its comma, on average [B].
 const NUMBER_BYTES: u64 = 20;
@@ -53,6 +56,8 @@ pub struct Guess {
     pub timed_steps: u64,
     /// Wall-clock time of a run on as many threads as this process has, if contacts stay as many [s].
     pub run_s: f64,
+    /// Whether the scene comes to rest first, in steps that nobody knows beforehand and `run_s` leaves out.
+    pub settles: bool,
     /// Time of the twin that shows whether the motion is sensitive, which a run makes if three or more blocks move; none where fewer can [s].
     pub twin_s: Option<f64>,
     /// Most memory of this process, which has done all that a run does [B]; none where the system does not report it.
@@ -75,7 +80,9 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
     let first_s = started.elapsed().as_secs_f64();
     let (timed, mut step_s) = timed_steps_of(simulation, steps.saturating_sub(1), TIMED)?;
     timed_steps += timed;
-    if steps as f64 * step_s > LONG_S {
+    let is_shared = has_friction(scene) && twin::may_want_twin(simulation);
+    let long_s = if is_shared { LONG_WITH_FRICTION_S } else { LONG_S };
+    if steps as f64 * step_s > long_s {
         for _ in 0..2 {
             let left = steps.saturating_sub(1 + timed_steps);
             let (timed, later_s) = timed_steps_of(simulation, left, TIMED_LONGER / 2)?;
@@ -96,7 +103,8 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
     let twin_s = (scene.stages.is_empty() && twin::may_want_twin(simulation))
         .then_some(first_s + steps as f64 * step_s);
     let files = files(scene, simulation, (rows, frames), frame.len() as u64);
-    Ok(Guess { timed_steps, run_s, twin_s, memory_bytes: machine::peak_memory_bytes(), files })
+    let settles = scene.settle.is_some();
+    Ok(Guess { timed_steps, run_s, settles, twin_s, memory_bytes: machine::peak_memory_bytes(), files })
 }
 
 /// Does steps for so long, at least a few and at most `most`; gives how many, and the time of one [s].
@@ -173,6 +181,9 @@ impl fmt::Display for Guess {
             "a run would take about {:.1} s ({steps} steps timed; longer if more blocks come to touch)",
             self.run_s
         )?;
+        if self.settles {
+            f.write_str(" once it has settled, for which it may need many times as long")?;
+        }
         if let Some(twin_s) = self.twin_s {
             write!(
                 f,

@@ -25,16 +25,8 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
     doubts.extend(BoltReports::new(simulation).doubts(|name| build::bolts::entry(scene, name)));
     doubts.extend(idle::findings(scene, simulation.blocks(), folder));
     let falls = scene.gravity_m_s2 != [0.0; 3];
-    let Some(Contact::Potential { penalty_pa, potential, friction, material_pairs, rock_joints, .. }) =
-        &scene.contact
-    else {
-        return doubts;
-    };
-    let has_friction = |friction: &Option<Friction>| friction.is_some();
-    let has_friction = has_friction(friction)
-        || material_pairs.iter().any(|j| has_friction(&j.friction))
-        || rock_joints.iter().any(|l| has_friction(&l.friction));
-    if falls && !has_friction {
+    let Some(Contact::Potential { penalty_pa, potential, .. }) = &scene.contact else { return doubts };
+    if falls && !has_friction(scene) {
         doubts.push(
             "contact has no friction, so blocks slide freely on each other: give contact.friction: (friction_deg: 30) if that is not meant".into(),
         );
@@ -47,6 +39,17 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
     }
     doubts.extend(penalty(scene, simulation, *penalty_pa, potential));
     doubts
+}
+
+/// Whether some contacts of a scene have friction.
+pub fn has_friction(scene: &Scene) -> bool {
+    let Some(Contact::Potential { friction, material_pairs, rock_joints, .. }) = &scene.contact else {
+        return false;
+    };
+    let is_given = |friction: &Option<Friction>| friction.is_some();
+    is_given(friction)
+        || material_pairs.iter().any(|pair| is_given(&pair.friction))
+        || rock_joints.iter().any(|joint| is_given(&joint.friction))
 }
 
 /// Whether contact is far too soft or too hard for the rock of blocks that move.
