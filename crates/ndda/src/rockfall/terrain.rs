@@ -6,6 +6,8 @@ use ndda_io::mesh::terrain_grid::{self, TerrainGrid};
 use ndda_io::scene::{Ground, Zone};
 use ndda_mesh::Vec3;
 
+use super::classes::Classes;
+
 /// Heights on a grid, and the zone of each triangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Terrain {
@@ -26,7 +28,11 @@ impl Terrain {
     ///
     /// # Errors
     /// What is wrong with the file, or that no cell has a height at all four corners.
-    pub fn new(ground: &Ground, folder: &Path, zones: &[Zone]) -> Result<Self, String> {
+    pub fn new(
+        ground: &Ground,
+        folder: &Path,
+        (zones, classes): (&[Zone], Option<&Classes>),
+    ) -> Result<Self, String> {
         let grid = match ground {
             Ground::File { file, origin_m, sample_m } => {
                 let read = terrain_grid::read_sampled(&folder.join(file), *sample_m);
@@ -40,10 +46,10 @@ impl Terrain {
                 TerrainGrid { origin_m: *origin_m, step_m: *step_m, heights_m }
             }
         };
-        Self::of_grid(&grid, zones)
+        Self::of_grid(&grid, zones, classes)
     }
 
-    fn of_grid(grid: &TerrainGrid, zones: &[Zone]) -> Result<Self, String> {
+    fn of_grid(grid: &TerrainGrid, zones: &[Zone], classes: Option<&Classes>) -> Result<Self, String> {
         let size = [grid.heights_m.first().map_or(0, Vec::len), grid.heights_m.len()];
         let heights_m = grid.heights_m.iter().flatten().map(|z| z.unwrap_or(f64::NAN)).collect();
         let mut terrain =
@@ -54,7 +60,7 @@ impl Terrain {
                 "no cell of the grid has a height at all four corners: give a grid with fewer gaps".into()
             );
         }
-        terrain.zones = terrain.zones_of(zones);
+        terrain.zones = terrain.zones_of(zones, classes);
         Ok(terrain)
     }
 
@@ -145,8 +151,8 @@ impl Terrain {
         known.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(*z), b.max(*z)))
     }
 
-    /// The last zone whose outline the middle of a triangle is in.
-    fn zones_of(&self, zones: &[Zone]) -> Vec<[u16; 2]> {
+    /// The last zone whose outline the middle of a triangle is in, or of whose class its cell is.
+    fn zones_of(&self, zones: &[Zone], classes: Option<&Classes>) -> Vec<[u16; 2]> {
         let [nx, ny] = self.cells();
         let mut found = vec![[0; 2]; nx * ny];
         if zones.is_empty() {
@@ -156,7 +162,13 @@ impl Terrain {
             let (i, j) = ((k % nx) as f64, (k / nx) as f64);
             for (half, [u, v]) in [[2.0 / 3.0, 1.0 / 3.0], [1.0 / 3.0, 2.0 / 3.0]].into_iter().enumerate() {
                 let middle = self.map_m([i + u, j + v]);
-                let last = zones.iter().rposition(|zone| is_inside(&zone.outline_m, middle));
+                let class = classes.and_then(|classes| classes.at(middle));
+                let holds = |zone: &Zone| match class {
+                    _ if !zone.outline_m.is_empty() => is_inside(&zone.outline_m, middle),
+                    Some(class) => zone.classes.contains(&class),
+                    None => false,
+                };
+                let last = zones.iter().rposition(holds);
                 zones_of_cell[half] = last.map_or(0, |place| place as u16 + 1);
             }
         }
@@ -186,7 +198,7 @@ mod tests {
     fn terrain(zones: &[Zone]) -> Terrain {
         let heights_m = vec![vec![0.0, 1.0, 3.0], vec![2.0, 5.0, 4.0]];
         let ground = Ground::Heights { origin_m: [10.0, 20.0], step_m: [2.0, 4.0], heights_m };
-        Terrain::new(&ground, Path::new("."), zones).expect("a grid")
+        Terrain::new(&ground, Path::new("."), (zones, None)).expect("a grid")
     }
 
     #[test]
@@ -212,6 +224,7 @@ mod tests {
         let zone = |name: &str, outline_m: Vec<[f64; 2]>| Zone {
             name: name.into(),
             outline_m,
+            classes: Vec::new(),
             restitution: Scatter::Always(0.5),
             friction_deg: Scatter::Always(30.0),
         };
