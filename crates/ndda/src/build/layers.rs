@@ -5,8 +5,8 @@ use ndda_io::record;
 
 /// Fewest steps in which a wave goes through a layer.
 const FEWEST_STEPS: u32 = 20;
-/// Steps of the march in a spacing of the record, at least.
-const STEPS_PER_ROW: f64 = 2.0;
+/// Steps of the march in a spacing of the record, at least: a peak of one row loses a sixteenth at most.
+const STEPS_PER_ROW: f64 = 8.0;
 /// How many lengths of the step are tried, to find one that fits all layers.
 const TRIALS: u32 = 60;
 
@@ -134,7 +134,7 @@ mod tests {
             (&found[0].down, 0.19),
         ] {
             let (at_s, largest) = peak(wave);
-            assert!((at_s - time_s).abs() < 1e-3 && (largest - 1.0).abs() < 0.05, "{at_s} {largest}");
+            assert!((at_s - time_s).abs() < 1e-3 && (largest - 1.0).abs() < 0.07, "{at_s} {largest}");
         }
         assert!(found[0].up.last().unwrap().0 > 0.29);
     }

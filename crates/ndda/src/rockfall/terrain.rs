@@ -8,6 +8,13 @@ use ndda_mesh::Vec3;
 
 use super::classes::Classes;
 
+/// Heights that are less far apart are none of ground [m].
+const LEAST_STEP_M: f64 = 1e-3;
+/// Coordinates beyond this are none of a map in metres [m].
+const MOST_M: f64 = 1e9;
+/// No height of ground is as large [m].
+const MOST_HEIGHT_M: f64 = 1e5;
+
 /// Heights on a grid, and the zone of each triangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Terrain {
@@ -38,7 +45,7 @@ impl Terrain {
                 let read = terrain_grid::read_sampled(&folder.join(file), *sample_m);
                 let mut grid = read.map_err(|error| error.to_string())?;
                 grid.origin_m = [0, 1].map(|i| grid.origin_m[i] - origin_m[i]);
-                grid
+                return Self::of_grid(&grid, zones, classes).map_err(|problem| format!("{file}: {problem}"));
             }
             Ground::Heights { origin_m, step_m, heights_m } => {
                 let some = |row: &Vec<f64>| row.iter().copied().map(Some).collect();
@@ -50,6 +57,7 @@ impl Terrain {
     }
 
     fn of_grid(grid: &TerrainGrid, zones: &[Zone], classes: Option<&Classes>) -> Result<Self, String> {
+        sound(grid)?;
         let size = [grid.heights_m.first().map_or(0, Vec::len), grid.heights_m.len()];
         let heights_m = grid.heights_m.iter().flatten().map(|z| z.unwrap_or(f64::NAN)).collect();
         let mut terrain =
@@ -174,6 +182,31 @@ impl Terrain {
         }
         found
     }
+}
+
+/// Refuses places and heights that no ground has, as a number in the place of a missing height is.
+fn sound(grid: &TerrainGrid) -> Result<(), String> {
+    let TerrainGrid { origin_m, step_m, heights_m } = grid;
+    if let Some(step_m) = step_m.iter().find(|step_m| !(LEAST_STEP_M..MOST_M).contains(*step_m)) {
+        return Err(format!("heights are {step_m:e} m apart: give a grid in metres"));
+    }
+    let counts = [heights_m.first().map_or(0, Vec::len), heights_m.len()];
+    let far = (0..2).flat_map(|i| [origin_m[i], origin_m[i] + step_m[i] * counts[i] as f64]);
+    if let Some(far_m) = far.into_iter().find(|x| !(x.abs() < MOST_M)) {
+        return Err(format!(
+            "the grid reaches {far_m:e} m on the map: give coordinates in metres, and origin_m for the point that is (0, 0)"
+        ));
+    }
+    for (j, row) in heights_m.iter().enumerate() {
+        let is_wrong = |z: &Option<f64>| z.is_some_and(|z| !(z.abs() < MOST_HEIGHT_M));
+        if let Some((i, z)) = row.iter().position(is_wrong).and_then(|i| Some((i, row[i]?))) {
+            let [x, y] = [origin_m[0] + i as f64 * step_m[0], origin_m[1] + j as f64 * step_m[1]];
+            return Err(format!(
+                "the height at ({x}, {y}) is {z:e} m, and no ground is: if it stands for a missing one, say so in the file (NODATA_value), else write metres"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Whether a point is within an outline: an odd number of its edges is crossed on the way to the east.
