@@ -47,7 +47,8 @@ impl Classes {
         }
     }
 
-    fn new(grid: TerrainGrid, ground: &Ground) -> Result<Self, String> {
+    /// The classes of a grid; the point of the map that is (0, 0) in the scene is that of `ground`.
+    pub(super) fn new(grid: TerrainGrid, ground: &Ground) -> Result<Self, String> {
         let zero_m = match ground {
             Ground::File { origin_m, .. } => *origin_m,
             Ground::Heights { .. } => [0.0; 2],

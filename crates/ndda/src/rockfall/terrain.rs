@@ -192,13 +192,13 @@ fn sound(grid: &TerrainGrid) -> Result<(), String> {
     }
     let counts = [heights_m.first().map_or(0, Vec::len), heights_m.len()];
     let far = (0..2).flat_map(|i| [origin_m[i], origin_m[i] + step_m[i] * counts[i] as f64]);
-    if let Some(far_m) = far.into_iter().find(|x| !(x.abs() < MOST_M)) {
+    if let Some(far_m) = far.into_iter().find(|x| !(-MOST_M..MOST_M).contains(x)) {
         return Err(format!(
             "the grid reaches {far_m:e} m on the map: give coordinates in metres, and origin_m for the point that is (0, 0)"
         ));
     }
     for (j, row) in heights_m.iter().enumerate() {
-        let is_wrong = |z: &Option<f64>| z.is_some_and(|z| !(z.abs() < MOST_HEIGHT_M));
+        let is_wrong = |z: &Option<f64>| z.is_some_and(|z| !(-MOST_HEIGHT_M..MOST_HEIGHT_M).contains(&z));
         if let Some((i, z)) = row.iter().position(is_wrong).and_then(|i| Some((i, row[i]?))) {
             let [x, y] = [origin_m[0] + i as f64 * step_m[0], origin_m[1] + j as f64 * step_m[1]];
             return Err(format!(
@@ -265,5 +265,41 @@ mod tests {
         let west = vec![[0.0, 0.0], [12.0, 0.0], [12.0, 100.0], [0.0, 100.0]];
         let terrain = terrain(&[zone("all", all), zone("west", west)]);
         assert_eq!((terrain.zones_at(0, 0), terrain.zones_at(1, 0)), ([2, 2], [1, 1]));
+    }
+
+    #[test]
+    fn a_triangle_is_in_the_zone_of_the_class_of_the_cell_that_its_middle_is_in() {
+        let ground =
+            Ground::Heights { origin_m: [10.0, 20.0], step_m: [2.0, 4.0], heights_m: vec![vec![0.0; 3]; 2] };
+        // Cells of a metre, of class 1 west of x = 11, 2 up to 12, 7 up to 13, and none beyond.
+        let rows = vec![vec![Some(1.0), Some(2.0), Some(7.0)]; 6];
+        let grid = TerrainGrid { origin_m: [10.5, 19.5], step_m: [1.0; 2], heights_m: rows };
+        let classes = Classes::new(grid, &ground).unwrap();
+        let zone = |name: &str, classes: &[u32]| Zone {
+            name: name.into(),
+            outline_m: Vec::new(),
+            classes: classes.to_vec(),
+            restitution: Scatter::Always(0.5),
+            friction_deg: Scatter::Always(30.0),
+        };
+        let zones = [zone("scree", &[2, 3]), zone("rock", &[1])];
+        let terrain = Terrain::new(&ground, Path::new("."), (&zones, Some(&classes))).unwrap();
+        // Middles at 10 + 4/3 and 10 + 2/3, and at 12 + 4/3 and 12 + 2/3.
+        assert_eq!((terrain.zones_at(0, 0), terrain.zones_at(1, 0)), ([1, 2], [0, 0]));
+    }
+
+    #[test]
+    fn heights_and_coordinates_that_no_ground_has_are_refused_with_their_place() {
+        let refused = |origin: f64, step: f64, height: f64| {
+            let heights_m = vec![vec![0.0, 1.0], vec![height, 2.0]];
+            let ground = Ground::Heights { origin_m: [origin, 0.0], step_m: [step; 2], heights_m };
+            Terrain::new(&ground, Path::new("."), (&[], None)).err().unwrap_or_default()
+        };
+        assert_eq!(refused(1e7, 1.0, -9999.0), "");
+        assert!(refused(0.0, 2.0, -3.4028235e38).contains("at (0, 2) is -3.4028235e38 m"));
+        assert!(refused(1e18, 2.0, 0.0).contains("origin_m"));
+        assert!(
+            refused(0.0, 1e-9, 0.0).contains("apart") && refused(0.0, f64::INFINITY, 0.0).contains("apart")
+        );
     }
 }

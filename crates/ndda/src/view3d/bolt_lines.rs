@@ -194,7 +194,7 @@ fn clipped([a, b]: [[f64; 2]; 2], pane: &Pane) -> Option<[[f64; 2]; 2]> {
                 to = to.min(room / along);
             } else if along < 0.0 {
                 from = from.max(room / along);
-            } else if !(room >= 0.0) {
+            } else if room < 0.0 {
                 return None;
             }
         }

@@ -73,7 +73,9 @@ impl BoltForces {
             known.push_str(name);
         }
         curve.resize(self.times_s.len(), f64::NAN);
-        if let Some(largest) = curve.last_mut().filter(|largest| !(largest.abs() >= axial_n.abs())) {
+        if let Some(largest) =
+            curve.last_mut().filter(|largest| largest.is_nan() || largest.abs() < axial_n.abs())
+        {
             *largest = axial_n;
         }
     }
