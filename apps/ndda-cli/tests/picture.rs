@@ -248,3 +248,51 @@ fn the_joints_of_a_scene_have_a_colour_each_and_those_of_a_run_are_refused() {
     fs::write(&scene, text("joints: []")).unwrap();
     assert!(picture(&scene, &["--color", "joint"]).2.contains("has no block with a face on a joint"));
 }
+
+/// A block on one that is fixed, tied to it by a bolt of 20 kN and, from a stage on, by another one.
+const BOLTED: &str = r#"(title: "Bolted", time: (step_s: 1e-4, end_s: 2e-3),
+    materials: [(name: "rock", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+    blocks: [
+        (name: "foot", material: "rock", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+        (name: "top", material: "rock", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 1)),
+    ],
+    contact: Potential(penalty_pa: 1e9, friction: (friction_deg: 30)),
+    bolts: [
+        (name: "anchor", at: Line(from_m: (0.4, 0.45, 2), to_m: (0.4, 0.45, 0.2)), steel: (young_pa: 200e9, area_m2: 5e-4, yield_n: 1e5),
+         grout: (stiffness_n_m2: 1e9, strength_n_m: 2e5, from_m: 1.2), pretension_n: 20e3, plate: ()),
+        (name: "late", at: Line(from_m: (0.7, 0.6, 2), to_m: (0.7, 0.6, 0.2)), steel: (young_pa: 200e9, area_m2: 5e-4),
+         grout: (stiffness_n_m2: 1e9, strength_n_m: 2e5)),
+    ],
+    stages: [(name: "second", install: ["late"], over_s: 1e-3, then: Run(2e-3))],
+    output: (frames: 4))"#;
+
+#[test]
+fn bolts_are_drawn_with_a_scale_of_their_forces_and_of_a_scene_plainly() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = folder.path().join("bolted.ron");
+    fs::write(&scene, BOLTED).unwrap();
+    let svg = || fs::read_to_string(folder.path().join("a.svg")).unwrap();
+    let (code, said, _) = picture(&scene, &["-o", "a.svg"]);
+    assert!(code == exit::DONE && said.contains("2 bolts, 1 of 2 blocks may move"), "{said}");
+    assert!(svg().contains("\nbolts\n"));
+    let out = folder.path().join("out");
+    let run = ndda().arg("run").arg(&scene).arg("--out").arg(&out).arg("--quiet").output().unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let (code, said, _) = picture(&out, &["-o", "a.svg"]);
+    assert!(code == exit::DONE && said.contains("2 bolts, "), "{said}");
+    // The anchor keeps its 20 kN but for what the blocks give way, and there is no other.
+    let found = svg();
+    let (_, scale) = found.split_once("\nbolts, tension\n").unwrap();
+    let largest = scale.split("<text ").nth(2).unwrap().lines().nth(1).unwrap();
+    assert!(scale.contains("[kN]") && (19.0..20.1).contains(&largest.parse::<f64>().unwrap()), "{largest}");
+    // In the first frame the second bolt is not there yet.
+    assert!(picture(&out, &["--frame", "0", "-o", "a.svg"]).1.contains("1 bolt, "));
+    assert_eq!(picture(&out, &["--bolts", "hidden", "-o", "a.svg"]).0, exit::DONE);
+    assert!(!svg().contains("bolts"));
+    assert_eq!(picture(&out, &["--animate", "--size", "200x160", "--bolts", "state"]).0, exit::DONE);
+    assert_eq!(picture(&out, &["--bolts", "axial"]).0, 2);
+    // A damaged frame of bolts is refused by name.
+    fs::write(out.join("fields/bolts_000001.vtu"), "<VTKFile>").unwrap();
+    let (code, _, said) = picture(&out, &["--frame", "1"]);
+    assert!(code == exit::BAD_INPUT && said.contains("bolts_000001.vtu"), "{said}");
+}

@@ -125,3 +125,42 @@ fn a_page_that_cannot_be_written_is_an_error_of_output() {
     let file = folder.path().join("no/such.html");
     assert_eq!(code(ndda().arg("report").arg(folder_of_run).arg("--out").arg(file)), exit::INPUT_OUTPUT);
 }
+
+/// Two blocks that a bolt of 20 kN holds together.
+const BOLTED: &str = r#"(title: "Bolted", time: (step_s: 1e-4, end_s: 2e-3),
+    materials: [(name: "rock", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+    blocks: [
+        (name: "foot", material: "rock", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+        (name: "top", material: "rock", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 1)),
+    ],
+    contact: Potential(penalty_pa: 1e9, friction: (friction_deg: 30)),
+    bolts: [(name: "anchor", at: Line(from_m: (0.4, 0.45, 2), to_m: (0.4, 0.45, 0.2)), steel: (young_pa: 200e9, area_m2: 5e-4, yield_n: 1e5),
+        grout: (stiffness_n_m2: 1e9, strength_n_m: 2e5, from_m: 1.2), pretension_n: 20e3, plate: ())],
+    output: (frames: 4))"#;
+
+#[test]
+fn bolts_are_in_the_view_in_a_table_and_in_a_curve() {
+    let folder = tempfile::tempdir().unwrap();
+    let (scene, out) = (folder.path().join("bolted.ron"), folder.path().join("out"));
+    fs::write(&scene, BOLTED).unwrap();
+    assert_eq!(code(ndda().arg("run").arg(&scene).arg("--out").arg(&out).arg("--quiet")), exit::DONE);
+    assert_eq!(report(&out, None), exit::DONE);
+    let text = page(&out);
+    fs::copy(out.join("report.html"), Path::new(env!("CARGO_TARGET_TMPDIR")).join("report_bolts.html"))
+        .unwrap();
+    assert!(text.contains("Bolts at the end (1)") && text.contains("<td>anchor</td>"));
+    assert!(text.contains("id=\"bolts\"") && text.contains("id=\"bolt-bar\""));
+    let data = script(&text, "<script id=\"data\" type=\"application/json\">");
+    let data: serde_json::Value = serde_json::from_str(data).unwrap();
+    let charts = data["charts"]["charts"].as_array().unwrap();
+    let chart = charts.iter().find(|c| c["title"] == "Tension of the bolts that carry most").unwrap();
+    let curve = chart["curves"][0]["values"].as_array().unwrap();
+    assert!(curve.len() == 5 && chart["curves"][0]["label"] == "anchor" && chart["unit"] == "kN");
+    assert!(curve.iter().all(|force| (19.0..20.1).contains(&force.as_f64().unwrap())), "{curve:?}");
+    let bolts = &data["motion"]["bolts"];
+    let force = bolts["force_n"][1].as_f64().unwrap();
+    assert!((19e3..20.1e3).contains(&force), "{force}");
+    assert_eq!(bolts["counts"].as_array().unwrap().len(), 5);
+    fs::write(out.join("bolts.csv"), "time_s,bolt\n").unwrap();
+    assert_eq!(report(&out, None), exit::BAD_INPUT);
+}

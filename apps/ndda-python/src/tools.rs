@@ -16,7 +16,7 @@ use ndda::study::error::StudyError;
 use ndda::study::runner::InProcess;
 use ndda::study::{Study, make_folder};
 use ndda::sweep::{Ask, How, Sweep};
-use ndda::view3d::{self, Frames, Look, Resting, View, ViewError};
+use ndda::view3d::{self, BoltColour, Frames, Look, Resting, View, ViewError};
 use ndda::{Run, certify as certificates};
 use ndda_io::study::Sampling;
 use ndda_io::{OutputFolder, atomic};
@@ -268,6 +268,7 @@ fn _picture(py: Python<'_>, input: PathBuf, out: PathBuf, options: &Bound<'_, Py
         whole: option(options, "whole")?.unwrap_or(false),
         magnify: option(options, "magnify")?.unwrap_or(1.0),
         outlines: option(options, "outlines")?.unwrap_or(true),
+        bolts: parsed(options, "bolts", BoltColour::default())?,
         dark: option(options, "dark")?.unwrap_or(false),
         size: option(options, "size")?.unwrap_or(if most.is_some() { (800, 560) } else { (1200, 800) }),
     };

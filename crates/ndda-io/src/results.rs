@@ -14,6 +14,8 @@ pub mod vtu;
 #[cfg(test)]
 mod testing;
 
+pub use bolt_lines::bolt_lines;
 pub use read::{
-    Array, FieldFrame, ListedFrame, ResultsError, Table, frame, frame_list, history, history_file, summary,
+    Array, BoltForces, FieldFrame, ListedFrame, ResultsError, Table, bolt_forces, frame, frame_list, history,
+    history_file, summary,
 };

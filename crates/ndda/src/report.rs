@@ -3,6 +3,7 @@
 //! Curves are drawn by uPlot, blocks by three.js, both embedded. plotly could draw both, but its `mesh3d` has no edges of
 //! blocks and is built anew for every frame; three.js moves the corners in place.
 
+mod bolts;
 mod certificate;
 mod charts;
 mod error;
@@ -68,7 +69,7 @@ pub fn write(folder: &Path, file: &Path, frames: Option<u32>) -> Result<Written,
     let input = Input::read(folder)?;
     let motion = match input.frames.is_empty() || frames == Some(0) {
         true => None,
-        false => Some(Motion::read(&input.frames, frames.map(|n| n as usize))?),
+        false => Some(Motion::read(&input.frames, &input.bolt_frames, frames.map(|n| n as usize))?),
     };
     let text = page::page(&input, motion.as_ref());
     ndda_io::atomic::write(file, text.as_bytes())?;
@@ -92,5 +93,5 @@ pub fn viewer(title: &str, block_names: &[String], frames: &[(f64, PathBuf)]) ->
     if listed.is_empty() {
         return Err(ReportError::NoFrames);
     }
-    Ok(page::viewer(title, block_names, &Motion::read(&listed, None)?))
+    Ok(page::viewer(title, block_names, &Motion::read(&listed, &[], None)?))
 }

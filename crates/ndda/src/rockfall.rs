@@ -6,6 +6,7 @@
 
 mod accuracy;
 mod boulder;
+mod classes;
 mod contact;
 mod draw;
 mod fall;
@@ -26,6 +27,7 @@ mod window;
 
 pub use accuracy::Accuracy;
 pub use boulder::Boulder;
+use classes::Classes;
 pub use fall::{End, Fall};
 pub use passage::Moment;
 pub use result::Outcome;
@@ -139,6 +141,8 @@ pub struct Model {
     pub rockfall: Rockfall,
     /// The ground.
     pub terrain: Terrain,
+    /// Classes of ground that no zone names, and how many cells have them.
+    pub unnamed: Vec<(u32, usize)>,
 }
 
 impl Model {
@@ -159,9 +163,11 @@ impl Model {
             let found = loaded.diagnose_as(Code::CannotBuild, path, message);
             RockfallError::Scene(loaded.errors(vec![found]))
         };
-        let terrain = Terrain::new(&rockfall.terrain, folder, &rockfall.zones)
+        let classes = Classes::of(&rockfall, folder).map_err(|(path, message)| refuse(&path, message))?;
+        let terrain = Terrain::new(&rockfall.terrain, folder, (&rockfall.zones, classes.as_ref()))
             .map_err(|message| refuse("rockfall.terrain", message))?;
-        let model = Self { rockfall, terrain, loaded };
+        let unnamed = classes.map_or_else(Vec::new, |classes| classes.without_zone(&rockfall));
+        let model = Self { rockfall, terrain, unnamed, loaded };
         let cells = model.reach_cells().map(|n| n as f64);
         if cells[0] * cells[1] > MOST_CELLS {
             let message = format!(

@@ -11,10 +11,11 @@ pub mod motion;
 mod outputs;
 mod pace;
 pub mod recorder;
+mod rest;
 mod resume;
 pub mod run_log;
 pub mod schedule;
-pub mod settling;
+mod settling;
 pub(crate) mod stage_log;
 mod stages;
 pub(crate) mod twin;
@@ -28,7 +29,7 @@ use std::time::Instant;
 use ndda_io::summary::{LabelWord, MonitorEnd, Status, Summary};
 use ndda_io::table::Table;
 use ndda_io::{OutputFolder, WriteError, checkpoint, summary, tables};
-use ndda_solver::{Settled, Simulation, Sink, Snapshot};
+use ndda_solver::{Simulation, Sink, Snapshot};
 
 use crate::Model;
 use crate::judge::reference::Comparison;
@@ -39,6 +40,7 @@ pub use error::RunError;
 pub use identity::Identity;
 use outputs::{Course, Earlier, Outputs};
 pub use pace::Pace;
+pub use rest::Resting;
 pub use resume::{ResumeError, Resumed};
 use run_log::RunLog;
 pub use twin::Sensitivity;
@@ -190,14 +192,14 @@ impl Run {
         self.finish_watched(observers, &mut |_| {})
     }
 
-    /// As [`finish`](Self::finish); `settling` is shown how far a scene has settled that begins with that.
+    /// As [`finish`](Self::finish); `settling` is shown every two seconds how far a scene has settled that begins with that.
     ///
     /// # Errors
     /// As [`finish`](Self::finish).
     pub fn finish_watched(
         mut self,
         observers: &mut [&mut dyn Sink],
-        settling: &mut dyn FnMut(&Settled),
+        settling: &mut dyn FnMut(&Resting),
     ) -> Result<Outcome, RunError> {
         let began = Instant::now();
         let settles = self.recording.is_some() && self.model.loaded.scene.settle.is_some();

@@ -6,11 +6,14 @@
 //! | `film`, `from_run`, `from_scene` | blocks, their colours, and the moments of a run |
 //! | `stage` | what is in view, and which blocks are seen through |
 //! | `raster`, `paint` | triangles and edges as pixels; colours and light |
+//! | `bolts`, `bolt_lines` | bolts, and their lines over the blocks |
 //! | `overlay`, `numbers` | title, scale of colours, axes, scale bar |
 //! | `image`, `animation` | a picture, an animation |
 
 #[cfg(feature = "png")]
 mod animation;
+mod bolt_lines;
+pub(crate) mod bolts;
 mod camera;
 mod error;
 mod film;
@@ -34,6 +37,7 @@ use ndda_mesh::BlockSet;
 use serde::Serialize;
 
 use crate::numbers::counted;
+pub use bolts::BoltColour;
 pub use camera::View;
 pub use error::ViewError;
 use film::Film;
@@ -128,17 +132,28 @@ pub struct Written {
     /// Whether it is of a scene before its run.
     #[serde(skip)]
     pub is_scene: bool,
+    /// Bolts that it shows.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub bolts: usize,
     /// Joints, and sets of them, that it shows in colours.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub joints: Option<usize>,
 }
 
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
 impl fmt::Display for Written {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let Self { picture, frames, size: (width, height), blocks, moving, movable, is_scene, joints } = self;
+        let Self { picture, frames, size: (width, height), blocks, moving, movable, is_scene, bolts, joints } =
+            self;
         write!(f, "{}: {width} x {height} pixels, ", picture.display())?;
         if *frames > 1 {
             write!(f, "{frames} frames, ")?;
+        }
+        if *bolts > 0 {
+            write!(f, "{}, ", counted(*bolts, "bolt", "bolts"))?;
         }
         if let Some(joints) = joints {
             return write!(f, "{}", counted(*joints, "joint or set", "joints or sets"));
@@ -173,6 +188,7 @@ pub fn draw(request: &Request, out: &Path) -> Result<Written, ViewError> {
     let moving = film.moves.iter().filter(|moves| **moves).count();
     Ok(Written {
         joints: (request.colour == Some(Colour::Joint)).then_some(moving),
+        bolts: if request.look.bolts == BoltColour::Hidden { 0 } else { film.bolt_count() },
         picture: out.to_path_buf(),
         frames: film.moments.len(),
         size: request.look.size,
@@ -181,6 +197,16 @@ pub fn draw(request: &Request, out: &Path) -> Result<Written, ViewError> {
         movable: film.movable,
         is_scene: film.moments[0].time_s.is_none(),
     })
+}
+
+/// The file where a picture of `input` is written if none is asked for: in the folder of a run, or in the present folder with the name
+/// of the scene; an SVG picture without the feature `png`.
+pub fn default_file(input: &Path, is_animation: bool) -> PathBuf {
+    let ending = if cfg!(feature = "png") { "png" } else { "svg" };
+    match input.is_dir() {
+        true => input.join(if is_animation { "animation" } else { "picture" }).with_extension(ending),
+        false => Path::new(input.file_stem().unwrap_or("scene".as_ref())).with_extension(ending),
+    }
 }
 
 /// Draws blocks of no run, in a colour each.

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use ndda::view3d::{self, Colour, FrameChoice, Resting, View};
+use ndda::view3d::{self, BoltColour, Colour, FrameChoice, Resting, View};
 
 /// Arguments of `ndda picture`.
 #[derive(Debug, Args)]
@@ -40,6 +40,10 @@ pub struct PictureArgs {
     /// Leave out the outlines of where blocks began, which are drawn where few move.
     #[arg(long)]
     pub no_outlines: bool,
+    /// Colours of bolts: force (axial, tension above zero), yield (axial force over that at which the steel yields), state (elastic, debonded, yielding or
+    /// broken), plain or hidden; bolts of a scene are plain.
+    #[arg(long, value_name = "WHAT", default_value = "force")]
+    pub bolts: BoltColour,
     /// Light on dark, for screens.
     #[arg(long)]
     pub dark: bool,

@@ -32,9 +32,10 @@ pub fn has_lost() -> bool {
     LOST.load(Ordering::Relaxed)
 }
 
-/// Prints to standard error, if anybody listens.
+/// Prints to standard error, if anybody listens; on a terminal in the place of a bar that is drawn in the last line.
 pub fn complain(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{text}");
+    let clear = if std::io::stderr().is_terminal() { "\r\x1b[2K" } else { "" };
+    let _ = writeln!(std::io::stderr(), "{clear}{text}");
 }
 
 /// [`complain`], or nothing where a user requested quiet.

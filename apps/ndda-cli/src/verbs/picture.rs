@@ -1,7 +1,5 @@
 //! `ndda picture`: blocks in 3D as a picture or an animation, without a browser.
 
-use std::path::{Path, PathBuf};
-
 use ndda::view3d::{self, Frames, Look, Request, ViewError};
 use serde_json::json;
 
@@ -13,7 +11,7 @@ use crate::terminal::events::{self, Events};
 /// Runs `ndda picture`; returns the exit code.
 pub fn picture(args: &PictureArgs) -> u8 {
     let events = Events::new(args.json, events::PICTURE);
-    let out = args.out.clone().unwrap_or_else(|| default_file(args));
+    let out = args.out.clone().unwrap_or_else(|| view3d::default_file(&args.input, args.animate));
     match view3d::draw(&request(args), &out) {
         Ok(written) => {
             events.emit("written", &written);
@@ -44,18 +42,10 @@ fn request(args: &PictureArgs) -> Request {
             whole: args.whole,
             magnify: args.magnify,
             outlines: !args.no_outlines,
+            bolts: args.bolts,
             dark: args.dark,
             size,
         },
         per_second: args.fps,
-    }
-}
-
-/// In the folder of a run, or in the present one with the name of the scene; without the feature `png` an SVG picture.
-fn default_file(args: &PictureArgs) -> PathBuf {
-    let ending = if cfg!(feature = "png") { "png" } else { "svg" };
-    match args.input.is_dir() {
-        true => args.input.join(if args.animate { "animation" } else { "picture" }).with_extension(ending),
-        false => Path::new(args.input.file_stem().unwrap_or("scene".as_ref())).with_extension(ending),
     }
 }

@@ -1,15 +1,14 @@
 //! `ndda run`: a scene from its text to its files.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use ndda::judge::table;
-use ndda::run::{Sensitivity, settling};
+use ndda::run::{Resting, Sensitivity};
 use ndda::{Run, RunError, places};
 use ndda_io::folder::SUMMARY;
 use ndda_io::summary::{Judgement, LabelWord, Status, Summary};
 use ndda_io::{OutputFolder, WriteError};
-use ndda_solver::Settled;
 use serde::Serialize;
 
 use crate::args::{HowArgs, RunArgs};
@@ -18,9 +17,6 @@ use crate::terminal::events::{self, Events};
 use crate::terminal::interrupt;
 use crate::terminal::progress::Progress;
 use crate::{exit, input};
-
-/// How often a scene that settles says how far it is.
-const SAY_SETTLING: Duration = Duration::from_secs(2);
 
 /// Runs a scene and reports; the result is the exit code.
 pub fn run(args: &RunArgs) -> u8 {
@@ -108,15 +104,8 @@ pub fn execute(run: Run, folder: &Path, options: &Options) -> u8 {
         }),
     );
     let mut progress = Progress::new(first, steps, options.quiet, options.events);
-    let until = run.model().loaded.scene.settle.map(|settle| settle.tolerance);
-    let mut said = Instant::now();
-    let mut to_rest = |settled: &Settled| {
-        let Some(until) = until.filter(|_| !options.quiet) else { return };
-        if settled.speed_ratio <= until || said.elapsed() >= SAY_SETTLING {
-            said = Instant::now();
-            complain(&settling::progress(settled, until));
-        }
-    };
+    let tell = complain_unless(options.quiet);
+    let mut to_rest = |resting: &Resting| tell(&resting.to_string());
     let outcome = run.finish_watched(&mut [&mut progress], &mut to_rest);
     progress.finish();
     match outcome {

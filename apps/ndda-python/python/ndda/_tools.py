@@ -317,6 +317,7 @@ def picture(
     resting: Literal["auto", "solid", "clear", "hidden"] = "auto",
     whole: bool = False,
     magnify: float = 1.0,
+    bolts: Literal["force", "yield", "state", "plain", "hidden"] = "force",
     dark: bool = False,
     size: tuple[int, int] | None = None,
     animate: int | None = None,
@@ -340,6 +341,8 @@ def picture(
         Whether all blocks are in view, in place of those that move.
     magnify : float
         Factor on displacements.
+    bolts : {"force", "yield", "state", "plain", "hidden"}
+        Colours of bolts: axial force, its share of the yield force, or state; bolts of a scene are plain.
     dark : bool
         Light on dark.
     size : tuple of 2 ints, optional
@@ -376,6 +379,7 @@ def picture(
         "resting": resting,
         "whole": whole,
         "magnify": magnify,
+        "bolts": bolts,
         "dark": dark,
         "size": size,
         "animate": animate,

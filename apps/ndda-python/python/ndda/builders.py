@@ -1692,6 +1692,28 @@ class GroundLaw(Builder):
     _kinds: ClassVar[Mapping[str, str]] = {"restitution": "Scatter", "friction_deg": "Scatter"}
 
 
+@dataclass(kw_only=True)
+class GroundLayer(Builder):
+    """A layer of level ground.
+
+    Parameters
+    ----------
+    material : str
+        Its material.
+    top_m : Sequence[float]
+        A place on its upper border [m]; only its height counts.
+
+    Examples
+    --------
+    >>> GroundLayer(material="name", top_m=(1.0, 1.0, 1.0)).to_ron()
+    '(material: "name", top_m: (1.0, 1.0, 1.0))'
+    """
+
+    material: str
+    top_m: Sequence[float]
+    _kinds: ClassVar[Mapping[str, str]] = {"material": "str", "top_m": "(num)"}
+
+
 class Hold:
     """The constraint of a support.
 
@@ -2508,7 +2530,10 @@ class Quiet(Builder):
     they rest on springs of ρ c/2Δt per area, and what these, or an initial stress, bear then stays as a
     constant force. Only elastic blocks have such faces. ```text quiet: [ // Rock goes on below; an S wave
     comes up, from a record on outcropping rock. (block: "ground", on: Set("z_min"), incident: [(wave: S((1,
-    0, 0)), motion: Outcrop, record: (file: "quake.at2"))]), ], ```
+    0, 0)), motion: Outcrop, record: (file: "quake.at2"))]), // A side beyond which the ground is level, of 6
+    m of clay on rock: it moves as that ground does, far away. (block: "*", on: Set("x_min"), layers:
+    [(material: "clay", top_m: (0, 0, 20)), (material: "rock", top_m: (0, 0, 14))], incident: [(wave: S((1, 0,
+    0)), motion: Outcrop, record: (file: "quake.at2"), from_m: (0, 0, 0))]), ], ```
 
     Parameters
     ----------
@@ -2519,6 +2544,11 @@ class Quiet(Builder):
         Its faces: boundary triangles of which all corners are in the region.
     beyond : str, optional
         Material of the rock beyond the faces. Default: that of the block.
+    layers : list[GroundLayer], optional
+        Layers of level ground beyond the faces, whose uppermost border is the ground; the lowest goes on
+        below. Waves go straight up and down in them, are reflected at their borders and by the ground, and so
+        move the faces as the ground far away moves. Each face is beside the layer that its middle is in. In
+        the place of `beyond`, and of `along` and `ground_m` of the waves. Default: none.
     incident : list[IncidentWave], optional
         Plane waves that arrive from beyond. Default: none.
 
@@ -2531,8 +2561,9 @@ class Quiet(Builder):
     block: str
     on: RegionChoice
     beyond: str | None = None
+    layers: list[GroundLayer] | None = None
     incident: list[IncidentWave] | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"block": "str", "on": "Region", "beyond": "str", "incident": "[IncidentWave]"}
+    _kinds: ClassVar[Mapping[str, str]] = {"block": "str", "on": "Region", "beyond": "str", "layers": "[GroundLayer]", "incident": "[IncidentWave]"}
 
 
 @dataclass(kw_only=True)
@@ -3051,6 +3082,10 @@ class Rockfall(Builder):
     zones : list[Zone], optional
         Parts of the terrain with ground of their own; where they overlap, the later one counts. Default:
         none.
+    class_grid : str, optional
+        File of a grid with a class of ground, a whole number, for each cell, in the coordinates of the
+        terrain's file: an ESRI ASCII grid (`.asc`) or another of the terrain's formats; path relative to the
+        scene file. Zones name their `classes`. Default: none.
     count : int, optional
         How many boulders are released. Default: 100.
     seed : int, optional
@@ -3078,13 +3113,14 @@ class Rockfall(Builder):
     boulders: Boulders
     releases: list[Release]
     zones: list[Zone] | None = None
+    class_grid: str | None = None
     count: int | None = None
     seed: int | None = None
     lines: list[CountingLine] | None = None
     profile_m: Sequence[Sequence[float]] | None = None
     rest: RockfallRest | None = None
     detail: RockfallDetail | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"terrain": "Ground", "ground": "GroundLaw", "zones": "[Zone]", "boulders": "Boulders", "releases": "[Release]", "count": "int", "seed": "int", "lines": "[CountingLine]", "profile_m": "[(num)]", "rest": "RockfallRest", "detail": "RockfallDetail"}
+    _kinds: ClassVar[Mapping[str, str]] = {"terrain": "Ground", "ground": "GroundLaw", "zones": "[Zone]", "class_grid": "str", "boulders": "Boulders", "releases": "[Release]", "count": "int", "seed": "int", "lines": "[CountingLine]", "profile_m": "[(num)]", "rest": "RockfallRest", "detail": "RockfallDetail"}
 
 
 @dataclass(kw_only=True)
@@ -4453,31 +4489,35 @@ class Whereabouts:
 
 @dataclass(kw_only=True)
 class Zone(Builder):
-    """A part of the terrain with ground of its own.
+    """A part of the terrain with ground of its own, within an outline or of some classes of `class_grid`.
 
     Parameters
     ----------
     name : str
         Its name.
-    outline_m : Sequence[Sequence[float]]
-        Corners of its outline on the map (x, y) [m]; a triangle of the terrain is in the zone if its middle
-        is.
     restitution : ScatterChoice
         Coefficient of restitution e from 0 to 1.
     friction_deg : ScatterChoice
         Friction angle φ between boulder and ground [°].
+    outline_m : Sequence[Sequence[float]], optional
+        Corners of its outline on the map (x, y) [m]; a triangle of the terrain is in the zone if its middle
+        is. Default: none, it has `classes`.
+    classes : Sequence[int], optional
+        Classes of `class_grid`; a triangle of the terrain is in the zone if its middle is in a cell of one of
+        them. Default: none, it has an outline.
 
     Examples
     --------
-    >>> Zone(name="name", outline_m=[(1.0, 1.0, 1.0)], restitution=Scatter.Always(1.0), friction_deg=Scatter.Always(1.0)).to_ron()
-    '(name: "name", outline_m: [(1.0, 1.0, 1.0)], restitution: Always(1.0), friction_deg: Always(1.0))'
+    >>> Zone(name="name", restitution=Scatter.Always(1.0), friction_deg=Scatter.Always(1.0)).to_ron()
+    '(name: "name", restitution: Always(1.0), friction_deg: Always(1.0))'
     """
 
     name: str
-    outline_m: Sequence[Sequence[float]]
     restitution: ScatterChoice
     friction_deg: ScatterChoice
-    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "outline_m": "[(num)]", "restitution": "Scatter", "friction_deg": "Scatter"}
+    outline_m: Sequence[Sequence[float]] | None = None
+    classes: Sequence[int] | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"name": "str", "outline_m": "[(num)]", "classes": "[int]", "restitution": "Scatter", "friction_deg": "Scatter"}
 
 
 AccelerationUnitChoice: TypeAlias = Literal["G"] | Literal["MetrePerSecondSquared"] | Literal["CentimetrePerSecondSquared"]
@@ -4570,6 +4610,7 @@ __all__ = [
     "Grading",
     "Ground",
     "GroundLaw",
+    "GroundLayer",
     "Hold",
     "InSitu",
     "IncidentWave",

@@ -1,5 +1,6 @@
 //! Reads the results of a run: summary, history, fields.
 
+mod bolts;
 mod fields;
 
 use std::fs;
@@ -12,6 +13,7 @@ use crate::results::table::{self, TableError};
 
 pub use crate::mesh::vtk_file::Array;
 pub use crate::results::table::Table;
+pub use bolts::{BoltForces, bolt_forces};
 pub use fields::{FieldFrame, ListedFrame, frame, frame_list};
 
 /// Why results cannot be used.

@@ -13,6 +13,9 @@ use super::{Record, Region};
 /// quiet: [
 ///     // Rock goes on below; an S wave comes up, from a record on outcropping rock.
 ///     (block: "ground", on: Set("z_min"), incident: [(wave: S((1, 0, 0)), motion: Outcrop, record: (file: "quake.at2"))]),
+///     // A side beyond which the ground is level, of 6 m of clay on rock: it moves as that ground does, far away.
+///     (block: "*", on: Set("x_min"), layers: [(material: "clay", top_m: (0, 0, 20)), (material: "rock", top_m: (0, 0, 14))],
+///      incident: [(wave: S((1, 0, 0)), motion: Outcrop, record: (file: "quake.at2"), from_m: (0, 0, 0))]),
 /// ],
 /// ```
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -26,9 +29,25 @@ pub struct Quiet {
     /// Material of the rock beyond the faces. Default: that of the block.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub beyond: Option<String>,
+    /// Layers of level ground beyond the faces, whose uppermost border is the ground; the lowest goes on below. Waves go straight up and down in them, are
+    /// reflected at their borders and by the ground, and so move the faces as the ground far away moves. Each face is beside the layer that its middle
+    /// is in. In the place of `beyond`, and of `along` and `ground_m` of the waves. Default: none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layers: Vec<GroundLayer>,
     /// Plane waves that arrive from beyond. Default: none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub incident: Vec<IncidentWave>,
+}
+
+/// A layer of level ground.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct GroundLayer {
+    /// Its material.
+    pub material: String,
+    /// A place on its upper border [m]; only its height counts.
+    pub top_m: [f64; 3],
 }
 
 /// A plane wave that arrives from beyond quiet faces.

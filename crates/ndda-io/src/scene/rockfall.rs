@@ -17,6 +17,10 @@ pub struct Rockfall {
     /// Parts of the terrain with ground of their own; where they overlap, the later one counts. Default: none.
     #[serde(default)]
     pub zones: Vec<Zone>,
+    /// File of a grid with a class of ground, a whole number, for each cell, in the coordinates of the terrain's file: an ESRI ASCII grid (`.asc`) or another of the
+    /// terrain's formats; path relative to the scene file. Zones name their `classes`. Default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class_grid: Option<String>,
     /// What falls.
     pub boulders: Boulders,
     /// Where boulders start; one after the other takes its boulder, as often as its `share` says.
@@ -82,15 +86,19 @@ pub struct GroundLaw {
     pub friction_deg: Scatter,
 }
 
-/// A part of the terrain with ground of its own.
+/// A part of the terrain with ground of its own, within an outline or of some classes of `class_grid`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Zone {
     /// Its name.
     pub name: String,
-    /// Corners of its outline on the map (x, y) [m]; a triangle of the terrain is in the zone if its middle is.
+    /// Corners of its outline on the map (x, y) [m]; a triangle of the terrain is in the zone if its middle is. Default: none, it has `classes`.
+    #[serde(default)]
     pub outline_m: Vec<[f64; 2]>,
+    /// Classes of `class_grid`; a triangle of the terrain is in the zone if its middle is in a cell of one of them. Default: none, it has an outline.
+    #[serde(default)]
+    pub classes: Vec<u32>,
     /// Coefficient of restitution e from 0 to 1.
     pub restitution: Scatter,
     /// Friction angle φ between boulder and ground [°].

@@ -8,12 +8,14 @@ const STILL_COLOUR = [226, 223, 217];
 const bytesOf = (hex) => [0, 2, 4].map((i) => parseInt(hex.slice(i, i + 2), 16));
 const VIRIDIS_BYTES = VIRIDIS.map(bytesOf);
 
-/** Colour of a part from 0 to 1. */
-function viridis(part) {
-  const place = Math.min(Math.max(part, 0), 1) * (VIRIDIS.length - 1);
-  const low = Math.min(Math.floor(place), VIRIDIS.length - 2);
-  return VIRIDIS_BYTES[low].map((c, i) => c + (place - low) * (VIRIDIS_BYTES[low + 1][i] - c));
+/** Colour of a part from 0 to 1 on a scale of colours at even places. */
+function between(scale, part) {
+  const place = Math.min(Math.max(part, 0), 1) * (scale.length - 1);
+  const low = Math.min(Math.floor(place), scale.length - 2);
+  return scale[low].map((c, i) => c + (place - low) * (scale[low + 1][i] - c));
 }
+
+const viridis = (part) => between(VIRIDIS_BYTES, part);
 
 /** A muted colour per block; neighbours in number are far apart in hue. */
 function blockColour(block) {

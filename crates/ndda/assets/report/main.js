@@ -44,16 +44,20 @@ async function showBlocks(byId, data, charts) {
   // What moved is what a reader looks for first.
   byId("colour").value = motion.about.moved.top > 0 ? 1 : 0;
   byId("paths").checked = viewer.tracks.count <= MOST_PATHS;
+  const bolts = () => (viewer.bolts ? byId("bolts").value : "hidden");
   const player = new Player(byId, motion.about.times_s, (frame) => {
     const choice = choices[byId("colour").value];
-    viewer.show(frame, choice, Number(byId("factor").value), { rest: byId("rest").value, paths: byId("paths").checked });
+    viewer.show(frame, choice, Number(byId("factor").value), { rest: byId("rest").value, paths: byId("paths").checked, bolts: bolts() });
     charts.setTime(motion.about.times_s[frame]);
   });
   const recolour = () => {
-    showBar(byId, choices[byId("colour").value]);
+    const choice = choices[byId("colour").value];
+    showBar(byId, "bar", choice.values ? { ...choice, colours: VIRIDIS } : null);
+    if (viewer.bolts) showBar(byId, "bolt-bar", boltBar(viewer, bolts()));
     player.show();
   };
-  for (const id of ["colour", "factor", "rest", "paths"]) byId(id).addEventListener("change", recolour);
+  const tools = ["colour", "factor", "rest", "paths", ...(viewer.bolts ? ["bolts"] : [])];
+  for (const id of tools) byId(id).addEventListener("change", recolour);
   for (const button of document.querySelectorAll("[data-view]")) {
     button.addEventListener("click", () => viewer.look(button.dataset.view));
   }
@@ -64,7 +68,9 @@ async function showBlocks(byId, data, charts) {
   byId("save").addEventListener("click", () => {
     const factor = Number(byId("factor").value);
     const below = byId("time").textContent + (factor === 1 ? "" : `, displacements × ${factor}`);
-    overlay.save(data.title, below, choices[byId("colour").value]);
+    const choice = choices[byId("colour").value];
+    const bars = [choice.values ? { ...choice, colours: VIRIDIS } : null, viewer.bolts ? boltBar(viewer, bolts()) : null];
+    overlay.save(data.title, below, bars.filter(Boolean));
   });
   for (const button of document.querySelectorAll("[data-time]")) {
     button.addEventListener("click", () => player.jumpTo(Number(button.dataset.time)));
@@ -83,20 +89,33 @@ async function showBlocks(byId, data, charts) {
   return player;
 }
 
-/** The bar of colours beside the blocks, its range the same for all frames. */
-function showBar(byId, choice) {
-  byId("bar").hidden = !choice.values;
-  if (!choice.values) return;
-  const { top, largest } = choice.range;
-  const stops = VIRIDIS.map((hex) => `#${hex}`);
-  byId("bar-title").textContent = choice.label;
-  byId("bar-colours").style.background = `linear-gradient(to right, ${stops})`;
-  byId("bar-numbers").replaceChildren(...scaleEnds(choice).map((text) => {
+/** A bar of colours beside the blocks, its range the same for all frames; none for no choice. */
+function showBar(byId, id, choice) {
+  byId(id).hidden = !choice;
+  if (!choice) return;
+  const stops = choice.colours.map((hex) => `#${hex}`);
+  byId(`${id}-title`).textContent = choice.label;
+  byId(`${id}-colours`).style.background = `linear-gradient(to right, ${choice.words ? steps(stops) : stops})`;
+  byId(`${id}-numbers`).replaceChildren(...(choice.words || scaleEnds(choice)).map((text) => {
     const number = document.createElement("span");
     number.textContent = text;
     return number;
   }));
-  byId("bar-numbers").title = top < largest ? `largest: ${withUnit(largest, choice.unit)}` : "";
+  const { top, largest } = choice.range || {};
+  byId(`${id}-numbers`).title = top < largest ? `largest: ${withUnit(largest, choice.unit)}` : "";
+}
+
+/** Stops of colours that do not run into each other. */
+function steps(stops) {
+  const at = (i) => `${(100 * i) / stops.length}%`;
+  return stops.flatMap((stop, i) => [`${stop} ${at(i)}`, `${stop} ${at(i + 1)}`]);
+}
+
+/** What the bar of the bolts shows. */
+function boltBar(viewer, way) {
+  if (way === "hidden") return null;
+  if (way === "state") return { label: "state of bolts", colours: STATE_COLOURS, words: STATE_NAMES };
+  return { ...viewer.bolts.scale(way), colours: FORCE_COLOURS };
 }
 
 /** Least and largest value of a scale of colours, in words. */

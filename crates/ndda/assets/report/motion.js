@@ -21,6 +21,7 @@ class Motion {
     const codes = (name) => sums(typed(Uint8Array, name), this.frames);
     this.moved = codes("moved");
     this.fields = description.fields.map((field) => ({ ...field, codes: codes(field.array) }));
+    this.bolts = description.bolts ? typed(Float32Array, "bolts") : null;
     this.still = new Set(description.still);
   }
 

@@ -79,7 +79,7 @@ class Overlay {
   }
 
   /** The blocks as they are seen now, below a title, as a PNG file for the reader. */
-  save(title, below, choice) {
+  save(title, below, bars) {
     const ratio = this.viewer.renderer.getPixelRatio();
     const [width, height, strip] = [this.box.clientWidth, this.box.clientHeight, 52];
     const sheet = document.createElement("canvas");
@@ -96,7 +96,7 @@ class Overlay {
     ctx.fillText(below, 16, 39, width - 32);
     ctx.drawImage(this.viewer.renderer.domElement, 0, strip, width, height);
     ctx.drawImage(this.canvas, 0, strip, width, height);
-    if (choice.values) this.drawColours(ctx, 16, height + strip - 16, choice);
+    bars.forEach((bar, i) => this.drawColours(ctx, 16, height + strip - 16 - 58 * i, bar));
     const link = document.createElement("a");
     link.download = `${title.replace(/[^\p{L}\p{N}]+/gu, "_").slice(0, 60) || "blocks"}.png`;
     link.href = sheet.toDataURL("image/png");
@@ -104,13 +104,19 @@ class Overlay {
   }
 
   drawColours(ctx, left, bottom, choice) {
+    const { colours, words } = choice;
     const scale = ctx.createLinearGradient(left, 0, left + 200, 0);
-    VIRIDIS.forEach((hex, i) => scale.addColorStop(i / (VIRIDIS.length - 1), `#${hex}`));
+    const count = words ? colours.length : colours.length - 1;
+    colours.forEach((hex, i) => {
+      scale.addColorStop(i / count, `#${hex}`);
+      // Colours of states do not run into each other.
+      if (words) scale.addColorStop((i + 1) / count, `#${hex}`);
+    });
     ctx.fillStyle = scale;
     ctx.fillRect(left, bottom - 26, 200, 10);
     Object.assign(ctx, { fillStyle: this.colour(), textBaseline: "alphabetic", textAlign: "left" });
     ctx.fillText(choice.label, left, bottom - 33);
-    const [low, high] = scaleEnds(choice);
+    const [low, high] = words ? [words[0], words.at(-1)] : scaleEnds(choice);
     ctx.fillText(low, left, bottom);
     ctx.textAlign = "right";
     ctx.fillText(high, left + 200, bottom);

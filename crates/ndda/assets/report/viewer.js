@@ -21,6 +21,7 @@ class Viewer {
     this.addLight();
     this.addBlocks();
     this.addPaths();
+    this.addBolts();
     this.controls = new THREE.OrbitControls(this.camera, this.renderer.domElement);
     this.controls.addEventListener("change", () => this.draw());
     // A camera that somebody has moved stays where it is when the window changes.
@@ -79,6 +80,13 @@ class Viewer {
     this.scene.add(this.paths);
   }
 
+  addBolts() {
+    const { motion } = this;
+    if (!motion.bolts) return;
+    this.bolts = new Bolts(motion, motion.bolts, Math.hypot(...motion.about.extent_m));
+    this.scene.add(this.bolts.mesh);
+  }
+
   /** Draws the ways up to a frame, displacements times `factor`. */
   showPaths(frame, factor, areShown) {
     const { count, centres } = this.tracks;
@@ -117,7 +125,7 @@ class Viewer {
   }
 
   /** Puts all blocks where they are in a frame, displacements times `factor`, coloured by a choice; `rest` says how blocks at rest look. */
-  show(frame, choice, factor, { rest, paths }) {
+  show(frame, choice, factor, { rest, paths, bolts }) {
     this.makeGlass(rest === "glass");
     const { motion, positions } = this;
     const moved = motion.displacements(frame);
@@ -134,6 +142,7 @@ class Viewer {
     }
     this.paint(choice.values ? choice.values(frame) : null, choice, rest === "plain");
     this.showPaths(frame, factor, paths);
+    if (this.bolts) this.bolts.show(frame, factor, bolts);
     for (const changed of [this.corners, this.colours, this.nodes]) {
       changed.needsUpdate = true;
     }

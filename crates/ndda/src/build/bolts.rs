@@ -91,6 +91,14 @@ pub(crate) fn entry(scene: &Scene, name: &str) -> usize {
     scene.bolts.iter().position(is_of).unwrap_or(0)
 }
 
+/// Head and end of each bolt that is there in any stage, in the coordinates of the blocks.
+///
+/// # Errors
+/// Rows of bolts that meet no block.
+pub(crate) fn lines(scene: &Scene, blocks: &BlockSet) -> Result<Vec<[Vec3; 2]>, Vec<Fault>> {
+    Ok(bolts(scene, blocks, 0)?.into_iter().map(|bolt| [bolt.from_m, bolt.to_m]).collect())
+}
+
 type Place = (String, Vec3, Vec3);
 
 fn places(bolt: &Bolt, blocks: &BlockSet, absent: &[BlockId]) -> Result<Vec<Place>, String> {

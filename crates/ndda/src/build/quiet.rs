@@ -12,11 +12,9 @@ use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{BodyKind, BodySetup, QuietSetup};
 
+use super::free_field::{Ground, Parts, first_met, upwards};
 use super::regions::{in_region, outward_triangles, region_nodes};
 use super::{Fault, ON_PLANE, vec3};
-
-/// Faces by block.
-type Parts = Vec<(BlockId, Vec<[u32; 3]>)>;
 
 /// Gives bodies their quiet faces.
 pub(super) fn add_quiet(
@@ -37,6 +35,19 @@ pub(super) fn add_quiet(
                 continue;
             }
         };
+        let known = |(block, triangles): &&(BlockId, Vec<[u32; 3]>)| {
+            let known: HashSet<_> =
+                bodies[block.index()].quiet.iter().flat_map(|known| &known.faces.triangles).collect();
+            triangles.iter().any(|triangle| known.contains(triangle))
+        };
+        if let Some((block, _)) = parts.iter().find(known) {
+            let message = format!(
+                "faces of block `{}` are quiet already by an entry before this one: give all their waves in one entry",
+                blocks.names[block.index()]
+            );
+            faults.push(Fault::new(path("on"), message));
+            continue;
+        }
         if let Some((block, _)) = parts.iter().find(|(b, _)| bodies[b.index()].kind != BodyKind::Elastic) {
             let name = &blocks.names[block.index()];
             let message =
@@ -47,6 +58,20 @@ pub(super) fn add_quiet(
         let named =
             quiet.beyond.as_ref().and_then(|name| scene.materials.iter().position(|m| m.name == *name));
         let named = named.and_then(|index| materials[index].clone());
+        if !quiet.layers.is_empty() {
+            let material = |name: &str| {
+                let index = scene.materials.iter().position(|material| material.name == name);
+                index.and_then(|index| materials[index].clone())
+            };
+            let ground = Ground { scene, blocks, folder };
+            match ground.beside(quiet, &parts, &material) {
+                Ok(found) => {
+                    found.into_iter().for_each(|(block, setup)| bodies[block.index()].quiet.push(setup))
+                }
+                Err((field, message)) => faults.push(Fault::new(path(&field), message)),
+            }
+            continue;
+        }
         let mut waves = Vec::new();
         for (k, wave) in quiet.incident.iter().enumerate() {
             let beyond = named.clone().unwrap_or_else(|| bodies[parts[0].0.index()].material.clone());
@@ -58,15 +83,6 @@ pub(super) fn add_quiet(
         for (block, triangles) in parts {
             let body = &mut bodies[block.index()];
             let beyond = named.clone().unwrap_or_else(|| body.material.clone());
-            let known: HashSet<_> = body.quiet.iter().flat_map(|known| &known.faces.triangles).collect();
-            if triangles.iter().any(|triangle| known.contains(triangle)) {
-                let message = format!(
-                    "faces of block `{}` are quiet already by an entry before this one: give all their waves in one entry",
-                    blocks.names[block.index()]
-                );
-                faults.push(Fault::new(path("on"), message));
-                continue;
-            }
             body.quiet.push(QuietSetup { faces: QuietFaces { triangles, waves: waves.clone() }, beyond });
         }
     }
@@ -122,12 +138,6 @@ fn level_groups(
     Ok(groups)
 }
 
-/// Against gravity, or along z without.
-fn upwards(scene: &Scene) -> Vec3 {
-    let up = -vec3(scene.gravity_m_s2);
-    if up.norm() > 0.0 { up.normalize() } else { Vec3::z() }
-}
-
 /// A wave of a scene, and its echo from level ground.
 fn arriving(
     scene: &Scene,
@@ -170,15 +180,6 @@ fn arriving(
         waves.push(PlaneWave { motion, along: -along, from: from + 2.0 * height * along, moves });
     }
     Ok(waves)
-}
-
-/// The place of the faces that a wave meets first.
-fn first_met(blocks: &BlockSet, parts: &Parts, along: &Vec3) -> Vec3 {
-    let nodes = parts.iter().flat_map(|(block, triangles)| {
-        let first = blocks.nodes_of(*block).start;
-        triangles.iter().flatten().map(move |n| blocks.rest_position[first + *n as usize])
-    });
-    nodes.min_by(|a, b| a.dot(along).total_cmp(&b.dot(along))).unwrap_or_else(Vec3::zeros)
 }
 
 /// The wave in a motion that is it and its echo after a time: a(t) = w(t) − a(t − T), on rows of which a whole number makes T.

@@ -1,6 +1,6 @@
 //! Curves over time: the columns of the history, grouped by what they are.
 
-use ndda_io::results::Table;
+use ndda_io::results::{BoltForces, Table};
 use serde::Serialize;
 
 use super::motion::Motion;
@@ -12,6 +12,8 @@ const MOST_ROWS: usize = 2000;
 const MOST_MONITORS: usize = 12;
 /// Blocks whose displacement has a curve.
 const MOST_BLOCKS: usize = 6;
+/// Bolts whose tension has a curve.
+const MOST_BOLTS: usize = 6;
 const TIME: &str = "time_s";
 
 /// Curves of a page.
@@ -115,6 +117,27 @@ impl Charts {
             let title = "Displacement of the blocks that went farthest".into();
             let time_s = Some(motion.times_s.clone());
             self.charts.insert(0, Chart { title, unit: "m", is_log: false, time_s, curves });
+        }
+        self
+    }
+}
+
+impl Charts {
+    /// With the tensions of the bolts that carry most, by the frames of a run.
+    pub fn with_bolts(mut self, forces: &BoltForces) -> Self {
+        let most = |curve: &[f64]| curve.iter().map(|force| force.abs()).fold(0.0, f64::max);
+        let mut bolts: Vec<_> = forces.bolts.iter().filter(|(_, curve)| most(curve) > 0.0).collect();
+        bolts.sort_by(|(_, a), (_, b)| most(b).total_cmp(&most(a)));
+        let curve = |(name, curve): &(String, Vec<f64>)| Curve {
+            label: name.clone(),
+            values: curve.iter().map(|force_n| (1e-3 * force_n) as f32).collect(),
+        };
+        let curves: Vec<Curve> = bolts.into_iter().take(MOST_BOLTS).map(curve).collect();
+        if !curves.is_empty() {
+            let (title, time_s) =
+                ("Tension of the bolts that carry most".into(), Some(forces.times_s.clone()));
+            let place = self.charts.len().min(1);
+            self.charts.insert(place, Chart { title, unit: "kN", is_log: false, time_s, curves });
         }
         self
     }
@@ -224,6 +247,20 @@ mod tests {
         assert_eq!(found, expected);
         assert!(charts.charts[0].is_log && charts.charts[0].curves[0].values[0].is_nan());
         assert!(charts.notes.is_empty());
+    }
+
+    #[test]
+    fn bolts_that_carry_most_have_curves() {
+        let bolts = (0..9).map(|k| (format!("b{k}"), vec![f64::NAN, -1e3 * f64::from(k)])).collect();
+        let forces = BoltForces { times_s: vec![0.0, 1.0], bolts };
+        let charts = Charts::default().with_bolts(&forces);
+        let curves = &charts.charts[0].curves;
+        assert_eq!(
+            curves.iter().map(|c| c.label.as_str()).collect::<Vec<_>>(),
+            ["b8", "b7", "b6", "b5", "b4", "b3"]
+        );
+        assert!(curves[0].values[0].is_nan() && curves[0].values[1] == -8.0);
+        assert!(Charts::default().with_bolts(&BoltForces::default()).charts.is_empty());
     }
 
     #[test]

@@ -2,13 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::folder::{CHECKPOINT, FIELDS_INDEX, HISTORY, SUMMARY};
-use ndda_io::results::{self, ListedFrame, Table};
+use ndda_io::folder::{BOLTS, CHECKPOINT, FIELDS_INDEX, HISTORY, SUMMARY};
+use ndda_io::results::{self, BoltForces, ListedFrame, Table};
 use ndda_io::summary::Summary;
 
 use super::error::ReportError;
 use crate::certify::certificate::Certificate;
 use crate::study::record;
+use crate::view3d::bolts;
 
 /// Results of a run, but for the frames themselves.
 pub struct Input {
@@ -18,6 +19,10 @@ pub struct Input {
     pub history: Table,
     /// Its frames; none where it wrote no fields.
     pub frames: Vec<ListedFrame>,
+    /// Its frames of bolts; none where it has no bolts.
+    pub bolt_frames: Vec<ListedFrame>,
+    /// What its bolts carry over time.
+    pub bolt_forces: BoltForces,
     /// Error bars of its answers; none where it was not certified.
     pub certificate: Option<Certificate>,
 }
@@ -63,6 +68,12 @@ impl Input {
             summary: results::summary(&folder.join(SUMMARY))?,
             history: results::history(&history)?,
             frames: if index.is_file() { results::frame_list(&index)? } else { Vec::new() },
+            bolt_frames: bolts::listed(folder)?,
+            bolt_forces: if has(BOLTS) {
+                results::bolt_forces(&folder.join(BOLTS))?
+            } else {
+                BoltForces::default()
+            },
             certificate,
         })
     }

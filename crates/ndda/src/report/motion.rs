@@ -5,6 +5,7 @@ use ndda_mesh::Vec3;
 use ndda_mesh::geometry::Aabb;
 use serde::Serialize;
 
+use super::bolts::{BoltDescription, BoltMotion};
 use super::error::ReportError;
 use super::packed::{Codes, Packed, PackedArray};
 use crate::field::{Field, Place, fields};
@@ -32,6 +33,8 @@ pub struct Motion {
     fields: Vec<(Field, Codes)>,
     /// The box that holds all blocks at all times.
     extent: Aabb,
+    /// Bolts.
+    pub bolts: BoltMotion,
 }
 
 /// Description of a motion for the page, beside the numbers themselves.
@@ -50,6 +53,8 @@ pub struct Description {
     absent: Vec<Vec<u32>>,
     moved: Range,
     fields: Vec<Colour>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bolts: Option<BoltDescription>,
     arrays: Vec<PackedArray>,
 }
 
@@ -71,11 +76,15 @@ struct Colour {
 }
 
 impl Motion {
-    /// Reads frames, at most `most` of them or as many as a page can carry.
+    /// Reads frames and those of bolts, at most `most` of them or as many as a page can carry.
     ///
     /// # Errors
     /// [`ReportError`] when a frame is damaged or does not fit the first.
-    pub fn read(listed: &[ListedFrame], most: Option<usize>) -> Result<Self, ReportError> {
+    pub fn read(
+        listed: &[ListedFrame],
+        bolt_frames: &[ListedFrame],
+        most: Option<usize>,
+    ) -> Result<Self, ReportError> {
         let first = results::frame(&listed[0].path)?;
         let surface = Surface::new(&first);
         let fields = fields(&first);
@@ -84,16 +93,17 @@ impl Motion {
         let shown = thinned(listed.len(), most.unwrap_or(fitting.max(2)));
         let start: Vec<Vec3> = surface.nodes.iter().map(|&n| first.points[n as usize]).collect();
         let (mut moved, mut values) = (Vec::new(), vec![Vec::new(); fields.len()]);
+        let mut bolts = BoltMotion::default();
         let (mut extent, mut times_s, mut absent) = (Aabb::empty(), Vec::new(), Vec::new());
         for index in shown {
             let ListedFrame { time_s, path } = &listed[index];
             let frame = results::frame(path)?;
             same_blocks(path, &first, &frame, &fields)?;
-            let now = surface.nodes.iter().map(|&n| frame.points[n as usize]);
-            now.clone().for_each(|x| extent.grow(&x));
-            moved.push(
-                now.zip(&start).flat_map(|(x, x0)| <[f64; 3]>::from(x - x0)).map(|u| u as f32).collect(),
-            );
+            let now: Vec<Vec3> = surface.nodes.iter().map(|&n| frame.points[n as usize]).collect();
+            now.iter().for_each(|x| extent.grow(x));
+            bolts.push(bolt_frames, (index, *time_s), &surface, [&start, &now])?;
+            let displacements = now.iter().zip(&start).map(|(x, x0)| x - x0);
+            moved.push(displacements.flat_map(<[f64; 3]>::from).map(|u| u as f32).collect());
             for (field, values) in fields.iter().zip(&mut values) {
                 values.extend(field.array_of(&frame).map(|array| field.values(array, &surface)));
             }
@@ -105,7 +115,7 @@ impl Motion {
         }
         let fields = fields.into_iter().zip(&values).map(|(field, values)| (field, Codes::new(values)));
         let (moved, fields) = (Codes::new(&moved), fields.collect());
-        Ok(Self { times_s, start, moved, absent, fields, surface, extent })
+        Ok(Self { times_s, start, moved, absent, fields, surface, extent, bolts })
     }
 
     /// The page's description of the motion, and the numbers as a text.
@@ -118,6 +128,8 @@ impl Motion {
         packed.add_u32("blocks", self.surface.blocks.iter().copied());
         packed.add_u32("edges", self.surface.edges.iter().flatten().copied());
         packed.add_codes("moved", &self.moved);
+        let (bolts, numbers) = self.bolts.describe(&origin).unzip();
+        packed.add_f32("bolts", numbers.unwrap_or_default());
         let lengths = self.largest_motions();
         let farthest = lengths.iter().copied().fold(0.0, f64::max);
         let colour = |(field, codes): &(Field, Codes)| {
@@ -136,6 +148,7 @@ impl Motion {
             absent: self.absent.clone(),
             moved: Range { least: self.moved.least, largest: self.moved.largest, top: farthest as f32 },
             fields,
+            bolts,
             arrays: packed.arrays.drain(..).collect(),
         };
         (description, packed.text())

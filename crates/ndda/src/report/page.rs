@@ -4,6 +4,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use ndda_io::summary::{StageEnd, Summary};
 use serde::Serialize;
 
+use super::bolts;
 use super::certificate;
 use super::charts::Charts;
 use super::input::Input;
@@ -14,10 +15,11 @@ const STYLES: [&str; 2] =
     [include_str!("../../assets/vendor/uplot.min.css"), include_str!("../../assets/report/report.css")];
 const DRAWING: [&str; 2] =
     [include_str!("../../assets/vendor/uplot.min.js"), include_str!("../../assets/report/charts.js")];
-const BLOCKS: [&str; 5] = [
+const BLOCKS: [&str; 6] = [
     include_str!("../../assets/vendor/three.min.js"),
     include_str!("../../assets/report/motion.js"),
     include_str!("../../assets/report/colours.js"),
+    include_str!("../../assets/report/bolts.js"),
     include_str!("../../assets/report/viewer.js"),
     include_str!("../../assets/report/overlay.js"),
 ];
@@ -38,7 +40,8 @@ struct Data<'a> {
 /// The whole page.
 pub fn page(input: &Input, motion: Option<&Motion>) -> String {
     let summary = &input.summary;
-    let charts = Charts::new(&input.history).with_motion(motion, &names_of(summary));
+    let charts =
+        Charts::new(&input.history).with_motion(motion, &names_of(summary)).with_bolts(&input.bolt_forces);
     let (description, numbers) = motion.map(Motion::describe).unzip();
     let (title, block_names) = (summary.title.as_str(), names_of(summary));
     let data = json(&Data { title, charts: &charts, motion: description, block_names });
@@ -60,6 +63,7 @@ pub fn page(input: &Input, motion: Option<&Motion>) -> String {
                     div.columns.even { (sections::stages(summary)) (sections::monitors(summary)) }
                     (sections::construction(summary))
                     (sections::verdicts(summary))
+                    (bolts::table(summary))
                     (sections::blocks(summary))
                 }
                 (sections::footer(summary))
@@ -151,6 +155,16 @@ fn player(motion: &Motion, all: usize, stages: &[StageEnd]) -> Markup {
                         }
                     }
                 }
+                @if !motion.bolts.is_empty() {
+                    label {
+                        "Bolts "
+                        select #bolts {
+                            @for (way, name) in [("force", "tension"), ("yield", "share of yield"), ("state", "state"), ("hidden", "hidden")] {
+                                option value=(way) { (name) }
+                            }
+                        }
+                    }
+                }
                 label { input #paths type="checkbox"; " Paths of block centres" }
                 label { input #whole type="checkbox"; " Whole model" }
                 span.views {
@@ -161,7 +175,12 @@ fn player(motion: &Motion, all: usize, stages: &[StageEnd]) -> Markup {
                 }
             }
             div #view tabindex="0" aria-label="Blocks in 3D: drag to turn, wheel to zoom, right button to shift" {
-                div #bar { span #bar-title {} div #bar-colours {} div #bar-numbers {} }
+                div .bars {
+                    @if !motion.bolts.is_empty() {
+                        div #bolt-bar .bar { span #bolt-bar-title {} div #bolt-bar-colours {} div #bolt-bar-numbers {} }
+                    }
+                    div #bar .bar { span #bar-title {} div #bar-colours {} div #bar-numbers {} }
+                }
                 output #picked {}
             }
             @if !stages.is_empty() {
@@ -219,7 +238,7 @@ mod tests {
         for script in BLOCKS.iter().chain(&DRAWING).chain([&MAIN]) {
             assert!(!script.contains("</script") && !script.contains("<!--"));
         }
-        for own in [MAIN, BLOCKS[1], BLOCKS[2], BLOCKS[3], DRAWING[1], STYLES[1]] {
+        for own in [MAIN, BLOCKS[1], BLOCKS[2], BLOCKS[3], BLOCKS[4], BLOCKS[5], DRAWING[1], STYLES[1]] {
             assert!(!own.contains("http") && !own.contains("url("), "{own}");
         }
     }

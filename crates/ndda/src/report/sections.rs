@@ -337,7 +337,7 @@ fn number(value: f64) -> String {
 }
 
 /// A number with two or three digits.
-fn brief(value: f64) -> String {
+pub(super) fn brief(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
         0.01..1000.0 => format!("{value:.3}").trim_end_matches('0').trim_end_matches('.').to_string(),

@@ -49,7 +49,8 @@ impl Draw {
         let (low, high) = (below(&distribution, least), below(&distribution, most));
         // In (0, 1), where every quantile is finite.
         let u = self.stream(of, part).uniform() + 2f64.powi(-54);
-        quantile(&distribution, low + u * (high - low))
+        // Of a distribution that has next to nothing within the limits, the nearest is taken.
+        quantile(&distribution, low + u * (high - low)).clamp(least, most)
     }
 
     /// A turn, uniform over all of them: a unit quaternion of four normal numbers (Muller 1959).

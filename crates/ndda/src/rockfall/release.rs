@@ -57,7 +57,13 @@ pub(super) fn start(
     let on_map = || format!("({}, {})", at[0], at[1]);
     let (ground_m, slope) = terrain
         .at(at)
-        .ok_or_else(|| format!("the terrain has no height at {}: move the release onto it", on_map()))?;
+        .ok_or_else(|| {
+            let [[x0, y0], [x1, y1]] = terrain.bounds_m();
+            format!(
+                "the terrain, x from {x0} to {x1} m and y from {y0} to {y1} m, has no height at {}: move the release onto it, or check the terrain's coordinates",
+                on_map()
+            )
+        })?;
     let flat = Vec3::new(at[0], at[1], ground_m);
     if Cells::below(terrain, &flat, boulder.radius_m).is_none() {
         let radius_m = boulder.radius_m;

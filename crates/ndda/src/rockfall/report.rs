@@ -8,6 +8,9 @@ use super::spread::Spread;
 use crate::columns::columns;
 use crate::numbers::counted;
 
+/// Classes listed at most.
+const LISTED: usize = 8;
+
 impl fmt::Display for Outcome {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&text(self))
@@ -28,7 +31,16 @@ impl fmt::Display for Model {
             counted(rockfall.zones.len(), "zone", "zones"),
             counted(rockfall.lines.len(), "line", "lines"),
             self.step_s()
-        )
+        )?;
+        for (class, cells) in self.unnamed.iter().take(LISTED) {
+            let cells = counted(*cells, "cell", "cells");
+            write!(f, "\nclass {class}, of {cells}, belongs to no zone: it has `ground`")?;
+        }
+        if self.unnamed.len() > LISTED {
+            write!(f, "\nand {} more", self.unnamed.len() - LISTED)
+        } else {
+            Ok(())
+        }
     }
 }
 

@@ -6,6 +6,15 @@ use ndda_io::mesh::terrain_grid::{self, TerrainGrid};
 use ndda_io::scene::{Ground, Zone};
 use ndda_mesh::Vec3;
 
+use super::classes::Classes;
+
+/// Heights that are less far apart are none of ground [m].
+const LEAST_STEP_M: f64 = 1e-3;
+/// Coordinates beyond this are none of a map in metres [m].
+const MOST_M: f64 = 1e9;
+/// No height of ground is as large [m].
+const MOST_HEIGHT_M: f64 = 1e5;
+
 /// Heights on a grid, and the zone of each triangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Terrain {
@@ -26,13 +35,17 @@ impl Terrain {
     ///
     /// # Errors
     /// What is wrong with the file, or that no cell has a height at all four corners.
-    pub fn new(ground: &Ground, folder: &Path, zones: &[Zone]) -> Result<Self, String> {
+    pub fn new(
+        ground: &Ground,
+        folder: &Path,
+        (zones, classes): (&[Zone], Option<&Classes>),
+    ) -> Result<Self, String> {
         let grid = match ground {
             Ground::File { file, origin_m, sample_m } => {
                 let read = terrain_grid::read_sampled(&folder.join(file), *sample_m);
                 let mut grid = read.map_err(|error| error.to_string())?;
                 grid.origin_m = [0, 1].map(|i| grid.origin_m[i] - origin_m[i]);
-                grid
+                return Self::of_grid(&grid, zones, classes).map_err(|problem| format!("{file}: {problem}"));
             }
             Ground::Heights { origin_m, step_m, heights_m } => {
                 let some = |row: &Vec<f64>| row.iter().copied().map(Some).collect();
@@ -40,10 +53,11 @@ impl Terrain {
                 TerrainGrid { origin_m: *origin_m, step_m: *step_m, heights_m }
             }
         };
-        Self::of_grid(&grid, zones)
+        Self::of_grid(&grid, zones, classes)
     }
 
-    fn of_grid(grid: &TerrainGrid, zones: &[Zone]) -> Result<Self, String> {
+    fn of_grid(grid: &TerrainGrid, zones: &[Zone], classes: Option<&Classes>) -> Result<Self, String> {
+        sound(grid)?;
         let size = [grid.heights_m.first().map_or(0, Vec::len), grid.heights_m.len()];
         let heights_m = grid.heights_m.iter().flatten().map(|z| z.unwrap_or(f64::NAN)).collect();
         let mut terrain =
@@ -54,7 +68,7 @@ impl Terrain {
                 "no cell of the grid has a height at all four corners: give a grid with fewer gaps".into()
             );
         }
-        terrain.zones = terrain.zones_of(zones);
+        terrain.zones = terrain.zones_of(zones, classes);
         Ok(terrain)
     }
 
@@ -145,8 +159,8 @@ impl Terrain {
         known.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(*z), b.max(*z)))
     }
 
-    /// The last zone whose outline the middle of a triangle is in.
-    fn zones_of(&self, zones: &[Zone]) -> Vec<[u16; 2]> {
+    /// The last zone whose outline the middle of a triangle is in, or of whose class its cell is.
+    fn zones_of(&self, zones: &[Zone], classes: Option<&Classes>) -> Vec<[u16; 2]> {
         let [nx, ny] = self.cells();
         let mut found = vec![[0; 2]; nx * ny];
         if zones.is_empty() {
@@ -156,12 +170,43 @@ impl Terrain {
             let (i, j) = ((k % nx) as f64, (k / nx) as f64);
             for (half, [u, v]) in [[2.0 / 3.0, 1.0 / 3.0], [1.0 / 3.0, 2.0 / 3.0]].into_iter().enumerate() {
                 let middle = self.map_m([i + u, j + v]);
-                let last = zones.iter().rposition(|zone| is_inside(&zone.outline_m, middle));
+                let class = classes.and_then(|classes| classes.at(middle));
+                let holds = |zone: &Zone| match class {
+                    _ if !zone.outline_m.is_empty() => is_inside(&zone.outline_m, middle),
+                    Some(class) => zone.classes.contains(&class),
+                    None => false,
+                };
+                let last = zones.iter().rposition(holds);
                 zones_of_cell[half] = last.map_or(0, |place| place as u16 + 1);
             }
         }
         found
     }
+}
+
+/// Refuses places and heights that no ground has, as a number in the place of a missing height is.
+fn sound(grid: &TerrainGrid) -> Result<(), String> {
+    let TerrainGrid { origin_m, step_m, heights_m } = grid;
+    if let Some(step_m) = step_m.iter().find(|step_m| !(LEAST_STEP_M..MOST_M).contains(*step_m)) {
+        return Err(format!("heights are {step_m:e} m apart: give a grid in metres"));
+    }
+    let counts = [heights_m.first().map_or(0, Vec::len), heights_m.len()];
+    let far = (0..2).flat_map(|i| [origin_m[i], origin_m[i] + step_m[i] * counts[i] as f64]);
+    if let Some(far_m) = far.into_iter().find(|x| !(-MOST_M..MOST_M).contains(x)) {
+        return Err(format!(
+            "the grid reaches {far_m:e} m on the map: give coordinates in metres, and origin_m for the point that is (0, 0)"
+        ));
+    }
+    for (j, row) in heights_m.iter().enumerate() {
+        let is_wrong = |z: &Option<f64>| z.is_some_and(|z| !(-MOST_HEIGHT_M..MOST_HEIGHT_M).contains(&z));
+        if let Some((i, z)) = row.iter().position(is_wrong).and_then(|i| Some((i, row[i]?))) {
+            let [x, y] = [origin_m[0] + i as f64 * step_m[0], origin_m[1] + j as f64 * step_m[1]];
+            return Err(format!(
+                "the height at ({x}, {y}) is {z:e} m, and no ground is: if it stands for a missing one, say so in the file (NODATA_value), else write metres"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// Whether a point is within an outline: an odd number of its edges is crossed on the way to the east.
@@ -186,7 +231,7 @@ mod tests {
     fn terrain(zones: &[Zone]) -> Terrain {
         let heights_m = vec![vec![0.0, 1.0, 3.0], vec![2.0, 5.0, 4.0]];
         let ground = Ground::Heights { origin_m: [10.0, 20.0], step_m: [2.0, 4.0], heights_m };
-        Terrain::new(&ground, Path::new("."), zones).expect("a grid")
+        Terrain::new(&ground, Path::new("."), (zones, None)).expect("a grid")
     }
 
     #[test]
@@ -212,6 +257,7 @@ mod tests {
         let zone = |name: &str, outline_m: Vec<[f64; 2]>| Zone {
             name: name.into(),
             outline_m,
+            classes: Vec::new(),
             restitution: Scatter::Always(0.5),
             friction_deg: Scatter::Always(30.0),
         };
@@ -219,5 +265,41 @@ mod tests {
         let west = vec![[0.0, 0.0], [12.0, 0.0], [12.0, 100.0], [0.0, 100.0]];
         let terrain = terrain(&[zone("all", all), zone("west", west)]);
         assert_eq!((terrain.zones_at(0, 0), terrain.zones_at(1, 0)), ([2, 2], [1, 1]));
+    }
+
+    #[test]
+    fn a_triangle_is_in_the_zone_of_the_class_of_the_cell_that_its_middle_is_in() {
+        let ground =
+            Ground::Heights { origin_m: [10.0, 20.0], step_m: [2.0, 4.0], heights_m: vec![vec![0.0; 3]; 2] };
+        // Cells of a metre, of class 1 west of x = 11, 2 up to 12, 7 up to 13, and none beyond.
+        let rows = vec![vec![Some(1.0), Some(2.0), Some(7.0)]; 6];
+        let grid = TerrainGrid { origin_m: [10.5, 19.5], step_m: [1.0; 2], heights_m: rows };
+        let classes = Classes::new(grid, &ground).unwrap();
+        let zone = |name: &str, classes: &[u32]| Zone {
+            name: name.into(),
+            outline_m: Vec::new(),
+            classes: classes.to_vec(),
+            restitution: Scatter::Always(0.5),
+            friction_deg: Scatter::Always(30.0),
+        };
+        let zones = [zone("scree", &[2, 3]), zone("rock", &[1])];
+        let terrain = Terrain::new(&ground, Path::new("."), (&zones, Some(&classes))).unwrap();
+        // Middles at 10 + 4/3 and 10 + 2/3, and at 12 + 4/3 and 12 + 2/3.
+        assert_eq!((terrain.zones_at(0, 0), terrain.zones_at(1, 0)), ([1, 2], [0, 0]));
+    }
+
+    #[test]
+    fn heights_and_coordinates_that_no_ground_has_are_refused_with_their_place() {
+        let refused = |origin: f64, step: f64, height: f64| {
+            let heights_m = vec![vec![0.0, 1.0], vec![height, 2.0]];
+            let ground = Ground::Heights { origin_m: [origin, 0.0], step_m: [step; 2], heights_m };
+            Terrain::new(&ground, Path::new("."), (&[], None)).err().unwrap_or_default()
+        };
+        assert_eq!(refused(1e7, 1.0, -9999.0), "");
+        assert!(refused(0.0, 2.0, -3.4028235e38).contains("at (0, 2) is -3.4028235e38 m"));
+        assert!(refused(1e18, 2.0, 0.0).contains("origin_m"));
+        assert!(
+            refused(0.0, 1e-9, 0.0).contains("apart") && refused(0.0, f64::INFINITY, 0.0).contains("apart")
+        );
     }
 }

@@ -20,7 +20,7 @@ fn slope(angle_deg: f64, columns: usize) -> Terrain {
     let fall = angle_deg.to_radians().tan();
     let row: Vec<f64> = (0..=columns).map(|i| -fall * i as f64).collect();
     let ground = Ground::Heights { origin_m: [0.0, 0.0], step_m: [1.0; 2], heights_m: vec![row; 41] };
-    Terrain::new(&ground, Path::new("."), &[]).expect("a grid")
+    Terrain::new(&ground, Path::new("."), (&[], None)).expect("a grid")
 }
 
 fn laws(restitution: f64, friction_deg: f64) -> Laws {
@@ -112,7 +112,7 @@ fn the_borders_of_triangles_of_a_plane_do_not_matter() {
         let row: Vec<f64> = (0..=60).map(|i| -fall * (f64::from(i) - shift)).collect();
         let ground =
             Ground::Heights { origin_m: [-shift, -0.21], step_m: [1.0; 2], heights_m: vec![row; 41] };
-        let terrain = Terrain::new(&ground, Path::new("."), &[]).expect("a grid");
+        let terrain = Terrain::new(&ground, Path::new("."), (&[], None)).expect("a grid");
         moved(&terrain, &boulder, start.clone(), &laws(0.1, friction_deg), 1.0).0.center
     });
     let gone = (ends[0] - start.center).norm();

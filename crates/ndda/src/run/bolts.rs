@@ -93,6 +93,7 @@ impl BoltTable {
         let line = |piece: &BoltPiece| BoltLine {
             ends_m: piece.ends_m.map(|end| (end + origin_m).into()),
             bolt: piece.bolt,
+            block: piece.block,
             axial_n: piece.axial_n,
             utilisation: piece.utilisation,
             slip_m: piece.slip_m,

@@ -8,6 +8,7 @@ use ndda_io::{WriteError, checkpoint};
 use ndda_solver::{Settled, Settling, StepError, StepReport};
 
 use super::outputs::{Course, Earlier, Outputs, SavedRun};
+use super::rest::{Resting, Watch};
 use super::{Recording, Run, RunError, error, write_results};
 use crate::judge::summary::{Ending, summarise};
 
@@ -19,15 +20,8 @@ pub(super) struct OnTheWay {
 }
 
 /// How far a scene has come on its way to rest, in words.
-pub fn progress(settled: &Settled, tolerance: f64) -> String {
-    let Settled { steps, speed_ratio } = settled;
-    match *speed_ratio {
-        left if left <= tolerance => format!("settled in {steps} steps"),
-        left if left.is_finite() => {
-            format!("settling: {steps} steps, speed {left:.1e} of the largest, until {tolerance:e}")
-        }
-        _ => format!("settling: {steps} steps, speeds still rise"),
-    }
+fn progress(settled: Settled, tolerance: f64) -> String {
+    Resting { stage: None, settled, tolerance, left_s: None }.to_string()
 }
 
 impl Run {
@@ -37,7 +31,7 @@ impl Run {
     }
 
     /// Brings the scene to rest, if it is to settle and has not yet.
-    pub(super) fn settle(&mut self, watch: &mut dyn FnMut(&Settled)) -> Result<(), RunError> {
+    pub(super) fn settle(&mut self, tell: &mut dyn FnMut(&Resting)) -> Result<(), RunError> {
         let scene = &self.model.loaded.scene;
         let Some(given) = scene.settle.filter(|_| !self.goes_on()) else { return Ok(()) };
         let (settle, stop) = (crate::build::settle(given), self.stop.clone());
@@ -47,10 +41,11 @@ impl Run {
             Some(way) => way.settling,
             None => self.model.simulation.begin_to_settle(&settle),
         };
+        let mut watch = Watch::new(None, given.tolerance);
         loop {
             let began = Instant::now();
             let mut goes_on = |settled: &Settled| {
-                watch(settled);
+                watch.step(settled, tell);
                 match stop.load(Ordering::Relaxed) || writes && began.elapsed() >= every {
                     true => std::ops::ControlFlow::Break(()),
                     false => std::ops::ControlFlow::Continue(()),
@@ -69,7 +64,7 @@ impl Run {
                 return Err(RunError::InterruptedWhileSettling);
             }
         }
-        Ok(self.log_line(&progress(&settling.settled(), given.tolerance))?)
+        Ok(self.log_line(&progress(settling.settled(), given.tolerance))?)
     }
 
     /// A checkpoint from which settling goes on.
@@ -119,7 +114,7 @@ impl Run {
         };
         let mut summary = summarise(simulation, &outputs.recorder, ending);
         summary.warnings.truncate(loaded.warnings.len());
-        unjudged(&mut summary, &progress(&settled, loaded.scene.settle.map_or(0.0, |s| s.tolerance)));
+        unjudged(&mut summary, &progress(settled, loaded.scene.settle.map_or(0.0, |s| s.tolerance)));
         write_results(&folder, &loaded.scene.output, &summary, &mut log)
     }
 }

@@ -9,6 +9,7 @@ use ndda_io::scene::Settle;
 use ndda_solver::{RunError, Settled, Simulation, StageStart, StepReport, TakeOverError};
 
 use super::outputs::Outputs;
+use super::rest::Watch;
 use super::stage_log::ends;
 use super::unless_stopped;
 use crate::build;
@@ -98,7 +99,15 @@ impl Course<'_> {
         }
         outputs.checkpoint(simulation).map_err(|error| RunError::Sink(Box::new(error)))?;
         let before = simulation.snapshot();
-        let mut watch = |_: &Settled| unless_stopped(self.stop);
+        let name = &self.loaded.scene.stages[outputs.stages.at - 1].name;
+        let mut rest = Watch::new(Some(name), settle.tolerance);
+        let mut watch = |settled: &Settled| {
+            // How it came to rest is said with the end of the stage.
+            if settled.speed_ratio > settle.tolerance {
+                rest.step(settled, &mut |resting| (self.tell)(&resting.to_string()));
+            }
+            unless_stopped(self.stop)
+        };
         let report = ndda_solver::unseen_step(simulation, &mut [&mut *outputs])?;
         let settled = simulation.settle_within(&build::settle(*settle), &mut watch)?;
         if self.stop.load(Ordering::Relaxed) {

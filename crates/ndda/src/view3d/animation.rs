@@ -177,6 +177,7 @@ fn failed(path: &Path, reason: &str) -> ViewError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::view3d::bolts::BoltColour;
     use crate::view3d::stage::Resting;
     use crate::view3d::testing::boxes;
 
@@ -206,6 +207,7 @@ mod tests {
             whole: true,
             magnify: 1.0,
             outlines: false,
+            bolts: BoltColour::Force,
             dark: false,
             size: (240, 180),
         }

@@ -3,6 +3,7 @@
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::Aabb;
 
+use super::bolts::Piece;
 use super::paint::{Theme, group_colour};
 use super::raster::Coat;
 use crate::frames::STILL;
@@ -18,7 +19,7 @@ const EQUAL: f64 = 0.1;
 const MOST_DIAGONALS: f64 = 30.0;
 
 /// Blocks at one time.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Moment {
     /// Time [s]; none before a run.
     pub time_s: Option<f64>,
@@ -28,6 +29,8 @@ pub struct Moment {
     pub absent: Vec<u32>,
     /// Values on the scale of colours, one to a node or a triangle; none where colours are of groups.
     pub values: Vec<f32>,
+    /// Bolts that are there, piece by piece.
+    pub bolts: Vec<Piece>,
 }
 
 /// Meaning of the colours.
@@ -90,6 +93,12 @@ impl Film {
             lengths.fold(0.0, f64::max)
         };
         MOST_DIAGONALS * diagonal_m / self.moments.iter().map(gone).fold(0.0, f64::max)
+    }
+
+    /// Most bolts that are there at a moment.
+    pub fn bolt_count(&self) -> usize {
+        let count = |moment: &Moment| moment.bolts.chunk_by(|a, b| a.bolt == b.bolt).count();
+        self.moments.iter().map(count).max().unwrap_or(0)
     }
 
     /// Block of each node of the surface.
@@ -220,18 +229,13 @@ mod tests {
         let start = vec![Vec3::zeros(); 6];
         let moment = |far: f64| {
             let x = |i: usize| Vec3::new(if i < 3 { 1.0 } else { far }, 0.0, 0.0);
-            Moment {
-                time_s: None,
-                positions: (0..6).map(x).collect(),
-                absent: Vec::new(),
-                values: Vec::new(),
-            }
+            Moment { positions: (0..6).map(x).collect(), ..Moment::default() }
         };
         assert_eq!(moving(&surface, &start, &[moment(0.009)]), [true, false]);
         assert_eq!(moving(&surface, &start, &[moment(0.011)]), [true, true]);
         // It counts that it was away, although it has come back.
         assert_eq!(moving(&surface, &start, &[moment(1.0), moment(0.0)]), [true, true]);
-        let still = Moment { time_s: None, positions: start.clone(), absent: Vec::new(), values: Vec::new() };
+        let still = Moment { positions: start.clone(), ..Moment::default() };
         assert_eq!(moving(&surface, &start, &[still]), [false, false]);
     }
 }

@@ -9,6 +9,7 @@ use ndda_mesh::Vec3;
 use ndda_mesh::geometry::Aabb;
 
 use super::Colour;
+use super::bolts::{self, Piece};
 use super::error::ViewError;
 use super::film::{Colouring, Film, Moment, moved, moving, range};
 use crate::field::{Field, Place, fields};
@@ -85,6 +86,7 @@ pub fn read(folder: &Path, frames: Frames, colour: &Colour) -> Result<Film, View
     let surface = Surface::new(&first);
     let start = positions(&first, &surface, &first_listed.path)?;
     let source = Source::find(colour, &first, &surface)?;
+    let bolt_frames = bolts::listed(folder)?;
     let mut moments = Vec::new();
     let shown = match frames {
         Frames::One(FrameChoice::Auto) if folder.ends_with(MECHANISM) => {
@@ -98,7 +100,9 @@ pub fn read(folder: &Path, frames: Frames, colour: &Colour) -> Result<Film, View
         same_blocks(path, &first, &frame, &[])?;
         let positions = positions(&frame, &surface, path)?;
         let values = source.values(path, &frame, &surface, [&start, &positions])?;
-        moments.push(Moment { time_s: Some(*time_s), positions, absent: surface.absent(&frame), values });
+        let (absent, bolts) = (surface.absent(&frame), bolts::at(&bolt_frames, index, *time_s)?);
+        let bolts = bolts.iter().map(Piece::from).collect();
+        moments.push(Moment { time_s: Some(*time_s), positions, absent, values, bolts });
     }
     let moves = moving(&surface, &start, &moments);
     let colouring = source.colouring(&surface, &moves, &moments);

@@ -3,14 +3,17 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use ndda_io::read;
+use ndda_io::diagnostic::SceneErrors;
+use ndda_io::read::{self, LoadedScene};
 use ndda_io::results::{Array, FieldFrame};
 use ndda_io::scene::{Discontinuity, Scene};
 use ndda_mesh::BlockSet;
 
 use super::Colour;
+use super::bolts;
 use super::error::ViewError;
 use super::film::{Colouring, Film, Moment};
+use crate::build::Fault;
 use crate::surface::{BLOCK_ID, Surface};
 use crate::{build, forecast};
 
@@ -22,13 +25,14 @@ pub fn read(file: &Path, overrides: &[String], colour: &Colour) -> Result<Film, 
     let loaded = read::load(file, overrides)?;
     let folder = file.parent().unwrap_or(Path::new("."));
     forecast::admit::admit(&loaded, folder).map_err(|refused| loaded.errors(vec![refused]))?;
-    let blocks = build::blocks(&loaded.scene, folder).map_err(|faults| {
-        let diagnostics = faults.into_iter().map(|f| loaded.diagnose(&f.path, f.message)).collect();
-        loaded.errors(diagnostics)
-    })?;
+    let blocks = build::blocks(&loaded.scene, folder).map_err(|faults| refused(&loaded, faults))?;
     let scene = &loaded.scene;
+    let bolts = build::bolts::lines(scene, &blocks).map_err(|faults| refused(&loaded, faults))?;
+    let bolts = bolts.into_iter().enumerate().map(|(i, ends)| bolts::plain(i, ends)).collect();
     if *colour == Colour::Joint {
-        return by_joint(scene, &blocks).ok_or_else(|| ViewError::NoJoints(file.to_path_buf()));
+        let mut film = by_joint(scene, &blocks).ok_or_else(|| ViewError::NoJoints(file.to_path_buf()))?;
+        film.moments[0].bolts = bolts;
+        return Ok(film);
     }
     let colouring = match colour {
         Colour::Block => by_block(&blocks, false),
@@ -44,7 +48,13 @@ pub fn read(file: &Path, overrides: &[String], colour: &Colour) -> Result<Film, 
     if !moves.contains(&true) {
         moves.fill(true);
     }
-    Ok(film(scene.title.clone(), &blocks, colouring, moves))
+    let mut film = film(scene.title.clone(), &blocks, colouring, moves);
+    film.moments[0].bolts = bolts;
+    Ok(film)
+}
+
+fn refused(loaded: &LoadedScene, faults: Vec<Fault>) -> SceneErrors {
+    loaded.errors(faults.into_iter().map(|fault| loaded.diagnose(&fault.path, fault.message)).collect())
 }
 
 /// Blocks of no scene, in a colour each.
@@ -109,8 +119,7 @@ fn by_joint(scene: &Scene, blocks: &BlockSet) -> Option<Film> {
 fn film(title: String, blocks: &BlockSet, colouring: Colouring, moves: Vec<bool>) -> Film {
     let surface = Surface::new(&frame(blocks));
     let positions: Vec<_> = surface.nodes.iter().map(|&n| blocks.rest_position[n as usize]).collect();
-    let moment =
-        Moment { time_s: None, positions: positions.clone(), absent: Vec::new(), values: Vec::new() };
+    let moment = Moment { positions: positions.clone(), ..Moment::default() };
     let (moments, moved, movable) = (vec![moment], None, None);
     Film { title, surface, start: positions, moves, colouring, moments, moved, movable }
 }

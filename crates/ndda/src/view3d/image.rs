@@ -3,6 +3,8 @@
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 
+use super::bolt_lines::Bolts;
+use super::bolts::BoltColour;
 use super::camera::View;
 use super::film::{Film, Moment};
 use super::overlay::{self, Layout};
@@ -37,6 +39,8 @@ pub struct Look {
     pub magnify: f64,
     /// Whether outlines show where blocks began, if few move.
     pub outlines: bool,
+    /// What the colours of bolts say.
+    pub bolts: BoltColour,
     /// Light on dark.
     pub dark: bool,
     /// Columns and rows [px].
@@ -51,6 +55,7 @@ impl Default for Look {
             whole: false,
             magnify: 1.0,
             outlines: true,
+            bolts: BoltColour::default(),
             dark: false,
             size: (1200, 800),
         }
@@ -132,8 +137,11 @@ impl<'a> Picture<'a> {
     fn surround(&self, svg: &mut Svg, stage: &Stage, fineness: usize, moment: &Moment) {
         let (layout, theme) = (&self.layout, &self.theme);
         let camera = stage.camera.scaled(1.0 / fineness as f64);
+        let bolts = Bolts::new(self.film, self.look.bolts);
+        bolts.draw(svg, layout, theme, &camera, (moment, self.look.magnify));
         overlay::title(svg, layout, theme, self.film, &self.words(moment));
-        overlay::legend(svg, layout, theme, self.film);
+        overlay::legend(svg, layout, theme, self.film, bolts.are_shown());
+        bolts.legend(svg, layout, theme);
         overlay::triad(svg, layout, theme, &camera.axes);
         overlay::scale_bar(svg, layout, theme, &camera);
     }
@@ -190,6 +198,7 @@ mod tests {
         whole: false,
         magnify: 1.0,
         outlines: true,
+        bolts: BoltColour::Force,
         dark: false,
         size: (320, 240),
     };

@@ -45,6 +45,11 @@ impl Layout {
     pub fn pane_size(&self) -> [usize; 2] {
         [self.pane.width as usize, self.pane.height as usize]
     }
+
+    /// Left end of the legend [px].
+    pub fn legend_x(&self) -> f64 {
+        self.pane.x + self.pane.width + 22.0 * self.unit
+    }
 }
 
 /// Title, and the time and what else there is to know below it.
@@ -55,45 +60,59 @@ pub fn title(svg: &mut Svg, layout: &Layout, theme: &Theme, film: &Film, below: 
     svg.words([x, 48.0 * u], 14.0 * u, Anchor::Start, theme.faint, room, below);
 }
 
-/// The scale of colours, or the groups.
-pub fn legend(svg: &mut Svg, layout: &Layout, theme: &Theme, film: &Film) {
-    let x = layout.pane.x + layout.pane.width + 22.0 * layout.unit;
+/// The scale of colours, or the groups; in the upper half where the legend of bolts is below.
+pub fn legend(svg: &mut Svg, layout: &Layout, theme: &Theme, film: &Film, is_half: bool) {
+    let (u, x) = (layout.unit, layout.legend_x());
+    let (top, part) = (layout.pane.y + 8.0 * u, if is_half { 0.34 } else { 0.62 });
+    let bar = Bar { x, top, height: (part * layout.pane.height).min(340.0 * u), colour: viridis };
     match &film.colouring {
         // Nothing has a colour of the scale where nothing has moved.
         Colouring::Scale { with_resting: false, .. } if !film.moves.contains(&true) => {}
-        Colouring::Scale { label, unit, range, .. } => scale(svg, layout, theme, x, (label, unit), *range),
+        Colouring::Scale { label, unit, range, .. } => scale(svg, layout, theme, &bar, (label, unit), *range),
         Colouring::Groups { names, plural, of_block, with_resting } => {
             let shown = |b: &usize| *with_resting || film.moves[*b];
             let mut groups: Vec<u32> = (0..of_block.len()).filter(shown).map(|b| of_block[b]).collect();
             groups.sort_unstable();
             groups.dedup();
-            list(svg, layout, theme, x, (names, plural), &groups);
+            let most = if is_half { (0.5 * layout.pane.height / (22.0 * u)) as usize } else { MOST_GROUPS };
+            list(svg, layout, theme, (x, most.min(MOST_GROUPS)), (names, plural), &groups);
         }
     }
 }
 
+/// Place of a bar of colours with its name above, and its colours.
+pub struct Bar {
+    /// Left end [px].
+    pub x: f64,
+    /// Middle of its name [px].
+    pub top: f64,
+    /// Its height [px].
+    pub height: f64,
+    /// Colour at a part of it from below, 0 to 1.
+    pub colour: fn(f64) -> Rgb,
+}
+
 /// A bar of colours from the least to the largest value, with round marks.
-fn scale(
+pub fn scale(
     svg: &mut Svg,
     layout: &Layout,
     theme: &Theme,
-    x: f64,
+    &Bar { x, top, height, colour }: &Bar,
     (label, unit): (&str, &'static str),
     [low, high]: [f64; 2],
 ) {
     let u = layout.unit;
     let (size, name) = unit_for(low.abs().max(high.abs()), unit);
     let room = layout.size[0] as f64 - x;
-    let top = layout.pane.y + 8.0 * u;
     svg.words([x, top], 14.0 * u, Anchor::Start, theme.text, room, label);
     if !name.is_empty() {
         svg.words([x, top + 18.0 * u], 14.0 * u, Anchor::Start, theme.faint, room, &format!("[{name}]"));
     }
-    let (top, height, width) = (top + 42.0 * u, (0.62 * layout.pane.height).min(340.0 * u), 20.0 * u);
+    let (top, width) = (top + 42.0 * u, 20.0 * u);
     let strips = 96;
     for i in 0..strips {
         let share = height / f64::from(strips);
-        let colour = viridis(1.0 - (f64::from(i) + 0.5) / f64::from(strips));
+        let colour = colour(1.0 - (f64::from(i) + 0.5) / f64::from(strips));
         // Each strip reaches under the next one, so that none shows a gap.
         let tall = if i + 1 < strips { 1.5 * share } else { share };
         svg.rect([x, top + f64::from(i) * share], [width, tall], colour);
@@ -120,14 +139,14 @@ fn list(
     svg: &mut Svg,
     layout: &Layout,
     theme: &Theme,
-    x: f64,
+    (x, most): (f64, usize),
     (names, plural): (&[String], &str),
     groups: &[u32],
 ) {
     let u = layout.unit;
     let room = layout.size[0] as f64 - x - 24.0 * u;
     let top = layout.pane.y + 8.0 * u;
-    if groups.len() > MOST_GROUPS {
+    if groups.len() > most {
         let words = [format!("{} {plural},", groups.len()), "a colour each".to_string()];
         for (line, words) in [0.0, 18.0].into_iter().zip(&words) {
             svg.words([x, top + line * u], 13.0 * u, Anchor::Start, theme.faint, room, words);

@@ -55,10 +55,15 @@ pub const DARK_THEME: Theme = Theme {
 
 /// Colour of a part of the scale, 0 to 1.
 pub fn viridis(part: f64) -> Rgb {
-    let last = VIRIDIS.len() - 1;
+    between(&VIRIDIS, part)
+}
+
+/// Colour at a part, 0 to 1, of a scale of colours at even places.
+pub fn between(scale: &[Rgb], part: f64) -> Rgb {
+    let last = scale.len() - 1;
     let place = if part.is_finite() { part.clamp(0.0, 1.0) * last as f64 } else { 0.0 };
     let low = (place.floor() as usize).min(last - 1);
-    mix(VIRIDIS[low], VIRIDIS[low + 1], place - low as f64)
+    mix(scale[low], scale[low + 1], place - low as f64)
 }
 
 /// Colour of a group, a block or a material: neighbours in number are far apart in hue.

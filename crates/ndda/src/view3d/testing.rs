@@ -50,7 +50,7 @@ pub fn boxes(boxes: &[Moved]) -> Film {
         *ends = range(values.iter().copied());
     }
     let positions = start.iter().enumerate().map(|(node, x)| x + moved(node)).collect();
-    film.moments.push(Moment { time_s: Some(1.0), positions, absent: Vec::new(), values });
+    film.moments.push(Moment { time_s: Some(1.0), positions, values, ..Moment::default() });
     film.moves = moving(&film.surface, &film.start, &film.moments);
     film
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::Check;
 use crate::scene::code::Code;
-use crate::scene::{BlastPressure, BlastWall, Body, IncidentWave, Record, RecordedAs, WaveKind};
+use crate::scene::{BlastPressure, BlastWall, Body, IncidentWave, Quiet, Record, RecordedAs, WaveKind};
 
 impl Check<'_> {
     pub(super) fn quiet(&mut self, folder: Option<&Path>) {
@@ -32,6 +32,9 @@ impl Check<'_> {
             for (k, wave) in quiet.incident.iter().enumerate() {
                 self.incident(&path(&format!("incident[{k}]")), wave, folder);
             }
+            if !quiet.layers.is_empty() {
+                self.layers(&path(""), quiet);
+            }
         }
         let stressed = scene.in_situ.is_some() || scene.blocks.iter().any(|b| b.initial_stress_pa.is_some());
         if !scene.quiet.is_empty() && scene.gravity_m_s2 != [0.0; 3] && scene.settle.is_none() && !stressed {
@@ -42,6 +45,38 @@ impl Check<'_> {
                 message,
                 "add settle: (), or give the stress in the ground as in_situ",
             );
+        }
+    }
+
+    /// Layers of the ground beyond a side; `path` ends with a point.
+    fn layers(&mut self, path: &str, quiet: &Quiet) {
+        let materials: Vec<&str> = self.scene.materials.iter().map(|m| m.name.as_str()).collect();
+        for (k, layer) in quiet.layers.iter().enumerate() {
+            let at = |field: &str| format!("{path}layers[{k}].{field}");
+            self.known(at("material"), "material", &layer.material, &materials);
+            self.numbers(&at("top_m"), &layer.top_m);
+        }
+        if quiet.beyond.is_some() {
+            let help = "leave it out: what lies beyond is the layers, the lowest of which goes on below";
+            self.misfit(format!("{path}beyond"), "there are layers beyond", help);
+        }
+        for (k, wave) in quiet.incident.iter().enumerate() {
+            let at = |field: &str| format!("{path}incident[{k}].{field}");
+            for (field, is_given) in [("along", wave.along.is_some()), ("ground_m", wave.ground_m.is_some())]
+            {
+                if is_given {
+                    let help = "leave it out: waves go straight up in layers, and their uppermost border is the ground";
+                    self.misfit(at(field), "there are layers beyond", help);
+                }
+            }
+            if wave.motion == RecordedAs::Within {
+                let help = "use the record of an outcrop, or the wave that comes up";
+                self.misfit(
+                    at("motion"),
+                    "in layers the echo of a record from within rock is not known",
+                    help,
+                );
+            }
         }
     }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::{Check, LIGHT_M_S};
 use crate::scene::{
     BoulderShape, BoulderSize, Ground, Integrator, Release, ReleasePlace, Rockfall, Scatter, Solver, Step,
+    Zone,
 };
 use crate::scene::{ContactAt, Mass};
 
@@ -26,8 +27,15 @@ impl Check<'_> {
         self.names("rockfall.zones", &rockfall.zones.iter().map(|z| z.name.as_str()).collect::<Vec<_>>());
         for (i, zone) in rockfall.zones.iter().enumerate() {
             let path = format!("rockfall.zones[{i}]");
-            self.corners(&format!("{path}.outline_m"), &zone.outline_m, 3);
+            self.extent_of_zone(&path, zone, rockfall.class_grid.is_some());
             self.ground_law(&path, &zone.restitution, &zone.friction_deg);
+        }
+        if let Some(file) = &rockfall.class_grid {
+            self.file("rockfall.class_grid".into(), file, folder);
+            if rockfall.zones.iter().all(|zone| zone.classes.is_empty()) {
+                let help = "write zones: [(name: \"talus\", classes: [2], restitution: …, friction_deg: …)], or leave it out";
+                self.misfit("rockfall.class_grid", "no zone names a class of it", help);
+            }
         }
         self.boulders(rockfall);
         self.names(
@@ -134,6 +142,22 @@ impl Check<'_> {
                     let help = "give at least two rows, all of the same length of at least two";
                     self.misfit("rockfall.terrain.heights_m", message, help);
                 }
+            }
+        }
+    }
+
+    /// Where a zone is: within an outline, or of classes.
+    fn extent_of_zone(&mut self, path: &str, zone: &Zone, has_grid: bool) {
+        match (zone.outline_m.is_empty(), zone.classes.is_empty()) {
+            (false, true) => self.corners(&format!("{path}.outline_m"), &zone.outline_m, 3),
+            (true, false) if has_grid => {}
+            (true, false) => {
+                let help = "give rockfall.class_grid, the file of a grid that has them";
+                self.misfit(format!("{path}.classes"), "there is no grid of classes", help);
+            }
+            (true, true) => self.misfit(path, "is nowhere", "give outline_m, or classes of a class_grid"),
+            (false, false) => {
+                self.misfit(path, "has both an outline and classes", "make two zones of it");
             }
         }
     }

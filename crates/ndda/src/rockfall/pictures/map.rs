@@ -63,6 +63,10 @@ impl<'a> Map<'a> {
         let axes = self.axes;
         for (k, zone) in self.model.rockfall.zones.iter().enumerate() {
             let edge = zone_colour(k);
+            if zone.outline_m.is_empty() {
+                self.cells_of(k);
+                continue;
+            }
             let corners: Vec<String> = zone
                 .outline_m
                 .iter()
@@ -140,6 +144,26 @@ impl<'a> Map<'a> {
             self.svg.words([x + 26.0, y], 12.0, Anchor::Start, INK, 120.0, label);
         }
         top + height + 26.0
+    }
+
+    /// Cells of a zone that has no outline, those beside each other along x as one.
+    fn cells_of(&mut self, zone: usize) {
+        let (axes, terrain, colour) = (self.axes, &self.model.terrain, hex(zone_colour(zone)));
+        let [nx, ny] = terrain.cells();
+        let is_in = |i: usize, j: usize| usize::from(terrain.zones_at(i, j)[0]) == zone + 1;
+        for j in 0..ny {
+            let mut from = 0;
+            while let Some(first) = (from..nx).find(|&i| is_in(i, j)) {
+                from = (first..nx).find(|&i| !is_in(i, j)).unwrap_or(nx);
+                let [x0, y0] = axes.place(terrain.map_m([first as f64, j as f64]));
+                let [x1, y1] = axes.place(terrain.map_m([from as f64, j as f64 + 1.0]));
+                self.svg.raw(&format!(
+                    "<rect x=\"{x0:.1}\" y=\"{y1:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"{colour}\" fill-opacity=\"0.16\"/>",
+                    x1 - x0,
+                    y0 - y1
+                ));
+            }
+        }
     }
 
     /// Names of zones and marks, from a height on.
