@@ -16,7 +16,7 @@ fn rows_do_not_change_the_motion() {
         if many.simulation.state().step != few.simulation.state().step {
             return match stopped {
                 // An inverted element is noticed when it is evaluated.
-                Some(why) if why.contains("inside out") => Found::Skipped("stops where it is looked at"),
+                Some(why) if why.contains("inverted") => Found::Skipped("stops where it is looked at"),
                 why => Found::Fails(format!("{why:?} is {also:?}")),
             };
         }

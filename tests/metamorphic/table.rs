@@ -107,7 +107,7 @@ fn short(reason: &str) -> &'static str {
         ("change within a step", "pulses"),
         ("is not balanced", "momentum"),
         ("action and reaction", "action and reaction"),
-        ("inside out", "inside out"),
+        ("inverted", "inverted"),
         ("centroid", "past the centroid"),
         ("evaluations", "contact not solved"),
     ];

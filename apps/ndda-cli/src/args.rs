@@ -32,8 +32,8 @@ pub use trial::{CertifyArgs, TrialHow, TuneArgs};
     after_help = "First steps:\n  ndda run --example sliding_45      run a built-in example\n  ndda view out/sliding_45           look at it in the browser\n  \
                   ndda new slide                     write a scene of your own\n  ndda check slide.ron               errors, warnings, time and files of a run\n  \
                   ndda run slide.ron --set parameters.dip_deg=40 --out out/steeper\n  ndda picture out/steeper           draw the blocks that moved\n\nExit codes: 0 done · 1 ended, but not accurate (--strict), or cases of a \
-                  study failed · 2 wrong command line · 3 wrong scene or mesh · 4 stopped numerically · 5 files cannot be written · 6 too little memory or threads · 130 \
-                  interrupted"
+                  study failed · 2 wrong command line · 3 wrong scene or mesh · 4 the computation could not go on correctly · 5 files cannot be written · 6 too little memory, \
+                  or threads cannot be started · 130 interrupted"
 )]
 pub struct Cli {
     /// Memory limit, such as 8GB: scenes that would need more are refused before they are built [default: the free memory of the machine].
@@ -44,7 +44,7 @@ pub struct Cli {
     pub verb: Verb,
 }
 
-/// The verbs of the command line.
+/// The commands.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     /// Run a scene and write its results.
@@ -81,10 +81,10 @@ pub enum Verb {
     Man(AbsentArgs),
     /// Show the blocks of a scene or a mesh file before any run: how many, how large, how good their tetrahedra, and a picture.
     ///
-    /// Prints counts, volumes, histograms of sizes and of the quality of tetrahedra, the ten worst tetrahedra with their places, and the step that
-    /// contact of each material requires. Writes blocks.png (a picture), mesh.svg (the histograms), mesh.json, and blocks.vtu for ParaView.
-    /// Tetrahedra with angles of a few degrees or an aspect above 50 make results inexact or steps short: use larger spacings, another `fill`, or
-    /// `sliver_width_m`.
+    /// Prints counts, volumes, histograms of sizes and of the quality of tetrahedra, the ten worst tetrahedra with their positions, and the largest
+    /// time step that contact of each material allows. Writes blocks.png (a picture), mesh.svg (the histograms), mesh.json, and blocks.vtu for
+    /// ParaView. Tetrahedra with angles of a few degrees, or a longest edge above 50 times the smallest height, make results inexact or time steps
+    /// short: use larger spacings, another `fill`, or `sliver_width_m`.
     Mesh(MeshArgs),
     /// Write a run as one HTML page: the blocks moving in 3D, curves, and the checks; it needs no network.
     #[cfg(feature = "report")]
@@ -103,7 +103,7 @@ pub enum Verb {
     /// Writes study.csv, study.json, time_to_error.csv and pictures; the same command goes on where it was interrupted.
     /// How to write a study and read its results: docs/guide/study.md.
     Study(StudyArgs),
-    /// Find the error bar of every result of a scene, from runs with the step halved and halved again.
+    /// Find the error bar of every result of a scene, from runs with the time step halved and halved again.
     ///
     /// Runs the scene with Δt, Δt/2 and Δt/4 (and with finer meshes and stiffer contact, if asked), and gives each monitor,
     /// the place and velocity of each block and the energies as value ± error: extrapolated where results converge, the
@@ -115,13 +115,13 @@ pub enum Verb {
     /// Brings the scene to rest, then runs trials side by side until the largest factor at which blocks stand and the
     /// smallest at which they fail are as near as requested. Writes safety.json and the failing run, folder mechanism.
     Safety(SafetyArgs),
-    /// Test the law of a joint as in a laboratory: direct shear at constant normal stress, constant volume or against a spring, in
-    /// one direction or in cycles, and normal closure.
+    /// Test the law of a joint as in a laboratory: direct shear at constant normal stress, constant volume or constant normal
+    /// stiffness, in one direction or in cycles, and normal closure.
     ///
     /// Prints shear and normal stress, opening, slip and the energy that is lost, and the closed form where there is one. The law is that
     /// of a scene (between all blocks, of a named joint, of two materials), or written on the command line.
     Joint(JointArgs),
-    /// Find the cheapest settings that reach an error: integrator, step, potential, kind of body and penalty.
+    /// Find the fastest settings whose error stays below a given one: integrator, time step, potential, kind of body and penalty.
     ///
     /// Tries settings by short runs that double their effort, judges them by the closed form of the scene or by certified
     /// runs of it, and prints the best settings, as --set lines, too, and what was tried. Writes
@@ -131,7 +131,7 @@ pub enum Verb {
     Stereonet(StereonetArgs),
     /// Show a record of ground motion: motion over time, response spectrum, intensity, and slip of a rigid block.
     Record(RecordArgs),
-    /// Let boulders fall over terrain: how far they get, what they reach, and how high, fast and strong they pass lines.
+    /// Rockfall: let boulders fall over terrain. Gives runout, what they reach, and height, speed and energy where they cross lines such as barriers.
     ///
     /// Writes rockfall.json, tables of boulders, paths, lines and the profile, a map of reach, and pictures. Scenes: docs/guide/rockfall.md.
     Rockfall(RockfallArgs),
@@ -144,7 +144,7 @@ pub enum Verb {
     /// Draw the blocks of a run, or of a scene before it runs, in 3D as a picture or an animation.
     ///
     /// Shows the blocks that have moved and what is around them, with a scale of colours, axes and a scale bar; blocks at rest
-    /// that hide them are seen through. Needs neither browser nor graphics card.
+    /// that hide them are drawn transparent. Needs neither browser nor graphics card.
     #[cfg(feature = "plots")]
     Picture(PictureArgs),
     /// Not in this program, which was built without the feature `plots`.
@@ -152,7 +152,7 @@ pub enum Verb {
     Picture(AbsentArgs),
 }
 
-/// Arguments of a verb that this program was built without: whatever is typed.
+/// Arguments of a command that this program was built without: whatever is typed.
 #[cfg(not(all(feature = "plots", feature = "report", feature = "schema", feature = "shell")))]
 #[derive(Debug, Args)]
 #[command(disable_help_flag = true)]
@@ -174,7 +174,7 @@ pub struct ReportArgs {
     /// The page [default: report.html in the folder].
     #[arg(long, short, value_name = "FILE")]
     pub out: Option<PathBuf>,
-    /// Most frames to show, evenly spaced; 0 leaves the blocks out [default: all, or as many as a page can carry].
+    /// Largest number of frames to show, evenly spaced; 0 leaves the blocks out [default: all, or as many as a page can carry].
     #[arg(long, value_name = "N")]
     pub frames: Option<u32>,
     /// Print JSON for programs, an object per line; see docs/reference/json.md.
@@ -204,13 +204,13 @@ pub struct PlotArgs {
     /// Output folders of runs, or history files; several are drawn over each other.
     #[arg(required = true)]
     pub inputs: Vec<PathBuf>,
-    /// Columns to draw, by name or its beginning; without them, print those that there are.
+    /// Columns to draw, by name or the beginning of a name [default: draw nothing, list the columns].
     #[arg(long, value_delimiter = ',', value_name = "NAME")]
     pub columns: Vec<String>,
     /// Column to draw against.
     #[arg(long, default_value = "time_s", value_name = "NAME")]
     pub against: String,
-    /// Logarithmic scale of values; what is not above zero is left out.
+    /// Logarithmic vertical axis; values not above zero are left out.
     #[arg(long)]
     pub log: bool,
     /// The picture, .svg or .png.
@@ -231,13 +231,13 @@ pub struct MeshArgs {
     /// Repairs of a mesh file, in this order: inverted tetrahedra turned round, coincident nodes merged.
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FIX")]
     pub fix: Vec<Fix>,
-    /// Nodes nearer than this part of a body's size are merged by `--fix merge`.
+    /// Nodes nearer to each other than this fraction of a body's size are merged by `--fix merge`.
     #[arg(long, default_value_t = 1e-9, value_name = "RATIO")]
     pub within: f64,
     /// Output folder [default: out/ and the name of the input with _mesh].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Replace the results of an earlier call in the output folder.
+    /// Replace the results of an earlier run of this command in the output folder.
     #[arg(long)]
     pub force: bool,
     /// Write the blocks in other formats, too: gmsh, abaqus, tetgen, vtu (with node sets), and polyhedra or obj (the convex parts of
@@ -297,14 +297,14 @@ pub struct RunArgs {
 /// Settings of a run that do not depend on the scene.
 #[derive(Debug, Args)]
 pub struct HowArgs {
-    /// Threads; results do not depend on it [default: all cores].
+    /// Number of threads; results do not depend on it [default: all cores].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Exit with code 1 when a run is labelled inaccurate or sensitive, or a check is beyond its limit.
     #[arg(long)]
     pub strict: bool,
-    /// After an accurate run, run the scene once more from a slightly different start, to see whether small differences grow, which doubles the
-    /// time: auto (where three or more blocks move), always or never.
+    /// After an accurate run, run the scene a second time from a slightly different start, to see whether small differences grow: auto (where three
+    /// or more blocks move), always or never. The second run doubles the computing time.
     #[arg(long, value_name = "WHEN", default_value = "auto")]
     pub sensitivity: Sensitivity,
     /// Print nothing but errors.
@@ -334,7 +334,7 @@ pub struct CheckArgs {
     /// The scene.
     #[command(flatten)]
     pub input: SceneArgs,
-    /// Write the penalty and the step that were chosen, where the scene leaves them out, into its file.
+    /// Write the penalty and the time step that ndda chose into the scene file, where the file leaves them out.
     #[arg(long, conflicts_with_all = ["example", "overrides"])]
     pub write: bool,
     /// Print what is found as JSON, one object per line (see docs/reference/json.md).
@@ -393,6 +393,6 @@ pub struct CompletionsArgs {
 #[cfg(feature = "shell")]
 #[derive(Debug, Args)]
 pub struct ManArgs {
-    /// Of which verb [default: of all, in short].
-    pub verb: Option<String>,
+    /// Command whose page is printed [default: all, in short].
+    pub command: Option<String>,
 }

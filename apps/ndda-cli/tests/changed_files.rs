@@ -125,8 +125,8 @@ fn no_run_begins_in_a_folder_that_is_not_for_results_even_if_forced() {
         command.args(["run", "scene.ron", "--force", "--quiet", "--out", out]).current_dir(place);
         command.env("HOME", &home).output().expect("the program starts")
     };
-    assert_says(&run("/"), INPUT_OUTPUT, &["/ is no folder for results"]);
-    assert_says(&run("home"), INPUT_OUTPUT, &["home is no folder for results"]);
+    assert_says(&run("/"), INPUT_OUTPUT, &["/ is not a folder for results"]);
+    assert_says(&run("home"), INPUT_OUTPUT, &["home is not a folder for results"]);
     assert_says(&run("."), INPUT_OUTPUT, &["a.ele", "choose another folder"]);
     let before: Vec<_> = fs::read_dir(place).expect("a folder").collect();
     assert_eq!(before.len(), FILES.len() + 1, "nothing is written");

@@ -133,8 +133,8 @@ fn cases_of_a_study_share_what_is_chosen_for_its_scene() {
 fn a_step_follows_speeds_loads_and_the_length_of_a_run_where_nothing_touches() {
     for (change, step, reason) in [
         (("end_s: 0.2", "end_s: 1"), 1e-2, "a hundredth of the run"),
-        (("body: Rigid", "body: Rigid, velocity_m_s: (50, 0, 0)"), 1e-3, "go a tenth of the height"),
-        (("body: Rigid", "body: Rigid, spin_rad_s: (0, 0, 100)"), 5e-4, "turn by 0.05 rad"),
+        (("body: Rigid", "body: Rigid, velocity_m_s: (50, 0, 0)"), 1e-3, "move by a tenth of the height"),
+        (("body: Rigid", "body: Rigid, spin_rad_s: (0, 0, 100)"), 5e-4, "rotate by 0.05 rad"),
         (("gravity_m_s2", "gravity_ramp_s: 0.01, gravity_m_s2"), 1e-3, "a tenth of gravity_ramp_s"),
     ] {
         let scene = SCENE

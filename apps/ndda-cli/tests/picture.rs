@@ -196,7 +196,7 @@ fn what_cannot_be_drawn_is_refused_with_figures() {
         (["--size", "4000000000x2"], "16384 pixels"),
         (["--frame", "5"], "5 frames, 0 to 4"),
         (["--frame", "0.2s"], "0 s to 0.1 s"),
-        (["--color", "colour"], "there is displacement, block, velocity_m_s"),
+        (["--color", "colour"], "choose one of displacement, block, velocity_m_s"),
         (["--color", "material"], "add Material to output.fields"),
         (["-o", "a.jpg"], ".png or .svg"),
         (["--magnify", "1e30"], "here up to 2030"),

@@ -132,7 +132,7 @@ fn a_study_file_names_distributions_correlation_and_sensitivity() {
     };
     study("of: [\"m.displacement_x_m\"], sensitivity: true");
     let text = done(folder.path(), &["study", "s.ron", "--quiet", "--jobs", "2"]);
-    assert!(text.contains("parts of the variance"), "{text}");
+    assert!(text.contains("fractions of the variance"), "{text}");
     let results = json(&folder.path().join("out/s_study/sweep.json"));
     let index = |i: usize, key: &str| results["groups"][0]["sensitivity"][i][key].as_f64().unwrap();
     // The way is v t, whatever gravity is.
@@ -173,8 +173,8 @@ fn what_cannot_be_swept_is_refused_with_what_to_write() {
         (vec!["--vary", "parameters.speed_m_s=1, 2)"], "`)` follows"),
         ([&vary[..], &["--fails-when", "kinetic_j"]].concat(), "safety < 1"),
         ([&vary[..], &["--fails-when", "m.displacement > 1"]].concat(), "may be on any of m.displacement_"),
-        ([&vary[..], &["--correlate", "a"]].concat(), "no correlation"),
-        ([&vary[..], &["--sensitivity"]].concat(), "give one a distribution"),
+        ([&vary[..], &["--correlate", "a"]].concat(), "not a correlation"),
+        ([&vary[..], &["--sensitivity"]].concat(), "give at least one a distribution"),
     ] {
         let refused = ndda(folder.path(), &[&["study", "fall.ron", "--quiet"], &arguments[..]].concat());
         assert_eq!(refused.status.code(), Some(3), "{arguments:?}: {}", said(&refused));
@@ -195,9 +195,9 @@ fn a_value_that_is_set_is_blamed_for_what_is_wrong_with_it() {
         ("time.step_s=(1, 2", "`(` is not closed"),
         ("time.step_s=abc", "expected a number (set by --set time.step_s=abc)"),
         ("time.step_s=-1", "must be positive (set by --set time.step_s=-1)"),
-        ("output.frames=Calc(5 / 2)", "the value 2.5 is no whole number (set by --set output.frames"),
-        ("output.frames=1.5", "the value 1.5 is no whole number"),
-        ("output.frames=Calc(-3)", "-3 is no count"),
+        ("output.frames=Calc(5 / 2)", "the value 2.5 is not a whole number (set by --set output.frames"),
+        ("output.frames=1.5", "the value 1.5 is not a whole number"),
+        ("output.frames=Calc(-3)", "-3 is not a count"),
     ] {
         let refused = ndda(folder.path(), &["check", "fall.ron", "--set", set]);
         assert_eq!(refused.status.code(), Some(3), "{set}");

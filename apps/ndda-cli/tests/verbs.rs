@@ -126,7 +126,7 @@ fn one_block_alone_is_explained_to_have_no_contact() {
 #[test]
 fn friction_is_in_the_plan_when_an_angle_is_and_out_when_it_is_zero() {
     let rough = plan(&["sliding_45_phi35"]);
-    assert!(has(&rough, "friction") && has(&rough, "memory of friction") && !has(&rough, "bonds"));
+    assert!(has(&rough, "friction") && has(&rough, "friction history") && !has(&rough, "bonds"));
     let smooth = plan(&["sliding_45_phi35", "--set", "contact.friction.friction_deg=0"]);
     assert!(has(&smooth, "contact") && !has(&smooth, "friction") && !has(&smooth, "work of friction"));
 }
@@ -221,7 +221,7 @@ fn joints_that_cannot_be_tested_are_refused_with_what_to_change() {
                 "(friction_deg: 30, shear_penalty_pa_m: 1e9, dilation: (psi_deg: 40, to_slip_m: 1))",
             ],
             3,
-            "would give energy",
+            "would create energy",
         ),
         (&["joint", "--friction", "(friction_deg: 30)", "--constant-volume"], 3, "--joint-stiffness"),
         (&["joint", "--friction", "(friction_deg: 0)"], 3, "no strength"),

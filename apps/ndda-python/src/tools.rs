@@ -65,7 +65,9 @@ fn option<'py, T: for<'a> FromPyObject<'a, 'py>>(
     match options.get_item(name)? {
         Some(value) if !value.is_none() => match value.extract() {
             Ok(value) => Ok(Some(value)),
-            Err(_) => Err(value_error(format!("{name} is {value}: it has another type"))),
+            Err(_) => Err(value_error(format!(
+                "{name} is {value}, which has the wrong type: the description of this function names the right one"
+            ))),
         },
         _ => Ok(None),
     }
@@ -140,7 +142,7 @@ fn _certify(
     let is_own = std::fs::read_to_string(&own).is_ok_and(|found| found == text);
     let file = if is_own { own } else { out.join(format!("{name}.ron")) };
     if !is_own && !ndda_io::outside_files::of_scene(&model.loaded.scene, &scene.folder).is_empty() {
-        let message = "the scene names files and was changed or made from a text: write scene.text to a file beside them, and load that";
+        let message = "the files that the scene names may not be found, since the scene was changed or made from a text: write scene.text to a file in their folder, and load that";
         return Err(value_error(message));
     }
     let done = watched(py, |watch| -> Result<String, CertifyError> {
@@ -192,7 +194,9 @@ fn _safety(
         Err(SafetyError::Scene(errors)) => Err(scene_error(py, &errors)),
         Err(SafetyError::NotSettled { strength, source }) => {
             let error = stop_error(py, &source);
-            let note = format!("the scene does not come to rest even with {strength} times its strength");
+            let note = format!(
+                "the scene does not come to rest even with joints {strength} times as strong: hold its blocks by supports, or raise settle.most_steps if it is only slow"
+            );
             error.value(py).call_method1("add_note", (note,)).map(drop).unwrap_or_default();
             Err(error)
         }

@@ -72,7 +72,7 @@ fn log(py: Python<'_>, line: &str) -> PyResult<()> {
 /// A pool of so many threads, where a number is given.
 pub fn pool(threads: Option<usize>) -> PyResult<Option<ThreadPool>> {
     if threads == Some(0) {
-        let message = "threads is 0: give at least 1, or None for all processors";
+        let message = "threads is 0: give at least 1, or None for all cores";
         return Err(pyo3::exceptions::PyValueError::new_err(message));
     }
     let pool = threads.map(|count| ThreadPoolBuilder::new().num_threads(count).build()).transpose();

@@ -161,5 +161,5 @@ def test_a_block_that_has_turned_is_not_held_without_turning() -> None:
     simulation = ndda.Simulation(ndda.parse(ndda.EXAMPLE.replace("Rigid", "Elastic")))
     simulation.set_velocity("block", (0.0, 0.0, 0.0), (0.0, 0.0, 1.0))
     simulation.run(until=0.25)
-    with pytest.raises(ValueError, match="has turned by"):
+    with pytest.raises(ValueError, match="has rotated by"):
         simulation.hold("block", ndda.builders.Region.Set("z_min"))

@@ -123,7 +123,7 @@ def test_arguments_that_make_no_sense_are_refused_in_words() -> None:
             simulation.run(until=until)
     with pytest.raises(ValueError, match="at least 0"):
         simulation.run(frames=-1)
-    with pytest.raises(TypeError, match="is no scene"):
+    with pytest.raises(TypeError, match="is not a scene"):
         ndda.Simulation(3)
     with pytest.raises(TypeError, match="function of facets"):
         ndda.Simulation(fall(), law=3)

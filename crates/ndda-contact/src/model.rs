@@ -159,7 +159,7 @@ pub struct ContactReport {
 pub enum ContactError {
     /// A target tetrahedron has no volume, so points in it have no barycentric coordinates.
     #[error(
-        "tet {tet:?} of block {block:?} has collapsed (volume {volume_m3:e} m³): reduce step_s or the load"
+        "tetrahedron {tet:?} of block {block:?} is flat or inverted (volume {volume_m3:e} m³): reduce step_s or the load"
     )]
     CollapsedTet {
         /// The tetrahedron.
@@ -174,8 +174,8 @@ pub enum ContactError {
     Potential(String),
     /// The contact history belongs to other friction laws.
     #[error(
-        "the contact history belongs to friction laws with {kept} numbers per facet, these have {expected}: resume with \
-         the laws that wrote it"
+        "the friction laws are not those of the saved friction history (it has {kept} numbers per facet, these laws have \
+         {expected}): resume with the laws that wrote it"
     )]
     OtherLaws {
         /// Numbers kept.
@@ -187,11 +187,13 @@ pub enum ContactError {
     #[error("the friction law failed: {0}")]
     Law(String),
     /// The model cannot say how its forces change.
-    #[error("this contact model has no stiffness to solve with: take contact at predicted positions")]
+    #[error(
+        "this contact model has no stiffness, which contact at the end of the step needs: give `contact_at: Predicted`"
+    )]
     NoTangent,
     /// A force came out infinite or not a number.
     #[error(
-        "the force between triangle {triangle:?} and tet {tet:?} is not finite: reduce step_s or the penalty"
+        "the force between triangle {triangle:?} and tetrahedron {tet:?} is not finite: reduce step_s or penalty_pa"
     )]
     NotFinite {
         /// The contactor's triangle.

@@ -23,7 +23,7 @@ pub enum Frame {
 
 /// A block whose shape has no rotation any more.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-#[error("the block is turned inside out or flat (mean det F = {determinant:e}): reduce step_s or the load")]
+#[error("the block is inverted or flat (mean det F = {determinant:e}): reduce step_s or the load")]
 pub struct FrameError {
     /// Determinant of the best affine map from the rest shape.
     pub determinant: f64,

@@ -31,7 +31,7 @@ pub enum MaterialError {
     #[error("shear_across_pa = {0} Pa: must be positive")]
     ShearAcross(f64),
     /// The beds need a normal.
-    #[error("the normal of the beds must have a length")]
+    #[error("the normal of the bedding is zero: give a direction, such as (0, 0, 1) for level beds")]
     BeddingNormal,
     /// Some strain would give energy back.
     #[error(

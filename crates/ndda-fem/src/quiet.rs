@@ -40,8 +40,8 @@ pub struct PlaneWave {
 /// A direction of motion that is none of a plane wave.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "no plane wave that travels along ({:.4}, {:.4}, {:.4}) moves this rock along ({:.4}, {:.4}, {:.4}): in isotropic rock P waves move it along \
-     their way and S waves across it; in bedded rock take a way along or across the bedding",
+    "no plane wave that travels in direction ({:.4}, {:.4}, {:.4}) moves this rock in direction ({:.4}, {:.4}, {:.4}): in isotropic rock \
+     give P waves a motion along their direction of travel, and S waves one across it; in bedded rock take a direction of travel along or across the bedding",
     along.x, along.y, along.z, moves.x, moves.y, moves.z
 )]
 pub struct NoWave {

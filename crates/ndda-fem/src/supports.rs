@@ -40,22 +40,24 @@ pub struct NodeSupport {
 pub enum SupportError {
     /// Rollers that would have to turn with the block.
     #[error(
-        "the supports let the block turn about {freedom} ax(es) in a way that turns the held directions with it: \
-         hold it at more nodes, or fix the nodes fully"
+        "the supports leave the block {freedom} independent rotation(s), which would turn the held directions: hold it at \
+         more nodes, or fix the nodes fully"
     )]
     TurnsHeldDirections {
         /// How many independent rotations the supports leave.
         freedom: usize,
     },
     /// A node moves like others, and as prescribed.
-    #[error("node {node} is tied to others and moved by a support: leave it out of one")]
+    #[error(
+        "node {node} is tied to others and also moved by a support: take it out of the tie or out of the support"
+    )]
     TiedAndMoved {
         /// The node, counted from the block's first.
         node: u32,
     },
     /// Two supports want different things of one node.
     #[error(
-        "node {node} is moved by one support and held or moved otherwise by another: leave it out of one"
+        "node {node} is moved by one support, and held or moved differently by another: take it out of one of the two supports"
     )]
     Conflict {
         /// The node, counted from the block's first.

@@ -29,7 +29,7 @@ pub(crate) fn in_words(error: &csv::Error) -> String {
                 said.replace("missing field", "there is no column")
             }
             (Some(field), _) => format!("{}has no number in column {}", line(pos), field + 1),
-            (None, _) => format!("{}has a value that is no number", line(pos)),
+            (None, _) => format!("{}has a value that is not a number", line(pos)),
         },
         _ => error.to_string(),
     }

@@ -44,7 +44,9 @@ fn at_most(source: impl Read, most: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     source.take(most + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > most {
-        return Err(io::Error::other(format!("it has more than {most} bytes, the most that are read")));
+        return Err(io::Error::other(format!(
+            "it has more than {most} bytes, the most that can be read: make the file smaller"
+        )));
     }
     Ok(bytes)
 }

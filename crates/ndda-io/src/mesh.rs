@@ -80,7 +80,7 @@ pub fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteErr
         "vtk" => vtk_file::write_legacy(path, bodies),
         found => {
             let reason = format!(
-                "`.{found}` is no format that is written here: give .msh, .node, .ele, .vtu, .vtk or .inp"
+                "`.{found}` is not a format that is written here: give .msh, .node, .ele, .vtu, .vtk or .inp"
             );
             Err(WriteError::Encode { path: path.to_path_buf(), reason })
         }

@@ -48,7 +48,7 @@ pub enum WriteError {
         column: String,
     },
     /// A table cannot be gone on with.
-    #[error("{} is not the table that the checkpoint belongs to ({what}): put it back, or run the scene again", path.display())]
+    #[error("{} is not the table that belongs to the checkpoint ({what}): put the original file back, or run the scene again", path.display())]
     NotThatTable {
         /// The table.
         path: PathBuf,
@@ -64,7 +64,7 @@ pub enum WriteError {
         frames: Vec<String>,
     },
     /// A folder that holds more than results: the root of the file system, or somebody's home.
-    #[error("{} is no folder for results: choose another one with --out", path.display())]
+    #[error("{} is not a folder for results: choose another one with --out", path.display())]
     NoResultFolder {
         /// The folder.
         path: PathBuf,

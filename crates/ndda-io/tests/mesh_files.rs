@@ -101,7 +101,7 @@ fn files_that_would_not_be_read_back_are_not_written() {
         bad.tets[0][1] = 1000;
         assert!(refused(ending, &[("a".into(), bad)]).contains("no node 1000"));
     }
-    assert!(refused("stl", &two_boxes()).contains("no format"));
+    assert!(refused("stl", &two_boxes()).contains("not a format"));
 }
 
 const TETRAHEDRON: &str =

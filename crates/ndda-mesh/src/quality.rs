@@ -209,7 +209,7 @@ impl fmt::Display for QualityReport {
             let [x, y, z] = w.at_m;
             writeln!(
                 f,
-                "  tet {} of {:?} at ({x:.4}, {y:.4}, {z:.4}) m: {:.2}° to {:.2}°, {:.1}, {} m",
+                "  tetrahedron {} of {:?} at ({x:.4}, {y:.4}, {z:.4}) m: {:.2}° to {:.2}°, {:.1}, {} m",
                 w.tet,
                 w.block,
                 w.dihedral_deg,
@@ -268,7 +268,7 @@ mod tests {
         assert_eq!((report.tets, report.worst.len()), (198, 10));
         assert!(report.worst[..6].iter().all(|w| w.block == "thin") && report.worst[9].block == "good");
         assert_eq!(report.height_m.counts.iter().sum::<usize>(), 198);
-        assert!(report.to_string().contains("tet 0 of \"thin\""));
+        assert!(report.to_string().contains("tetrahedron 0 of \"thin\""));
     }
 
     #[test]

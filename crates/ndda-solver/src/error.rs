@@ -22,8 +22,8 @@ pub enum StepError {
     },
     /// The limits are violated however short the step.
     #[error(
-        "at t = {time_s} s: contact is too stiff or too fast even for steps of {step_s:e} s: reduce the penalty, refine \
-         the mesh less, or allow more halvings"
+        "at t = {time_s} s: contact is too stiff or too fast even for steps of {step_s:e} s: reduce penalty_pa, use \
+         a coarser mesh, or raise most_halvings"
     )]
     NoStepIsShortEnough {
         /// Time [s].
@@ -41,7 +41,7 @@ pub enum StepError {
     },
     /// Newton's method did not find the contact forces at the end of a step.
     #[error(
-        "at t = {time_s} s: contact at the end of the step is not solved for after {iterations} evaluations \
+        "at t = {time_s} s: contact at the end of the step did not converge in {iterations} evaluations \
          (residual {residual:e}): reduce step_s, or raise the tolerance"
     )]
     ContactNotSolved {
@@ -54,7 +54,7 @@ pub enum StepError {
     },
     /// A block is past the depth at which contact pushes it out.
     #[error(
-        "at t = {time_s} s: triangle {} of block `{contactor}` is past the centroid of tet {} of block `{target}`, \
+        "at t = {time_s} s: triangle {} of block `{contactor}` is past the centroid of tetrahedron {} of block `{target}`, \
          where the contact potential no longer pushes it out: raise penalty_pa or reduce step_s", triangle.0, tet.0
     )]
     PastCentroid {
@@ -101,7 +101,7 @@ pub enum StepError {
     },
     /// An element is inside out.
     #[error(
-        "at t = {time_s} s: tet {} of block `{block}` is inverted (det F = {volume_ratio:e}): reduce step_s or the load",
+        "at t = {time_s} s: tetrahedron {} of block `{block}` is inverted (det F = {volume_ratio:e}): reduce step_s or the load",
         tet.0
     )]
     Inverted {
@@ -162,8 +162,8 @@ pub enum BlockError {
     Solve(#[from] SolveError),
     /// The rotation of a rigid block in a step cannot be solved for; half a turn at most has a solution.
     #[error(
-        "its rotation in this step, about {angle_rad:.3} rad, is too large to be solved for: a torque of {torque_n_m:.3e} N m turns it by \
-         {torque_angle_rad:.3} rad, from {spin_rad_s:.3e} rad/s at the start: reduce step_s, or penalty_pa if contact exerts the torque"
+        "its rotation in this step, about {angle_rad:.3} rad, is too large to compute: reduce step_s, or penalty_pa if contact exerts the torque \
+         (the torque of {torque_n_m:.3e} N m turns it by {torque_angle_rad:.3} rad; its spin at the start of the step is {spin_rad_s:.3e} rad/s)"
     )]
     TurnsTooFar {
         /// |Δt ω₀ + ½ Δt² J⁻¹ T| [rad].
@@ -180,7 +180,7 @@ pub enum BlockError {
     ForceNotFinite,
     /// The stress of a nonlinear material was not found.
     #[error(
-        "the stress of its material is not found after {iterations} iterations: reduce step_s or the load; a tangent modulus must \
+        "the stress of its material did not converge in {iterations} iterations: reduce step_s or the load; a tangent modulus must \
          stay below twice that of the undeformed material"
     )]
     Material {

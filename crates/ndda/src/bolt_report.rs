@@ -79,7 +79,7 @@ impl BoltReports {
         }
         if let Some(first) = outside.iter().max_by(|a, b| a.outside_m.total_cmp(&b.outside_m)) {
             doubts.push(format!(
-                "{} in part in no block: `{}` over {:.3} m, where nothing holds it; shorten or move them",
+                "{} partly outside all blocks: `{}` over {:.3} m, where nothing holds it; shorten or move them",
                 lie(outside.len()),
                 first.name,
                 first.outside_m

@@ -81,7 +81,7 @@ pub fn write(file: &Path, chosen: &[Chosen]) -> Result<(), String> {
         return Ok(());
     }
     if read::is_standard_input(file) {
-        return Err("standard input is no file to write to: save the scene, and name its file".into());
+        return Err("standard input is not a file to write to: save the scene, and name its file".into());
     }
     let text = read::text_of(file).map_err(|errors| errors.render(false))?;
     let text = read::with_values(&text, chosen).map_err(|refused| refused.message)?;
@@ -245,10 +245,10 @@ fn step_of(scene: &mut Scene, sizes: &Sizes, blocks: BlockSet, folder: &Path) ->
     }
     if sizes.speed_m_s > 0.0 && sizes.height_m.is_finite() {
         let way_s = WAY * sizes.height_m / sizes.speed_m_s;
-        limits.push((way_s, "blocks go a tenth of the height of a tetrahedron in it".into()));
+        limits.push((way_s, "blocks move by a tenth of the height of a tetrahedron in one step".into()));
     }
     if sizes.spin_rad_s > 0.0 {
-        limits.push((TURN / sizes.spin_rad_s, "blocks turn by 0.05 rad in it".into()));
+        limits.push((TURN / sizes.spin_rad_s, "blocks rotate by 0.05 rad in one step".into()));
     }
     // Any step serves to ask for the stability of contact, which does not depend on it.
     scene.time.step_s = limits[0].0;

@@ -102,7 +102,7 @@ fn phases(scene: &Scene) -> [Part; 1] {
         "settling",
         settles.is_some(),
         settles.unwrap_or_default(),
-        "time begins as the scene is written",
+        "the run begins from the scene as written, without `settle`",
     )]
 }
 
@@ -160,7 +160,7 @@ fn outputs(scene: &Scene, monitors: usize) -> [Part; 7] {
             "no frame holds a stress",
         ),
         Part::of(
-            "what each pair of blocks does to each other",
+            "contact forces of each pair of blocks",
             output.contacts,
             "in every row of the history",
             "output.contacts is false",
@@ -172,7 +172,7 @@ fn outputs(scene: &Scene, monitors: usize) -> [Part; 7] {
             "output.reactions is false",
         ),
         Part::of(
-            "checkpoints on the way",
+            "checkpoints during the run",
             output.checkpoint_wall_s > 0.0,
             format!("every {} s of wall clock, and at start and end", output.checkpoint_wall_s),
             "output.checkpoint_wall_s is 0: at start and end alone",

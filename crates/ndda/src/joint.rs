@@ -51,7 +51,7 @@ pub enum JointError {
     },
     /// A joint that may not open, or that a spring holds, needs a normal stiffness.
     #[error(
-        "a joint at constant volume answers to its opening by a normal stiffness: give --joint-stiffness, or a scene with \
+        "at constant volume the normal stress follows from a normal stiffness: give --joint-stiffness, or a scene with \
          `potential: Smooth()` or `Closure(…)`"
     )]
     NoStiffness,

@@ -33,7 +33,7 @@ pub enum PlotError {
     #[error("{0}")]
     Table(#[from] TableError),
     /// No such column, or several of them.
-    #[error("{}: {reason}; there is {}", file.display(), names.join(", "))]
+    #[error("{}: {reason}; choose one of {}", file.display(), names.join(", "))]
     Column {
         /// The history.
         file: PathBuf,

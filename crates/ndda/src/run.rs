@@ -289,7 +289,7 @@ impl Run {
             loaded.scene.stages.is_empty() && is_whole(&summary) && sensitivity.wants_twin(&simulation);
         if let Some(built) = built.filter(|_| has_twin) {
             tell(
-                "running the scene once more with velocities changed by 1e-4 of the largest speed, to see whether small differences grow (--sensitivity never leaves this out)",
+                "running the scene a second time with velocities changed by 1e-4 of the largest speed, to see whether small differences grow (`--sensitivity never` skips this)",
             );
             let settle = loaded.scene.settle.map(crate::build::settle);
             twin::judge(&mut summary, &mut simulation, &built, settle.as_ref(), (&stop, self.strict));

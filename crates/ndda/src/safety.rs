@@ -146,7 +146,7 @@ pub enum SafetyError {
     NothingFree,
     /// The scene does not come to rest, however strong its joints are.
     #[error(
-        "the scene does not come to rest even with {strength} times its strength ({source}): it fails whatever its joints hold, or settle.most_steps is too small"
+        "the scene does not come to rest even with joints {strength} times as strong ({source}): hold its blocks by supports, or raise settle.most_steps if it is only slow"
     )]
     NotSettled {
         /// The largest factor on the strength that was tried.

@@ -132,12 +132,16 @@ pub fn make(request: &Request) -> Result<Shaking, ShakingError> {
 fn check(request: &Request) -> Result<(), ShakingError> {
     let wrong = |option, value: String, advice| Err(ShakingError::Option { option, value, advice });
     if !(0.0..1.0).contains(&request.damping) {
-        return wrong("damping", request.damping.to_string(), "a part of critical damping from 0 to below 1");
+        return wrong("damping", request.damping.to_string(), "a damping ratio from 0 to below 1, as 0.05");
     }
     if let Some((low, high)) = request.record.filter_hz
         && !(0.0 <= low && low < high && high.is_finite())
     {
-        return wrong("filter", format!("{low},{high}"), "corners in hertz, the lower one first, as 0.1,25");
+        return wrong(
+            "filter",
+            format!("{low},{high}"),
+            "corner frequencies in hertz, the lower one first, as 0.1,25",
+        );
     }
     if request.record.resample_s.is_some_and(|s| !(s > 0.0 && s.is_finite())) {
         let value = request.record.resample_s.unwrap_or_default().to_string();

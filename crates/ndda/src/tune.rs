@@ -46,9 +46,9 @@ pub enum TuneError {
     Run(#[from] CertifyError),
     /// Runs of ever shorter steps do not come together.
     #[error(
-        "no run is exact enough to judge others by: steps down to {step_s:e} s still differ by {error:.1e}; \
-         `ndda certify` says whether the motion is chaotic; allow a larger --error, raise --budget-s, or name with --of \
-         what converges"
+        "no run is exact enough to judge others by, steps down to {step_s:e} s still differ by {error:.1e}: \
+         allow a larger --error, raise --budget-s, or name quantities that converge with --of; `ndda certify` says whether \
+         the motion is chaotic"
     )]
     NoTruth {
         /// The shortest step [s].
@@ -122,7 +122,8 @@ pub fn tune(
         ));
     }
     if runner.takes_inaccurate {
-        let remark = "no setting that calls itself accurate reaches the error: settings are judged by their error alone";
+        let remark =
+            "no run that is labelled accurate is within the error: settings are judged by their error alone";
         tuned.remarks.push(remark.into());
     }
     let json = tuned.write(&trial.out).map_err(CertifyError::from)?;

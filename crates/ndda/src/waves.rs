@@ -38,7 +38,7 @@ pub(crate) fn findings(simulation: &Simulation) -> Vec<Finding> {
     let Some(coarsest) = coarsest(simulation, &sources) else { return Vec::new() };
     let step = highest_hz * simulation.step_s();
     let too_long = format!(
-        "there are {:.1} steps in a period, fewer than {:.0}, of a wave with 95 % of its energy below {highest_hz:.3} Hz: take a step_s of {:.1e} or less",
+        "the time step is too long for the waves, with {:.1} steps per period instead of {:.0} (95 % of the energy is below {highest_hz:.3} Hz): take a step_s of {:.1e} or less",
         1.0 / step,
         1.0 / MOST_STEP,
         MOST_STEP / highest_hz
@@ -76,8 +76,8 @@ impl fmt::Display for Coarsest {
         let Self { block, hz, wavelength_m, element_m, cure } = self;
         write!(
             f,
-            "the mesh of block `{block}` has {:.1} nodes a wavelength, fewer than {:.0}, for a wave with 95 % of its energy below {hz:.3} Hz: its wavelength \
-             is {wavelength_m:.3} m, and elements are up to {element_m:.3} m long on its way; take elements of {:.3} m, or {cure}",
+            "the mesh of block `{block}` is too coarse for its waves, with {:.1} nodes per wavelength instead of {:.0} (95 % of the energy is below {hz:.3} Hz, \
+             wavelength {wavelength_m:.3} m, elements up to {element_m:.3} m along the direction of travel): take elements of {:.3} m, or {cure}",
             wavelength_m / element_m,
             1.0 / MOST_ELEMENT,
             MOST_ELEMENT * wavelength_m
@@ -202,7 +202,7 @@ mod tests {
         let slow = format!(
             r#"blocks: [{COLUMN}], supports: [(block: "column", on: Set("z_min"), hold: Motion([(time_s: 0, displacement_m: (0, 0, 0)), (time_s: 1e-3, displacement_m: (0, 0, 1e-3))]))]"#
         );
-        assert!(on_foot(10, &slow).is_empty(), "a table of displacements is no record");
+        assert!(on_foot(10, &slow).is_empty(), "a table of displacements is not a record");
     }
 
     /// A triangle of 2 T = 20 ms has 95 % of its energy below 0.5004/T = 50.04 Hz.

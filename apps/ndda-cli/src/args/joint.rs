@@ -15,7 +15,7 @@ use clap::{Args, ValueEnum};
 pub struct JointArgs {
     /// Scene whose law is tested (RON; see docs/reference/scene.md); not needed with --friction, nor for a closure test with --joint-stiffness.
     pub scene: Option<PathBuf>,
-    /// Take an example that is in the program instead of a file; without a name, list them.
+    /// Use a built-in example instead of a file; without a name, list the examples.
     #[arg(long, value_name = "NAME", num_args = 0..=1, default_missing_value = "", conflicts_with = "scene")]
     pub example: Option<String>,
     /// Override a value of the scene by its path; may be repeated.
@@ -33,28 +33,28 @@ pub struct JointArgs {
     /// Which test.
     #[arg(long, value_enum, default_value_t = JointTestKind::Shear)]
     pub test: JointTestKind,
-    /// Normal stress: at the start of a shear test, at the end of a closure test.
+    /// Normal stress [Pa]: at the start of a shear test, at the end of a closure test.
     #[arg(long, value_name = "PA", default_value_t = 1e6, allow_negative_numbers = true)]
     pub normal_stress: f64,
-    /// Let nothing open the joint while it is sheared: constant volume in place of a constant normal stress.
+    /// Shear at constant volume: the joint can neither open nor close, and the normal stress changes.
     #[arg(long, conflicts_with = "spring")]
     pub constant_volume: bool,
-    /// Hold the joint by a spring of this stiffness while it is sheared, in place of a constant normal stress.
+    /// Shear at constant normal stiffness: a spring of this stiffness [Pa/m] holds the joint, in place of a constant normal stress.
     #[arg(long, value_name = "PA_PER_M", allow_negative_numbers = true)]
     pub spring: Option<f64>,
-    /// Normal stiffness of the joint [default: 2 penalty_pa / L₀ of the scene's potential, where that is Smooth or Closure].
+    /// Normal stiffness of the joint [Pa/m] [default: 2 penalty_pa / L₀ if the scene's potential is Smooth or Closure, with its length L₀].
     #[arg(long, value_name = "PA_PER_M", allow_negative_numbers = true)]
     pub joint_stiffness: Option<f64>,
-    /// Largest closure of the joint, whose --joint-stiffness is then the initial one of a hyperbola.
+    /// Largest closure of the joint [m]: closure then follows a hyperbola (Bandis), with --joint-stiffness as its initial stiffness.
     #[arg(long, value_name = "M", requires = "joint_stiffness", allow_negative_numbers = true)]
     pub max_closure: Option<f64>,
-    /// Slip to shear to.
+    /// Slip at which shearing ends, or turns round in a cyclic test [m].
     #[arg(long, value_name = "M", default_value_t = 0.01, allow_negative_numbers = true)]
     pub amplitude: f64,
-    /// Cycles forth and back through the start; 0 shears in one direction.
+    /// Number of shear cycles, to the same slip on both sides of the start; 0 shears in one direction only.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub cycles: u32,
-    /// Steps from the start to the amplitude, or to the normal stress of a closure test.
+    /// Number of increments from the start to the amplitude, or to the normal stress of a closure test.
     #[arg(long, value_name = "N", default_value_t = 1000)]
     pub steps: u32,
     /// Folder to write joint.csv, joint.json and the picture joint.svg to.

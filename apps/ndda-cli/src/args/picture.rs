@@ -16,28 +16,28 @@ use ndda::view3d::{self, BoltColour, Colour, FrameChoice, Resting, View};
 pub struct PictureArgs {
     /// Output folder of a run, or a scene file.
     pub input: PathBuf,
-    /// Which frame: last, first, a number from 0, or the nearest to a time, as 0.35s; auto is the last, and of a mechanism that `ndda
-    /// safety` found the first at which motion is seen.
+    /// Which frame: last, first, a number from 0, or the nearest to a time, as 0.35s; auto takes the last, but for a
+    /// mechanism of `ndda safety` the first frame in which motion can be seen.
     #[arg(long, value_name = "FRAME", default_value = "auto")]
     pub frame: FrameChoice,
-    /// Direction from which the blocks are seen: iso, top, front (in the south), side (in the east), or AZIMUTH,ELEVATION in degrees, clockwise from
-    /// north and above the horizontal.
+    /// Where the viewer stands: iso, top, front (south), side (east), or AZIMUTH,ELEVATION in degrees, clockwise from north and above the
+    /// horizontal.
     #[arg(long, value_name = "VIEW", default_value = "iso", allow_hyphen_values = true)]
     pub view: View,
     /// Quantity shown by colours: displacement, velocity, stress (von Mises), block, material, joint (of a scene), or the name of an array of the frames
     /// [default: displacement of a run, blocks of a scene].
     #[arg(long, visible_alias = "colour", value_name = "QUANTITY")]
     pub color: Option<Colour>,
-    /// Blocks at rest: seen through where they hide most of what moves (auto), solid, clear (seen through) or hidden.
+    /// How blocks at rest are drawn: auto (transparent where they hide most of what moves), solid, clear (transparent) or hidden.
     #[arg(long, value_name = "HOW", default_value = "auto")]
     pub resting: Resting,
     /// Show all blocks, in place of those that move and what is around them.
     #[arg(long)]
     pub whole: bool,
-    /// Draw displacements so many times as large as they are.
+    /// Factor by which displacements are magnified.
     #[arg(long, value_name = "FACTOR", default_value_t = 1.0, value_parser = view3d::parse_factor, allow_hyphen_values = true)]
     pub magnify: f64,
-    /// Leave out the outlines of where blocks began, which are drawn where few move.
+    /// Do not draw the outlines of the blocks at their start; they are drawn only where few blocks move.
     #[arg(long)]
     pub no_outlines: bool,
     /// Colours of bolts: force (axial, tension above zero), yield (axial force over that at which the steel yields), state (elastic, debonded, yielding or
@@ -53,14 +53,14 @@ pub struct PictureArgs {
     /// Draw the run from its first frame to its last.
     #[arg(long, conflicts_with = "frame")]
     pub animate: bool,
-    /// Most frames of an animation, evenly spaced.
+    /// Largest number of frames of an animation, evenly spaced.
     #[arg(long, value_name = "N", default_value_t = 100, requires = "animate", value_parser = clap::value_parser!(u16).range(2..))]
     pub frames: u16,
     /// Frames of an animation that are shown in a second.
     #[arg(long, value_name = "N", default_value_t = 12, requires = "animate", value_parser = clap::value_parser!(u16).range(1..=100))]
     pub fps: u16,
-    /// The file: .png or .svg; of an animation .png, .webm or .mp4 (the last two through ffmpeg) [default: picture.png or
-    /// animation.png in the folder of the run, or beside you with the name of the scene].
+    /// The file: .png or .svg; for an animation .png, .webm or .mp4 (the last two through ffmpeg) [default: picture.png or
+    /// animation.png in the folder of the run; for a scene, a file of its name in the current folder].
     #[arg(long, short, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Override a value of the scene by its path; may be repeated.

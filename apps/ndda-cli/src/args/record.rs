@@ -24,28 +24,28 @@ pub struct RecordArgs {
     /// Factor on the accelerations.
     #[arg(long, default_value_t = 1.0)]
     pub factor: f64,
-    /// Corners of a band pass in hertz, as 0.1,25.
+    /// Corner frequencies of a band-pass filter [Hz], as 0.1,25.
     #[arg(long, value_name = "LOW,HIGH", value_parser = parse_corners)]
     pub filter: Option<(f64, f64)>,
     /// Baseline to take out of the velocity: none, linear or quadratic.
     #[arg(long, value_name = "LINE", default_value = "none", value_parser = parse_baseline)]
     pub baseline: Baseline,
-    /// Even spacing of rows in seconds.
+    /// Resample the record to this time step [s].
     #[arg(long, value_name = "SECONDS")]
     pub resample: Option<f64>,
-    /// Part of critical damping of the response spectrum.
+    /// Damping ratio of the response spectrum, as 0.05 for 5 % of critical damping.
     #[arg(long, default_value_t = 0.05)]
     pub damping: f64,
-    /// Slip of a block that slides both ways beyond this acceleration in m/s².
+    /// Newmark sliding block on level ground: its yield acceleration [m/s²], the same in both directions.
     #[arg(long = "yield", value_name = "M_S2", conflicts_with = "slope")]
     pub yield_m_s2: Option<f64>,
-    /// Slip of a block on a slope of this dip in degrees, shaken horizontally.
+    /// Newmark sliding block on a slope that is shaken horizontally: dip of the slope [°].
     #[arg(long, value_name = "DEGREES", requires = "friction")]
     pub slope: Option<f64>,
-    /// Friction of the block on the slope in degrees.
+    /// Friction angle of the block on the slope [°].
     #[arg(long, value_name = "DEGREES")]
     pub friction: Option<f64>,
-    /// The record shakes along the slope.
+    /// The record shakes along the slope, not horizontally.
     #[arg(long, requires = "slope")]
     pub along_slope: bool,
     /// The picture, .svg or .png; tables go beside it as .motion.csv and .spectrum.csv.

@@ -18,7 +18,7 @@ pub struct RockfallArgs {
     /// Boulders to release [default: those of the scene].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub count: Option<u32>,
-    /// Seed of all that is drawn [default: that of the scene].
+    /// Seed of the random numbers [default: that of the scene].
     #[arg(long, value_name = "N")]
     pub seed: Option<u64>,
     /// Boulders that fall side by side; results do not depend on it [default: all cores].

@@ -20,19 +20,19 @@ pub struct SafetyArgs {
     /// Quantity that is changed until blocks fail.
     #[arg(long, value_enum, default_value_t = SafetyBy::Strength)]
     pub by: SafetyBy,
-    /// With `--by gravity`: where gravity is tilted to, as x,y,z [default: down the steepest plane that blocks stand on].
+    /// With `--by gravity`: direction towards which gravity is tilted, as x,y,z [default: down the steepest plane that blocks stand on].
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub towards: Option<[f64; 3]>,
-    /// How near the two factors of the answer have to be, relative to each other.
+    /// Largest relative difference between the two factors of the answer: the largest at which blocks stand, the smallest at which they fail.
     #[arg(long, value_name = "ERROR", default_value_t = 0.01, value_parser = relative_error)]
     pub error: f64,
     /// Output folder [default: out/ and the name of the scene with _safety].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Begin anew, without the trials of an earlier call.
+    /// Begin anew, without the trials of an earlier run of this command.
     #[arg(long)]
     pub force: bool,
-    /// Threads, which run trials side by side; the answer does not depend on it [default: all cores].
+    /// Number of threads, which run trials side by side; the answer does not depend on it [default: all cores].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Print nothing but errors and the answer.

@@ -24,7 +24,7 @@ pub struct StereonetArgs {
     /// Friction of the joints in degrees: planes and wedges slide if they are steeper [default: checks of directions alone].
     #[arg(long, value_name = "DEGREES")]
     pub friction: Option<f64>,
-    /// Planes slide if they dip within this angle of the slope's dip direction.
+    /// Lateral limit [°]: planes slide only if their dip direction is within this angle of the slope's.
     #[arg(long, value_name = "DEGREES", default_value_t = SLIDING_LATERAL_DEG)]
     pub lateral: f64,
     /// The picture, .svg or .png.

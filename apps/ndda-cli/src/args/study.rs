@@ -26,10 +26,10 @@ pub struct StudyArgs {
     /// Where and how.
     #[command(flatten)]
     pub how: StudyHow,
-    /// Cases that run at a time; more than one disturbs their times.
+    /// Cases that run side by side; with more than one, measured times are less reliable.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: u16,
-    /// Run nothing: print what hands the cases to a scheduler.
+    /// Run nothing: print a job script, or a list of commands, that runs the cases.
     #[arg(long, value_enum, value_name = "KIND", conflicts_with_all = ["vary", "of", "fails_when"])]
     pub emit: Option<Emit>,
     /// Print the results as JSON.
@@ -50,7 +50,7 @@ pub struct SweepArgs {
     /// Find the probability of a condition, such as "safety < 1".
     #[arg(long, value_name = "CONDITION")]
     pub fails_when: Option<String>,
-    /// Samples of what has a distribution [default: 100].
+    /// Samples of the random parameters [default: 100].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     pub samples: Option<u32>,
     /// How samples are spread [default: lhs].
@@ -59,10 +59,10 @@ pub struct SweepArgs {
     /// Seed of the samples [default: 0].
     #[arg(long, value_name = "SEED")]
     pub seed: Option<u64>,
-    /// Correlate two random axes: a,b=-0.5; may be repeated.
+    /// Correlate two random parameters by their names: a,b=-0.5; may be repeated.
     #[arg(long, value_name = "A,B=R", allow_hyphen_values = true)]
     pub correlate: Vec<String>,
-    /// Find how much each random axis matters (Sobol' indices), by samples × (axes + 2) runs.
+    /// Find how much each random parameter matters (Sobol' indices), by samples × (parameters + 2) runs.
     #[arg(long)]
     pub sensitivity: bool,
 }
@@ -70,7 +70,7 @@ pub struct SweepArgs {
 /// How samples are spread.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Spread {
-    /// A Latin hypercube: one sample in each stratum of each axis.
+    /// A Latin hypercube: one sample in each stratum of each parameter.
     Lhs,
     /// Points of a Sobol' sequence.
     Sobol,

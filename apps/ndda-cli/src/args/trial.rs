@@ -1,4 +1,4 @@
-//! Arguments of the verbs that run a scene over and over.
+//! Arguments of the commands that run a scene over and over.
 
 use std::path::PathBuf;
 
@@ -51,7 +51,7 @@ pub struct TuneArgs {
     /// Try coarser and finer meshes, too.
     #[arg(long)]
     pub mesh: bool,
-    /// Most time that all runs together may take [s].
+    /// Time limit for all runs together [s].
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = positive)]
     pub budget_s: f64,
     /// Where and how.
@@ -65,7 +65,7 @@ pub struct TrialHow {
     /// Output folder [default: out/ and the name of the scene with _certified or _tuned].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Runs at a time; more than one disturbs their times.
+    /// Runs that go side by side; with more than one, measured times are less reliable.
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub jobs: u16,
     /// Threads of each run.

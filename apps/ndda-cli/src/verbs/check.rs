@@ -31,7 +31,7 @@ pub fn check(args: &CheckArgs) -> u8 {
     doubts.iter().for_each(|doubt| events.warn(doubt));
     let guess = cost::guess(&loaded.scene, &mut model.simulation);
     let file = input::file(&args.input);
-    let stops = guess.as_ref().err().map(|error| format!("the first steps stop: {error}"));
+    let stops = guess.as_ref().err().map(|error| format!("the run would stop in its first steps: {error}"));
     stops.iter().for_each(|stops| events.warn(stops));
     let records = build::records(&loaded.scene, file.parent().unwrap_or(Path::new("")));
     let (simulation, blocks) = (&model.simulation, model.simulation.blocks());

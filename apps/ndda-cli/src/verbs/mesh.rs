@@ -98,7 +98,7 @@ fn from_scene(args: &MeshArgs) -> Result<Input, Refused> {
 
 fn from_file(args: &MeshArgs) -> Result<Input, Refused> {
     if !args.overrides.is_empty() {
-        return Err(bad_input("--set is for scenes"));
+        return Err(bad_input("--set changes scenes, and this is a mesh file: leave it out"));
     }
     forecast::admit::admit_file(&args.input).map_err(|message| Refused::Message(exit::RESOURCE, message))?;
     let repairs = args.fix.iter().map(|fix| match fix {

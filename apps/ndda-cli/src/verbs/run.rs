@@ -165,7 +165,9 @@ struct Finished<'a> {
 /// Says what is beyond its limit, and gives the exit code.
 fn conclude(summary: &Summary, folder: &Path, options: &Options) -> u8 {
     for (name, _) in summary.verdicts.0.iter().filter(|(_, v)| v.verdict == Judgement::Fail) {
-        options.events.warn(&format!("{name} is beyond its limit: do not use this result"));
+        options.events.warn(&format!(
+            "{name} is beyond its limit: do not use this result; run.log says what to change"
+        ));
     }
     let exit_code = match summary.status {
         Status::Done => exit::DONE,

@@ -39,7 +39,7 @@ fn find(args: &SafetyArgs) -> u8 {
         return exit::of_safety(&error);
     }
     if args.towards.is_some() && args.by != SafetyBy::Gravity {
-        complain("error: --towards is where gravity is tilted to: give --by gravity with it");
+        complain("error: --towards works only with --by gravity: add that, or leave --towards out");
         return exit::USAGE;
     }
     let by = match args.by {

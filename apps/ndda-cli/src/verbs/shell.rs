@@ -18,13 +18,13 @@ pub fn completions(args: &CompletionsArgs) -> u8 {
 pub fn man(args: &ManArgs) -> u8 {
     let mut command = Cli::command();
     command.build();
-    let page = match &args.verb {
+    let page = match &args.command {
         None => command,
         Some(verb) => match command.find_subcommand(verb) {
             Some(found) => found.clone(),
             None => {
                 let verbs: Vec<&str> = command.get_subcommands().map(clap::Command::get_name).collect();
-                complain(&format!("error: there is no verb `{verb}`: {}", suggest(verb, &verbs)));
+                complain(&format!("error: there is no command `{verb}`: {}", suggest(verb, &verbs)));
                 return exit::USAGE;
             }
         },

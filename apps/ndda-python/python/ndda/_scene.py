@@ -82,7 +82,7 @@ def load(file: str | os.PathLike[str], **overrides: object) -> Scene:
 def parse(
     scene: str | Mapping[str, Any] | SceneBuilder, folder: str | os.PathLike[str] = ".", **overrides: object
 ) -> Scene:
-    """Read and check a scene that is no file.
+    """Read and check a scene that is not a file.
 
     Parameters
     ----------
@@ -120,7 +120,7 @@ def parse(
 
         built = SceneBuilder.from_dict(scene) if isinstance(scene, Mapping) else scene
         if not isinstance(built, SceneBuilder):
-            raise TypeError(f"{built!r} is no scene: give a text, a dictionary, or a builders.Scene; `load` reads files")
+            raise TypeError(f"{built!r} is not a scene: give a text, a dictionary, or a builders.Scene; `load` reads files")
         text = built.to_ron()
     return Scene._parse(text, overrides_of(overrides), os.fspath(folder))
 

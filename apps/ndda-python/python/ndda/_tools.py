@@ -66,7 +66,7 @@ def study(
     samples, sampling, seed
         How many samples of what is random (100), how they are spread ("lhs"), and their seed (0).
     correlate : sequence of str
-        Correlations of random axes, such as ``"parameters.a,parameters.b=-0.5"``.
+        Correlations of random parameters, such as ``"parameters.a,parameters.b=-0.5"``.
     sensitivity : bool
         Whether to find how much each random axis matters.
     out : path, optional
@@ -212,7 +212,7 @@ def safety(
     out : path, optional
         Folder of `safety.json` and of a run that shows the failure; none are kept otherwise.
     threads : int, optional
-        Threads, which run trials side by side; all processors otherwise. The answer does not depend on them.
+        Number of threads, which run trials side by side; all cores otherwise. The answer does not depend on it.
 
     Returns
     -------
@@ -272,7 +272,7 @@ def stereonet(
     friction_deg : float, optional
         Friction of the joints [°], for the checks.
     lateral_deg : float, optional
-        Planes slide if they dip within this angle of the slope's dip direction [°]; 20 otherwise.
+        Lateral limit: planes slide only if their dip direction is within this angle of the slope's [°]; 20 otherwise.
     out : path, optional
         File of the picture, .svg or .png.
 

@@ -118,7 +118,7 @@ def shear(
     cycles : int
         Cycles forth and back; 0 shears in one direction.
     steps : int
-        Steps from the start to the amplitude.
+        Number of increments from the start to the amplitude.
     constant_volume : bool
         Whether nothing may open the joint, in place of a constant normal stress.
     spring_pa_m : float, optional

@@ -6,7 +6,7 @@ use crate::plan::Part;
 use crate::potential::contact_potential::{OverlapLaw, PotentialField};
 
 const FRICTION: &str = "friction";
-const MEMORY: &str = "memory of friction";
+const MEMORY: &str = "friction history";
 
 /// Parts of the model, by what it holds.
 pub(super) fn parts(model: &PotentialContact) -> Vec<Part> {
@@ -22,13 +22,16 @@ pub(super) fn parts(model: &PotentialContact) -> Vec<Part> {
                 model.candidates.finder()
             ),
         ),
-        Part::included("contact potential", format!("{name}, k_n = {penalty_pa:e} Pa, integrated {how}")),
+        Part::included(
+            "contact potential",
+            format!("{name}, penalty_pa = {penalty_pa:e} Pa, integrated {how}"),
+        ),
         whole_blocks(model),
         Part::of(
             "volume of overlaps",
             curved,
             "the pressure of a patch depends on all of its overlap",
-            "pressure is k_n φ, each point for itself",
+            "pressure is penalty times φ, each point for itself",
         ),
     ];
     match &model.joints {
@@ -45,11 +48,11 @@ fn whole_blocks(model: &PotentialContact) -> Part {
     let count = model.hulls.count_affine();
     let why_not = match model.potential.phi_per_m() {
         None => format!("the potential {} is defined per tetrahedron", model.potential.name()),
-        Some(_) => "no convex block moves by an affine map, or friction history belongs to elements".into(),
+        Some(_) => "no convex block is Rigid, Affine or Fixed, or contact.memory is Element".into(),
     };
     let what =
         format!("{count} convex blocks are compared as a whole, by their faces, not by their tetrahedra");
-    Part::of("affine convex targets", count > 0, what, why_not)
+    Part::of("convex blocks taken whole", count > 0, what, why_not)
 }
 
 fn friction(joints: &FrictionLawTable) -> [Part; 3] {
@@ -57,7 +60,9 @@ fn friction(joints: &FrictionLawTable) -> [Part; 3] {
     let memory = match joints.memory {
         _ if faces => "one force per face and block that it touches",
         Memory::Body => "one force per facet and block that it touches",
-        Memory::Element => "one force per facet and element that it touches: lost on every element border",
+        Memory::Element => {
+            "one force per facet and element that it touches, lost where the facet slides to the next element"
+        }
     };
     [
         Part::included(FRICTION, joints.law_names().join(", ")),

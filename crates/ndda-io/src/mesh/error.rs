@@ -32,7 +32,7 @@ pub enum FileProblem {
     #[error("is not a file: name the file itself")]
     NotAFile,
     /// An ending that says no format that is read here.
-    #[error("`.{found}` is no format that is read here: give one of {known}")]
+    #[error("`.{found}` is not a format that is read here: give one of {known}")]
     Extension {
         /// The ending.
         found: String,
@@ -90,7 +90,7 @@ pub enum FileProblem {
         node: i64,
     },
     /// A part of the format that is not read.
-    #[error("{what} is not read: {cure}")]
+    #[error("{what} is not supported: {cure}")]
     NotRead {
         /// Name of the item.
         what: String,
@@ -128,8 +128,8 @@ pub enum FileProblem {
     #[error("holds no faces: save a surface of triangles or polygons")]
     NoFaces,
     /// A surface with edges of one face only, or of faces that disagree.
-    #[error("the surface is not closed: {count} edges have no partner that runs the other way, the first {edges}; \
-             close it, all faces outward{}", if *count > 4 { ", or weld at a larger tolerance" } else { "" })]
+    #[error("the surface is not closed: at {count} edges no face joins that runs them the other way, the first {edges}; \
+             close the holes, and turn all faces outward{}", if *count > 4 { ", or weld at a larger tolerance" } else { "" })]
     Open {
         /// How many edges.
         count: usize,

@@ -31,7 +31,8 @@ pub enum TetgenError {
     Tetgen(String),
     /// The tetrahedra do not add up to the surface.
     #[error(
-        "the surface encloses {surface:e} but its tetrahedra have {tets:e}: it is inside out or cuts itself"
+        "the surface encloses a volume of {surface:e}, but its tetrahedra have {tets:e}: the surface is inside out or cuts \
+         itself; turn its faces outward, or remove the crossing"
     )]
     Inconsistent {
         /// Volume under the surface [unit cubed].

@@ -145,7 +145,7 @@ impl Check<'_> {
             self.report(
                 Code::NoDirection,
                 path,
-                "is no direction: its length is zero or overflows",
+                "is not a direction: its length is zero or overflows",
                 "give a vector such as (0, 0, 1)",
             );
         }
@@ -215,7 +215,12 @@ impl Check<'_> {
                 true => format!("{} is a folder", place.display()),
                 false => format!("there is no file {}", place.display()),
             };
-            self.report(Code::MissingFile, path, message, "name a file; its path counts from the scene file");
+            self.report(
+                Code::MissingFile,
+                path,
+                message,
+                "name a file; its path is relative to the folder of the scene file",
+            );
         }
     }
 
@@ -250,7 +255,7 @@ impl Check<'_> {
         if !(0.0..=1e9).contains(&wall_s) {
             self.error(
                 "output.checkpoint_wall_s",
-                format!("{wall_s} is no time between checkpoints"),
+                format!("{wall_s} is not a time between checkpoints"),
                 "give seconds, or 0 for none between start and end",
             );
         }

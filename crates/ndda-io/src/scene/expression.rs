@@ -43,7 +43,7 @@ pub(crate) fn evaluate(
         None => Ok(value),
         Some(c) => {
             let at = parser.at..parser.at + c.len_utf8();
-            Err(mistake(at, format!("`{c}` is no operator"), "the operators are + - * / ^"))
+            Err(mistake(at, format!("`{c}` is not an operator"), "the operators are + - * / ^"))
         }
     }
 }
@@ -137,7 +137,7 @@ impl<'a> Parser<'a> {
         if value.is_finite() {
             return Ok(value);
         }
-        let message = format!("`{}` is no finite number", &self.text[start..self.at]);
+        let message = format!("`{}` is not a finite number", &self.text[start..self.at]);
         Err(mistake(start..self.at, message, "numbers are real, and at most 1.8e308 in size"))
     }
 
@@ -199,7 +199,7 @@ impl<'a> Parser<'a> {
         self.at = end;
         let digits = self.text[start..end].replace('_', "");
         let value = digits.parse().map_err(|_| {
-            mistake(start..end, format!("`{digits}` is no number"), "write it as 1.5 or 20e9")
+            mistake(start..end, format!("`{digits}` is not a number"), "write it as 1.5 or 20e9")
         })?;
         self.finite(value, start)
     }
@@ -334,18 +334,18 @@ mod tests {
         for (text, at, message, help) in [
             ("90 - dpi_deg", 5..12, "no parameter `dpi_deg`", "did you mean `dip_deg`"),
             ("1 / (zero * 2)", 0..14, "divides by zero", "change"),
-            ("2 + sqrt(-1)", 4..12, "no finite number", "real"),
-            ("tan(90)", 0..7, "no finite number", "real"),
+            ("2 + sqrt(-1)", 4..12, "not a finite number", "real"),
+            ("tan(90)", 0..7, "not a finite number", "real"),
             ("sine(3)", 0..4, "no function `sine`", "did you mean `sin`"),
             ("2 * sin", 4..7, "is a function", "sin(…)"),
             ("max(1)", 0..6, "at least two", "there are 1"),
             ("sin(1, 2)", 0..9, "one value", "there are 2"),
             ("atan2(1)", 0..8, "two values, y and x", "there are 1"),
             ("(1 + 2", 6..6, "found the end", "operators"),
-            ("1 2", 2..3, "`2` is no operator", "+ - * / ^"),
+            ("1 2", 2..3, "`2` is not an operator", "+ - * / ^"),
             ("1 +", 3..3, "found the end", "number"),
-            ("1.2.3", 0..5, "is no number", "1.5"),
-            ("10 ^ 400", 0..8, "no finite number", "1.8e308"),
+            ("1.2.3", 0..5, "is not a number", "1.5"),
+            ("10 ^ 400", 0..8, "not a finite number", "1.8e308"),
         ] {
             let found = value(text).expect_err(text);
             assert_eq!(found.at, at, "{text}: {found:?}");

@@ -80,7 +80,7 @@ impl Reader<'_> {
     fn add(&mut self, name: &Path, place: &Place, above: &mut Vec<PathBuf>) -> Result<(), SceneErrors> {
         let path = self.folder.join(name);
         let Ok(known_as) = path.canonicalize() else {
-            let help = "paths count from the file that names them";
+            let help = "paths are relative to the folder of the file that names them";
             return Err(place.refuse(
                 Code::MissingFile,
                 format!("there is no file {}", path.display()),

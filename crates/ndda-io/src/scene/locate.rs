@@ -48,13 +48,13 @@ pub fn tree(text: &str) -> Node {
 /// The reason, in words that follow the text.
 pub(crate) fn one_value(text: &str) -> Result<(), String> {
     let mut scanner = Scanner { text, at: 0 };
-    let Some(node) = scanner.value(0) else { return Err("is no value".into()) };
+    let Some(node) = scanner.value(0) else { return Err("is not a value".into()) };
     let rest = text[node.span.end..].trim();
     if !rest.is_empty() && node.is_closed(text) {
         return Err(format!("is more than one value: `{rest}` follows"));
     }
     match node.unclosed(text) {
-        Some(open) => Err(format!("is not whole: `{open}` is not closed")),
+        Some(open) => Err(format!("is incomplete: `{open}` is not closed")),
         None => Ok(()),
     }
 }

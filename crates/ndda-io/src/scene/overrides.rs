@@ -133,7 +133,9 @@ pub(crate) fn put(text: &str, path: &str, value: &str) -> Result<String, String>
         return Err(lost(text, node, missing[0]));
     }
     if let Some(choice) = missing[..missing.len() - 1].iter().find(|name| CHOICES.contains(name)) {
-        return Err(format!("`{choice}` is not written in the scene: write which one it is first"));
+        return Err(format!(
+            "the scene leaves out `{choice}`: set the choice itself together with its fields"
+        ));
     }
     Ok(insert(text, node, missing, value))
 }
@@ -232,9 +234,9 @@ fn lost(text: &str, node: &Node, name: &str) -> String {
     });
     let here = here.collect::<Vec<_>>().join(", ");
     if here.is_empty() {
-        format!("`{name}`: there is nothing below this value")
+        format!("`{name}`: this is a single value without fields")
     } else {
-        format!("there is no `{name}` here; there is {here}")
+        format!("there is no `{name}` here; choose one of {here}")
     }
 }
 
@@ -285,7 +287,7 @@ mod tests {
             ("(1, 2]", "`(` is not closed"),
             ("\"a", "`\"` is not closed"),
             ("Newmark(alpha: 0.5", "`(` is not closed"),
-            (")", "is no value"),
+            (")", "is not a value"),
             ("1 // more", "`// more` follows"),
             ("(1 // )", "`(` is not closed"),
             ("1 /*", "`/*` follows"),
@@ -356,9 +358,9 @@ mod tests {
 
     #[test]
     fn a_path_that_leads_nowhere_is_refused_with_what_is_there() {
-        assert!(set("blocks.B.at_m=1").contains("there is no `B` here; there is A"));
-        assert!(set("time.integrator.theta=1").contains("write which one it is first"));
+        assert!(set("blocks.B.at_m=1").contains("there is no `B` here; choose one of A"));
+        assert!(set("time.integrator.theta=1").contains("set the choice itself"));
         assert!(set("time.step_s").contains("has no `=`"));
-        assert!(set("time.step_s.x=1").contains("nothing below"));
+        assert!(set("time.step_s.x=1").contains("a single value"));
     }
 }

@@ -187,7 +187,7 @@ mod tests {
             ("parameters: (a: (1, 2)),", "1", "s.ron:1:30", "one finite number"),
             ("parameters: (a: NaN),", "1", "s.ron:1:30", "one finite number"),
             ("parameters: (a: -1e400),", "1", "s.ron:1:30", "one finite number"),
-            ("parameters: (a_m: Degrees(2)),", "1", "s.ron:1:32", "no unit of a length"),
+            ("parameters: (a_m: Degrees(2)),", "1", "s.ron:1:32", "not a unit of a length"),
             ("parameters: [3],", "1", "s.ron:1:26", "height_m"),
             (
                 "parameters: (dip_deg: 35),",

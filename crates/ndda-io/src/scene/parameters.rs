@@ -37,7 +37,7 @@ impl Parameters {
         let letters = |c: char| c.is_ascii_alphanumeric() || c == '_';
         let word = name.chars().all(letters) && !name.starts_with(|c: char| c.is_ascii_digit());
         let (message, help) = if !word {
-            ("is no name of a parameter", "names have letters, digits and _")
+            ("is not a name of a parameter", "names have letters, digits and _")
         } else if name == "pi" || FUNCTIONS.contains(&name) {
             ("is a name that expressions have already", "choose another, such as one that ends in its unit")
         } else if self.list.iter().any(|parameter| parameter.name == name) {

@@ -13,7 +13,11 @@ pub fn suggest(found: &str, expected: &[&str]) -> String {
         None => {
             let mut names = expected.to_vec();
             names.dedup();
-            format!("there is {}", names.join(", "))
+            match names[..] {
+                [] => "there is none".into(),
+                [only] => format!("there is {only}"),
+                _ => format!("choose one of {}", names.join(", ")),
+            }
         }
     }
 }
@@ -39,6 +43,7 @@ mod tests {
     fn a_name_is_suggested_with_the_one_that_adds_its_unit() {
         assert_eq!(suggest("stp", &["end_s", "step", "step_s"]), "did you mean `step` or `step_s`?");
         assert_eq!(suggest("ste_s", &["end_s", "step", "step_s"]), "did you mean `step_s`?");
-        assert_eq!(suggest("x", &["end_s", "step"]), "there is end_s, step");
+        assert_eq!(suggest("x", &["end_s", "step"]), "choose one of end_s, step");
+        assert_eq!(suggest("x", &["end_s"]), "there is end_s");
     }
 }

@@ -159,7 +159,7 @@ impl Resolver<'_> {
                 let close = nearest(word, &dimension.unit_names());
                 let help =
                     close.map_or_else(|| units_of(dimension), |name| format!("did you mean `{name}`?"));
-                self.refuse(node, format!("`{word}` is no unit of {}", dimension.name), help);
+                self.refuse(node, format!("`{word}` is not a unit of {}", dimension.name), help);
             }
             _ => {
                 let inside = if word == PLACE { dimension_of("_m") } else { own };
@@ -173,7 +173,7 @@ impl Resolver<'_> {
             return self.refuse(node, format!("`{word}` in a field without a unit"), "write a plain number");
         };
         let Some(unit) = dimension.unit(word) else {
-            let message = format!("`{word}` is no unit of {}", dimension.name);
+            let message = format!("`{word}` is not a unit of {}", dimension.name);
             return self.refuse(node, message, units_of(dimension));
         };
         let (Some(first), Some(last)) = (node.children.first(), node.children.last()) else {
@@ -205,9 +205,11 @@ impl Resolver<'_> {
         if node.opening.is_none() || calculated.is_some() {
             match unit.in_field(calculated.as_deref().unwrap_or(&self.text[node.span.clone()])) {
                 Some(number) => self.edit(node.span.clone(), number),
-                None => {
-                    self.refuse(node, "is no number that has a unit", "write a plain number in the brackets")
-                }
+                None => self.refuse(
+                    node,
+                    "is not a number that has a unit",
+                    "write a plain number in the brackets",
+                ),
             }
         } else if !node.word(self.text).is_empty() {
             self.refuse(node, "a unit inside a unit", "leave out one of the two");

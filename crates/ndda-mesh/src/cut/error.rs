@@ -67,7 +67,7 @@ pub enum CutError {
     },
     /// A profile that is no simple polygon.
     #[error(
-        "the profile of {corners} corners is no simple polygon: list at least three corners in order, without crossings"
+        "the profile of {corners} corners is not a simple polygon: list at least three corners in order, without crossings"
     )]
     Profile {
         /// Number of corners.
@@ -91,7 +91,7 @@ pub enum CutError {
     },
     /// An edge of the surface without the opposite edge of another face.
     #[error(
-        "edge {a}-{b} of face {face} has no partner that runs {b}-{a}: close the surface, all faces outward"
+        "no other face joins edge {a}-{b} of face {face} as {b}-{a}: close the surface, and turn all faces outward"
     )]
     Open {
         /// Index of the face.
@@ -103,7 +103,8 @@ pub enum CutError {
     },
     /// The convex parts do not add up to the surface.
     #[error(
-        "the surface encloses {surface_m3:e} m³ but its convex parts have {parts_m3:e} m³: it is inside out or cuts itself"
+        "the surface encloses {surface_m3:e} m³, but its convex parts have {parts_m3:e} m³: the surface is inside out or cuts \
+         itself; turn its faces outward, or remove the crossing"
     )]
     Inconsistent {
         /// Volume under the surface [m³].

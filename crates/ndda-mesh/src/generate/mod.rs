@@ -92,7 +92,7 @@ pub enum GenerateError {
     },
     /// More nodes or tetrahedra than 32-bit indices can hold.
     #[error(
-        "the mesh would have {nodes} nodes and {tets} tetrahedra; the most are {} and {MAX_TETS}: use fewer cells",
+        "the mesh would have {nodes} nodes and {tets} tetrahedra, and at most {} and {MAX_TETS} are possible: use fewer cells",
         u32::MAX
     )]
     TooMany {

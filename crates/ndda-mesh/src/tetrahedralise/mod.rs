@@ -64,7 +64,7 @@ pub enum FillError {
     },
     /// The polyhedron is not closed, not convex, or has no volume.
     #[error(
-        "the polyhedron of {vertices} vertices and {faces} faces is not closed and convex: face {face} fails"
+        "the polyhedron of {vertices} vertices and {faces} faces is not closed and convex at face {face}: correct this face, or split the polyhedron into convex ones"
     )]
     NotConvex {
         /// Number of vertices.
@@ -76,7 +76,7 @@ pub enum FillError {
     },
     /// The block is too thin for tetrahedra of positive volume.
     #[error(
-        "the block is {width_m:e} m thin and {length_m:e} m long: its tetrahedra are lost in rounding; drop it"
+        "the block is {width_m:e} m thin and {length_m:e} m long, too thin to fill with tetrahedra: take it out, or unite it with a neighbour, by a larger sliver_width_m"
     )]
     TooThin {
         /// Smallest extent [m].
@@ -86,7 +86,7 @@ pub enum FillError {
     },
     /// Parts of a concave block that touch over parts of their faces.
     #[error(
-        "the {parts} parts of block {block} do not meet face to face: discs, and joints of a persistence below 1, cut convex rock only (cut the rest off by a Plane and list it in `removed`)"
+        "block {block} is concave, and its {parts} parts do not meet face to face: discs, and joints of a persistence below 1, can cut only convex rock; make the rock convex, and cut the rest off by a Plane and list it in `removed`"
     )]
     NotFaceToFace {
         /// Index of the first part.
@@ -96,7 +96,7 @@ pub enum FillError {
     },
     /// The size requires more tetrahedra than can be counted or held.
     #[error(
-        "edges of {size_m:e} m would need about {tets:e} tetrahedra; the most are {MOST_TETS}: use a larger size"
+        "edges of {size_m:e} m would need about {tets:e} tetrahedra, and at most {MOST_TETS} are possible: use a larger size"
     )]
     TooFine {
         /// Size requested [m].

@@ -62,7 +62,7 @@ pub enum MeshProblem {
         nodes: usize,
     },
     /// More than 32-bit indices can hold.
-    #[error("{nodes} nodes and {tets} tets are more than 32-bit indices hold: mesh more coarsely")]
+    #[error("{nodes} nodes and {tets} tetrahedra are more than 32-bit indices hold: mesh more coarsely")]
     TooLarge {
         /// Nodes of the block.
         nodes: usize,
@@ -74,7 +74,7 @@ pub enum MeshProblem {
     NotFinite(Found<u32>),
     /// Tetrahedra and the first node of each that does not exist.
     #[error(
-        "tets with a node that does not exist (nodes go from 0 to {}) {}: correct the list of tets",
+        "tetrahedra with a node that does not exist (nodes go from 0 to {}) {}: correct the list of tetrahedra",
         i64::from(*.node_count) - 1, .tets.list(|(tet, node)| format!("{tet} (node {node})"))
     )]
     NoSuchNode {
@@ -97,13 +97,13 @@ pub enum MeshProblem {
         node_count: u32,
     },
     /// Tetrahedra that name a node more than once.
-    #[error("tets that name a node twice {}: remove them", .0.list(u32::to_string))]
+    #[error("tetrahedra that name a node twice {}: remove them", .0.list(u32::to_string))]
     RepeatedNode(Found<u32>),
     /// Tetrahedra of negative volume, with it [m³].
-    #[error("inverted tets {}: swap two nodes of each", .0.list(with_volume))]
+    #[error("inverted tetrahedra {}: swap two nodes of each", .0.list(with_volume))]
     Inverted(Found<(u32, f64)>),
     /// Tetrahedra whose volume [m³] is lost in rounding.
-    #[error("flat tets {}: remesh there, or move a node off the plane of the others", .0.list(with_volume))]
+    #[error("flat tetrahedra {}: remesh there, or move a node off the plane of the others", .0.list(with_volume))]
     Flat(Found<(u32, f64)>),
     /// Nodes at the same place.
     #[error("pairs of nodes within {tolerance_m:e} m of each other {}: merge them", .pairs.list(pair))]
@@ -114,16 +114,16 @@ pub enum MeshProblem {
         tolerance_m: f64,
     },
     /// Nodes that belong to no tetrahedron.
-    #[error("nodes that belong to no tet {}: remove them", .0.list(u32::to_string))]
+    #[error("nodes that belong to no tetrahedron {}: remove them", .0.list(u32::to_string))]
     Orphans(Found<u32>),
     /// Tetrahedra with the same four nodes as an earlier one.
-    #[error("pairs of tets with the same nodes {}: remove one of each", .0.list(pair))]
+    #[error("pairs of tetrahedra with the same nodes {}: remove one of each", .0.list(pair))]
     DuplicateTets(Found<(u32, u32)>),
     /// Faces of more than two tetrahedra.
-    #[error("faces of more than two tets, as nodes {}: tets overlap there; remesh", .0.list(face))]
+    #[error("faces of more than two tetrahedra, as nodes {}: tetrahedra overlap there; remesh", .0.list(face))]
     CrowdedFaces(Found<[u32; 3]>),
     /// Faces whose two tetrahedra lie on the same side.
-    #[error("faces with both tets on the same side, as nodes {}: tets overlap there; remesh", .0.list(face))]
+    #[error("faces with both tetrahedra on the same side, as nodes {}: tetrahedra overlap there; remesh", .0.list(face))]
     Folded(Found<[u32; 3]>),
     /// Surface edges that are not between exactly two boundary triangles.
     #[error(
@@ -134,7 +134,7 @@ pub enum MeshProblem {
     OpenEdges(Found<([u32; 2], usize)>),
     /// The tetrahedra fall into parts that share no face.
     #[error(
-        "{parts} parts that share no face, of {} tets: make each part a block of its own",
+        "{parts} parts that share no face, of {} tetrahedra: make each part a block of its own",
         .tets.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
     )]
     Parts {
@@ -180,7 +180,7 @@ mod tests {
         let problem = MeshProblem::Orphans((0..12).collect());
         assert_eq!(
             problem.to_string(),
-            "nodes that belong to no tet (12): 0, 1, 2, 3, 4, 5, 6, 7, 8, 9 and 2 more: remove them"
+            "nodes that belong to no tetrahedron (12): 0, 1, 2, 3, 4, 5, 6, 7, 8, 9 and 2 more: remove them"
         );
     }
 
@@ -192,7 +192,7 @@ mod tests {
         };
         assert_eq!(
             error.to_string(),
-            "block \"ramp\": inverted tets (1): 4 (-1.250e-1 m³): swap two nodes of each\n\
+            "block \"ramp\": inverted tetrahedra (1): 4 (-1.250e-1 m³): swap two nodes of each\n\
              block \"b\": no tetrahedra (0 nodes): mesh the volume, not only its surface"
         );
     }

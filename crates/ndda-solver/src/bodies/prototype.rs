@@ -368,23 +368,23 @@ fn check_kind(setup: &BodySetup) -> Result<(), &'static str> {
     match setup.kind {
         BodyKind::Elastic => Ok(()),
         _ if !setup.ties.is_empty() => Err("only nodes of an Elastic block can be tied: make it Elastic"),
-        _ if !setup.quiet.is_empty() => Err(
-            "a quiet face lets the waves of its block out, which only those of an Elastic block are: make it Elastic",
-        ),
-        BodyKind::Affine if setup.supports.iter().any(moves) => {
-            Err("parts of an affine block cannot be moved: make it Elastic, or Fixed to move it as a whole")
+        _ if !setup.quiet.is_empty() => {
+            Err("only an Elastic block carries waves that a quiet face can let out: make it Elastic")
         }
+        BodyKind::Affine if setup.supports.iter().any(moves) => Err(
+            "the motion of parts of an affine block cannot be prescribed: make it Elastic, or Fixed to prescribe its motion as a whole",
+        ),
         BodyKind::Affine => Ok(()),
         BodyKind::Rigid if setup.supports.iter().any(moves) => {
-            Err("a rigid block moves freely: make it Fixed to move it as a whole")
+            Err("a rigid block moves by the forces on it: make it Fixed to prescribe its motion")
         }
         BodyKind::Rigid if !setup.supports.is_empty() => {
             Err("a rigid block cannot be held in parts: make it Fixed, Affine or Elastic")
         }
         BodyKind::Rigid => Ok(()),
-        BodyKind::Fixed if setup.supports.len() > 1 || !setup.supports.iter().all(moves) => {
-            Err("a fixed block is held as a whole: leave out its supports, but for one motion")
-        }
+        BodyKind::Fixed if setup.supports.len() > 1 || !setup.supports.iter().all(moves) => Err(
+            "a fixed block is held already: leave out its supports, except one that prescribes its motion",
+        ),
         BodyKind::Fixed => Ok(()),
     }
 }

@@ -35,7 +35,7 @@ pub enum BoltError {
     },
     /// Segments too long for the bond.
     #[error(
-        "segments of {asked_m} m are too long for its grout, which makes it too stiff: segment_m must be at most {most_m:.4} m"
+        "segments of {asked_m} m are too long, and would make the bolt too stiff in its grout: give segment_m at most {most_m:.4} m"
     )]
     Coarse {
         /// What was asked for [m].

@@ -110,7 +110,7 @@ impl Scratch {
 /// A solve that did not reach a solution.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
-    "the equations were not solved (residual {residual:e} of the load): use the direct solver, or a shorter step_s"
+    "the solution of the equations did not converge (residual {residual:e} of the load): use the direct solver, or a shorter step_s"
 )]
 pub struct SolveError {
     /// Residual over right-hand side.

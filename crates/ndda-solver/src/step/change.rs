@@ -18,8 +18,8 @@ const TURNED_RAD: f64 = 1e-3;
 pub enum TakeOverError {
     /// A new support pulls to where its nodes were when time began.
     #[error(
-        "block {block} gets a spring or a prescribed motion, which count from where the block was at the start: between steps, supports that \
-         hold nodes where they are (Fixed, Roller) can be added, and any can be removed"
+        "block {block} gets a spring or a prescribed motion, which count from where the block was at the start: between steps, only supports \
+         that hold nodes where they are (Fixed, Normal, Direction) can be added; any support can be removed"
     )]
     Supports {
         /// Its name.
@@ -27,7 +27,7 @@ pub enum TakeOverError {
     },
     /// A new support stops the turning of a block that has turned.
     #[error(
-        "block {block} has turned by {turn_deg:.3}°, too far to be held without any turning (0.057° at most): hold fewer of its nodes, or hold it earlier"
+        "block {block} has rotated by {turn_deg:.3}°, and nodes that prevent all rotation can be held only up to 0.057°: hold fewer of its nodes, or hold it earlier"
     )]
     Turned {
         /// Its name.
@@ -41,7 +41,7 @@ pub enum TakeOverError {
     )]
     RemembersAccelerations,
     /// Blocks, integrator or contact at the end of steps differ.
-    #[error("it is another problem: {0}")]
+    #[error("more differs than can change between steps: {0}")]
     OtherProblem(#[from] RestoreError),
     /// A stage of construction cannot be built.
     #[error("{0}")]

@@ -126,8 +126,8 @@ impl Simulation {
             Part::of(
                 "solving for blocks together",
                 batches,
-                "congruent neighbours share one reading of their factor, eight at a time",
-                format!("no {ENOUGH_TOGETHER} congruent blocks follow each other"),
+                "equal blocks that follow each other are solved eight at a time, with one factor of their matrix",
+                format!("no {ENOUGH_TOGETHER} equal blocks follow each other"),
             ),
             Part::of(
                 "damping",
@@ -154,8 +154,8 @@ impl Simulation {
             Part::of(
                 "quiet faces",
                 quiet,
-                "impedances of the rock beyond on the diagonal of the block's equations",
-                "rock goes on nowhere",
+                "dashpots of the rock beyond, in the equations of the block",
+                "no face is quiet",
             ),
             Part::of("ties", tied, "one unknown for nodes that move alike", "no nodes are tied"),
             Part::of(
@@ -167,7 +167,7 @@ impl Simulation {
             Part::of(
                 "supports by elimination",
                 held,
-                "held unknowns are not solved for",
+                "held unknowns are left out of the equations",
                 "no support fixes nodes",
             ),
             Part::of("supports by springs", springs, "part of the matrix", "there are none"),

@@ -36,7 +36,7 @@ pub(super) fn bodies(
         match scene.materials.iter().position(|m| m.name == *name) {
             Some(index) => materials[index] = Some(material.clone()),
             None => faults
-                .push(Fault::new("materials", format!("no material `{name}`, which the program brings"))),
+                .push(Fault::new("materials", format!("the scene has no material `{name}`, for which your program supplies a law: add it, or correct the name"))),
         }
     }
     let mut bodies = Vec::new();

@@ -153,7 +153,7 @@ fn arriving(
     };
     if matches!(wave.wave, WaveKind::S(_)) && moves.dot(&along).abs() > 1e-6 {
         return Err(
-            "an S wave moves rock across its way: give S a direction at right angles to `along`".into()
+            "an S wave moves rock across its direction of travel: give S a direction at right angles to `along`".into()
         );
     }
     let from = wave.from_m.map_or_else(|| first_met(blocks, parts, &along), |at| vec3(at) - blocks.origin_m);

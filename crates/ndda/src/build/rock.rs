@@ -135,7 +135,7 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
     if let Some(k) =
         rock.fixed.iter().position(|place| chosen(&blocks, std::slice::from_ref(place)).is_empty())
     {
-        let message = "holds no block: no centroid lies in it; check its signs, or leave it out; where blocks are larger than the part that it describes, make that or the domain larger, or the spacing of joints smaller";
+        let message = "holds no block, since no block has its centroid in it: check the signs of its planes, or leave it out; if blocks are larger than this region, enlarge the region or the domain, or reduce the spacing of joints";
         return Err(vec![Fault::new(at(&format!(".fixed[{k}]")), message)]);
     }
     let spaces = excavate(rock, &domain, &mut blocks)
@@ -190,7 +190,7 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
         }
     }
     if let Some(k) = counts[..spaces.len()].iter().position(|count| *count == 0) {
-        let message = "holds no rock: its outline counts as (y, z) along X, (x, z) along Y, (x, y) along Z";
+        let message = "holds no rock: check its outline, which is given as (y, z) along X, (x, z) along Y, and (x, y) along Z";
         faults.push(Fault::new(at(&format!(".excavations[{k}]")), message));
     }
     if meshes.is_empty() && faults.is_empty() {

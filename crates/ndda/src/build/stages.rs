@@ -24,8 +24,7 @@ pub fn simulation_in_stage(
         return simulation_with(scene, blocks, folder, choices);
     }
     if !choices.are_the_scenes() {
-        let message =
-            "stages build a simulation each, of what the scene names: leave out the program's own parts";
+        let message = "each stage builds a simulation from the scene alone: leave out the parts that your program supplies, or the stages";
         return Err(vec![Fault::new("stages", message)]);
     }
     let presence = Presence::of(scene, &blocks, stage)?;

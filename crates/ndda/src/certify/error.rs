@@ -43,7 +43,7 @@ pub enum CertifyError {
     #[error("--penalty: the scene has no contact: leave the option out")]
     NoContact,
     /// A name that no quantity begins with.
-    #[error("--of {name}: no column of the history begins with it; there are {known}")]
+    #[error("--of {name}: no column of the history begins with it; choose one of {known}")]
     NoQuantity {
         /// The requested name.
         name: String,

@@ -26,7 +26,7 @@ pub fn text(certificate: &Certificate, of: &[String]) -> String {
         );
     }
     let (shown, left_out) = shown(certificate, of);
-    let header = ["quantity", "value ± error", "largest error", "own step's error", "behaviour"];
+    let header = ["quantity", "value ± error", "largest error", "error at scene's step", "behaviour"];
     let rows = shown.iter().map(|quantity| row(quantity)).collect();
     let _ = writeln!(text, "{}", columns(header.map(String::from).to_vec(), rows));
     if left_out > 0 {

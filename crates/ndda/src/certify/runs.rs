@@ -264,7 +264,7 @@ fn remark(certificate: &mut Certificate, plan: &Plan, wanted: &Wanted, summary: 
         ));
     }
     if matches!(plan.scene.time.step, Step::Auto { .. }) {
-        say("the scene divides its steps with Auto(); what was halved is the step that it divides".into());
+        say("the scene uses Auto(): what was halved is time.step_s, which Auto() divides further".into());
     }
     if summary.label.word == LabelWord::Inaccurate {
         say(format!(

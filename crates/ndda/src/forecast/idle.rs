@@ -70,7 +70,7 @@ fn absent(scene: &Scene, blocks: &BlockSet) -> Vec<String> {
                         _ => format!("stages[{}].{key}[{i}]", from - 1),
                     };
                     found.push(format!(
-                        "{path} has no effect: `{pattern}` is not there while it holds; give it in the stage that adds the block, or leave it out"
+                        "{path} has no effect: block `{pattern}` is not in the model while this entry acts; give the entry in the stage that adds the block, or leave it out"
                     ));
                 }
             }

@@ -88,9 +88,9 @@ impl fmt::Display for Advice {
                 let at_start_s = self.step_at_start_s.unwrap_or(*step_s);
                 write!(
                     f,
-                    "{verdict}: contact stability number between {from:.2} and {to:.2} (limit {bound}): {:.2} for the contacts at \
-                     the start (block {}), {:.2} for contacts face on face that may form later (block {}); recommended time step \
-                     at most {at_start_s:.1e} s for the contacts at the start, {step_s:.1e} s for all.",
+                    "{verdict}: contact stability number between {from:.2} and {to:.2} (limit {bound}); recommended time step at most \
+                     {at_start_s:.1e} s for the contacts at the start, {step_s:.1e} s for all. The number is {:.2} for the \
+                     contacts at the start (block {}), and {:.2} for contacts face on face that may form later (block {}).",
                     first.h, first.block, last.h, last.block
                 )?;
             }
@@ -103,7 +103,7 @@ impl fmt::Display for Advice {
             to if to > *bound => write!(f, " Reduce time.step_s, or set time.step to Auto()."),
             to if to > SAFETY * bound => write!(f, " The limit is near."),
             to if to < 0.1 * SAFETY * bound => {
-                write!(f, " The step can be longer if blocks move little in it.")
+                write!(f, " The step can be longer if blocks move little in one step.")
             }
             _ => Ok(()),
         }

@@ -13,7 +13,7 @@ pub fn ending(summary: &Summary) -> String {
     let mut text = match (summary.label.word, summary.label.reasons.as_slice()) {
         (LabelWord::Accurate, _) => {
             let speeds = match summary.slow_error_m_s {
-                Some(error_m_s) => format!("blocks hardly move; speeds to {}/s", length(error_m_s)),
+                Some(error_m_s) => format!("blocks hardly move; speeds accurate to {}/s", length(error_m_s)),
                 None => "speeds to 1 % of the largest".into(),
             };
             format!("accurate: {speeds}, positions to a tenth of an element\n")
@@ -168,7 +168,7 @@ fn error(summary: &Summary) -> String {
     );
     if let (Some(end), Some(max)) = (reference.stick_stage_end, reference.stick_stage_max) {
         text.push_str(&format!(
-            "against its form with the shear spring's stick stage: {end:.2e} at the end, at most {max:.2e}\n"
+            "against the closed form with the elastic shear before slip: {end:.2e} at the end, at most {max:.2e}\n"
         ));
     }
     text

@@ -88,7 +88,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
         "smallest volume ratio of an element",
         verdict,
         fail,
-        "an element is turned inside out; reduce step_s or the load".into(),
+        "a tetrahedron is inverted: reduce step_s or the load".into(),
     ));
     entries.push(strain(simulation));
     entries.extend(resolution(simulation));
@@ -160,7 +160,7 @@ fn energy(simulation: &Simulation) -> [Entry; 3] {
 fn friction_search(simulation: &Simulation) -> Option<Entry> {
     let left = simulation.invariants().friction_left_m_s / simulation.speed_scale_m_s();
     let reason = format!(
-        "the friction of all contacts together was not found in some steps, and speeds may be wrong by {:.1} % of the largest, limit {:.0} %: reduce step_s",
+        "friction at all contacts together did not converge in some steps, and speeds may be wrong by {:.1} % of the largest, limit {:.0} %: reduce step_s",
         100.0 * left,
         100.0 * SPEED
     );
@@ -225,14 +225,14 @@ fn contact(simulation: &Simulation) -> [Entry; 2] {
 fn lateral_drift(simulation: &Simulation) -> [Entry; 2] {
     let worst = simulation.invariants();
     let (place, speed) = (worst.lateral_drift_place, worst.lateral_drift_speed);
-    let why = "because its neighbours press it from both sides without friction, and the deeper contact is, the less certain is the direction of its force: raise penalty_pa, or give the contact friction";
+    let why = "raise penalty_pa, or give the contact friction; its neighbours press it from both sides without friction, and where contact is deep the direction of its force is uncertain";
     let where_it_is = format!(
-        "block `{}` drifts sideways by {:.2} of its smallest element size, limit {PLACE}, {why}",
+        "block `{}` drifts sideways by {:.2} of its smallest element size, limit {PLACE}: {why}",
         name(simulation, place),
         place.value
     );
     let how_fast = format!(
-        "block `{}` drifts sideways at {:.1} % of the largest speed, limit {:.0} %, {why}",
+        "block `{}` drifts sideways at {:.1} % of the largest speed, limit {:.0} %: {why}",
         name(simulation, speed),
         100.0 * speed.value,
         100.0 * SPEED

@@ -4,12 +4,13 @@
 pub const SECOND_RUN: &str = "sensitivity";
 
 /// Key, and what a table says instead.
-const WORDS: [(&str, &str); 8] = [
+const WORDS: [(&str, &str); 9] = [
     ("ledger", "energy balance"),
     (SECOND_RUN, "second run (sensitivity)"),
     ("setup", "reading and building"),
     ("finite state", "all numbers finite"),
     ("lasting energy error", "energy gained or lost for good"),
+    ("friction search error / largest speed", "friction convergence error / largest speed"),
     ("spurious contact energy", "energy made or lost by contact"),
     ("hops that grow by friction", "rebounds in a row, each longer"),
     ("action minus reaction", "difference of action and reaction / force"),

@@ -27,7 +27,7 @@ pub fn outlined(svg: &str, font: &[u8]) -> Result<String, String> {
 fn draw(out: &mut String, face: &Face, attributes: &str, content: &str) -> Result<(), String> {
     let value = |name: &str| attribute(attributes, name).ok_or(format!("a text without {name}"));
     let number =
-        |name: &str| value(name)?.parse::<f64>().map_err(|_| format!("{name} of a text is no number"));
+        |name: &str| value(name)?.parse::<f64>().map_err(|_| format!("{name} of a text is not a number"));
     let (x, y, size) = (number("x")?, number("y")?, number("font-size")?);
     let scale = size / f64::from(face.units_per_em());
     let (letters, width) = placed(face, content);

@@ -22,7 +22,7 @@ pub fn certificate(certificate: Option<&Certificate>, summary: &Summary) -> Mark
             @for remark in &certificate.remarks { p.alert.warn { (remark) } }
             div.scroll {
                 table {
-                    thead { tr { th { "" } th.number { "value ± error" } th.number { "largest error" } th.number { "own step's error" } th { "" } } }
+                    thead { tr { th { "" } th.number { "value ± error" } th.number { "largest error" } th.number { "error at scene's step" } th { "" } } }
                     tbody {
                         @for quantity in &shown {
                             tr {

@@ -12,13 +12,13 @@ use crate::frames::OtherBlocks;
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
     /// There is no such folder.
-    #[error("{} is no folder: name the output folder of a run, as out/sliding_45", .0.display())]
+    #[error("{} is not a folder: name the output folder of a run, as out/sliding_45", .0.display())]
     NotAFolder(PathBuf),
     /// The folder is not one that `ndda run` wrote.
     #[error("{} holds no run: it has neither summary.json nor history.csv; `ndda run SCENE --out DIR` writes them", .0.display())]
     NotARun(PathBuf),
     /// The run is not over, or was killed.
-    #[error("{} holds a run without its {missing}: it goes on, or was killed; `ndda resume` takes it to its end", folder.display())]
+    #[error("{} holds a run without its {missing}: wait if the run is still going; if it was killed, `ndda resume` finishes it", folder.display())]
     Incomplete {
         /// The output folder.
         folder: PathBuf,

@@ -144,7 +144,7 @@ pub fn facts(summary: &Summary) -> Markup {
             format!("{end:.2e} at the end, at most {max:.2e} for t ≥ {} s", reference.after_s),
         ));
         if let (Some(end), Some(max)) = (reference.stick_stage_end, reference.stick_stage_max) {
-            rows.push(("With stick stage", format!("{end:.2e} at the end, at most {max:.2e}")));
+            rows.push(("With elastic shear before slip", format!("{end:.2e} at the end, at most {max:.2e}")));
         }
     }
     html! {

@@ -62,8 +62,8 @@ impl Accuracy {
         let percent = |part: f64| 100.0 * part;
         let mut reasons = Vec::new();
         for (what, value, limit) in [
-            ("energy that came from nowhere or vanished", self.energy, MOST_ENERGY),
-            ("friction off Coulomb's law", self.friction, MOST_FRICTION),
+            ("energy error of the computation", self.energy, MOST_ENERGY),
+            ("deviation of friction from Coulomb's law", self.friction, MOST_FRICTION),
         ] {
             if value > limit {
                 let shorter = step_s * (limit / value).sqrt();

@@ -53,7 +53,7 @@ pub(super) fn start(
     draw: &Draw,
 ) -> Result<Motion, String> {
     let at = place_on_map(&release.place, number, draw)
-        .ok_or("no place was found within the area: its corners enclose next to nothing")?;
+        .ok_or("no place was found in the release area, which is almost zero: move its corners apart")?;
     let on_map = || format!("({}, {})", at[0], at[1]);
     let (ground_m, slope) = terrain
         .at(at)

@@ -88,7 +88,7 @@ fn text(outcome: &Outcome) -> String {
         let _ = writeln!(text, "{}", columns(header.map(String::from).to_vec(), rows.collect()));
         let _ = writeln!(
             text,
-            "median · 95th percentile at the first passage; height of the mass centre and of the highest point above the ground"
+            "median · 95th percentile at the first passage; height of the centre of mass and of the highest point above the ground"
         );
     }
     let accuracy = &outcome.accuracy;
@@ -100,7 +100,7 @@ fn text(outcome: &Outcome) -> String {
     } else {
         let _ = writeln!(
             text,
-            "all accurate: energy within {:.1e} of the largest kinetic energy, contact within {:.1} % of a width",
+            "all accurate: energy error within {:.1e} of the largest kinetic energy, penetration within {:.1} % of a boulder's width",
             accuracy.worst.energy,
             100.0 * accuracy.worst.depth
         );

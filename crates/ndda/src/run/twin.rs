@@ -99,9 +99,9 @@ pub(super) fn judge(
     let began = Instant::now();
     match part(simulation, start, settle, stop) {
         Ok(None) if stop.load(Ordering::Relaxed) => {
-            summary
-                .warnings
-                .push("the second run, which shows whether the motion is sensitive, was interrupted: this is not known".into());
+            summary.warnings.push(
+                "the second run was interrupted, so it is not known whether the motion is sensitive".into(),
+            );
         }
         Ok(None) => {}
         Ok(Some(parted)) => {

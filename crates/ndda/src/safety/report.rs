@@ -13,9 +13,11 @@ const MOST_BLOCKS: usize = 12;
 pub fn text(safety: &Safety) -> String {
     let mut text = format!("{}: {}\n", safety.scene, safety.title);
     let by = match safety.by {
-        By::Strength => "tan φ, c and σ_t of all joints divided by it",
-        By::Load => "forces and tractions multiplied by it",
-        By::Gravity { .. } => "shear over normal force of the slope multiplied by it, by tilting gravity",
+        By::Strength => "tan φ, c and σ_t of all joints divided by the factor",
+        By::Load => "forces and tractions multiplied by the factor",
+        By::Gravity { .. } => {
+            "ratio of shear to normal force on the slope multiplied by the factor, by tilting gravity"
+        }
     };
     let answer = match safety.factor_of_safety {
         Bracket { lower: Some(lower), upper: Some(upper) } => {

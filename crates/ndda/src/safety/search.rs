@@ -97,12 +97,12 @@ impl<'a> Search<'a> {
         };
         if strength > 1.0 {
             answer.remarks.push(format!(
-                "as written the scene does not come to rest; it does with {strength} times its strength, and trials begin from there"
+                "as written the scene does not come to rest; it does with joints {strength} times as strong, and trials begin from there"
             ));
         }
         if let Some(Moved { block, gone_m }) = &start.moved {
             answer.remarks.push(format!(
-                "on the way to rest block `{block}` goes {gone_m:.2e} m, which more strength does not prevent: trials begin where it then is"
+                "block `{block}` moves {gone_m:.2e} m while the scene settles, whatever the strength of joints: trials begin from its place after that"
             ));
         }
         let (mut known, mut known_mechanism) = (Vec::new(), None);
@@ -141,8 +141,8 @@ impl<'a> Search<'a> {
         let fails_at_once = upper.is_some_and(|upper| upper * self.strength <= 1.0 + self.plan.error);
         if fails_at_once && !may_push {
             answer.remarks.push(
-                "blocks fail at the very strength with which they came to rest: where springs of joints slipped on the way, the answer depends on that way; \
-                 compare it with --by gravity and with a run"
+                "blocks fail at the same strength at which they came to rest: if joints slipped while the scene settled, the answer depends on how; \
+                 compare it with --by gravity and with an ordinary run"
                     .into(),
             );
         }

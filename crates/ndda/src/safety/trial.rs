@@ -245,7 +245,7 @@ impl Course<'_> {
             if let Some((block, gone_m)) = watched.accelerating(&far_m) {
                 let name = &simulation.blocks().names[block.index()];
                 let reason =
-                    format!("block `{name}` accelerates; it had gone {gone_m:.2e} m when that was clear");
+                    format!("block `{name}` accelerates; it had moved {gone_m:.2e} m when that was clear");
                 return Some(Ok((State::Fails, reason)));
             }
             resting = if fastest_m_s(simulation) < slow_m_s { resting + 1 } else { 0 };
@@ -300,7 +300,7 @@ impl Course<'_> {
             if let Some((block, gone_m)) = watched.beyond(far_m) {
                 let name = &simulation.blocks().names[block.index()];
                 let reason = format!(
-                    "block `{name}` goes {gone_m:.2e} m, farther than elastically, before the scene is at rest"
+                    "block `{name}` moves {gone_m:.2e} m, more than elastic deformation explains, before the scene is at rest"
                 );
                 return Some(Ok(Some((State::Fails, reason))));
             }
@@ -339,7 +339,8 @@ impl Course<'_> {
             );
             (State::Stands, reason)
         } else if watched.beyond(far_m).is_some() && !watched.slowing(far_m) {
-            let reason = format!("block `{name}` has gone {gone_m:.2e} m, and neither rests nor accelerates");
+            let reason =
+                format!("block `{name}` has moved {gone_m:.2e} m, and neither rests nor accelerates");
             (State::Undecided, reason)
         } else if speed_m_s > limit_m_s {
             let reason = format!("blocks move at {speed_m_s:.2e} m/s after {time_s:.3} s, which is not rest");

@@ -68,7 +68,7 @@ pub(super) fn read(record: &Record) -> Result<Prepared, ShakingError> {
     let lost = |file: PathBuf, reason| ShakingError::Column { file, reason, names: known() };
     let Some(column) = &record.column else { return Err(lost(file, "a history has several motions")) };
     if !column.contains(VELOCITY) {
-        return Err(lost(file, "this column is no velocity of a monitor"));
+        return Err(lost(file, "this column is not a velocity of a monitor"));
     }
     let place = |name: &str| table.names.iter().position(|known| known == name);
     let (Some(time), Some(velocity)) = (place("time_s"), place(column)) else {

@@ -42,7 +42,7 @@ impl fmt::Display for Stereonet {
                 true => format!("friction {}°", slope.friction_deg),
                 false => "friction not considered (--friction is not given)".into(),
             };
-            writeln!(f, "slope {}, {friction}: possible by their directions are", slope.face)?;
+            writeln!(f, "slope {}, {friction}; kinematically possible:", slope.face)?;
             writeln!(f, "  plane sliding      on {}", checks.plane_sliding.of_all("planes"))?;
             writeln!(f, "  wedge sliding      along {}", checks.wedge_sliding.of_all("intersections"))?;
             writeln!(f, "  flexural toppling  on {}", checks.flexural_toppling.of_all("planes"))?;

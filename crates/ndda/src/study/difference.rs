@@ -23,7 +23,7 @@ pub enum DifferenceError {
     #[error("the history has fewer than two rows: raise output.history_rows")]
     TooShort,
     /// No block moves.
-    #[error("no monitor moves in the reference: compare with others")]
+    #[error("no monitor moves in the reference run: name monitors that move")]
     NothingMoves,
 }
 

@@ -57,7 +57,7 @@ pub enum StudyError {
     #[error("{0}")]
     Write(#[from] WriteError),
     /// A record of a case cannot be used.
-    #[error("{} is no record of a case ({reason}): delete it", file.display())]
+    #[error("{} is not a record of a case ({reason}): delete it", file.display())]
     Record {
         /// The file.
         file: PathBuf,
@@ -69,7 +69,7 @@ pub enum StudyError {
     Start(std::io::Error),
     /// A study without cases that a scheduler could run.
     #[error(
-        "the study asks for quantities or has random axes: `ndda study STUDY --jobs N` runs it as a whole, and goes on where it was"
+        "the study asks for quantities or has random parameters: `ndda study STUDY --jobs N` runs it as a whole, and goes on where it was"
     )]
     IsSweep,
     /// A condition that cannot be judged.
@@ -84,7 +84,7 @@ pub enum StudyError {
     },
     /// A correlation that cannot be read.
     #[error(
-        "`{0}` is no correlation: write the names of two axes and a number, as friction_deg,cohesion_pa=-0.5"
+        "`{0}` is not a correlation: write the names of two random parameters and a number, as friction_deg,cohesion_pa=-0.5"
     )]
     Correlation(String),
     /// An option of samples where nothing is random.
@@ -97,7 +97,7 @@ pub enum StudyError {
     Samples(String),
     /// No case has a quantity.
     #[error(
-        "no run has a quantity `{name}`{near}; there are {known}; the beginning of a name stands for all that begin so"
+        "no run has a quantity `{name}`{near}; choose one of {known}; the beginning of a name stands for all that begin so"
     )]
     NoQuantity {
         /// Its name.

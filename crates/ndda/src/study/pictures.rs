@@ -171,7 +171,7 @@ fn stages(root: &Area, results: &Results) -> Drawn {
         .disable_mesh()
         .disable_y_axis()
         .x_labels(12)
-        .x_desc("share of the wall time [%]")
+        .x_desc("fraction of the wall time [%]")
         .label_style(("sans-serif", 14))
         .axis_desc_style(("sans-serif", 16))
         .x_label_formatter(&|v| format!("{v:.0}"))

@@ -88,9 +88,9 @@ fn against(reference: &Compared) -> String {
         Compared::ClosedForm { name } if name.is_empty() => String::new(),
         Compared::ClosedForm { name } => format!("errors are relative to the closed form {name}\n"),
         Compared::Runs { step_s, disagreement_end, disagreement_max, floor_end, floor_max } => format!(
-            "errors are relative to a run of {step_s:e} s steps; another integrator's differs from it by \
-             {disagreement_end:.1e} at the end and by {disagreement_max:.1e} at most; smaller errors than five times that, {floor_end:.1e} and \
-             {floor_max:.1e}, cannot be told and are given as these\n"
+            "errors are relative to a run with steps of {step_s:e} s, from which a run of another integrator differs by \
+             {disagreement_end:.1e} at the end and by {disagreement_max:.1e} at most; errors below five times that, {floor_end:.1e} and \
+             {floor_max:.1e}, cannot be resolved and are set to these values\n"
         ),
     }
 }

@@ -94,7 +94,7 @@ fn samples(loaded: &LoadedStudy) -> Result<Vec<(Role, Vec<f64>)>, StudyError> {
     let dimensions = if study.sensitivity { 2 * d } else { d };
     if dimensions > MOST_DIMENSIONS {
         return Err(StudyError::Samples(format!(
-            "there are {d} random axes: at most {MOST_DIMENSIONS}, or half as many with sensitivity"
+            "there are {d} random parameters: at most {MOST_DIMENSIONS}, or half as many with sensitivity"
         )));
     }
     let lower = correlation_factor(loaded)?;
@@ -188,7 +188,7 @@ mod tests {
         let many: Vec<String> = (0..11).map(|i| format!("a{i}=Uniform(0, 1)")).collect();
         let many: Vec<&str> = many.iter().map(String::as_str).collect();
         let refused = cases(&loaded(&many, |study| study.sensitivity = true), &[]).unwrap_err().to_string();
-        assert!(refused.contains("11 random axes"), "{refused}");
+        assert!(refused.contains("11 random parameters"), "{refused}");
         let pair =
             |a: &str, b: &str, coefficient| study::Correlation { between: (a.into(), b.into()), coefficient };
         let three = loaded(&["a=Normal(0,1)", "b=Normal(0,1)", "c=Normal(0,1)"], |study| {

@@ -42,7 +42,7 @@ impl Condition {
             Limit::Label(limit.trim_matches('"').to_string())
         } else {
             let number = limit.parse::<f64>().ok().filter(|number| number.is_finite());
-            Limit::Number(number.ok_or_else(|| refuse("what it compares with is no number"))?)
+            Limit::Number(number.ok_or_else(|| refuse("what it compares with is not a number"))?)
         };
         Ok(Self { quantity: quantity.to_string(), comparison, limit })
     }

@@ -97,7 +97,7 @@ fn samples(text: &mut String, results: &Results, group: &Group) {
         let rows = group.sensitivity.iter().map(row).collect();
         let _ = writeln!(
             text,
-            "parts of the variance that each parameter explains (Sobol' indices)\n{}",
+            "fractions of the variance that each parameter explains (Sobol' indices)\n{}",
             columns(header.to_vec(), rows)
         );
     }

@@ -99,7 +99,7 @@ impl Settings {
         let mut words: Vec<String> = chosen.filter(|label| !label.is_empty()).cloned().collect();
         let (stiffer, refined) = (setting.at[PENALTY], setting.at[PENALTY + 1]);
         if stiffer != 0 {
-            words.push(format!("k_n × {}", STIFFER.powi(stiffer)));
+            words.push(format!("penalty × {}", STIFFER.powi(stiffer)));
         }
         if refined != 0 {
             words.push(format!("cells × {}", 2f64.powi(refined)));

@@ -63,7 +63,7 @@ pub enum ViewError {
         last_s: f64,
     },
     /// The frames have no such array.
-    #[error("--color {asked}: the frames do not hold it{advice}; there is displacement, block{}", names.iter().map(|n| format!(", {n}")).collect::<String>())]
+    #[error("--color {asked}: the frames do not hold it{advice}; choose one of displacement, block{}", names.iter().map(|n| format!(", {n}")).collect::<String>())]
     NoField {
         /// The quantity that was requested.
         asked: String,
@@ -82,7 +82,7 @@ pub enum ViewError {
     HasRun(PathBuf),
     /// Displacements so large that nothing is seen of the blocks.
     #[error(
-        "--magnify {}: displacements so long leave nothing of the blocks to be seen; write a number above 0, here up to {}",
+        "--magnify {}: blocks would be too small to see beside displacements so long; write a number above 0, here up to {}",
         three_digits(*asked),
         three_digits(*most)
     )]

@@ -19,7 +19,7 @@ pub enum PairError {
     #[error("{0} is not finite, or too large to compute with")]
     NotFinite(&'static str),
     /// A tetrahedron without volume has no barycentric coordinates.
-    #[error("the {0} is flat: its volume is zero to rounding")]
+    #[error("the {0} is flat, its volume is zero to rounding: repair the mesh, or reduce step_s")]
     Flat(&'static str),
     /// The penalty must push.
     #[error("penalty_pa = {0}: must be positive")]

@@ -114,8 +114,8 @@ impl PotentialField {
 pub enum PotentialError {
     /// All nodes of a tetrahedron of a concave block are on its surface, where interpolated depth is zero.
     #[error(
-        "tet {} of the concave block `{block}` has all its nodes on the surface, where depth is zero: give it an \
-         interior node (pattern TwentyFour, a finer mesh) or use the element potential", tet.0
+        "tetrahedron {} of the concave block `{block}` has all its nodes on the surface, where depth is zero: give it an \
+         interior node (pattern TwentyFour, or a finer mesh), or take `potential: Element`", tet.0
     )]
     NoInteriorNode {
         /// Name of the block.
@@ -125,8 +125,8 @@ pub enum PotentialError {
     },
     /// Too many faces of a block are nearest to points of one tetrahedron.
     #[error(
-        "tet {} of block `{block}` is near {faces} faces of the block at once, more than {MOST_PIECES}: take \
-         `potential: Element` or `Volume`, or give the block fewer faces; a finer surface has more",
+        "tetrahedron {} of block `{block}` is near {faces} faces of the block at once, more than {MOST_PIECES}: take \
+         `potential: Element` or `Volume`, or give the block a coarser surface with fewer faces",
         tet.0
     )]
     TooManyFaces {

@@ -112,7 +112,7 @@ pub enum MshProblem {
         node: u64,
     },
     /// A part of the format that would change what the mesh is.
-    #[error("section {section} is not read: {cure}")]
+    #[error("section {section} is not supported: {cure}")]
     Section {
         /// Its name, with `$`.
         section: &'static str,

@@ -45,13 +45,13 @@ pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
     if key(MODEL_TYPE) == Some(GEOGRAPHIC) {
         return Err(not_read(
             "a grid in degrees",
-            "project it to metres, as with gdalwarp -t_srs and an EPSG code of the country",
+            "reproject it to metres, as with gdalwarp -t_srs EPSG:32632 (take the code of your map grid)",
         ));
     }
     if let Some(unit) = key(LINEAR_UNITS).filter(|unit| *unit != METRE) {
         return Err(not_read(
             format!("a grid in the unit of EPSG {unit}"),
-            "project it to metres, as with gdalwarp",
+            "reproject it to metres, as with gdalwarp",
         ));
     }
     let size = [ifd.number(WIDTH)?, ifd.number(HEIGHT)?];
@@ -76,7 +76,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
 /// Place of the south-western height, and the distance of heights [m].
 fn place(ifd: &Ifd, size: [u64; 2], is_point: bool) -> Result<([f64; 2], [f64; 2]), Fault> {
     if ifd.get(PIXEL_SCALE).is_none() && ifd.get(TRANSFORMATION).is_some() {
-        return Err(not_read("a grid that is turned on the map", "turn it north up, as with gdalwarp"));
+        return Err(not_read("a rotated grid", "turn it north up, as with gdalwarp"));
     }
     let needed = |tag, name: &str, least: usize| {
         let entry = ifd.get(tag).ok_or_else(|| Fault::truncated(format!("the tag {name} of a GeoTIFF")))?;

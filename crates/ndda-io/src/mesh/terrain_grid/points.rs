@@ -60,7 +60,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
         let height = &mut heights_m[v.round() as usize][u.round() as usize];
         if height.replace(z).is_some_and(|known| known != z) {
             let what = format!("a second height at ({x}, {y})");
-            return Err(Fault::at(number, FileProblem::NotRead { what, cure: "leave one of them" }));
+            return Err(Fault::at(number, FileProblem::NotRead { what, cure: "keep only one of them" }));
         }
     }
     Ok(TerrainGrid { origin_m: [x0, y0], step_m: [dx, dy], heights_m })

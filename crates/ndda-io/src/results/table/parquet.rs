@@ -39,7 +39,7 @@ pub(crate) fn from_csv(csv: &Path, parquet: &Path) -> Result<(), WriteError> {
         for (column, text) in columns.iter_mut().zip(&record.map_err(unread)?) {
             let mismatch = |_| WriteError::NotThatTable {
                 path: csv.to_path_buf(),
-                what: format!("`{text}`, no number"),
+                what: format!("`{text}`, not a number"),
             };
             column.push(text.parse::<f64>().map_err(mismatch)?);
         }

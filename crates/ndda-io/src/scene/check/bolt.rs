@@ -79,11 +79,12 @@ impl Check<'_> {
         }
         let ends_m = grout.to_m.unwrap_or(f64::INFINITY);
         if !(grout.from_m >= 0.0 && grout.from_m.is_finite() && ends_m > grout.from_m) {
-            let message = format!("the bonded length from {} to {ends_m} m has none", grout.from_m);
+            let message =
+                format!("the bonded length from {} to {ends_m} m is zero or negative", grout.from_m);
             self.error(
                 format!("{path}.grout.from_m"),
                 message,
-                "both count from the head: 0 <= from_m < to_m",
+                "both are measured from the head: 0 <= from_m < to_m",
             );
         }
         if let (Some(yield_n), Some(strain)) = (steel.yield_n, steel.break_strain)

@@ -98,7 +98,7 @@ impl Check<'_> {
         if !is_unset(&penalty_pa) {
             self.positive("contact.penalty_pa".into(), penalty_pa, "Pa");
         } else if let Potential::Volume { .. } = potential {
-            let help = "its pressure depends on the volume that blocks share, of which little is known before: write penalty_pa";
+            let help = "write penalty_pa: with this potential pressure depends on the volume of overlap, which is not known before the run";
             self.report(
                 Code::MissingField,
                 "contact",

@@ -34,7 +34,11 @@ impl Check<'_> {
                 self.error(field(name), message, "0 for a joint that does not hold together");
             } else if strength > 0.0 && friction.shear_penalty_pa_m.is_none() {
                 let help = "give shear_penalty_pa_m, the stiffness of the joint until it breaks";
-                self.misfit(field(name), "a joint that holds together needs a spring to hold with", help);
+                self.misfit(
+                    field(name),
+                    "a joint that holds together needs a shear stiffness to hold with",
+                    help,
+                );
             }
         }
         if let Some(residual) = &friction.residual {
@@ -71,7 +75,11 @@ impl Check<'_> {
         }
         if peak.shear_penalty_pa_m.is_none() {
             let help = "give shear_penalty_pa_m, the stiffness of the joint before it slips";
-            self.misfit(path.to_string(), "a joint that softens needs a spring that measures its slip", help);
+            self.misfit(
+                path.to_string(),
+                "a joint that softens needs a shear stiffness, to measure its slip",
+                help,
+            );
         }
         if peak.tension_pa > 0.0 {
             let help = "leave out tension_pa, or residual";
@@ -112,12 +120,20 @@ impl Check<'_> {
         }
         if friction.shear_penalty_pa_m.is_none() {
             let help = "give shear_penalty_pa_m, the shear stiffness of the joint";
-            self.misfit(path.to_string(), "a rough joint needs a spring", help);
+            self.misfit(
+                path.to_string(),
+                "a joint with roughness needs a shear stiffness, to measure its slip",
+                help,
+            );
         }
         let strengths = friction.cohesion_pa > 0.0 || friction.tension_pa > 0.0;
         if strengths || friction.residual.is_some() {
             let help = "leave out cohesion_pa, tension_pa and residual, or roughness";
-            self.misfit(path.to_string(), "a rough joint has the strength of its roughness only", help);
+            self.misfit(
+                path.to_string(),
+                "a joint with roughness has the strength of its roughness only",
+                help,
+            );
         }
     }
 
@@ -126,7 +142,7 @@ impl Check<'_> {
             let help = "give shear_penalty_pa_m, the stiffness of the joint until it breaks";
             return self.misfit(
                 path.to_string(),
-                "a joint that holds together needs a spring to hold with",
+                "a joint that holds together needs a shear stiffness to hold with",
                 help,
             );
         };
@@ -146,8 +162,7 @@ impl Check<'_> {
             let least_j_m2 = 0.5 * strength_pa * strength_pa / stiffness_pa_m;
             if !(energy_j_m2 > least_j_m2 && energy_j_m2.is_finite()) {
                 let message = format!("{energy_j_m2} J/m²: must be above {least_j_m2:e} J/m²");
-                let help =
-                    "the spring of a joint stores that until it breaks: make shear_penalty_pa_m larger";
+                let help = "the joint stores this much elastic energy before it breaks: raise the fracture energy, or shear_penalty_pa_m";
                 self.error(format!("{path}.{name}"), message, help);
             }
         }
@@ -163,7 +178,7 @@ impl Check<'_> {
             self.error(
                 field("psi_deg"),
                 message,
-                "a joint that dilates by more than it rubs would give energy",
+                "a dilation angle above the friction angle would create energy",
             );
         }
         if !(dilation.to_slip_m >= 0.0 && dilation.to_slip_m.is_finite()) {
@@ -172,11 +187,19 @@ impl Check<'_> {
         }
         if friction.shear_penalty_pa_m.is_none() {
             let help = "give shear_penalty_pa_m, the shear stiffness of the joint";
-            self.misfit(path.to_string(), "dilation is driven by slip beyond the stretch of a spring", help);
+            self.misfit(
+                path.to_string(),
+                "dilation follows slip beyond the elastic shear displacement, which needs a shear stiffness",
+                help,
+            );
         }
         if friction.roughness.is_some() {
             let help = "leave out dilation, or roughness";
-            self.misfit(path.to_string(), "a rough joint dilates by half of its own angle", help);
+            self.misfit(
+                path.to_string(),
+                "a joint with roughness has its own dilation, half of its roughness angle",
+                help,
+            );
         }
         self.moves_faces_out(path);
     }

@@ -46,7 +46,7 @@ impl Check<'_> {
             {
                 if !(value >= 0.0 && value.is_finite()) {
                     let message = format!("{value}: must not be negative");
-                    self.error(path(&format!("damping.{name}")), message, "0 is no damping");
+                    self.error(path(&format!("damping.{name}")), message, "0 means no damping");
                 }
             }
             if let Some(bedding) = &material.bedding {
@@ -57,7 +57,7 @@ impl Check<'_> {
                     self.report(
                         Code::NoDirection,
                         path("bedding.normal"),
-                        "the normal of the beds has no length",
+                        "the normal of the bedding is zero",
                         help,
                     );
                 }

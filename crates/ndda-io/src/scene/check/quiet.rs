@@ -20,7 +20,7 @@ impl Check<'_> {
             let other = scene.blocks.iter().find(|b| b.name == quiet.block && b.body != Body::Elastic);
             if let Some(block) = other {
                 let message = format!(
-                    "block `{}` is {:?}, and has no waves that could leave: a quiet face needs an Elastic one",
+                    "block `{}` is {:?}: only an Elastic block carries waves, which a quiet face lets out",
                     block.name, block.body
                 );
                 self.misfit(
@@ -93,9 +93,12 @@ impl Check<'_> {
             }
         }
         if wave.motion == RecordedAs::Within && wave.ground_m.is_none() {
-            let message =
-                "a record from within rock holds the wave and its echo, which comes from level ground";
-            self.misfit(format!("{path}.motion"), message, "give ground_m, a place on the ground above");
+            let message = "a record from within rock contains the upgoing wave and its reflection from the level ground surface";
+            self.misfit(
+                format!("{path}.motion"),
+                message,
+                "give ground_m, a point on the ground surface above",
+            );
         }
         self.record(&format!("{path}.record"), &wave.record, folder);
     }

@@ -83,7 +83,7 @@ impl Check<'_> {
             let message = format!(
                 "gravity is tilted by {tilt_deg:.1}° from −z, but dips of joints are measured from the plane of x and y, not from the horizontal of this gravity"
             );
-            let help = "keep gravity along −z and turn the joints; or mean the dips as angles to the plane of x and y";
+            let help = "keep gravity along −z and turn the joints; or go on, if the dips are measured from the plane of x and y";
             self.warn(Code::DoesNotFit, "gravity_m_s2", message, help);
         }
     }
@@ -147,7 +147,7 @@ impl Check<'_> {
             let help = "leave out compensate, or the bedding of the material";
             self.misfit(
                 format!("{path}.compensate"),
-                "bonds make bedded rock softer by another part in each direction",
+                "bonds make bedded rock softer by a different fraction in each direction",
                 help,
             );
         }
@@ -185,7 +185,7 @@ impl Check<'_> {
             Domain::Column { outline_m, start_m, end_m, .. } => {
                 outline_m.iter().for_each(|corner| self.numbers(&format!("{path}.outline_m"), corner));
                 if outline_m.len() < 3 {
-                    let message = format!("{} corners are no outline", outline_m.len());
+                    let message = format!("{} corners do not make an outline", outline_m.len());
                     self.error(format!("{path}.outline_m"), message, "give at least three");
                 }
                 if end_m <= start_m {
@@ -287,7 +287,11 @@ impl Check<'_> {
             && !(0.0..=1.0).contains(&share)
         {
             let message = format!("{share}: must be from 0 to 1");
-            self.error(path, message, "Share(0.5) cuts blocks of whose section the disc covers half");
+            self.error(
+                path,
+                message,
+                "Share(0.5) cuts a block if the disc covers at least half of its section",
+            );
         }
     }
 

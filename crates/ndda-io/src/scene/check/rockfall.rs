@@ -138,7 +138,7 @@ impl Check<'_> {
                 heights_m.iter().for_each(|row| self.numbers("rockfall.terrain.heights_m", row));
                 let columns = heights_m.first().map_or(0, Vec::len);
                 if columns < 2 || heights_m.len() < 2 || heights_m.iter().any(|row| row.len() != columns) {
-                    let message = "is no grid of heights";
+                    let message = "is not a grid of heights";
                     let help = "give at least two rows, all of the same length of at least two";
                     self.misfit("rockfall.terrain.heights_m", message, help);
                 }
@@ -206,7 +206,7 @@ impl Check<'_> {
             };
             let (least, most) = axes.iter().fold((f64::INFINITY, 0.0f64), |(a, b), v| (a.min(*v), b.max(*v)));
             if !(least > 0.0 && most <= MOST_SLENDER * least) {
-                let message = format!("{axes:?} are no axes of a boulder");
+                let message = format!("{axes:?} cannot be the axes of a boulder");
                 self.error(format!("{path}.axes"), message, "give three above 0, none ten times another");
             }
         }

@@ -116,7 +116,7 @@ impl Check<'_> {
                     self.misfit(
                         path("over_s"),
                         message,
-                        "Run(…) counts from the beginning of the stage: make it longer",
+                        "Run(…) is measured from the beginning of the stage: make it longer",
                     );
                 }
                 let step_s = self.scene.time.step_s;

@@ -49,7 +49,7 @@ impl Check<'_> {
             if safety > 1.0 {
                 self.error(
                     "time.step.safety",
-                    format!("{safety}: is beyond the bound"),
+                    format!("{safety}: must be at most 1, where contact is still stable"),
                     "0.5 is a good choice",
                 );
             }
@@ -61,7 +61,11 @@ impl Check<'_> {
         if let ContactAt::End { tolerance, most_iterations } = time.contact_at {
             if !(1e-13..=1e-2).contains(&tolerance) {
                 let message = format!("{tolerance:e}: must be from 1e-13 to 1e-2");
-                self.error("time.contact_at.tolerance", message, "1e-8 is a step more than 1e-4");
+                self.error(
+                    "time.contact_at.tolerance",
+                    message,
+                    "1e-8 costs about one iteration more than 1e-4",
+                );
             }
             if most_iterations == 0 {
                 let message = "0 evaluations of contact solve nothing";
@@ -85,7 +89,7 @@ impl Check<'_> {
             }
             Integrator::Newmark { alpha, delta } if !(delta >= 0.5 && 2.0 * alpha >= delta) => {
                 let message = format!("α = {alpha}, δ = {delta}: unstable, must be 2 α ≥ δ ≥ ½");
-                self.error("time.integrator", message, "the paper has α = 0.5, δ = 1");
+                self.error("time.integrator", message, "usual values are α = 0.5, δ = 1");
             }
             _ => {}
         }

@@ -72,7 +72,7 @@ impl Check<'_> {
                 self.error(
                     format!("{path}[{i}]"),
                     format!("{} Pa: must not be negative", row.1),
-                    "joints open under suction",
+                    "water in joints carries no suction",
                 );
             }
         }

@@ -37,7 +37,7 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
         RonError::NoSuchEnumVariant { expected, found, .. } => {
             let field = path.rsplit('.').next().filter(|field| !field.is_empty() && !field.ends_with(']'));
             let field = field.map_or("here".to_string(), |field| format!("of `{field}`"));
-            at(Code::UnknownChoice, format!("`{found}` is no choice {field}"))
+            at(Code::UnknownChoice, format!("`{found}` is not a choice {field}"))
                 .with_help(suggest(found, expected))
         }
         RonError::MissingStructField { field, outer } => {
@@ -124,8 +124,8 @@ fn no_count(error: &RonError, plain: &str, at: usize) -> Option<String> {
     let number = plain[begins..ends].replace('_', "");
     let value = number.parse::<f64>().ok().filter(|_| number.contains(|c: char| c.is_ascii_digit()))?;
     Some(match value.fract() == 0.0 {
-        true => format!("{value} is no count that can be used"),
-        false => format!("the value {value} is no whole number"),
+        true => format!("{value} is not a count that can be used"),
+        false => format!("the value {value} is not a whole number"),
     })
 }
 
@@ -237,8 +237,10 @@ fn in_words(error: &RonError) -> String {
             return format!("expected {expected}, found {found} value{}", if *found == 1 { "" } else { "s" });
         }
         RonError::UnexpectedChar(c) => return format!("`{c}` does not belong here"),
-        RonError::InvalidIdentifier(name) => return format!("`{name}` is no name of a field or a choice"),
-        RonError::InvalidIntegerDigit { digit, .. } => return format!("`{digit}` is no digit of a number"),
+        RonError::InvalidIdentifier(name) => return format!("`{name}` is not a name of a field or a choice"),
+        RonError::InvalidIntegerDigit { digit, .. } => {
+            return format!("`{digit}` is not a digit of a number");
+        }
         other => return lowercase_first(&other.to_string()),
     };
     words.into()

@@ -39,7 +39,7 @@ pub(super) fn parse(file: &Path, text: &str) -> Result<(Rows, Option<Acceleratio
     for (i, line) in lines.iter().enumerate().skip(HEADER) {
         for word in line.split_whitespace() {
             let value =
-                number(word).ok_or_else(|| wrong(format!("line {}: `{word}` is no number", i + 1)))?;
+                number(word).ok_or_else(|| wrong(format!("line {}: `{word}` is not a number", i + 1)))?;
             rows.push((rows.len() as f64 * spacing_s, value));
         }
     }

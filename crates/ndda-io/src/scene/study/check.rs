@@ -82,10 +82,16 @@ fn correlation_problems(study: &Study) -> Vec<Diagnostic> {
         }
     }
     if study.sensitivity && !study.correlations.is_empty() {
-        refuse("sensitivity".into(), "is of independent axes: leave out the correlations".into());
+        refuse(
+            "sensitivity".into(),
+            "works with independent parameters only: leave out the correlations".into(),
+        );
     }
     if study.sensitivity && random.is_empty() {
-        refuse("sensitivity".into(), "is of random axes: give one a distribution".into());
+        refuse(
+            "sensitivity".into(),
+            "works with random parameters only: give at least one a distribution".into(),
+        );
     }
     found
 }

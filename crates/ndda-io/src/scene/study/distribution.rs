@@ -51,8 +51,10 @@ impl Distribution {
         }
         // One number may have a unit that is misspelt.
         match nearest(name, &NAMES) {
-            Some(near) => Some(format!("`{name}` is no distribution: did you mean `{near}`?")),
-            None if count > 1 => Some(format!("`{name}` is no distribution; there is {}", NAMES.join(", "))),
+            Some(near) => Some(format!("`{name}` is not a distribution: did you mean `{near}`?")),
+            None if count > 1 => {
+                Some(format!("`{name}` is not a distribution; choose one of {}", NAMES.join(", ")))
+            }
             None => None,
         }
     }

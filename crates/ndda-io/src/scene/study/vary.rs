@@ -44,12 +44,12 @@ fn axis(text: &str) -> Result<Axis, SceneErrors> {
     }
     let raw = |value: &str| {
         if value.trim().parse().is_ok_and(|number: f64| !number.is_finite()) {
-            return Err(refuse(format!("`{}` is no finite number", value.trim()), help));
+            return Err(refuse(format!("`{}` is not a finite number", value.trim()), help));
         }
         locate::one_value(value.trim())
             .map_err(|reason| refuse(format!("`{}` {reason}", value.trim()), help))?;
         RawValue::from_boxed_ron(value.trim().into())
-            .map_err(|error| refuse(format!("`{}` is no value: {error}", value.trim()), help))
+            .map_err(|error| refuse(format!("`{}` is not a value: {error}", value.trim()), help))
     };
     let values = split(values).into_iter().map(raw).collect::<Result<_, _>>()?;
     Ok(Axis::Vary { path, values, name: None })
@@ -117,13 +117,13 @@ mod tests {
         for (text, word) in [
             ("time.step_s", "no `=`"),
             ("=3", "needs a path"),
-            ("a=1,,2", "no value"),
+            ("a=1,,2", "not a value"),
             ("a=Normal(3)", "Normal(mean"),
             ("a=(1", "`(` is not closed"),
             ("a=Norml(30, 2)", "did you mean `Normal`?"),
             ("a=normal(30, 2)", "did you mean `Normal`?"),
             ("a=Trianglar(1, 2, 3)", "did you mean `Triangular`?"),
-            ("a=Gauss(30, 2)", "`Gauss` is no distribution"),
+            ("a=Gauss(30, 2)", "`Gauss` is not a distribution"),
         ] {
             let said = read(&[text]).unwrap_err();
             assert!(said.contains(word) && said.contains("--vary"), "{said}");

@@ -69,7 +69,7 @@ const SYMBOLS: [(&str, &str); 62] = [
 ];
 
 /// What is wrong with a unit behind a number.
-pub(crate) const NOT_BEHIND: &str = "a unit is not written behind the number";
+pub(crate) const NOT_BEHIND: &str = "the unit cannot stand after the number";
 
 /// How a scene writes a number of a field that has a unit behind it.
 pub(crate) fn advice(number: &str, symbol: &str, field: &str) -> String {

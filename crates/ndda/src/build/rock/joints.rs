@@ -49,8 +49,8 @@ impl fmt::Display for Discs {
         };
         write!(
             f,
-            "{}, {idle} of which cut nothing: {}, {ends_in_cut} of them larger than the disc, which ends in the \
-             block; {left_whole} a disc ends in a block and leaves it whole; {} m² of discs in the rock, {} m² of joints",
+            "{}, {idle} of which cut nothing; {}, {ends_in_cut} of which go beyond the rim of their disc, to the faces of \
+             the block; {left_whole} a disc ends in a block and does not cut it; area of discs in the rock {} m², of their joints {} m²",
             counted(*discs, "disc", "discs"),
             counted(*cuts, "cut", "cuts"),
             four_figures(*disc_m2),

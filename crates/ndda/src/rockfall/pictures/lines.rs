@@ -53,7 +53,7 @@ pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> Option<S
         );
         svg.words([LEFT, top - 34.0], 14.0, Anchor::Start, INK, WIDTH - 2.0 * LEFT, &words);
         let columns: [Quantity; 3] = [
-            ("height of the mass centre [m]", 1.0, |m| m.height_m),
+            ("height of the centre of mass [m]", 1.0, |m| m.height_m),
             ("speed [m/s]", 1.0, Moment::speed_m_s),
             ("kinetic energy [kJ]", 1e3, Moment::energy_j),
         ];

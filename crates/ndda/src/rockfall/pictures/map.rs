@@ -262,7 +262,7 @@ fn by_speed(falls: &[&Fall], axes: &Axes, most: f64) -> Vec<String> {
 
 /// The probability that a cell is reached.
 pub(super) fn reach(model: &Model, outcome: &Outcome, falls: &[Fall]) -> String {
-    let mut map_of = Map::new(model, outcome, "probability of reach");
+    let mut map_of = Map::new(model, outcome, "reach probability");
     let reach = map::reach(model, falls);
     let [nx, _] = model.reach_cells();
     let (origin, cell) = (model.terrain.origin_m, model.cell_m());
@@ -283,7 +283,7 @@ pub(super) fn reach(model: &Model, outcome: &Outcome, falls: &[Fall]) -> String 
         ));
     }
     let labels = [1e-3, 1e-2, 1e-1, 1.0].map(|p| (part(p), format!("{} %", short(100.0 * p))));
-    let y = map_of.scale("part of boulders", viridis, &labels);
+    let y = map_of.scale("fraction of boulders", viridis, &labels);
     map_of.key(y, &[]);
     map_of.finish(outcome)
 }

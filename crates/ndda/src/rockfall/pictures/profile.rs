@@ -58,15 +58,15 @@ pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> String {
     svg.words([LEFT, 45.0], 13.0, Anchor::Start, GREY, width, &format!("profile · {}", subtitle(outcome)));
     let exaggeration = height / (y[1] - y[0]) * length / width;
     let name = match (exaggeration - 1.0).abs() < 0.02 {
-        true => "ground and paths by their height above the ground [m]".to_string(),
+        true => "terrain and paths, coloured by height above the ground [m]".to_string(),
         false => format!(
-            "ground and paths by their height above the ground [m], heights drawn {exaggeration:.2} times as large as lengths"
+            "terrain and paths, coloured by height above the ground [m]; heights drawn {exaggeration:.2} times as large as lengths"
         ),
     };
     section_of(&mut svg, &section, (model, outcome, falls), &ground);
     section.name(&mut svg, &name);
     let panels: [Panel; 3] = [
-        ("height of the mass centre above the ground [m]", 1.0, |f| f.height_m),
+        ("height of the centre of mass above the ground [m]", 1.0, |f| f.height_m),
         ("speed [m/s]", 1.0, |f| f.speed_m_s),
         ("kinetic energy [kJ]", 1e3, |f| f.energy_j),
     ];
