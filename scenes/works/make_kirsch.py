@@ -83,7 +83,7 @@ def main():
         '        (name: "wall along z", block: "ring_1_3", at: Point((0, 0, 1))),',
         "    ],",
         '    stages: [(name: "tunnel", remove: ["core"], over_s: 5e-3, then: Settle(tolerance: 1e-3), reset_displacements: true)],',
-        "    output: (frames: 4, history_rows: 100, fields: [Displacement, Stress]),",
+        "    output: (frames: 4, history_rows: 100, fields: [Displacement, Stress, BlockId]),",
         ")",
     ]
     print("\n".join(lines))

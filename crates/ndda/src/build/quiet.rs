@@ -1,5 +1,8 @@
 //! Quiet faces of a scene, and the waves that arrive through them.
 
+mod free_field;
+mod layers;
+
 use std::collections::HashSet;
 use std::path::Path;
 use std::sync::Arc;
@@ -12,9 +15,9 @@ use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::{BodyKind, BodySetup, QuietSetup};
 
-use super::free_field::{Ground, Parts, first_met, upwards};
 use super::regions::{in_region, outward_triangles, region_nodes};
 use super::{Fault, ON_PLANE, vec3};
+use free_field::{Ground, Parts, first_met, upwards};
 
 /// Gives bodies their quiet faces.
 pub(super) fn add_quiet(

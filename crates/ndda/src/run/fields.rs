@@ -134,7 +134,9 @@ fn topology(scene: &Scene, blocks: &BlockSet) -> Topology {
             _ => topology,
         };
     }
-    topology
+    // Which blocks are not there is said by their numbers.
+    let numbers_blocks = scene.output.fields.contains(&Field::BlockId);
+    if scene.stages.is_empty() || numbers_blocks { topology } else { topology.with_blocks(blocks) }
 }
 
 /// The fields of now; `stress_pa` is room for stresses, and has none where no field needs them.
@@ -238,5 +240,24 @@ mod tests {
         for (field, tets) in [(Field::Velocity, 0), (Field::Stress, 6), (Field::VonMises, 6)] {
             assert_eq!(room_for_stress(&[Field::Displacement, field], &blocks).len(), tets, "{field:?}");
         }
+    }
+
+    #[test]
+    fn frames_of_stages_number_their_blocks() {
+        let numbers = |stages: &str| {
+            let text = format!(
+                r#"(title: "t", time: (step_s: 1e-4, end_s: 1e-3), output: (fields: [Displacement]), {stages}
+                    materials: [(name: "rock", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+                    blocks: [(name: "a", material: "rock", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))])"#
+            );
+            let mut model = crate::Model::from_text(&text).unwrap();
+            let scene = model.loaded.scene.clone();
+            let topology = topology(&scene, model.simulation.blocks());
+            let frame =
+                frame(&scene.output.fields, scene.output.precision, &mut model.simulation, &mut []).unwrap();
+            let bytes = ndda_io::vtu::encode(std::path::Path::new("a.vtu"), &topology, &frame).unwrap();
+            String::from_utf8_lossy(&bytes).contains("block_id")
+        };
+        assert!(!numbers("") && numbers(r#"stages: [(name: "next", then: Run(1e-3))],"#));
     }
 }

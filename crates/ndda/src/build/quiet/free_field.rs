@@ -11,7 +11,7 @@ use ndda_mesh::{BlockId, BlockSet, Vec3};
 use ndda_solver::QuietSetup;
 
 use super::layers::{Layer, Waves, waves};
-use super::vec3;
+use crate::build::vec3;
 
 /// Faces by block.
 pub(super) type Parts = Vec<(BlockId, Vec<[u32; 3]>)>;
