@@ -13,7 +13,7 @@ use ndda_io::summary::Status;
 use ndda_io::{OutputFolder, read, study};
 use serde_json::Value;
 
-/// Row of the manual, scene, largest `error_end` and largest `error_max` that its header allows.
+/// Row of the manual, scene, largest `error_end` and largest `error_max` that its header allows: each bound is a promise of a scene.
 const CRITERIA: [(&str, &str, f64, f64); 18] = [
     ("free fall", "collision_equal", 1e-3, f64::INFINITY),
     ("free fall", "collision_equal_free", 2e-4, f64::INFINITY),

@@ -83,6 +83,8 @@ fn a_charged_hole_pushes_the_blocks_around_it_apart_by_its_impulse() {
         let operator = &simulation.shape(BlockId(k as u32)).operator;
         let v = operator.momentum(&simulation.state().velocity[nodes]) / operator.mass_kg;
         let name = format!("speed of block {k} away from a charged hole [m/s]");
-        row("charged hole", &name, v.dot(way), Within(exact, 2e-3));
+        // ∫ p dt by the middles of steps is off by α β Δt²/24 of it, since p rises at once.
+        let middles = 2000.0 * 20000.0 * 1e-5f64.powi(2) / 24.0;
+        row("charged hole", &name, v.dot(way), Within(exact, middles));
     }
 }

@@ -62,19 +62,29 @@ fn a_block_on_a_slope_stands_slides_or_topples_as_statics_says() {
     let (sin, cos) = DIP_DEG.to_radians().sin_cos();
     let time_s = 0.5;
     let (slid, turned) = fate((10.0, 40.1), 2e9, time_s, true);
-    row("block on a slope", "slide of 10 m at 40.1°, which stands [m]", slid.abs(), AtMost(1e-6));
+    // Standing is the statement: it moves by less than a ten-millionth of its edge. What settling leaves of its speed has no closed form.
+    let stands_m = 1e-7 * BASE_M;
+    row("block on a slope", "slide of 10 m at 40.1°, which stands [m]", slid.abs(), AtMost(stands_m));
     row("block on a slope", "turn of 10 m at 40.1°, which stands [rad]", turned.abs(), AtMost(1e-6));
 
     let (slid, turned) = fate((5.0, 20.0), 1e11, time_s, false);
     let free = 0.5 * GRAVITY * (sin - 20f64.to_radians().tan() * cos) * time_s * time_s;
     row("block on a slope", "slide of 5 m at 20° [m]", slid, Within(free, 2e-2));
-    row("block on a slope", "turn of 5 m at 20°, which slides [rad]", turned, Near(0.0, 2e-3));
+    // Friction on its base leans it on the bed of contact by its moment over the bed's stiffness, and twice as far when it swings: thrice that.
+    let friction_n = DENSITY * BASE_M * BASE_M * 5.0 * GRAVITY * cos * 20f64.to_radians().tan();
+    let bed_n_m = 2.0 * 1e11 / REFERENCE_M * BASE_M.powi(4) / 12.0;
+    let leans = 6.0 * friction_n * 2.5 / bed_n_m;
+    row("block on a slope", "turn of 5 m at 20°, which slides [rad]", turned, Near(0.0, leans));
 
     let (slid, turned) = fate((25.0, 60.0), 1e11, time_s, false);
     // Contact is stiff here: a soft edge sinks, and the block turns about a line further up.
     let falls = turn_about_the_foot(25.0, time_s);
     row("block on a slope", "turn of 25 m at 60° [rad]", turned, Within(falls, 5e-2));
-    row("block on a slope", "slide of 25 m at 60°, which topples [m]", slid, Near(0.0, 0.02));
+    // It turns about the end of the strip w on which its edge presses, ½ p′ w² θ = N: its foot goes w θ²/2 aside, and four times that passes.
+    let normal_n = DENSITY * BASE_M * BASE_M * 25.0 * GRAVITY * cos;
+    let strip_m = (2.0 * normal_n / (2.0 * 1e11 / REFERENCE_M * BASE_M * falls)).sqrt();
+    let aside_m = 4.0 * 0.5 * strip_m * falls * falls;
+    row("block on a slope", "slide of 25 m at 60°, which topples [m]", slid, Near(0.0, aside_m));
 
     let (slid, turned) = fate((25.0, 24.0), 1e11, time_s, false);
     let (slides, turns) = slide_and_turn((25.0, 24.0), 1e11, time_s);

@@ -4,7 +4,7 @@ use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 
 use crate::evidence::Answer::{AtMost, Within};
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::{POISSON, YOUNG_PA, assert_uniform_strain, displacements, simulation};
 
 const MOVING: [&str; 3] = ["Elastic", "Affine", "Rigid"];
@@ -42,10 +42,14 @@ fn a_tumbling_block_of_any_kind_keeps_angular_momentum_energy_and_size() {
         let worst = simulation.invariants();
         let energy = (end.total_j() / start.total_j() - 1.0).abs();
         let named = |what: &str| format!("{body} brick that tumbles for {} steps: {what}", steps());
-        row("spin of all kinds of body", &named("momentum"), worst.linear_momentum, AtMost(1e-9));
-        row("spin of all kinds of body", &named("angular momentum"), worst.angular_momentum, AtMost(1e-9));
-        row("spin of all kinds of body", &named("change of energy"), energy, AtMost(1e-6));
-        row("spin of all kinds of body", &named("largest stress over E"), largest / 20e9, AtMost(1e-6));
+        // Conserved exactly: what is left is the rounding of so many steps. Rock that deforms is stretched by its spin, by ρ ω² r²/E = 5e-7 of E
+        // and of the energy, which vibrates: twice that passes. Rigid rock has no stress at all.
+        let rounds = rounding(steps() as u32);
+        let (lost, stressed) = if body == "Rigid" { (rounds, 0.0) } else { (1e-6, 1e-6) };
+        row("spin of all kinds of body", &named("momentum"), worst.linear_momentum, AtMost(rounds));
+        row("spin of all kinds of body", &named("angular momentum"), worst.angular_momentum, AtMost(rounds));
+        row("spin of all kinds of body", &named("change of energy"), energy, AtMost(lost));
+        row("spin of all kinds of body", &named("largest stress over E"), largest / 20e9, AtMost(stressed));
     }
 }
 
@@ -110,7 +114,9 @@ fn blocks_of_unlike_kinds_meet_and_keep_their_momenta() {
         let named = |what: &str| format!("{a} and {b} blocks that meet: {what}");
         row("bodies", &named("momentum"), worst.linear_momentum, AtMost(1e-12));
         row("bodies", &named("angular momentum"), worst.angular_momentum, AtMost(1e-12));
-        row("bodies", &named("energy gained"), worst.energy_gain, AtMost(1e-3));
+        // While blocks are pressed, explicit contact holds back h²/4 of its energy, and at either end of it as much: h²/2 at most.
+        let most = (0.5 * worst.max_h * worst.max_h).min(1e-3);
+        row("bodies", &named("energy gained"), worst.energy_gain, AtMost(most));
     }
 }
 
@@ -155,7 +161,9 @@ fn a_fixed_block_has_no_unknowns_bears_its_load_and_goes_where_it_is_told_to() {
     // Lifting 2000 kg by 0.2 m, and bringing it to 0.5 m/s.
     let work = 2000.0 * (10.0 * 0.2 + 0.5 * 0.25);
     row("bodies", "work of moving a fixed block [J]", sample.motion_work_j, Within(work, 0.06));
-    row("bodies", "momentum of fixed blocks", simulation.invariants().linear_momentum, AtMost(1e-13));
+    // What moves it books as much momentum as it has: 500 steps that round either way, √n ε, twofold.
+    let rounds = 2.0 * 500f64.sqrt() * f64::EPSILON;
+    row("bodies", "momentum of fixed blocks", simulation.invariants().linear_momentum, AtMost(rounds));
 }
 
 #[test]
@@ -201,13 +209,18 @@ fn a_block_of_any_kind_slides_down_a_fixed_ramp_as_the_closed_form_says() {
         let block = &displacements(&simulation)[simulation.blocks().nodes_of(ndda_mesh::BlockId(1))];
         let mean = block.iter().sum::<Vec3>() / block.len() as f64;
         let exact = 0.5 * 6.929646455628166 * 0.25;
-        let gain = simulation.invariants().energy_gain;
+        let (gain, h) = (simulation.invariants().energy_gain, simulation.invariants().max_h);
+        // The scheme is exact for a constant acceleration: rounding of 5000 steps, tenfold. Nodes of rock that deforms are off their mass
+        // centre by a strain of ρ g h/E.
+        let strain = if body == "Elastic" { 2650.0 * 9.8 * 0.06 / 200e9 } else { 0.0 };
         row(
             "the paper's ramps",
             &format!("slide of a block on a fixed ramp, {body} [m]"),
             mean.x,
-            Within(exact, 1e-6),
+            Within(exact, strain + 10.0 * rounding(5000)),
         );
-        row("the paper's ramps", &format!("energy gained by it, {body}"), gain, AtMost(1e-4));
+        // Explicit contact holds back up to h²/2 of the energy.
+        let most = (0.5 * h * h).min(1e-4);
+        row("the paper's ramps", &format!("energy gained by it, {body}"), gain, AtMost(most));
     }
 }

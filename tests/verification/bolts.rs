@@ -4,7 +4,7 @@ use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BoltStatus, PieceState, Settle, Simulation};
 
 use crate::evidence::Answer::{AtMost, Near, Within};
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::simulation;
 
 const EA_N: f64 = 98.6e9 * 181e-6;
@@ -79,10 +79,13 @@ fn bolts_are_pulled_out_as_their_bond_and_steel_let_them() {
         assert!(before.debonded == 0.0 && after.debonded > 0.0);
     }
     let (debonded_n, after) = pull(2.0, 10.3278e-3, 243.931e3, "");
+    // The promise of docs/verification/verification.md for segments that the program chooses: 1 %, as all closed forms here.
     row("bolts", "pull when 1 of 2 m is debonded [N]", debonded_n, Within(243.931e3, 1e-2));
+    // It is counted in whole segments of up to 1/(4 λ) = 0.1 m: half of one is 0.025 of 2 m.
     row("bolts", "debonded part of it", after.debonded, Near(0.5, 0.02));
     let (limit_n, after) = pull(2.0, 60e-3, 350e3, "");
-    row("bolts", "pull when all of 2 m is debonded [N]", limit_n, Within(350e3, 1e-6));
+    // All of the bond has its strength, whatever the segments: rounding of a sum over fewer than a thousand of them.
+    row("bolts", "pull when all of 2 m is debonded [N]", limit_n, Within(350e3, rounding(1000)));
     assert_eq!((after.debonded, after.state), (1.0, PieceState::Debonded));
 }
 
@@ -94,7 +97,8 @@ fn a_long_bolt_yields_where_the_debonded_part_carries_its_strength() {
     let (pull_n, before) = pull(17.7, 0.99 * yields_m, YIELD_N, "");
     row("bolts", "pull at 0.99 of the pull-out at which 17.7 m yields [N]", pull_n, Within(YIELD_N, 1e-2));
     let (pull_n, after) = pull(17.7, 1.01 * yields_m, YIELD_N, "");
-    row("bolts", "pull beyond it [N]", pull_n, Within(YIELD_N, 1e-9));
+    // Steel that yields has its strength: rounding of a sum over fewer than a thousand segments.
+    row("bolts", "pull beyond it [N]", pull_n, Within(YIELD_N, rounding(1000)));
     assert!(before.state == PieceState::Debonded && after.state == PieceState::Yielding);
     assert!(after.utilisation > 1.0 - 1e-9 && before.utilisation < 1.0);
 }
@@ -151,7 +155,8 @@ fn steel_breaks_at_the_same_opening_whatever_its_segments() {
         assert!(sample.bolt_work_j < 0.0 && sample.bolt_j >= 0.0);
         opening_m
     });
-    // Two gauge lengths next to the joint, of which one may break first, and what the bond gives.
+    // Two gauge lengths next to the joint, of which one may break first, and what the bond gives: 1 % is one of the steps of 0.01 mm in which
+    // the joint opens by about 1 mm.
     row(
         "bolts",
         "opening at which it breaks, coarse segments over fine ones",
@@ -231,7 +236,9 @@ fn a_bolted_block_stands_or_slides_as_its_factor_of_safety_says() {
     for (factor, friction_deg) in [(1.0, 30.0), (1.5, (tan / 1.5).atan().to_degrees())] {
         let needed = needed_n(tan / factor);
         let (way_m, _) = slid(1.01 * needed, friction_deg, true);
-        row("bolts", &format!("slide with 1.01 T(F = {factor}) [m]"), way_m, AtMost(1e-4));
+        // Standing is the statement: what is settled moves less than it has sunk into its joint.
+        let sunk_m = WEIGHT_N * cos / (2.0 * PENALTY_PA);
+        row("bolts", &format!("slide with 1.01 T(F = {factor}) [m]"), way_m, AtMost(sunk_m));
         let (_, found) = slid(0.5 * needed, friction_deg, false);
         let answer = acceleration(0.5 * needed, tan / factor);
         row("bolts", &format!("acceleration with 0.5 T(F = {factor}) [m/s²]"), found, Within(answer, 1e-2));
@@ -308,8 +315,10 @@ fn bolts_keep_momentum_and_their_energy_is_accounted_for() {
             let sample = simulation.sample().unwrap();
             assert!(status(&simulation).debonded > 0.0 && status(&simulation).shear_n > 0.0);
             let name = format!("{kind}{integrator}");
-            row("bolts", &format!("momentum, {name}"), worst.linear_momentum, AtMost(1e-11));
-            row("bolts", &format!("angular momentum, {name}"), worst.angular_momentum, AtMost(1e-10));
+            // Conserved exactly: rounding of 1500 steps, fivefold for contact, bolt and inertia.
+            let rounds = 5.0 * rounding(1500);
+            row("bolts", &format!("momentum, {name}"), worst.linear_momentum, AtMost(rounds));
+            row("bolts", &format!("angular momentum, {name}"), worst.angular_momentum, AtMost(rounds));
             if !integrator.is_empty() {
                 // Explicit contact and bolts gain energy with Newmark's method.
                 continue;
@@ -347,7 +356,9 @@ fn bolts_go_on_from_a_snapshot_to_the_bit() {
 fn pretension_is_there_from_the_start_and_after_settling() {
     let bolt = of_tension(5000.0).replace("yield_n: 5000", "yield_n: 1e6");
     let mut simulation = slope(&bolt, 40.0, "");
-    row("bolts", "pretension at the start [N]", status(&simulation).axial_n, Within(5000.0, 1e-6));
+    // A place some lengths away is known to ε of itself, and so a strain to ε: EA ε of tension.
+    let rounds = 200e9 * 1e-4 / 5000.0 * f64::EPSILON;
+    row("bolts", "pretension at the start [N]", status(&simulation).axial_n, Within(5000.0, rounds));
     simulation.settle(&Settle::new(1e-4, 100_000)).unwrap();
     let settled = status(&simulation).axial_n;
     assert!(settled > 4000.0 && settled < 6000.0, "{settled}");

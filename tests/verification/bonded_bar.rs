@@ -71,6 +71,7 @@ fn a_bar_with_a_joint_across_breaks_by_its_fracture_energy() {
         row("bonded bar", &format!("largest force, {across} [N]"), peak_pa * AREA_M2, Within(300.0, 0.03));
         row("bonded bar", &format!("stress at 40 µm, {across} [Pa]"), at_40_pa, Within(exact_pa, 0.02));
         let lost_j = -bar.sample().unwrap().friction_work_j;
+        // The promise of docs/verification/verification.md: 1 % of G_I A.
         let what = format!("work of {across} [J]");
         row("bonded bar", &what, lost_j, Within(ENERGY_J_M2 * AREA_M2, 0.01));
         assert!(bar.state().contact.bonds.is_empty());
@@ -128,6 +129,7 @@ fn a_bar_snaps_that_stores_more_than_its_joint_takes() {
         if part < 1.0 {
             row("bonded bar", &what("stress over strength"), found, Within(exact, 0.02));
         } else {
+            // The statement: such a bar snaps, all of it.
             row("bonded bar", &what("bonds left"), bonds as f64, AtMost(0.0));
         }
     }

@@ -5,7 +5,7 @@ use ndda_mesh::Vec3;
 use ndda_solver::{Simulation, StepError};
 
 use crate::evidence::Answer::{AtMost, Near};
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::simulation;
 
 const SPEED_M_S: f64 = 0.5;
@@ -31,20 +31,19 @@ pub fn restitution(simulation: &mut Simulation) -> Result<f64, StepError> {
     Ok(simulation.sample()?.momentum.z / (2500.0 * SPEED_M_S))
 }
 
-/// Speed after over speed before, largest gain of the energy balance over the energy, and h.
-fn bounce(integrator: &str, step_s: f64) -> (f64, f64, f64) {
+/// Speed after over speed before, and largest gain of the energy balance over the energy.
+fn bounce(integrator: &str, step_s: f64) -> (f64, f64) {
     let mut simulation = ball(integrator, step_s);
     simulation.sample().unwrap();
-    let (mut touched, mut h) = (false, 0.0f64);
+    let mut touched = false;
     loop {
         let report = simulation.step().unwrap();
         touched |= report.contact.contact_pairs > 0;
-        h = h.max(report.h);
         if touched && report.contact.contact_pairs == 0 {
             break;
         }
     }
-    (restitution(&mut simulation).unwrap(), simulation.invariants().energy_gain, h)
+    (restitution(&mut simulation).unwrap(), simulation.invariants().energy_gain)
 }
 
 /// ω_c of the block as one mass on the patch: two smooth fields of slope 1 over the reference length, 4 k A in all.
@@ -102,10 +101,14 @@ fn midpoint_and_generalised_alpha_give_back_what_they_get() {
     for integrator in ["Midpoint(theta: 0.5)", "GeneralizedAlpha(radius: 0.8)", "GeneralizedAlpha(radius: 0)"]
     {
         for step_s in [2e-3, 1e-3, 5e-4] {
-            let (restitution, gain, h) = bounce(integrator, step_s);
+            let (restitution, gain) = bounce(integrator, step_s);
             let what = |what: &str| format!("{what}, {integrator}, Δt = {step_s:e} s");
-            row("bounce and contact stability", &what("restitution"), restitution, Near(1.0, 0.5 * h * h));
-            row("bounce and contact stability", &what("energy gained"), gain, AtMost(1e-2));
+            // Contact keeps v² (1 − h²/4) + ω² x², which jumps by up to h²/4 where it begins and ends within a step: h²/2 of the energy and
+            // h²/4 of the speed, of which twice passes. A radius of 0 damps about h²/2 of the speed: thrice that.
+            let h = contact_rate() * step_s;
+            let own = if integrator.ends_with("(radius: 0)") { 1.5 } else { 0.5 };
+            row("bounce and contact stability", &what("restitution"), restitution, Near(1.0, own * h * h));
+            row("bounce and contact stability", &what("energy gained"), gain, AtMost(0.5 * h * h));
         }
     }
 }
@@ -122,7 +125,7 @@ fn restitution_over_the_step_is_that_of_one_mass_on_a_spring_for_every_scheme() 
     for (integrator, contact_at) in schemes {
         for h in [0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0] {
             let step_s = h / contact_rate();
-            let (restitution, ..) = bounce(&format!("{integrator}, contact_at: {contact_at}"), step_s);
+            let (restitution, _) = bounce(&format!("{integrator}, contact_at: {contact_at}"), step_s);
             println!("restitution;{integrator};{contact_at};{h};{restitution}");
             let expected = one_mass(&format!("{integrator}, contact_at: {contact_at}"), step_s);
             let what = format!("restitution, {integrator}, contact_at {contact_at}, h = {h}");
@@ -179,7 +182,7 @@ fn midpoint_and_generalised_alpha_are_of_second_order_in_contact_and_the_papers_
     {
         let errors = [1e-4, 5e-5, 2.5e-5].map(|step_s| error(scene, integrator, step_s));
         let order = (errors[1] / errors[2]).log2();
-        // The paper's comes to its order from below.
+        // Terms of higher order in Δt change what two steps show of the order; by how much has no closed form. The paper's comes to it from below.
         let tolerance = if expected == 1.0 { 0.12 } else { 0.1 };
         let of = if scene == PRESSED { "a block pressed on a base" } else { "two cubes that meet" };
         row(
@@ -210,11 +213,12 @@ fn momentum_on_supports_is_accounted_for_from_the_first_step() {
         }
         simulation.sample().unwrap();
         let error = simulation.invariants().linear_momentum;
+        // What supports take is booked exactly: rounding of 50 steps.
         row(
             "bounce and contact stability",
             &format!("momentum on supports, {integrator}"),
             error,
-            AtMost(1e-12),
+            AtMost(rounding(50)),
         );
     }
 }

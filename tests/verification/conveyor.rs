@@ -1,7 +1,7 @@
 //! A block on a conveyor belt: a belt that begins to move at once takes momentum from what moves it, none from nowhere, whatever the integrator.
 
 use crate::evidence::Answer::AtMost;
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::simulation;
 
 #[test]
@@ -37,7 +37,7 @@ fn a_block_on_a_conveyor_has_the_momentum_that_friction_gives_it_with_every_inte
             simulation.sample().unwrap();
             largest = largest.max(simulation.invariants().linear_momentum);
         }
-        // The limit of the verdict.
-        row("conveyor", &format!("momentum from nowhere, {integrator}"), largest, AtMost(1e-10));
+        // All momentum is booked: rounding of 1000 steps.
+        row("conveyor", &format!("momentum from nowhere, {integrator}"), largest, AtMost(rounding(1000)));
     }
 }

@@ -7,7 +7,7 @@ use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 
 use crate::evidence::Answer::{AtMost, Near};
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::simulation;
 
 const DENSITY: f64 = 2500.0;
@@ -50,7 +50,7 @@ fn stretching(simulation: &Simulation) -> (f64, f64) {
 
 #[test]
 fn damping_on_mass_is_exact_for_any_step_integrator_and_body() {
-    for (z, tells) in [(0.01, false), (1.0, true), (10.0, true), (1e6, true)] {
+    for (z, tells) in [(0.01, false), (1.0, true), (10.0, true), (1e6f64, true)] {
         let mut worst = 0.0f64;
         for integrator in PLAIN.iter().chain(&REMEMBERING) {
             for body in ["Rigid", "Affine", "Elastic"] {
@@ -77,7 +77,9 @@ fn damping_on_mass_is_exact_for_any_step_integrator_and_body() {
         }
         let what =
             format!("largest error of e^(−a t) at a Δt = {z:e}, five integrators, three kinds of bodies");
-        row("damping", &what, worst, AtMost(1e-11));
+        // Places that are rounded to ε of a metre leave accelerations of E ε/ρ, of which drag lets a part of 1/z act: five steps of that, sixtyfold.
+        let rounds = 60.0 * 5.0 * 1e9 * f64::EPSILON / DENSITY * 1e-3 / 3.0 / z.max(1.0);
+        row("damping", &what, worst, AtMost(rounds));
     }
 }
 
@@ -175,19 +177,21 @@ fn damping_on_stiffness_does_no_work_on_a_spinning_boulder() {
                 growth = growth.max(sample.total_j() - last.total_j());
                 last = sample;
             }
+            // Nothing deforms, so that both are rounding of the energy in 670 steps.
+            let rounds = rounding(670);
             let what = |what: &str| format!("{what} of its kinetic energy, {body}, b = {b} s, {integrator}");
             let work = (last.damping_work_j - first_j).abs() / start.kinetic_j;
             row(
                 "damping",
                 &what("work of stiffness damping on a boulder that spins for 0.67 s"),
                 work,
-                AtMost(1e-10),
+                AtMost(rounds),
             );
             row(
                 "damping",
                 &what("most that its energy grows in 10 ms"),
                 growth / start.kinetic_j,
-                AtMost(1e-10),
+                AtMost(rounds),
             );
             // All that damping may take is what the spin stores as strain: ρ ω² r²/E of the kinetic energy, 5e-6 here.
             let transient = first_j.abs() / start.kinetic_j;
@@ -223,6 +227,8 @@ fn strong_stiffness_damping_raises_no_false_alarm_of_energy() {
             "damping",
             &format!("energy from nowhere in a bar pulled at once, b = {b:e} s, of the largest"),
             off,
+            // ε of a place is 2e-12 of a strain of 1e-4, and b/Δt times as much of what damping makes of it, up to 1e4: how much of that is lost
+            // has no closed form.
             AtMost(1e-9),
         );
         assert!(worst.linear_momentum < 1e-10, "{worst:?}");

@@ -9,7 +9,7 @@ use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{Sample, Settle, Simulation};
 
 use crate::evidence::Answer::{AtMost, Near, Within};
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::{displacements, joint_laws, simulation};
 
 const STRESS_PA: f64 = 1e6;
@@ -68,6 +68,10 @@ const PRESSED: (&str, &str) = (
     "(block: \"upper\", on: All, hold: Direction((1, 0, 0))), (block: \"upper\", on: All, hold: Direction((0, 1, 0))),",
     "tractions: [(block: \"upper\", on: Set(\"z_max\"), traction_pa: (0, 0, -1e6))],",
 );
+
+/// Error of the work of shear in a run of one turn, over that: the trapezoidal rule's, (Δt/T)²/12, T the time between rows of the motion, at which
+/// speeds jump.
+const WORK_ERROR: f64 = (STEP_S * 40.0 / END_S) * (STEP_S * 40.0 / END_S) / 12.0;
 
 /// Rows of a motion that comes to these slips one after the other, each in the same time, and rests there for a moment.
 fn by_turns(slips_m: &[f64]) -> String {
@@ -133,7 +137,7 @@ fn a_block_is_lifted_by_slip_and_friction_pays_for_it() {
             let lost_j = -end.friction_work_j - stored_j;
             row("dilation in runs", &format!("energy lost by {until} [J]"), lost_j, Within(exact_j, 5e-3));
             let what = format!("error of the balance of energy over the work of shear, {until} [-]");
-            row("dilation in runs", &what, error, AtMost(2e-3));
+            row("dilation in runs", &what, error, AtMost(WORK_ERROR));
         }
     }
 }
@@ -254,8 +258,15 @@ fn a_rigid_block_on_a_slope_rises_while_it_slides() {
         AtMost(5e-3),
     );
     let invariants = run.invariants();
-    row("dilation in runs", "error of its angular momentum [-]", invariants.angular_momentum, AtMost(1e-10));
-    row("dilation in runs", "error of its momentum [-]", invariants.linear_momentum, AtMost(1e-10));
+    // Conserved exactly: rounding of 5000 steps, fivefold for the products of places and momenta.
+    let rounds = rounding(5000);
+    row(
+        "dilation in runs",
+        "error of its angular momentum [-]",
+        invariants.angular_momentum,
+        AtMost(5.0 * rounds),
+    );
+    row("dilation in runs", "error of its momentum [-]", invariants.linear_momentum, AtMost(rounds));
 }
 
 /// A rough joint opens by half of the angle that is mobilised, as `ndda joint` finds it.
@@ -276,5 +287,5 @@ fn a_rough_joint_lifts_a_block_as_the_test_of_its_law_says() {
     .expect("rows");
     row("dilation in runs", "lift of a block on a rough joint [m]", rise_m, Within(end.dilation_m, 5e-3));
     let what = "error of its balance of energy over the work of shear [-]";
-    row("dilation in runs", what, error, AtMost(1e-3));
+    row("dilation in runs", what, error, AtMost(WORK_ERROR));
 }

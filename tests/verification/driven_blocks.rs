@@ -4,7 +4,7 @@ use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{DriveError, Settle, Simulation};
 
 use crate::evidence::Answer::{AtMost, Near, Within};
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::simulation;
 
 const MOVING: [&str; 3] = ["Elastic", "Affine", "Rigid"];
@@ -51,13 +51,15 @@ fn a_force_between_two_times_gives_its_impulse_and_its_work() {
             let named = |what: &str| format!("{body} brick pushed for 0.2 s, {integrator}: {what}");
             let off = (end.momentum - expected).norm() / expected.norm();
             row("driven blocks", &named("momentum off m v + F t [-]"), off, AtMost(1e-12));
+            // Exact in every step: rounding of 400 steps, twentyfold.
+            let rounds = 20.0 * rounding(400);
             let kinetic_j = 0.5 * expected.norm_squared() / MASS_KG;
-            row("driven blocks", &named("kinetic energy [J]"), end.kinetic_j, Within(kinetic_j, 1e-9));
+            row("driven blocks", &named("kinetic energy [J]"), end.kinetic_j, Within(kinetic_j, rounds));
             let worst = simulation.invariants();
             row("driven blocks", &named("error of momentum"), worst.linear_momentum, AtMost(1e-12));
-            row("driven blocks", &named("error of angular momentum"), worst.angular_momentum, AtMost(1e-11));
+            row("driven blocks", &named("error of angular momentum"), worst.angular_momentum, AtMost(rounds));
             let unbalanced = worst.energy_gain.max(worst.energy_loss);
-            row("driven blocks", &named("error of energy"), unbalanced, AtMost(1e-9));
+            row("driven blocks", &named("error of energy"), unbalanced, AtMost(rounds));
         }
     }
 }
@@ -78,9 +80,21 @@ fn a_blow_sets_velocity_and_spin_and_is_booked() {
             row("driven blocks", &named("momentum off m v [-]"), off, AtMost(1e-12));
             let worst = simulation.invariants();
             row("driven blocks", &named("error of momentum"), worst.linear_momentum, AtMost(1e-12));
-            row("driven blocks", &named("error of angular momentum"), worst.angular_momentum, AtMost(1e-11));
+            // Rounding of 200 steps, twentyfold.
+            let rounds = 20.0 * rounding(200);
+            row("driven blocks", &named("error of angular momentum"), worst.angular_momentum, AtMost(rounds));
             let unbalanced = worst.energy_gain.max(worst.energy_loss);
-            row("driven blocks", &named("error of energy"), unbalanced, AtMost(1e-6));
+            // The sudden spin stretches rock that deforms by ρ ω² r²/E, a part of its energy that vibrates: schemes that damp may take it, those
+            // that keep energy to second order are off by (ω Δt)² of it.
+            let stretch = 2600.0 * spin_rad_s.norm_squared() * (0.15 * 0.15 + 0.1 * 0.1 + 0.05 * 0.05) / 20e9;
+            let lost = match integrator {
+                _ if body == "Rigid" => rounding(200),
+                "Midpoint(theta: 0.5)" | "Newmark(alpha: 0.25, delta: 0.5)" => {
+                    stretch * spin_rad_s.norm_squared() * 1e-3 * 1e-3
+                }
+                _ => stretch,
+            };
+            row("driven blocks", &named("error of energy"), unbalanced, AtMost(lost));
         }
     }
 }
@@ -131,7 +145,11 @@ fn a_push_beyond_friction_moves_a_slab_and_one_below_does_not() {
         steps(&mut simulation, 2000);
         let slide = (lower_face_m(&simulation) - before_m) / (0.5 * friction_m_s2 * 0.2 * 0.2);
         let what = format!("slab pushed by {part} of friction: slide over ½ g tan φ t²");
-        row("driven blocks", &what, slide, Near(expected, 3e-3));
+        // A slab that is held creeps by what friction is found to, 1e-7 of μN. One that slides has leaned by the moment of the push over the bed of
+        // contact, 2 k_n a metre or more, twice as far when it swings.
+        let leans_m = 2.0 * part * friction_m_s2 * 500.0 * 0.1 * 0.1 / (2.0 * 1e8 / 12.0);
+        let off = if part < 1.0 { 1e-7 } else { leans_m / (0.5 * friction_m_s2 * 0.2 * 0.2) };
+        row("driven blocks", &what, slide, Near(expected, off));
     }
 }
 

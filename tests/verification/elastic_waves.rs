@@ -89,10 +89,12 @@ fn a_wave_runs_along_a_bar_at_its_speed() {
     }
     let [first, second] = passed.map(|(sum, moment)| moment / sum);
     let measured = 1.0 / (second - first);
-    row("elastic waves", "speed of a P-wave along a bar [m/s]", measured, Within(speed(), 2e-3));
+    // A wave as short as the pulse, k = 2π/0.6 m, is off by (k h)²/24 in this mesh; the mean of its moments is hardly off.
+    let dispersion = (2.0 * PI / 0.6 * CELL_M).powi(2) / 24.0;
+    row("elastic waves", "speed of a P-wave along a bar [m/s]", measured, Within(speed(), dispersion));
     // v = p/(ρ c), so its integral over time is that of the pressure.
     let impulse = 0.5 * length_s * pressure / impedance();
-    row("elastic waves", "∫ v dt of the pulse [m]", passed[1].0 * step_s, Within(impulse, 5e-3));
+    row("elastic waves", "∫ v dt of the pulse [m]", passed[1].0 * step_s, Within(impulse, dispersion));
 }
 
 /// Wave transmitted by a joint of stiffness k [Pa/m] for an incident wave of velocity v(t): v_T′ = (2 k/ρ c)(v − v_T), so that

@@ -9,6 +9,8 @@ use crate::simulation;
 
 /// The paper's steel-like rock: at k_n = 1e-5 E a metre of it sinks by 6 mm.
 const YOUNG_PA: f64 = 200e9;
+/// Misfit of contact forces in a step, over the largest of them and of loads, at which Newton's method stops unless it is told otherwise.
+const MISFIT: f64 = 1e-8;
 
 /// A cube that falls 1 mm on a fixed slab, and comes to rest there, with k_n = `ratio` E.
 fn falling(ratio: f64, body: &str) -> Simulation {
@@ -63,8 +65,12 @@ fn stiff_contact_converges_at_long_steps_without_gaining_energy_and_rests_as_dee
             let depth = top - lowest.iter().zip(weights).map(|(x, w)| w * x.z).sum::<f64>() / 16.0;
             let expected = 2500.0 * 9.8 / (2.0 * ratio * YOUNG_PA);
             let named = |what: &str| format!("{what}, {body} cube, k_n = {ratio:e} E, Δt = 1 ms");
-            row("end", &named("depth at rest [m]"), depth, Within(expected, 0.01));
-            row("end", &named("energy gained"), worst.energy_gain, AtMost(0.01));
+            // Near the rim, as wide as the depth d, fields are weaker: a part d/L₀, of which thrice passes, and twice the part of its speed at which
+            // it counts as at rest; at most the 1 % that docs/verification/verification.md promises.
+            let off = (3.0 * expected + 2.0 * 1e-3).min(0.01);
+            row("end", &named("depth at rest [m]"), depth, Within(expected, off));
+            // Contact at the end takes energy: it gives only what 400 misfits of forces make of the speed, twice that in energy.
+            row("end", &named("energy gained"), worst.energy_gain, AtMost(2.0 * 400.0 * MISFIT));
             println!("{}: {} Newton, {} Krylov", named("iterations at most"), most.newton, most.krylov);
         }
     }
@@ -126,6 +132,7 @@ fn a_glancing_collision_keeps_momenta_however_far_newton_got() {
         let named = |what: &str| format!("glancing collision, contact at the end to {tolerance}: {what}");
         row("end", &named("momentum"), worst.linear_momentum, AtMost(1e-12));
         row("end", &named("angular momentum"), worst.angular_momentum, AtMost(1e-12));
+        // It takes energy where Newton gets to the end; where it stops at once, at a misfit of 1e-2, nothing says so: a twentieth of the label's 2 %.
         row("end", &named("energy gained"), worst.energy_gain, AtMost(1e-3));
     }
 }
@@ -158,9 +165,12 @@ fn a_flat_block_sticks_or_slides_on_a_ramp_by_either_law_of_friction_at_a_long_s
         let block = &crate::displacements(&simulation)[simulation.blocks().nodes_of(BlockId(1))];
         let slip = block.iter().map(|u| u.x).sum::<f64>() / block.len() as f64;
         let free = 0.5 * (4.9 - 25f64.to_radians().tan() * 8.487048957) * 0.25;
-        let answer = if slides { Within(free, 0.01) } else { Near(0.0, 1e-5) };
+        // It starts just in touch and sinks by d, until when the joint bears less: ∫∫ N/m dt² lacks d, and the slip is off by μ d. Thrice d passes.
+        let sunk_m = 2650.0 * 0.06 * 8.487048957 / (2.0 * 2e10);
+        let answer = if slides { Within(free, 3.0 * sunk_m / free) } else { Near(0.0, 3.0 * sunk_m) };
         row("end", &format!("slip on a ramp of 30° at h = {worst_h:.0}, {friction} [m]"), slip, answer);
         let gain = simulation.invariants().energy_gain;
-        row("end", &format!("energy gained on it, {friction}"), gain, AtMost(0.01));
+        // Contact at the end takes energy, but for 500 misfits of forces.
+        row("end", &format!("energy gained on it, {friction}"), gain, AtMost(2.0 * 500.0 * MISFIT));
     }
 }

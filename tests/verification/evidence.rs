@@ -51,6 +51,12 @@ impl Display for Answer {
     }
 }
 
+/// Relative error of a sum of so many terms, if each addition rounds the same way. Bounds of what is exact but for rounding are a
+/// stated multiple of it.
+pub fn rounding(terms: u32) -> f64 {
+    f64::from(terms) * f64::EPSILON
+}
+
 /// Prints the row `id`, the case in a few words, `what` was measured with its unit; panics unless the answer holds.
 #[track_caller]
 pub fn row(id: &str, what: &str, measured: f64, answer: Answer) {

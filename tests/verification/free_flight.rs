@@ -5,7 +5,7 @@ use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Simulation;
 
 use crate::evidence::Answer::AtMost;
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::simulation;
 
 const INTEGRATORS: [&str; 9] = [
@@ -97,7 +97,7 @@ fn worst(integrator: &str, motion: (Vec3, Vec3), steps: usize) -> [f64; 4] {
 
 #[test]
 fn a_block_in_free_flight_keeps_its_spin_and_goes_along_a_parabola() {
-    // The bounds are for rounding of places of 50 m, velocities of 116 m/s and stresses of 20 GPa in 500 steps; those
+    // The bounds are for rounding of places of up to 60 m in 500 steps, twentyfold, and of stresses of 20 GPa; those
     // of angular momentum are parts of Σ m |x| |v|. A scheme that gives the orbital misfit of gravity to the spin makes 15 to 30 rad/s of the first throw.
     let throws = [
         (Vec3::new(10.0, 0.0, 0.0), Vec3::zeros()),
@@ -110,9 +110,10 @@ fn a_block_in_free_flight_keeps_its_spin_and_goes_along_a_parabola() {
             let found = worst(integrator, motion, 500);
             largest.iter_mut().zip(found).for_each(|(largest, found)| *largest = largest.max(found));
         }
+        let rounds_m = 20.0 * rounding(500) * 60.0;
         let named = |of: &str| format!("{integrator}, flight at 10 to 116 m/s: {of}");
         row("flight", &named("change of spin [rad/s]"), largest[0], AtMost(1e-8));
-        row("flight", &named("distance from the parabola [m]"), largest[1], AtMost(1e-9));
+        row("flight", &named("distance from the parabola [m]"), largest[1], AtMost(rounds_m));
         row("flight", &named("angular momentum against the moment of the weight"), largest[2], AtMost(1e-12));
         row("flight", &named("angular momentum error"), largest[3], AtMost(1e-12));
     }
@@ -148,7 +149,7 @@ fn collision(integrator: &str, body: &str, contact_at: &str, boost: Vec3) -> (Ve
 
 #[test]
 fn a_collision_is_the_same_for_an_observer_who_moves() {
-    // An observer at 100 m/s sees places of 6 m and velocities rounded fifty times more; contact is stiff and amplifies that.
+    // An observer at 100 m/s sees places of 6 m and velocities rounded fifty times more in 600 steps; contact is stiff and amplifies that, tenfold.
     let boost = Vec3::new(60.0, -80.0, 20.0);
     for integrator in INTEGRATORS {
         let mut largest = [0.0f64; 3];
@@ -164,7 +165,7 @@ fn a_collision_is_the_same_for_an_observer_who_moves() {
             }
         }
         let named = |of: &str| format!("{integrator}, collision seen at 102 m/s: {of}");
-        row("flight", &named("places differ by [m]"), largest[0], AtMost(1e-9));
+        row("flight", &named("places differ by [m]"), largest[0], AtMost(10.0 * rounding(600) * 6.0));
         row("flight", &named("momentum"), largest[1], AtMost(1e-12));
         row("flight", &named("angular momentum"), largest[2], AtMost(1e-12));
     }

@@ -78,6 +78,8 @@ fn a_plank_that_spins_and_slides_is_slowed_point_by_point() {
             let (speed, spin) = plank(width_m, speed_m_s, spin_rad_s, time_s);
             let (exact_speed, exact_spin) = plank_by_quadrature(width_m, speed_m_s, spin_rad_s, time_s);
             let case = format!("{speed_m_s} m/s and {spin_rad_s} rad/s, {width_m} m wide");
+            // Friction acts at the points of contact's patches here, at 100 × 20 in the answer: 2 % of the start for all aspect ratios. Where the slip
+            // hardly turns it is the same at all points, and the error far smaller.
             let tolerance = 0.02;
             row(
                 "twisting friction",
@@ -124,7 +126,7 @@ fn impact(step_s: f64) -> Vec3 {
 
 #[test]
 fn friction_in_an_impact_hardly_depends_on_the_step() {
-    // 1.3e-4 s is what `ndda check` advises; the error allowed is that of the label's promise.
+    // 1.3e-4 s is what `ndda check` advises; the error allowed is that of the label's promise, 1 %, and half of it at half the step.
     let (coarse, middle, fine) = (impact(1e-4), impact(5e-5), impact(3.125e-6));
     let speed = 6.0;
     let error = |v: &Vec3| (v - fine).norm() / speed;
@@ -171,6 +173,7 @@ fn friction_in_impacts_of_deforming_blocks_is_the_limit_of_stiff_springs_and_har
             for step_s in [2e-4, 1e-4, 5e-5] {
                 let (coarse, coarse_j) = impact_of(kind, cells, step_s, "friction_deg: 35");
                 let what = format!("in an impact at Δt = {step_s:e} s, {kind} cube of {cells}³ cells");
+                // The promise of the label again, 1 % of the speed, and a fifth of it for work; elastic cubes, whose corners vibrate, are nearest to it.
                 row(
                     "friction in impacts",
                     &format!("work of friction {what}, over that at 6.25e-6 s"),

@@ -88,12 +88,9 @@ fn a_slab_slides_on_one_joint_by_its_friction_and_sticks_on_the_other() {
     ] {
         let slides = slides_m(&mut dipping(&rock, &laws));
         for (k, (slide, exact)) in slides.iter().zip(exact).enumerate() {
-            row(
-                "joints",
-                &format!("slide of slab {k} of three, {laws} [m]"),
-                *slide,
-                Near(exact, 0.02 * slide_m),
-            );
+            // The lowest is fixed and does not move at all. Others bounce under sudden gravity: 2 %, as docs/verification/verification.md promises.
+            let off = if k == 0 { 0.0 } else { 0.02 * slide_m };
+            row("joints", &format!("slide of slab {k} of three, {laws} [m]"), *slide, Near(exact, off));
         }
     }
 }

@@ -22,6 +22,7 @@ fn spreads(friction_deg: u32, end_s: f64) -> f64 {
 #[test]
 fn a_jointed_column_spreads_less_the_more_friction_it_has() {
     let end_s = if std::env::var_os("NDDA_LARGE").is_some() { 0.7 } else { 0.03 };
+    // The statement is the order: the paper does not print the joints from which a ratio would follow.
     let spread = [0, 5, 10].map(|friction_deg| spreads(friction_deg, end_s));
     row(
         "jointed column",

@@ -7,7 +7,7 @@ use ndda_io::summary::LabelWord;
 use ndda_solver::{Sample, Simulation};
 
 use crate::evidence::Answer::AtMost;
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::simulation;
 
 /// A stack of two slabs on a moved base; no law of shear breaks in it.
@@ -77,7 +77,8 @@ fn energy_is_accounted_for_on_moved_bases() {
         let what = format!(
             "energy from nowhere over the work of the base, {name}, three laws, four pairs of bodies"
         );
-        row("moved base", &what, worst, AtMost(1e-10));
+        // Beyond what explicit contact holds back nothing is lost: rounding of 4000 steps, tenfold.
+        row("moved base", &what, worst, AtMost(10.0 * rounding(4000)));
     }
 }
 
@@ -103,7 +104,8 @@ fn a_block_clamped_between_moved_plates_balances_to_rounding() {
             "moved base",
             &format!("energy from nowhere over the work of the plates of a clamp{law}"),
             off,
-            AtMost(1e-10),
+            // Rounding of 5000 steps, tenfold.
+            AtMost(10.0 * rounding(5000)),
         );
     }
 }
@@ -124,6 +126,7 @@ fn the_toppling_template_is_accurate() {
         "moved base",
         "lasting change of energy of the toppling template",
         simulation.invariants().lasting_loss,
+        // The statement: it is accurate, with a twentieth of the 2 % that the label permits.
         AtMost(1e-3),
     );
 }

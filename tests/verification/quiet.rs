@@ -151,11 +151,14 @@ fn a_quiet_face_sends_back_what_the_mesh_makes_of_it() {
             assert!((exact / printed - 1.0f64).abs() < 5e-3, "{mass} {nodes}: {exact}");
         }
         for nodes in [10, 20] {
+            // The answer knows no time step: waves are off by (ω Δt)²/12 for that, and what returns by as much over its part. Six times that passes.
+            let exact = discrete(nodes, mass, 1.0);
+            let steps = 0.5 * (TAU / f64::from(40 * nodes)).powi(2) / exact;
             row(
                 "quiet face",
                 &format!("reflected amplitude, normal incidence, {nodes} nodes a wave, {mass} mass"),
                 reflected(nodes, mass, 1.0),
-                Within(discrete(nodes, mass, 1.0), 0.05),
+                Within(exact, steps),
             );
         }
     }
@@ -225,7 +228,10 @@ fn a_wave_arrives_doubles_at_the_ground_and_leaves() {
             );
             row("wave from below", &name("energy that left [J]"), sample.radiated_j, Within(brought_j, 1e-3));
             let lost = (sample.kinetic_j + sample.strain_j) / most_j;
-            row("wave from below", &name("energy that stays over that which came"), lost, AtMost(1e-3));
+            // What the foot sends back of a wave of 40 cells, and four times its energy.
+            let back = 4.0 * discrete(40, "Consistent", 1.0).powi(2);
+            row("wave from below", &name("energy that stays over that which came"), lost, AtMost(back));
+            // Rounding, of places of 60 m over displacements of millimetres among others: it has no closed form, and differs by 500 between cases.
             row("wave from below", &name("balance of energy"), sample.balance_j.abs() / most_j, AtMost(1e-9));
         }
     }
@@ -266,7 +272,8 @@ fn a_settled_column_stays_and_one_that_nothing_holds_sinks() {
         "settled column",
         "shortening under its weight [m]",
         squeezed,
-        Within(DENSITY * 9.81 * height * height / (2.0 * modulus), 1e-6),
+        // It settled to 1e-8 of its largest speed: twice that part.
+        Within(DENSITY * 9.81 * height * height / (2.0 * modulus), 2.0 * 1e-8),
     );
     simulation.sample().unwrap();
     for _ in 0..1000 {
@@ -275,7 +282,9 @@ fn a_settled_column_stays_and_one_that_nothing_holds_sinks() {
     let moved = simulation.state().position.iter().zip(&start).map(|(x, old)| (x - old).norm());
     row("settled column", "drift on a quiet foot in 1 s [m]", moved.fold(0.0, f64::max), AtMost(1e-9));
     let sample = simulation.sample().unwrap();
-    row("settled column", "energy that left in 1 s [J]", sample.radiated_j, AtMost(1e-9));
+    // What a foot sends off in that second that drifts as fast as is permitted above.
+    let sent_j = DENSITY * speeds().0 * 1e-9 * 1e-9 * CELL_M * CELL_M;
+    row("settled column", "energy that left in 1 s [J]", sample.radiated_j, AtMost(sent_j));
 
     // A fresh simulation goes on from a snapshot with the same reactions, to the last bit.
     let mut resumed = column(cells, 1e-3, ("Consistent", 1.0), more, &[]);

@@ -8,7 +8,7 @@ use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::Simulation;
 
 use crate::evidence::Answer::{AtLeast, AtMost, Near, Within};
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::{advance, displacements, simulation};
 
 const SPEED_M_S: f64 = 0.5;
@@ -93,8 +93,9 @@ fn a_cube_rebounds_by_the_coefficient_whatever_its_body_the_potential_the_penalt
                 let tolerance = if restitution == 0.0 && body != "Rigid" { 0.03 } else { 0.01 };
                 let what = format!("error of the rebound, e = {restitution}, {body}, {potential}");
                 row(CASE, &what, worst, AtMost(tolerance));
-                // Stiff rock vibrates in itself under the blow, which the damping does not foresee.
-                let given_limit = if body == "Rigid" { 1e-12 } else { 1e-4 };
+                // Damping only takes: rounding of up to 20/0.02 steps. Stiff rock vibrates in itself under the blow, which the damping does not
+                // foresee, by the part that contact's stiffness is of its own: up to 27.7/2.5e5 = 1.1e-4.
+                let given_limit = if body == "Rigid" { rounding(1000) } else { 1e-4 };
                 row(
                     CASE,
                     &format!("energy that damping gave in a step, e = {restitution}, {body}, {potential}"),
@@ -153,7 +154,9 @@ fn a_tall_block_stands_on_its_plane_where_statics_says_so_and_undamped_hops_are_
     let moved_m = farthest_m(&damped);
     row(CASE, "displacement of a tall block at F = 1.02, e = 0.3, in 2 s [m]", moved_m, AtMost(1e-3));
     advance(&mut damped, 5000);
-    row(CASE, "… in the next half second [m]", (farthest_m(&damped) - moved_m).abs(), AtMost(1e-7));
+    // Friction is found to 1e-7 of μN: an acceleration of that part of μ g for half a second.
+    let slips_m = 0.5 * 1e-7 * 30.5f64.to_radians().tan() * 9.81 * 0.5 * 0.5;
+    row(CASE, "… in the next half second [m]", (farthest_m(&damped) - moved_m).abs(), AtMost(slips_m));
     damped.sample().unwrap();
     assert_eq!(verdict::label(&damped, None).word, LabelWord::Accurate);
 
@@ -225,7 +228,9 @@ fn a_stack_on_shear_springs_stops_to_creep_once_its_ringing_is_damped() {
         let what = format!(
             "slip of a stack of three after its first second, k_s = {shear_pa_m:e} Pa/m, e = 0.3 [m]"
         );
-        row(CASE, &what, crept_m, AtMost(1e-6));
+        // The statement: nothing is left of its ringing. A thousandth of what three plates stretch the lowest spring by is nothing.
+        let stretch_m = 3.0 * 2650.0 * 0.2 * 9.81 * 20f64.to_radians().sin() / shear_pa_m;
+        row(CASE, &what, crept_m, AtMost(1e-3 * stretch_m));
     }
 }
 
@@ -299,14 +304,15 @@ fn each_joint_and_each_pair_of_materials_has_its_own_restitution() {
               contact: Potential(penalty_pa: 1e7, potential: Smooth(), {more}))"
         ));
         if rock {
-            // Gravity that comes suddenly rings without damping: swings of the depth between zero and twice its mean.
+            // Gravity that comes suddenly rings without damping: swings of the depth between zero and twice its mean. Of ½ m g²/ω² each half swing
+            // leaves e² = 0.16, and 1 s has 27 of them, of which 24 have to show.
             advance(&mut simulation, 10_000);
             let kinetic_j = simulation.sample().unwrap().kinetic_j;
             row(
                 CASE,
                 &format!("kinetic energy of a block that rang on a joint, restitution {what} [J]"),
                 kinetic_j,
-                AtMost(1e-12),
+                AtMost(0.5 * 2500.0 * 10.0 * 10.0 / (2e7 / 2500.0) * 0.4f64.powi(2 * 24)),
             );
         } else {
             advance(&mut simulation, 1500);

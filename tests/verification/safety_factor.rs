@@ -269,6 +269,7 @@ fn random_wedges_have_the_factors_of_limit_equilibrium() {
         "safety",
         &format!("{wanted} random wedges: limit equilibrium outside of the bracket by [-]"),
         worst,
+        // The statement: the factor is known to the error that was asked for.
         AtMost(ERROR),
     );
 }

@@ -113,7 +113,9 @@ fn a_stack_that_starts_at_rest_does_not_creep() {
     advance(&mut simulation, (end_s - 1) * second);
     let late = slips(&simulation);
     let crept_m = (0..2).map(|k| (late[k] - early[k]).abs()).fold(0.0, f64::max);
-    row("creep", "slip of a stack at rest after its first second [m]", crept_m, AtMost(1e-6));
+    // It settled to 1e-6 of its largest speed, that of stretching the springs under both plates: a hundred times that part of the stretch.
+    let stretch_m = 2.0 * MASS_KG * GRAVITY_M_S2 * SLOPE_DEG.to_radians().sin() / 1e9;
+    row("creep", "slip of a stack at rest after its first second [m]", crept_m, AtMost(1e-4 * stretch_m));
 }
 
 /// The label of a stack after so many seconds.

@@ -136,14 +136,16 @@ fn a_column_on_a_quiet_foot_comes_to_rest_in_a_stage_and_stays_there() {
         Within(rise_m() + foot_m, 5e-3),
     );
     let drift_m = (at(history, "mid.displacement_z_m", end_s) - risen_m).abs();
-    row("stages", "drift of it in the time after [m]", drift_m, AtMost(1e-9));
+    // It settled to 1e-8 of its largest speed, that of its rise: a hundred times that part.
+    row("stages", "drift of it in the time after [m]", drift_m, AtMost(1e-6 * rise_m()));
     let balance_j = at(history, "balance_j", end_s).abs();
     let released_j = (WEIGHT_N * WEIGHT_N / (2.0 * YOUNG_PA)) * (2.0 + 2.0 * 2.0);
     row(
         "stages",
         "balance of energy of it, over the energy that the removal released",
         balance_j / released_j,
-        AtMost(1e-5),
+        // (Δt/T)²/12 of the work of forces that fade over T, by the trapezoidal rule; a fade whose ends are flat is off by less.
+        AtMost((1e-5f64 / 1e-3).powi(2) / 12.0),
     );
     assert_eq!(outcome.summary.label.word, LabelWord::Accurate, "{:?}", outcome.summary.label.reasons);
 }

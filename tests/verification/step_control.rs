@@ -1,7 +1,7 @@
 //! Steps as short as they have to be: a discarded step leaves no trace.
 
 use crate::evidence::Answer::AtMost;
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::simulation;
 
 /// A block that falls 5 cm on a fixed slab and slides there; `time` says how steps are chosen.
@@ -36,8 +36,11 @@ fn a_fall_is_done_in_long_steps_and_the_impact_in_short_ones() {
     assert_eq!(in_the_air, 0);
     assert!(worst.control.rejected > 0 && worst.control.most_halvings >= 4, "{worst:?}");
     row("steps", "largest h of a fall and its impact, steps by themselves", largest_h, AtMost(1.0));
+    // Steps are divided so that energy is kept: half of the 2 % of the label. Explicit contact alone could gain h²/2, far more at h up to 1.
     row("steps", "energy gained by it", worst.energy_gain, AtMost(1e-2));
-    row("steps", "momentum lost by it", worst.linear_momentum, AtMost(1e-10));
+    // Rounding of 125 steps of as many parts as the shortest has.
+    let parts = rounding(125 << worst.control.most_halvings);
+    row("steps", "momentum lost by it", worst.linear_momentum, AtMost(parts));
 }
 
 #[test]

@@ -52,12 +52,17 @@ fn a_tall_stack_at_rest_neither_gains_energy_nor_loses_weight() {
     }
     let worst = simulation.invariants();
     let named = |what: &str| format!("{what}, {slabs} slabs for {end_s} s");
+    // Pressure is 8 k d to the first order in the deepest d over the metre of an element; places that are off by some d² leave (10 d)² of the energy
+    // to vibrations, and their root of the force. Of the long run only that it is at rest is known.
+    let deepest = DENSITY * GRAVITY * f64::from(slabs) / (8.0 * PENALTY_PA);
+    let vibrates = if large { 1e-4 } else { (10.0 * deepest).powi(2) };
     row(
         "extreme: tall stack",
         &named("mean force on the base [N]"),
         force / steps as f64,
-        Within(weight, 1e-3),
+        Within(weight, vibrates.sqrt().min(1e-3)),
     );
+    // The statement: vibrations do not grow. Two that beat have up to twice their mean energy.
     row(
         "extreme: tall stack",
         &named("kinetic energy of the later half over the first"),
@@ -68,7 +73,7 @@ fn a_tall_stack_at_rest_neither_gains_energy_nor_loses_weight() {
         "extreme: tall stack",
         &named("kinetic energy over that in contact"),
         kinetic[0] / start.contact_j,
-        AtMost(1e-4),
+        AtMost(vibrates),
     );
-    row("extreme: tall stack", &named("energy gained"), worst.energy_gain, AtMost(1e-4));
+    row("extreme: tall stack", &named("energy gained"), worst.energy_gain, AtMost(vibrates));
 }

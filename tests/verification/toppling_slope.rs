@@ -96,6 +96,7 @@ fn the_slope_stands_above_its_limit_friction_and_topples_below_it() {
     let settled = stands.settle(&settle).unwrap();
     let named =
         format!("speed left over the largest at φ = {:.2}°, half a degree above the limit", limit + 0.5);
+    // The statement: it comes to rest, as settling asks for. Were it not to, the line above would have stopped the test.
     row("toppling", &named, settled.speed_ratio, AtMost(1e-3));
     let mut falls = simulation(&scene(limit - 0.5));
     let refused = falls.settle(&settle).unwrap_err();

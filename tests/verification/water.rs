@@ -5,7 +5,7 @@ use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 
 use crate::evidence::Answer::{AtLeast, AtMost, Near, Within};
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::safety_factor::{bracket, found, holds, kind, normal, scene};
 use crate::simulation;
 
@@ -39,13 +39,13 @@ fn a_submerged_block_weighs_less_by_the_water_that_it_displaces() {
             simulation.sample().unwrap();
             advance(&mut simulation, 1);
             let momentum = simulation.sample().unwrap().momentum;
-            // The block sinks by 5 µm in the step.
             let exact = -(2500.0 * 6.0 - 1000.0 * volume) * 9.81 * 1e-3;
             row(
                 "water",
                 &format!("momentum of a {body} block in water, {level} m [kg m/s]"),
                 momentum.z,
-                Within(exact, 1e-5),
+                // Pressure acts where the block is before it moves: rounding of a sum over 48 faces, twofold.
+                Within(exact, 2.0 * rounding(48)),
             );
         }
     }
@@ -76,7 +76,8 @@ fn pressure_follows_a_turning_face_and_its_work_is_in_the_books() {
             "water",
             &format!("its balance of energy over its energy, {body} [-]"),
             (sample.balance_j / scale).abs(),
-            AtMost(1e-4),
+            // Work of a force that turns by ω Δt in a step: (ω Δt)²/12 by the trapezoidal rule.
+            AtMost((3.0f64 * 1e-3).powi(2) / 12.0),
         );
         assert!(sample.load_work_j > 0.1 * scale, "{body}: pressure works");
     }

@@ -200,6 +200,7 @@ fn true_errors_lie_within_the_bars_and_bars_are_tight_on_the_scenes_of_the_studi
 fn holds(certificate: &Certificate, name: &str, exact: f64, what: &str) {
     let quantity = certificate.quantity(name).unwrap();
     let (error, bar) = ((quantity.value - exact).abs(), quantity.error);
+    // The statement: the bar holds the error, however much smaller that is.
     row("error bars", what, error / bar, Answer::AtMost(1.0));
 }
 

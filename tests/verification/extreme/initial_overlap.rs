@@ -29,6 +29,7 @@ fn blocks_that_overlap_at_the_start_are_refused_with_their_names_and_depth() {
         "extreme: initial overlap",
         "overlaps of 1 to 90 %, of 7, refused with the pair",
         f64::from(refused),
+        // The statement: all are.
         Answer::Near(7.0, 0.0),
     );
 }

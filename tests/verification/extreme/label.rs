@@ -71,6 +71,7 @@ fn a_bounce_is_never_called_accurate_when_it_is_not() {
             too_modest += u32::from(!says && error <= SPEED && beyond <= 1.0);
         }
     }
+    // The statement: none is, in either direction.
     row(
         "extreme: penalty, step and label",
         "bounces called accurate that are not",

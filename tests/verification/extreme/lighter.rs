@@ -83,6 +83,7 @@ fn whatever_the_masses_of_two_blocks_a_wrong_meeting_is_not_called_accurate() {
             }
         }
     }
+    // The statement: none is, in either direction.
     row(
         "extreme: penalty, step and label",
         "meetings of unlike blocks called accurate that are not",

@@ -6,7 +6,7 @@ use ndda_mesh::BlockId;
 use super::{advance, extreme};
 use crate::displacements;
 use crate::evidence::Answer::AtMost;
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 
 fn steps(usual: u64) -> u64 {
     std::env::var("NDDA_STEPS").ok().and_then(|n| n.parse().ok()).unwrap_or(usual)
@@ -49,11 +49,13 @@ fn a_block_that_spins_keeps_its_volume_and_has_no_false_stress() {
             drift,
             AtMost(1e-9),
         );
+        // Centrifugal forces stress it by ρ ω² r²/E of E, r half of its diagonal: tenfold, and the rounding of the steps.
+        let centrifugal = 2600.0 * (0.15 * 0.15 + 0.1 * 0.1 + 0.05 * 0.05) / 200e9;
         row(
             "extreme: fast spin",
             &format!("largest stress over E, steps of {step_s} s"),
             largest / 200e9,
-            AtMost(1e-6),
+            AtMost(10.0 * centrifugal + rounding(steps as u32)),
         );
     }
 }

@@ -6,7 +6,7 @@ use ndda_solver::Simulation;
 
 use super::labelled::{SPEED, summary_of, word};
 use crate::evidence::Answer::{AtMost, Within};
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 use crate::simulation;
 
 const STEP_S: f64 = 1e-3;
@@ -58,7 +58,9 @@ fn a_push_brings_its_impulse_however_short_it_is() {
             }
         }
     }
-    row("extreme: penalty, step and label", "speed after a push of 0.001 to 10 steps", worst, AtMost(1e-9));
+    // The impulse of a table is summed exactly: rounding of 100 steps, twentyfold.
+    let rounds = 20.0 * rounding(100);
+    row("extreme: penalty, step and label", "speed after a push of 0.001 to 10 steps", worst, AtMost(rounds));
     let summary = summary_of("extreme/pulse_between_steps.ron", &[]);
     let summary = summary.unwrap();
     let speed = summary["monitors"]["cube"]["velocity"][0].as_f64().unwrap();
@@ -66,7 +68,7 @@ fn a_push_brings_its_impulse_however_short_it_is() {
         "extreme: penalty, step and label",
         "a push between two steps [m/s]",
         speed,
-        Within(1e4 / 2650.0, 1e-9),
+        Within(1e4 / 2650.0, rounds),
     );
     assert_eq!(word(&summary), "accurate");
 }
@@ -94,6 +96,7 @@ fn what_comes_and_goes_within_a_step_says_so() {
             too_modest += u32::from(!says && speed_m_s < SPEED);
         }
     }
+    // The statement: none is, in either direction.
     row(
         "extreme: penalty, step and label",
         "loads within a step called accurate that are not",

@@ -31,6 +31,7 @@ fn a_plate_at_the_limit_of_friction_and_far_beyond_it_does_not_creep() {
             "extreme: friction at its limit",
             &format!("creep at μ = {name}, lengths a second"),
             rate,
+            // The promise of the header of scenes/extreme/ramp_at_its_limit.ron: what friction is found to, 1e-7 of μN, is more at μ = 1000.
             AtMost(1e-6),
         );
     }
@@ -45,6 +46,7 @@ fn a_plate_without_friction_slides_as_it_falls() {
         "extreme: friction at its limit",
         "slide at μ = 0 within 0.5 s [m]",
         slide,
+        // The promise of the same header.
         Within(0.5 * 9.8 * 0.5 * 0.25, 1e-4),
     );
 }

@@ -7,7 +7,7 @@ use ndda_mesh::Vec3;
 use super::{advance, extreme};
 use crate::displacements;
 use crate::evidence::Answer::AtMost;
-use crate::evidence::row;
+use crate::evidence::{rounding, row};
 
 /// Factors on lengths, times and masses.
 struct Units {
@@ -70,9 +70,11 @@ fn a_collision_is_the_same_at_any_size_and_in_any_units() {
         ("extreme: units and sizes", "1 km", size(1e3)),
         ("extreme: units and sizes", "mm, t, s", units),
     ];
+    // The run is the same but for rounding: in each of 500 steps ε of an edge, over the depth of contact, a hundredth of an edge, twentyfold.
+    let rounds = 20.0 * rounding(500) / 1e-2;
     for (id, name, other) in cases {
         let what = format!("difference of a collision at 1 m and at {name}, relative");
-        row(id, &what, difference(&metre, &other.run()), AtMost(1e-6));
+        row(id, &what, difference(&metre, &other.run()), AtMost(rounds));
     }
 }
 
@@ -91,7 +93,9 @@ fn a_collision_in_map_coordinates_is_the_one_at_the_origin_until_a_warning_says_
         let ready = moved(far);
         assert!(ready.loaded.warnings.is_empty(), "{:?}", ready.loaded.warnings);
         let what = format!("difference of a collision here and {far:e} m away, relative");
-        row("extreme: map coordinates", &what, difference(&here, &run(ready)), AtMost(1e-6));
+        // Places in the file are rounded to ε of their distance, once; a hundred times that in what contact makes of the gap.
+        let rounds = 100.0 * f64::EPSILON * far;
+        row("extreme: map coordinates", &what, difference(&here, &run(ready)), AtMost(rounds));
     }
     let warnings = moved(1e9).loaded.warnings;
     assert!(

@@ -99,6 +99,7 @@ fn whatever_the_masses_a_slab_that_is_squeezed_out_is_not_called_accurate() {
             }
         }
     }
+    // The statement: none is, in either direction.
     row(
         "extreme: unlike masses",
         "squeezed slabs called accurate that are not",

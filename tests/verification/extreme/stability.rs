@@ -29,6 +29,12 @@ fn choice<'a>(case: &'a Case, axis: &str) -> &'a str {
     &case.labels.iter().find(|(name, _)| name == axis).unwrap().1
 }
 
+/// Whether a step is at most a tenth of the collision, which takes 29 ms at 1e-6 E and as the root of the stiffness less.
+fn is_resolved(case: &Case) -> bool {
+    let [penalty, step_s]: [f64; 2] = ["penalty", "step"].map(|axis| choice(case, axis).parse().unwrap());
+    step_s <= 0.1 * 0.029 * (1e-6 / penalty).sqrt()
+}
+
 #[test]
 fn a_run_knows_whether_it_is_accurate_whatever_the_penalty_and_the_step() {
     let study = ndda_io::study::load(&scene("extreme/stability.ron")).unwrap();
@@ -41,12 +47,14 @@ fn a_run_knows_whether_it_is_accurate_whatever_the_penalty_and_the_step() {
         let summary = summary.unwrap_or_else(|error| panic!("{}: {error}", case.name));
         count += 1;
         words[["accurate", "inaccurate", "stopped"].iter().position(|w| *w == word(&summary)).unwrap()] += 1;
-        if !agrees(&summary) {
+        // A run of short steps has no cause to stop.
+        if !agrees(&summary) || (word(&summary) == "stopped" && is_resolved(case)) {
             differ += 1;
             println!("{}: {} but {}", case.name, summary["label"], summary["reference"]);
         }
     }
     assert!(words.iter().all(|n| *n > 0), "every label should be met: {words:?}");
     let what = format!("cells of the stability map, of {count}, whose label and closed form differ");
+    // The statement: none.
     row("extreme: penalty, step and label", &what, f64::from(differ), Answer::AtMost(0.0));
 }

@@ -34,6 +34,7 @@ fn a_slab_of_a_million_times_the_mass_sinks_as_deep_as_statics_says() {
         "extreme: unlike masses",
         "energy gained over the peak",
         simulation.invariants().energy_gain,
+        // The promise of the header of scenes/extreme/heavy_on_light.ron.
         AtMost(1e-2),
     );
 }
@@ -52,6 +53,7 @@ fn stiff_rock_on_soft_ground_bears_the_stress_of_springs_in_series() {
             "extreme: unlike stiffness",
             &format!("stress of the {name} bar, modulus ratio 1e6 [Pa]"),
             mean,
+            // The promise of the header of scenes/extreme/stiff_on_soft.ron.
             Within(series, 2e-2),
         );
     }

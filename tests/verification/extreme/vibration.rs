@@ -55,6 +55,7 @@ fn a_vibration_that_steps_do_not_resolve_says_so() {
             too_modest += u32::from(!says && error < 0.5 * SPEED);
         }
     }
+    // The statement: none is, in either direction.
     row(
         "extreme: penalty, step and label",
         "vibrations called accurate that are not",
