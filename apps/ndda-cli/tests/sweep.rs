@@ -162,7 +162,7 @@ fn what_cannot_be_swept_is_refused_with_what_to_write() {
             "no run has a quantity `kinetik_j`: did you mean `kinetic_j`",
         ),
         ([&vary[..], &["--of", "saf"]].concat(), "did you mean `safety`, `safety_lower`, `safety_upper`?"),
-        ([&vary[..], &["--of", "safetyy"]].concat(), "there are label, safety, "),
+        ([&vary[..], &["--of", "safetyy"]].concat(), "runs have label, safety, "),
         (
             [&vary[..], &["--fails-when", "displacement_x > 1"]].concat(),
             "did you mean `block b.displacement_x_m`",

@@ -227,7 +227,7 @@ fn joints_that_cannot_be_tested_are_refused_with_what_to_change() {
         (&["joint", "--friction", "(friction_deg: 0)"], 3, "no strength"),
         (&["joint", "--friction", "(friction_deg: 30)", "--amplitude", "-1"], 3, "above 0"),
         (&["joint", "--friction", "(friction_deg: 30)", "--amplitude", "0"], 3, "above 0"),
-        (&["joint", "--example", "sliding_45_phi35", "--of", "bedding"], 3, "there is contact.friction"),
+        (&["joint", "--example", "sliding_45_phi35", "--of", "bedding"], 3, "which has contact.friction"),
         (&["joint", "--example", "sliding_45_phi35", "--between", "rock"], 2, "two materials"),
         (&["joint", "--test", "closure", "--joint-stiffness", "0"], 3, "above 0"),
         (

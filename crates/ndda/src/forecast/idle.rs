@@ -185,7 +185,7 @@ mod tests {
         let found = found(&text);
         assert_eq!(found.len(), 1, "{found:?}");
         assert!(
-            found[0].starts_with("stages[1].forces[0] has no effect: `middle` is not there"),
+            found[0].starts_with("stages[1].forces[0] has no effect: block `middle` is not in the model"),
             "{found:?}"
         );
     }

@@ -35,7 +35,7 @@ pub enum SelectError {
     #[error("the scene has no contact: give contact: Potential(…)")]
     NoContact,
     /// No such joint, or no law for it.
-    #[error("{wanted} has no law of its own in this scene; choose one of {known}")]
+    #[error("{wanted} has no law of its own in this scene, which has {known}")]
     Unknown {
         /// The joint or pair that was requested.
         wanted: String,

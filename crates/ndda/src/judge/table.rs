@@ -116,6 +116,8 @@ pub fn moved(motion: &Motion) -> String {
     let Motion { can_move, moved, farthest, farthest_m, speed_m_s, course } = motion;
     let course = match course {
         Course::AtRest => "at rest".to_string(),
+        // Its centre rests to the last figure that is shown.
+        Course::Moving if speed(*speed_m_s).starts_with("0.000") => "turning in place".to_string(),
         Course::Moving => format!("moving at {}", speed(*speed_m_s)),
         Course::Accelerating => format!("still accelerating, {}", speed(*speed_m_s)),
     };

@@ -97,7 +97,7 @@ pub enum StudyError {
     Samples(String),
     /// No case has a quantity.
     #[error(
-        "no run has a quantity `{name}`{near}; choose one of {known}; the beginning of a name stands for all that begin so"
+        "no run has a quantity `{name}`{near} (runs have {known}; the beginning of a name stands for all that begin so)"
     )]
     NoQuantity {
         /// Its name.
