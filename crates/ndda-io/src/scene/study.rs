@@ -379,7 +379,7 @@ mod tests {
         for (old, new, place, word) in [
             ("title", "titel", "study.ron:1:2", "titel"),
             ("1e-3, 5e-4", "1e-3, 1e-3", "study.ron:3:9", "twice"),
-            ("time.step_s", "materials.rock.poisson", "study.ron:3", "there is"),
+            ("time.step_s", "materials.rock.poisson", "study.ron:3", "without fields"),
             ("scene.ron", "no.ron", "study.ron:1:21", "cannot be read"),
             ("axes: [", "curves: [\"hou\"], axes: [", "study.ron:2:14", "did you mean `how`"),
             ("axes: [", "repeats: 0, axes: [", "study.ron:2:14", "at least 1"),
