@@ -1,17 +1,13 @@
 //! Damaged and hostile inputs of a rockfall: files of terrain and of classes, and numbers of the scene. Each is refused with the file and what is wrong, or it is
-//! harmless; none makes the program panic or go on for ever.
+//! harmless; none makes the program panic.
 
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::mpsc;
-use std::time::Duration;
 
 use ndda::rockfall::Model;
 use ndda_io::read;
 
-/// A fall of a few seconds takes milliseconds; one that takes this long does not end.
-const MOST: Duration = Duration::from_secs(60);
 const COLUMNS: usize = 9;
 const ROWS: usize = 7;
 const CELL_M: f64 = 10.0;
@@ -109,7 +105,7 @@ fn geotiff() -> Vec<u8> {
 /// A scene of one boulder on terrain from a file.
 fn scene(file: &str) -> String {
     format!(
-        "(title: \"rockfall\", gravity_m_s2: (0, 0, -9.81), time: (end_s: 3),
+        "(title: \"rockfall\", gravity_m_s2: (0, 0, -9.81), time: (end_s: 1),
           materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 50e9, poisson: 0.25)],
           rockfall: (
             terrain: File(file: \"{file}\"), class_grid: \"classes.asc\",
@@ -125,27 +121,18 @@ fn scene(file: &str) -> String {
 }
 
 /// What became of a scene: nothing where its boulder has fallen, else the error.
-fn outcome(text: String, folder: &Path) -> Result<(), String> {
-    let (send, receive) = mpsc::channel();
-    let (folder, shown) = (folder.to_path_buf(), text.clone());
-    std::thread::spawn(move || {
-        let run = || {
-            let loaded = read::load_text("rockfall.ron", &text, &[], Some(&folder));
-            let loaded = loaded.map_err(|errors| errors.render(false))?;
-            let model = Model::new(loaded, &folder, (Some(1), None)).map_err(|error| error.to_string())?;
-            let _ = model.to_string();
-            let fall = model.fall(0);
-            let is_finite = fall.path.iter().all(|moment| moment.at_m.iter().all(|x| x.is_finite()));
-            if is_finite { Ok(()) } else { Err("PANIC: a path is not finite".to_string()) }
-        };
-        let ended = catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| Err("PANIC".into()));
-        let _ = send.send(ended);
-    });
-    let ended = receive.recv_timeout(MOST).unwrap_or_else(|_| Err("PANIC: it does not end".into()));
-    if let Err(error) = &ended {
-        assert!(!error.starts_with("PANIC"), "{error}\n{shown}");
-    }
-    ended
+fn outcome(text: &str, folder: &Path) -> Result<(), String> {
+    let run = || {
+        let loaded = read::load_text("rockfall.ron", text, &[], Some(folder));
+        let loaded = loaded.map_err(|errors| errors.render(false))?;
+        let model = Model::new(loaded, folder, (Some(1), None)).map_err(|error| error.to_string())?;
+        let _ = model.to_string();
+        let fall = model.fall(0);
+        let places = fall.path.iter().flat_map(|moment| moment.at_m);
+        assert!(places.into_iter().all(f64::is_finite), "a path is not finite");
+        Ok(())
+    };
+    catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| panic!("{text}"))
 }
 
 /// Numbers that are the same in every run (xorshift of Marsaglia).
@@ -178,7 +165,7 @@ fn damaged(file: &str, whole: &[u8]) {
     let folder = folder();
     let path = folder.path().join(file);
     fs::write(&path, whole).unwrap();
-    outcome(scene(file), folder.path()).unwrap_or_else(|error| panic!("{file} undamaged: {error}"));
+    outcome(&scene(file), folder.path()).unwrap_or_else(|error| panic!("{file} undamaged: {error}"));
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let truncated = (0..20).map(|part| whole[..whole.len() * part / 20].to_vec());
     let mut changed = |count: usize| {
@@ -189,11 +176,11 @@ fn damaged(file: &str, whole: &[u8]) {
         }
         bytes
     };
-    let changed: Vec<Vec<u8>> = (0..120).map(|k| changed(1 + k % 3)).collect();
+    let changed: Vec<Vec<u8>> = (0..40).map(|k| changed(1 + k % 3)).collect();
     let mut refused = 0;
     for bytes in truncated.chain(changed) {
         fs::write(&path, &bytes).unwrap();
-        if let Err(error) = outcome(scene(file), folder.path()) {
+        if let Err(error) = outcome(&scene(file), folder.path()) {
             assert!(names(&error, file), "{error}");
             refused += 1;
         }
@@ -239,7 +226,7 @@ fn hostile_numbers_in_grids_and_points_are_refused_with_their_line() {
         let text = scene(if class_grid { "ground.asc" } else { file });
         let lines: Vec<&str> = whole.lines().collect();
         // All lines of a header, and some of numbers.
-        for number in (0..lines.len()).filter(|k| *k < 8 || k % 11 == 0) {
+        for number in (0..lines.len()).filter(|k| *k < 7 || k % 23 == 0) {
             let words: Vec<&str> = lines[number].split_whitespace().collect();
             let Some(place) = words.iter().rposition(|word| word.parse::<f64>().is_ok()) else { continue };
             for (hostile, is_refused) in HOSTILE {
@@ -248,7 +235,7 @@ fn hostile_numbers_in_grids_and_points_are_refused_with_their_line() {
                 let mut lines: Vec<String> = lines.iter().map(ToString::to_string).collect();
                 lines[number] = words.join(" ");
                 fs::write(folder.path().join(file), lines.join("\n")).unwrap();
-                let ended = outcome(text.clone(), folder.path());
+                let ended = outcome(&text, folder.path());
                 // Any number may say that a height is missing, also one that is not finite.
                 let is_refused = is_refused && !(hostile != "x" && lines[number].starts_with("NODATA"));
                 match ended {
@@ -282,7 +269,7 @@ fn hostile_numbers_in_the_scene_are_refused_at_their_place_or_harmless() {
         }
         for hostile in ["NaN", "-1", "0", "1e-30", "1e30", "-1e300"] {
             let text = format!("{}{hostile}{}", &whole[..start], &whole[end..]);
-            if let Err(error) = outcome(text, folder.path()) {
+            if let Err(error) = outcome(&text, folder.path()) {
                 assert!(error.contains("rockfall.ron:"), "{hostile} for {}: {error}", &whole[start..end]);
             }
         }
