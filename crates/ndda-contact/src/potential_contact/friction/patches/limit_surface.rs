@@ -44,6 +44,8 @@ pub(super) struct LimitSurface {
     cell_radius2: f64,
     /// Most T/r.
     most_twist_n: f64,
+    /// Whether all cells count whatever the slip.
+    is_whole: bool,
 }
 
 impl LimitSurface {
@@ -56,15 +58,22 @@ impl LimitSurface {
         let cells = CELLS.iter().find(|(most, _)| aspect.is_nan() || aspect <= *most).unwrap_or(&CELLS[2]).1;
         let side = |k: usize| 2.0 * half[k] / f64::from(cells[k]);
         let cell_radius2 = (side(0).powi(2) + side(1).powi(2)) / 24.0;
-        let mut surface = Self { most_n, radius_m, half, cells, cell_radius2, most_twist_n: 0.0 };
+        let mut surface =
+            Self { most_n, radius_m, half, cells, cell_radius2, most_twist_n: 0.0, is_whole: false };
         surface.most_twist_n = surface.dissipation(&Vec3::z(), 0.0).1.z;
         surface
     }
 
+    /// Takes the slip without friction of a visit: from the first on in which the patch turns, all cells count. A patch that had one cell in one visit and all
+    /// in the next would change its friction again and again.
+    pub(super) fn watch(&mut self, free_slip: &Vec3, is_first: bool) {
+        self.is_whole = (self.is_whole && !is_first) || !hardly_turns(free_slip);
+    }
+
     /// The limit surface for slips like this one: where a patch hardly turns, one cell has the same friction to second order in Ω r/|V|.
     fn for_slip(mut self, slip: &Vec3) -> Self {
-        let speed2 = slip.x * slip.x + slip.y * slip.y;
-        if slip.z * slip.z < TRANSLATES * TRANSLATES * speed2 {
+        if !self.is_whole && hardly_turns(slip) {
+            let speed2 = slip.x * slip.x + slip.y * slip.y;
             let share = slip.x * slip.x / speed2;
             let [a, b] = self.half.map(|half| half * half / 3.0);
             (self.cells, self.cell_radius2) = ([1, 1], a * share + b * (1.0 - share));
@@ -226,6 +235,11 @@ impl CellSums {
         self.slope.iter_mut().zip(slope).for_each(|(sum, part)| *sum += part);
         self.curvature.iter_mut().zip(curvature).for_each(|(sum, part)| *sum += part * per_speed);
     }
+}
+
+/// Whether Ω r is small beside |V|.
+fn hardly_turns(slip: &Vec3) -> bool {
+    slip.z * slip.z < TRANSLATES * TRANSLATES * (slip.x * slip.x + slip.y * slip.y)
 }
 
 /// A⁻¹ b for a positive definite A.

@@ -286,6 +286,7 @@ impl CoupledPatch {
         motion.visits.count += 1;
         let start = self.slip_for(&free_slip).unwrap_or(slip);
         (self.free_slip, self.is_found) = (free_slip, true);
+        self.surface.watch(&free_slip, is_first);
         let stiffness = self.stiffness / GAMMA;
         let tolerance_n = LOCAL_TOLERANCE * self.tolerance_n;
         let (force, curvature) =
