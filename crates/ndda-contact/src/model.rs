@@ -25,6 +25,9 @@ pub struct ContactInput<'a> {
     pub is_iterated: bool,
     /// Whether only normal forces and stiffness are asked for: friction that acts on velocities may be left out.
     pub without_friction: bool,
+    /// Change of friction that does not matter, as a part of the largest on a block, where the way of the blocks does not matter, as while they come to rest;
+    /// zero where it does.
+    pub friction_tolerance: f64,
 }
 
 /// Slip, force and work of the shear spring of a facet, or of several, in a step.
@@ -67,6 +70,7 @@ impl<'a> ContactInput<'a> {
             deformation: None,
             is_iterated: false,
             without_friction: false,
+            friction_tolerance: 0.0,
         }
     }
 }

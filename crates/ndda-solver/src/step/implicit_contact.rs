@@ -329,6 +329,7 @@ impl Simulation {
             bodies: &self.scratch.contact_bodies,
             deformation: None,
             is_iterated: true,
+            friction_tolerance: 0.0,
             without_friction: false,
         };
         let found = model.add_stiffness(&input, &self.state.contact, &mut newton.pairs);

@@ -22,11 +22,13 @@ const LANES: usize = 4;
 const TRANSLATES: f64 = 0.1;
 /// Slip that counts as none, as parts of the slip without friction: first coarse, then fine.
 const SMOOTHING: [f64; 2] = [1e-3, 1e-8];
+/// A first guess that is longer than this part of the slip without friction is not near the kink of D, and needs no coarse search.
+const NEAR: f64 = 0.1;
 /// Newton steps for each, and halvings of one.
 const MOST_STEPS: usize = 30;
 const MOST_HALVINGS: usize = 30;
-/// Residual of D at which Newton's method ends.
-const TOLERANCE: f64 = 1e-11;
+/// Part of that torque that is within the limit whatever the cells.
+const HELD: f64 = 0.99;
 
 /// The limit surface of a patch's friction. Slips are (V₁, V₂, Ω r) along the axes of the rectangle, forces (F₁, F₂, T/r), r the radius of gyration.
 #[derive(Clone, Copy, Debug, Default)]
@@ -42,6 +44,8 @@ pub(super) struct LimitSurface {
     cell_radius2: f64,
     /// Most T/r.
     most_twist_n: f64,
+    /// Whether all cells count whatever the slip.
+    is_whole: bool,
 }
 
 impl LimitSurface {
@@ -54,15 +58,22 @@ impl LimitSurface {
         let cells = CELLS.iter().find(|(most, _)| aspect.is_nan() || aspect <= *most).unwrap_or(&CELLS[2]).1;
         let side = |k: usize| 2.0 * half[k] / f64::from(cells[k]);
         let cell_radius2 = (side(0).powi(2) + side(1).powi(2)) / 24.0;
-        let mut surface = Self { most_n, radius_m, half, cells, cell_radius2, most_twist_n: 0.0 };
+        let mut surface =
+            Self { most_n, radius_m, half, cells, cell_radius2, most_twist_n: 0.0, is_whole: false };
         surface.most_twist_n = surface.dissipation(&Vec3::z(), 0.0).1.z;
         surface
     }
 
+    /// Takes the slip without friction of a visit: from the first on in which the patch turns, all cells count. A patch that had one cell in one visit and all
+    /// in the next would change its friction again and again.
+    pub(super) fn watch(&mut self, free_slip: &Vec3, is_first: bool) {
+        self.is_whole = (self.is_whole && !is_first) || !hardly_turns(free_slip);
+    }
+
     /// The limit surface for slips like this one: where a patch hardly turns, one cell has the same friction to second order in Ω r/|V|.
     fn for_slip(mut self, slip: &Vec3) -> Self {
-        let speed2 = slip.x * slip.x + slip.y * slip.y;
-        if slip.z * slip.z < TRANSLATES * TRANSLATES * speed2 {
+        if !self.is_whole && hardly_turns(slip) {
+            let speed2 = slip.x * slip.x + slip.y * slip.y;
             let share = slip.x * slip.x / speed2;
             let [a, b] = self.half.map(|half| half * half / 3.0);
             (self.cells, self.cell_radius2) = ([1, 1], a * share + b * (1.0 - share));
@@ -100,10 +111,11 @@ impl LimitSurface {
         (sum(|s| s.value), slope, Mat3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
     }
 
-    /// Whether a force is within the limit for sure: within the hull of all forces without torque and all torques without force.
+    /// Whether a force is within the limit for sure: T/Tmax ≤ 1 − (F/μN)², which is the limit of a patch without width across it, and less than
+    /// that of any other.
     pub(super) fn holds(&self, force: &Vec3) -> bool {
-        let along = (force.x * force.x + force.y * force.y).sqrt();
-        along * self.most_twist_n + force.z.abs() * self.most_n <= self.most_n * self.most_twist_n
+        let along2 = (force.x * force.x + force.y * force.y) / (self.most_n * self.most_n);
+        force.z.abs() <= HELD * self.most_twist_n * (1.0 - along2)
     }
 
     /// A force that stops a patch, shortened to one within the limit for sure: the slip that is left keeps the direction of that without it, and
@@ -121,8 +133,8 @@ impl LimitSurface {
     }
 
     /// Friction on a patch that would slip at s without, and slips at σ = s + A⁻¹ F with it: the σ of least ½ (σ − s)·A (σ − s) + D(σ).
-    /// Sought from `start`, which is near σ unless it `is_first`; gives F, to `tolerance_n`: D alone is too coarse a measure of it where the slip of a
-    /// step is far from what friction changes. Also gives A + D″ there; none where it sticks.
+    /// Sought from `start`, which is near σ unless it `is_first`; gives F, to `tolerance_n`: as A + D″ is at least A, the error of F is at most the
+    /// residual A (σ − s) + D′. Also gives A + D″ there; none where it sticks.
     pub(super) fn friction(
         &self,
         stiffness: &Mat3,
@@ -136,7 +148,8 @@ impl LimitSurface {
         }
         let surface = self.for_slip(free_slip);
         let (mut slip, mut curvature) = (*start, *stiffness);
-        for &smoothing in &SMOOTHING[usize::from(!is_first)..] {
+        let is_far = is_first && start.norm() <= NEAR * free_slip.norm();
+        for &smoothing in &SMOOTHING[usize::from(!is_far)..] {
             let smoothing = smoothing * free_slip.norm();
             (slip, curvature) = surface.least(stiffness, (free_slip, slip), smoothing, tolerance_n);
         }
@@ -164,7 +177,7 @@ impl LimitSurface {
         for _ in 0..MOST_STEPS {
             let Some(step) = solved(&curvature, &slope) else { break };
             let gain = slope.dot(&step);
-            let is_found = gain <= TOLERANCE * least && slope.amax() <= tolerance_n;
+            let is_found = slope.amax() <= tolerance_n;
             if gain.is_nan() || is_found {
                 break;
             }
@@ -224,9 +237,14 @@ impl CellSums {
     }
 }
 
+/// Whether Ω r is small beside |V|.
+fn hardly_turns(slip: &Vec3) -> bool {
+    slip.z * slip.z < TRANSLATES * TRANSLATES * (slip.x * slip.x + slip.y * slip.y)
+}
+
 /// A⁻¹ b for a positive definite A.
 #[inline]
-fn solved(a: &Mat3, b: &Vec3) -> Option<Vec3> {
+pub(super) fn solved(a: &Mat3, b: &Vec3) -> Option<Vec3> {
     let d0 = a[(0, 0)];
     let (l1, l2) = (a[(1, 0)] / d0, a[(2, 0)] / d0);
     let d1 = a[(1, 1)] - l1 * a[(1, 0)];
@@ -240,4 +258,25 @@ fn solved(a: &Mat3, b: &Vec3) -> Option<Vec3> {
     let z = (b.z - l2 * b.x - l3 * y1) / d2;
     let y = y1 / d1 - l3 * z;
     Some(Vec3::new(b.x / d0 - l1 * y - l2 * z, y, z))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The limit surface is that of a convex set; where none of its points is within the region that surely holds, that region is within the set.
+    #[test]
+    fn what_surely_holds_is_within_the_limit_surface() {
+        for aspect in [1.0, 1.2, 1.49, 1.51, 2.0, 3.0, 4.49, 4.51, 8.0, 30.0, 1e3] {
+            let surface = LimitSurface::new(5.0, [aspect * aspect, 1.0]);
+            let directions = (0..=24).map(|k| f64::from(k) * std::f64::consts::PI / 24.0);
+            let twists = (-30..=30).map(|k| 10f64.powf(0.05 * f64::from(k)));
+            for (angle, twist) in directions.flat_map(|a| twists.clone().map(move |t| (a, t))) {
+                let slip = Vec3::new(angle.cos(), angle.sin(), twist);
+                let limit = surface.dissipation(&slip, 0.0).1;
+                assert!(!surface.holds(&(limit * 0.999_999)), "aspect {aspect}, slip {slip}, force {limit}");
+                assert!(surface.holds(&(limit * 0.8)), "aspect {aspect}, slip {slip}, force {limit}");
+            }
+        }
+    }
 }

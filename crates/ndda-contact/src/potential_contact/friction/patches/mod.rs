@@ -29,6 +29,7 @@ use crate::friction::patches::nodal::{Nodal, NodalSide, SideScene};
 use crate::friction::patches::opposite::Opposite;
 use crate::friction::patches::patch::{ContactPatch, Moved, PatchSummary, Remembered};
 use crate::friction::patches::solve::newton::Newton;
+use crate::friction::patches::solve::stage::{self, Visits};
 use crate::friction::patches::solve::{CoupledPatch, Motion, Search};
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments};
@@ -111,7 +112,7 @@ pub(crate) struct FrictionPatches {
     sides: Vec<[Option<NodalSide>; 2]>,
     /// Room for their solution, by block.
     most_n: Vec<f64>,
-    pushed: Vec<u32>,
+    visits: Visits,
     newton: Newton,
     new_faces: Vec<FaceMemory>,
     gaps_j: Vec<f64>,
@@ -170,7 +171,8 @@ impl FrictionPatches {
         self.find_patches(scene, forces, history);
         let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
         self.adjacency.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
-        let tolerance = solve::tolerance(scene.input.is_iterated, scene.joints.tolerance);
+        let tolerance = scene.joints.tolerance.max(scene.input.friction_tolerance);
+        let tolerance = solve::tolerance(scene.input.is_iterated, tolerance);
         solve::find_tolerances(&mut self.summaries, scene.input.bodies, tolerance, &mut self.most_n);
         self.advance_bodies(scene);
         let left_m_s = self.solve(scene, forces).left_m_s;
@@ -284,7 +286,7 @@ impl FrictionPatches {
     /// Friction of the patches.
     fn solve(&mut self, scene: &PatchScene, forces: &[FacetForce]) -> Search {
         self.ask_blocks(scene, forces);
-        let Self { patches, summaries, bodies, coupled, nodal, sides, pushed, newton, .. } = self;
+        let Self { patches, summaries, bodies, coupled, nodal, sides, visits, newton, .. } = self;
         let ContactInput { bodies: start, dt_s, is_iterated, .. } = *scene.input;
         coupled.clear();
         for (((number, patch), summary), sides) in (0..).zip(&*patches).zip(&*summaries).zip(&*sides) {
@@ -294,8 +296,8 @@ impl FrictionPatches {
             }
         }
         coupled.iter().for_each(|patch| patch.push_nodes(nodal));
-        let alone = solve::sweeps_alone(coupled.len());
-        let mut motion = Motion { bodies, nodal, dt_s, is_iterated, pushed, alone };
+        let alone = stage::visits_alone(coupled.len());
+        let mut motion = Motion { bodies, nodal, dt_s, is_iterated, visits, alone };
         let search = solve::solve(coupled, start, (&mut motion, newton));
         for found in coupled.iter() {
             found.hand_over(&mut patches[found.patch as usize], (start, bodies), dt_s);

@@ -46,7 +46,7 @@ struct Side {
 
 /// The sides of patches on one block, and the shares of its nodes in them.
 #[derive(Default)]
-struct BlockSides {
+pub(super) struct BlockSides {
     weights: Vec<Weight>,
     sides: Vec<Side>,
     /// Where among the weights the one of each node was put last.
@@ -131,12 +131,7 @@ impl Nodal {
 
     /// Pᵀ v.
     pub(super) fn slip(&self, side: &NodalSide) -> Vec3 {
-        let (block, velocity) = (&self.blocks[side.block.index()], &self.columns[side.block.index()]);
-        if block.has_slips() {
-            velocity[side.place as usize]
-        } else {
-            block.slip(side.place as usize, velocity)
-        }
+        side.slip(&self.blocks[side.block.index()], &self.columns[side.block.index()])
     }
 
     /// Pᵀ U.
@@ -162,6 +157,13 @@ impl Nodal {
     /// The columns of all blocks.
     pub(super) fn columns_mut(&mut self) -> &mut [Vec<Vec3>] {
         &mut self.columns
+    }
+
+    /// The sides of each block, and its columns.
+    pub(super) fn blocks_mut(
+        &mut self,
+    ) -> impl IndexedParallelIterator<Item = (&BlockSides, &mut Vec<Vec3>)> {
+        self.blocks.par_iter().zip(&mut self.columns)
     }
 
     /// Does something with the velocities or slips of each block that deforms, and with those at the start of the step.
@@ -300,6 +302,15 @@ impl NodalSide {
         let force = part * force;
         for (((v, a), b), c) in velocity.iter_mut().zip(first).zip(second).zip(third) {
             *v += force.x * a + force.y * b + force.z * c;
+        }
+    }
+
+    /// Pᵀ v, from the sides of its block and their columns.
+    pub(super) fn slip(&self, block: &BlockSides, columns: &[Vec3]) -> Vec3 {
+        if block.has_slips() {
+            columns[self.place as usize]
+        } else {
+            block.slip(self.place as usize, columns)
         }
     }
 

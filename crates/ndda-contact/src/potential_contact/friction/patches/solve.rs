@@ -14,34 +14,21 @@
 
 use ndda_mesh::{BlockId, Mat3, Vec3};
 
-use crate::friction::patches::limit_surface::LimitSurface;
+use crate::friction::patches::limit_surface::{LimitSurface, solved};
 use crate::friction::patches::nodal::{Nodal, NodalSide};
 use crate::friction::patches::patch::{ContactPatch, PatchSummary};
 use crate::friction::patches::solve::newton::Newton;
+use crate::friction::patches::solve::stage::{Visits, solve_stage};
 use crate::model::{Body, FaceMemory};
 
 /// γ of Alexander's method.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
-/// The same, and sweeps, where the solver compares forces of one evaluation with the next.
+/// Part of the largest friction on a block that does not matter where the solver compares forces of one evaluation with the next.
 const ITERATED_TOLERANCE: f64 = 1e-8;
-const ITERATED_SWEEPS: usize = 300;
 /// Residual at which the friction of one patch is accepted, relative to the change that does not matter.
 const LOCAL_TOLERANCE: f64 = 0.1;
 /// Least flexibility of a patch in any direction over the largest.
 const REGULAR: f64 = 1e-9;
-/// Sweeps over all patches, and patches looked at in them where these are few.
-const MOST_SWEEPS: usize = 100;
-const MOST_VISITS: usize = 10_000;
-
-/// Fewest sweeps before Newton's method for all patches together, and its steps, a sweep after each: where these do not do, sweeps alone go on.
-const SWEEPS_ALONE: usize = 8;
-const NEWTON_STEPS: usize = 20;
-
-/// Sweeps before Newton's method: few patches are found sooner by sweeps, many hardly at all.
-pub(super) fn sweeps_alone(patches: usize) -> usize {
-    SWEEPS_ALONE.max(MOST_VISITS / patches.max(1))
-}
-
 /// One patch among others.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct CoupledPatch {
@@ -57,13 +44,12 @@ pub(super) struct CoupledPatch {
     surface: LimitSurface,
     /// Change of friction that does not matter to the blocks [N].
     tolerance_n: f64,
-    /// When this patch was advanced last.
-    seen: u32,
     /// Change of slip per force in a whole step, and its inverse.
     flexibility: Mat3,
     stiffness: Mat3,
-    /// Slip without its own friction where that was found last.
+    /// Slip without its own friction where that was found last, and with it.
     free_slip: Vec3,
+    found_slip: Vec3,
     /// Friction of this stage, and of the first.
     force: Vec3,
     first: Vec3,
@@ -254,9 +240,9 @@ pub(super) struct Motion<'a> {
     pub dt_s: f64,
     /// Whether the solver compares forces of one evaluation with the next.
     pub is_iterated: bool,
-    /// When each block was pushed last by more than a tolerance.
-    pub pushed: &'a mut Vec<u32>,
-    /// Sweeps before Newton's method.
+    /// Which patches are to be visited.
+    pub visits: &'a mut Visits,
+    /// Visits before Newton's method.
     pub alone: usize,
 }
 
@@ -287,71 +273,44 @@ impl Motion<'_> {
     }
 }
 
-/// One of both minima.
-fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, newton: &mut Newton) -> Search {
-    let time_s = GAMMA * motion.dt_s;
-    motion.pushed.clear();
-    motion.pushed.resize(motion.bodies.len(), 0);
-    let (mut now, mut left_m_s) = (0, 0.0);
-    let most_sweeps =
-        if motion.is_iterated { ITERATED_SWEEPS } else { MOST_SWEEPS.max(2 * sweeps_alone(patches.len())) };
-    for sweep in 0..most_sweeps {
-        left_m_s = 0.0;
-        let mut advance = |patch: &mut CoupledPatch| {
-            now += 1;
-            left_m_s = patch.advance(motion, time_s, (now, sweep == 0)).max(left_m_s);
-        };
-        if sweep % 2 == 0 {
-            patches.iter_mut().for_each(&mut advance);
-        } else {
-            patches.iter_mut().rev().for_each(&mut advance);
-        }
-        if left_m_s == 0.0 {
-            return Search { sweeps: sweep, left_m_s };
-        }
-        if sweep + 1 == motion.alone {
-            newton.begin(patches, motion.bodies.len());
-        }
-        if (motion.alone..=motion.alone + NEWTON_STEPS).contains(&(sweep + 1)) {
-            newton.step(patches, motion, time_s);
-        }
-    }
-    Search { sweeps: most_sweeps, left_m_s }
-}
-
 impl CoupledPatch {
     /// Friction of this patch while that of the others stays; by how much its slip changed [m/s], zero where its friction changed by less than
     /// the tolerance.
-    fn advance(&mut self, motion: &mut Motion, time_s: f64, (now, is_first): (u32, bool)) -> f64 {
-        let pushed = motion.pushed[self.owner.index()].max(motion.pushed[self.target.index()]);
-        if !is_first && pushed <= self.seen {
-            return 0.0;
-        }
-        self.seen = now;
+    fn advance(&mut self, motion: &mut Motion, time_s: f64, is_first: bool) -> f64 {
         let slip = self.slip(motion);
         let free_slip = slip - GAMMA * (self.flexibility * self.force);
         let change_n = (self.stiffness * (free_slip - self.free_slip)).amax() / GAMMA;
         if !is_first && self.is_found && change_n <= self.tolerance_n {
             return 0.0;
         }
+        motion.visits.count += 1;
+        let start = self.slip_for(&free_slip).unwrap_or(slip);
         (self.free_slip, self.is_found) = (free_slip, true);
+        self.surface.watch(&free_slip, is_first);
         let stiffness = self.stiffness / GAMMA;
-        let (start, tolerance_n) = ((&free_slip, &slip), LOCAL_TOLERANCE * self.tolerance_n);
-        let (force, curvature) = self.surface.friction(&stiffness, start, tolerance_n, is_first);
+        let tolerance_n = LOCAL_TOLERANCE * self.tolerance_n;
+        let (force, curvature) =
+            self.surface.friction(&stiffness, (&free_slip, &start), tolerance_n, is_first);
         self.curvature = curvature;
+        self.found_slip = free_slip + GAMMA * (self.flexibility * force);
         let change = force - self.force;
         self.force = force;
         self.push(motion, &change, time_s);
         if change.amax() <= self.tolerance_n {
             return 0.0;
         }
-        for block in [self.owner, self.target] {
-            motion.pushed[block.index()] = now;
-        }
+        motion.visits.push([self.owner, self.target]);
         GAMMA * (self.flexibility * change).amax()
+    }
+
+    /// Slip that is expected where it would be so much without its own friction, from what was found last, σ + (A + D″)⁻¹ A δ; none where that stuck.
+    fn slip_for(&self, free_slip: &Vec3) -> Option<Vec3> {
+        let change_n = self.stiffness * (free_slip - self.free_slip) / GAMMA;
+        Some(self.found_slip + solved(self.curvature.as_ref()?, &change_n)?)
     }
 }
 
 pub(super) mod newton;
+pub(crate) mod stage;
 #[cfg(test)]
 mod tests;

@@ -7,11 +7,14 @@
 //! forces; with y_i for the slip that changes f_i = P_i y_i, it is symmetric, and conjugate gradients with the preconditioner P solve it. It is a
 //! semismooth Newton method (Qi & Sun 1993): sweeps before it find which patches stick, the one after it corrects what it has got wrong.
 
+mod coupling;
+
 use ndda_mesh::{Mat3, Vec3};
 use rayon::prelude::*;
 
-use crate::friction::patches::GRAIN_BODIES;
+use crate::friction::patches::solve::newton::coupling::{Coupling, Places};
 use crate::friction::patches::solve::{CoupledPatch, GAMMA, Motion};
+use crate::model::Body;
 
 /// Steps of conjugate gradients at most.
 const MOST_STEPS: usize = 100;
@@ -29,35 +32,35 @@ struct Row {
     change: Vec3,
     /// P.
     response: Mat3,
-    /// Slip that is left.
+    /// Slip that is left, and the friction that it asks for, P r.
     residual: Vec3,
+    asked: Vec3,
     /// f and y of the direction, and the change of slip that it brings, less that of y.
     direction: Vec3,
     cause: Vec3,
     product: Vec3,
+    /// Change of its slip by its own friction alone.
+    own: Mat3,
+    /// Change of friction that is as good as none [N].
+    found_n: f64,
+    places: Places,
+    /// Friction and slip before the step.
+    before: Vec3,
+    slip_before: Vec3,
 }
 
-/// Velocities of blocks, set aside.
+/// Velocities or slips of blocks that deform, set aside.
 #[derive(Default)]
-struct KeptVelocities {
-    bodies: Vec<[Vec3; 2]>,
-    nodes: Vec<Vec3>,
-}
+struct KeptVelocities(Vec<Vec3>);
 
 impl KeptVelocities {
     fn keep(&mut self, motion: &mut Motion) {
-        let Self { bodies, nodes } = self;
-        bodies.clear();
-        bodies.extend(motion.bodies.iter().map(|body| [body.velocity_m_s, body.spin_rad_s]));
-        nodes.clear();
-        motion.nodal.each_velocity(|velocities, _| nodes.extend_from_slice(velocities));
+        self.0.clear();
+        motion.nodal.each_velocity(|velocities, _| self.0.extend_from_slice(velocities));
     }
 
     fn put_back(&self, motion: &mut Motion) {
-        for (body, kept) in motion.bodies.iter_mut().zip(&self.bodies) {
-            [body.velocity_m_s, body.spin_rad_s] = *kept;
-        }
-        let mut left = &self.nodes[..];
+        let mut left = &self.0[..];
         motion.nodal.each_velocity(|velocities, _| {
             let (first, rest) = left.split_at(velocities.len());
             velocities.copy_from_slice(first);
@@ -70,9 +73,8 @@ impl KeptVelocities {
 #[derive(Default)]
 pub(in crate::friction::patches) struct Newton {
     rows: Vec<Row>,
-    /// Sides of patches by block: where those of each block begin, and row and side of each.
-    start: Vec<u32>,
-    sides: Vec<(u32, u8)>,
+    coupling: Coupling,
+    sums: Vec<(f64, bool)>,
     kept: KeptVelocities,
     /// Residual r·P r with which the system before this one began; none for the first of a stage.
     before: Option<f64>,
@@ -90,124 +92,117 @@ impl CoupledPatch {
 
 impl Newton {
     /// Takes the patches of a stage.
-    pub(super) fn begin(&mut self, patches: &[CoupledPatch], blocks: usize) {
+    pub(super) fn begin(&mut self, patches: &[CoupledPatch], bodies: &[Body], time_s: f64) {
         self.before = None;
-        self.rows.clear();
-        self.rows.resize(patches.len(), Row::default());
-        self.start.clear();
-        self.start.resize(blocks + 2, 0);
-        for patch in patches {
-            self.start[patch.owner.index() + 2] += 1;
-            self.start[patch.target.index() + 2] += 1;
-        }
-        for block in 0..=blocks {
-            self.start[block + 1] += self.start[block];
-        }
-        self.sides.clear();
-        self.sides.resize(2 * self.rows.len(), (0, 0));
-        for (row, patch) in (0..).zip(patches) {
-            for (k, block) in [(0, patch.owner), (1, patch.target)] {
-                let place = &mut self.start[block.index() + 1];
-                self.sides[*place as usize] = (row, k);
-                *place += 1;
-            }
-        }
+        let Self { rows, coupling, .. } = self;
+        rows.clear();
+        coupling.begin(patches, bodies, time_s, |places| {
+            let patch = &patches[rows.len()];
+            let (own, found_n) = (GAMMA * patch.flexibility, FOUND * patch.tolerance_n);
+            rows.push(Row { own, found_n, places, ..Row::default() });
+        });
     }
 
     /// One of its steps, from what the last visit of each patch has found.
     pub(super) fn step(&mut self, patches: &mut [CoupledPatch], motion: &mut Motion, time_s: f64) {
         let left = |(row, patch): (&mut Row, &CoupledPatch)| {
-            let free_slip = patch.slip(motion) - GAMMA * (patch.flexibility * patch.force);
+            (row.before, row.slip_before) = (patch.force, patch.slip(motion));
+            let free_slip = row.slip_before - row.own * patch.force;
             (row.residual, row.change) = (patch.free_slip - free_slip, Vec3::zeros());
             row.response = patch.response();
+            row.asked = row.response * row.residual;
             (row.direction, row.cause) = (Vec3::zeros(), Vec3::zeros());
         };
         self.rows.par_iter_mut().zip(&*patches).with_min_len(GRAIN_PATCHES).for_each(left);
         self.kept.keep(motion);
         self.iterate(patches, motion, time_s);
         self.kept.put_back(motion);
-        for (row, patch) in self.rows.iter_mut().zip(&mut *patches) {
+        for (row, patch) in self.rows.iter().zip(&mut *patches) {
             patch.force += row.change;
-            row.direction = row.change;
+            patch.push(motion, &row.change, time_s);
             // Its friction is to be looked at again, unless it sticks for sure.
             patch.is_found = patch.curvature.is_none() && patch.surface.holds(&patch.force);
             if patch.is_found {
-                patch.free_slip = -GAMMA * (patch.flexibility * patch.force);
+                patch.free_slip = -(row.own * patch.force);
             }
-            patch.seen = 0;
         }
-        self.push(patches, motion, time_s, false);
-        for patch in &*patches {
-            motion.pushed[patch.owner.index()] = motion.pushed[patch.owner.index()].max(1);
-            motion.pushed[patch.target.index()] = motion.pushed[patch.target.index()].max(1);
+    }
+
+    /// Whether the last step, and the visits since, have brought the minimum nearer. Of the dual problem, ½ f·W f + f·s over all forces within their
+    /// limits, they change the value by ½ Δf·(slips before + slips after).
+    pub(super) fn gains(&self, patches: &[CoupledPatch], motion: &Motion) -> bool {
+        let change = |(row, patch): (&Row, &CoupledPatch)| {
+            (patch.force - row.before).dot(&(row.slip_before + patch.slip(motion)))
+        };
+        self.rows.iter().zip(patches).map(change).sum::<f64>() <= 0.0
+    }
+
+    /// Takes the last step back, and the visits since: all patches are to be visited again.
+    pub(super) fn take_back(&self, patches: &mut [CoupledPatch], motion: &mut Motion, time_s: f64) {
+        for (row, patch) in self.rows.iter().zip(patches) {
+            let change = row.before - patch.force;
+            (patch.force, patch.is_found) = (row.before, false);
+            patch.push(motion, &change, time_s);
         }
+        motion.visits.forget();
     }
 
     /// Conjugate gradients.
     fn iterate(&mut self, patches: &[CoupledPatch], motion: &mut Motion, time_s: f64) {
-        let (mut old, mut enough) = (0.0, 0.0);
-        for step in 0..MOST_STEPS {
-            let (now, is_found) = self.left(patches);
-            if step == 0 {
-                // Eisenstat & Walker 1996, second choice: no closer than the last step was worth.
-                let [most, least] = FORCING;
-                let part = self.before.map_or(most, |before| (now / before).clamp(least, most));
-                (enough, self.before) = (part * part * now, Some(now));
-            }
+        let (mut now, mut is_found) = self.sum(|row, _| (row.residual.dot(&row.asked), row.is_found()));
+        // Eisenstat & Walker 1996, second choice: no closer than the last step was worth.
+        let [most, least] = FORCING;
+        let part = self.before.map_or(most, |before| (now / before).clamp(least, most));
+        let enough = part * part * now;
+        self.before = Some(now);
+        let mut back = 0.0;
+        for _ in 0..MOST_STEPS {
             if is_found || now.is_nan() || now <= enough {
                 return;
             }
-            let back = if step == 0 { 0.0 } else { now / old };
-            old = now;
             self.rows.par_iter_mut().with_min_len(GRAIN_PATCHES).for_each(|row| {
-                row.direction = row.response * row.residual + back * row.direction;
+                row.direction = row.asked + back * row.direction;
                 row.cause = row.residual + back * row.cause;
             });
-            self.push(patches, motion, time_s, true);
-            let rows = self.rows.par_iter_mut().zip(patches).with_min_len(GRAIN_PATCHES);
-            rows.for_each(|(row, patch)| {
-                row.product = patch.slip(motion) + row.cause - GAMMA * (patch.flexibility * row.direction);
+            let Self { rows, coupling, .. } = self;
+            coupling.answer(patches, motion, time_s, |row| rows[row as usize].direction);
+            let (work, _) = self.sum(|row, coupling| {
+                row.product = coupling.slip(&row.places) + row.cause - row.own * row.direction;
+                (row.product.dot(&row.direction), true)
             });
-            let work: f64 = self.rows.iter().map(|row| row.product.dot(&row.direction)).sum();
             let length = now / work;
             if !(length > 0.0 && length.is_finite()) {
                 return;
             }
-            for row in &mut self.rows {
+            let old = now;
+            (now, is_found) = self.sum(|row, _| {
                 row.change += length * row.direction;
                 row.residual -= length * row.product;
-            }
+                row.asked = row.response * row.residual;
+                (row.residual.dot(&row.asked), row.is_found())
+            });
+            back = now / old;
         }
     }
 
-    /// r·P r, and whether no patch would change its friction by what matters.
-    fn left(&self, patches: &[CoupledPatch]) -> (f64, bool) {
-        let (mut sum, mut is_found) = (0.0, true);
-        for (row, patch) in self.rows.iter().zip(patches) {
-            let change = row.response * row.residual;
-            is_found &= change.amax() <= FOUND * patch.tolerance_n;
-            sum += row.residual.dot(&change);
-        }
-        (sum, is_found)
-    }
-
-    /// Adds what the directions of all patches change velocities by, block by block, `from_rest` or to what they are.
-    fn push(&self, patches: &[CoupledPatch], motion: &mut Motion, time_s: f64, from_rest: bool) {
-        let (rows, part) = (&self.rows, time_s / motion.dt_s);
-        let columns = motion.nodal.columns_mut().par_iter_mut();
-        let blocks = motion.bodies.par_iter_mut().zip(columns).zip(self.start.par_windows(2));
-        blocks.with_min_len(GRAIN_BODIES).for_each(|((body, columns), range)| {
-            let sides = &self.sides[range[0] as usize..range[1] as usize];
-            if let (true, Some(&(row, k))) = (from_rest, sides.first()) {
-                (body.velocity_m_s, body.spin_rad_s) = (Vec3::zeros(), Vec3::zeros());
-                if let Some(side) = &patches[row as usize].sides[usize::from(k)] {
-                    side.velocities(columns).fill(Vec3::zeros());
-                }
-            }
-            for &(row, k) in sides {
-                let (patch, direction) = (&patches[row as usize], &rows[row as usize].direction);
-                patch.push_side(usize::from(k), (body, columns), direction, (time_s, part));
-            }
+    /// Sum over all rows, after some work on each, and whether all of them say so: by parts that do not depend on the number of threads.
+    fn sum(&mut self, work: impl Fn(&mut Row, &Coupling) -> (f64, bool) + Sync) -> (f64, bool) {
+        let Self { rows, coupling, sums, .. } = self;
+        let parts = rows.par_chunks_mut(GRAIN_PATCHES).map(|rows| {
+            let add = |(sum, all): (f64, bool), row: &mut Row| {
+                let (part, is_so) = work(row, coupling);
+                (sum + part, all & is_so)
+            };
+            rows.iter_mut().fold((0.0, true), add)
         });
+        parts.collect_into_vec(sums);
+        sums.iter().fold((0.0, true), |(sum, all), (part, is_so)| (sum + part, all & is_so))
+    }
+}
+
+impl Row {
+    /// Whether its friction would change by no more than what matters.
+    fn is_found(&self) -> bool {
+        self.asked.amax() <= self.found_n
     }
 }

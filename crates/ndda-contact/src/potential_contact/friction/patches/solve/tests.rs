@@ -93,8 +93,8 @@ fn solved(tolerance: f64) -> Solved {
         nodal: &mut nodal,
         dt_s: DT_S,
         is_iterated: false,
-        pushed: &mut Vec::new(),
-        alone: SWEEPS_ALONE,
+        visits: &mut Visits::default(),
+        alone: stage::VISITS_ALONE * coupled.len(),
     };
     let search = solve(&mut coupled, &start, (&mut motion, &mut Newton::default()));
     let slight = summaries.iter().filter(|summary| summary.is_slight()).count();
@@ -120,7 +120,10 @@ fn assert_alone_would_not_change(patches: &mut [CoupledPatch], motion: &mut Moti
 fn newtons_method_ends_within_eight_steps_of_each_stage() {
     let Search { sweeps, left_m_s } = solved(1e-10).search;
     assert_eq!(left_m_s, 0.0);
-    assert!(sweeps > 2 * SWEEPS_ALONE && sweeps <= 2 * (SWEEPS_ALONE + 8), "{sweeps} sweeps in both stages");
+    assert!(
+        sweeps > 2 * stage::VISITS_ALONE && sweeps <= 2 * (stage::VISITS_ALONE + 8),
+        "{sweeps} sweeps in both stages"
+    );
 }
 
 /// Rounding alone is more than such a tolerance.

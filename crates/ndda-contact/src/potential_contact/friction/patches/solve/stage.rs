@@ -1,0 +1,125 @@
+//! One of both minima: visits of patch after patch, and Newton's method for all where these take long.
+
+use ndda_mesh::BlockId;
+
+use crate::friction::patches::solve::newton::Newton;
+use crate::friction::patches::solve::{CoupledPatch, GAMMA, Motion, Search};
+
+/// Visits after which a search ends: of each patch on average, and of few patches together; more of each where the solver compares forces of one
+/// evaluation with the next.
+const MOST_VISITS_EACH: usize = 100;
+const MOST_VISITS: usize = 20_000;
+const ITERATED_VISITS_EACH: usize = 300;
+/// Sweeps over these: most visit only patches whose blocks were pushed.
+const SHORT_SWEEPS: usize = 10;
+
+/// Visits of each patch before Newton's method, on average, and of few patches together: few are found sooner by visits, many hardly at all.
+pub(super) const VISITS_ALONE: usize = 8;
+const FEW_VISITS: usize = 10_000;
+/// Newton's steps, visits of each patch on average between two of them, and how many times more after each that was taken back.
+const NEWTON_STEPS: usize = 20;
+const VISITS_BETWEEN: usize = 1;
+const PATIENCE: usize = 4;
+
+/// Visits before Newton's method.
+pub(crate) fn visits_alone(patches: usize) -> usize {
+    (VISITS_ALONE * patches).max(FEW_VISITS)
+}
+
+/// Which patches are to be visited: those of which a block was pushed by more than a tolerance since the last visit.
+#[derive(Default)]
+pub(crate) struct Visits {
+    /// Blocks of each patch, and when it was visited last.
+    blocks: Vec<[BlockId; 2]>,
+    seen: Vec<u32>,
+    /// When each block was pushed last.
+    pushed: Vec<u32>,
+    now: u32,
+    /// Patches whose friction was looked for.
+    pub(super) count: usize,
+}
+
+impl Visits {
+    fn begin(&mut self, patches: &[CoupledPatch], blocks: usize) {
+        self.blocks.clear();
+        self.blocks.extend(patches.iter().map(|patch| [patch.owner, patch.target]));
+        self.seen.clear();
+        self.seen.resize(patches.len(), 0);
+        self.pushed.clear();
+        self.pushed.resize(blocks, 1);
+        (self.now, self.count) = (1, 0);
+    }
+
+    /// Lets all patches be visited again.
+    pub(super) fn forget(&mut self) {
+        self.seen.fill(0);
+    }
+
+    /// Whether a patch is to be visited, which it then is.
+    fn visit(&mut self, patch: usize) -> bool {
+        let [owner, target] = self.blocks[patch];
+        let is_due = self.pushed[owner.index()].max(self.pushed[target.index()]) > self.seen[patch];
+        if is_due {
+            self.now += 1;
+            self.seen[patch] = self.now;
+        }
+        is_due
+    }
+
+    /// Notes that the patch that is visited pushes its blocks.
+    pub(super) fn push(&mut self, blocks: [BlockId; 2]) {
+        for block in blocks {
+            self.pushed[block.index()] = self.now;
+        }
+    }
+}
+
+/// One of both minima.
+pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, newton: &mut Newton) -> Search {
+    let (time_s, count) = (GAMMA * motion.dt_s, patches.len());
+    let most_visits = if motion.is_iterated { ITERATED_VISITS_EACH } else { MOST_VISITS_EACH } * count;
+    let most_visits = most_visits.max(MOST_VISITS);
+    let most_sweeps = SHORT_SWEEPS * most_visits / count.max(1);
+    motion.visits.begin(patches, motion.bodies.len());
+    let mut search = Search::default();
+    let (mut steps, mut is_tried, mut between) = (0, false, VISITS_BETWEEN * count);
+    let mut next = motion.alone;
+    while search.sweeps < most_sweeps && motion.visits.count < most_visits {
+        search.left_m_s = sweep(patches, motion, time_s, search.sweeps);
+        if search.left_m_s == 0.0 {
+            break;
+        }
+        search.sweeps += 1;
+        if std::mem::take(&mut is_tried) && !newton.gains(patches, motion) {
+            newton.take_back(patches, motion, time_s);
+            between *= PATIENCE;
+            next = motion.visits.count + between;
+        }
+        if motion.visits.count >= next && steps < NEWTON_STEPS {
+            if steps == 0 {
+                newton.begin(patches, motion.bodies, time_s);
+            }
+            newton.step(patches, motion, time_s);
+            motion.visits.forget();
+            (steps, is_tried, next) = (steps + 1, true, motion.visits.count + between);
+        }
+    }
+    search
+}
+
+/// A sweep over all patches that are to be visited, to and fro by turns; the largest change of a slip [m/s].
+fn sweep(patches: &mut [CoupledPatch], motion: &mut Motion, time_s: f64, number: usize) -> f64 {
+    let mut left_m_s: f64 = 0.0;
+    let mut visit = |k: usize, patch: &mut CoupledPatch| {
+        if motion.visits.visit(k) {
+            left_m_s = patch.advance(motion, time_s, number == 0).max(left_m_s);
+        }
+    };
+    let each = patches.iter_mut().enumerate();
+    if number.is_multiple_of(2) {
+        each.for_each(|(k, patch)| visit(k, patch));
+    } else {
+        each.rev().for_each(|(k, patch)| visit(k, patch));
+    }
+    left_m_s
+}
