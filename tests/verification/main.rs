@@ -21,6 +21,7 @@ mod conveyor;
 mod damping;
 mod damping_beyond_the_step;
 mod dilation;
+mod double_cantilever;
 mod driven_blocks;
 mod elastic_waves;
 mod end_contact;

@@ -2,7 +2,7 @@
 
 use ndda_contact::testing::{evaluate, test_box, test_set};
 use ndda_contact::{
-    ContactHistory, ContactInput, Fracture, PotentialContact, SmoothPotential, SofteningBond,
+    ContactHistory, ContactInput, ContactModel, Fracture, PotentialContact, SmoothPotential, SofteningBond,
 };
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
@@ -97,6 +97,44 @@ fn a_joint_that_is_half_broken_unloads_to_its_start_and_takes_no_more_work() {
     let stored_j = 0.5 * 1e12 * (1.0 - FRACTURE.damage(100e-6, 0.0)) * 100e-6 * 100e-6;
     assert!((work_j[1] - work_j[0] - stored_j).abs() < 1e-3 * stored_j, "{work_j:?}, {stored_j}");
     assert!((work_j[2] - work_j[0]).abs() < 1e-3 * stored_j, "{work_j:?}");
+}
+
+/// Change of the force on the upper plate per length of its shift along a direction, by the stiffness [N/m].
+fn given(plates: &mut Plates, along: Vec3) -> Vec3 {
+    let velocity = vec![Vec3::zeros(); plates.last.len()];
+    let input = ContactInput::new(&plates.blocks, &plates.last, &velocity, 1.0);
+    let mut pairs = Vec::new();
+    plates.model.add_stiffness(&input, &plates.history, &mut pairs).expect("sound blocks");
+    let upper = plates.blocks.nodes_of(BlockId(1));
+    let (mut shift, mut change) = (velocity.clone(), velocity);
+    shift[upper.clone()].fill(along);
+    pairs.iter().for_each(|pair| pair.add_times(&shift, &mut change));
+    change[upper].iter().sum()
+}
+
+#[test]
+fn the_stiffness_of_a_bond_is_the_slope_of_its_force_while_it_is_damaged_and_while_it_unloads() {
+    for direction in [Vec3::z(), Vec3::x(), Vec3::new(0.6, 0.0, 0.8)] {
+        let mut plates = Plates::new([2, 2]);
+        let (way_m, step_m) = (30e-6, 1e-9);
+        plates.shifted(way_m * direction);
+        for step_m in [step_m, -step_m] {
+            let before = plates.shifted(way_m * direction);
+            let stiffness = given(&mut plates, direction).dot(&direction);
+            // Where damage has been reached again, what follows may be either.
+            let history = plates.history.clone();
+            let after = plates.shifted((way_m + step_m) * direction);
+            let slope = (after - before).dot(&direction) / step_m;
+            if step_m > 0.0 {
+                assert!(slope > 0.0, "what is damaged bears less the farther it opens: {slope:e}");
+                assert!((stiffness / slope - 1.0).abs() < 1e-3, "{direction:?}: {stiffness:e} and {slope:e}");
+                plates.history = history;
+            } else {
+                let stiffness = given(&mut plates, direction).dot(&direction);
+                assert!(slope < 0.0 && (stiffness / slope - 1.0).abs() < 1e-3, "{stiffness:e} and {slope:e}");
+            }
+        }
+    }
 }
 
 #[test]

@@ -39,7 +39,7 @@ SHORTENED = {
     "scenes/sticking_30_phi35.ron": ["time.end_s=0.5"],
     "scenes/sticking_30_phi35_spring.ron": ["time.end_s=0.1"],
     "scenes/voronoi_column.ron": ["time.end_s=0.02"],
-    "scenes/wedge_two_planes.ron": ["time.end_s=0.05"],
+    "scenes/wedge_two_planes.ron": ["time.end_s=0.15"],
     "scenes/extreme/one_block.ron": ["blocks[0].shape.cells=(8, 8, 8)"],
     "scenes/extreme/coasting.ron": ["time.end_s=1"],
     "scenes/extreme/spin.ron": ["time.end_s=10"],
@@ -76,9 +76,9 @@ def each(names, results, columns, row_of):
 
 
 def scenes():
-    """All scenes; of the extreme and paper ones, those that are no studies."""
+    """All scenes but studies, and those that are refused, which have stages or are rockfalls."""
     files = [*sorted((ROOT / "scenes").rglob("*.ron")), *sorted(HERE.glob("*.ron"))]
-    is_scene = lambda file: "cases:" not in file.read_text(encoding="utf-8")
+    is_scene = lambda file: not re.search(r"^ *(cases|scene|stages|rockfall):", file.read_text(encoding="utf-8"), re.MULTILINE)
     return [str(file.relative_to(ROOT)) for file in files if is_scene(file)]
 
 

@@ -202,8 +202,11 @@ impl PotentialContact {
                 let [a, b, c] = overlap.pressure;
                 let [d, e, g, h] = overlap.on_target.pressure;
                 let total = a + b + c;
-                let weights = [a, b, c, -d, -e, -g, -h].map(|w| w / total);
-                pair.add_spring(&weights, &(force.shear_slope * total * across));
+                // A hit that only grazes has no weights.
+                if total > 0.0 {
+                    let weights = [a, b, c, -d, -e, -g, -h].map(|w| w / total);
+                    pair.add_spring(&weights, &(force.shear_slope * total * across));
+                }
             }
             stiffness.push(pair);
         }

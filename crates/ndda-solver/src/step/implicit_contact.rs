@@ -12,13 +12,14 @@
 //! contact, no global matrix, and K̃ δ comes out of the recursion without a product. s follows the slope of Π along δ.
 //! The forces of the last evaluation, not f, drive the step, so action equals reaction however far Newton got.
 
-use crate::step::report::Iterations;
-use ndda_contact::{ContactHistory, ContactInput, ContactReport, PairStiffness};
+use ndda_contact::{ContactError, ContactHistory, ContactInput, ContactReport, PairStiffness};
 use ndda_mesh::{BlockId, Vec3};
 
 use crate::bodies::body::Body;
 use crate::bodies::congruent_groups::{NodeSlices, each_of_run, for_each_run};
 use crate::error::StepError;
+use crate::step::line_search::Search;
+use crate::step::report::Iterations;
 use crate::step::{GRAIN_NODES, Simulation};
 
 /// How well contact at the end of the step is solved for.
@@ -37,10 +38,8 @@ const FRICTION_EVALUATIONS: u32 = 30;
 const KRYLOV_REDUCTION2: f64 = 1e-4;
 /// Conjugate gradient steps after which a Newton step takes what it has.
 const MOST_KRYLOV: u32 = 2000;
-/// Part of the slope of Π at the start of a stride that may be left at its end.
-const SLOPE_LEFT: f64 = 0.5;
-/// Evaluations along one direction.
-const MOST_STRIDES: u32 = 30;
+/// Longest stride along a direction whose length says nothing, for Π bends down along it.
+const LONGEST_STRIDE: f64 = 64.0;
 
 /// Memory of the iteration; none in steps with contact at predicted positions.
 pub(crate) struct Newton {
@@ -67,38 +66,6 @@ pub(crate) struct Newton {
     touched: Vec<bool>,
     history: ContactHistory,
     pub(crate) iterations: Iterations,
-}
-
-/// The search for the minimum of Π along a direction, by its slope (Illinois's rule of false position).
-struct Search {
-    start: f64,
-    /// Stride and slope on this side of the minimum, and beyond it.
-    near: (f64, f64),
-    far: Option<(f64, f64)>,
-    strides: u32,
-}
-
-impl Search {
-    fn new(slope: f64) -> Self {
-        Self { start: slope, near: (0.0, slope), far: None, strides: 0 }
-    }
-
-    /// Where to look next, if this stride is not good enough.
-    fn next_stride(&mut self, stride: f64, slope: f64) -> Option<f64> {
-        self.strides += 1;
-        if slope.abs() <= SLOPE_LEFT * self.start.abs() || self.strides >= MOST_STRIDES {
-            return None;
-        }
-        if slope > 0.0 {
-            self.far = Some((stride, slope));
-            self.near.1 *= 0.5;
-        } else {
-            self.near = (stride, slope);
-            self.far.as_mut()?.1 *= 0.5;
-        }
-        let (near, far) = (self.near, self.far?);
-        Some(near.0 + (far.0 - near.0) * near.1.abs() / (near.1.abs() + far.1))
-    }
 }
 
 impl Newton {
@@ -140,10 +107,18 @@ impl Simulation {
         self.carry_by_blocks();
         newton.k_delta.fill(Vec3::zeros());
         loop {
-            let report = self.evaluate_at_end(newton, stride)?;
+            let evaluated = self.evaluate_at_end(newton, stride);
             newton.iterations.newton += 1;
+            let report = match (evaluated, &mut search) {
+                (Err(error), Some(search)) if went_too_far(&error) => {
+                    stride = search.shorter(stride).ok_or(error)?;
+                    continue;
+                }
+                (evaluated, _) => evaluated?,
+            };
             self.place_answer(newton)?;
-            let misfit = dot(&newton.residual, &newton.answer).max(0.0).sqrt();
+            let misfit2 = dot(&newton.residual, &newton.answer);
+            let misfit = if misfit2.is_nan() { f64::NAN } else { misfit2.max(0.0).sqrt() };
             let scale = self.motion_of(&self.scratch.force).max(self.motion_of(&newton.force));
             let scale = scale.max(self.motion_of(self.loads.total()));
             if misfit <= (newton.settings.tolerance * scale).max(self.resolution()) {
@@ -152,7 +127,7 @@ impl Simulation {
                 self.scratch.force.iter_mut().zip(self.loads.total()).for_each(|(f, load)| *f += load);
                 return Ok(report);
             }
-            if newton.iterations.newton >= newton.settings.most_iterations {
+            if newton.iterations.newton >= newton.settings.most_iterations || misfit.is_nan() {
                 let (time_s, residual) = (self.time_s(), misfit / scale);
                 return Err(StepError::ContactNotSolved {
                     time_s,
@@ -166,8 +141,8 @@ impl Simulation {
                 continue;
             }
             newton.base.copy_from_slice(&newton.force);
-            self.find_change(newton)?;
-            search = Some(Search::new(-dot(&newton.residual, &newton.change)));
+            let longest = self.find_change(newton)?;
+            search = Some(Search::new(-dot(&newton.residual, &newton.change), longest));
             stride = 1.0;
         }
     }
@@ -278,8 +253,8 @@ impl Simulation {
     }
 
     /// δ and K̃ δ from the residual in `rest` and what it moves in `answer`, by conjugate gradients with K̃⁻¹ as
-    /// preconditioner.
-    fn find_change(&mut self, newton: &mut Newton) -> Result<(), StepError> {
+    /// preconditioner; returns how long a stride along it may be.
+    fn find_change(&mut self, newton: &mut Newton) -> Result<f64, StepError> {
         self.gather_stiffness(newton)?;
         newton.change.fill(Vec3::zeros());
         newton.k_delta.fill(Vec3::zeros());
@@ -291,13 +266,13 @@ impl Simulation {
             newton.iterations.krylov += 1;
             newton.multiply();
             let curvature = dot(&newton.direction, &newton.product);
-            // Contact that softens as it deepens bends Π the other way: take what there is, at least the first direction.
+            // Contact that softens as it deepens, and bonds that break, bend Π the other way: take what there is, at least the first direction.
             if curvature <= 0.0 {
                 if step == 0 {
                     newton.change.copy_from_slice(&newton.direction);
                     newton.k_delta.copy_from_slice(&newton.direction_lifted);
                 }
-                break;
+                return Ok(LONGEST_STRIDE);
             }
             let along = size / curvature;
             add(along, &newton.direction, &mut newton.change);
@@ -312,7 +287,7 @@ impl Simulation {
             turn(next / size, &newton.rest, &mut newton.direction_lifted);
             size = next;
         }
-        Ok(())
+        Ok(1.0)
     }
 
     /// ∂f_c/∂x at x*, and which blocks it concerns.
@@ -379,6 +354,14 @@ impl Newton {
             *product = k_delta - *product;
         }
     }
+}
+
+/// Whether an evaluation failed for where it took the blocks.
+fn went_too_far(error: &StepError) -> bool {
+    matches!(
+        error,
+        StepError::Contact { source: ContactError::CollapsedTet { .. } | ContactError::NotFinite { .. }, .. }
+    )
 }
 
 /// y ← y + a x.

@@ -16,6 +16,7 @@ pub(crate) mod drive;
 pub(crate) mod first_step;
 pub(crate) mod follower;
 pub(crate) mod implicit_contact;
+pub(crate) mod line_search;
 pub(crate) mod loads;
 pub(crate) mod local_damping;
 pub(crate) mod plan;

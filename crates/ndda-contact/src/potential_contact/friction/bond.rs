@@ -87,9 +87,7 @@ pub(crate) fn break_overloaded(
 
 /// Damages a bond by how far it is stretched. Gives its overload where it breaks at once.
 fn damage(bond: &mut Bond, fracture: &Fracture, input: &ContactInput) -> f64 {
-    let stretch = Stretch::of(input, bond);
-    let (opening_m, slip_m) = (stretch.opening_m - stretch.rounding_m, stretch.offset_m.norm());
-    let slip_m = (slip_m - stretch.rounding_m).max(0.0);
+    let (opening_m, slip_m) = Stretch::of(input, bond).beyond_rounding_m();
     let reached = fracture.damage(opening_m, slip_m);
     let at_once = bond.damage == 0.0 && reached >= 1.0;
     bond.damage = bond.damage.max(reached);
@@ -200,6 +198,20 @@ impl Stretch {
         }
     }
 
+    /// Opening and slip without what may be rounding [m].
+    fn beyond_rounding_m(&self) -> (f64, f64) {
+        (self.opening_m - self.rounding_m, (self.offset_m.norm() - self.rounding_m).max(0.0))
+    }
+
+    /// Its direction and how much more it gives along that while it is being damaged than what is whole of it [Pa/m]; damage that depends on the ratio of opening
+    /// to slip is taken as that of a constant ratio.
+    fn softening(&self, fracture: &Fracture, damage: f64) -> Option<(Vec3, f64)> {
+        let (opening_m, slip_m) = self.beyond_rounding_m();
+        let is_loaded = damage > 0.0 && fracture.damage(opening_m, slip_m) >= damage;
+        let direction = (self.opening_m.max(0.0) * self.normal + self.offset_m).try_normalize(0.0)?;
+        is_loaded.then(|| (direction, fracture.stiffness_pa_m * fracture.softening(opening_m, slip_m)))
+    }
+
     /// Tension ½ S k_b max(δ, 0) of what is not broken [N].
     fn tension_n(&self, law: &dyn FrictionLaw) -> f64 {
         self.whole * law.bond_stiffness_pa_m() * self.half_area * self.opening_m.max(0.0)
@@ -264,13 +276,19 @@ pub(crate) fn add_stiffness(
     for bond in bonds {
         let (triangle, tet) = (&blocks.triangles[bond.facet.index()], &blocks.tets[bond.tet.index()]);
         let Some(law) = law(joints, blocks, bond) else { continue };
-        let Stretch { normal, opening_m, half_area, lambda, whole, .. } = Stretch::of(input, bond);
+        let stretch = Stretch::of(input, bond);
+        let Stretch { normal, opening_m, half_area, lambda, whole, .. } = stretch;
         let along = normal * normal.transpose();
         let normal_pa_m = if opening_m > 0.0 { law.bond_stiffness_pa_m() } else { 0.0 };
-        let spring = normal_pa_m * along + law.shear_stiffness_pa_m() * (Mat3::identity() - along);
+        let mut spring =
+            whole * (normal_pa_m * along + law.shear_stiffness_pa_m() * (Mat3::identity() - along));
+        let softening = law.fracture().and_then(|fracture| stretch.softening(fracture, bond.damage));
+        if let Some((direction, pa_m)) = softening {
+            spring -= pa_m * direction * direction.transpose();
+        }
         let ([u, v, w], [a, b, c, d]) = (bond.weights, lambda);
         let mut pair = PairStiffness::new(triangle, tet);
-        pair.add_spring(&[u, v, w, -a, -b, -c, -d], &(whole * half_area * spring));
+        pair.add_spring(&[u, v, w, -a, -b, -c, -d], &(half_area * spring));
         stiffness.push(pair);
     }
 }

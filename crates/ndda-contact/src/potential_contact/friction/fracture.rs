@@ -43,6 +43,13 @@ impl Fracture {
         // δ_0 = δ/first and δ_c = δ/last.
         ((1.0 - 1.0 / first) / (1.0 - last / first)).clamp(0.0, 1.0)
     }
+
+    /// By how much a bond that is being damaged at an opening and a slip [m] gives more along its own direction than what is whole of it, over k:
+    /// δ_0 δ_c/(δ (δ_c − δ_0)); zero for a whole bond and a broken one. Its stress then falls by k δ_0/(δ_c − δ_0) per length.
+    pub(crate) fn softening(&self, opening_m: f64, slip_m: f64) -> f64 {
+        let (first, last) = (self.load(opening_m, slip_m), part(opening_m, slip_m, self.last_m()));
+        if first > 1.0 && last < 1.0 { 1.0 / (first - last) } else { 0.0 }
+    }
 }
 
 /// Part of the way to an ellipse with these half axes, along the ratio of opening to slip.
@@ -93,6 +100,24 @@ mod tests {
         // Pressed bonds break by slip alone.
         assert_eq!(BAR.damage(-1.0, 0.0), 0.0);
         assert_eq!(BAR.damage(-1.0, shear_m), BAR.damage(0.0, shear_m));
+    }
+
+    #[test]
+    fn a_bond_that_is_being_damaged_gives_as_its_stress_changes() {
+        for angle in [0.0f64, 0.3, 0.8, 1.5] {
+            let stress = |way_m: f64| {
+                let [opening_m, slip_m] = [way_m * angle.cos(), way_m * angle.sin()];
+                (1.0 - BAR.damage(opening_m, slip_m)) * way_m
+            };
+            for way_m in [1e-6, 5e-6, 3e-5] {
+                let [opening_m, slip_m] = [way_m * angle.cos(), way_m * angle.sin()];
+                let step_m = 1e-6 * way_m;
+                let slope = (stress(way_m + step_m) - stress(way_m - step_m)) / (2.0 * step_m);
+                let given = 1.0 - BAR.damage(opening_m, slip_m) - BAR.softening(opening_m, slip_m);
+                assert!((slope / given - 1.0).abs() < 1e-6, "{angle}, {way_m:e}: {slope:e} and {given:e}");
+            }
+        }
+        assert_eq!([BAR.softening(1e-9, 0.0), BAR.softening(1.0, 0.0)], [0.0; 2]);
     }
 
     /// A bar of 0.1 m, E 30 GPa with one bond across: u = σ (L/E + 1/k) + w, σ = f_t (1 − w/δ_nc), so that σ = 1.411765 MPa at 40 µm where k is large.
