@@ -78,6 +78,8 @@ pub struct Simulation {
     pub(crate) control: Option<Box<Control>>,
     /// Time that loads and prescribed motions see while a scene settles [s].
     pub(crate) settling_at_s: Option<f64>,
+    /// Change of friction that does not matter while a scene settles, as a part of the largest on a block; zero outside of settling.
+    pub(crate) settling_friction: f64,
     /// What stages keep; none in a scene without them.
     pub(crate) stage: Option<Box<StageState>>,
     pub(crate) scratch: Scratch,

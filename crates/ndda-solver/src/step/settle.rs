@@ -98,6 +98,10 @@ struct Oscillation {
 /// Steps between looks at how far blocks have gone.
 const LOOK: u64 = 100;
 
+/// Error of friction over that of speeds, and the largest, which is where blocks still fall.
+const FRICTION: f64 = 0.1;
+const MOST_FRICTION: f64 = 3e-3;
+
 /// Weight of the previous peak one oscillation later: a small one may be chance, many in a row are not.
 const REMEMBERED: f64 = 0.7;
 
@@ -205,6 +209,7 @@ impl Simulation {
             if settled.steps == settle.most_steps || looks && self.farthest(from)[0].0 > extent_m {
                 return Err(self.not_settled(settled, from));
             }
+            self.settling_friction = settling_friction(settle, settled);
             settled.speed_ratio = progress.step(self)?;
             settled.steps += 1;
             if watch(settled).is_break() {
@@ -234,6 +239,7 @@ impl Simulation {
         let mut settling = Settling::new(self, progress, Vec::new());
         let came_to_rest = self.come_to_rest((settle, &mut settling), self.time_s(), watch)?;
         self.settling_at_s = None;
+        self.settling_friction = 0.0;
         if !came_to_rest {
             return Ok(settling.settled);
         }
@@ -355,6 +361,12 @@ impl Progress {
         let steps = self.oscillation.longest as f64;
         self.highest_j.max(steps * steps * self.moving_j)
     }
+}
+
+/// Part of the largest friction on a block that a change of friction may be that does not matter: the error of friction is then small beside what still
+/// moves, and as small beside the loads as the speed at which the scene is at rest is beside the largest.
+fn settling_friction(settle: &Settle, settled: &Settled) -> f64 {
+    (FRICTION * settled.speed_ratio).min(MOST_FRICTION).max(settle.tolerance)
 }
 
 /// Speed of an energy over that of another.

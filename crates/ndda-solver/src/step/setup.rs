@@ -126,6 +126,7 @@ impl Simulation {
             weights,
             control: None,
             settling_at_s: None,
+            settling_friction: 0.0,
             stage: None,
             scratch: Scratch {
                 force: vec![Vec3::zeros(); nodes],

@@ -227,8 +227,8 @@ pub(super) fn find_tolerances(
 /// Result of a search for friction.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Search {
-    /// Sweeps over all patches.
-    pub sweeps: usize,
+    /// How often patches were visited.
+    pub visits: usize,
     /// Largest change of a slip in the last sweep [m/s]; zero where friction was found.
     pub left_m_s: f64,
 }
@@ -258,7 +258,7 @@ pub(super) fn solve(
     motion.change(start, |from, to| from + (to - from) / GAMMA);
     patches.iter_mut().for_each(|patch| patch.first = patch.force);
     let second = solve_stage(patches, motion, newton);
-    Search { sweeps: first.sweeps + second.sweeps, left_m_s: first.left_m_s.max(second.left_m_s) }
+    Search { visits: first.visits + second.visits, left_m_s: first.left_m_s.max(second.left_m_s) }
 }
 
 impl Motion<'_> {

@@ -128,11 +128,12 @@ impl Newton {
         }
     }
 
-    /// Whether the last step, and the visits since, have brought the minimum nearer. Of the dual problem, ½ f·W f + f·s over all forces within their
-    /// limits, they change the value by ½ Δf·(slips before + slips after).
+    /// Whether the last step, and the visits since, have brought the minimum nearer, or changed nothing that matters. Of the dual problem, ½ f·W f + f·s over all
+    /// forces within their limits, they change the value by ½ Δf·(slips before + slips after), which friction within its tolerance does not make exact.
     pub(super) fn gains(&self, patches: &[CoupledPatch], motion: &Motion) -> bool {
         let change = |(row, patch): (&Row, &CoupledPatch)| {
-            (patch.force - row.before).dot(&(row.slip_before + patch.slip(motion)))
+            let slips = row.slip_before + patch.slip(motion);
+            (patch.force - row.before).dot(&slips) - patch.tolerance_n * slips.abs().sum()
         };
         self.rows.iter().zip(patches).map(change).sum::<f64>() <= 0.0
     }

@@ -81,15 +81,15 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
     let most_visits = most_visits.max(MOST_VISITS);
     let most_sweeps = SHORT_SWEEPS * most_visits / count.max(1);
     motion.visits.begin(patches, motion.bodies.len());
-    let mut search = Search::default();
+    let (mut sweeps, mut left_m_s) = (0, 0.0);
     let (mut steps, mut is_tried, mut between) = (0, false, VISITS_BETWEEN * count);
     let mut next = motion.alone;
-    while search.sweeps < most_sweeps && motion.visits.count < most_visits {
-        search.left_m_s = sweep(patches, motion, time_s, search.sweeps);
-        if search.left_m_s == 0.0 {
+    while sweeps < most_sweeps && motion.visits.count < most_visits {
+        left_m_s = sweep(patches, motion, time_s, sweeps);
+        if left_m_s == 0.0 {
             break;
         }
-        search.sweeps += 1;
+        sweeps += 1;
         if std::mem::take(&mut is_tried) && !newton.gains(patches, motion) {
             newton.take_back(patches, motion, time_s);
             between *= PATIENCE;
@@ -104,7 +104,7 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
             (steps, is_tried, next) = (steps + 1, true, motion.visits.count + between);
         }
     }
-    search
+    Search { visits: motion.visits.count, left_m_s }
 }
 
 /// A sweep over all patches that are to be visited, to and fro by turns; the largest change of a slip [m/s].
