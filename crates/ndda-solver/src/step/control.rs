@@ -6,9 +6,12 @@
 //! factorisation per distinct block, once per n.
 //!
 //! The balance of energy costs more than a step, so it is evaluated only after steps that may have gained more than they are
-//! allowed. Explicit contact takes its force f at x*, halfway between two places; where f is linear, the work f·Δx differs from what
-//! contact stores by ¼ (ω_c Δt)² f·Δx, and a first contact stores at most ⅛ (ω_c Δt)² m v² before its force has acted
-//! (`Simulation::may_collide_with`). h bounds ω_c Δt, and the work of contact is known from the ledger.
+//! allowed. Explicit contact takes its force f at x*, near the middle x + ½ Δx of a step; where f is linear, the work f·Δx differs from what
+//! contact stores by e·K Δx with e = x* − x − ½ Δx. That is at most √(Σ s e²) √(Σ s Δx²), s being the row sums of |K|, and, as e is
+//! ¼ Δt² times the acceleration, ¼ (ω_c Δt)² f·Δx where contact alone accelerates: the former is small where loads change slowly, the latter where
+//! blocks move together. A first contact stores at most ⅛ (ω_c Δt)² m v² before its force has acted
+//! (`Simulation::may_collide_with`). h bounds ω_c Δt, and the work of contact is known from the ledger. Where blocks vibrate in contact, such bounds are
+//! hundreds of times what a step gains: what part of them steps gain is learnt where the balance is evaluated.
 
 use crate::bodies::step_damping::StepDamping;
 use crate::diagnostics::ledger::Ledger;
@@ -16,7 +19,7 @@ use crate::error::StepError;
 use crate::linear::linear_solver::{Factor, LinearSolver};
 use crate::step::Simulation;
 use crate::step::report::StepReport;
-use crate::step::state::State;
+use crate::step::state::{State, StepState};
 
 /// When a step is too long.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,8 +46,29 @@ const COOLDOWN_STEPS: u32 = 100;
 /// Steps after which the balance of energy is evaluated in any case, for errors that are not of contact: at 1e-4 a step, as steps may
 /// gain by default, these make less than the 2 % of energy that an accurate run may be off.
 const BALANCED_STEPS: u64 = 128;
-/// How far ¼ h² f·Δx, the error of a linear force, may fall short of that of any other.
+/// How far the error of a linear force may fall short of that of any other.
 const NONLINEAR: f64 = 2.0;
+/// How many times the part of the bound that steps lately gained the next ones may gain, as long as the bound does not grow.
+const LEARNT: f64 = 3.0;
+/// Growth of the bound with which what was learnt at another one does not count.
+const GROWTH: f64 = 4.0;
+/// What is left of what was learnt, at each balance that is taken.
+const KEPT: f64 = 0.5;
+
+impl StepState {
+    /// Whether a step whose gain is bounded by so many times what it may gain may have gained more, by what is known of earlier ones.
+    fn expects(&self, excess: f64) -> bool {
+        excess > 1.0 && (excess > GROWTH * self.checked_excess || LEARNT * self.gained_part * excess > 1.0)
+    }
+
+    /// Takes over what a step with this bound gained or lost, over what it may gain.
+    fn learn(&mut self, excess: Option<f64>, gained: f64) {
+        if let Some(excess) = excess.filter(|excess| *excess > 0.0 && excess.is_finite()) {
+            self.checked_excess = excess.max(KEPT * self.checked_excess);
+            self.gained_part = (gained / excess).max(KEPT * self.gained_part);
+        }
+    }
+}
 
 /// Memory of the control.
 pub(crate) struct Control {
@@ -168,25 +192,50 @@ impl Simulation {
                 return Err(Rejection::TooLong(times));
             }
         }
-        if self.state.control.energy_check_cooldown > 0 || !self.may_have_gained(&control.settings, &worst) {
+        let excess = self.excess(&control.settings, &worst);
+        if self.state.control.energy_check_cooldown > 0 || !self.may_have_gained(&control.settings, excess) {
             return Ok(worst);
         }
         let gain = self.gain_of_step(control).map_err(Rejection::Failed)?;
+        self.state.control.learn(excess, gain.abs() / control.settings.energy);
         if gain > control.settings.energy { Err(Rejection::Energy(gain)) } else { Ok(worst) }
     }
 
-    /// Whether the step just done may have gained more energy than it is allowed, by what is known without an evaluation of it.
-    fn may_have_gained(&mut self, settings: &AutoStep, report: &StepReport) -> bool {
+    /// The most energy that linear contact may have gained in the step just done, over what a step may gain; none where nothing is known.
+    fn excess(&self, settings: &AutoStep, report: &StepReport) -> Option<f64> {
+        if self.contact_bound().is_none() || !self.weights.forces_do_their_work() {
+            return None;
+        }
         let limit_j = settings.energy * self.audit.ledger.peak_energy_j();
-        let Some(bound) = self.contact_bound().filter(|_| self.weights.forces_do_their_work()) else {
-            return true;
-        };
+        let gained_j = 0.25 * report.h * report.h * report.contact_work_j;
+        if NONLINEAR * gained_j <= limit_j {
+            return Some(0.0);
+        }
+        Some(NONLINEAR * gained_j.min(self.contact_work_error_j()) / limit_j)
+    }
+
+    /// Whether the step just done may have gained more energy than it is allowed, by what is known without an evaluation of it.
+    fn may_have_gained(&mut self, settings: &AutoStep, excess: Option<f64>) -> bool {
+        let (Some(excess), Some(bound)) = (excess, self.contact_bound()) else { return true };
         let is_due = self.state.step.is_multiple_of(BALANCED_STEPS) || self.state.control.halvings > 0;
-        if is_due || !self.state.contact.bonds.is_empty() {
+        if is_due || !self.state.contact.bonds.is_empty() || self.state.control.expects(excess) {
             return true;
         }
-        let gained_j = 0.25 * report.h * report.h * report.contact_work_j;
-        NONLINEAR * gained_j > limit_j || self.may_collide_with(settings.safety * bound, limit_j)
+        let limit_j = settings.energy * self.audit.ledger.peak_energy_j();
+        self.may_collide_with(settings.safety * bound, limit_j)
+    }
+
+    /// √(Σ s e²) √(Σ s Δx²): by how much the work of linear contact in the step just done may differ from what it stores, if anything touched [J].
+    fn contact_work_error_j(&self) -> f64 {
+        let places = self.scratch.contact_position.iter().zip(&self.state.position);
+        let (mut off_j, mut moved_j) = (0.0, 0.0);
+        for ((x_star, x), (moved, s)) in
+            places.zip(self.scratch.moved.iter().zip(&self.scratch.contact_stiffness))
+        {
+            off_j += s * (x_star - x + 0.5 * moved).norm_squared();
+            moved_j += s * moved.norm_squared();
+        }
+        (off_j * moved_j).sqrt()
     }
 
     /// Energy that the step just done gained, over the largest so far.
@@ -263,5 +312,26 @@ impl Simulation {
             let Some(factor) = shape.factor.as_deref() else { continue };
             body.renew_scratch(factor, shape.filter.as_deref());
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_is_expected_to_gain_what_the_bound_says_until_steps_like_it_have_gained_less() {
+        let mut state = StepState::default();
+        assert!(!state.expects(0.5) && state.expects(1.5));
+        state.learn(Some(100.0), 0.01);
+        assert!(!state.expects(100.0) && !state.expects(399.0));
+        assert!(state.expects(401.0), "it grew");
+        state.learn(Some(100.0), 0.5);
+        assert!(state.expects(100.0), "three times as much would be too much");
+        assert!(!state.expects(0.9));
+        let learnt = state;
+        state.learn(Some(f64::INFINITY), 1.0);
+        state.learn(None, 1.0);
+        assert_eq!(state, learnt);
     }
 }

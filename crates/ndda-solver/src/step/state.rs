@@ -48,7 +48,7 @@ impl State {
 }
 
 /// State of step control; part of the state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepState {
     /// n: a step is done in 2ⁿ parts.
     pub halvings: u32,
@@ -58,4 +58,8 @@ pub struct StepState {
     pub(super) relax_streak: u32,
     /// Steps that still skip the energy criterion.
     pub(super) energy_check_cooldown: u32,
+    /// The most that a step may have gained by what is known without its balance of energy, over what it may gain: about the largest where the balance was taken lately.
+    pub(super) checked_excess: f64,
+    /// Part of such a bound that a step gained or lost there, about the largest.
+    pub(super) gained_part: f64,
 }
