@@ -75,6 +75,11 @@ struct Solved {
 
 /// The friction of all patches, which is that of each looked at alone where the search has ended.
 fn solved(tolerance: f64) -> Solved {
+    solved_with(tolerance, stage::VISITS_ALONE)
+}
+
+/// The same, with so many visits of each patch before Newton's method.
+fn solved_with(tolerance: f64, alone: usize) -> Solved {
     let (start, mut end, mut nodal) = (bodies(), bodies(), Nodal::default());
     nodal.begin(start.len());
     let found = patches();
@@ -94,7 +99,7 @@ fn solved(tolerance: f64) -> Solved {
         dt_s: DT_S,
         is_iterated: false,
         visits: &mut Visits::default(),
-        alone: stage::VISITS_ALONE * coupled.len(),
+        alone: alone * coupled.len(),
     };
     let search = solve(&mut coupled, &start, (&mut motion, &mut Newton::default()));
     let slight = summaries.iter().filter(|summary| summary.is_slight()).count();
@@ -125,11 +130,11 @@ fn newtons_method_ends_within_eight_steps_of_each_stage() {
     assert!(each > alone && each <= alone + 32.0, "{each} visits of each patch in both stages");
 }
 
-/// Rounding alone is more than such a tolerance.
+/// Rounding alone is more than such a tolerance, and visits of one patch after the other come nearer by a part each time.
 #[test]
 fn a_search_that_ends_before_friction_is_found_tells_how_much_it_still_changed() {
-    let search = solved(1e-18).search;
-    assert!(search.left_m_s > 0.0 && search.left_m_s < 1e-12, "{search:?}");
+    let search = solved_with(1e-18, usize::MAX / 1000).search;
+    assert!(search.left_m_s > 0.0 && search.left_m_s < 1e-6, "{search:?}");
 }
 
 /// The reference has no slight patches, and a hundred thousandth of the tolerance.
