@@ -98,9 +98,9 @@ struct Oscillation {
 /// Steps between looks at how far blocks have gone.
 const LOOK: u64 = 100;
 
-/// Error of friction over that of speeds, and the largest, which is where blocks still fall.
-const FRICTION: f64 = 0.1;
-const MOST_FRICTION: f64 = 3e-3;
+/// Error of friction over the speed, and the largest, which is where blocks still fall.
+const FRICTION: f64 = 0.01;
+const MOST_FRICTION: f64 = 1e-3;
 
 /// Weight of the previous peak one oscillation later: a small one may be chance, many in a row are not.
 const REMEMBERED: f64 = 0.7;
@@ -363,10 +363,10 @@ impl Progress {
     }
 }
 
-/// Part of the largest friction on a block that a change of friction may be that does not matter: the error of friction is then small beside what still
-/// moves, and as small beside the loads as the speed at which the scene is at rest is beside the largest.
+/// Part of the largest friction on a block that a change of friction may be that does not matter: a hundredth of the speed over the largest, which may be what loads
+/// bring in a single step, so that errors of friction do not keep up what moves.
 fn settling_friction(settle: &Settle, settled: &Settled) -> f64 {
-    (FRICTION * settled.speed_ratio).min(MOST_FRICTION).max(settle.tolerance)
+    (FRICTION * settled.speed_ratio.max(settle.tolerance)).min(MOST_FRICTION)
 }
 
 /// Speed of an energy over that of another.
