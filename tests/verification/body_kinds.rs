@@ -170,7 +170,7 @@ fn a_fixed_block_has_no_unknowns_bears_its_load_and_goes_where_it_is_told_to() {
 fn supports_that_a_kind_of_body_cannot_have_are_refused_by_name() {
     for (body, support, word) in [
         ("Rigid", "on: Set(\"z_min\"), hold: Fixed", "rigid"),
-        ("Fixed", "on: Set(\"z_min\"), hold: Fixed", "as a whole"),
+        ("Fixed", "on: Set(\"z_min\"), hold: Fixed", "held already"),
         ("Affine", "on: Set(\"z_min\"), hold: Motion([(time_s: 0, displacement_m: (0, 0, 0))])", "affine"),
     ] {
         let text = format!(

@@ -128,7 +128,7 @@ pub enum FileProblem {
     #[error("holds no faces: save a surface of triangles or polygons")]
     NoFaces,
     /// A surface with edges of one face only, or of faces that disagree.
-    #[error("the surface is not closed: at {count} edges no face joins that runs them the other way, the first {edges}; \
+    #[error("the surface is not closed: {count} edges have a face on one side only, or two that face opposite ways, the first {edges}; \
              close the holes, and turn all faces outward{}", if *count > 4 { ", or weld at a larger tolerance" } else { "" })]
     Open {
         /// How many edges.

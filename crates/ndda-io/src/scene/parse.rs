@@ -145,6 +145,7 @@ fn is_of_types(error: &RonError) -> bool {
             | RonError::IntegerOutOfBounds
             | RonError::ExpectedString
             | RonError::ExpectedBoolean
+            | RonError::SuggestRawIdentifier(_)
     )
 }
 

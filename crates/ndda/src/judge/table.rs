@@ -24,6 +24,10 @@ pub fn ending(summary: &Summary) -> String {
     };
     text.extend(summary.chosen.iter().map(|chosen| format!("{chosen}\n")));
     text.extend(summary.stages.iter().map(|end| format!("{}\n", stage(end))));
+    if summary.steps == 0 && summary.label.word == LabelWord::Stopped {
+        // Nothing was computed that could be said.
+        return text;
+    }
     text.extend(summary.motion.as_ref().map(moved));
     text.push_str(&bolts(&summary.bolts.0));
     text.push_str(&error(summary));

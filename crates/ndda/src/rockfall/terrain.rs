@@ -12,6 +12,8 @@ use super::classes::Classes;
 const LEAST_STEP_M: f64 = 1e-3;
 /// Coordinates beyond this are none of a map in metres [m].
 const MOST_M: f64 = 1e9;
+/// Steepest ground: heights of neighbours that differ by more times their distance stand for something else.
+const STEEPEST: f64 = 500.0;
 /// No height of ground is as large [m].
 const MOST_HEIGHT_M: f64 = 1e5;
 
@@ -68,8 +70,11 @@ impl Terrain {
                 "no cell of the grid has a height at all four corners: give a grid with fewer gaps".into()
             );
         }
-        terrain.zones = terrain.zones_of(zones, classes);
-        Ok(terrain)
+        let held = terrain.find_zones(zones, classes);
+        match held.iter().position(|held| !held) {
+            Some(empty) => Err(terrain.holds_nothing(&zones[empty])),
+            None => Ok(terrain),
+        }
     }
 
     /// Cells along x and y.
@@ -159,14 +164,14 @@ impl Terrain {
         known.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(*z), b.max(*z)))
     }
 
-    /// The last zone whose outline the middle of a triangle is in, or of whose class its cell is.
-    fn zones_of(&self, zones: &[Zone], classes: Option<&Classes>) -> Vec<[u16; 2]> {
+    /// The last zone whose outline the middle of a triangle is in, or of whose class its cell is. Returns whether each zone has some triangle.
+    fn find_zones(&mut self, zones: &[Zone], classes: Option<&Classes>) -> Vec<bool> {
         let [nx, ny] = self.cells();
-        let mut found = vec![[0; 2]; nx * ny];
-        if zones.is_empty() {
-            return found;
-        }
+        let (mut found, mut held) = (vec![[0; 2]; nx * ny], vec![false; zones.len()]);
         for (k, zones_of_cell) in found.iter_mut().enumerate() {
+            if zones.is_empty() {
+                break;
+            }
             let (i, j) = ((k % nx) as f64, (k / nx) as f64);
             for (half, [u, v]) in [[2.0 / 3.0, 1.0 / 3.0], [1.0 / 3.0, 2.0 / 3.0]].into_iter().enumerate() {
                 let middle = self.map_m([i + u, j + v]);
@@ -176,11 +181,24 @@ impl Terrain {
                     Some(class) => zone.classes.contains(&class),
                     None => false,
                 };
-                let last = zones.iter().rposition(holds);
-                zones_of_cell[half] = last.map_or(0, |place| place as u16 + 1);
+                for (place, _) in zones.iter().enumerate().filter(|(_, zone)| holds(zone)) {
+                    zones_of_cell[half] = place as u16 + 1;
+                    held[place] = true;
+                }
             }
         }
-        found
+        self.zones = found;
+        held
+    }
+
+    /// That a zone is not on the terrain.
+    fn holds_nothing(&self, zone: &Zone) -> String {
+        let [west, south] = self.origin_m;
+        let [east, north] = self.map_m(self.size.map(|count| count.saturating_sub(1) as f64));
+        format!(
+            "zone `{}` is nowhere on the terrain, which reaches from ({west}, {south}) to ({east}, {north}) m: check its outline, or the coordinates of class_grid and origin_m",
+            zone.name
+        )
     }
 }
 
@@ -203,6 +221,21 @@ fn sound(grid: &TerrainGrid) -> Result<(), String> {
             let [x, y] = [origin_m[0] + i as f64 * step_m[0], origin_m[1] + j as f64 * step_m[1]];
             return Err(format!(
                 "the height at ({x}, {y}) is {z:e} m, and no ground is: if it stands for a missing one, say so in the file (NODATA_value), else write metres"
+            ));
+        }
+        let too_steep = |i: &usize| {
+            let [z, beside, before] =
+                [Some(&row[*i]), row.get(i + 1), j.checked_sub(1).and_then(|below| heights_m[below].get(*i))]
+                    .map(|z| z.copied().flatten());
+            let jump = |other: Option<f64>, step_m: f64| {
+                z.zip(other).is_some_and(|(a, b)| (a - b).abs() > STEEPEST * step_m)
+            };
+            jump(beside, step_m[0]) || jump(before, step_m[1])
+        };
+        if let Some(i) = (0..row.len()).find(too_steep) {
+            let [x, y] = [origin_m[0] + i as f64 * step_m[0], origin_m[1] + j as f64 * step_m[1]];
+            return Err(format!(
+                "the ground at ({x}, {y}) is {STEEPEST} times as steep as 45° or more: if a height there stands for a missing one, say so in the file (NODATA_value)"
             ));
         }
     }

@@ -209,6 +209,7 @@ fn in_words(error: &RonError) -> String {
         RonError::ExpectedInteger | RonError::IntegerOutOfBounds => "expected a whole number",
         RonError::ExpectedString => "expected a text in quotes",
         RonError::ExpectedIdentifier => "expected one of the choices by its name",
+        RonError::SuggestRawIdentifier(_) => "expected one of the choices by its name, or another field",
         RonError::ExpectedBoolean => "expected true or false",
         RonError::ExpectedArray => "expected a list, which begins with `[`",
         RonError::ExpectedArrayEnd => "expected a comma, or the `]` that ends the list",
@@ -265,9 +266,9 @@ fn grammar(error: &RonError, text: &str, at: usize) -> (Code, String, &'static s
             Code::WrongType,
             "write a number, such as 1.5 or 20e9, one with its unit, such as Megapascal(20), or an expression, Calc(2 * width_m)",
         ),
-        RonError::ExpectedIdentifier | RonError::ExpectedDifferentLength { .. } => {
-            (Code::WrongType, REFERENCE)
-        }
+        RonError::ExpectedIdentifier
+        | RonError::SuggestRawIdentifier(_)
+        | RonError::ExpectedDifferentLength { .. } => (Code::WrongType, REFERENCE),
         RonError::ExpectedArray => (Code::WrongType, "a list is written as [first, second]"),
         RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_) => {
             (Code::WrongType, "write a vector as (0, 0, -9.8), and fields as (name: value, name: value)")
