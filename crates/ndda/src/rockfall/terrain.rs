@@ -235,7 +235,7 @@ fn sound(grid: &TerrainGrid) -> Result<(), String> {
         if let Some(i) = (0..row.len()).find(too_steep) {
             let [x, y] = [origin_m[0] + i as f64 * step_m[0], origin_m[1] + j as f64 * step_m[1]];
             return Err(format!(
-                "the ground at ({x}, {y}) is {STEEPEST} times as steep as 45° or more: if a height there stands for a missing one, say so in the file (NODATA_value)"
+                "heights beside ({x}, {y}) differ by more than {STEEPEST} times their distance, and no ground is so steep: if one stands for a missing height, say so in the file (NODATA_value)"
             ));
         }
     }
@@ -328,7 +328,8 @@ mod tests {
             let ground = Ground::Heights { origin_m: [origin, 0.0], step_m: [step; 2], heights_m };
             Terrain::new(&ground, Path::new("."), (&[], None)).err().unwrap_or_default()
         };
-        assert_eq!(refused(1e7, 1.0, -9999.0), "");
+        assert_eq!(refused(1e7, 1.0, -99.0), "");
+        assert!(refused(0.0, 1.0, -9998.0).contains("no ground is so steep"));
         assert!(refused(0.0, 2.0, -3.4028235e38).contains("at (0, 2) is -3.4028235e38 m"));
         assert!(refused(1e18, 2.0, 0.0).contains("origin_m"));
         assert!(
