@@ -95,6 +95,7 @@ pub(crate) fn entry(scene: &Scene, name: &str) -> usize {
 ///
 /// # Errors
 /// Rows of bolts that meet no block.
+#[cfg(feature = "plots")]
 pub(crate) fn lines(scene: &Scene, blocks: &BlockSet) -> Result<Vec<[Vec3; 2]>, Vec<Fault>> {
     Ok(bolts(scene, blocks, 0)?.into_iter().map(|bolt| [bolt.from_m, bolt.to_m]).collect())
 }
