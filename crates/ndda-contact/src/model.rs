@@ -25,8 +25,8 @@ pub struct ContactInput<'a> {
     pub is_iterated: bool,
     /// Whether only normal forces and stiffness are asked for: friction that acts on velocities may be left out.
     pub without_friction: bool,
-    /// Change of friction that does not matter, as a part of the largest on a block, where the way of the blocks does not matter, as while they come to rest;
-    /// zero where it does.
+    /// Tolerance of friction, as a fraction of the largest on a block, where only the final rest counts, as while a scene settles; zero where the motion itself
+    /// counts.
     pub friction_tolerance: f64,
 }
 

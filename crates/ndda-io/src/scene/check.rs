@@ -62,6 +62,11 @@ pub(crate) fn problems(scene: &Scene, folder: Option<&Path>) -> Vec<Diagnostic> 
     check.found
 }
 
+/// Length of a vector.
+fn length(vector: &[f64; 3]) -> f64 {
+    vector.iter().map(|x| x * x).sum::<f64>().sqrt()
+}
+
 struct Check<'a> {
     scene: &'a Scene,
     found: Vec<Diagnostic>,
@@ -104,7 +109,7 @@ impl Check<'_> {
     fn gravity(&mut self) {
         let gravity = self.scene.gravity_m_s2;
         self.numbers("gravity_m_s2", &gravity);
-        let size = gravity.iter().map(|g| g * g).sum::<f64>().sqrt();
+        let size = length(&gravity);
         if (MUCH_GRAVITY..HUGE).contains(&size) {
             let message = format!("{size} m/s² is {:.0} times the gravity of the Earth", size / 9.81);
             let help = "the unit is m/s²: (0, 0, -9.81); leave it so for a model in a centrifuge";
@@ -140,7 +145,7 @@ impl Check<'_> {
     }
 
     fn direction(&mut self, path: String, value: &[f64; 3]) {
-        let length = value.iter().map(|v| v * v).sum::<f64>().sqrt();
+        let length = length(value);
         if !(length > 0.0 && length.is_finite()) {
             self.report(
                 Code::NoDirection,

@@ -106,12 +106,11 @@ fn types_of<T: DeserializeOwned>(mut plain: Resolved, text: &str, tree: &Node) -
             break;
         }
         let shape = locate::tree(&plain.text);
-        let stops = words::offset(&plain.text, &error.span.start);
-        let at = stops + (plain.text[stops..].len() - plain.text[stops..].trim_start().len());
+        let at = words::after_blanks(&plain.text, words::offset(&plain.text, &error.span.start));
         // RON points at the closing bracket of a struct that lacks a field.
         let whole = is_missing.then(|| shape.closed_at(at)).flatten();
         let whole = whole.map_or(at..at, |node| node.span.clone());
-        // What is missing may be there with a mistake that is told.
+        // A field may be missing only because it was taken out with a mistake of its own.
         if !taken_out.iter().any(|earlier| whole.contains(&earlier.start)) {
             found.push(explain(&error, &plain, text, tree));
         }
@@ -151,9 +150,8 @@ fn is_of_types(error: &RonError) -> bool {
 
 /// Puts blanks in the place of an entry and its comma, so that all others stay where they are.
 fn take_out(plain: &mut String, entry: Range<usize>) {
-    let rest = &plain[entry.end..];
-    let comma = rest.len() - rest.trim_start().len();
-    let end = if rest[comma..].starts_with(',') { entry.end + comma + 1 } else { entry.end };
+    let comma = words::after_blanks(plain, entry.end);
+    let end = if plain[comma..].starts_with(',') { comma + 1 } else { entry.end };
     let blank = |c: char| if c == '\n' { "\n".into() } else { " ".repeat(c.len_utf8()) };
     let blanks: String = plain[entry.start..end].chars().map(blank).collect();
     plain.replace_range(entry.start..end, &blanks);

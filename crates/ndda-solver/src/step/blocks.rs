@@ -36,7 +36,7 @@ impl Simulation {
             dt_s: self.part_s,
             time_s: self.clock_s(0.0),
             end_s: self.clock_s(1.0),
-            settling_per_s: if self.settling_at_s.is_some() { 0.5 / self.problem.base_step_s } else { 0.0 },
+            settling_per_s: if self.settling.is_some() { 0.5 / self.problem.base_step_s } else { 0.0 },
             contact_position: &self.scratch.contact_position[range.clone()],
             contact_offset: self.state.contact_offset_of(BlockId(index as u32)),
             force,

@@ -32,7 +32,8 @@ impl Simulation {
 
     /// Time that loads and prescribed motions see, some steps ahead [s]: it stands still while a scene settles.
     pub(crate) fn clock_s(&self, ahead: f64) -> f64 {
-        self.settling_at_s.unwrap_or_else(|| self.steps_done(ahead) * self.problem.base_step_s)
+        self.settling
+            .map_or_else(|| self.steps_done(ahead) * self.problem.base_step_s, |settling| settling.at_s)
     }
 
     /// Δt [s], the longest where it is controlled.

@@ -141,7 +141,7 @@ impl Simulation {
             deformation: facet_velocity.is_none().then_some(&deformation as &dyn Deformation),
             is_iterated: facet_velocity.is_some(),
             without_friction: self.scratch.is_without_friction,
-            friction_tolerance: self.settling_friction,
+            friction_tolerance: self.settling.map_or(0.0, |settling| settling.friction_tolerance),
         };
         let mut output = ContactOutput {
             force: &mut force,

@@ -52,7 +52,7 @@ const NONLINEAR: f64 = 2.0;
 const LEARNT: f64 = 3.0;
 /// Growth of the bound with which what was learnt at another one does not count.
 const GROWTH: f64 = 4.0;
-/// What is left of what was learnt, at each balance that is taken.
+/// Factor by which what was learnt fades each time that the balance is evaluated.
 const KEPT: f64 = 0.5;
 
 impl StepState {

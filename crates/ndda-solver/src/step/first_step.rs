@@ -25,7 +25,7 @@ impl Simulation {
     /// Whether this is the first step, and one by a scheme of that kind. A scene that settled is on its course, with no load to carry all at
     /// once.
     fn needs_offset(&self) -> bool {
-        let is_settled = self.settling_at_s.is_some() || !self.state.start.is_empty();
+        let is_settled = self.settling.is_some() || !self.state.start.is_empty();
         let first = self.state.step == 0 && self.state.control.part == 0 && !is_settled;
         first
             && (self.contact.is_some() || self.has_bolts())

@@ -26,6 +26,7 @@ pub(crate) mod release;
 pub(crate) mod report;
 pub(crate) mod sample;
 pub(crate) mod settle;
+pub(crate) mod settling_step;
 pub(crate) mod setup;
 pub(crate) mod snapshot;
 pub(crate) mod stage;
@@ -52,6 +53,7 @@ use crate::step::control::Control;
 use crate::step::follower::Places;
 use crate::step::implicit_contact::Newton;
 use crate::step::loads::Loads;
+use crate::step::settling_step::SettlingStep;
 use crate::step::stage_state::StageState;
 use crate::step::state::State;
 use crate::step::travel::Travel;
@@ -76,10 +78,8 @@ pub struct Simulation {
     pub(crate) part_s: f64,
     pub(crate) weights: StepWeights,
     pub(crate) control: Option<Box<Control>>,
-    /// Time that loads and prescribed motions see while a scene settles [s].
-    pub(crate) settling_at_s: Option<f64>,
-    /// Change of friction that does not matter while a scene settles, as a part of the largest on a block; zero outside of settling.
-    pub(crate) settling_friction: f64,
+    /// What steps see while a scene settles; none otherwise.
+    pub(crate) settling: Option<SettlingStep>,
     /// What stages keep; none in a scene without them.
     pub(crate) stage: Option<Box<StageState>>,
     pub(crate) scratch: Scratch,

@@ -16,6 +16,7 @@ use crate::bodies::kind::BodyKind;
 use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::local_damping::LocalDamping;
+use crate::step::settling_step::SettlingStep;
 
 /// Damping on the way to rest.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -97,10 +98,6 @@ struct Oscillation {
 
 /// Steps between looks at how far blocks have gone.
 const LOOK: u64 = 100;
-
-/// Error of friction over the speed, and the largest, which is where blocks still fall.
-const FRICTION: f64 = 0.01;
-const MOST_FRICTION: f64 = 1e-3;
 
 /// Weight of the previous peak one oscillation later: a small one may be chance, many in a row are not.
 const REMEMBERED: f64 = 0.7;
@@ -201,7 +198,7 @@ impl Simulation {
         at_s: f64,
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<bool, StepError> {
-        self.settling_at_s = Some(at_s);
+        self.settling = Some(SettlingStep::new(at_s, 0.0));
         let Settling { settled, from, progress, .. } = settling;
         let extent_m = Aabb::around(from.iter()).diagonal();
         while settled.speed_ratio > settle.tolerance {
@@ -209,7 +206,8 @@ impl Simulation {
             if settled.steps == settle.most_steps || looks && self.farthest(from)[0].0 > extent_m {
                 return Err(self.not_settled(settled, from));
             }
-            self.settling_friction = settling_friction(settle, settled);
+            let speed_ratio = settled.speed_ratio.max(settle.tolerance);
+            self.settling = Some(SettlingStep::new(at_s, speed_ratio));
             settled.speed_ratio = progress.step(self)?;
             settled.steps += 1;
             if watch(settled).is_break() {
@@ -238,8 +236,7 @@ impl Simulation {
         let progress = Progress { moving_j, ..Progress::new(self, settle.damping) };
         let mut settling = Settling::new(self, progress, Vec::new());
         let came_to_rest = self.come_to_rest((settle, &mut settling), self.time_s(), watch)?;
-        self.settling_at_s = None;
-        self.settling_friction = 0.0;
+        self.settling = None;
         if !came_to_rest {
             return Ok(settling.settled);
         }
@@ -361,12 +358,6 @@ impl Progress {
         let steps = self.oscillation.longest as f64;
         self.highest_j.max(steps * steps * self.moving_j)
     }
-}
-
-/// Part of the largest friction on a block that a change of friction may be that does not matter: a hundredth of the speed over the largest, which may be what loads
-/// bring in a single step, so that errors of friction do not keep up what moves.
-fn settling_friction(settle: &Settle, settled: &Settled) -> f64 {
-    (FRICTION * settled.speed_ratio.max(settle.tolerance)).min(MOST_FRICTION)
 }
 
 /// Speed of an energy over that of another.

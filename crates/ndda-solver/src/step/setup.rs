@@ -125,8 +125,7 @@ impl Simulation {
             part_s: step_s,
             weights,
             control: None,
-            settling_at_s: None,
-            settling_friction: 0.0,
+            settling: None,
             stage: None,
             scratch: Scratch {
                 force: vec![Vec3::zeros(); nodes],

@@ -132,8 +132,7 @@ impl Simulation {
         self.state.acceleration.fill(Vec3::zeros());
         self.state.inertia.fill(Inertia::default());
         self.state.step = 0;
-        self.settling_at_s = None;
-        self.settling_friction = 0.0;
+        self.settling = None;
         self.place_loads_now();
         self.state.bolts.forget_work();
         self.audit.ledger = self.new_ledger((Vec3::zeros(), Vec3::zeros()));

@@ -21,7 +21,7 @@ const TIMED: Duration = Duration::from_millis(10);
 const FEWEST_STEPS: u64 = 3;
 /// A run that takes longer than this [s] is timed for `TIMED_LONGER`, and by its later steps: contacts and the rounds of friction grow.
 const LONG_S: f64 = 10.0;
-/// The same where several blocks rub against each other: in the first steps contacts bear little, and friction costs little.
+/// The same limit [s] for scenes in which several blocks have friction: in the first steps contacts carry little force, and the search for friction is short.
 const LONG_WITH_FRICTION_S: f64 = 1.0;
 const TIMED_LONGER: Duration = Duration::from_secs(1);
 /// A number in a table and its comma, on average [B].

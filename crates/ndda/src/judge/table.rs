@@ -25,7 +25,7 @@ pub fn ending(summary: &Summary) -> String {
     text.extend(summary.chosen.iter().map(|chosen| format!("{chosen}\n")));
     text.extend(summary.stages.iter().map(|end| format!("{}\n", stage(end))));
     if summary.steps == 0 && summary.label.word == LabelWord::Stopped {
-        // Nothing was computed that could be said.
+        // No step was done, so that there are no results to report.
         return text;
     }
     text.extend(summary.motion.as_ref().map(moved));
@@ -120,9 +120,11 @@ pub fn moved(motion: &Motion) -> String {
     let Motion { can_move, moved, farthest, farthest_m, speed_m_s, course } = motion;
     let course = match course {
         Course::AtRest => "at rest".to_string(),
-        // Its centre rests to the last figure that is shown.
-        Course::Moving if speed(*speed_m_s).starts_with("0.000") => "turning in place".to_string(),
-        Course::Moving => format!("moving at {}", speed(*speed_m_s)),
+        Course::Moving => match speed(*speed_m_s) {
+            // The centre of mass rests to the last figure that is shown.
+            none if none.starts_with("0.000") => "turning in place".to_string(),
+            speed => format!("moving at {speed}"),
+        },
         Course::Accelerating => format!("still accelerating, {}", speed(*speed_m_s)),
     };
     // A large block may go far by less than what counts, and may have only begun to slide.

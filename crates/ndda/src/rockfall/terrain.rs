@@ -70,7 +70,8 @@ impl Terrain {
                 "no cell of the grid has a height at all four corners: give a grid with fewer gaps".into()
             );
         }
-        let held = terrain.find_zones(zones, classes);
+        let held;
+        (terrain.zones, held) = terrain.zones_of(zones, classes);
         match held.iter().position(|held| !held) {
             Some(empty) => Err(terrain.holds_nothing(&zones[empty])),
             None => Ok(terrain),
@@ -164,14 +165,14 @@ impl Terrain {
         known.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), z| (a.min(*z), b.max(*z)))
     }
 
-    /// The last zone whose outline the middle of a triangle is in, or of whose class its cell is. Returns whether each zone has some triangle.
-    fn find_zones(&mut self, zones: &[Zone], classes: Option<&Classes>) -> Vec<bool> {
+    /// For both triangles of each cell, the last zone whose outline its middle is in, or of whose class its cell is; and whether each zone has some triangle.
+    fn zones_of(&self, zones: &[Zone], classes: Option<&Classes>) -> (Vec<[u16; 2]>, Vec<bool>) {
         let [nx, ny] = self.cells();
         let (mut found, mut held) = (vec![[0; 2]; nx * ny], vec![false; zones.len()]);
+        if zones.is_empty() {
+            return (found, held);
+        }
         for (k, zones_of_cell) in found.iter_mut().enumerate() {
-            if zones.is_empty() {
-                break;
-            }
             let (i, j) = ((k % nx) as f64, (k / nx) as f64);
             for (half, [u, v]) in [[2.0 / 3.0, 1.0 / 3.0], [1.0 / 3.0, 2.0 / 3.0]].into_iter().enumerate() {
                 let middle = self.map_m([i + u, j + v]);
@@ -187,8 +188,7 @@ impl Terrain {
                 }
             }
         }
-        self.zones = found;
-        held
+        (found, held)
     }
 
     /// That a zone is not on the terrain.
@@ -215,25 +215,25 @@ fn sound(grid: &TerrainGrid) -> Result<(), String> {
             "the grid reaches {far_m:e} m on the map: give coordinates in metres, and origin_m for the point that is (0, 0)"
         ));
     }
+    let place = |i: usize, j: usize| [origin_m[0] + i as f64 * step_m[0], origin_m[1] + j as f64 * step_m[1]];
+    let height = |i: usize, j: usize| *heights_m.get(j)?.get(i)?;
     for (j, row) in heights_m.iter().enumerate() {
         let is_wrong = |z: &Option<f64>| z.is_some_and(|z| !(-MOST_HEIGHT_M..MOST_HEIGHT_M).contains(&z));
         if let Some((i, z)) = row.iter().position(is_wrong).and_then(|i| Some((i, row[i]?))) {
-            let [x, y] = [origin_m[0] + i as f64 * step_m[0], origin_m[1] + j as f64 * step_m[1]];
+            let [x, y] = place(i, j);
             return Err(format!(
                 "the height at ({x}, {y}) is {z:e} m, and no ground is: if it stands for a missing one, say so in the file (NODATA_value), else write metres"
             ));
         }
-        let too_steep = |i: &usize| {
-            let [z, beside, before] =
-                [Some(&row[*i]), row.get(i + 1), j.checked_sub(1).and_then(|below| heights_m[below].get(*i))]
-                    .map(|z| z.copied().flatten());
-            let jump = |other: Option<f64>, step_m: f64| {
-                z.zip(other).is_some_and(|(a, b)| (a - b).abs() > STEEPEST * step_m)
+        let is_steep = |&i: &usize| {
+            let jumps = |other: Option<f64>, step_m: f64| {
+                row[i].zip(other).is_some_and(|(a, b)| (a - b).abs() > STEEPEST * step_m)
             };
-            jump(beside, step_m[0]) || jump(before, step_m[1])
+            jumps(height(i + 1, j), step_m[0])
+                || jumps(j.checked_sub(1).and_then(|below| height(i, below)), step_m[1])
         };
-        if let Some(i) = (0..row.len()).find(too_steep) {
-            let [x, y] = [origin_m[0] + i as f64 * step_m[0], origin_m[1] + j as f64 * step_m[1]];
+        if let Some(i) = (0..row.len()).find(is_steep) {
+            let [x, y] = place(i, j);
             return Err(format!(
                 "heights beside ({x}, {y}) differ by more than {STEEPEST} times their distance, and no ground is so steep: if one stands for a missing height, say so in the file (NODATA_value)"
             ));

@@ -106,11 +106,7 @@ impl LargestMotions {
 /// Whether forces can move a block: it is not fixed, and supports do not hold or drive all of its nodes.
 fn is_movable(simulation: &Simulation, block: BlockId) -> bool {
     let shape = simulation.shape(block);
-    match shape.kind {
-        BodyKind::Fixed => false,
-        BodyKind::Rigid => true,
-        _ => shape.factor.is_some(),
-    }
+    shape.kind == BodyKind::Rigid || shape.factor.is_some()
 }
 
 /// Distance from the mass centre to the farthest node at rest [m].

@@ -1,4 +1,4 @@
-//! What bolts carry over time, from the table of their pieces.
+//! The largest tension of each bolt over time, from `bolts.csv`.
 
 use std::path::Path;
 

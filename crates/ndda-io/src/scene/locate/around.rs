@@ -1,4 +1,4 @@
-//! What is around a byte of a text.
+//! The values of a scene around a byte of its text.
 
 use std::ops::Range;
 

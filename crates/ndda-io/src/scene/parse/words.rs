@@ -19,8 +19,7 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
     let byte = |offset: usize| plain.source(offset).min(text.len());
     // RON stops before the blank in front of what it does not like.
     let stops = byte(begins);
-    let blank = text[stops..].len() - text[stops..].trim_start().len();
-    let start = if stops + blank < text.len() { stops + blank } else { stops };
+    let start = Some(after_blanks(text, stops)).filter(|at| *at < text.len()).unwrap_or(stops);
     let span = start..byte(offset(&plain.text, &error.span.end)).max(start);
     let path = tree.path_at(start);
     let at = |code: Code, message: String| Diagnostic::error(code, path.clone(), message, Some(span.clone()));
@@ -286,6 +285,11 @@ fn grammar(error: &RonError, text: &str, at: usize) -> (Code, String, &'static s
 fn lowercase_first(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or(String::new(), |first| first.to_lowercase().chain(letters).collect())
+}
+
+/// The first byte from `at` on that is no blank.
+pub(super) fn after_blanks(text: &str, at: usize) -> usize {
+    text.len() - text[at..].trim_start().len()
 }
 
 /// Byte of a line and column, both from 1 and in characters.

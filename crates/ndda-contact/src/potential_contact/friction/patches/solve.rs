@@ -129,7 +129,7 @@ impl CoupledPatch {
 
     /// Adds what a force of this patch changes velocities by in some time.
     fn push(&self, motion: &mut Motion, force: &Vec3, time_s: f64) {
-        for (k, block) in [self.owner, self.target].into_iter().enumerate() {
+        for (k, block) in self.blocks().into_iter().enumerate() {
             let body = &mut motion.bodies[block.index()];
             let columns = motion.nodal.columns_mut().get_mut(block.index()).map_or(&mut [][..], |all| all);
             self.push_side(k, (body, columns), force, (time_s, time_s / motion.dt_s));
@@ -274,6 +274,11 @@ impl Motion<'_> {
 }
 
 impl CoupledPatch {
+    /// The blocks that touch in it.
+    fn blocks(&self) -> [BlockId; 2] {
+        [self.owner, self.target]
+    }
+
     /// Friction of this patch while that of the others stays; by how much its slip changed [m/s], zero where its friction changed by less than
     /// the tolerance.
     fn advance(&mut self, motion: &mut Motion, time_s: f64, is_first: bool) -> f64 {
@@ -299,7 +304,7 @@ impl CoupledPatch {
         if change.amax() <= self.tolerance_n {
             return 0.0;
         }
-        motion.visits.push([self.owner, self.target]);
+        motion.visits.push(self.blocks());
         GAMMA * (self.flexibility * change).amax()
     }
 

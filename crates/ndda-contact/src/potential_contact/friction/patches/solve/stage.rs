@@ -29,8 +29,7 @@ pub(crate) fn visits_alone(patches: usize) -> usize {
 /// Which patches are to be visited: those of which a block was pushed by more than a tolerance since the last visit.
 #[derive(Default)]
 pub(crate) struct Visits {
-    /// Blocks of each patch, and when it was visited last.
-    blocks: Vec<[BlockId; 2]>,
+    /// When each patch was visited last.
     seen: Vec<u32>,
     /// When each block was pushed last.
     pushed: Vec<u32>,
@@ -40,11 +39,9 @@ pub(crate) struct Visits {
 }
 
 impl Visits {
-    fn begin(&mut self, patches: &[CoupledPatch], blocks: usize) {
-        self.blocks.clear();
-        self.blocks.extend(patches.iter().map(|patch| [patch.owner, patch.target]));
+    fn begin(&mut self, patches: usize, blocks: usize) {
         self.seen.clear();
-        self.seen.resize(patches.len(), 0);
+        self.seen.resize(patches, 0);
         self.pushed.clear();
         self.pushed.resize(blocks, 1);
         (self.now, self.count) = (1, 0);
@@ -55,9 +52,8 @@ impl Visits {
         self.seen.fill(0);
     }
 
-    /// Whether a patch is to be visited, which it then is.
-    fn visit(&mut self, patch: usize) -> bool {
-        let [owner, target] = self.blocks[patch];
+    /// Whether a patch between two blocks is to be visited, which it then is.
+    fn visit(&mut self, patch: usize, [owner, target]: [BlockId; 2]) -> bool {
         let is_due = self.pushed[owner.index()].max(self.pushed[target.index()]) > self.seen[patch];
         if is_due {
             self.now += 1;
@@ -80,7 +76,7 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
     let most_visits = if motion.is_iterated { ITERATED_VISITS_EACH } else { MOST_VISITS_EACH } * count;
     let most_visits = most_visits.max(MOST_VISITS);
     let most_sweeps = SHORT_SWEEPS * most_visits / count.max(1);
-    motion.visits.begin(patches, motion.bodies.len());
+    motion.visits.begin(count, motion.bodies.len());
     let (mut sweeps, mut left_m_s) = (0, 0.0);
     let (mut steps, mut is_tried, mut between) = (0, false, VISITS_BETWEEN * count);
     let mut next = motion.alone;
@@ -111,7 +107,7 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
 fn sweep(patches: &mut [CoupledPatch], motion: &mut Motion, time_s: f64, number: usize) -> f64 {
     let mut left_m_s: f64 = 0.0;
     let mut visit = |k: usize, patch: &mut CoupledPatch| {
-        if motion.visits.visit(k) {
+        if motion.visits.visit(k, patch.blocks()) {
             left_m_s = patch.advance(motion, time_s, number == 0).max(left_m_s);
         }
     };

@@ -27,7 +27,7 @@ struct Answer {
     found: Vec<Vec3>,
 }
 
-/// Where the sides of a patch are: block and place among its sides; none where a block does not move.
+/// For each of the two sides of a patch, its block and its index among the sides of that block; none where the block does not move.
 pub(super) type Places = [Option<(u32, u32)>; 2];
 
 /// The sides of all patches.
@@ -49,7 +49,7 @@ impl Coupling {
         self.answers.iter_mut().for_each(|answer| answer.sides.clear());
         for (row, patch) in (0..).zip(patches) {
             let mut places = [None; 2];
-            for (k, (block, place)) in [patch.owner, patch.target].into_iter().zip(&mut places).enumerate() {
+            for (k, (block, place)) in patch.blocks().into_iter().zip(&mut places).enumerate() {
                 let (body, answer) = (&bodies[block.index()], &mut self.answers[block.index()]);
                 let is_nodal = patch.sides[k].is_some();
                 if is_nodal || body.mass_kg.is_finite() {

@@ -1,0 +1,22 @@
+//! What a step sees while a scene settles.
+
+/// Tolerance of friction over the present speed relative to the largest, and its upper limit, which holds while blocks still fall.
+const FRICTION: f64 = 0.01;
+const MOST_FRICTION: f64 = 1e-3;
+
+/// What a step sees while a scene settles.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SettlingStep {
+    /// Time of loads and prescribed motions [s].
+    pub at_s: f64,
+    /// Change of friction that does not matter, as a fraction of the largest friction on a block.
+    pub friction_tolerance: f64,
+}
+
+impl SettlingStep {
+    /// A step at a time [s], with the present speed over the largest so far. That may be as little as loads bring in a single step, and errors of friction must not
+    /// keep blocks moving: friction is found to a hundredth of the speed.
+    pub(crate) fn new(at_s: f64, speed_ratio: f64) -> Self {
+        Self { at_s, friction_tolerance: (FRICTION * speed_ratio).min(MOST_FRICTION) }
+    }
+}
