@@ -68,7 +68,7 @@ pub fn of_safety(error: &SafetyError) -> u8 {
 pub fn of_rockfall(error: &RockfallError) -> u8 {
     match error {
         RockfallError::Scene(_) | RockfallError::NoRockfall => BAD_INPUT,
-        RockfallError::Folder { .. } => INPUT_OUTPUT,
+        RockfallError::Folder { .. } | RockfallError::Earlier(_) => INPUT_OUTPUT,
         RockfallError::Threads(_) => RESOURCE,
         RockfallError::Interrupted { .. } => INTERRUPTED,
         RockfallError::Write(error) => of_write(error),

@@ -296,3 +296,19 @@ fn bolts_are_drawn_with_a_scale_of_their_forces_and_of_a_scene_plainly() {
     let (code, _, said) = picture(&out, &["--frame", "1"]);
     assert!(code == exit::BAD_INPUT && said.contains("bolts_000001.vtu"), "{said}");
 }
+
+#[test]
+fn options_that_would_change_nothing_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = scene_in(folder.path(), 1);
+    let out = run_in(folder.path(), 1);
+    for (input, words, reason) in [
+        (&scene, ["--frame", "3"], "--frame is for the output folder of a run"),
+        (&scene, ["--magnify", "50"], "--magnify is for the output folder of a run"),
+        (&scene, ["--bolts", "plain"], "--bolts: there are no bolts"),
+        (&out, ["--bolts", "state"], "--bolts: there are no bolts"),
+    ] {
+        let (code, _, said) = picture(input, &words);
+        assert!(code == exit::BAD_INPUT && said.contains(reason), "{code} {said}");
+    }
+}

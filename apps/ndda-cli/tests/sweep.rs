@@ -226,3 +226,17 @@ fn a_probability_of_samples_without_a_value_is_unknown() {
     let result = json(&folder.path().join("out/fall_study/sweep.json"));
     assert!(result["groups"][0]["failure"].is_null(), "{result}");
 }
+
+#[test]
+fn a_field_that_no_scene_has_is_refused_before_the_first_case() {
+    let folder = folder();
+    for (vary, words) in [
+        ("time.stp_s=1e-3,5e-4", "time.stp_s: there is no field `stp_s`"),
+        ("time.step_s=Normal(1e-3)", "`Normal(1e-3)`: write Normal(mean, deviation), with numbers"),
+    ] {
+        let refused = ndda(folder.path(), &["study", "fall.ron", "--vary", vary, "--out", "s"]);
+        assert_eq!(refused.status.code(), Some(3), "{}", said(&refused));
+        assert_eq!(said(&refused).matches(words).count(), 1, "{}", said(&refused));
+        assert!(!folder.path().join("s").exists());
+    }
+}

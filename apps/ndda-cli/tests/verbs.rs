@@ -225,6 +225,7 @@ fn joints_that_cannot_be_tested_are_refused_with_what_to_change() {
         ),
         (&["joint", "--friction", "(friction_deg: 30)", "--constant-volume"], 3, "--joint-stiffness"),
         (&["joint", "--friction", "(friction_deg: 0)"], 3, "no strength"),
+        (&["joint", "--friction", "30"], 2, "write the law in brackets, as '(friction_deg: 30)'"),
         (&["joint", "--friction", "(friction_deg: 30)", "--amplitude", "-1"], 3, "above 0"),
         (&["joint", "--friction", "(friction_deg: 30)", "--amplitude", "0"], 3, "above 0"),
         (&["joint", "--example", "sliding_45_phi35", "--of", "bedding"], 3, "which has contact.friction"),
@@ -239,4 +240,42 @@ fn joints_that_cannot_be_tested_are_refused_with_what_to_change() {
         let (found, said) = refused(folder.path(), words);
         assert!(found == code && said.contains(reason), "{words:?}: {found}: {said}");
     }
+}
+
+/// A block that is pressed past the centroids of another in its first step.
+const STOPS: &str = r#"(title: "pressed in", time: (step_s: 1e-3, end_s: 0.1),
+    materials: [(name: "rock", young_pa: 2e10, poisson: 0.25, density_kg_m3: 2650)],
+    blocks: [
+        (name: "base", material: "rock", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+        (name: "cube", material: "rock", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, 1.1), velocity_m_s: (0, 0, -500)),
+    ],
+    contact: Potential(penalty_pa: 1e8), output: (frames: 0))"#;
+
+#[test]
+fn a_check_of_a_scene_whose_first_steps_stop_ends_as_the_run_does() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("s.ron"), STOPS).unwrap();
+    let (code, said) = refused(folder.path(), &["check", "s.ron"]);
+    assert!(code == 4 && said.contains("error: the run would stop in its first steps: "), "{code} {said}");
+    let (code, said) = refused(folder.path(), &["run", "s.ron"]);
+    assert_eq!(code, 4, "{said}");
+}
+
+#[test]
+fn a_rockfall_is_told_from_scenes_of_blocks_and_keeps_earlier_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/works/rockfall.ron");
+    let scene = scenes.to_str().unwrap();
+    for verb in ["mesh", "picture", "safety"] {
+        let (code, said) = refused(folder.path(), &[verb, scene]);
+        assert!(
+            code == 3 && said.contains("`ndda rockfall` lets its boulders fall"),
+            "{verb}: {code} {said}"
+        );
+    }
+    let words = ["rockfall", scene, "--count", "1", "--quiet", "--out", "a"];
+    said(folder.path(), &words);
+    let (code, told) = refused(folder.path(), &words);
+    assert!(code == 5 && told.contains("or replace them by --force"), "{code} {told}");
+    said(folder.path(), &[&words[..], &["--force"]].concat());
 }

@@ -88,7 +88,7 @@ pub fn blocks_and_rock(scene: &Scene, folder: &Path) -> Result<(BlockSet, Vec<Ro
 pub fn meshes(scene: &Scene, folder: &Path) -> Result<(Meshes, Vec<CutRock>), Vec<Fault>> {
     let (mut meshes, mut rocks, mut faults) = (Meshes::new(), Vec::new(), Vec::new());
     if scene.rockfall.is_some() {
-        let message = "this is a rockfall scene, without blocks: run it with `ndda rockfall`";
+        let message = "a rockfall scene has no blocks";
         return Err(vec![Fault::new("rockfall", message)]);
     }
     for (i, block) in scene.blocks.iter().enumerate() {

@@ -48,8 +48,8 @@ pub struct Checked<'a> {
     /// Where bolts are bonded.
     #[serde(skip_serializing_if = "BoltReports::is_empty")]
     pub bolts: BoltReports,
-    /// What a run will take; none where its first steps stop.
-    pub guess: Option<Guess>,
+    /// What a run will take.
+    pub guess: Guess,
 }
 
 impl fmt::Display for Checked<'_> {
@@ -68,6 +68,6 @@ impl fmt::Display for Checked<'_> {
         write!(f, "{}", self.bolts)?;
         self.records.iter().try_for_each(|record| write!(f, "\nrecord {record}"))?;
         self.chosen.iter().try_for_each(|chosen| write!(f, "\n{chosen}"))?;
-        self.guess.as_ref().map_or(Ok(()), |guess| write!(f, "\n{guess}"))
+        write!(f, "\n{}", self.guess)
     }
 }

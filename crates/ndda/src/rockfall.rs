@@ -66,6 +66,9 @@ pub enum RockfallError {
     /// A scene of blocks.
     #[error("the scene has no `rockfall`: `ndda run` runs scenes of blocks")]
     NoRockfall,
+    /// The folder has results.
+    #[error("{} has the results of an earlier rockfall: name another --out, or replace them by --force", .0.display())]
+    Earlier(PathBuf),
     /// The folder of the results cannot be made.
     #[error("cannot make the folder {}: {source}; name another --out", folder.display())]
     Folder {
@@ -103,6 +106,8 @@ pub struct Request {
     pub jobs: usize,
     /// Folder of the results.
     pub out: PathBuf,
+    /// Whether they replace those of an earlier rockfall.
+    pub force: bool,
 }
 
 /// Runs the rockfall of a scene and writes its results.
@@ -120,6 +125,9 @@ pub fn make(
     pool.install(|| {
         let model = Model::new(loaded, folder, (request.count, request.seed))?;
         let out = &request.out;
+        if !request.force && files::outcome(out).exists() {
+            return Err(RockfallError::Earlier(out.clone()));
+        }
         std::fs::create_dir_all(out)
             .map_err(|source| RockfallError::Folder { folder: out.clone(), source })?;
         let started = Instant::now();

@@ -107,6 +107,9 @@ pub enum SafetyError {
     /// A changed scene is none that can be built.
     #[error("{}", .0.render(false))]
     Scene(#[from] SceneErrors),
+    /// Boulders over terrain.
+    #[error("a rockfall scene has no blocks that stand or fail: `ndda rockfall` lets its boulders fall")]
+    Rockfall,
     /// There is no strength that could be reduced.
     #[error(
         "the scene has no friction, cohesion or tensile strength to reduce: give contact.friction, or use --by load or --by gravity"

@@ -176,6 +176,7 @@ pub fn draw(request: &Request, out: &Path) -> Result<Written, ViewError> {
     let is_animation = matches!(request.frames, Frames::Most(_));
     check_ending(out, is_animation)?;
     let film = read(request)?;
+    check_bolts(&film, request.look.bolts)?;
     let (asked, most) = (request.look.magnify, film.largest_factor());
     if asked > most && asked > 1.0 {
         return Err(ViewError::Magnify { asked, most });
@@ -245,9 +246,32 @@ fn read(request: &Request) -> Result<Film, ViewError> {
         (true, _) if !overrides.is_empty() => Err(ViewError::HasRun(input.clone())),
         (true, _) => from_run::read(input, *frames, colour.as_ref().unwrap_or(&Colour::Displacement)),
         (_, true) if crate::stereonet::is_table(input) => Err(ViewError::Table(input.clone())),
-        (_, true) if matches!(frames, Frames::Most(_)) => Err(ViewError::Still),
-        (_, true) => from_scene::read(input, overrides, colour.as_ref().unwrap_or(&Colour::Block)),
+        (_, true) => check_options_of_scene(request)
+            .and_then(|()| from_scene::read(input, overrides, colour.as_ref().unwrap_or(&Colour::Block))),
         _ => Err(ViewError::NoInput(input.clone())),
+    }
+}
+
+/// Refuses options that would change nothing in the picture of a scene.
+fn check_options_of_scene(request: &Request) -> Result<(), ViewError> {
+    match (request.frames, request.look.magnify) {
+        (Frames::Most(_), _) => Err(ViewError::Still),
+        (Frames::One(frame), _) if frame != FrameChoice::Auto => Err(ViewError::NotRun("--frame")),
+        (_, factor) if factor != 1.0 => Err(ViewError::NotRun("--magnify")),
+        _ => Ok(()),
+    }
+}
+
+/// Refuses colours of bolts that are not there, or that carry nothing before a run.
+fn check_bolts(film: &Film, asked: BoltColour) -> Result<(), ViewError> {
+    let says_forces = matches!(asked, BoltColour::Yield | BoltColour::State);
+    match asked {
+        BoltColour::Force => Ok(()),
+        _ if film.bolt_count() == 0 => Err(ViewError::Bolts("there are no bolts: leave it out")),
+        _ if says_forces && film.moments[0].time_s.is_none() => Err(ViewError::Bolts(
+            "bolts carry nothing before the run: choose plain or hidden, or name the output folder of a run",
+        )),
+        _ => Ok(()),
     }
 }
 

@@ -28,7 +28,7 @@ pub struct JointArgs {
     #[arg(long, value_name = "A,B", value_parser = pair, conflicts_with = "friction")]
     pub between: Option<(String, String)>,
     /// Test this law, written as contact.friction of a scene is.
-    #[arg(long, value_name = "LAW")]
+    #[arg(long, value_name = "LAW", value_parser = law)]
     pub friction: Option<String>,
     /// Which test.
     #[arg(long, value_enum, default_value_t = JointTestKind::Shear)]
@@ -75,6 +75,13 @@ pub enum JointTestKind {
 }
 
 /// Two names with a comma between them.
+fn law(text: &str) -> Result<String, String> {
+    match text.parse::<f64>() {
+        Ok(_) => Err(format!("write the law in brackets, as '(friction_deg: {text})'")),
+        Err(_) => Ok(text.into()),
+    }
+}
+
 fn pair(text: &str) -> Result<(String, String), String> {
     match text.split(',').map(str::trim).collect::<Vec<_>>()[..] {
         [a, b] if !a.is_empty() && !b.is_empty() => Ok((a.to_string(), b.to_string())),

@@ -43,7 +43,7 @@ pub struct RecordArgs {
     #[arg(long, value_name = "DEGREES", requires = "friction")]
     pub slope: Option<f64>,
     /// Friction angle of the block on the slope [°].
-    #[arg(long, value_name = "DEGREES")]
+    #[arg(long, value_name = "DEGREES", requires = "slope")]
     pub friction: Option<f64>,
     /// The record shakes along the slope, not horizontally.
     #[arg(long, requires = "slope")]

@@ -27,6 +27,9 @@ pub struct RockfallArgs {
     /// Output folder [default: out/ and the name of the scene].
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Replace the results of an earlier rockfall in the output folder.
+    #[arg(long)]
+    pub force: bool,
     /// Print nothing but errors and the answer.
     #[arg(long, short)]
     pub quiet: bool,

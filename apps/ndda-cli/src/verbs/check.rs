@@ -31,14 +31,18 @@ pub fn check(args: &CheckArgs) -> u8 {
     doubts.iter().for_each(|doubt| events.warn(doubt));
     let guess = cost::guess(&loaded.scene, &mut model.simulation);
     let file = input::file(&args.input);
-    let stops = guess.as_ref().err().map(|error| format!("the run would stop in its first steps: {error}"));
-    stops.iter().for_each(|stops| events.warn(stops));
+    let guess = match guess {
+        Ok(guess) => guess,
+        Err(error) => {
+            return events.fail(exit::STOPPED, &format!("the run would stop in its first steps: {error}"));
+        }
+    };
     let records = build::records(&loaded.scene, file.parent().unwrap_or(Path::new("")));
     let (simulation, blocks) = (&model.simulation, model.simulation.blocks());
     let checked = Checked {
         exit_code: exit::DONE,
         scene: &file,
-        warnings: loaded.warnings.len() + doubts.len() + usize::from(stops.is_some()),
+        warnings: loaded.warnings.len() + doubts.len(),
         blocks: blocks.len(),
         nodes: blocks.rest_position.len(),
         tets: blocks.tets.len(),
@@ -50,7 +54,7 @@ pub fn check(args: &CheckArgs) -> u8 {
         records: &records,
         rock: &model.rock,
         bolts: BoltReports::new(simulation),
-        guess: guess.ok(),
+        guess,
     };
     if args.write
         && let Err(reason) = choose::write(&file, &loaded.chosen)

@@ -25,7 +25,7 @@ pub fn rockfall(args: &RockfallArgs) -> u8 {
     }
     let file = input::file(&args.input);
     let (out, jobs) = (places::folder_for(args.out.as_deref(), &file, ""), args.jobs.map_or(0, usize::from));
-    let request = Request { out, file, count: args.count, seed: args.seed, jobs };
+    let request = Request { out, file, count: args.count, seed: args.seed, jobs, force: args.force };
     match make(loaded, &request, &interrupt::watch(), &complain_unless(args.quiet)) {
         Ok(outcome) if args.json => say(&format!("{:#}", json!(outcome))),
         Ok(outcome) => say(&format!("{outcome}results in {}", request.out.display())),

@@ -42,6 +42,9 @@ pub enum FileProblem {
     /// The file ends too early.
     #[error("the file ends where {0} was expected: it is truncated, save it again")]
     Truncated(String),
+    /// A header without a line that it needs.
+    #[error("the header has no line `{0}`: write it, or save the grid again as an ESRI ASCII grid")]
+    NoHeaderLine(&'static str),
     /// Something else than expected.
     #[error("expected {expected}, found `{found}`")]
     Unexpected {

@@ -67,12 +67,12 @@ fn grid(bytes: &[u8]) -> Result<TerrainGrid, Fault> {
     let (columns, rows) = (needed(header.columns, "ncols")?, needed(header.rows, "nrows")?);
     let count = columns.saturating_mul(rows);
     if count > MOST_HEIGHTS {
-        let what = format!("a grid of {columns} × {rows} heights, more than {MOST_HEIGHTS},");
+        let what = format!("a grid of {columns} × {rows} values, more than {MOST_HEIGHTS},");
         return Err(FileProblem::NotRead { what, cure: "resample it, or cut out the part you need" }.into());
     }
     // A height takes at least a digit and a space; the last one may lack the space.
     if count > (first.text.len() + lines.bytes_left()) as u64 / 2 + 1 {
-        return Err(FileProblem::TooShort { what: "heights", count }.into());
+        return Err(FileProblem::TooShort { what: "values", count }.into());
     }
     let mut heights_m = header.heights(first, lines, count as usize, columns as usize)?;
     heights_m.reverse();
@@ -97,7 +97,7 @@ impl Header {
     fn read<'a>(lines: &mut Lines<'a>) -> Result<(Self, Line<'a>), Fault> {
         let mut header = Self::default();
         loop {
-            let line = lines.expect("a row of heights")?;
+            let line = lines.expect("a row of values")?;
             let mut rest = line;
             let key = rest.word().unwrap_or_default();
             if parse::<f64>(key).is_some() {
@@ -115,7 +115,7 @@ impl Header {
                 b"dy" => header.step_m[1] = Some(step(&mut rest)?),
                 b"nodata_value" => header.no_data = Some(rest.number("a number")?),
                 _ => {
-                    let expected = "a height, or ncols, nrows, xllcorner, xllcenter, yllcorner, yllcenter, cellsize, dx, dy or \
+                    let expected = "a number, or ncols, nrows, xllcorner, xllcenter, yllcorner, yllcenter, cellsize, dx, dy or \
                                     NODATA_value";
                     return Err(Fault::unexpected(line.number, expected, key));
                 }
@@ -136,20 +136,20 @@ impl Header {
         for mut line in std::iter::once(first).chain(lines) {
             while let Some(word) = line.word() {
                 if heights.len() == count {
-                    let expected = format!("the end of the file after ncols × nrows = {count} heights");
+                    let expected = format!("the end of the file after ncols × nrows = {count} values");
                     return Err(Fault::unexpected(line.number, expected, word));
                 }
                 let is_missing =
                     parse::<f64>(word).is_some_and(|z| z == no_data || (z.is_nan() && no_data.is_nan()));
                 let height = real(word).filter(|_| !is_missing);
                 if height.is_none() && !is_missing {
-                    return Err(Fault::unexpected(line.number, "a height, finite", word));
+                    return Err(Fault::unexpected(line.number, "a finite number", word));
                 }
                 heights.push(height);
             }
         }
         if heights.len() < count {
-            return Err(Fault::truncated(format!("height {} of {count}", heights.len() + 1)));
+            return Err(Fault::truncated(format!("value {} of {count}", heights.len() + 1)));
         }
         Ok(heights.chunks(columns).map(<[_]>::to_vec).collect())
     }
@@ -164,8 +164,8 @@ impl Header {
     }
 }
 
-fn needed<T>(value: Option<T>, key: &str) -> Result<T, Fault> {
-    value.ok_or_else(|| Fault::truncated(format!("the line `{key}` of the header")))
+fn needed<T>(value: Option<T>, key: &'static str) -> Result<T, Fault> {
+    value.ok_or_else(|| FileProblem::NoHeaderLine(key).into())
 }
 
 fn extent(line: &mut Line) -> Result<u64, Fault> {
@@ -216,13 +216,13 @@ mod tests {
         for (from, to, part) in [
             ("ncols 3", "ncols 1", "a.asc:1: expected a whole number of at least 2"),
             ("cellsize 2", "cellsize 0 m", "a.asc:5: expected a width above 0, found `0`"),
-            ("cellsize 2", "cells 2", "a.asc:5: expected a height, or ncols"),
-            ("xllcorner 100\n", "", "the line `xllcorner` of the header"),
-            ("1 2 3", "1 2 x", "a.asc:8: expected a height, finite, found `x`"),
-            ("1 2 3", "1 2 inf", "a.asc:8: expected a height, finite, found `inf`"),
-            ("1 2 3", "1 2", "height 6 of 6"),
-            ("1 2 3", "1 2,5 3", "a.asc:8: expected the end of the file after ncols × nrows = 6 heights"),
-            ("ncols 3", "ncols 99", "promises 198 heights"),
+            ("cellsize 2", "cells 2", "a.asc:5: expected a number, or ncols"),
+            ("xllcorner 100\n", "", "the header has no line `xllcorner`: write it"),
+            ("1 2 3", "1 2 x", "a.asc:8: expected a finite number, found `x`"),
+            ("1 2 3", "1 2 inf", "a.asc:8: expected a finite number, found `inf`"),
+            ("1 2 3", "1 2", "value 6 of 6"),
+            ("1 2 3", "1 2,5 3", "a.asc:8: expected the end of the file after ncols × nrows = 6 values"),
+            ("ncols 3", "ncols 99", "promises 198 values"),
             ("ncols 3", "ncols 18446744073709551615", "resample it"),
         ] {
             let message = error(&GRID.replace(from, to));

@@ -121,10 +121,11 @@ impl Reader<'_> {
 
     fn parse(&self, text: &str, tree: &Node) -> Result<MaterialFile, Vec<Diagnostic>> {
         if tree.opening == Some('[') {
-            let materials = parse::parse_with(text, tree, self.parameters)?;
+            let materials =
+                parse::parse_with(text, tree, self.parameters).map_err(|mistakes| mistakes.found)?;
             return Ok(MaterialFile { include: Vec::new(), materials });
         }
-        parse::parse_with(text, tree, self.parameters)
+        parse::parse_with(text, tree, self.parameters).map_err(|mistakes| mistakes.found)
     }
 }
 

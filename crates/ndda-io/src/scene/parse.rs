@@ -77,26 +77,42 @@ pub(crate) fn parse_with<T: DeserializeOwned>(
     text: &str,
     tree: &Node,
     parameters: &Parameters,
-) -> Result<T, Vec<Diagnostic>> {
+) -> Result<T, Mistakes<T>> {
     refuse_not_finite(tree, text)?;
     types_of(units::resolve(text, tree, parameters), text, tree)
+}
+
+/// What is wrong with a text, and what the rest of it says where nothing but fields that do not exist is.
+pub(crate) struct Mistakes<T> {
+    pub(crate) found: Vec<Diagnostic>,
+    pub(crate) rest: Option<T>,
+}
+
+impl<T> From<Vec<Diagnostic>> for Mistakes<T> {
+    fn from(found: Vec<Diagnostic>) -> Self {
+        Self { found, rest: None }
+    }
 }
 
 /// Text of a study to types; the values that it sets stay as they are written, and are read with the scene.
 pub(crate) fn parse<T: DeserializeOwned>(text: &str, tree: &Node) -> Result<T, Vec<Diagnostic>> {
     refuse_not_finite(tree, text)?;
-    types_of(Resolved::unchanged(text), text, tree)
+    types_of(Resolved::unchanged(text), text, tree).map_err(|mistakes| mistakes.found)
 }
 
 /// A value of a text, or else its mistakes: fields that do not exist or are missing, and values of another type. Each is taken out of the
 /// text so that the next one can be found.
-fn types_of<T: DeserializeOwned>(mut plain: Resolved, text: &str, tree: &Node) -> Result<T, Vec<Diagnostic>> {
+fn types_of<T: DeserializeOwned>(mut plain: Resolved, text: &str, tree: &Node) -> Result<T, Mistakes<T>> {
     let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
     let (mut found, mut taken_out): (Vec<Diagnostic>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
+    let (mut rest, mut lacks_fields_only) = (None, true);
     while found.len() < MOST_MISTAKES {
         let error = match options.from_str(&plain.text) {
             Ok(value) if plain.errors.is_empty() && found.is_empty() => return Ok(value),
-            Ok(_) => break,
+            Ok(value) => {
+                rest = Some(value);
+                break;
+            }
             Err(error) => error,
         };
         let is_missing = matches!(error.code, RonError::MissingStructField { .. });
@@ -115,6 +131,7 @@ fn types_of<T: DeserializeOwned>(mut plain: Resolved, text: &str, tree: &Node) -
             found.push(explain(&error, &plain, text, tree));
         }
         let Some(entry) = shape.entry_around(whole.start).filter(|_| is_of_types(&error.code)) else { break };
+        lacks_fields_only &= is_unknown;
         take_out(&mut plain.text, entry.clone());
         taken_out.push(entry);
     }
@@ -128,7 +145,9 @@ fn types_of<T: DeserializeOwned>(mut plain: Resolved, text: &str, tree: &Node) -
     };
     found.extend(plain.errors.iter().filter(stands).cloned());
     sort(&mut found);
-    Err(found)
+    // Where more than fields is missing, paths lead elsewhere.
+    let rest = rest.filter(|_| lacks_fields_only && plain.errors.is_empty());
+    Err(Mistakes { found, rest })
 }
 
 /// Whether a mistake is one of a field or a value, after which the rest of the text can still be read.
@@ -229,6 +248,18 @@ mod tests {
         assert_eq!(
             mistakes("step_s: 1e-3, end_s: 1", "poisson: \"0.2\"", ""),
             ["materials[0].poisson wrong-type", "blocks[0].shape missing-field"]
+        );
+    }
+
+    #[test]
+    fn values_out_of_range_are_told_beside_fields_that_do_not_exist() {
+        assert_eq!(
+            mistakes("step_s: -1e-3, end_s: 1", "poison: 0.2, poisson: 0.7", "cells: (1, 1, 1)"),
+            [
+                "time.step_s out-of-range",
+                "materials[0].poison unknown-field",
+                "materials[0].poisson out-of-range"
+            ]
         );
     }
 }

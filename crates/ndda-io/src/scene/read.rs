@@ -6,11 +6,11 @@ use crate::scene::check;
 use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors, Severity};
 use crate::scene::include;
-use crate::scene::locate;
+use crate::scene::locate::{self, Node};
 use crate::scene::overrides;
 use crate::scene::parameter_values;
+use crate::scene::parse::{Mistakes, label_of, locate_all, parse_with, place, refuse_blank, sort};
 pub use crate::scene::parse::{is_standard_input, text_of};
-use crate::scene::parse::{label_of, locate_all, parse_with, place, refuse_blank, sort};
 use crate::scene::renamed;
 pub use crate::scene::suggest::{nearest, suggest};
 use crate::scene::{Contact, Scene, is_unset};
@@ -53,8 +53,11 @@ impl LoadedScene {
 
     /// An error about the value at `path`, with its place in the text.
     pub fn diagnose(&self, path: &str, message: String) -> Diagnostic {
-        let found = self.diagnose_as(Code::CannotBuild, path, message);
-        found.with_help("`ndda mesh` measures and draws the blocks as they are placed")
+        let help = match &self.scene.rockfall {
+            Some(_) => "`ndda rockfall` lets its boulders fall, and draws where they go",
+            None => "`ndda mesh` measures and draws the blocks as they are placed",
+        };
+        self.diagnose_as(Code::CannotBuild, path, message).with_help(help)
     }
 
     /// A message of a kind about the value at `path`.
@@ -107,7 +110,8 @@ pub fn load_text(
     let text = overrides::apply(text, overrides).map_err(|refused| fail(text, vec![refused]))?;
     let tree = locate::tree(&text);
     let parameters = parameter_values::read(&text, &tree).map_err(|found| fail(&text, found))?;
-    let mut scene: Scene = parse_with(&text, &tree, &parameters).map_err(|found| fail(&text, found))?;
+    let mut scene: Scene = parse_with(&text, &tree, &parameters)
+        .map_err(|mistakes| fail(&text, with_values_out_of_range(mistakes, (&text, &tree), folder)))?;
     let beside = folder.unwrap_or(Path::new("."));
     let included = include::read(&mut scene, beside, (file, &text), &parameters)?;
     let mut found = check::problems(&scene, folder);
@@ -120,4 +124,21 @@ pub fn load_text(
         return Err(fail(&text, found));
     }
     Ok(LoadedScene { scene, text, file: file.to_string(), warnings: found, chosen: Vec::new() })
+}
+
+/// Fields that do not exist, and values out of their range beside them. Other checks might miss what was meant by those fields.
+fn with_values_out_of_range(
+    mistakes: Mistakes<Scene>,
+    (text, tree): (&str, &Node),
+    folder: Option<&Path>,
+) -> Vec<Diagnostic> {
+    let mut found = mistakes.found;
+    if let Some(rest) = mistakes.rest {
+        let mut values = check::problems(&rest, folder);
+        values.retain(|d| d.code == Code::OutOfRange && d.severity == Severity::Error);
+        locate_all(&mut values, text, tree);
+        found.extend(values);
+        sort(&mut found);
+    }
+    found
 }

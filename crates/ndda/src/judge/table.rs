@@ -79,8 +79,13 @@ fn bolts(all: &[(String, BoltEnd)]) -> String {
         let others = if found.len() > 1 { ", …" } else { "" };
         Some(format!("{} of {count} {verb} (`{first}`{others})", found.len()))
     };
-    let states = [("broken", "broke"), ("yielding", "yielded"), ("debonded", "slipped in the grout")];
-    let told: Vec<_> = states.into_iter().filter_map(told).collect();
+    let states = [("broken", "broke"), ("yielding", "yielded")];
+    let mut told: Vec<_> = states.into_iter().filter_map(told).collect();
+    let slipped: Vec<_> = all.iter().filter(|(_, end)| end.state == "debonded").collect();
+    if let Some((farthest, end)) = slipped.iter().max_by(|a, b| a.1.debonded.total_cmp(&b.1.debonded)) {
+        let (many, most) = (slipped.len(), 100.0 * end.debonded);
+        told.push(format!("{many} of {count} slipped in the grout, over at most {most:.0} % of the bonded length (`{farthest}`)"));
+    }
     if told.is_empty() {
         let most = all.iter().map(|(_, end)| end.utilisation).fold(0.0, f64::max);
         return format!("{count} held, with at most {:.0} % of the yield force\n", 100.0 * most);
@@ -121,8 +126,8 @@ pub fn moved(motion: &Motion) -> String {
     let course = match course {
         Course::AtRest => "at rest".to_string(),
         Course::Moving => match speed(*speed_m_s) {
-            // The centre of mass rests to the last figure that is shown.
-            none if none.starts_with("0.000") => "turning in place".to_string(),
+            // The centre of mass moves by rounding alone.
+            _ if *speed_m_s < SHORTEST_M => "turning in place".to_string(),
             speed => format!("moving at {speed}"),
         },
         Course::Accelerating => format!("still accelerating, {}", speed(*speed_m_s)),
@@ -147,12 +152,17 @@ fn speed(speed_m_s: f64) -> String {
     if speed_m_s >= 0.01 { format!("{speed_m_s:.3} m/s") } else { format!("{}/s", length(speed_m_s)) }
 }
 
+/// Shorter lengths \[m\] have no figure left in micrometres, and are most often rounding.
+const SHORTEST_M: f64 = 1e-9;
+
 /// A length in a unit that suits it.
 pub fn length(length_m: f64) -> String {
     match length_m {
         l if l >= 1.0 => format!("{} m", figures(l)),
         l if l >= 1e-3 => format!("{} mm", figures(1e3 * l)),
-        l => format!("{} µm", figures(1e6 * l)),
+        l if l >= SHORTEST_M => format!("{} µm", figures(1e6 * l)),
+        0.0 => "0 m".into(),
+        l => format!("{l:.1e} m"),
     }
 }
 
@@ -279,8 +289,9 @@ mod tests {
         assert_eq!(bolts(&[]), "");
         assert_eq!(bolts(&all), "2 bolts held, with at most 34 % of the yield force\n");
         all.extend([("c".into(), end("broken", 1.1)), ("d".into(), end("broken", 1.0))]);
-        all.push(("e".into(), end("debonded", 0.1)));
-        assert_eq!(bolts(&all), "2 of 5 bolts broke (`c`, …); 1 of 5 bolts slipped in the grout (`e`)\n");
+        all.push(("e".into(), BoltEnd { debonded: 0.12, ..end("debonded", 0.1) }));
+        let slipped = "1 of 5 bolts slipped in the grout, over at most 12 % of the bonded length (`e`)";
+        assert_eq!(bolts(&all), format!("2 of 5 bolts broke (`c`, …); {slipped}\n"));
     }
 
     /// A block that hits a floor with a step that is far too long.

@@ -1,7 +1,7 @@
 //! The outcome as files.
 
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ndda_io::{WriteError, atomic};
 
@@ -13,12 +13,17 @@ use super::spread::{AtLine, Spread};
 use super::{Model, map};
 use crate::documents::write_json;
 
+/// File of the outcome in a folder.
+pub fn outcome(out: &Path) -> PathBuf {
+    out.join("rockfall.json")
+}
+
 /// Writes all files of an outcome but pictures into a folder.
 ///
 /// # Errors
 /// [`WriteError`] of the first file that cannot be written.
 pub fn write(model: &Model, outcome: &Outcome, falls: &[Fall], out: &Path) -> Result<(), WriteError> {
-    write_json(&out.join("rockfall.json"), outcome)?;
+    write_json(&self::outcome(out), outcome)?;
     let text = |name: &str, text: String| atomic::write(&out.join(name), text.as_bytes());
     text("boulders.csv", boulders(model, falls))?;
     text("trajectories.csv", trajectories(falls))?;

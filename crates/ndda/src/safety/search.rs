@@ -4,6 +4,7 @@ mod march;
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
 use ndda_io::read::LoadedScene;
@@ -19,6 +20,7 @@ use super::{
     film, mechanism, remarks, write,
 };
 use crate::Model;
+use crate::numbers::counted;
 
 /// Factor between the trials that look for a bracket.
 const STRIDE: f64 = 1.5;
@@ -53,6 +55,8 @@ pub struct Search<'a> {
     known_mechanism: Option<(f64, Mechanism, Vec<MovingBlock>)>,
     /// The answer so far.
     answer: Mutex<Safety>,
+    /// Trials that were repeated with less at a time, or pushed.
+    repeated: AtomicUsize,
 }
 
 impl<'a> Search<'a> {
@@ -66,6 +70,9 @@ impl<'a> Search<'a> {
         let begun = Instant::now();
         if !loaded.scene.stages.is_empty() {
             return Err(SafetyError::Stages);
+        }
+        if loaded.scene.rockfall.is_some() {
+            return Err(SafetyError::Rockfall);
         }
         let mut loaded = loaded.clone();
         loaded.scene = changes::at_rest(&loaded.scene);
@@ -124,6 +131,7 @@ impl<'a> Search<'a> {
             earlier: known,
             known_mechanism,
             answer: Mutex::new(answer),
+            repeated: AtomicUsize::new(0),
         })
     }
 
@@ -132,10 +140,16 @@ impl<'a> Search<'a> {
         let before_s = self.answer.lock().expect("no trial panics").wall_s;
         let last = if self.by.changes_loads() { self.march(before_s)? } else { self.bisect(before_s)? };
         let (mechanism, moving) = self.mechanism(last)?;
-        let may_push = self.may_push();
+        let (may_push, repeated) = (self.may_push(), self.repeated.load(Ordering::Relaxed));
         let mut answer = self.answer.into_inner().expect("no trial panics");
         (answer.mechanism, answer.moving_blocks) = (mechanism, moving);
         answer.remarks.extend(remarks::of(&answer));
+        if repeated > 0 {
+            answer.remarks.push(format!(
+                "{} left out of the table and repeated from nearer below, since a large change at once swings blocks beyond where they would rest",
+                counted(repeated, "trial was", "trials were")
+            ));
+        }
         // Springs that slipped on the way to rest keep their friction at its limit, and nothing pushes them.
         let upper = answer.factor_of_safety.upper;
         let fails_at_once = upper.is_some_and(|upper| upper * self.strength <= 1.0 + self.plan.error);
@@ -195,8 +209,9 @@ impl<'a> Search<'a> {
         answer.factor_of_safety = bracket(&answer.trials);
     }
 
-    /// Takes out a trial that fails for its stride.
+    /// Takes out a trial that is repeated: with less at a time where it failed for its stride, or pushed.
     fn forget(&self, factor: f64) {
+        self.repeated.fetch_add(1, Ordering::Relaxed);
         let mut answer = self.answer.lock().expect("no trial panics");
         answer.trials.retain(|trial| trial.factor != factor);
         answer.factor_of_safety = bracket(&answer.trials);

@@ -92,6 +92,14 @@ pub enum ViewError {
         /// The largest that can be drawn.
         most: f64,
     },
+    /// Frames or motion of a scene before its run.
+    #[error(
+        "{0} is for the output folder of a run: a scene that has not run has no frames and no displacements"
+    )]
+    NotRun(&'static str),
+    /// Colours of bolts where there are none, or where they carry nothing yet.
+    #[error("--bolts: {0}")]
+    Bolts(&'static str),
     /// A scene before its run does not move.
     #[error("--animate is for the output folder of a run: a scene that has not run does not move")]
     Still,

@@ -15,6 +15,9 @@ const NEAR_ZERO: f64 = 0.2;
 /// Values that differ by less than this part of the largest are one value.
 const EQUAL: f64 = 0.1;
 
+/// Displacements shorter than this over the largest coordinate are rounding.
+const ROUNDING: f64 = 1e-13;
+
 /// Displacements longer than so many diagonals of all blocks leave nothing of these to be seen.
 const MOST_DIAGONALS: f64 = 30.0;
 
@@ -147,7 +150,9 @@ pub fn moving(surface: &Surface, start: &[Vec3], moments: &[Moment]) -> Vec<bool
         }
     }
     let limit = STILL * farthest.iter().copied().fold(0.0, f64::max);
-    farthest.iter().map(|&moved| limit > 0.0 && moved >= limit).collect()
+    let coordinate = start.iter().map(|x| x.amax()).fold(0.0, f64::max);
+    let limit = f64::max(limit, ROUNDING * coordinate);
+    farthest.iter().map(|&moved| moved > 0.0 && moved >= limit).collect()
 }
 
 /// Blocks that have moved as a run counts them: by more than a part of the distance from their mass centre to their farthest node.
@@ -189,6 +194,17 @@ pub fn range(values: impl Iterator<Item = f32>) -> [f64; 2] {
 mod tests {
     use super::*;
     use crate::view3d::testing::boxes;
+
+    #[test]
+    fn what_moves_by_rounding_alone_is_at_rest() {
+        let moves = |gone_m: f64| {
+            let film =
+                boxes(&[([0.0; 3], [1.0; 3], [0.0, 0.0, gone_m]), ([900.0, 0.0, 0.0], [1.0; 3], [0.0; 3])]);
+            moving(&film.surface, &film.start, &film.moments)
+        };
+        assert_eq!(moves(1e-9), [true, false]);
+        assert_eq!(moves(1e-13), [false, false]);
+    }
 
     #[test]
     fn a_scale_ends_at_the_least_and_the_largest_value() {

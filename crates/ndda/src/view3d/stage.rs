@@ -5,6 +5,7 @@ use std::str::FromStr;
 use ndda_mesh::Vec3;
 use ndda_mesh::geometry::triangle_area_vector;
 
+use super::bolts::Piece;
 use super::camera::{Axes, Bounds, Camera, Pane, View};
 use super::film::{Film, Moment};
 use super::paint::{Theme, brightness};
@@ -207,6 +208,17 @@ fn in_view(film: &Film, setting: &Setting, axes: &Axes) -> Bounds {
     };
     take(&film.start);
     film.moments.iter().for_each(|moment| take(&shown_places(film, moment, setting.magnify)));
+    // Bolts are seen whole where a block that they hold is.
+    let moves = |piece: &Piece| piece.block.is_some_and(|block| film.moves[block as usize]);
+    for pieces in film.moments.iter().flat_map(|moment| moment.bolts.chunk_by(|a, b| a.bolt == b.bolt)) {
+        let is_moving = pieces.iter().any(moves);
+        for (point, _) in pieces.iter().flat_map(|piece| piece.ends).map(|end| axes.plane(&end)) {
+            all.grow(point);
+            if is_moving {
+                moving.grow(point);
+            }
+        }
+    }
     let near = moving.with_surroundings(SURROUNDINGS, &all);
     let [near_size, all_size] = [near.size(), all.size()];
     let smaller = (0..2).map(|i| all_size[i] / near_size[i]).fold(0.0, f64::max);

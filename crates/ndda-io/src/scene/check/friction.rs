@@ -13,17 +13,24 @@ const LEAST_LIKELY_DEG: f64 = 2.0;
 const MOST_JRC: f64 = 20.0;
 
 impl Check<'_> {
+    /// Warns of an angle [°] that is probably a coefficient of friction.
+    pub(super) fn coefficient(&mut self, path: String, angle_deg: f64) {
+        if angle_deg > 0.0 && angle_deg < LEAST_LIKELY_DEG {
+            let degrees = format!("{:.1}", angle_deg.atan().to_degrees());
+            let message = format!("{angle_deg}° is less than any joint has");
+            let help = format!("if {angle_deg} is meant as the coefficient tan φ, write {degrees}");
+            self.warn(Code::UnitSlip, path, message, help);
+        }
+    }
+
     pub(super) fn friction(&mut self, path: &str, friction: &Friction) {
         let field = |name: &str| format!("{path}.{name}");
         let angle = friction.friction_deg;
         if !(0.0..90.0).contains(&angle) {
             let message = format!("{angle}°: a friction angle must be at least 0 and below 90°");
             self.error(field("friction_deg"), message, TYPICAL);
-        } else if angle > 0.0 && angle < LEAST_LIKELY_DEG {
-            let degrees = format!("{:.1}", angle.atan().to_degrees());
-            let message = format!("{angle}° is less than any joint has");
-            let help = format!("if {angle} is meant as the coefficient tan φ, write {degrees}");
-            self.warn(Code::UnitSlip, field("friction_deg"), message, help);
+        } else {
+            self.coefficient(field("friction_deg"), angle);
         }
         if let Some(penalty) = friction.shear_penalty_pa_m {
             self.positive(field("shear_penalty_pa_m"), penalty, "Pa/m");

@@ -163,8 +163,17 @@ impl Check<'_> {
     }
 
     fn ground_law(&mut self, path: &str, restitution: &Scatter, friction_deg: &Scatter) {
-        self.scattered(&format!("{path}.restitution"), restitution, (0.0, 1.0));
-        self.scattered(&format!("{path}.friction_deg"), friction_deg, (0.0, 89.0));
+        let restitution_path = format!("{path}.restitution");
+        match restitution.middle() {
+            percent if (2.0..=100.0).contains(&percent) => {
+                let message = format!("{restitution:?}: must lie between 0 and 1");
+                self.error(restitution_path, message, format!("{percent} % is {}", 0.01 * percent));
+            }
+            _ => self.scattered(&restitution_path, restitution, (0.0, 1.0)),
+        }
+        let friction_path = format!("{path}.friction_deg");
+        self.scattered(&friction_path, friction_deg, (0.0, 89.0));
+        self.coefficient(friction_path, friction_deg.middle());
     }
 
     fn boulders(&mut self, rockfall: &Rockfall) {

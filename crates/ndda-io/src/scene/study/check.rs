@@ -3,10 +3,11 @@
 use std::collections::HashSet;
 
 use super::{Axis, Reference, Study, as_overrides};
+use crate::scene::Scene;
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
-use crate::scene::overrides;
-use crate::scene::suggest;
+use crate::scene::parse::parse_with;
+use crate::scene::{locate, overrides, parameter_values, suggest};
 
 pub(super) fn default_curves(study: &Study) -> Vec<String> {
     let others = study.axes.iter().filter(|axis| !axis.varies("time.step_s"));
@@ -96,12 +97,16 @@ fn correlation_problems(study: &Study) -> Vec<Diagnostic> {
     found
 }
 
-/// Paths that lead nowhere in the scene. What values mean is found when a case runs.
+/// Paths that lead nowhere in the scene, and fields that no scene has. What values mean is found when a case runs.
 pub(super) fn lost_paths(study: &Study, scene_text: &str) -> Vec<Diagnostic> {
-    let refused = |text: &str, overrides: &[String]| overrides::apply(text, overrides).err();
+    let refused = |text: &str, overrides: &[String]| match overrides::apply(text, overrides) {
+        Ok(text) => unknown_field(&text),
+        Err(d) => Some(d),
+    };
     let common = as_overrides(&study.set);
     let lost = |path: String, d: Diagnostic| {
-        Diagnostic::error(Code::Override, path, format!("{}: {}", d.path, d.message), None)
+        let at = Diagnostic::error(Code::Override, path, format!("{}: {}", d.path, d.message), None);
+        Diagnostic { help: d.help, ..at }
     };
     let text = match overrides::apply(scene_text, &common) {
         Ok(text) => text,
@@ -123,5 +128,15 @@ pub(super) fn lost_paths(study: &Study, scene_text: &str) -> Vec<Diagnostic> {
             found.extend(d.map(|d| lost(format!("reference.{name}"), d)));
         }
     }
+    let mut told = HashSet::new();
+    found.retain(|d| told.insert(d.message.clone()));
     found
+}
+
+/// The first field of a text that no scene has.
+fn unknown_field(text: &str) -> Option<Diagnostic> {
+    let tree = locate::tree(text);
+    let parameters = parameter_values::read(text, &tree).ok()?;
+    let found = parse_with::<Scene>(text, &tree, &parameters).err()?.found;
+    found.into_iter().find(|d| d.code == Code::UnknownField)
 }

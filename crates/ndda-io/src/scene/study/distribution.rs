@@ -23,6 +23,15 @@ pub enum Distribution {
 /// Names of the distributions.
 const NAMES: [&str; 5] = ["Normal", "LogNormal", "Uniform", "Triangular", "Fisher"];
 
+/// How each is written.
+const FORMS: [&str; 5] = [
+    "Normal(mean, deviation)",
+    "LogNormal(mean, deviation)",
+    "Uniform(least, largest)",
+    "Triangular(least, likeliest, largest)",
+    "Fisher(concentration)",
+];
+
 impl Distribution {
     /// A distribution as it is written; none if the text is something else.
     ///
@@ -33,9 +42,10 @@ impl Distribution {
         if !NAMES.contains(&name) {
             return None;
         }
-        let read = ron::from_str::<Self>(text).map_err(|error| {
-            format!("`{text}`: {error}; write Normal(mean, deviation), LogNormal(mean, deviation), Uniform(least, largest), \
-                     Triangular(least, likeliest, largest) or Fisher(concentration)")
+        let read = ron::from_str::<Self>(text).map_err(|_| {
+            let form =
+                FORMS.iter().find(|form| form.split('(').next() == Some(name)).expect("a form of each name");
+            format!("`{text}`: write {form}, with numbers in place of the words")
         });
         Some(read.and_then(|read| read.check().map(|()| read)))
     }
