@@ -266,7 +266,9 @@ fn a_fall_is_exact_to_rounding_and_its_certificate_is_written_shown_and_kept() {
 fn thousands_of_blocks_that_fall_have_their_error_bars() {
     let folder = tempfile::tempdir().unwrap();
     let set = |name: &str, dip_deg: f64, direction_deg: f64| {
-        format!("Set(name: \"{name}\", dip_deg: {dip_deg}, dip_direction_deg: {direction_deg}, spacing_m: 1), ")
+        format!(
+            "Set(name: \"{name}\", dip_deg: {dip_deg}, dip_direction_deg: {direction_deg}, spacing_m: 1), "
+        )
     };
     let scene = format!(
         "(title: \"many fall\", time: (step_s: 1e-3, end_s: 5e-3), gravity_m_s2: (0, 0, -10), contact: Off,

@@ -79,7 +79,8 @@ mod tests {
         let word = word_for(&file).unwrap();
         let time = |set: &[&str]| {
             let set: Vec<String> = set.iter().map(ToString::to_string).collect();
-            let scene = load_text("s.ron", SCENE, &set, None).unwrap_or_else(|e| panic!("{}", e.render(false)));
+            let scene =
+                load_text("s.ron", SCENE, &set, None).unwrap_or_else(|e| panic!("{}", e.render(false)));
             (scene.scene.time.step_s, scene.scene.time.end_s)
         };
         assert_eq!(time(&[&word]), (1e-4, 2.0));

@@ -217,7 +217,8 @@ impl Simulation {
     /// velocity counts.
     fn closing_m_s(&self, pair: (BlockId, BlockId), position: &[Vec3], dt_s: f64) -> Option<f64> {
         let model = self.contact.as_ref()?;
-        model.closing_m_s(&ContactInput::new(&self.problem.blocks, position, &self.state.velocity, dt_s), pair)
+        model
+            .closing_m_s(&ContactInput::new(&self.problem.blocks, position, &self.state.velocity, dt_s), pair)
     }
 
     /// Works on the motions of the blocks while the rest is read.

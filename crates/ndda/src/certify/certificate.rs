@@ -284,7 +284,8 @@ fn refined(
     let second = finer.get(1).unwrap_or(&finer[0]);
     let tables = [fine, &finer[0], second];
     let rows = common_rows(&tables);
-    let columns: Vec<Vec<f64>> = tables.iter().zip(&rows).map(|(t, rows)| values_of(t, quantity, rows)).collect();
+    let columns: Vec<Vec<f64>> =
+        tables.iter().zip(&rows).map(|(t, rows)| values_of(t, quantity, rows)).collect();
     let errors = (0..rows[0].len()).map(|row| {
         let at: Vec<&[f64]> = columns.iter().map(|column| &column[row..=row]).collect();
         part([at[0], at[1], at[2]], finer.len(), floor)

@@ -40,7 +40,8 @@ impl CaseRun<'_> {
         }
         let mut words = Vec::new();
         // Later values win, so that their order counts.
-        for some in self.overrides.chunk_by(|a, b| [a, b].iter().all(|one| override_files::fits_a_line(one))) {
+        for some in self.overrides.chunk_by(|a, b| [a, b].iter().all(|one| override_files::fits_a_line(one)))
+        {
             let file = self.out.with_file_name(format!("values_{}.txt", words.len() + 1));
             match override_files::word_for(&file).filter(|_| override_files::fits_a_line(&some[0])) {
                 Some(word) => {

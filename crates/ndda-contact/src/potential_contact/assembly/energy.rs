@@ -154,7 +154,8 @@ impl BlockOverlaps {
     fn add_surfaces(&mut self, input: &ContactInput, integrals: &Integrals) {
         self.facing.clear();
         self.facing.resize(self.pairs.len(), (Vec3::zeros(), Vec3::zeros()));
-        let pieces = || integrals.touching().iter().zip(&self.pair_of_touch).map(|(touch, &k)| (touch, k as usize));
+        let pieces =
+            || integrals.touching().iter().zip(&self.pair_of_touch).map(|(touch, &k)| (touch, k as usize));
         let on = |touch: &ActiveFacet| {
             let corners = input.blocks.triangle_corners(touch.triangle, input.position);
             let sums = integrals.sums_of(touch);
