@@ -27,8 +27,14 @@ pub fn number(name: &str) -> Option<u64> {
 
 /// The seeds that are requested.
 pub fn seeds(usual: u64) -> Vec<u64> {
-    number("NDDA_SEED")
-        .map_or_else(|| (0..number("NDDA_CASES").unwrap_or(usual)).collect(), |seed| vec![seed])
+    let first = number("NDDA_FIRST").unwrap_or(0);
+    let some = || (first..first + number("NDDA_CASES").unwrap_or(usual)).collect();
+    number("NDDA_SEED").map_or_else(some, |seed| vec![seed])
+}
+
+/// Whether a scene has the words that are requested, such as `contact_at: End()`.
+pub fn has_words(case: &Case) -> bool {
+    std::env::var("NDDA_WITH").map_or(true, |words| case.text.contains(&words))
 }
 
 /// Folder of the scenes of failing seeds.
@@ -72,6 +78,9 @@ pub fn search(relation: &str, usual: u64, wanted: &Wanted, check: impl Fn(&Case)
     let count = |what: &'static str| *counts.lock().unwrap().entry(what).or_default() += 1;
     each_seed(&seeds(usual), |seed| {
         let case = case(seed, wanted);
+        if !has_words(&case) {
+            return;
+        }
         let found = catch_unwind(AssertUnwindSafe(|| check(&case)));
         match found.unwrap_or_else(|_| Found::Fails("the run panicked".into())) {
             Found::Holds => count("holds"),

@@ -272,7 +272,7 @@ pub struct SceneArgs {
     pub example: Option<String>,
     /// Override a value of the scene by its path; may be repeated.
     ///
-    /// `time.step_s=1e-3`, `materials.rock.young_pa=20e9`, `blocks[0].at_m[2]=0.5`.
+    /// `time.step_s=1e-3`, `materials.rock.young_pa=20e9`, `blocks[0].at_m[2]=0.5`; `@FILE` for the values in the lines of a file.
     #[arg(long = "set", value_name = "PATH=VALUE")]
     pub overrides: Vec<String>,
 }

@@ -263,6 +263,36 @@ fn a_fall_is_exact_to_rounding_and_its_certificate_is_written_shown_and_kept() {
 }
 
 #[test]
+fn thousands_of_blocks_that_fall_have_their_error_bars() {
+    let folder = tempfile::tempdir().unwrap();
+    let set = |name: &str, dip_deg: f64, direction_deg: f64| {
+        format!(
+            "Set(name: \"{name}\", dip_deg: {dip_deg}, dip_direction_deg: {direction_deg}, spacing_m: 1), "
+        )
+    };
+    let scene = format!(
+        "(title: \"many fall\", time: (step_s: 1e-3, end_s: 5e-3), gravity_m_s2: (0, 0, -10), contact: Off,
+          materials: [(name: \"rock\", young_pa: 1e9, poisson: 0.25, density_kg_m3: 2500)],
+          rock: [(name: \"a_rather_long_name_of_rock\", material: \"rock\", body: Rigid, fill: Fewest,
+            domain: Box(min_m: (0, 0, 0), max_m: (14, 14, 14)), joints: [{}{}{}])])",
+        set("flat", 0.0, 0.0),
+        set("north", 90.0, 0.0),
+        set("east", 90.0, 90.0)
+    );
+    fs::write(folder.path().join("many.ron"), scene).unwrap();
+    let done = ndda(folder.path(), &["certify", "many.ron", "--quiet", "--out", "c"]);
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    let certificate = Certificate::read(&folder.path().join("c")).unwrap();
+    let fallen: Vec<_> =
+        certificate.quantities.iter().filter(|q| q.name.ends_with(".displacement_z_m")).collect();
+    assert!(fallen.len() > 2000, "{} blocks", fallen.len());
+    // ½ g t², which the scheme gives exactly.
+    for block in fallen {
+        assert!((block.value + 1.25e-4).abs() <= block.error.max(1e-15), "{block:?}");
+    }
+}
+
+#[test]
 fn examples_are_certified_as_files_are() {
     let folder = tempfile::tempdir().unwrap();
     let set = ["certify", "--example", "collision_equal_free", "--quiet", "--out", "c"];

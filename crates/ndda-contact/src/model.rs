@@ -154,6 +154,8 @@ pub struct ContactReport {
     pub dilation_work_j: f64,
     /// Largest change of a slip velocity by friction when the search for friction ended before it was found [m/s]; zero where it was found.
     pub friction_left_m_s: f64,
+    /// By how much dashpots of shear springs that the step does not resolve let blocks go too fast, at most [m/s].
+    pub dashpot_error_m_s: f64,
     /// By how much the strength of a bond was exceeded that broke in this evaluation, over its strength without normal stress.
     pub bond_overload: f64,
 }

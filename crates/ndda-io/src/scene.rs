@@ -16,6 +16,7 @@ mod material;
 mod monitor;
 mod output;
 pub mod outside_files;
+pub mod override_files;
 pub(crate) mod overrides;
 mod parameter_values;
 mod parameters;

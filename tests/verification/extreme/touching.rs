@@ -4,7 +4,7 @@
 use nalgebra::Rotation3;
 use ndda_contact::reference::tet_pair;
 use ndda_contact::testing::{Random, evaluate, test_box, test_set};
-use ndda_contact::{ContactHistory, ContactInput, PotentialContact};
+use ndda_contact::{ContactHistory, ContactInput, ContactModel, PotentialContact, VolumePotential};
 use ndda_mesh::{BlockId, BlockMesh, Mat3, Vec3};
 
 use super::{advance, extreme, farthest};
@@ -35,6 +35,43 @@ fn a_cube_in_the_place_of_another_ends_in_a_stop_that_names_both() {
     let mut simulation = extreme("coincident", &["blocks[1].at_m=(0,0,0)"]).simulation;
     let stop = (0..2000).find_map(|_| simulation.step().err()).expect("a stop").to_string();
     assert!(stop.contains("c000") && stop.contains("c100"), "{stop}");
+}
+
+#[test]
+fn blocks_with_common_walls_share_the_volume_between_their_faces() {
+    let (depth_m, reference_m3, penalty_pa) = (1e-3, 0.1, 1e7);
+    let mut random = Random(3);
+    for exponent in [1.5, 2.0, 2.5] {
+        for affine in [false, true] {
+            let (mut energy, mut force) = (0.0f64, 0.0f64);
+            for turned in 0..8 {
+                let angles = [0; 3].map(|_| if turned == 0 { 0.0 } else { 6.0 * random.unit() });
+                let turn = Rotation3::from_euler_angles(angles[0], angles[1], angles[2]);
+                let lower = test_box([0.0; 3], [1.0, 1.0, 0.25], [2, 2, 1]);
+                let upper = test_box([0.0, 0.0, 0.25 - depth_m], [1.0; 3], [2, 2, 2]);
+                let blocks =
+                    test_set([lower, upper].map(|mesh| mesh.placed(turn.matrix(), &Vec3::zeros())).to_vec());
+                let velocity = vec![Vec3::zeros(); blocks.rest_position.len()];
+                let input = ContactInput::new(&blocks, &blocks.rest_position, &velocity, 1.0);
+                let input = ContactInput { affine: if affine { &[true; 2] } else { &[] }, ..input };
+                let potential = VolumePotential { exponent, reference_m3 };
+                let mut model = PotentialContact::new(penalty_pa).with_potential(Box::new(potential));
+                let answer = evaluate(&mut model, &input, &mut ContactHistory::default());
+                let found_n = answer.force[blocks.nodes_of(BlockId(1))].iter().sum::<Vec3>();
+                let found_j = model.energy_j(&input, &ContactHistory::default()).unwrap();
+                // On a square metre: W = k_n V₀/m (V/V₀)^m, V = 1 m² d, and its slope by d.
+                let ratio = depth_m / reference_m3;
+                let exact_n = penalty_pa * ratio.powf(exponent - 1.0) * (turn * Vec3::z());
+                let exact_j = penalty_pa * reference_m3 / exponent * ratio.powf(exponent);
+                energy = energy.max((found_j / exact_j - 1.0).abs());
+                force = force.max((found_n - exact_n).norm() / exact_n.norm());
+            }
+            let named = |what: &str| format!("{what}, Volume(exponent: {exponent}), affine: {affine}");
+            // Depth is a thousandth of places of a metre, whose last digits it carries; walls are 4 d of an area of one.
+            row("common walls", &named("energy"), energy, AtMost(rounding(10) / depth_m));
+            row("common walls", &named("force"), force, AtMost(8.0 * depth_m));
+        }
+    }
 }
 
 /// Force on the second block.

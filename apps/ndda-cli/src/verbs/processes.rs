@@ -34,8 +34,8 @@ impl CaseRunner for Processes {
         if let Some(bytes) = memory::asked() {
             command.args(["--memory", &bytes.to_string()]);
         }
-        for one in run.overrides {
-            command.args(["--set", one]);
+        for one in run.set_words()? {
+            command.args(["--set", &one]);
         }
         let done = command.stdin(Stdio::null()).output().map_err(StudyError::Start)?;
         let is = |code: u8| done.status.code() == Some(i32::from(code));

@@ -72,6 +72,9 @@ impl ContactModel for PotentialContact {
         let shear_time_s = damping.map_or(&[][..], ContactDamping::shear_time_s);
         let place = || place_forces(rows, &facets, integrals, (left_pa, shear_time_s), &self.hulls);
         join_if(integrals.touching().len() > GRAIN_FACETS, place, sort);
+        let spring_error_m_s =
+            |d: &ContactDamping| d.spring_error_m_s(&self.integrals, &self.forces, input.dt_s);
+        report.dashpot_error_m_s = damping.map_or(0.0, spring_error_m_s);
         if let Some(joints) = self.joints.as_ref().filter(|_| has_friction) {
             let bodies = damping.map_or(input.bodies, ContactDamping::bodies);
             let input = &ContactInput { bodies, ..*input };

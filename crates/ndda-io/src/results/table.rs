@@ -45,6 +45,14 @@ impl Table {
         let index = self.names.iter().position(|known| known == name)?;
         Some(&self.columns[index])
     }
+
+    /// The same where it is probably the column of a number, as in another table of the same kind: thousands are then found without a search.
+    pub fn column_near(&self, number: usize, name: &str) -> Option<&[f64]> {
+        match self.names.get(number) {
+            Some(known) if known == name => Some(&self.columns[number]),
+            _ => self.column(name),
+        }
+    }
 }
 
 /// Reads a table such as `history.csv` or `history.parquet`.
@@ -104,6 +112,9 @@ mod tests {
         let table = read_text("time_s,kinetic_j\n0,1\n0.5,2e3\n").unwrap();
         assert_eq!(table.column("kinetic_j"), Some(&[1.0, 2e3][..]));
         assert_eq!(table.column("strain_j"), None);
+        for number in [0, 1, 7] {
+            assert_eq!(table.column_near(number, "kinetic_j"), table.column("kinetic_j"));
+        }
     }
 
     #[test]

@@ -7,6 +7,7 @@ use crate::scene::code::Code;
 use crate::scene::diagnostic::{Diagnostic, SceneErrors, Severity};
 use crate::scene::include;
 use crate::scene::locate::{self, Node};
+use crate::scene::override_files;
 use crate::scene::overrides;
 use crate::scene::parameter_values;
 use crate::scene::parse::{Mistakes, label_of, locate_all, parse_with, place, refuse_blank, sort};
@@ -92,7 +93,8 @@ pub fn load(path: &Path, overrides: &[String]) -> Result<LoadedScene, SceneError
     load_text(&label_of(path), &text, overrides, Some(folder))
 }
 
-/// Reads and checks the text of a scene; `folder` is where its meshes are, if they are to be looked for.
+/// Reads and checks the text of a scene; `folder` is where its meshes are, if they are to be looked for. Overrides are `path=value`, or
+/// `@FILE` for those in the lines of a file.
 ///
 /// # Errors
 /// As [`load`].
@@ -102,10 +104,15 @@ pub fn load_text(
     overrides: &[String],
     folder: Option<&Path>,
 ) -> Result<LoadedScene, SceneErrors> {
+    let expanded = override_files::expanded(overrides);
+    let overrides = expanded.as_deref().unwrap_or(overrides);
     let fail = |text: &str, mut diagnostics: Vec<Diagnostic>| {
         overrides::blame(&mut diagnostics, text, overrides);
         SceneErrors { file: file.to_string(), text: text.to_string(), diagnostics }
     };
+    if let Err(refused) = &expanded {
+        return Err(fail(text, vec![refused.clone()]));
+    }
     refuse_blank(text).map_err(|(text, refused)| fail(text, vec![refused]))?;
     let text = overrides::apply(text, overrides).map_err(|refused| fail(text, vec![refused]))?;
     let tree = locate::tree(&text);

@@ -22,6 +22,9 @@ const LITTLE_STRAIN: f64 = 1e-2;
 /// Part of the largest speed of which it does not matter how much turns over in a step.
 const LITTLE: f64 = 1e-3;
 
+/// Part of the error of dashpots that is left after a step.
+const DASHPOTS_KEPT: f64 = 0.98;
+
 /// Sums over steps and extremes over samples.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Ledger {
@@ -53,6 +56,8 @@ pub struct Ledger {
     vibration: Vibration,
     unresolved_m_s: f64,
     damping_m_s: f64,
+    /// What dashpots of springs that steps do not resolve let blocks go too fast [m/s]; it fades, as they stop what is left of it.
+    dashpot_m_s: f64,
     rounding_j: f64,
     last_sample_s: f64,
     blocks: BlockDiagnostics,
@@ -129,6 +134,7 @@ impl Ledger {
             vibration: Vibration::default(),
             unresolved_m_s: 0.0,
             damping_m_s: 0.0,
+            dashpot_m_s: 0.0,
             rounding_j: 0.0,
             last_sample_s: 0.0,
             blocks,
@@ -253,6 +259,7 @@ impl Ledger {
         worst.max_penetration_ratio = worst.max_penetration_ratio.max(contact.max_penetration_ratio);
         worst.bond_overload = worst.bond_overload.max(contact.bond_overload);
         worst.friction_left_m_s += contact.friction_left_m_s;
+        self.dashpot_m_s = contact.dashpot_error_m_s.max(DASHPOTS_KEPT * self.dashpot_m_s);
         worst.action_reaction = worst.action_reaction.max(contact.action_reaction_error.unwrap_or(0.0));
         worst.candidate_pairs_max = worst.candidate_pairs_max.max(contact.candidate_pairs);
         worst.contact_pairs_max = worst.contact_pairs_max.max(contact.contact_pairs);
@@ -343,7 +350,8 @@ impl Ledger {
             ringing: self.blocks.ringing(scale_m_s, self.rounding_j),
             vibration: self.vibration.over(self.largest_speed_m_s),
             unresolved_speed: speed(self.unresolved_m_s),
-            damping_speed: speed(self.damping_m_s),
+            damping_speed: speed(self.damping_m_s)
+                .max(over(self.dashpot_m_s, scale_m_s.max(self.dashpot_m_s))),
             ..self.worst
         }
     }

@@ -11,7 +11,7 @@ use super::chaos::Chaos;
 use super::extrapolate::{Behaviour, Estimate, estimate, estimate_of_coarse, estimate_of_coarsest};
 use super::plan::{FINER, STIFFER};
 use super::quantities::{
-    Kind, Quantity, common_rows, last_fifth, quantities, rounding, scales, unresolved_energy_j, values,
+    Kind, Quantity, common_rows, last_fifth, quantities, rounding, scales, unresolved_energy_j, values_of,
 };
 use crate::documents::write_json;
 
@@ -163,11 +163,11 @@ pub fn certify(histories: &Histories, basis: &Basis) -> Vec<Certified> {
     let one = |quantity: &Quantity| {
         let floor = rounding(scales[quantity.group], basis.steps);
         let tables = [coarse, middle, fine];
-        let runs = [0, 1, 2].map(|k| values(tables[k], &quantity.name, &rows[k]));
+        let runs = [0, 1, 2].map(|k| values_of(tables[k], quantity, &rows[k]));
         let mut certified = of_steps(quantity, &runs, basis.order, floor);
         certified.add(unresolved(quantity.kind, lost_j, basis));
         let more = |tables: &[Table], part: fn([&[f64]; 3], usize, f64) -> f64| {
-            refined(fine, tables, &quantity.name, floor, part)
+            refined(fine, tables, quantity, floor, part)
         };
         if !histories.meshes.is_empty() {
             let (end, most) = more(&histories.meshes, mesh_error);
@@ -180,7 +180,7 @@ pub fn certify(histories: &Histories, basis: &Basis) -> Vec<Certified> {
             certified.widen(end, most);
         }
         if basis.is_chaotic && certified.behaviour != Behaviour::Rounding {
-            certified.scatter(&runs, histories.twin.as_ref());
+            certified.scatter(&runs, quantity, histories.twin.as_ref());
         }
         certified
     };
@@ -239,8 +239,8 @@ impl Certified {
     }
 
     /// Mean and scatter of the runs, the twin among them: twice the standard deviation.
-    fn scatter(&mut self, runs: &[Vec<f64>; 3], twin: Option<&Table>) {
-        let twin = twin.and_then(|table| table.column(&self.name)?.last().copied());
+    fn scatter(&mut self, runs: &[Vec<f64>; 3], quantity: &Quantity, twin: Option<&Table>) {
+        let twin = twin.and_then(|table| table.column_near(quantity.column, &quantity.name)?.last().copied());
         let ends: Vec<f64> = runs.iter().filter_map(|run| run.last().copied()).chain(twin).collect();
         let count = ends.len().max(2) as f64;
         let mean = ends.iter().sum::<f64>() / ends.len().max(1) as f64;
@@ -277,14 +277,15 @@ fn unresolved(kind: Kind, lost_j: f64, basis: &Basis) -> f64 {
 fn refined(
     fine: &Table,
     finer: &[Table],
-    name: &str,
+    quantity: &Quantity,
     floor: f64,
     part: fn([&[f64]; 3], usize, f64) -> f64,
 ) -> (f64, f64) {
     let second = finer.get(1).unwrap_or(&finer[0]);
     let tables = [fine, &finer[0], second];
     let rows = common_rows(&tables);
-    let columns: Vec<Vec<f64>> = tables.iter().zip(&rows).map(|(t, rows)| values(t, name, rows)).collect();
+    let columns: Vec<Vec<f64>> =
+        tables.iter().zip(&rows).map(|(t, rows)| values_of(t, quantity, rows)).collect();
     let errors = (0..rows[0].len()).map(|row| {
         let at: Vec<&[f64]> = columns.iter().map(|column| &column[row..=row]).collect();
         part([at[0], at[1], at[2]], finer.len(), floor)

@@ -4,7 +4,7 @@
 use ndda_io::table::Table;
 use serde::{Deserialize, Serialize};
 
-use super::quantities::{Kind, Quantity, common_rows, values};
+use super::quantities::{Kind, Quantity, common_rows, values, values_of};
 
 /// The twin's gravity differs by this part.
 pub const DISTURBANCE: f64 = 1e-9;
@@ -37,7 +37,7 @@ fn apart(quantities: &[Quantity], first: &Table, second: &Table) -> Apart {
     let mut scale = 0.0f64;
     let mut relative = vec![0.0f64; rows[0].len()];
     for quantity in quantities.iter().filter(|quantity| quantity.kind == Kind::Displacement) {
-        let [a, b] = [(first, &rows[0]), (second, &rows[1])].map(|(t, rows)| values(t, &quantity.name, rows));
+        let [a, b] = [(first, &rows[0]), (second, &rows[1])].map(|(t, rows)| values_of(t, quantity, rows));
         scale = b.iter().map(|v| v.abs()).fold(scale, f64::max);
         relative.iter_mut().zip(a.iter().zip(&b)).for_each(|(r, (a, b))| *r = r.max((a - b).abs()));
     }

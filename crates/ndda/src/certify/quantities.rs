@@ -28,7 +28,7 @@ const SAME_TIME: f64 = 1e-9;
 const ROUNDING: f64 = 8.0;
 
 /// Kind of a quantity, which decides what unresolved vibration adds to its error.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// A displacement [m].
     Displacement,
@@ -45,6 +45,8 @@ pub enum Kind {
 pub struct Quantity {
     /// Its name in the history.
     pub name: String,
+    /// Number of its column.
+    pub column: usize,
     /// Kind of the quantity.
     pub kind: Kind,
     /// Quantities of one group share their scale: the components of a vector, the energies.
@@ -78,7 +80,7 @@ impl Quantity {
 pub fn quantities(history: &Table, of: &[String]) -> Vec<Quantity> {
     let mut groups: Vec<String> = Vec::new();
     let mut found = Vec::new();
-    for (name, column) in history.names.iter().zip(&history.columns) {
+    for (number, (name, column)) in history.names.iter().zip(&history.columns).enumerate() {
         let asked = of.iter().any(|wanted| name.starts_with(wanted.as_str()));
         let (kind, group) = match name.rsplit_once('.') {
             Some((monitor, quantity)) if quantity.starts_with("displacement_") => {
@@ -96,11 +98,12 @@ pub fn quantities(history: &Table, of: &[String]) -> Vec<Quantity> {
             _ if asked && name != TIME => (Kind::Other, vector(name)),
             _ => continue,
         };
-        let group = groups.iter().position(|known| *known == group).unwrap_or_else(|| {
+        // Components of a vector stand side by side.
+        let group = groups.iter().rposition(|known| *known == group).unwrap_or_else(|| {
             groups.push(group);
             groups.len() - 1
         });
-        found.push(Quantity { name: name.clone(), kind, group });
+        found.push(Quantity { name: name.clone(), column: number, kind, group });
     }
     found
 }
@@ -132,16 +135,23 @@ pub fn common_rows(tables: &[&Table]) -> Vec<Vec<usize>> {
 
 /// The values of a column at some rows; zeros where there is no such column.
 pub fn values(table: &Table, name: &str, rows: &[usize]) -> Vec<f64> {
-    table
-        .column(name)
-        .map_or_else(|| vec![0.0; rows.len()], |column| rows.iter().map(|&i| column[i]).collect())
+    at_rows(table.column(name), rows)
+}
+
+/// The same of a quantity.
+pub fn values_of(table: &Table, quantity: &Quantity, rows: &[usize]) -> Vec<f64> {
+    at_rows(table.column_near(quantity.column, &quantity.name), rows)
+}
+
+fn at_rows(column: Option<&[f64]>, rows: &[usize]) -> Vec<f64> {
+    column.map_or_else(|| vec![0.0; rows.len()], |column| rows.iter().map(|&i| column[i]).collect())
 }
 
 /// The largest value of each group in a history.
 pub fn scales(quantities: &[Quantity], history: &Table) -> Vec<f64> {
     let mut scales = vec![0.0f64; quantities.iter().map(|q| q.group + 1).max().unwrap_or(0)];
     for quantity in quantities {
-        let column = history.column(&quantity.name).unwrap_or_default();
+        let column = history.column_near(quantity.column, &quantity.name).unwrap_or_default();
         scales[quantity.group] = column.iter().map(|v| v.abs()).fold(scales[quantity.group], f64::max);
     }
     scales

@@ -67,8 +67,10 @@ pub fn shown<'a>(certificate: &'a Certificate, of: &[String]) -> (Vec<&'a Certif
 pub fn vanishes(certificate: &Certificate, quantity: &Certified) -> bool {
     /// A component below this part of the largest of its vector vanishes.
     const NOTHING: f64 = 1e-8;
-    let is_zero = quantity.value.abs() <= quantity.error;
-    if is_zero && quantity.behaviour == Behaviour::Rounding {
+    if quantity.value.abs() > quantity.error {
+        return false;
+    }
+    if quantity.behaviour == Behaviour::Rounding {
         return true;
     }
     let Some((vector, _)) = ["_x_", "_y_", "_z_"].iter().find_map(|axis| quantity.name.split_once(axis))
@@ -77,7 +79,7 @@ pub fn vanishes(certificate: &Certificate, quantity: &Certified) -> bool {
     };
     let others = certificate.quantities.iter().filter(|other| other.name.starts_with(vector));
     let largest = others.map(|other| other.value.abs() + other.largest_error).fold(0.0, f64::max);
-    is_zero && quantity.largest_error < NOTHING * largest
+    quantity.largest_error < NOTHING * largest
 }
 
 /// Whether a quantity is asked for by the beginning of its name, or of that of its block.

@@ -4,8 +4,9 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use ndda_io::OutputFolder;
+use ndda_io::scene::override_files;
 use ndda_io::summary::Status;
+use ndda_io::{OutputFolder, WriteError, atomic};
 
 use super::error::StudyError;
 use super::record::Cause;
@@ -22,6 +23,36 @@ pub struct CaseRun<'a> {
     pub out: &'a Path,
     /// Threads.
     pub threads: u16,
+}
+
+/// Bytes of values that a command line holds: Windows allows 32 kB for all of it, Linux 128 kB for one word.
+const MOST_BYTES: usize = 16 << 10;
+
+impl CaseRun<'_> {
+    /// The words that stand behind `--set` on the command line of a process that runs the case: its values, or, where they are too long for
+    /// that, the names of files beside its results that hold them.
+    ///
+    /// # Errors
+    /// [`WriteError`] when such a file cannot be written.
+    pub fn set_words(&self) -> Result<Vec<String>, WriteError> {
+        if self.overrides.iter().map(String::len).sum::<usize>() <= MOST_BYTES {
+            return Ok(self.overrides.to_vec());
+        }
+        let mut words = Vec::new();
+        // Later values win, so that their order counts.
+        for some in self.overrides.chunk_by(|a, b| [a, b].iter().all(|one| override_files::fits_a_line(one)))
+        {
+            let file = self.out.with_file_name(format!("values_{}.txt", words.len() + 1));
+            match override_files::word_for(&file).filter(|_| override_files::fits_a_line(&some[0])) {
+                Some(word) => {
+                    atomic::write(&file, (some.join("\n") + "\n").as_bytes())?;
+                    words.push(word);
+                }
+                None => words.extend_from_slice(some),
+            }
+        }
+        Ok(words)
+    }
 }
 
 /// Runs cases: in this process, or in another, so that memory is measured per case and a crash ends one run, not all.
@@ -72,5 +103,31 @@ impl CaseRunner for InProcess {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(run.threads.into()).build();
         let pool = pool.map_err(|error| StudyError::Start(std::io::Error::other(error)))?;
         pool.install(|| self.run_here(run))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_that_are_too_long_for_a_command_line_are_in_files_in_their_order() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("run");
+        let monitor = |i: usize| format!("(name: \"block {i:05}\", block: \"{i:05}\", at: Centre), ");
+        let monitors = format!("monitors=[{}]", (0..20_000).map(monitor).collect::<String>());
+        let overrides = ["time.step_s=1", "a=(1,\n2)", "time.step_s=2", &monitors].map(String::from);
+        let run = |overrides| CaseRun { scene: Path::new("s.ron"), overrides, out: &out, threads: 1 };
+        assert_eq!(run(&overrides[..3]).set_words().unwrap(), overrides[..3]);
+        assert!(std::fs::read_dir(folder.path()).unwrap().next().is_none());
+        let words = run(&overrides).set_words().unwrap();
+        assert!(words.iter().all(|word| word.len() < 1000), "{words:?}");
+        let lines = |word: &str| match word.strip_prefix('@') {
+            Some(file) => {
+                std::fs::read_to_string(file).unwrap().lines().map(String::from).collect::<Vec<_>>()
+            }
+            None => vec![word.to_string()],
+        };
+        assert_eq!(words.iter().flat_map(|word| lines(word)).collect::<Vec<_>>(), overrides);
     }
 }

@@ -1,10 +1,12 @@
 //! The error of a trial: that against the scene's closed form, or against a run that is certified.
 
+use std::collections::HashMap;
+
 use ndda_io::table::Table;
 
 use super::TuneError;
 use crate::certify::extrapolate::estimate;
-use crate::certify::quantities::{Kind, Quantity, common_rows, quantities, values};
+use crate::certify::quantities::{Kind, Quantity, common_rows, quantities, values_of};
 use crate::certify::report::named;
 use crate::certify::runs::Ended;
 
@@ -66,21 +68,20 @@ pub fn largest_difference(run: &Table, reference: &Table, quantities: &[Quantity
         return f64::INFINITY;
     }
     let size = |quantity: &Quantity| {
-        let column = reference.column(&quantity.name).unwrap_or_default();
+        let column = reference.column_near(quantity.column, &quantity.name).unwrap_or_default();
         column.iter().map(|v| v.abs()).fold(0.0, f64::max)
     };
-    let scale = |quantity: &Quantity| {
-        let alike = |other: &&Quantity| match quantity.kind {
-            Kind::Other => other.group == quantity.group,
-            kind => other.kind == kind,
-        };
-        quantities.iter().filter(alike).map(size).fold(0.0, f64::max)
-    };
+    let group = |quantity: &Quantity| (quantity.kind == Kind::Other).then_some(quantity.group);
+    let mut scales: HashMap<(Kind, Option<usize>), f64> = HashMap::new();
+    for quantity in quantities {
+        let scale = scales.entry((quantity.kind, group(quantity))).or_default();
+        *scale = scale.max(size(quantity));
+    }
     let relative = quantities.iter().map(|quantity| {
-        let of = |table: &Table, rows: &[usize]| values(table, &quantity.name, rows);
+        let of = |table: &Table, rows: &[usize]| values_of(table, quantity, rows);
         let (own, other) = (of(run, &rows[0]), of(reference, &rows[1]));
         let apart = own.iter().zip(&other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let scale = scale(quantity);
+        let scale = scales[&(quantity.kind, group(quantity))];
         if scale > 0.0 { apart / scale } else { apart }
     });
     relative.fold(0.0, f64::max)

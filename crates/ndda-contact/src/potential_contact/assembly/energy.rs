@@ -17,6 +17,7 @@ use crate::broad_phase::candidates::Candidates;
 use crate::friction::openings::Openings;
 use crate::integration::integrals::Integrals;
 use crate::integration::linear::Linear;
+use crate::integration::overlap_pair::ActiveFacet;
 use crate::integration::polyhedron::{EmbeddedPolyhedron, Polyhedron, faces_of};
 use crate::integration::tet_frame::TetFrame;
 use crate::model::ContactInput;
@@ -39,7 +40,8 @@ pub(crate) struct BlockOverlaps {
     pressure_m2: Vec<f64>,
     /// Place in `pairs` of each facet that touches.
     pair_of_touch: Vec<u32>,
-    origin: Vec<Option<Vec3>>,
+    /// Where heights of each pair's overlap count from, and the direction in which the first block faces the other.
+    facing: Vec<(Vec3, Vec3)>,
     shares: Vec<BlockShares>,
 }
 
@@ -147,16 +149,30 @@ impl BlockOverlaps {
         }
     }
 
-    /// The volume of overlaps, V = ⅓ ∮ (x − o)·n dS over the pieces of both surfaces.
+    /// The volume of overlaps, V = ∮ e·(x − o) e·n dS over the pieces of both surfaces, e being the direction in which the first block faces
+    /// the other. Walls along e do not count: blocks that share one exactly have no pieces on it.
     fn add_surfaces(&mut self, input: &ContactInput, integrals: &Integrals) {
-        self.origin.clear();
-        self.origin.resize(self.pairs.len(), None);
-        for (touch, &k) in integrals.touching().iter().zip(&self.pair_of_touch) {
-            let (k, sums) = (k as usize, integrals.sums_of(touch));
+        self.facing.clear();
+        self.facing.resize(self.pairs.len(), (Vec3::zeros(), Vec3::zeros()));
+        let pieces =
+            || integrals.touching().iter().zip(&self.pair_of_touch).map(|(touch, &k)| (touch, k as usize));
+        let on = |touch: &ActiveFacet| {
             let corners = input.blocks.triangle_corners(touch.triangle, input.position);
-            let origin = *self.origin[k].get_or_insert(corners[0]);
-            let normal = triangle_area_vector(&corners).normalize();
-            self.overlap_m3[k] += sums.area * (corners[0] - origin).dot(&normal) / 3.0;
+            let sums = integrals.sums_of(touch);
+            (sums.center(&corners), sums.area * triangle_area_vector(&corners).normalize())
+        };
+        for (touch, k) in pieces() {
+            let (center, area) = on(touch);
+            let (origin, facing) = &mut self.facing[k];
+            *origin = center;
+            *facing += if touch.owner < touch.target { area } else { -area };
+        }
+        for (touch, k) in pieces() {
+            let (center, area) = on(touch);
+            let (origin, facing) = &self.facing[k];
+            // The pieces of a block that is wholly inside the other face all ways: any direction will do.
+            let along = facing.try_normalize(0.0).unwrap_or_else(Vec3::z);
+            self.overlap_m3[k] += (center - origin).dot(&along) * area.dot(&along);
         }
     }
 

@@ -10,7 +10,7 @@ use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
 use crate::model::{ContactHistory, ContactInput, FacetMemory, SpringSlip};
 
 /// Friction below this part of what it may be holds like a spring.
-const STICKS: f64 = 1.0 - 1e-9;
+pub(crate) const STICKS: f64 = 1.0 - 1e-9;
 
 /// The forces of one facet per unit of ∫ φ N dA, and what it remembers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -54,6 +54,8 @@ pub(crate) struct ContactDamping {
     tilt_n_m: Vec<Vec3>,
     /// Seconds of its stiffness that the dashpot beside the shear spring of each touching facet has; empty without springs.
     shear_time_s: Vec<f64>,
+    /// Part of that which a step cannot resolve and leaves out.
+    shear_lag: Vec<f64>,
     /// Blocks with the moments of damping among their loads.
     bodies: Vec<Body>,
 }
@@ -74,6 +76,7 @@ impl ContactDamping {
             taken_pa: Vec::new(),
             tilt_n_m: Vec::new(),
             shear_time_s: Vec::new(),
+            shear_lag: Vec::new(),
             bodies: Vec::new(),
         }
     }

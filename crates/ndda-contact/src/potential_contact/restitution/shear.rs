@@ -3,6 +3,9 @@
 //! A spring of stiffness K between two blocks of reduced mass m has a dashpot α √(m K): the same α as along the normal, so that blocks that swing on their
 //! springs come to rest as those that bounce. Spring and dashpot together carry no more than the friction law allows, and the work is that of friction.
 
+use crate::friction::facet::{FacetForce, STICKS};
+use crate::integration::integrals::Integrals;
+use crate::integration::overlap_pair::ActiveFacet;
 use crate::model::ContactInput;
 use crate::restitution::ContactDamping;
 use crate::restitution::scene::DampingScene;
@@ -15,6 +18,7 @@ impl ContactDamping {
     /// Sets the dashpots of all springs of damped contacts.
     pub(super) fn damp_springs(&mut self, scene: &DampingScene) {
         self.shear_time_s.clear();
+        self.shear_lag.clear();
         let Some(joints) = scene.joints else { return };
         let ContactInput { blocks, bodies, dt_s, .. } = *scene.input;
         let touching = scene.integrals.touching();
@@ -25,6 +29,7 @@ impl ContactDamping {
             0.5 * stiffness_pa_m * scene.integrals.sums_of(touch).area
         };
         self.shear_time_s.resize(touching.len(), 0.0);
+        self.shear_lag.resize(touching.len(), 0.0);
         for run in self.order.chunk_by(|a, b| a.0 == b.0) {
             let all_n_m: f64 = run.iter().map(|&(_, t)| stiffness_n_m(t)).sum();
             let inverse_mass: f64 = run[0].0.iter().map(|block| 1.0 / bodies[block.index()].mass_kg).sum();
@@ -45,8 +50,24 @@ impl ContactDamping {
                 let touch = &touching[t as usize];
                 let time_s = self.table.factor(blocks, touch.triangle, touch.target) / rate_per_s;
                 // Taken with the velocity at the start of a step, a dashpot may not stop more than there is.
-                self.shear_time_s[t as usize] = (time_s / (1.0 + time_s * braked_per_s2 * dt_s)).min(most_s);
+                let taken_s = (time_s / (1.0 + time_s * braked_per_s2 * dt_s)).min(most_s);
+                self.shear_time_s[t as usize] = taken_s;
+                if time_s > 0.0 && !deforms {
+                    self.shear_lag[t as usize] = 1.0 - taken_s / time_s;
+                }
             }
         }
+    }
+
+    /// By how much dashpots that are taken too small let blocks go too fast that stick on their springs, at most [m/s]: blocks that a force drives against
+    /// a dashpot go as much faster as it is less than it should be. Where a joint slides, dashpots change nothing.
+    pub(crate) fn spring_error_m_s(&self, integrals: &Integrals, forces: &[FacetForce], dt_s: f64) -> f64 {
+        let of_facet = |((force, lag), touch): ((&FacetForce, &f64), &ActiveFacet)| {
+            let spring = force.spring.as_ref().filter(|spring| !spring.slides && *lag > 0.0)?;
+            let shear_n = integrals.sums_of(touch).pressure * force.shear.norm();
+            (shear_n < STICKS * spring.capacity_n).then(|| lag * spring.slip_m.norm() / dt_s)
+        };
+        let facets = forces.iter().zip(&self.shear_lag).zip(integrals.touching());
+        facets.filter_map(of_facet).fold(0.0, f64::max)
     }
 }
