@@ -71,7 +71,7 @@ impl Triangle {
 /// A pair that may overlap.
 struct PendingPair {
     tet: TetId,
-    /// Place of the tetrahedron in [`Candidates::tets`](crate::broad_phase::Candidates::tets).
+    /// Place of its frame.
     slot: u32,
     /// λ_b of the target at the corners of the contactor's triangle, as `[b][a]`: where its force acts.
     lambda: [[f64; 3]; 4],
@@ -196,10 +196,10 @@ impl Scratch {
         {
             return;
         }
-        let pieces = !scene.field.is_element();
+        let (pieces, shift) = (!scene.field.is_element(), scene.frames.shift_of(facet.target));
         for tet in facet.tets() {
-            let slot = scene.candidates.slot_of(tet);
-            let frame = &scene.frames[slot as usize];
+            let slot = scene.candidates.slot_of(tet).wrapping_add(shift);
+            let frame = scene.frames.at(slot);
             let in_plane = || Some(frame.lambda(corners)).filter(|l| lies_in_a_plane_of(frame, l, normal));
             let inside = frame.lambda_inside(corners);
             let Some(lambda) = inside.or_else(|| if pieces { in_plane() } else { None }) else { continue };
@@ -224,7 +224,7 @@ impl Scratch {
         let corners = moved_out(&triangle.corners, &triangle.normal, opening_m);
         self.add_facet(arch, scene, facet, &Triangle { corners, ..*triangle });
         for pair in &mut self.seen[first..] {
-            pair.lambda = scene.frames[pair.slot as usize].lambda(&triangle.corners);
+            pair.lambda = scene.frames.at(pair.slot).lambda(&triangle.corners);
         }
     }
 
@@ -247,8 +247,8 @@ impl Scratch {
             return;
         }
         let (at, tet) = (self.seen.len() as u32, facet.first());
-        let slot = scene.candidates.slot_of(tet);
-        let (lambda, range) = (scene.frames[slot as usize].lambda(corners), contactor.map(|face| face.range));
+        let slot = scene.candidates.slot_of(tet).wrapping_add(scene.frames.shift_of(facet.target));
+        let (lambda, range) = (scene.frames.at(slot).lambda(corners), contactor.map(|face| face.range));
         self.seen.push(PendingPair { tet, slot, lambda, range, moments: PairMoments::default() });
         let Self { sides, region, batches, .. } = self;
         arch.dispatch(PushRegions { sides, region, batches, outline, arch, at, area_m2: *area });

@@ -4,6 +4,7 @@ mod affine_target;
 pub(crate) mod capacity;
 pub(crate) mod clip;
 pub(crate) mod double_double;
+pub(crate) mod frames;
 pub(crate) mod function_moments;
 pub(crate) mod integrals;
 pub(crate) mod kernel;
@@ -20,6 +21,7 @@ pub(crate) mod scene;
 pub(crate) mod tet_frame;
 pub(crate) mod tet_overlap;
 
+pub use frames::Frames;
 pub use integrals::Integrals;
 pub use kernel::{GROUP, GroupMoments, RegionGroup, region_moments};
 pub use pair_moments::{PairMoments, pair_moments};
