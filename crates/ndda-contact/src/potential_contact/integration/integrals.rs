@@ -3,8 +3,7 @@
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{BlockId, TetId, TriangleId, Vec3};
+use ndda_mesh::{BlockId, TetId};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -13,6 +12,7 @@ use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::broad_phase::finder::FEW_NODES;
 use crate::friction::openings::moved_out;
 use crate::integration::affine_target::{EvaluateHalfSpaces, PushRegions};
+use crate::integration::chunk_parts::{Results, Triangle, copy_into};
 use crate::integration::clip::Outline;
 use crate::integration::function_moments::{Placed, add_function};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
@@ -50,24 +50,6 @@ pub(crate) struct Chunk {
     pub report: OverlapReport,
 }
 
-/// A contactor's triangle.
-#[derive(Clone, Copy, Default)]
-struct Triangle {
-    corners: [Vec3; 3],
-    /// Outward unit normal.
-    normal: Vec3,
-    area: f64,
-}
-
-impl Triangle {
-    fn new(scene: &Scene, triangle: TriangleId) -> Self {
-        let corners = scene.blocks.triangle_corners(triangle, scene.position);
-        let area_vector = triangle_area_vector(&corners);
-        let area = area_vector.norm();
-        Self { corners, normal: area_vector / area, area }
-    }
-}
-
 /// A pair that may overlap.
 struct PendingPair {
     tet: TetId,
@@ -83,6 +65,7 @@ struct PendingPair {
 /// Scratch memory of a thread for one chunk.
 #[derive(Default)]
 struct Scratch {
+    results: Results,
     seen: Vec<PendingPair>,
     region: Region,
     pieces: Pieces,
@@ -91,6 +74,23 @@ struct Scratch {
 }
 
 impl Chunk {
+    /// Integrates where chunks are very many: what is found is put together in the memory of the thread, and each chunk has room for little more.
+    fn integrate_one_of_many(&mut self, arch: Arch, scene: &Scene, scratch: &mut Scratch) {
+        self.swap(&mut scratch.results);
+        self.integrate(arch, scene, scratch);
+        self.swap(&mut scratch.results);
+        let Results { overlaps, touching, sums } = &scratch.results;
+        copy_into(&mut self.overlaps, overlaps);
+        copy_into(&mut self.touching, touching);
+        copy_into(&mut self.sums, sums);
+    }
+
+    fn swap(&mut self, results: &mut Results) {
+        std::mem::swap(&mut self.overlaps, &mut results.overlaps);
+        std::mem::swap(&mut self.touching, &mut results.touching);
+        std::mem::swap(&mut self.sums, &mut results.sums);
+    }
+
     fn integrate(&mut self, arch: Arch, scene: &Scene, scratch: &mut Scratch) {
         self.overlaps.clear();
         // A contact that closes further rarely requires more than a quarter.
@@ -319,9 +319,15 @@ impl Integrals {
         let threads = rayon::current_num_threads().max(self.scratch.len());
         self.scratch.resize_with(threads, Mutex::default);
         let (chunks, scratch) = (&mut self.chunks[..used], &self.scratch);
+        let are_many = used > MANY_CHUNKS;
         let integrate = |chunk: &mut Chunk| {
             let own = &scratch[rayon::current_thread_index().unwrap_or(0)];
-            chunk.integrate(arch, scene, &mut own.lock().unwrap_or_else(PoisonError::into_inner));
+            let scratch = &mut own.lock().unwrap_or_else(PoisonError::into_inner);
+            if are_many {
+                chunk.integrate_one_of_many(arch, scene, scratch);
+            } else {
+                chunk.integrate(arch, scene, scratch);
+            }
         };
         match chunks {
             [only] => integrate(only),

@@ -2,6 +2,7 @@
 
 mod affine_target;
 pub(crate) mod capacity;
+mod chunk_parts;
 pub(crate) mod clip;
 pub(crate) mod double_double;
 pub(crate) mod frames;
