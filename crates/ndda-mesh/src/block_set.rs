@@ -1,11 +1,14 @@
 //! All blocks of a scene: constant topology and rest shape, as structs of arrays.
 
-use std::collections::{BTreeMap, HashMap};
+mod builder;
+
+use std::collections::BTreeMap;
 use std::ops::Range;
 
-use crate::geometry::Aabb;
-use crate::surface::boundary_faces;
-use crate::{BlockId, BlockMesh, MeshError, NodeId, TetId, TriangleId, Vec3, validate};
+use crate::node_sets::NodeSets;
+use crate::{BlockId, BlockMesh, MeshError, NodeId, TetId, TriangleId, Vec3};
+
+pub use builder::BlockSetBuilder;
 
 /// All blocks of a scene. Blocks share nothing; each owns a contiguous range of every array.
 #[derive(Clone, Debug)]
@@ -28,10 +31,9 @@ pub struct BlockSet {
     pub triangle_surface: Vec<Option<u32>>,
     /// Names of parts of surfaces, of joints for instance.
     pub surface_names: Vec<String>,
-    /// Named node sets of each block.
-    pub node_sets: Vec<BTreeMap<String, Vec<NodeId>>>,
     /// Vector that was subtracted from every coordinate so that map coordinates keep their digits [m].
     pub origin_m: Vec3,
+    node_sets: NodeSets,
     node_start: Vec<u32>,
     tet_start: Vec<u32>,
     triangle_start: Vec<u32>,
@@ -46,89 +48,13 @@ impl BlockSet {
     /// # Errors
     /// All that [`validate::problems`] finds, with the name of the block.
     pub fn new(blocks: Vec<(String, BlockMesh)>) -> Result<Self, MeshError> {
-        let mut problems = Vec::new();
-        for (name, mesh) in &blocks {
-            problems.extend(validate::problems(mesh).into_iter().map(|p| (name.clone(), p)));
-        }
-        if !problems.is_empty() {
-            return Err(MeshError { problems });
-        }
-        let origin_m = scene_origin(&blocks);
-        let mut set = Self {
-            names: Vec::new(),
-            rest_position: Vec::new(),
-            tets: Vec::new(),
-            triangles: Vec::new(),
-            triangle_tet: Vec::new(),
-            tet_block: Vec::new(),
-            triangle_block: Vec::new(),
-            triangle_surface: Vec::new(),
-            surface_names: Vec::new(),
-            node_sets: Vec::new(),
-            origin_m,
-            node_start: vec![0],
-            tet_start: vec![0],
-            triangle_start: vec![0],
-        };
-        set.make_room(&blocks);
-        for (name, mesh) in blocks {
-            set.push(name, &mesh);
-        }
-        Ok(set)
-    }
-
-    /// Room for these blocks, but for their boundary triangles, whose number is not known yet.
-    fn make_room(&mut self, blocks: &[(String, BlockMesh)]) {
+        let mut builder = BlockSetBuilder::default();
         let sum = |of: fn(&BlockMesh) -> usize| blocks.iter().map(|(_, mesh)| of(mesh)).sum::<usize>();
-        let (nodes, tets) = (sum(|mesh| mesh.nodes.len()), sum(|mesh| mesh.tets.len()));
-        self.rest_position.reserve_exact(nodes);
-        self.tets.reserve_exact(tets);
-        self.tet_block.reserve_exact(tets);
-        self.names.reserve_exact(blocks.len());
-        self.node_sets.reserve_exact(blocks.len());
-        for starts in [&mut self.node_start, &mut self.tet_start, &mut self.triangle_start] {
-            starts.reserve_exact(blocks.len());
+        builder.make_room(blocks.len(), sum(|mesh| mesh.nodes.len()), sum(|mesh| mesh.tets.len()));
+        for (name, mesh) in blocks {
+            builder.push(name, &mesh);
         }
-    }
-
-    fn push(&mut self, name: String, mesh: &BlockMesh) {
-        let block = BlockId(self.names.len() as u32);
-        let first_node = self.rest_position.len() as u32;
-        let first_tet = self.tets.len() as u32;
-        let global = |node: u32| NodeId(first_node + node);
-        self.names.push(name);
-        self.rest_position.extend(mesh.nodes.iter().map(|x| x - self.origin_m));
-        self.tets.extend(mesh.tets.iter().map(|tet| tet.map(global)));
-        self.tet_block.resize(self.tets.len(), block);
-        let surface_of = self.surfaces(mesh);
-        for face in boundary_faces(&mesh.tets) {
-            let mut key = face.nodes;
-            key.sort_unstable();
-            self.triangle_surface.push(surface_of.get(&key).copied());
-            self.triangles.push(face.nodes.map(global));
-            self.triangle_tet.push(TetId(first_tet + face.tet));
-            self.triangle_block.push(block);
-        }
-        let sets = &mesh.node_sets;
-        self.node_sets
-            .push(sets.iter().map(|(k, v)| (k.clone(), v.iter().map(|&n| global(n)).collect())).collect());
-        self.node_start.push(self.rest_position.len() as u32);
-        self.tet_start.push(self.tets.len() as u32);
-        self.triangle_start.push(self.triangles.len() as u32);
-    }
-
-    /// The named part that triangles of a mesh are in.
-    fn surfaces(&mut self, mesh: &BlockMesh) -> HashMap<[u32; 3], u32> {
-        let mut surface_of = HashMap::new();
-        for (name, triangles) in &mesh.surfaces {
-            let known = self.surface_names.iter().position(|known| known == name);
-            let surface = known.unwrap_or_else(|| {
-                self.surface_names.push(name.clone());
-                self.surface_names.len() - 1
-            });
-            surface_of.extend(triangles.iter().map(|&triangle| (triangle, surface as u32)));
-        }
-        surface_of
+        builder.finish()
     }
 
     /// Number of blocks.
@@ -164,6 +90,11 @@ impl BlockSet {
     /// Range of a block's boundary triangles in per-triangle arrays.
     pub fn triangles_of(&self, block: BlockId) -> Range<usize> {
         range(&self.triangle_start, block)
+    }
+
+    /// Named node sets of a block, by rising name.
+    pub fn node_sets_of(&self, block: BlockId) -> impl Iterator<Item = (&str, &[NodeId])> {
+        self.node_sets.of_block(block)
     }
 
     /// Named parts of a block's surface, as in [`BlockMesh::surfaces`].
@@ -208,17 +139,6 @@ impl BlockSet {
 
 fn range(starts: &[u32], block: BlockId) -> Range<usize> {
     starts[block.index()] as usize..starts[block.index() + 1] as usize
-}
-
-/// Centre of the scene rounded to multiples of a power of two no smaller than the scene; zero near the origin.
-fn scene_origin(blocks: &[(String, BlockMesh)]) -> Vec3 {
-    let bounds = Aabb::around(blocks.iter().flat_map(|(_, mesh)| &mesh.nodes));
-    let size = bounds.diagonal();
-    if size == 0.0 {
-        return Vec3::zeros();
-    }
-    let quantum = size.log2().ceil().exp2();
-    bounds.center().map(|c| (c / quantum).round() * quantum)
 }
 
 #[cfg(test)]

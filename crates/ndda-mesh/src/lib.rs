@@ -42,6 +42,7 @@ pub mod cut;
 pub mod generate;
 pub mod geometry;
 pub mod ids;
+mod node_sets;
 pub mod quality;
 pub mod repair;
 pub mod stats;
@@ -50,7 +51,7 @@ pub mod tetrahedralise;
 pub mod validate;
 
 pub use block_mesh::BlockMesh;
-pub use block_set::BlockSet;
+pub use block_set::{BlockSet, BlockSetBuilder};
 pub use ids::{BlockId, NodeId, TetId, TriangleId};
 pub use stats::MeshStats;
 pub use validate::{MeshError, MeshProblem};

@@ -115,4 +115,5 @@ pub use step::setup::Setup;
 pub use step::snapshot::{RestoreError, Snapshot, SnapshotView};
 pub use step::stage::{LeaveOutError, StageStart};
 pub use step::stage_state::StageState;
+pub use step::start_snapshot::StartSnapshot;
 pub use step::state::State;

@@ -6,6 +6,7 @@ pub(crate) mod bolts;
 mod bonded;
 mod choices;
 pub mod friction;
+mod monitors;
 pub mod overlaps;
 mod pairs;
 pub(crate) mod presence;
@@ -25,19 +26,19 @@ use ndda_contact::{
     PotentialContact, SmoothPotential, VolumePotential,
 };
 use ndda_fem::Table;
-use ndda_io::scene::{self, At, Contact, Integrator, Scene};
-use ndda_mesh::{BlockId, BlockMesh, BlockSet, Vec3};
+use ndda_io::scene::{self, Contact, Integrator, Scene};
+use ndda_mesh::{BlockId, BlockMesh, BlockSet, BlockSetBuilder, Vec3};
 use ndda_solver::{
     AutoStep, BodySetup, ConjugateGradients, Direct, GeneralizedAlpha, ImplicitContact, LinearSolver, Mass,
     Midpoint, Newmark, Setup, SetupError, Simulation, TimeIntegrator,
 };
 
-use crate::run::monitor::Monitor;
 pub use choices::Choices;
 use friction::friction_law;
+pub use monitors::monitors;
 use pairs::{add_glue, add_joint_laws, between_materials, restitution_table};
 pub use quiet::records;
-use regions::{find, find_all};
+use rock::TakeMesh;
 pub use rock::{Bonded, Bonds, CutRock, Meshes, RockReport};
 pub(crate) use settle::settle;
 
@@ -72,8 +73,9 @@ pub fn blocks(scene: &Scene, folder: &Path) -> Result<BlockSet, Vec<Fault>> {
 /// # Errors
 /// As [`blocks`].
 pub fn blocks_and_rock(scene: &Scene, folder: &Path) -> Result<(BlockSet, Vec<RockReport>), Vec<Fault>> {
-    let (meshes, rock) = meshes(scene, folder)?;
-    let blocks = BlockSet::new(meshes).map_err(|error| -> Vec<Fault> {
+    let mut builder = BlockSetBuilder::default();
+    let rock = each_mesh(scene, folder, &mut |name, mesh| builder.push(name, &mesh))?;
+    let blocks = builder.finish().map_err(|error| -> Vec<Fault> {
         let fault = |(name, problem): (String, _)| Fault::new(path_of(scene, &name, ".shape"), problem);
         error.problems.into_iter().map(fault).collect()
     })?;
@@ -86,7 +88,14 @@ pub fn blocks_and_rock(scene: &Scene, folder: &Path) -> Result<(BlockSet, Vec<Ro
 /// # Errors
 /// All shapes that cannot be built.
 pub fn meshes(scene: &Scene, folder: &Path) -> Result<(Meshes, Vec<CutRock>), Vec<Fault>> {
-    let (mut meshes, mut rocks, mut faults) = (Meshes::new(), Vec::new(), Vec::new());
+    let mut meshes = Meshes::new();
+    let rocks = each_mesh(scene, folder, &mut |name, mesh| meshes.push((name, mesh)))?;
+    Ok((meshes, rocks))
+}
+
+/// Hands out the meshes of a scene, one after the other, and gives what each rock was cut into.
+fn each_mesh(scene: &Scene, folder: &Path, take: &mut TakeMesh) -> Result<Vec<CutRock>, Vec<Fault>> {
+    let (mut rocks, mut faults) = (Vec::new(), Vec::new());
     if scene.rockfall.is_some() {
         let message = "a rockfall scene has no blocks";
         return Err(vec![Fault::new("rockfall", message)]);
@@ -95,21 +104,18 @@ pub fn meshes(scene: &Scene, folder: &Path) -> Result<(Meshes, Vec<CutRock>), Ve
         match shapes::mesh(&block.shape, folder) {
             Ok(mesh) => {
                 let placed = mesh.placed(&shapes::turned(&block.turns), &vec3(block.at_m));
-                meshes.push((block.name.clone(), placed));
+                take(block.name.clone(), placed);
             }
             Err(message) => faults.push(Fault::new(format!("blocks[{i}].shape"), message)),
         }
     }
     for index in 0..scene.rock.len() {
-        match rock::cut_rock(scene, folder, index) {
-            Ok((filled, cut)) => {
-                meshes.extend(filled);
-                rocks.push(cut);
-            }
+        match rock::cut_rock(scene, folder, index, take) {
+            Ok(cut) => rocks.push(cut),
             Err(found) => faults.extend(found),
         }
     }
-    if faults.is_empty() { Ok((meshes, rocks)) } else { Err(faults) }
+    if faults.is_empty() { Ok(rocks) } else { Err(faults) }
 }
 
 /// The body under the closed surface in a file, filled with as few tetrahedra as there can be; coordinates as in the file.
@@ -350,41 +356,6 @@ fn linear_solver(solver: scene::Solver) -> Box<dyn LinearSolver> {
     match solver {
         scene::Solver::Cholesky => Box::new(Direct),
         scene::Solver::ConjugateGradients { tolerance } => Box::new(ConjugateGradients { tolerance }),
-    }
-}
-
-/// The monitors of a scene.
-///
-/// # Errors
-/// All monitors whose point is outside their block.
-pub fn monitors(scene: &Scene, simulation: &Simulation) -> Result<Vec<Monitor>, Vec<Fault>> {
-    let mut faults = Vec::new();
-    let mut monitors = Vec::new();
-    for (i, monitor) in scene.monitors.iter().enumerate() {
-        let path = || format!("monitors[{i}].at");
-        let built = one_monitor(monitor, simulation);
-        match built {
-            Ok(monitor) => monitors.push(monitor),
-            Err(message) => faults.push(Fault::new(path(), message)),
-        }
-    }
-    if faults.is_empty() { Ok(monitors) } else { Err(faults) }
-}
-
-fn one_monitor(monitor: &scene::Monitor, simulation: &Simulation) -> Result<Monitor, String> {
-    let blocks = simulation.blocks();
-    match &monitor.at {
-        At::Centre => Ok(Monitor::centre(&monitor.name, simulation, find(blocks, &monitor.block)?)),
-        At::Point(place) => {
-            let block = find(blocks, &monitor.block)?;
-            let point = Monitor::point(&monitor.name, blocks, block, &(vec3(*place) - blocks.origin_m));
-            point.ok_or_else(|| format!("this point is outside block `{}` at the start", monitor.block))
-        }
-        At::Largest(direction) => {
-            let found = find_all(blocks, &monitor.block)?;
-            let nodes = found.into_iter().map(|block| blocks.nodes_of(block)).collect();
-            Ok(Monitor::largest(&monitor.name, nodes, vec3(*direction).normalize()))
-        }
     }
 }
 

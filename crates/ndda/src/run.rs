@@ -29,7 +29,7 @@ use std::time::Instant;
 use ndda_io::summary::{LabelWord, MonitorEnd, Status, Summary};
 use ndda_io::table::Table;
 use ndda_io::{OutputFolder, WriteError, checkpoint, summary, tables};
-use ndda_solver::{Simulation, Sink, Snapshot};
+use ndda_solver::{Simulation, Sink, StartSnapshot};
 
 use crate::Model;
 use crate::judge::reference::Comparison;
@@ -60,7 +60,7 @@ pub struct Run {
     strict: bool,
     sensitivity: Sensitivity,
     /// The simulation as it was built, from which a twin begins; taken late in a run that is new.
-    built: Option<Snapshot>,
+    built: Option<StartSnapshot>,
     tell: Box<dyn Fn(&str) + Send>,
     on_the_way: Option<settling::OnTheWay>,
     started: Instant,
@@ -204,7 +204,7 @@ impl Run {
         let began = Instant::now();
         let settles = self.recording.is_some() && self.model.loaded.scene.settle.is_some();
         if (self.sensitivity != Sensitivity::Never || settles) && self.built.is_none() {
-            self.built = Some(self.model.simulation.snapshot());
+            self.built = Some(self.model.simulation.start_snapshot());
         }
         let earlier_s = self.on_the_way.as_ref().map_or(0.0, |way| way.wall_s);
         if let Err(error) = self.settle(settling) {

@@ -6,17 +6,14 @@ use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::affine::surface::BlockFaces;
-use crate::assembly::join_if::join_if;
 use crate::assembly::overlap_parts::OverlapParts;
 use crate::assembly::tangent::{self, Target};
-use crate::broad_phase::candidates::Candidates;
 use crate::friction::facet::{FacetForce, FacetScene};
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::{self, Moment};
 use crate::integration::integrals::Integrals;
 use crate::integration::pair_moments::OnTarget;
 use crate::integration::scene::Scene;
-use crate::integration::tet_frame::TetFrame;
 use crate::model::{ContactError, ContactHistory, ContactInput, FacetMemory};
 use crate::pair_stiffness::PairStiffness;
 use crate::restitution::DampingScene;
@@ -27,15 +24,13 @@ use super::PotentialContact;
 
 /// Facets below which a second thread costs more than it brings.
 pub(super) const GRAIN_FACETS: usize = 128;
-/// Frames below which a second thread costs more than it brings.
-const GRAIN_FRAMES: usize = 512;
 impl PotentialContact {
     /// Integrals of all candidate pairs at `input.position`.
     pub(super) fn integrate(&mut self, input: &ContactInput) -> Result<(), ContactError> {
         self.find_pairs(input)?;
         let Some((_, field)) = &self.field else { return Ok(()) };
         let (blocks, position) = (input.blocks, input.position);
-        let (candidates, frames, hulls) = (&self.candidates, &self.frames[..], &self.hulls);
+        let (candidates, frames, hulls) = (&self.candidates, &self.frames, &self.hulls);
         let openings = &self.openings;
         self.integrals.update(&Scene { blocks, position, candidates, frames, field, hulls, openings });
         Ok(())
@@ -61,14 +56,11 @@ impl PotentialContact {
         self.candidates.make_room(opening_m);
         self.candidates.update(input, &self.hulls);
         let Self { candidates, hulls, frames, .. } = self;
-        let place_hulls = || {
-            if candidates.pairs() > 0 {
-                hulls.place(input.blocks, input.position);
-                hulls.separate(input.blocks, input.position, &candidates.neighbours, opening_m);
-            }
-        };
-        let many = candidates.tets.len() > GRAIN_FRAMES;
-        join_if(many, place_hulls, || place_frames(frames, candidates, input)).1
+        if candidates.pairs() > 0 {
+            hulls.place(input.blocks, input.position);
+            hulls.separate(input.blocks, input.position, &candidates.neighbours, opening_m);
+        }
+        frames.place(candidates, hulls, input)
     }
 
     /// Takes from what facets remember by how much they are moved out.
@@ -123,6 +115,11 @@ impl PotentialContact {
 
     /// Takes over what facets remember; what did not touch is forgotten.
     pub(super) fn remember(&mut self, input: &ContactInput, history: &mut ContactHistory) {
+        if self.openings.is_empty() {
+            // What facets remembered before has been read: the same memory takes what they remember now.
+            std::mem::swap(&mut history.facets, &mut self.new_facets);
+            std::mem::swap(&mut history.law_state, &mut self.new_state);
+        }
         self.new_facets.clear();
         self.new_state.clear();
         let scene = FacetScene { input, joints: self.joints.as_ref(), history, elastic_pa: self.penalty_pa };
@@ -191,7 +188,7 @@ impl PotentialContact {
                 (Some((_, PotentialField::Function(field))), None) => Target::Function(field, tet),
                 _ => Target::Element,
             };
-            let frame = &self.frames[overlap.slot as usize];
+            let frame = self.frames.at(overlap.slot);
             let triangle = &input.blocks.triangles[touch.triangle.index()];
             let mut pair = PairStiffness::new(triangle, &input.blocks.tets[tet.index()]);
             tangent::add_pair(&mut pair, &corners, frame, target, self.penalty_of_facet[t]);
@@ -212,24 +209,6 @@ impl PotentialContact {
         }
     }
 }
-fn place_frames(
-    frames: &mut Vec<TetFrame>,
-    candidates: &Candidates,
-    input: &ContactInput,
-) -> Result<(), ContactError> {
-    let (blocks, Candidates { tets, order, .. }) = (input.blocks, candidates);
-    frames.resize(tets.len(), TetFrame::default());
-    let place = |(slot, frame): (usize, &mut TetFrame)| {
-        *frame = TetFrame::in_order(&blocks.tet_corners(tets[slot], input.position), &order[slot]);
-        let is_sound = frame.volume_m3 > 0.0 && frame.has_heights();
-        (!is_sound).then_some(slot)
-    };
-    let unsound = frames.par_iter_mut().enumerate().with_min_len(GRAIN_FRAMES).filter_map(place);
-    let Some(slot) = unsound.min() else { return Ok(()) };
-    let (tet, volume_m3) = (tets[slot], frames[slot].volume_m3);
-    Err(ContactError::CollapsedTet { tet, block: blocks.tet_block[tet.index()], volume_m3 })
-}
-
 /// Output of [`place_forces`]: forces of facets, their reactions on host tetrahedra, and the numbers of the laws.
 pub(super) struct FacetRows<'a> {
     pub(super) forces: &'a mut Vec<FacetForce>,

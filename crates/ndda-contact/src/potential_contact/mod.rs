@@ -45,9 +45,9 @@ use crate::broad_phase::finder::BroadPhase;
 use crate::friction::facet::FacetForce;
 use crate::friction::openings::Openings;
 use crate::friction::patches::FrictionPatches;
+use crate::integration::frames::Frames;
 use crate::integration::integrals::Integrals;
 use crate::integration::pair_moments::OnTarget;
-use crate::integration::tet_frame::TetFrame;
 use crate::model::FacetMemory;
 use crate::restitution::ContactDamping;
 
@@ -83,7 +83,7 @@ pub struct PotentialContact {
     hulls: ConvexBlocks,
     integrals: Integrals,
     adjacency: BlockContactIndex,
-    frames: Vec<TetFrame>,
+    frames: Frames,
     forces: Vec<FacetForce>,
     /// Forces of facets on host tetrahedra: a block need not look for the hits, which are far away in memory.
     on_host: Vec<OnTarget>,
@@ -115,7 +115,7 @@ impl PotentialContact {
             hulls: ConvexBlocks::default(),
             integrals: Integrals::default(),
             adjacency: BlockContactIndex::default(),
-            frames: Vec::new(),
+            frames: Frames::default(),
             forces: Vec::new(),
             on_host: Vec::new(),
             penalty_of_facet: Vec::new(),

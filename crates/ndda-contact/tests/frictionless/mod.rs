@@ -7,9 +7,9 @@ use ndda_contact::assembly::Reporter;
 use ndda_contact::assembly::{ScatterScene, add_nodal_forces};
 use ndda_contact::broad_phase::Candidates;
 use ndda_contact::friction::{FacetForce, Openings};
+use ndda_contact::integration::Frames;
 use ndda_contact::integration::Integrals;
 use ndda_contact::integration::Scene;
-use ndda_contact::integration::TetFrame;
 use ndda_contact::{ContactInput, ContactOutput, ContactReport, PotentialField};
 use ndda_mesh::geometry::triangle_area_vector;
 use rayon::prelude::*;
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 #[derive(Default)]
 pub struct Frictionless {
     candidates: Candidates,
-    frames: Vec<TetFrame>,
+    frames: Frames,
     hulls: ConvexBlocks,
     integrals: Integrals,
     adjacency: BlockContactIndex,
@@ -41,14 +41,8 @@ impl Frictionless {
         }
         self.hulls.place(blocks, input.position);
         self.hulls.separate(blocks, input.position, &self.candidates.neighbours, 0.0);
-        self.frames.clear();
-        let tets = self.candidates.tets.iter().zip(&self.candidates.order);
-        self.frames.extend(tets.map(|(&tet, order)| {
-            let frame = TetFrame::in_order(&blocks.tet_corners(tet, input.position), order);
-            assert!(frame.volume_m3 > 0.0);
-            frame
-        }));
-        let (candidates, frames, field) = (&self.candidates, &self.frames[..], &PotentialField::Element);
+        self.frames.place(&self.candidates, &self.hulls, input).expect("tetrahedra with volume");
+        let (candidates, frames, field) = (&self.candidates, &self.frames, &PotentialField::Element);
         let (hulls, position, openings) = (&self.hulls, input.position, &Openings::default());
         self.integrals.update(&Scene { blocks, position, candidates, frames, field, hulls, openings });
         let integrals = &self.integrals;

@@ -9,6 +9,7 @@ mod reference_error;
 mod stage;
 mod verdict;
 
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -172,13 +173,47 @@ pub struct Invariants {
 pub fn write(path: &Path, summary: &Summary) -> Result<(), WriteError> {
     let encode =
         |e: serde_json::Error| WriteError::Encode { path: path.to_path_buf(), reason: e.to_string() };
-    let tree = serde_json::to_value(summary).map_err(encode)?;
-    if let Some(key) = first_null(&tree, "") {
+    let mut nulls = Nulls::default();
+    serde_json::to_writer(&mut nulls, summary).map_err(encode)?;
+    if nulls.count > usize::from(summary.reference.is_none()) {
+        let tree = serde_json::to_value(summary).map_err(encode)?;
+        let key = first_null(&tree, "").unwrap_or_default();
         return Err(WriteError::not_finite(path, key, None));
     }
-    let mut text = serde_json::to_string_pretty(summary).map_err(encode)?;
-    text.push('\n');
-    atomic::write(path, text.as_bytes())
+    atomic::write_by(path, |file| {
+        let mut out = BufWriter::new(file);
+        serde_json::to_writer_pretty(&mut out, summary)?;
+        out.write_all(b"\n")?;
+        out.flush()
+    })
+}
+
+/// Counts the nulls of a text in JSON that is written to it: a summary of a million blocks need not be in memory once more to be looked through.
+#[derive(Default)]
+struct Nulls {
+    count: usize,
+    is_in_text: bool,
+    is_escaped: bool,
+}
+
+impl Write for Nulls {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        for byte in bytes {
+            match byte {
+                _ if self.is_escaped => self.is_escaped = false,
+                b'\\' => self.is_escaped = true,
+                b'"' => self.is_in_text = !self.is_in_text,
+                // No other word of JSON has this letter.
+                b'n' if !self.is_in_text => self.count += 1,
+                _ => {}
+            }
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 /// The key of the first null other than `reference`. JSON has no word for NaN and infinity: serde_json writes null.

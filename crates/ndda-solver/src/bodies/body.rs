@@ -8,7 +8,7 @@ use ndda_mesh::Vec3;
 
 use crate::bodies::batch::Batch;
 use crate::bodies::congruent_groups::{NodeSlices, Nodes};
-use crate::bodies::elastic_body::ElasticBody;
+use crate::bodies::elastic_body::{ElasticBody, Kept};
 use crate::bodies::fixed_body::FixedBody;
 use crate::bodies::prototype::Prototype;
 use crate::bodies::rigid_body::RigidBody;
@@ -29,10 +29,15 @@ pub(crate) struct Body {
     pub batch: Option<Box<Batch>>,
 }
 
+/// A block without memory takes no step.
+const NO_ROOM: &str = "blocks have memory to work in while they step";
+
 /// The ways in which a block moves.
 pub(crate) enum Motion {
     /// Elastic and affine blocks.
     Elastic(Box<ElasticBody>),
+    /// Such blocks outside their step, where many of one shape share memory (`rooms.rs`).
+    Resting(Kept),
     /// Rigid blocks.
     Rigid(RigidBody),
     /// Blocks that stay, or move as prescribed.
@@ -46,6 +51,7 @@ impl Body {
             Motion::Elastic(body) => body.step(shape, context, nodes),
             Motion::Rigid(body) => body.step(shape, context, nodes),
             Motion::Fixed(body) => Ok(body.step(shape, context, nodes)),
+            Motion::Resting(_) => unreachable!("{NO_ROOM}"),
         };
         match report {
             Ok(report) => self.report = report,
@@ -60,9 +66,14 @@ impl Body {
         }
         if let Some(body) = self.elastic() {
             body.scratch = factor.new_scratch();
-            if let (Some(damping), Some(filter)) = (&mut body.damping, filter) {
-                damping.renew_scratch(filter);
-            }
+        }
+        let kept = match &mut self.motion {
+            Motion::Elastic(body) => &mut body.kept,
+            Motion::Resting(kept) => kept,
+            Motion::Rigid(_) | Motion::Fixed(_) => return,
+        };
+        if let (Some(damping), Some(filter)) = (&mut kept.damping, filter) {
+            damping.renew_scratch(filter);
         }
     }
 
@@ -92,6 +103,7 @@ impl Body {
             Motion::Elastic(body) => body.try_step(shape, context, nodes),
             Motion::Rigid(body) => body.try_step(shape, context, nodes),
             Motion::Fixed(_) => Ok(()),
+            Motion::Resting(_) => unreachable!("{NO_ROOM}"),
         };
         self.error = tried.err();
     }
@@ -102,6 +114,7 @@ impl Body {
             Motion::Elastic(body) => body.increment(),
             Motion::Rigid(body) => body.increment(),
             Motion::Fixed(body) => return body.end_position(shape, end_s, position, out),
+            Motion::Resting(_) => unreachable!("{NO_ROOM}"),
         };
         for ((end, x), u) in out.iter_mut().zip(position).zip(increment) {
             *end = x + u;
@@ -125,13 +138,23 @@ impl Body {
             }
             Motion::Rigid(body) => body.respond(shape, weights, force, out),
             Motion::Fixed(_) => out.fill(Vec3::zeros()),
+            Motion::Resting(_) => unreachable!("{NO_ROOM}"),
         }
     }
 
-    /// The deforming part, where there is one.
+    /// The deforming part, where there is one and it has memory to work in.
     pub(crate) fn elastic(&mut self) -> Option<&mut ElasticBody> {
         match &mut self.motion {
             Motion::Elastic(body) => Some(body),
+            Motion::Rigid(_) | Motion::Fixed(_) | Motion::Resting(_) => None,
+        }
+    }
+
+    /// What a deforming block keeps.
+    pub(crate) fn kept(&self) -> Option<&Kept> {
+        match &self.motion {
+            Motion::Elastic(body) => Some(&body.kept),
+            Motion::Resting(kept) => Some(kept),
             Motion::Rigid(_) | Motion::Fixed(_) => None,
         }
     }

@@ -13,6 +13,7 @@ pub(crate) mod record;
 pub(crate) mod report;
 pub(crate) mod rigid_body;
 pub(crate) mod rigid_inertia;
+pub(crate) mod rooms;
 pub(crate) mod spin_torque;
 pub(crate) mod step_damping;
 pub(crate) mod stiffness_damping;

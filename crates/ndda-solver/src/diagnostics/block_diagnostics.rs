@@ -5,6 +5,7 @@
 //! an error of energy δE is one of its speed δv = δE/(m v), whatever the other weighs.
 
 mod stages;
+mod start;
 
 use crate::diagnostics::worst::BlockScale;
 use crate::diagnostics::worst::Worst;
@@ -16,6 +17,7 @@ use crate::bodies::report::LateralDrift;
 use crate::bodies::report::RigidForcing;
 use crate::diagnostics::creep::CreepDiagnostics;
 use crate::diagnostics::hops::Hops;
+use crate::diagnostics::many::each_of_many;
 use crate::diagnostics::ringing::{Quadrature, Ringing};
 
 /// Part of ½ m V² that an error of V/100 is measured by where blocks meet at next to no speed: m v δv + ½ m δv².
@@ -154,10 +156,10 @@ impl BlockDiagnostics {
 
     /// Keeps the energy of impact on each block, once all work of a step is recorded.
     pub(crate) fn close_step(&mut self) {
-        for balance in &mut self.balances {
+        each_of_many(&mut self.balances, |_, balance| {
             balance.largest_impact_work_j = balance.largest_impact_work_j.max(balance.impact_work_j);
             balance.impact_j = balance.impact_j.max(balance.largest_impact_work_j - balance.impact_work_j);
-        }
+        });
     }
 
     /// Forgets the energies of contact before new ones are noted.
@@ -236,11 +238,17 @@ impl BlockDiagnostics {
         (speed, place)
     }
 
-    /// Records the forcing of a block in a step, and with it the error that the step leaves.
-    pub(crate) fn add_ringing(&mut self, block: usize, step: &Quadrature, drive: &RigidForcing) {
-        let balance = &mut self.balances[block];
-        balance.ringing.add(step, drive);
-        balance.hops.add(step.dt_s, drive);
+    /// Records the forcing of each block in a step, and with it the error that the step leaves.
+    pub(crate) fn add_ringing<'a>(
+        &mut self,
+        step: &Quadrature,
+        drive_of: impl Fn(usize) -> &'a RigidForcing + Sync,
+    ) {
+        each_of_many(&mut self.balances, |block, balance| {
+            let drive = drive_of(block);
+            balance.ringing.add(step, drive);
+            balance.hops.add(step.dt_s, drive);
+        });
     }
 
     /// Most hops in a row that friction lets grow.

@@ -10,6 +10,7 @@ use ndda_contact::SpringSlip;
 use ndda_mesh::{BlockId, Vec3};
 use serde::{Deserialize, Serialize};
 
+use crate::diagnostics::many::each_of_many;
 use crate::diagnostics::worst::{BlockScale, Worst};
 
 /// Part of the limit below which springs that are not all sliding could hold; above it a block slides, but for facets at its rim that come and go.
@@ -113,7 +114,7 @@ impl CreepDiagnostics {
 
     /// Ends a step.
     pub(crate) fn close_step(&mut self, dt_s: f64) {
-        self.books.iter_mut().for_each(|book| book.close_step(dt_s));
+        each_of_many(&mut self.books, |_, book| book.close_step(dt_s));
     }
 
     /// Largest speed of creep in the mean since springs first touched, over a speed, and how far it took a block, over the smallest height

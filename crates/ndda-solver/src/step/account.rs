@@ -1,5 +1,6 @@
 //! Accounts of a step: impulses, work, energies of pairs, and extremes.
 
+use crate::step::each_node;
 use crate::step::report::StepReport;
 use std::time::Instant;
 
@@ -34,7 +35,8 @@ impl Simulation {
             if depth > self.problem.min_friction_coefficient { depth } else { 0.0 };
         self.note_contacts();
         if self.contact_does_work(contact) || self.contact_is_damped(contact) {
-            self.scratch.moved.copy_from_slice(&self.state.position);
+            let Self { scratch, state, .. } = self;
+            each_node(&mut scratch.moved, &state.position, |moved, x| *moved = *x);
         }
     }
 
@@ -47,9 +49,10 @@ impl Simulation {
         let quadrature = self.quadrature();
         let (mut friction_j, mut motion_j, mut load_j, mut damping_j) = (0.0, 0.0, 0.0, 0.0);
         let mut radiated_j = 0.0;
-        for (k, body) in self.bodies.iter().enumerate() {
+        let bodies = &self.bodies;
+        self.audit.ledger.blocks().add_ringing(&quadrature, |block| &bodies[block].report.drive);
+        for body in bodies {
             let report = &body.report;
-            self.audit.ledger.blocks().add_ringing(k, &quadrature, &report.drive);
             force += report.reaction - report.motion_impulse / self.part_s;
             exchanged_n += report.reaction.norm();
             torque += report.outside_torque;
@@ -124,9 +127,8 @@ impl Simulation {
         let mut contact_work_j = 0.0;
         self.audit.travel.touching.clear();
         if works || self.contact_is_damped(contact) {
-            for (moved, x) in self.scratch.moved.iter_mut().zip(&self.state.position) {
-                *moved = x - *moved;
-            }
+            let Self { scratch, state, .. } = self;
+            each_node(&mut scratch.moved, &state.position, |moved, x| *moved = x - *moved);
             self.record_contact_damping();
         }
         let Some(model) = self.contact.as_mut().filter(|_| works) else { return contact_work_j };

@@ -4,13 +4,15 @@ use std::mem::take;
 
 use ndda_contact::{ContactInput, ContactOutput, ContactReport, Deformation};
 use ndda_mesh::{BlockId, Vec3};
+use rayon::prelude::*;
 
 use crate::bodies::kind::BodyKind;
 use crate::error::StepError;
-use crate::step::Simulation;
 use crate::step::deformation::StepDeformation;
 use crate::step::first_step::seen;
 use crate::step::report::Iterations;
+use crate::step::state::State;
+use crate::step::{MANY_NODES, Simulation};
 
 impl Simulation {
     /// f ← loads and contact, at predicted positions or at the end of the step.
@@ -31,9 +33,15 @@ impl Simulation {
     /// x* = x + lead · Δt v + lead₂ · Δt² a.
     pub(super) fn place_contact(&mut self) {
         let lead = self.weights.contact_lead * self.part_s;
-        let moving = self.state.position.iter().zip(&self.state.velocity);
-        for (place, (x, v)) in self.scratch.contact_position.iter_mut().zip(moving) {
-            *place = x + lead * v;
+        let State { position, velocity, .. } = &self.state;
+        let places = &mut self.scratch.contact_position;
+        if places.len() > MANY_NODES {
+            let moving = position.par_iter().zip(velocity);
+            let each = places.par_iter_mut().zip(moving).with_min_len(MANY_NODES / 2);
+            each.for_each(|(place, (x, v))| *place = x + lead * v);
+        } else {
+            let moving = position.iter().zip(velocity);
+            places.iter_mut().zip(moving).for_each(|(place, (x, v))| *place = x + lead * v);
         }
         let lead = self.weights.contact_lead_acceleration * self.part_s * self.part_s;
         if lead != 0.0 {

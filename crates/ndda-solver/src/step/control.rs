@@ -13,6 +13,7 @@
 //! (`Simulation::may_collide_with`). h bounds ω_c Δt, and the work of contact is known from the ledger. Where blocks vibrate in contact, such bounds are
 //! hundreds of times what a step gains: what part of them steps gain is learnt where the balance is evaluated.
 
+use crate::bodies::rooms::Rooms;
 use crate::bodies::step_damping::StepDamping;
 use crate::diagnostics::ledger::Ledger;
 use crate::error::StepError;
@@ -307,6 +308,7 @@ impl Simulation {
 
     /// Memory of solves for the factors in use.
     fn renew_scratches(&mut self) {
+        self.problem.rooms.iter_mut().flatten().for_each(Rooms::renew);
         for body in &mut self.bodies {
             let shape = &self.problem.shapes[body.shape];
             let Some(factor) = shape.factor.as_deref() else { continue };

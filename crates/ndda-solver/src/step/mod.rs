@@ -31,6 +31,7 @@ pub(crate) mod setup;
 pub(crate) mod snapshot;
 pub(crate) mod stage;
 pub(crate) mod stage_state;
+pub(crate) mod start_snapshot;
 pub(crate) mod state;
 pub(crate) mod travel;
 
@@ -40,10 +41,12 @@ use crate::step::report::StepReport;
 
 use ndda_contact::{Body as ContactBody, ContactModel, FacetContact};
 use ndda_mesh::{BlockSet, Vec3};
+use rayon::prelude::*;
 
 use crate::bodies::body::Body;
 use crate::bodies::congruent_groups::CongruentGroups;
 use crate::bodies::prototype::Prototype;
+use crate::bodies::rooms::{Guests, Rooms};
 use crate::bolts::set::Bolts;
 use crate::diagnostics::ledger::Ledger;
 use crate::error::StepError;
@@ -60,6 +63,23 @@ use crate::step::travel::Travel;
 
 /// Nodes per half below which a second thread costs more than it brings.
 pub(crate) const GRAIN_NODES: usize = 400;
+
+/// Nodes below which a second thread costs more than it brings where little is done to each.
+pub(crate) const MANY_NODES: usize = 1 << 14;
+
+/// Changes the entry of each node by that of another array, on all threads where they are many.
+pub(crate) fn each_node(
+    entries: &mut [Vec3],
+    others: &[Vec3],
+    change: impl Fn(&mut Vec3, &Vec3) + Sync + Send,
+) {
+    if entries.len() > MANY_NODES {
+        let each = entries.par_iter_mut().zip(others).with_min_len(MANY_NODES / 2);
+        each.for_each(|(entry, other)| change(entry, other));
+    } else {
+        entries.iter_mut().zip(others).for_each(|(entry, other)| change(entry, other));
+    }
+}
 
 /// A problem on its way through time.
 pub struct Simulation {
@@ -91,6 +111,8 @@ pub(crate) struct Problem {
     pub(crate) blocks: BlockSet,
     /// Operators, supports and factors; congruent blocks share one.
     pub(crate) shapes: Vec<Prototype>,
+    /// Memory to work in for the blocks of each shape; none where each has its own.
+    pub(crate) rooms: Vec<Option<Rooms>>,
     /// Groups of congruent blocks that one thread solves together.
     pub(crate) runs: CongruentGroups,
     pub(crate) integrator: Box<dyn TimeIntegrator>,
@@ -103,6 +125,14 @@ pub(crate) struct Problem {
     pub(crate) min_friction_coefficient: f64,
     /// Whether blocks are damped, or nodes of them follow a prescribed motion.
     pub(crate) has_impulses: bool,
+}
+
+impl Problem {
+    /// Lets a run of blocks of one shape have memory to work in.
+    pub(crate) fn enter<'a>(&'a self, run: &'a mut [Body]) -> Guests<'a> {
+        let shape = run[0].shape;
+        Guests::enter(&self.shapes[shape], self.rooms[shape].as_ref(), run)
+    }
 }
 
 /// Forces and places of a step, in memory that every step uses again.

@@ -4,10 +4,10 @@ use ndda_contact::Part;
 use serde::Serialize;
 
 use crate::bodies::batch::ENOUGH_TOGETHER;
-use crate::bodies::body::{Body, Motion};
+use crate::bodies::body::Body;
 use crate::bodies::kind::BodyKind;
 use crate::bodies::prototype::Prototype;
-use crate::step::Simulation;
+use crate::step::{Problem, Simulation};
 
 /// The plan of a run.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -104,14 +104,22 @@ impl Simulation {
         self.bodies.iter().any(of)
     }
 
+    /// Whether blocks that share memory are solved for together.
+    fn has_runs_in_rooms(&self) -> bool {
+        let Problem { runs, rooms, shapes, .. } = &self.problem;
+        runs.ranges().filter(|run| run.len() >= ENOUGH_TOGETHER).any(|run| {
+            let shape = self.bodies[run.start].shape;
+            rooms[shape].is_some() && shapes[shape].factor.is_some()
+        })
+    }
+
     fn block_parts(&self) -> Vec<Part> {
         let deforms = |shape: &Prototype| matches!(shape.kind, BodyKind::Elastic | BodyKind::Affine);
         let stiff = self.problem.blocks.ids().filter(|&block| !deforms(self.shape(block)));
         let (count, tets) =
             stiff.fold((0, 0), |(n, tets), block| (n + 1, tets + self.problem.blocks.tets_of(block).len()));
-        let stressed =
-            |body: &Body| matches!(&body.motion, Motion::Elastic(elastic) if elastic.initial_force.is_some());
-        let batches = self.any_body(|body| body.batch.is_some());
+        let stressed = |body: &Body| body.kept().is_some_and(|kept| kept.initial_force.is_some());
+        let batches = self.any_body(|body| body.batch.is_some()) || self.has_runs_in_rooms();
         vec![
             Part::of(
                 "elasticity",

@@ -62,7 +62,8 @@ impl Simulation {
     fn add_block_to(&mut self, sample: &mut Sample, block: BlockId) -> Result<(), StepError> {
         let (range, time_s, contact_offset) =
             (self.problem.blocks.nodes_of(block), sample.time_s, self.state.contact_offset_of(block));
-        let body = &mut self.bodies[block.index()];
+        let mut guests = self.problem.enter(std::slice::from_mut(&mut self.bodies[block.index()]));
+        let body = guests.one();
         let shape = &self.problem.shapes[body.shape];
         let (position, velocity) = (&self.state.position[range.clone()], &self.state.velocity[range]);
         sample.kinetic_j += shape.operator.kinetic_energy_j(velocity);
@@ -114,7 +115,9 @@ impl Simulation {
         let known = self.audit.ledger.known_vibration(die_out).max(found.over(largest_m_s));
         let borne_m2_s2 = self.audit.ledger.blocks().strain_speed2(block, die_out);
         let known_m_s = known * (largest_m_s * largest_m_s + borne_m2_s2).sqrt();
-        let (range, body) = (self.problem.blocks.nodes_of(block), &mut self.bodies[block.index()]);
+        let (range, time_s) = (self.problem.blocks.nodes_of(block), self.time_s());
+        let mut guests = self.problem.enter(std::slice::from_mut(&mut self.bodies[block.index()]));
+        let body = guests.one();
         let shape = &self.problem.shapes[body.shape];
         let Some(elastic) = body.elastic() else { return Ok(found) };
         let motion = (&self.state.position[range.clone()], &self.state.velocity[range]);
@@ -123,7 +126,7 @@ impl Simulation {
             Ok(speed_m_s) => speed_m_s,
             Err(source) => {
                 let block = self.problem.blocks.names[block.index()].clone();
-                return Err(StepError::Block { time_s: self.time_s(), block, source });
+                return Err(StepError::Block { time_s, block, source });
             }
         };
         let energy_j = 0.5 * shape.operator.mass_kg * speed_m_s * speed_m_s;
@@ -205,7 +208,8 @@ impl Simulation {
     pub fn recover_stress(&mut self, out: &mut [[f64; 6]]) -> Result<(), StepError> {
         let time_s = self.time_s();
         for block in self.problem.blocks.ids() {
-            let body = &mut self.bodies[block.index()];
+            let mut guests = self.problem.enter(std::slice::from_mut(&mut self.bodies[block.index()]));
+            let body = guests.one();
             let shape = &self.problem.shapes[body.shape];
             let position = &self.state.position[self.problem.blocks.nodes_of(block)];
             let out = &mut out[self.problem.blocks.tets_of(block)];
@@ -218,7 +222,7 @@ impl Simulation {
                 block: self.problem.blocks.names[block.index()].clone(),
                 source: source.into(),
             })?;
-            let (material, initial) = (shape.material.as_ref(), &body.initial_stress_pa);
+            let (material, initial) = (shape.material.as_ref(), &body.kept.initial_stress_pa);
             let displacement = body.displacement_in_frame();
             cauchy_stress(&shape.operator, material, initial, &rotation, displacement, out);
         }

@@ -12,12 +12,13 @@ use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use crate::bodies::batch::{Batch, ENOUGH_TOGETHER};
 use crate::bodies::body::{Body, Motion};
 use crate::bodies::congruent_groups::CongruentGroups;
-use crate::bodies::elastic_body::ElasticBody;
+use crate::bodies::elastic_body::{ElasticBody, Kept};
 use crate::bodies::fixed_body::FixedBody;
 use crate::bodies::kind::BodyKind;
 use crate::bodies::prototype::{BodySetup, Mass, Prototype};
 use crate::bodies::report::BlockReport;
 use crate::bodies::rigid_body::RigidBody;
+use crate::bodies::rooms::{MANY, Rooms};
 use crate::bolts::memory::BoltMemory;
 use crate::bolts::setup::BoltSetup;
 use crate::diagnostics::block_diagnostics::BlockDiagnostics;
@@ -150,6 +151,7 @@ impl Simulation {
                 affine: Vec::new(),
                 runs: CongruentGroups::single(0),
                 blocks,
+                rooms: rooms(&shapes, &shape_of, newton_nodes > 0),
                 shapes,
                 base_step_s: step_s,
                 gravity_m_s2,
@@ -193,7 +195,11 @@ impl Simulation {
         let congruent =
             |a: usize, b: usize| shape_of[a] == shape_of[b] && shapes[shape_of[a]].factor.is_some();
         self.problem.runs = CongruentGroups::group(shape_of.len(), MULTI, congruent);
+        let has_rooms = |shape: usize| self.problem.rooms[shape].is_some();
         for run in self.problem.runs.ranges().filter(|run| run.len() >= ENOUGH_TOGETHER) {
+            if has_rooms(shape_of[run.start]) {
+                continue;
+            }
             let factor = shapes[shape_of[run.start]].factor.as_deref();
             self.bodies[run.start].batch = factor.map(|factor| Box::new(Batch::new(factor)));
         }
@@ -210,12 +216,15 @@ impl Simulation {
         }
         let motion = match shape.kind {
             BodyKind::Elastic | BodyKind::Affine => {
-                let body = ElasticBody::new(shape, setup.initial_stress.as_ref(), rest);
+                let kept = Kept::new(shape, setup.initial_stress.as_ref(), rest);
                 let internal = self.state.internal_force.get_mut(range.clone()).unwrap_or_default();
-                if let Some(initial) = &body.initial_force {
+                if let Some(initial) = &kept.initial_force {
                     internal.iter_mut().zip(initial).for_each(|(f, initial)| *f = *initial);
                 }
-                Motion::Elastic(Box::new(body))
+                match self.problem.rooms[shape_index] {
+                    Some(_) => Motion::Resting(kept),
+                    None => Motion::Elastic(Box::new(ElasticBody::new(shape, kept))),
+                }
             }
             BodyKind::Rigid => Motion::Rigid(RigidBody::new(shape)),
             BodyKind::Fixed => Motion::Fixed(FixedBody::new(shape, rest)),
@@ -323,6 +332,17 @@ impl Simulation {
         }
         (force, torque)
     }
+}
+
+/// Memory to work in for blocks of each shape of which there are many; none where contact at the end of steps goes back to what blocks have tried.
+fn rooms(shapes: &[Prototype], shape_of: &[usize], is_iterated: bool) -> Vec<Option<Rooms>> {
+    let mut count = vec![0; shapes.len()];
+    shape_of.iter().for_each(|&shape| count[shape] += 1);
+    let deforms = |shape: &Prototype| matches!(shape.kind, BodyKind::Elastic | BodyKind::Affine);
+    let share = |(shape, count): (&Prototype, usize)| {
+        (count >= MANY && shape.is_free() && deforms(shape) && !is_iterated).then(Rooms::new)
+    };
+    shapes.iter().zip(count).map(share).collect()
 }
 
 /// The distinct blocks, and which of them each block is.

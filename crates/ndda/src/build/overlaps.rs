@@ -1,5 +1,7 @@
 //! Blocks that overlap at the start: contact would throw them apart, so they are refused unless the scene settles first.
 
+use std::collections::{BTreeSet, HashMap};
+
 use ndda_contact::{PairResultant, resultants};
 use ndda_io::code::Code;
 use ndda_io::diagnostic::Diagnostic;
@@ -78,21 +80,50 @@ fn enclosed(simulation: &Simulation) -> Option<(BlockId, BlockId)> {
     let within = |inner: &Aabb, outer: &Aabb| {
         (0..3).all(|i| outer.min[i] < inner.min[i] && inner.max[i] < outer.max[i])
     };
-    // An outer box begins before an inner one and ends after it.
-    let mut open: Vec<(BlockId, Aabb)> = Vec::new();
-    for (inner, bounds) in boxes {
-        open.retain(|(_, outer)| outer.max.x >= bounds.min.x);
-        let holds = |(outer, around): &&(BlockId, Aabb)| {
-            let moves = [inner, *outer].iter().any(|&block| !is_fixed(simulation, block));
-            let nodes = &position[blocks.nodes_of(inner)];
-            moves && within(&bounds, around) && nodes.iter().all(|x| is_in_solid(blocks, position, *outer, x))
+    let places = BoxesByPlace::new(&boxes);
+    boxes.iter().find_map(|(inner, bounds)| {
+        let nodes = &position[blocks.nodes_of(*inner)];
+        let holds = |place: &usize| {
+            let (outer, around) = &boxes[*place];
+            let moves = [*inner, *outer].iter().any(|&block| !is_fixed(simulation, block));
+            moves && within(bounds, around) && nodes.iter().all(|x| is_in_solid(blocks, position, *outer, x))
         };
-        if let Some((outer, _)) = open.iter().find(holds) {
-            return Some((inner, *outer));
+        let outer = places.that_may_hold(&bounds.min).filter(holds).min();
+        outer.map(|outer| (*inner, boxes[outer].0))
+    })
+}
+
+/// Boxes in grids, one for each power of two that some are no larger than: each box is in the cell of its lower corner.
+struct BoxesByPlace {
+    /// The powers of two.
+    sizes: BTreeSet<i32>,
+    in_cell: HashMap<(i32, [i64; 3]), Vec<usize>>,
+}
+
+impl BoxesByPlace {
+    fn new(boxes: &[(BlockId, Aabb)]) -> Self {
+        let mut places = Self { sizes: BTreeSet::new(), in_cell: HashMap::new() };
+        for (place, (_, bounds)) in boxes.iter().enumerate() {
+            let size = (bounds.max - bounds.min).amax().log2().ceil() as i32;
+            places.sizes.insert(size);
+            places.in_cell.entry((size, cell(&bounds.min, size))).or_default().push(place);
         }
-        open.push((inner, bounds));
+        places
     }
-    None
+
+    /// The boxes that may hold a point: their lower corner is in the cell of the point, or one cell lower along some axes.
+    fn that_may_hold(&self, point: &Vec3) -> impl Iterator<Item = usize> {
+        let near = move |&size: &i32| {
+            let here = cell(point, size);
+            (0..8).map(move |lower| (size, [0, 1, 2].map(|i| here[i] - i64::from(lower >> i & 1))))
+        };
+        self.sizes.iter().flat_map(near).filter_map(|cell| self.in_cell.get(&cell)).flatten().copied()
+    }
+}
+
+fn cell(point: &Vec3, size: i32) -> [i64; 3] {
+    let edge_m = f64::from(size).exp2();
+    [0, 1, 2].map(|i| (point[i] / edge_m).floor() as i64)
 }
 
 /// Whether a point is in one of a block's tetrahedra: none of the four that it makes with their faces has negative volume.

@@ -41,10 +41,11 @@ pub(super) fn region_nodes(blocks: &BlockSet, block: BlockId, region: &Region) -
     let nodes: Vec<u32> = match region {
         Region::All => (0..range.len() as u32).collect(),
         Region::Set(set) => {
-            let sets = &blocks.node_sets[block.index()];
-            let known = sets.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
-            let found =
-                sets.get(set).ok_or_else(|| format!("block `{name}` has no set `{set}`; it has {known}"))?;
+            let sets = || blocks.node_sets_of(block);
+            let (_, found) = sets().find(|(known, _)| known == set).ok_or_else(|| {
+                let known = sets().map(|(known, _)| known).collect::<Vec<_>>().join(", ");
+                format!("block `{name}` has no set `{set}`; it has {known}")
+            })?;
             found.iter().map(|n| n.0 - range.start as u32).collect()
         }
         Region::Plane { point_m, normal } => {

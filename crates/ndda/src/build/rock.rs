@@ -105,11 +105,22 @@ pub(super) fn reports(scene: &Scene, rocks: Vec<CutRock>, blocks: &BlockSet) -> 
 /// Names and meshes of blocks.
 pub type Meshes = Vec<(String, BlockMesh)>;
 
-/// Cuts and fills rock `index` of a scene.
+/// Takes a mesh and its name.
+pub(super) type TakeMesh<'a> = dyn FnMut(String, BlockMesh) + 'a;
+
+/// Blocks that are filled at a time, so that the meshes of a large rock are not in memory together.
+const AT_A_TIME: usize = 1024;
+
+/// Cuts and fills rock `index` of a scene, and hands out the meshes.
 ///
 /// # Errors
 /// Faults of rock that cannot be cut or filled.
-pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Meshes, CutRock), Vec<Fault>> {
+pub(super) fn cut_rock(
+    scene: &Scene,
+    folder: &Path,
+    index: usize,
+    take: &mut TakeMesh,
+) -> Result<CutRock, Vec<Fault>> {
     let rock = &scene.rock[index];
     let at = |field: &str| format!("rock[{index}]{field}");
     let domain = domain(&rock.domain, folder).map_err(|m| vec![Fault::new(at(".domain"), m)])?;
@@ -147,7 +158,6 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
         merged = Merged { count: merged.count + more.count, volume_m3: merged.volume_m3 + more.volume_m3 };
     }
     let thin = blocks.report.slivers.len();
-    let mut meshes = Meshes::new();
     let mut report = RockReport {
         name: rock.name.clone(),
         blocks: 0,
@@ -168,7 +178,7 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
         .map_err(|m| vec![Fault::new(at(fill_field), m)])?;
     let fill_of =
         |group: &Vec<u32>| solid::filled_group(&blocks, group, fill(scene, &filling, &blocks, group));
-    let filled: Vec<_> = groups.par_iter().map(fill_of).collect();
+    let filled = groups.chunks(AT_A_TIME).flat_map(|some| some.par_iter().map(fill_of).collect::<Vec<_>>());
     let mut counts = vec![0; spaces.len() + 1];
     for (group, filled) in groups.iter().zip(filled) {
         let space = space_of(&centroid(&blocks, group));
@@ -180,9 +190,9 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
         };
         match filled {
             Ok(mesh) if rock.into.is_some() => {
-                meshes.extend(taken_apart(&mesh).into_iter().map(|piece| (next(), piece)));
+                taken_apart(&mesh).into_iter().for_each(|piece| take(next(), piece));
             }
-            Ok(mesh) => meshes.push((next(), mesh)),
+            Ok(mesh) => take(next(), mesh),
             Err(error) => faults.push(Fault::new(
                 at(fill_field),
                 format!("block {} cannot be filled: {error}; a larger `sliver_width_m` unites thin ones with neighbours", next()),
@@ -193,11 +203,11 @@ pub(super) fn cut_rock(scene: &Scene, folder: &Path, index: usize) -> Result<(Me
         let message = "holds no rock: check its outline, which is given as (y, z) along X, (x, z) along Y, and (x, y) along Z";
         faults.push(Fault::new(at(&format!(".excavations[{k}]")), message));
     }
-    if meshes.is_empty() && faults.is_empty() {
+    report.blocks = counts.iter().sum();
+    if report.blocks == 0 && faults.is_empty() {
         faults.push(Fault::new(at(".removed"), "no block is left: take out fewer"));
     }
-    report.blocks = meshes.len();
-    if faults.is_empty() { Ok((meshes, CutRock { report, blocks })) } else { Err(faults) }
+    if faults.is_empty() { Ok(CutRock { report, blocks }) } else { Err(faults) }
 }
 
 /// How a block is filled. A tetrahedron of a fan may be near all faces of its block, which for `Smooth` contact can be too many; one of a star is near few.

@@ -30,7 +30,7 @@ const SPARSE_B: f64 = 230.0;
 pub(super) const BLOCK_B: f64 = 8000.0;
 /// Of a triangle that touches other blocks, of one of a block that is taken whole, and of one of a block of its own, of whose
 /// surface a part touches [B].
-const TOUCHING_B: f64 = 5000.0;
+const TOUCHING_B: f64 = 3000.0;
 const WHOLE_B: f64 = 2000.0;
 const SOME_TOUCH_B: f64 = 1000.0;
 /// Tetrahedra per cube of the edge, and triangles per square of it, where edges have a length.

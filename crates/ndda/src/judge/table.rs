@@ -7,6 +7,9 @@ use super::words::{SECOND_RUN, in_words};
 use crate::columns::columns;
 use crate::numbers::counted;
 
+/// Most blocks in a table.
+const MOST_BLOCKS: usize = 1000;
+
 /// The first answers: whether the result is to be trusted, what moved, the error against a closed form, and the
 /// checks that failed.
 pub fn ending(summary: &Summary) -> String {
@@ -256,9 +259,25 @@ fn monitor_table(summary: &Summary) -> String {
     framed(&["monitor", "displacement [m]", "velocity [m/s]"], rows.collect())
 }
 
+/// The blocks; where they are very many, those that have gone farthest.
 fn block_table(summary: &Summary) -> String {
     let triple = |v: &[f64; 3]| format!("({:.6}, {:.6}, {:.6})", v[0], v[1], v[2]);
-    let rows = summary.blocks.0.iter().map(|(name, end)| {
+    let all = &summary.blocks.0;
+    let mut shown: Vec<usize> = (0..all.len()).collect();
+    if all.len() > MOST_BLOCKS {
+        let farthest_m = |place: &usize| all[*place].1.motion.farthest_m;
+        shown.select_nth_unstable_by(MOST_BLOCKS, |a, b| {
+            farthest_m(b).total_cmp(&farthest_m(a)).then(a.cmp(b))
+        });
+        shown.truncate(MOST_BLOCKS);
+        shown.sort_unstable();
+    }
+    let others = match all.len() - shown.len() {
+        0 => String::new(),
+        others => format!("{others} more blocks went less far: `summary.json` has all\n"),
+    };
+    let rows = shown.into_iter().map(|place| {
+        let (name, end) = &all[place];
         let motion = &end.motion;
         vec![
             name.clone(),
@@ -270,7 +289,7 @@ fn block_table(summary: &Summary) -> String {
         ]
     });
     let header = ["block", "displacement [m]", "farthest point", "largest", "rotation", "velocity [m/s]"];
-    framed(&header, rows.collect())
+    framed(&header, rows.collect()) + &others
 }
 
 #[cfg(test)]

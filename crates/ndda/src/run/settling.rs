@@ -88,7 +88,8 @@ impl Run {
         let mut outputs =
             Outputs::new((&loaded.scene, simulation), (monitors, None), place, &mut [], course)?;
         let now = simulation.snapshot();
-        let states = self.built.take().into_iter().chain([now]);
+        let built = self.built.take().map(|built| simulation.whole(&built));
+        let states = built.into_iter().chain([now]);
         for state in states {
             simulation.restore(state).expect("it is of this simulation");
             let report = StepReport::default();

@@ -10,7 +10,7 @@ use std::time::Instant;
 use ndda_io::summary::{Label, LabelWord, Status, Summary};
 use ndda_mesh::geometry::tet_heights;
 use ndda_mesh::{BlockId, TetId, Vec3};
-use ndda_solver::{BodyKind, Settle, Simulation, Snapshot, StepError};
+use ndda_solver::{BodyKind, Settle, Simulation, StartSnapshot, StepError};
 
 use super::unless_stopped;
 use crate::judge::table::length;
@@ -92,7 +92,7 @@ impl Sensitivity {
 pub(super) fn judge(
     summary: &mut Summary,
     simulation: &mut Simulation,
-    start: &Snapshot,
+    start: &StartSnapshot,
     settle: Option<&Settle>,
     (stop, strict): (&AtomicBool, bool),
 ) {
@@ -140,7 +140,7 @@ impl fmt::Display for Parted {
 /// [`StepError`] that stops the twin; the end is put back then, too.
 pub(super) fn part(
     simulation: &mut Simulation,
-    start: &Snapshot,
+    start: &StartSnapshot,
     settle: Option<&Settle>,
     stop: &AtomicBool,
 ) -> Result<Option<Parted>, StepError> {
@@ -157,12 +157,12 @@ pub(super) fn part(
 /// Whether the twin came to its end.
 fn run(
     simulation: &mut Simulation,
-    start: &Snapshot,
+    start: &StartSnapshot,
     (push_m_s, steps): (f64, u64),
     settle: Option<&Settle>,
     stop: &AtomicBool,
 ) -> Result<bool, StepError> {
-    let mut pushed = start.clone();
+    let mut pushed = simulation.whole(start);
     for block in simulation.blocks().ids().filter(|&block| moves(simulation, block)) {
         let push = push_m_s * direction(block);
         pushed.state.velocity[simulation.blocks().nodes_of(block)].iter_mut().for_each(|v| *v += push);

@@ -93,7 +93,7 @@ impl ConvexBlocks {
         self.in_row.clear();
         self.row_start.clear();
         self.row_start.push(0);
-        self.contactors.clear(blocks);
+        self.contactors.clear();
         self.is_affine.clear();
         self.is_affine.extend_from_slice(affine);
         for (block, surface) in blocks.ids().zip(surfaces) {

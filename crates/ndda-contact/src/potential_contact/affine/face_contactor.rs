@@ -43,18 +43,17 @@ pub(crate) struct FaceContactors {
     all: Vec<FaceContactor>,
     /// First of each block.
     start: Vec<u32>,
-    /// Place of the face that each triangle stands for, if any, from one.
+    /// Place of the face that each triangle stands for, if any, from one; empty where no block has any.
     place_of: Vec<u32>,
 }
 
 impl FaceContactors {
     /// Begins anew.
-    pub(crate) fn clear(&mut self, blocks: &BlockSet) {
+    pub(crate) fn clear(&mut self) {
         self.all.clear();
         self.start.clear();
         self.start.push(0);
         self.place_of.clear();
-        self.place_of.resize(blocks.triangles.len(), 0);
     }
 
     /// Takes the faces of the next block, which is an affine convex target with this host; none of them unless each is a convex polygon of one surface,
@@ -63,6 +62,7 @@ impl FaceContactors {
         let faces =
             (0..surface.planes.len()).map(|face| FaceContactor::new(blocks, block, surface, face, host));
         if let Some(faces) = faces.collect::<Option<Vec<_>>>() {
+            self.place_of.resize(blocks.triangles.len(), 0);
             for face in faces {
                 self.place_of[face.triangle.index()] = self.all.len() as u32 + 1;
                 self.all.push(face);

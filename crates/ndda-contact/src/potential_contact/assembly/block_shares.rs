@@ -5,9 +5,9 @@ use std::ops::Range;
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, TetId};
 
-use crate::broad_phase::candidates::Candidates;
+use crate::assembly::overlap_parts::OverlapParts;
+use crate::integration::frames::FrameCache;
 use crate::integration::pair_moments::{has_centroid, pair_energy};
-use crate::integration::tet_frame::TetFrame;
 use crate::model::ContactInput;
 
 /// Blocks whose shares are found by one thread.
@@ -18,8 +18,14 @@ pub(super) const SHARE_BLOCKS: usize = 16;
 pub(super) struct BlockShares {
     /// Pair of blocks in [`Candidates::neighbours`], and the share of one tetrahedron [m³]; by block, then by tetrahedron.
     pub(super) of_pair: Vec<(u32, f64)>,
+}
+
+/// Scratch memory of a thread.
+#[derive(Default)]
+pub(super) struct ShareScratch {
     /// Pieces of the surface of one block that have a flux.
     pieces: Vec<Piece>,
+    frames: FrameCache,
 }
 
 /// The part of a triangle in a tetrahedron.
@@ -30,6 +36,8 @@ struct Piece {
     /// Pair of blocks in [`Candidates::neighbours`].
     pair: u32,
     flux_m3: f64,
+    /// Volume of the tetrahedron [m³].
+    volume_m3: f64,
 }
 
 impl BlockShares {
@@ -37,33 +45,30 @@ impl BlockShares {
     pub(super) fn integrate(
         &mut self,
         input: &ContactInput,
-        candidates: &Candidates,
-        frames: &[TetFrame],
+        parts: &OverlapParts,
         blocks: Range<usize>,
+        scratch: &mut ShareScratch,
     ) {
         self.of_pair.clear();
         for block in blocks {
-            self.list_pieces(input, candidates, frames, BlockId(block as u32));
-            self.pieces.sort_unstable_by_key(|piece| (piece.tet, piece.number));
-            for pieces in self.pieces.chunk_by(|a, b| a.tet == b.tet) {
-                let Piece { tet, pair, .. } = pieces[0];
+            scratch.list_pieces(input, parts, BlockId(block as u32));
+            scratch.pieces.sort_unstable_by_key(|piece| (piece.tet, piece.number));
+            for pieces in scratch.pieces.chunk_by(|a, b| a.tet == b.tet) {
+                let Piece { pair, volume_m3, .. } = pieces[0];
                 let integral = pieces.iter().fold(0.0, |sum, piece| sum + piece.flux_m3);
-                let volume_m3 = frames[candidates.slot_of(tet) as usize].volume_m3;
                 // ∫ φ over the whole tetrahedron is V/4: that is what a contained centroid leaves out.
                 let missing = if has_centroid(integral, volume_m3) { 0.25 * volume_m3 } else { 0.0 };
                 self.of_pair.push((pair, integral + missing));
             }
         }
     }
+}
 
-    fn list_pieces(
-        &mut self,
-        input: &ContactInput,
-        candidates: &Candidates,
-        frames: &[TetFrame],
-        block: BlockId,
-    ) {
-        self.pieces.clear();
+impl ShareScratch {
+    fn list_pieces(&mut self, input: &ContactInput, parts: &OverlapParts, block: BlockId) {
+        let OverlapParts { candidates, frames: placed, hulls, .. } = *parts;
+        let Self { pieces, frames } = self;
+        pieces.clear();
         let mut last = None;
         let (mut corners, mut area_vector) = Default::default();
         for facet in candidates.facets_of(block) {
@@ -73,13 +78,18 @@ impl BlockShares {
                 area_vector = triangle_area_vector(&corners);
                 last = Some(facet.triangle);
             }
+            let shift = hulls.may_touch(facet.target).then(|| placed.shift_of(facet.target));
             for tet in facet.tets() {
-                let frame = &frames[candidates.slot_of(tet) as usize];
+                let frame = match shift {
+                    Some(shift) => placed.at(candidates.slot_of(tet).wrapping_add(shift)),
+                    None => frames.of(tet, candidates, input),
+                };
                 if frame.lambda_inside(&corners).is_some() {
                     let flux_m3 = pair_energy(&corners, &area_vector, frame);
                     if flux_m3 != 0.0 {
-                        let number = self.pieces.len() as u32;
-                        self.pieces.push(Piece { tet, number, pair: facet.neighbours, flux_m3 });
+                        let (number, pair, volume_m3) =
+                            (pieces.len() as u32, facet.neighbours, frame.volume_m3);
+                        pieces.push(Piece { tet, number, pair, flux_m3, volume_m3 });
                     }
                 }
             }

@@ -10,10 +10,9 @@ use pulp::Arch;
 use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
-use crate::assembly::block_shares::{BlockShares, SHARE_BLOCKS};
+use crate::assembly::block_shares::{BlockShares, SHARE_BLOCKS, ShareScratch};
 use crate::assembly::facet_energy;
 use crate::assembly::overlap_parts::OverlapParts;
-use crate::broad_phase::candidates::Candidates;
 use crate::friction::openings::Openings;
 use crate::integration::integrals::Integrals;
 use crate::integration::linear::Linear;
@@ -77,10 +76,10 @@ impl BlockOverlaps {
 
     /// U of any potential.
     pub(crate) fn integrate(&mut self, input: &ContactInput, parts: &OverlapParts, law: OverlapLaw) {
-        let OverlapParts { candidates, frames, field, hulls, .. } = *parts;
+        let OverlapParts { candidates, field, hulls, .. } = *parts;
         match (field, law) {
             (_, OverlapLaw::Power { .. }) => self.add_touching(input, parts),
-            (PotentialField::Element, _) => self.add_pieces(input, candidates, frames),
+            (PotentialField::Element, _) => self.add_pieces(input, parts),
             (PotentialField::Pieces(table), _) => {
                 let near = (0..).zip(&candidates.neighbours).filter(|(k, _)| !hulls.are_apart(*k));
                 self.list(near.map(|(_, pair)| *pair));
@@ -177,17 +176,19 @@ impl BlockOverlaps {
     }
 
     /// The element potential, from the flux through surface pieces.
-    fn add_pieces(&mut self, input: &ContactInput, candidates: &Candidates, frames: &[TetFrame]) {
+    fn add_pieces(&mut self, input: &ContactInput, parts: &OverlapParts) {
+        let candidates = parts.candidates;
         self.list(candidates.neighbours.iter().copied());
         self.shares.resize_with(candidates.blocks().div_ceil(SHARE_BLOCKS), BlockShares::default);
-        let place = |(number, shares): (usize, &mut BlockShares)| {
+        let place = |scratch: &mut ShareScratch, (number, shares): (usize, &mut BlockShares)| {
             let first = number * SHARE_BLOCKS;
             let last = (first + SHARE_BLOCKS).min(candidates.blocks());
-            shares.integrate(input, candidates, frames, first..last);
+            shares.integrate(input, parts, first..last, scratch);
         };
         let share_pairs = candidates.pairs() / self.shares.len().max(1);
         let grain = GRAIN_PAIRS.div_ceil(share_pairs.max(1));
-        self.shares.par_iter_mut().enumerate().with_min_len(grain).for_each(place);
+        let shares = self.shares.par_iter_mut().enumerate().with_min_len(grain);
+        shares.for_each_init(ShareScratch::default, place);
         for &(k, share_m3) in self.shares.iter().flat_map(|shares| &shares.of_pair) {
             self.overlap_m3[k as usize] += share_m3;
         }

@@ -49,7 +49,7 @@ fn column_m(
     parts: &OverlapParts,
     (point, normal): (&Vec3, &Vec3),
 ) -> f64 {
-    let frame = &parts.frames[hit.slot as usize];
+    let frame = parts.frames.at(hit.slot);
     let (depth, gradient) = match parts.hulls.affine_target(touch.target) {
         Some(_) => {
             let faces = parts.hulls.faces_of(touch.target).iter();

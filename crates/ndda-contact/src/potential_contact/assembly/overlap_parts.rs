@@ -2,8 +2,8 @@
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::broad_phase::candidates::Candidates;
+use crate::integration::frames::Frames;
 use crate::integration::integrals::Integrals;
-use crate::integration::tet_frame::TetFrame;
 use crate::potential::contact_potential::PotentialField;
 
 /// Input of the integration of U.
@@ -13,8 +13,8 @@ pub(crate) struct OverlapParts<'a> {
     pub candidates: &'a Candidates,
     /// Integrals of the facets in contact.
     pub integrals: &'a Integrals,
-    /// A frame for each of [`Candidates::tets`].
-    pub frames: &'a [TetFrame],
+    /// Frames of the candidates.
+    pub frames: &'a Frames,
     /// φ.
     pub field: &'a PotentialField,
     /// Blocks that are affine convex targets.

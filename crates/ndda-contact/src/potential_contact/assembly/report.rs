@@ -7,11 +7,11 @@ use ndda_mesh::{TetId, TriangleId, Vec3};
 use rayon::prelude::*;
 
 use crate::broad_phase::candidates::Candidates;
+use crate::integration::frames::Frames;
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::{ActiveFacet, OverlapPair};
 use crate::integration::pair_moments::{has_centroid, pair_energy};
 use crate::integration::pair_report::OverlapReport;
-use crate::integration::tet_frame::TetFrame;
 use crate::model::{ContactError, ContactInput, ContactReport};
 use crate::potential::contact_potential::PotentialField;
 
@@ -51,7 +51,7 @@ impl Reporter {
         input: &ContactInput,
         candidates: &Candidates,
         integrals: &Integrals,
-        frames: &[TetFrame],
+        frames: &Frames,
         field: &PotentialField,
     ) -> Result<ContactReport, ContactError> {
         let mut report = ContactReport { candidate_pairs: candidates.pairs(), ..ContactReport::default() };
@@ -82,7 +82,7 @@ impl Reporter {
         &mut self,
         input: &ContactInput,
         integrals: &Integrals,
-        frames: &[TetFrame],
+        frames: &Frames,
     ) -> Option<(TriangleId, TetId)> {
         let threads = rayon::current_num_threads().max(self.scratch.len());
         self.scratch.resize_with(threads, Mutex::default);
@@ -107,7 +107,7 @@ impl Reporter {
 struct Pieces<'a> {
     input: &'a ContactInput<'a>,
     integrals: &'a Integrals,
-    frames: &'a [TetFrame],
+    frames: &'a Frames,
     touching: &'a [ActiveFacet],
 }
 
@@ -142,7 +142,7 @@ impl Pieces<'_> {
         passed.retain(|piece| !piece.falls_short);
         self.each(|_, corners, hit, _| {
             if let Ok(place) = passed.binary_search_by_key(&hit.tet, |piece| piece.tet) {
-                let frame = &self.frames[hit.slot as usize];
+                let frame = self.frames.at(hit.slot);
                 passed[place].flux += pair_energy(corners, &triangle_area_vector(corners), frame);
                 passed[place].volume_m3 = frame.volume_m3;
             }
@@ -162,7 +162,7 @@ impl Pieces<'_> {
             let corners = self.input.blocks.triangle_corners(touch.triangle, self.input.position);
             let area_vector = triangle_area_vector(&corners);
             let has_passed = |hit: &OverlapPair| {
-                self.frames[hit.slot as usize].centroid_distance(&corners[0], &area_vector) > 0.0
+                self.frames.at(hit.slot).centroid_distance(&corners[0], &area_vector) > 0.0
             };
             for hit in self.integrals.overlaps_of(touch) {
                 visit(touch.triangle, &corners, hit, &has_passed);

@@ -15,8 +15,10 @@ use rayon::prelude::*;
 use crate::affine::face_contactor::FaceContactor;
 use crate::affine::surface::BlockFaces;
 use crate::broad_phase::block_bvh::{BlockBvh, node_touches, to_parry};
+use crate::broad_phase::block_pairs::BlockPairs;
 use crate::broad_phase::finder::{BroadPhase, BroadScene, FEW_NODES, Side, TriangleAt, shape_of};
-use crate::broad_phase::pair_lists::{Fresh, PairLists, PairRun};
+use crate::broad_phase::pair_lists::{Fresh, PairLists};
+use crate::broad_phase::pair_run::PairRun;
 use crate::integration::capacity::MOST_CORNERS;
 
 /// Blocks below which a second thread costs more than it brings.
@@ -228,7 +230,7 @@ impl TreeBroadPhase {
         let (is_renewed, is_near, tree, scratch) = (&self.is_renewed, &self.is_near, &self.tree, &self.fresh);
         let near = Near { scene, own: &self.own, boxes: &self.boxes };
         let (is_convex, by_element) = (&self.is_convex, pairs.by_element);
-        let search = |(index, (list, changed)): (usize, (&mut Vec<PairRun>, &mut bool))| {
+        let search = |(index, (list, changed)): (usize, (&mut BlockPairs, &mut bool))| {
             *changed = false;
             if !is_near[index] {
                 return;
@@ -245,9 +247,10 @@ impl TreeBroadPhase {
                     near.find(BlockId(index as u32), BlockId(other), fresh);
                 }
             }
-            *changed = fresh.merge_into(list, |run| {
+            let is_stale = |run: &PairRun| {
                 is_renewed[index] || is_renewed[scene.blocks.tet_block[run.first().index()].index()]
-            });
+            };
+            *changed = fresh.merge_into(list, is_stale, scene.blocks, BlockId(index as u32));
         };
         let lists = pairs.each_mut().par_iter_mut().zip(&mut self.changed).enumerate();
         lists.with_min_len(GRAIN_BLOCKS).for_each(search);

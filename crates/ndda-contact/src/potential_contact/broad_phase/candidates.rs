@@ -7,10 +7,12 @@ use ndda_mesh::{BlockId, BlockSet, TetId, TriangleId};
 use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
+use crate::broad_phase::block_pairs::{BlockPairs, FacetRuns};
 use crate::broad_phase::bvh::TreeBroadPhase;
 use crate::broad_phase::finder::BroadPhase;
 use crate::broad_phase::neighbour_list::NeighbourList;
-use crate::broad_phase::pair_lists::{PairLists, PairRun};
+use crate::broad_phase::pair_lists::PairLists;
+use crate::broad_phase::pair_run::Tets;
 use crate::model::ContactInput;
 
 /// Blocks below which a second thread costs more than it brings.
@@ -29,26 +31,26 @@ pub struct Facet<'a> {
     pub target: BlockId,
     /// Its two blocks in [`Candidates::neighbours`].
     pub neighbours: u32,
-    runs: &'a [PairRun],
+    runs: FacetRuns<'a>,
 }
 
-impl Facet<'_> {
+impl<'a> Facet<'a> {
     /// The tetrahedra, which may stand for a block that is an affine convex target, ascending.
     #[inline]
-    pub fn tets(&self) -> impl Iterator<Item = TetId> + '_ {
-        self.runs.iter().flat_map(PairRun::tets)
+    pub fn tets(&self) -> Tets<'a> {
+        self.runs.tets()
     }
 
     /// The first of them.
     #[inline]
     pub fn first(&self) -> TetId {
-        self.runs[0].first()
+        self.runs.run.first()
     }
 
     /// Number of pairs.
     #[inline]
     pub fn pairs(&self) -> usize {
-        self.runs.iter().map(PairRun::pairs).sum()
+        self.runs.pairs()
     }
 
     /// How many numbers it takes.
@@ -76,8 +78,9 @@ pub struct Candidates {
     start: Vec<u32>,
     /// How many pairs there are.
     pairs: usize,
-    /// Place of each tetrahedron in `tets`.
+    /// Place of each tetrahedron in `tets`, and of the first of each block.
     slot_of: Vec<AtomicU32>,
+    slot_start: Vec<u32>,
     /// Of each target block, the contactor that it was last seen with.
     seen_with: Vec<BlockId>,
     /// First of the neighbours of each smaller block.
@@ -107,6 +110,7 @@ impl Candidates {
             start: Vec::new(),
             pairs: 0,
             slot_of: Vec::new(),
+            slot_start: Vec::new(),
             seen_with: Vec::new(),
             neighbour_start: Vec::new(),
             broad_phase,
@@ -139,20 +143,15 @@ impl Candidates {
         numbers: Range<u32>,
     ) -> impl Iterator<Item = Facet<'_>> {
         let (first, mut number) = (self.start[owner.index()], numbers.start);
-        let mut rest =
-            &self.lists.of(owner)[(numbers.start - first) as usize..(numbers.end - first) as usize];
+        let places = (numbers.start - first) as usize..(numbers.end - first) as usize;
+        let mut rest = self.lists.of(owner).within(places);
         std::iter::from_fn(move || {
-            let run = rest.first()?;
-            let same = |next: &&PairRun| {
-                next.triangle == run.triangle && next.neighbours == run.neighbours && !self.split_by_element
-            };
-            let count = 1 + rest[1..].iter().take_while(same).count();
-            let (runs, others) = rest.split_at(count);
-            let (a, b) = self.neighbours[run.neighbours as usize];
-            let (triangle, neighbours) = (run.triangle, run.neighbours);
+            let runs = rest.next_facet(self.split_by_element)?;
+            let (triangle, neighbours) = (runs.run.triangle, runs.run.neighbours);
+            let (a, b) = self.neighbours[neighbours as usize];
             let target = if a == owner { b } else { a };
             let facet = Facet { number, triangle, owner, target, neighbours, runs };
-            (rest, number) = (others, number + count as u32);
+            number += runs.len() as u32;
             Some(facet)
         })
     }
@@ -172,6 +171,16 @@ impl Candidates {
     #[inline]
     pub fn slot_of(&self, tet: TetId) -> u32 {
         self.slot_of[tet.index()].load(Ordering::Relaxed)
+    }
+
+    /// Places of a block's tetrahedra in `tets`.
+    pub(crate) fn slots_of(&self, block: BlockId) -> Range<u32> {
+        self.slot_start[block.index()]..self.slot_start[block.index() + 1]
+    }
+
+    /// The corners of a target tetrahedron in the order of node numbers.
+    pub(crate) fn order_of(&self, tet: TetId) -> &[u8; 4] {
+        &self.order[self.slot_of(tet) as usize]
     }
 
     /// Name of what finds the pairs.
@@ -222,7 +231,8 @@ impl Candidates {
     pub fn heap_bytes(&self) -> usize {
         let tets = self.tets.capacity() * size_of::<TetId>() + self.order.capacity() * size_of::<[u8; 4]>();
         let places = (self.slot_of.capacity() + self.seen_with.capacity()) * size_of::<u32>()
-            + (self.start.capacity() + self.neighbour_start.capacity()) * size_of::<u32>()
+            + (self.start.capacity() + self.slot_start.capacity()) * size_of::<u32>()
+            + self.neighbour_start.capacity() * size_of::<u32>()
             + self.neighbours.capacity() * size_of::<(BlockId, BlockId)>();
         let lists = self.lists.heap_bytes() + self.neighbour_list.heap_bytes();
         tets + places + lists + self.broad_phase.heap_bytes()
@@ -245,13 +255,18 @@ impl Candidates {
     /// The distinct pairs of blocks, and the place of each facet's.
     fn list_neighbours(&mut self, blocks: &BlockSet) {
         let Self { lists, neighbours, neighbour_start, seen_with, .. } = self;
-        let target_of = |run: &PairRun| blocks.tet_block[run.first().index()];
         neighbours.clear();
+        let listed = lists.each().iter().map(BlockPairs::count_targets).sum::<usize>();
+        // Most pairs are listed from both sides, and these once.
+        neighbours.reserve_exact(listed.div_ceil(2));
         seen_with.clear();
         seen_with.resize(blocks.len(), BlockId(u32::MAX));
-        for (own, runs) in blocks.ids().zip(lists.each()) {
-            for target in runs.iter().map(target_of) {
-                if std::mem::replace(&mut seen_with[target.index()], own) != own {
+        for (own, list) in blocks.ids().zip(lists.each()) {
+            for target in list.targets().map(|tet| blocks.tet_block[tet.index()]) {
+                if std::mem::replace(&mut seen_with[target.index()], own) == own {
+                    continue;
+                }
+                if own <= target || !lists.each()[target.index()].has_target(&blocks.tets_of(own)) {
                     neighbours.push((own.min(target), own.max(target)));
                 }
             }
@@ -263,15 +278,15 @@ impl Candidates {
         neighbours.iter().for_each(|(a, _)| neighbour_start[a.index() + 1] += 1);
         (0..blocks.len()).for_each(|b| neighbour_start[b + 1] += neighbour_start[b]);
         let (neighbours, starts) = (&*neighbours, &*neighbour_start);
-        let place = |(own, runs): (usize, &mut Vec<PairRun>)| {
+        let place = |(own, list): (usize, &mut BlockPairs)| {
             let own = BlockId(own as u32);
-            for run in runs {
-                let target = target_of(run);
+            list.each_target_mut(|tet, place| {
+                let target = blocks.tet_block[tet.index()];
                 let (a, b) = (own.min(target), own.max(target));
                 let [start, end] = [0, 1].map(|next| starts[a.index() + next] as usize);
                 let found = neighbours[start..end].partition_point(|pair| pair.1 < b);
-                run.neighbours = (start + found) as u32;
-            }
+                *place = (start + found) as u32;
+            });
         };
         lists.each_mut().par_iter_mut().enumerate().with_min_len(GRAIN_BLOCKS).for_each(place);
     }
@@ -281,23 +296,21 @@ impl Candidates {
         self.slot_of.clear();
         self.slot_of.resize_with(blocks.tets.len(), || AtomicU32::new(u32::MAX));
         let slot_of = &self.slot_of;
-        let mark = |runs: &Vec<PairRun>| {
-            let mut pairs = 0;
-            for run in runs {
-                run.tets().for_each(|tet| slot_of[tet.index()].store(0, Ordering::Relaxed));
-                pairs += run.pairs();
-            }
-            pairs
-        };
+        let mark = |list: &BlockPairs| list.mark(|tet| slot_of[tet.index()].store(0, Ordering::Relaxed));
         self.pairs = self.lists.each().par_iter().with_min_len(GRAIN_BLOCKS).map(mark).sum();
         self.tets.clear();
-        for (tet, slot) in self.slot_of.iter_mut().enumerate() {
-            let slot = slot.get_mut();
-            if *slot == 0 {
-                *slot = self.tets.len() as u32;
-                self.tets.push(TetId(tet as u32));
+        self.slot_start.clear();
+        for block in blocks.ids() {
+            self.slot_start.push(self.tets.len() as u32);
+            for tet in blocks.tets_of(block) {
+                let slot = self.slot_of[tet].get_mut();
+                if *slot == 0 {
+                    *slot = self.tets.len() as u32;
+                    self.tets.push(TetId(tet as u32));
+                }
             }
         }
+        self.slot_start.push(self.tets.len() as u32);
         self.order.clear();
         self.order.extend(self.tets.iter().map(|tet| {
             let mut order = [0, 1, 2, 3];

@@ -3,8 +3,7 @@
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{BlockId, TetId, TriangleId, Vec3};
+use ndda_mesh::{BlockId, TetId};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -13,6 +12,7 @@ use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::broad_phase::finder::FEW_NODES;
 use crate::friction::openings::moved_out;
 use crate::integration::affine_target::{EvaluateHalfSpaces, PushRegions};
+use crate::integration::chunk_parts::{Results, Triangle, copy_into};
 use crate::integration::clip::Outline;
 use crate::integration::function_moments::{Placed, add_function};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
@@ -50,28 +50,10 @@ pub(crate) struct Chunk {
     pub report: OverlapReport,
 }
 
-/// A contactor's triangle.
-#[derive(Clone, Copy, Default)]
-struct Triangle {
-    corners: [Vec3; 3],
-    /// Outward unit normal.
-    normal: Vec3,
-    area: f64,
-}
-
-impl Triangle {
-    fn new(scene: &Scene, triangle: TriangleId) -> Self {
-        let corners = scene.blocks.triangle_corners(triangle, scene.position);
-        let area_vector = triangle_area_vector(&corners);
-        let area = area_vector.norm();
-        Self { corners, normal: area_vector / area, area }
-    }
-}
-
 /// A pair that may overlap.
 struct PendingPair {
     tet: TetId,
-    /// Place of the tetrahedron in [`Candidates::tets`](crate::broad_phase::Candidates::tets).
+    /// Place of its frame.
     slot: u32,
     /// λ_b of the target at the corners of the contactor's triangle, as `[b][a]`: where its force acts.
     lambda: [[f64; 3]; 4],
@@ -83,6 +65,7 @@ struct PendingPair {
 /// Scratch memory of a thread for one chunk.
 #[derive(Default)]
 struct Scratch {
+    results: Results,
     seen: Vec<PendingPair>,
     region: Region,
     pieces: Pieces,
@@ -91,6 +74,23 @@ struct Scratch {
 }
 
 impl Chunk {
+    /// Integrates where chunks are very many: what is found is put together in the memory of the thread, and each chunk has room for little more.
+    fn integrate_one_of_many(&mut self, arch: Arch, scene: &Scene, scratch: &mut Scratch) {
+        self.swap(&mut scratch.results);
+        self.integrate(arch, scene, scratch);
+        self.swap(&mut scratch.results);
+        let Results { overlaps, touching, sums } = &scratch.results;
+        copy_into(&mut self.overlaps, overlaps);
+        copy_into(&mut self.touching, touching);
+        copy_into(&mut self.sums, sums);
+    }
+
+    fn swap(&mut self, results: &mut Results) {
+        std::mem::swap(&mut self.overlaps, &mut results.overlaps);
+        std::mem::swap(&mut self.touching, &mut results.touching);
+        std::mem::swap(&mut self.sums, &mut results.sums);
+    }
+
     fn integrate(&mut self, arch: Arch, scene: &Scene, scratch: &mut Scratch) {
         self.overlaps.clear();
         // A contact that closes further rarely requires more than a quarter.
@@ -196,10 +196,10 @@ impl Scratch {
         {
             return;
         }
-        let pieces = !scene.field.is_element();
+        let (pieces, shift) = (!scene.field.is_element(), scene.frames.shift_of(facet.target));
         for tet in facet.tets() {
-            let slot = scene.candidates.slot_of(tet);
-            let frame = &scene.frames[slot as usize];
+            let slot = scene.candidates.slot_of(tet).wrapping_add(shift);
+            let frame = scene.frames.at(slot);
             let in_plane = || Some(frame.lambda(corners)).filter(|l| lies_in_a_plane_of(frame, l, normal));
             let inside = frame.lambda_inside(corners);
             let Some(lambda) = inside.or_else(|| if pieces { in_plane() } else { None }) else { continue };
@@ -224,7 +224,7 @@ impl Scratch {
         let corners = moved_out(&triangle.corners, &triangle.normal, opening_m);
         self.add_facet(arch, scene, facet, &Triangle { corners, ..*triangle });
         for pair in &mut self.seen[first..] {
-            pair.lambda = scene.frames[pair.slot as usize].lambda(&triangle.corners);
+            pair.lambda = scene.frames.at(pair.slot).lambda(&triangle.corners);
         }
     }
 
@@ -247,8 +247,8 @@ impl Scratch {
             return;
         }
         let (at, tet) = (self.seen.len() as u32, facet.first());
-        let slot = scene.candidates.slot_of(tet);
-        let (lambda, range) = (scene.frames[slot as usize].lambda(corners), contactor.map(|face| face.range));
+        let slot = scene.candidates.slot_of(tet).wrapping_add(scene.frames.shift_of(facet.target));
+        let (lambda, range) = (scene.frames.at(slot).lambda(corners), contactor.map(|face| face.range));
         self.seen.push(PendingPair { tet, slot, lambda, range, moments: PairMoments::default() });
         let Self { sides, region, batches, .. } = self;
         arch.dispatch(PushRegions { sides, region, batches, outline, arch, at, area_m2: *area });
@@ -319,9 +319,15 @@ impl Integrals {
         let threads = rayon::current_num_threads().max(self.scratch.len());
         self.scratch.resize_with(threads, Mutex::default);
         let (chunks, scratch) = (&mut self.chunks[..used], &self.scratch);
+        let are_many = used > MANY_CHUNKS;
         let integrate = |chunk: &mut Chunk| {
             let own = &scratch[rayon::current_thread_index().unwrap_or(0)];
-            chunk.integrate(arch, scene, &mut own.lock().unwrap_or_else(PoisonError::into_inner));
+            let scratch = &mut own.lock().unwrap_or_else(PoisonError::into_inner);
+            if are_many {
+                chunk.integrate_one_of_many(arch, scene, scratch);
+            } else {
+                chunk.integrate(arch, scene, scratch);
+            }
         };
         match chunks {
             [only] => integrate(only),

@@ -2,8 +2,10 @@
 
 mod affine_target;
 pub(crate) mod capacity;
+mod chunk_parts;
 pub(crate) mod clip;
 pub(crate) mod double_double;
+pub(crate) mod frames;
 pub(crate) mod function_moments;
 pub(crate) mod integrals;
 pub(crate) mod kernel;
@@ -20,6 +22,7 @@ pub(crate) mod scene;
 pub(crate) mod tet_frame;
 pub(crate) mod tet_overlap;
 
+pub use frames::Frames;
 pub use integrals::Integrals;
 pub use kernel::{GROUP, GroupMoments, RegionGroup, region_moments};
 pub use pair_moments::{PairMoments, pair_moments};

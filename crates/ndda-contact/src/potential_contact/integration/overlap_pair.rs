@@ -9,7 +9,7 @@ use crate::integration::pair_moments::{OnTarget, PairMoments};
 pub struct OverlapPair {
     /// Its tetrahedron.
     pub tet: TetId,
-    /// Place of that in [`Candidates::tets`](crate::broad_phase::Candidates::tets).
+    /// Place of its frame in [`Frames`](crate::integration::frames::Frames).
     pub slot: u32,
     /// ∫ φ ψ_a dA [m²].
     pub pressure: [f64; 3],

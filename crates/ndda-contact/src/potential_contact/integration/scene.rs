@@ -5,6 +5,7 @@ use ndda_mesh::{BlockSet, TetId, Vec3};
 use crate::affine::convex_target::ConvexBlocks;
 use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::friction::openings::Openings;
+use crate::integration::frames::Frames;
 use crate::integration::tet_frame::TetFrame;
 use crate::potential::contact_potential::PotentialField;
 
@@ -17,8 +18,8 @@ pub struct Scene<'a> {
     pub position: &'a [Vec3],
     /// Pairs and facets.
     pub candidates: &'a Candidates,
-    /// A frame for each of [`Candidates::tets`].
-    pub frames: &'a [TetFrame],
+    /// Frames of the candidates.
+    pub frames: &'a Frames,
     /// φ.
     pub field: &'a PotentialField,
     /// Convex blocks, whose faces exclude facets.

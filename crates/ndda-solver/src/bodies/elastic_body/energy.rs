@@ -20,10 +20,10 @@ impl ElasticBody {
     ) -> Result<f64, FrameError> {
         self.recover_displacement(shape, position)?;
         shape.operator.stiffness_times(&self.displacement, &mut self.elastic);
-        let initial = |i: usize| self.initial_force.as_ref().map_or(Vec3::zeros(), |f| f[i]);
+        let initial = |i: usize| self.kept.initial_force.as_ref().map_or(Vec3::zeros(), |f| f[i]);
         let terms = self.displacement.iter().zip(&self.elastic).enumerate();
         let energy_j: f64 = terms.map(|(i, (w, kw))| w.dot(&(0.5 * kw + initial(i)))).sum();
-        let excess = self.nonlinear.as_ref().map(|n| n.excess_energy_j(shape, &self.displacement));
+        let excess = self.kept.nonlinear.as_ref().map(|n| n.excess_energy_j(shape, &self.displacement));
         Ok(energy_j + excess.unwrap_or(0.0))
     }
 
@@ -88,7 +88,7 @@ impl ElasticBody {
 
     /// Energy stored in support springs at `position` and time [J].
     pub(crate) fn spring_energy_j(&self, shape: &Prototype, position: &[Vec3], time_s: f64) -> f64 {
-        let anchors = &self.anchor[shape.supports.held.len()..];
+        let anchors = &self.kept.anchor[shape.supports.held.len()..];
         let springs = shape.supports.springs.iter().zip(anchors);
         let energy = springs.map(|(spring, anchor)| {
             let moved =

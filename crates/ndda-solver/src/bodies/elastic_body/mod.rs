@@ -21,14 +21,43 @@ use crate::error::BlockError;
 use crate::linear::linear_solver::{Scratch, SolveError};
 use nonlinear::Nonlinear;
 
-/// Memory of one block that deforms: sized once, written every step.
-pub(crate) struct ElasticBody {
+/// What a block that deforms keeps from step to step beside the state of its nodes.
+#[derive(Default)]
+pub(crate) struct Kept {
     /// ∫ Bᵀ σ₀ in the block's frame [N].
     pub initial_force: Option<Vec<Vec3>>,
     /// σ₀ of each element [Pa]; empty without.
     pub initial_stress_pa: Vec<Voigt>,
     /// Start positions of the held nodes [m], one entry per held node, then one per spring, then one per node of quiet faces.
     anchor: Vec<Vec3>,
+    /// Memory for damping in proportion to stiffness.
+    pub(crate) damping: Option<Box<StiffnessDamping>>,
+    /// Memory for a material whose stress is not linear in the strain.
+    nonlinear: Option<Box<Nonlinear>>,
+}
+
+impl Kept {
+    /// That of a block of this shape that rests at `position`.
+    pub(crate) fn new(shape: &Prototype, initial: Option<&InitialStress>, position: &[Vec3]) -> Self {
+        let initial_stress_pa = initial.map_or(Vec::new(), |s| s.of_elements(&shape.operator, position));
+        let initial_force = initial.map(|_| initial_stress_force(&shape.operator, &initial_stress_pa));
+        let held = shape.supports.held.iter().map(|h| position[h.node as usize]);
+        let sprung = shape.supports.springs.iter().map(|s| position[s.node as usize]);
+        let quiet = shape.supports.quiet.dashpots.iter().map(|d| position[d.node as usize]);
+        Self {
+            initial_force,
+            initial_stress_pa,
+            anchor: held.chain(sprung).chain(quiet).collect(),
+            damping: StiffnessDamping::new(shape),
+            nonlinear: Nonlinear::new(shape),
+        }
+    }
+}
+
+/// Memory of one block that deforms: sized once, written every step.
+pub(crate) struct ElasticBody {
+    /// What is not written over.
+    pub(crate) kept: Kept,
     /// û [m].
     predicted: Vec<Vec3>,
     /// Rᵀ f, later the velocity at the end of the step.
@@ -45,26 +74,15 @@ pub(crate) struct ElasticBody {
     rotation: Mat3,
     pub(crate) unknowns: Vec<f64>,
     pub(crate) scratch: Scratch,
-    /// Memory for damping in proportion to stiffness.
-    pub(crate) damping: Option<Box<StiffnessDamping>>,
-    /// Memory for a material whose stress is not linear in the strain.
-    nonlinear: Option<Box<Nonlinear>>,
     report: BlockReport,
 }
 
 impl ElasticBody {
-    /// Memory for a block of this shape that rests at `position`.
-    pub(crate) fn new(shape: &Prototype, initial: Option<&InitialStress>, position: &[Vec3]) -> Self {
-        let initial_stress_pa = initial.map_or(Vec::new(), |s| s.of_elements(&shape.operator, position));
-        let initial_force = initial.map(|_| initial_stress_force(&shape.operator, &initial_stress_pa));
+    /// Memory for a block of this shape.
+    pub(crate) fn new(shape: &Prototype, kept: Kept) -> Self {
         let zeros = || vec![Vec3::zeros(); shape.operator.nodes()];
-        let held = shape.supports.held.iter().map(|h| position[h.node as usize]);
-        let sprung = shape.supports.springs.iter().map(|s| position[s.node as usize]);
-        let quiet = shape.supports.quiet.dashpots.iter().map(|d| position[d.node as usize]);
         Self {
-            initial_force,
-            initial_stress_pa,
-            anchor: held.chain(sprung).chain(quiet).collect(),
+            kept,
             predicted: zeros(),
             load: zeros(),
             displacement: zeros(),
@@ -74,8 +92,6 @@ impl ElasticBody {
             rotation: Mat3::identity(),
             unknowns: vec![0.0; shape.unknowns.len()],
             scratch: shape.factor.as_ref().map_or_else(Scratch::default, |f| f.new_scratch()),
-            damping: StiffnessDamping::new(shape),
-            nonlinear: Nonlinear::new(shape),
             report: BlockReport::default(),
         }
     }
@@ -117,7 +133,7 @@ impl ElasticBody {
         self.converge(shape, context.weights.stiffness)?;
         self.place_correction(shape, context, &nodes.view());
         let rotation = self.rotation;
-        if let Some(damping) = &mut self.damping {
+        if let Some(damping) = &mut self.kept.damping {
             damping.note(&self.correction);
         }
         self.update_internal_force(shape, &rotation, nodes.internal_force);
@@ -202,12 +218,12 @@ impl ElasticBody {
         self.rotation = rotation;
         self.gather_load(shape, context, &rotation, nodes);
         self.turn_into_frame(shape, &rotation, &center);
-        if let Some(damping) = &mut self.damping {
+        if let Some(damping) = &mut self.kept.damping {
             damping.load(shape, nodes.position, &self.displacement, &mut self.load)?;
         }
         self.gather_residual(shape, context);
         self.prescribe(shape, context, &rotation, nodes.position);
-        if let Some(nonlinear) = &mut self.nonlinear {
+        if let Some(nonlinear) = &mut self.kept.nonlinear {
             nonlinear.begin(&self.correction);
         }
         shape.unknowns.gather(&self.correction, &mut self.unknowns);
@@ -261,7 +277,7 @@ impl ElasticBody {
         let spring = &shape.supports.springs[k];
         let node = spring.node as usize;
         let place = position[node] + context.weights.stiffness * self.predicted[node];
-        let anchor = self.anchor[shape.supports.held.len() + k];
+        let anchor = self.kept.anchor[shape.supports.held.len() + k];
         let stretch = place - anchor - displacement_at(shape, spring.motion, context.theta_time_s());
         -spring.stiffness_n_m * along(spring.along.as_ref(), &stretch)
     }
@@ -285,10 +301,10 @@ impl ElasticBody {
     /// elastic ← K w + ∫Bᵀσ₀ for w in `displacement`, and what a nonlinear material adds.
     fn apply_stiffness(&mut self, shape: &Prototype) {
         shape.operator.stiffness_times(&self.displacement, &mut self.elastic);
-        if let Some(initial) = &self.initial_force {
+        if let Some(initial) = &self.kept.initial_force {
             self.elastic.iter_mut().zip(initial).for_each(|(e, f)| *e += f);
         }
-        if let Some(nonlinear) = &mut self.nonlinear {
+        if let Some(nonlinear) = &mut self.kept.nonlinear {
             nonlinear.find_excess(shape, &self.displacement);
             self.elastic.iter_mut().zip(&nonlinear.excess).for_each(|(e, f)| *e += f);
         }
@@ -317,7 +333,7 @@ impl ElasticBody {
     ) -> Vec3 {
         let held = &shape.supports.held[k];
         let node = held.node as usize;
-        let place = self.anchor[k] + displacement_at(shape, held.motion, context.end_s);
+        let place = self.kept.anchor[k] + displacement_at(shape, held.motion, context.end_s);
         let goal = rotation.tr_mul(&(place - position[node] - self.predicted[node]));
         onto(&held.held, &goal)
     }

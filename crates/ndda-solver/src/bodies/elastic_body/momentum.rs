@@ -158,7 +158,7 @@ impl ElasticBody {
         context: &StepContext,
         start: &Nodes,
     ) -> Result<(), BlockError> {
-        let Some(damping) = &mut self.damping else { return Ok(()) };
+        let Some(damping) = &mut self.kept.damping else { return Ok(()) };
         self.report.damping_work_j += damping.work_j(shape);
         for ((end, x), u) in self.displacement.iter_mut().zip(start.position).zip(&self.correction) {
             *end = x + u;

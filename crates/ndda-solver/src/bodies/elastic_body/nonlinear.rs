@@ -89,9 +89,9 @@ impl ElasticBody {
     /// # Errors
     /// [`BlockError::Material`] when the iteration does not end, [`BlockError::Solve`] as a solve.
     pub(super) fn converge(&mut self, shape: &Prototype, theta: f64) -> Result<(), BlockError> {
-        let Some(mut nonlinear) = self.nonlinear.take() else { return Ok(()) };
+        let Some(mut nonlinear) = self.kept.nonlinear.take() else { return Ok(()) };
         let outcome = self.iterate(shape, theta, &mut nonlinear);
-        self.nonlinear = Some(nonlinear);
+        self.kept.nonlinear = Some(nonlinear);
         outcome
     }
 

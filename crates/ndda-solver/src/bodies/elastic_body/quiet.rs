@@ -27,7 +27,7 @@ impl ElasticBody {
         let (incident, arriving) = quiet.incident(dashpot, context.load_window_s());
         let mut resisted = velocity;
         if context.settling_per_s > 0.0 {
-            let anchor = self.anchor[shape.supports.held.len() + shape.supports.springs.len() + k];
+            let anchor = self.kept.anchor[shape.supports.held.len() + shape.supports.springs.len() + k];
             resisted += context.settling_per_s * (nodes.position[i] - anchor);
         }
         let drag = self.rotation * (dashpot.drag * self.rotation.tr_mul(&resisted));
@@ -63,7 +63,10 @@ impl ElasticBody {
     pub(crate) fn rest_here(&mut self, shape: &Prototype, position: &[Vec3]) {
         let first = shape.supports.held.len() + shape.supports.springs.len();
         let dashpots = shape.supports.quiet.dashpots.iter();
-        self.anchor[first..].iter_mut().zip(dashpots).for_each(|(at, d)| *at = position[d.node as usize]);
+        self.kept.anchor[first..]
+            .iter_mut()
+            .zip(dashpots)
+            .for_each(|(at, d)| *at = position[d.node as usize]);
     }
 
     /// kept ← what the nodes of quiet faces need to stay where they are under `force` [N].

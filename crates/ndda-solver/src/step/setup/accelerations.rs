@@ -68,10 +68,10 @@ impl Simulation {
     ) -> Result<(), SetupError> {
         let name = || self.problem.blocks.names[block.index()].clone();
         let mass_only = StepWeights { stiffness: 0.0, mass_per_s2: 1.0, ..self.weights };
-        let body = &mut self.bodies[block.index()];
+        let body = &self.bodies[block.index()];
         let shape = &self.problem.shapes[body.shape];
         let mut load = force.to_vec();
-        if let Some(initial) = body.elastic().and_then(|elastic| elastic.initial_force.as_ref()) {
+        if let Some(initial) = body.kept().and_then(|kept| kept.initial_force.as_ref()) {
             load.iter_mut().zip(initial).for_each(|(l, f)| *l -= f);
         }
         let velocity = &self.state.velocity[self.problem.blocks.nodes_of(block)];

@@ -186,8 +186,10 @@ impl FrictionPatches {
         };
         let memory_of = |(patch, run): (&ContactPatch, &Range<usize>)| {
             let (face, target, _) = order[run.start];
-            patch.has_friction().then_some(FaceMemory { face, target, ..patch.memory })
+            patch.has_friction().then(|| patch.memory(face, target))
         };
+        // What faces remembered before has been read: the same memory takes what they remember now.
+        std::mem::swap(&mut history.faces, new_faces);
         join_if(
             patches.len() > GRAIN_PATCHES,
             || {

@@ -70,15 +70,24 @@ pub(super) struct ContactPatch {
     /// Whether one of both blocks deforms.
     pub deforms: bool,
     /// Friction of the last step, turned with the face; none at first touch.
-    pub previous: Option<FaceMemory>,
+    pub previous: Option<Friction>,
     /// Slip that loads other than contact bring within a step from rest: less is not resolved [m].
     least_slip_m: f64,
     /// Turn about the normal in this step, where it is found from the motion of the blocks.
     pub turn_rad: Option<f64>,
-    /// Friction of this step [N, N m], and what is kept of it.
+    /// Friction of this step [N, N m], and whether it is all that there may be.
     pub force_n: Vec3,
     pub torque_n_m: f64,
-    pub memory: FaceMemory,
+    pub slides: bool,
+}
+
+/// Friction of a patch.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Friction {
+    /// Its force [N].
+    pub force_n: Vec3,
+    /// Its torque about the normal [N m].
+    pub torque_n_m: f64,
 }
 
 impl ContactPatch {
@@ -112,6 +121,13 @@ impl ContactPatch {
         self.previous = old.map(|old| old.turned_to(&self.normal));
     }
 
+    /// What is kept of it, as that of a face on a block; nothing where its friction was not looked for, since nothing there can move.
+    pub(super) fn memory(&self, face: u32, target: BlockId) -> FaceMemory {
+        let Self { force_n, torque_n_m, slides, .. } = *self;
+        let normal = if self.turn_rad.is_some() { self.normal } else { Vec3::zeros() };
+        FaceMemory { face, target, force_n, torque_n_m, slides, normal }
+    }
+
     pub(super) fn summary(&self) -> PatchSummary {
         let (has_friction, most_n) = (self.has_friction(), self.surface.most_n);
         PatchSummary { owner: self.owner, target: self.target, has_friction, most_n, tolerance_n: 0.0 }
@@ -139,7 +155,7 @@ impl ContactPatch {
             let arm = force.center - self.center;
             force.shear = sign * self.force_n / self.pressure + twist * self.normal.cross(&arm);
             force.couple_n_m = pressure * twist * own.trace() * self.normal;
-            force.sticks = !self.memory.slides;
+            force.sticks = !self.slides;
         }
     }
 
@@ -280,13 +296,13 @@ impl ContactPatch {
 
 impl FaceMemory {
     /// The memory turned with the normal, by the least rotation: c = a × b, v + c × v + c × (c × v)/(1 + a·b).
-    fn turned_to(self, normal: &Vec3) -> Self {
+    fn turned_to(self, normal: &Vec3) -> Friction {
         let (c, d) = (self.normal.cross(normal), 1.0 + self.normal.dot(normal));
         let in_plane = |v: Vec3| {
             let turned = v + c.cross(&v) + c.cross(&c.cross(&v)) / d;
             turned - normal * normal.dot(&turned)
         };
-        Self { force_n: in_plane(self.force_n), ..self }
+        Friction { force_n: in_plane(self.force_n), torque_n_m: self.torque_n_m }
     }
 }
 

@@ -19,7 +19,7 @@ use crate::friction::patches::nodal::{Nodal, NodalSide};
 use crate::friction::patches::patch::{ContactPatch, PatchSummary};
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::stage::{Visits, solve_stage};
-use crate::model::{Body, FaceMemory};
+use crate::model::Body;
 
 /// γ of Alexander's method.
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
@@ -181,10 +181,8 @@ impl CoupledPatch {
     /// Tells a patch what friction has been found.
     pub(super) fn hand_over(&self, patch: &mut ContactPatch, (start, end): (&[Body], &[Body]), dt_s: f64) {
         let (force_n, torque_n_m, slides) = self.friction();
-        (patch.force_n, patch.torque_n_m) = (force_n, torque_n_m);
+        (patch.force_n, patch.torque_n_m, patch.slides) = (force_n, torque_n_m, slides);
         patch.turn_rad = Some(self.turn_rad(start, end, dt_s));
-        patch.memory =
-            FaceMemory { force_n, torque_n_m, slides, normal: patch.normal, ..FaceMemory::default() };
     }
 
     /// Friction of both stages: force [N] and torque about the normal [N m], and whether it is all that there may be.
