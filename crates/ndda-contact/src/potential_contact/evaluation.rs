@@ -10,6 +10,7 @@ use crate::assembly::join_if::join_if;
 use crate::assembly::overlap_parts::OverlapParts;
 use crate::assembly::tangent::{self, Target};
 use crate::broad_phase::candidates::Candidates;
+use crate::friction::bond_formation;
 use crate::friction::facet::{FacetForce, FacetScene};
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::{self, Moment};
@@ -29,7 +30,22 @@ use super::PotentialContact;
 pub(super) const GRAIN_FACETS: usize = 128;
 /// Frames below which a second thread costs more than it brings.
 const GRAIN_FRAMES: usize = 512;
+
 impl PotentialContact {
+    /// Forms the bonds of blocks where they are meshed: where contact is evaluated first, a step ahead, faces that are glued have parted.
+    pub(super) fn form_bonds(
+        &mut self,
+        input: &ContactInput,
+        history: &mut ContactHistory,
+    ) -> Result<(), ContactError> {
+        let start = ContactInput { position: &input.blocks.rest_position, ..*input };
+        self.find_pairs(&start)?;
+        if let Some(joints) = &self.joints {
+            bond_formation::form(joints, (&self.candidates, &self.hulls), &start, &mut history.bonds);
+        }
+        Ok(())
+    }
+
     /// Integrals of all candidate pairs at `input.position`.
     pub(super) fn integrate(&mut self, input: &ContactInput) -> Result<(), ContactError> {
         self.find_pairs(input)?;
