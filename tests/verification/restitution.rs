@@ -366,9 +366,9 @@ fn pushed_mass_m_s(factor: f64) -> f64 {
 fn a_block_that_creeps_against_dashpots_which_a_step_does_not_resolve_is_not_called_accurate() {
     // α of docs/theory/contact.md.
     let exact = pushed_mass_m_s(1.67);
-    let (found, label) = pushed_on_springs(0.3, 5e-4);
-    // A part z = α √(K/m) Δt = 0.005 of the velocity, and α to three digits.
-    row(CASE, "a block pushed on springs with dashpots, e = 0.3: velocity [m/s]", found, Within(exact, 0.02));
+    let (found, label) = pushed_on_springs(0.3, 1e-4);
+    // A part z = α √(K/m) Δt = 0.001 of the velocity, five times that as the springs also turn the cube, and α to three digits.
+    row(CASE, "a block pushed on springs with dashpots, e = 0.3: velocity [m/s]", found, Within(exact, 0.01));
     assert_eq!(label, LabelWord::Accurate);
     let exact = pushed_mass_m_s(34.5);
     for step_s in [5e-4, 2.5e-4, 1.25e-4] {

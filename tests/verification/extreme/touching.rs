@@ -67,9 +67,9 @@ fn blocks_with_common_walls_share_the_volume_between_their_faces() {
                 force = force.max((found_n - exact_n).norm() / exact_n.norm());
             }
             let named = |what: &str| format!("{what}, Volume(exponent: {exponent}), affine: {affine}");
-            // Depth is a thousandth of places of a metre, whose last digits it carries; walls are 4 d of an area of one.
+            // Depth is a thousandth of places of a metre, whose last digits it carries.
             row("common walls", &named("energy"), energy, AtMost(rounding(10) / depth_m));
-            row("common walls", &named("force"), force, AtMost(8.0 * depth_m));
+            row("common walls", &named("force"), force, AtMost(rounding(10) / depth_m));
         }
     }
 }

@@ -6,11 +6,11 @@ use crate::assembly::join_if::join_if;
 use crate::assembly::nodal_forces::{self, ScatterScene};
 use crate::assembly::overlap_parts::OverlapParts;
 use crate::contact_model::ContactModel;
+use crate::friction::bond;
 use crate::friction::facet::FacetScene;
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::Moment;
 use crate::friction::patches::PatchScene;
-use crate::friction::{bond, bond_formation};
 use crate::integration::overlap_pair::ActiveFacet;
 use crate::model::{ContactError, ContactHistory, ContactInput, ContactOutput, ContactReport};
 use crate::pair_stiffness::PairStiffness;
@@ -32,10 +32,10 @@ impl ContactModel for PotentialContact {
         let state_len = self.joints.as_ref().map_or(0, FrictionLawTable::state_len);
         history.expect_state(state_len)?;
         self.place_openings(input, history, Moment::Next);
-        self.integrate(input)?;
-        if let Some(joints) = self.joints.as_ref().filter(|joints| joints.hold_together() && !history.begun) {
-            bond_formation::form(joints, (&self.candidates, &self.hulls), input, &mut history.bonds);
+        if self.joints.as_ref().is_some_and(|joints| joints.hold_together() && !history.begun) {
+            self.form_bonds(input, history)?;
         }
+        self.integrate(input)?;
         let Some((_, field)) = &self.field else { return Ok(ContactReport::default()) };
         let (candidates, integrals) = (&self.candidates, &self.integrals);
         let mut report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;

@@ -8,6 +8,7 @@ use crate::affine::convex_target::ConvexBlocks;
 use crate::affine::surface::BlockFaces;
 use crate::assembly::overlap_parts::OverlapParts;
 use crate::assembly::tangent::{self, Target};
+use crate::friction::bond_formation;
 use crate::friction::facet::{FacetForce, FacetScene};
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::openings::{self, Moment};
@@ -24,7 +25,22 @@ use super::PotentialContact;
 
 /// Facets below which a second thread costs more than it brings.
 pub(super) const GRAIN_FACETS: usize = 128;
+
 impl PotentialContact {
+    /// Forms the bonds of blocks where they are meshed: where contact is evaluated first, a step ahead, faces that are glued have parted.
+    pub(super) fn form_bonds(
+        &mut self,
+        input: &ContactInput,
+        history: &mut ContactHistory,
+    ) -> Result<(), ContactError> {
+        let start = ContactInput { position: &input.blocks.rest_position, ..*input };
+        self.find_pairs(&start)?;
+        if let Some(joints) = &self.joints {
+            bond_formation::form(joints, (&self.candidates, &self.hulls), &start, &mut history.bonds);
+        }
+        Ok(())
+    }
+
     /// Integrals of all candidate pairs at `input.position`.
     pub(super) fn integrate(&mut self, input: &ContactInput) -> Result<(), ContactError> {
         self.find_pairs(input)?;
