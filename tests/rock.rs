@@ -27,6 +27,10 @@ fn volume_m3(blocks: &BlockSet) -> f64 {
     blocks.tets.iter().map(|t| tet_volume(&t.map(|n| blocks.rest_position[n.index()]))).sum()
 }
 
+fn has_set(blocks: &BlockSet, block: ndda_mesh::BlockId, name: &str) -> bool {
+    blocks.node_sets_of(block).any(|(known, _)| known == name)
+}
+
 const COLUMN: &str = "(material: \"rock\", domain: Box(min_m: (0, 0, 0), max_m: (4, 4, 8)), fill: Centre,
     joints: [Set(name: \"bed\", dip_deg: 0, dip_direction_deg: 0, spacing_m: 2),
              Set(name: \"up\", dip_deg: 90, dip_direction_deg: 90, spacing_m: 2)])";
@@ -37,7 +41,7 @@ fn a_column_cut_by_two_sets_gives_named_blocks_with_the_sets_of_their_joints() {
     assert_eq!(blocks.len(), 8);
     assert_eq!(blocks.names[0], "rock_0001");
     assert!((volume_m3(&blocks) - 128.0).abs() < 1e-9);
-    assert!(blocks.node_sets.iter().all(|sets| sets.contains_key("bed") && sets.contains_key("y_min")));
+    assert!(blocks.ids().all(|block| has_set(&blocks, block, "bed") && has_set(&blocks, block, "y_min")));
 }
 
 #[test]
@@ -198,7 +202,7 @@ fn faces_know_their_joint_where_nodes_do_not() {
     // Three planes inside and the top and bottom of the domain; `up` cuts once, over 8 m by 4 m.
     assert!((area(true, "bed") - 3.0 * 2.0 * 16.0).abs() < 1e-9 && area(false, "bed") == 0.0);
     assert!((area(false, "up") - 2.0 * 32.0).abs() < 1e-9 && area(true, "up") == 0.0);
-    let set = &blocks.node_sets[0]["bed"];
+    let (_, set) = blocks.node_sets_of(ndda_mesh::BlockId(0)).find(|(name, _)| *name == "bed").unwrap();
     let on_set = |t: &&[ndda_mesh::NodeId; 3]| t.iter().all(|n| set.contains(n));
     let in_first = blocks.triangles_of(ndda_mesh::BlockId(0));
     let tagged = blocks.triangle_surface[in_first.clone()]
@@ -226,7 +230,7 @@ fn a_surface_in_a_file_is_rock_that_is_cut_in_metres() {
     assert_eq!(blocks.len(), 2);
     // ⅙ · 2 · 2 · 1 m³.
     assert!((volume_m3(&blocks) - 2.0 / 3.0).abs() < 1e-12);
-    assert!(blocks.node_sets.iter().any(|sets| sets.contains_key("floor")));
+    assert!(blocks.ids().any(|block| has_set(&blocks, block, "floor")));
 }
 
 #[test]
@@ -311,7 +315,16 @@ fn terrain_from_a_file_in_coordinates_of_a_map_is_that_of_the_same_heights_in_th
     let same = format!("Terrain(origin_m: (0, 0), step_m: (2, 2), {heights}, base_m: -1)");
     let [read, given] = [file, same.as_str()].map(|domain| built(domain).unwrap());
     assert_eq!((&read.rest_position, &read.tets), (&given.rest_position, &given.tets));
-    assert_eq!((&read.node_sets, read.origin_m), (&given.node_sets, given.origin_m));
+    let sets = |blocks: &BlockSet| {
+        let of = |block| {
+            blocks
+                .node_sets_of(block)
+                .map(|(name, nodes)| (name.to_string(), nodes.to_vec()))
+                .collect::<Vec<_>>()
+        };
+        blocks.ids().map(of).collect::<Vec<_>>()
+    };
+    assert_eq!((sets(&read), read.origin_m), (sets(&given), given.origin_m));
     // Without a height in the north-eastern corner its cell is left out.
     std::fs::write(folder.path().join("hill.asc"), grid.replace("8 9", "8 -9999")).unwrap();
     let whole_m3 = volume_m3(&given);

@@ -22,6 +22,7 @@ pub(crate) struct Rooms {
 /// Memory for one run.
 #[derive(Default)]
 struct Room {
+    #[allow(clippy::vec_box)] // they go from here into blocks and back as they are
     bodies: Vec<Box<ElasticBody>>,
     batch: Option<Box<Batch>>,
 }

@@ -222,7 +222,7 @@ mod tests {
         let blocks = test_set(vec![test_box([0.0; 3], [1.0, 2.0, 3.0], cells)]);
         let host = TetFrame::new(&blocks.tet_corners(ndda_mesh::TetId(0), &blocks.rest_position));
         let mut contactors = FaceContactors::default();
-        contactors.clear(&blocks);
+        contactors.clear();
         contactors.take(&blocks, BlockId(0), &BlockFaces::new(&blocks, BlockId(0)), &host);
         contactors
     }
