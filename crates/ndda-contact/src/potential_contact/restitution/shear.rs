@@ -52,7 +52,7 @@ impl ContactDamping {
                 // Taken with the velocity at the start of a step, a dashpot may not stop more than there is.
                 let taken_s = (time_s / (1.0 + time_s * braked_per_s2 * dt_s)).min(most_s);
                 self.shear_time_s[t as usize] = taken_s;
-                if time_s > 0.0 && !deforms {
+                if time_s > 0.0 {
                     self.shear_lag[t as usize] = 1.0 - taken_s / time_s;
                 }
             }
