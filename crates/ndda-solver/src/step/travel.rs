@@ -18,8 +18,6 @@ use ndda_mesh::{BlockId, BlockSet, Vec3};
 use crate::bodies::kind::BodyKind;
 use crate::diagnostics::worst::Worst;
 use crate::step::Simulation;
-use crate::step::first_step::seen;
-use crate::step::state::State;
 
 /// Travel over width that needs no look at single pairs: a quarter of what is allowed. Below it an upper bound is reported.
 const FINE: f64 = 0.125;
@@ -178,19 +176,15 @@ impl Simulation {
         })
     }
 
-    /// Whether blocks that did not touch where contact was evaluated in the step just done may have stored more than `limit_j` in a first
-    /// contact at its end \[J\]: where two approach at v and a step may be as long as h = ω_c Δt, x is at most ½ Δt v deep before
-    /// contact has acted for the first time, which stores ½ k (½ Δt v)² = ⅛ h² m v². Blocks that are still apart have stored nothing.
+    /// Whether blocks that did not touch in the step just done may store more than `limit_j` in a first contact \[J\]: where two
+    /// approach at v and a step may be as long as h = ω_c Δt, x is at most ½ Δt v deep before contact has acted for the first time,
+    /// which stores ½ k (½ Δt v)² = ⅛ h² m v².
     pub(crate) fn may_collide_with(&mut self, h: f64, limit_j: f64) -> bool {
         if self.contact.is_none() {
             return false;
         }
-        let mut room = std::mem::take(&mut self.scratch.seen_position);
-        let found = self.with_travel(|simulation, travel| {
+        self.with_travel(|simulation, travel| {
             travel.place_sweeps(simulation);
-            let State { position, contact_offset, .. } = &simulation.state;
-            let end = seen(&simulation.problem.blocks, contact_offset, position, &mut room);
-            let places = [(&simulation.scratch.contact_position[..], simulation.part_s), (end, 0.0)];
             let mut touching = std::mem::take(&mut travel.touching);
             touching.sort_unstable();
             let mut found = false;
@@ -201,24 +195,19 @@ impl Simulation {
                 found = found
                     || stored_j(first.relative_m_s(second)) > limit_j
                         && touching.binary_search(&pair).is_err()
-                        && places.iter().all(|(position, dt_s)| {
-                            let speed_m_s = simulation.closing_m_s(pair, position, *dt_s);
-                            speed_m_s.is_none_or(|speed_m_s| stored_j(speed_m_s) > limit_j)
-                        });
+                        && simulation.closing_m_s(pair).is_none_or(|speed_m_s| stored_j(speed_m_s) > limit_j);
             });
             travel.touching = touching;
             found
-        });
-        self.scratch.seen_position = room;
-        found
+        })
     }
 
-    /// Upper bound of the speed at which two blocks at these places close the gap between them within a time [m/s]; `None` if any relative
-    /// velocity counts.
-    fn closing_m_s(&self, pair: (BlockId, BlockId), position: &[Vec3], dt_s: f64) -> Option<f64> {
+    /// Upper bound of the speed at which two blocks that did not touch in the step just done close the gap between them [m/s];
+    /// `None` if any relative velocity counts.
+    fn closing_m_s(&self, pair: (BlockId, BlockId)) -> Option<f64> {
         let model = self.contact.as_ref()?;
-        model
-            .closing_m_s(&ContactInput::new(&self.problem.blocks, position, &self.state.velocity, dt_s), pair)
+        let (position, velocity) = (&self.scratch.contact_position, &self.state.velocity);
+        model.closing_m_s(&ContactInput::new(&self.problem.blocks, position, velocity, self.part_s), pair)
     }
 
     /// Works on the motions of the blocks while the rest is read.

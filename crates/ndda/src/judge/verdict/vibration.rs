@@ -80,7 +80,7 @@ pub(super) fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
         percent(SPEED)
     );
     let damping = format!(
-        "the step does not resolve damping: velocities are wrong by up to {:.1} % of the largest, limit {:.0} %; reduce step_s",
+        "the step does not resolve damping: velocities are wrong by up to {:.1} % of the largest, limit {:.0} %; reduce step_s, and raise a `restitution` below 1 where blocks deform",
         percent(worst.damping_speed),
         percent(SPEED)
     );
