@@ -132,7 +132,7 @@ impl PotentialContact {
     /// Takes over what facets remember; what did not touch is forgotten.
     pub(super) fn remember(&mut self, input: &ContactInput, history: &mut ContactHistory) {
         if self.openings.is_empty() {
-            // What facets remembered before has been read: the same memory takes what they remember now.
+            // The old records have been read, so that their memory is free for the new ones.
             std::mem::swap(&mut history.facets, &mut self.new_facets);
             std::mem::swap(&mut history.law_state, &mut self.new_state);
         }
@@ -225,6 +225,7 @@ impl PotentialContact {
         }
     }
 }
+
 /// Output of [`place_forces`]: forces of facets, their reactions on host tetrahedra, and the numbers of the laws.
 pub(super) struct FacetRows<'a> {
     pub(super) forces: &'a mut Vec<FacetForce>,

@@ -1,7 +1,7 @@
 //! Memory that congruent blocks work in, one run of them after the other.
 //!
-//! All that the step of a block writes is written before it is read, but for its nodes and what it [keeps](Kept). So where many blocks have one
-//! shape, each thread has memory for one run of them, and blocks enter it for their step.
+//! Apart from its nodes and what it [keeps](Kept), the step of a block reads nothing that it has not written itself. So where many blocks have one
+//! shape, each thread has one set of working memory, which is lent to a run of these blocks for their step.
 
 use std::mem::{replace, take};
 use std::sync::{Mutex, MutexGuard};

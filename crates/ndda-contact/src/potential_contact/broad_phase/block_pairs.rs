@@ -247,7 +247,7 @@ pub(super) struct Runs<'a> {
 impl<'a> Runs<'a> {
     pub(super) const NONE: Self = Self { head: &[], words: &[], many: &[] };
 
-    /// Those of these numbers.
+    /// The runs with these indices.
     #[inline]
     pub(super) fn within(self, numbers: Range<usize>) -> Self {
         match self.words {

@@ -73,7 +73,7 @@ pub struct Tets<'a> {
 }
 
 impl<'a> Tets<'a> {
-    /// Those of a run and of the ones that come after it.
+    /// The tetrahedra of `run`, then those of `rest`.
     #[inline]
     pub(super) fn of(run: &PairRun, rest: &'a [PairRun]) -> Self {
         Self { first: run.first.0, bits: run.bits, rest: rest.iter() }

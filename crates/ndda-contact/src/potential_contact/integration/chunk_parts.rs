@@ -1,4 +1,4 @@
-//! What chunks of the integration are made of.
+//! Types of a chunk of the integration: the contactor's triangle, and lists of results.
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{TriangleId, Vec3};
@@ -16,7 +16,7 @@ pub(super) struct Triangle {
 }
 
 impl Triangle {
-    /// Where its nodes are.
+    /// The triangle at the positions of its nodes.
     pub(super) fn new(scene: &Scene, triangle: TriangleId) -> Self {
         let corners = scene.blocks.triangle_corners(triangle, scene.position);
         let area_vector = triangle_area_vector(&corners);

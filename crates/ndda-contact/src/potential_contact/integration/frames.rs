@@ -20,7 +20,7 @@ pub struct Frames {
     /// Places in [`Candidates::tets`] of those that have one, and of the others.
     placed: Vec<u32>,
     others: Vec<u32>,
-    /// What takes a place in [`Candidates::tets`] to one in `all`, for each block.
+    /// For each block, the number added to an index into [`Candidates::tets`] to get the index into `all` (wrapping).
     shift: Vec<u32>,
 }
 
@@ -82,7 +82,7 @@ impl Frames {
         self.all.resize(needed, TetFrame::default());
     }
 
-    /// What takes the place of a tetrahedron of a block in [`Candidates::tets`] to that of its frame.
+    /// The number added to the index of a tetrahedron of a block in [`Candidates::tets`] to get the index of its frame (wrapping).
     #[inline]
     pub(crate) fn shift_of(&self, block: BlockId) -> u32 {
         self.shift[block.index()]

@@ -20,10 +20,7 @@ pub enum Distribution {
     Fisher(f64),
 }
 
-/// Names of the distributions.
-const NAMES: [&str; 5] = ["Normal", "LogNormal", "Uniform", "Triangular", "Fisher"];
-
-/// How each is written.
+/// How each distribution is written.
 const FORMS: [&str; 5] = [
     "Normal(mean, deviation)",
     "LogNormal(mean, deviation)",
@@ -32,21 +29,20 @@ const FORMS: [&str; 5] = [
     "Fisher(concentration)",
 ];
 
+/// The part before the brackets.
+fn name_of(text: &str) -> &str {
+    text.split('(').next().unwrap_or_default().trim()
+}
+
 impl Distribution {
     /// A distribution as it is written; none if the text is something else.
     ///
     /// # Errors
     /// A text that begins with the name of a distribution, and has wrong parameters.
     pub fn parse(text: &str) -> Option<Result<Self, String>> {
-        let name = text.split('(').next().unwrap_or_default().trim();
-        if !NAMES.contains(&name) {
-            return None;
-        }
-        let read = ron::from_str::<Self>(text).map_err(|_| {
-            let form =
-                FORMS.iter().find(|form| form.split('(').next() == Some(name)).expect("a form of each name");
-            format!("`{text}`: write {form}, with numbers in place of the words")
-        });
+        let form = FORMS.iter().find(|form| name_of(form) == name_of(text))?;
+        let read = ron::from_str::<Self>(text)
+            .map_err(|_| format!("`{text}`: write {form}, with numbers in place of the words"));
         Some(read.and_then(|read| read.check().map(|()| read)))
     }
 
@@ -60,10 +56,11 @@ impl Distribution {
             return None;
         }
         // One number may have a unit that is misspelt.
-        match nearest(name, &NAMES) {
+        let names = FORMS.map(name_of);
+        match nearest(name, &names) {
             Some(near) => Some(format!("`{name}` is not a distribution: did you mean `{near}`?")),
             None if count > 1 => {
-                Some(format!("`{name}` is not a distribution; choose one of {}", NAMES.join(", ")))
+                Some(format!("`{name}` is not a distribution; choose one of {}", names.join(", ")))
             }
             None => None,
         }

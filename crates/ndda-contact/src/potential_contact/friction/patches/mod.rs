@@ -188,7 +188,7 @@ impl FrictionPatches {
             let (face, target, _) = order[run.start];
             patch.has_friction().then(|| patch.memory(face, target))
         };
-        // What faces remembered before has been read: the same memory takes what they remember now.
+        // The old records have been read, so that their memory is free for the new ones.
         std::mem::swap(&mut history.faces, new_faces);
         join_if(
             patches.len() > GRAIN_PATCHES,

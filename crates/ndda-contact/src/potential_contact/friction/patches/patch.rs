@@ -121,7 +121,7 @@ impl ContactPatch {
         self.previous = old.map(|old| old.turned_to(&self.normal));
     }
 
-    /// What is kept of it, as that of a face on a block; nothing where its friction was not looked for, since nothing there can move.
+    /// The record of this patch for the next step, under its face and target block; without a normal where no friction was computed, since neither block can move.
     pub(super) fn memory(&self, face: u32, target: BlockId) -> FaceMemory {
         let Self { force_n, torque_n_m, slides, .. } = *self;
         let normal = if self.turn_rad.is_some() { self.normal } else { Vec3::zeros() };
