@@ -93,3 +93,48 @@ fn settling_ends_when_a_block_leaves_the_scene() {
     let steps_to_fall = (2.0 * extent_m / 9.81).sqrt() / 1e-3;
     assert!(gone_m > extent_m && (steps as f64) < steps_to_fall + 100.0, "{gone_m} m in {steps} steps");
 }
+
+/// A tower of rigid blocks under a thin plate, which limits the step.
+const TOWER: &str = "(title: \"tower\", time: (step_s: 2e-4, end_s: 1), gravity_m_s2: (0, 0, -9.8),
+    materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2500)],
+    blocks: [
+        (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (6, 6, 1), cells: (1, 1, 1)), at_m: (-1, -1, -1)),
+        (name: \"first\", material: \"rock\", body: Rigid, shape: Box(size_m: (4, 4, 4), cells: (1, 1, 1))),
+        (name: \"second\", material: \"rock\", body: Rigid, shape: Box(size_m: (4, 4, 4), cells: (1, 1, 1)), at_m: (0, 0, 4)),
+        (name: \"third\", material: \"rock\", body: Rigid, shape: Box(size_m: (4, 4, 4), cells: (1, 1, 1)), at_m: (0, 0, 8)),
+        (name: \"plate\", material: \"rock\", body: Rigid, shape: Box(size_m: (4, 4, 0.25), cells: (1, 1, 1)), at_m: (0, 0, 12)),
+    ],
+    contact: Potential(penalty_pa: 2e8, potential: Smooth(reference_m: 1), friction: (friction_deg: 30)))";
+
+#[test]
+fn a_tower_settles_as_deep_with_scaled_masses_in_half_the_steps() {
+    let steps = [false, true].map(|mass_scaling| {
+        let mut simulation = simulation(TOWER);
+        let settle = Settle { mass_scaling, ..Settle::new(1e-6, 100_000) };
+        let settled = simulation.settle(&settle).unwrap();
+        let factor = settled.least_inertia;
+        // The plate's own rate over that of a cube: the ratio of their thicknesses.
+        assert_eq!(factor.is_some(), mass_scaling);
+        assert!(factor.is_none_or(|factor| (factor / 0.0625 - 1.0).abs() < 0.5), "{factor:?}");
+        let top = simulation.blocks().nodes_of(BlockId(4)).start;
+        let sunk = simulation.blocks().rest_position[top].z - simulation.state().position[top].z;
+        // Σ p/2 k_n of the four joints, p being the weight above each.
+        let heights_m = [12.25, 8.25, 4.25, 0.25].iter().sum::<f64>();
+        let expected = 2500.0 * 9.8 * heights_m / (2.0 * 2e8);
+        let way = if mass_scaling { "scaled" } else { "true" };
+        row("settling", &format!("depth of a tower of rigid blocks, {way} masses [m]"), sunk, Within(expected, 1e-2));
+        for _ in 0..1000 {
+            simulation.step().unwrap();
+        }
+        let moved = simulation.state().position.iter().zip(simulation.start_position());
+        let furthest = moved.map(|(x, start)| (x - start).norm()).fold(0.0, f64::max);
+        row(
+            "settling",
+            &format!("motion of that tower afterwards over its depth, {way} masses"),
+            furthest / expected,
+            AtMost(1e-5),
+        );
+        settled.steps
+    });
+    assert!(2 * steps[1] <= steps[0], "{steps:?}");
+}

@@ -41,11 +41,14 @@ pub struct Settle {
     pub most_steps: u64,
     /// Damping on the way to rest. Default: `Kinetic`.
     pub damping: SettleDamping,
+    /// Whether heavy rigid blocks have less inertia on the way to rest, so that contact makes all blocks oscillate as fast as the fastest (weights stay as they are).
+    /// Rest is reached in fewer steps; where friction leaves several equilibria, another one may be found. Default: false.
+    pub mass_scaling: bool,
 }
 
 impl Default for Settle {
     fn default() -> Self {
-        Self { tolerance: 1e-4, most_steps: 1_000_000, damping: SettleDamping::Kinetic }
+        Self { tolerance: 1e-4, most_steps: 1_000_000, damping: SettleDamping::Kinetic, mass_scaling: false }
     }
 }
 

@@ -94,7 +94,7 @@ impl Simulation {
             *change = v - *change;
         }
         let change_j = shape.operator.kinetic_energy_j(change);
-        damping.change_j += change_j;
+        damping.change_j += self.scratch.inertia_factor.get(block.index()).unwrap_or(&1.0) * change_j;
         let Some(steps) = damping.steps else {
             let left = left(damping.factor, change_j, shape.operator.kinetic_energy_j(velocity));
             velocity.iter_mut().for_each(|v| *v *= left);

@@ -19,6 +19,7 @@ pub(crate) mod implicit_contact;
 pub(crate) mod line_search;
 pub(crate) mod loads;
 pub(crate) mod local_damping;
+pub(crate) mod mass_scaling;
 pub(crate) mod plan;
 pub(crate) mod queries;
 pub(crate) mod quiet;
@@ -149,6 +150,8 @@ pub(crate) struct Scratch {
     /// Scratch for positions with contact offsets.
     pub(crate) seen_position: Vec<Vec3>,
     pub(crate) contact_bodies: Vec<ContactBody>,
+    /// Factors on the inertia of blocks while a scene settles with mass scaling; empty otherwise.
+    pub(crate) inertia_factor: Vec<f64>,
     /// Node positions before the step, overwritten in the same step by its displacements [m]; empty without contact.
     pub(crate) moved: Vec<Vec3>,
 }
@@ -194,6 +197,7 @@ impl Simulation {
         let (contact, iterations) = self.gather_contact()?;
         self.watch_contact(&contact);
         watch.stop(&mut self.audit.stages.contact_s);
+        self.scale_forces();
         self.solve_blocks()?;
         watch.stop(&mut self.audit.stages.blocks_s);
         let report = self.account_for_step(contact, iterations);

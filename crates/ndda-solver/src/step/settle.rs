@@ -42,12 +42,15 @@ pub struct Settle {
     pub most_steps: u64,
     /// Damping on the way to rest.
     pub damping: Damping,
+    /// Whether rigid blocks have so much less inertia on the way that contact makes all of them oscillate equally fast. Contact at the end of the step and
+    /// rest in the course of a run take no notice of it.
+    pub mass_scaling: bool,
 }
 
 impl Settle {
-    /// Settling with kinetic damping.
+    /// Settling with kinetic damping and true masses.
     pub fn new(tolerance: f64, most_steps: u64) -> Self {
-        Self { tolerance, most_steps, damping: Damping::Kinetic }
+        Self { tolerance, most_steps, damping: Damping::Kinetic, mass_scaling: false }
     }
 }
 
@@ -58,6 +61,8 @@ pub struct Settled {
     pub steps: u64,
     /// Speed left over the largest speed on the way.
     pub speed_ratio: f64,
+    /// Smallest factor on the inertia of a block; none without mass scaling.
+    pub least_inertia: Option<f64>,
 }
 
 /// A scene on its way to rest: all that settling keeps between two steps, besides the state of the simulation.
@@ -73,7 +78,7 @@ pub struct Settling {
 
 impl Settling {
     fn new(simulation: &Simulation, progress: Progress, start: Vec<Vec3>) -> Self {
-        let settled = Settled { steps: 0, speed_ratio: f64::INFINITY };
+        let settled = Settled { steps: 0, speed_ratio: f64::INFINITY, least_inertia: None };
         Self { settled, from: simulation.state.position.clone(), start, progress }
     }
 
@@ -135,7 +140,8 @@ impl Simulation {
     /// Kinetic energy that its loads alone would give a block in a step [J].
     fn load_energy_j(&self, block: BlockId) -> f64 {
         let load: Vec3 = self.loads.total()[self.blocks().nodes_of(block)].iter().sum();
-        0.5 * (self.part_s * load).norm_squared() / self.shape(block).operator.mass_kg
+        let mass_kg = self.inertia_factor(block) * self.shape(block).operator.mass_kg;
+        0.5 * (self.part_s * load).norm_squared() / mass_kg
     }
 
     /// Runs with kinetic damping until all blocks are at rest, then sets time and displacements to zero; initial
@@ -165,7 +171,11 @@ impl Simulation {
     pub fn begin_to_settle(&mut self, settle: &Settle) -> Settling {
         let nodes = self.state.velocity.len();
         let start = std::mem::replace(&mut self.state.velocity, vec![Vec3::zeros(); nodes]);
-        Settling::new(self, Progress::new(self, settle.damping), start)
+        let least_inertia = self.scale_masses_if(settle);
+        let mut settling = Settling::new(self, Progress::new(self, settle.damping), start);
+        self.unscale_masses();
+        settling.settled.least_inertia = least_inertia;
+        settling
     }
 
     /// Goes on until the scene is at rest, and time begins there; false where `watch` has broken it off, after a step from which it can go on.
@@ -179,7 +189,10 @@ impl Simulation {
         settling: &mut Settling,
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<bool, StepError> {
-        if !self.come_to_rest((settle, settling), 0.0, watch)? {
+        self.scale_masses_if(settle);
+        let rests = self.come_to_rest((settle, settling), 0.0, watch);
+        self.unscale_masses();
+        if !rests? {
             return Ok(false);
         }
         let force = std::mem::take(&mut self.scratch.force);
@@ -288,7 +301,7 @@ impl Simulation {
     fn kinetic_energy_j(&self) -> f64 {
         let of_block = |block: BlockId| {
             let nodes = self.blocks().nodes_of(block);
-            self.shape(block).operator.kinetic_energy_j(&self.state.velocity[nodes])
+            self.inertia_factor(block) * self.shape(block).operator.kinetic_energy_j(&self.state.velocity[nodes])
         };
         let mut total_j = 0.0;
         for block in self.blocks().ids() {

@@ -9,5 +9,10 @@ pub(crate) fn settle(settle: scene::Settle) -> Settle {
         scene::SettleDamping::Kinetic => Damping::Kinetic,
         scene::SettleDamping::Local { factor } => Damping::Local { factor },
     };
-    Settle { tolerance: settle.tolerance, most_steps: settle.most_steps, damping }
+    Settle {
+        tolerance: settle.tolerance,
+        most_steps: settle.most_steps,
+        damping,
+        mass_scaling: settle.mass_scaling,
+    }
 }

@@ -33,9 +33,15 @@ impl fmt::Display for Resting<'_> {
         if let Some(stage) = self.stage {
             write!(f, "stage `{stage}` ")?;
         }
-        let (Settled { steps, speed_ratio: left }, until) = (self.settled, self.tolerance);
+        let (Settled { steps, speed_ratio: left, least_inertia }, until) = (self.settled, self.tolerance);
         match left {
-            _ if left <= until => return write!(f, "settled in {steps} steps"),
+            _ if left <= until => {
+                write!(f, "settled in {steps} steps")?;
+                return match least_inertia {
+                    Some(factor) => write!(f, ", inertia of rigid blocks scaled by factors of {factor:.2e} to 1"),
+                    None => Ok(()),
+                };
+            }
             _ if left.is_finite() => {
                 write!(f, "settling: {steps} steps, speed {left:.1e} of the largest, until {until:e}")?;
             }
@@ -141,7 +147,7 @@ mod tests {
     fn trend(steps: u64, speed: impl Fn(f64) -> f64) -> Trend {
         let mut trend = Trend::default();
         for step in 1..=steps {
-            trend.push(&Settled { steps: step, speed_ratio: speed(step as f64) });
+            trend.push(&Settled { steps: step, speed_ratio: speed(step as f64), ..Settled::default() });
         }
         trend
     }
@@ -171,7 +177,7 @@ mod tests {
     #[test]
     fn words_say_the_stage_the_steps_and_what_is_left() {
         let resting = |speed_ratio: f64, left_s: Option<f64>| {
-            let settled = Settled { steps: 1200, speed_ratio };
+            let settled = Settled { steps: 1200, speed_ratio, ..Settled::default() };
             Resting { stage: Some("bench 1"), settled, tolerance: 1e-4, left_s }.to_string()
         };
         assert_eq!(

@@ -2,7 +2,7 @@
 
 use super::Check;
 use crate::scene::Reference;
-use crate::scene::{FactorRow, SettleDamping};
+use crate::scene::{ContactAt, FactorRow, SettleDamping};
 
 impl Check<'_> {
     pub(super) fn loads(&mut self) {
@@ -37,6 +37,10 @@ impl Check<'_> {
             {
                 let message = format!("{factor}: must be above 0 and at most 1");
                 self.error("settle.damping.factor", message, "0.8 is usual");
+            }
+            if settle.mass_scaling && matches!(scene.time.contact_at, ContactAt::End { .. }) {
+                let help = "leave out `mass_scaling`, or write `contact_at: Predicted`";
+                self.misfit("settle.mass_scaling", "contact at the end of the step needs true masses", help);
             }
             if scene.gravity_ramp_s > 0.0 {
                 let help = "leave out one of the two";
