@@ -45,7 +45,7 @@ pub struct FrictionLawTable {
 }
 
 /// Tolerance of friction on velocities.
-const TOLERANCE: f64 = 1e-7;
+pub(crate) const TOLERANCE: f64 = 1e-7;
 
 impl FrictionLawTable {
     /// One law between all blocks.

@@ -172,7 +172,7 @@ impl FrictionPatches {
         let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
         self.adjacency.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
         let tolerance = scene.joints.tolerance.max(scene.input.friction_tolerance);
-        let tolerance = solve::tolerance(scene.input.is_iterated, tolerance);
+        let tolerance = solve::tolerance(scene.input.is_iterated, tolerance, self.patches.len());
         solve::find_tolerances(&mut self.summaries, scene.input.bodies, tolerance, &mut self.most_n);
         self.advance_bodies(scene);
         let left_m_s = self.solve(scene, forces).left_m_s;

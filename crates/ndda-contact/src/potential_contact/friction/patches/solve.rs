@@ -14,6 +14,7 @@
 
 use ndda_mesh::{BlockId, Mat3, Vec3};
 
+use crate::friction::law_table::TOLERANCE;
 use crate::friction::patches::limit_surface::{LimitSurface, solved};
 use crate::friction::patches::nodal::{Nodal, NodalSide};
 use crate::friction::patches::patch::{ContactPatch, PatchSummary};
@@ -25,6 +26,9 @@ use crate::model::Body;
 const GAMMA: f64 = 1.0 - std::f64::consts::FRAC_1_SQRT_2;
 /// Part of the largest friction on a block that does not matter where the solver compares forces of one evaluation with the next.
 const ITERATED_TOLERANCE: f64 = 1e-8;
+/// Patches from which on the tolerance grows with the square of their number, and how many times at most.
+const MANY: f64 = 1000.0;
+const MOST_OF_MANY: f64 = 100.0;
 /// Residual at which the friction of one patch is accepted, relative to the change that does not matter.
 const LOCAL_TOLERANCE: f64 = 0.1;
 /// Least flexibility of a patch in any direction over the largest.
@@ -194,9 +198,14 @@ impl CoupledPatch {
     }
 }
 
-/// Friction is found when no patch changes its own by more than this part of the largest on both of its blocks.
-pub(super) fn tolerance(is_iterated: bool, tolerance: f64) -> f64 {
-    if is_iterated { ITERATED_TOLERANCE } else { tolerance }
+/// Friction is found when no patch changes its own by more than this part of the largest on both of its blocks. Where thousands of patches hold each
+/// other, each being about to slip, a hundred times as exact a search takes a hundred times as long; the next step goes on from what was found.
+pub(super) fn tolerance(is_iterated: bool, tolerance: f64, patches: usize) -> f64 {
+    if is_iterated {
+        return ITERATED_TOLERANCE;
+    }
+    let many = (patches as f64 / MANY).powi(2).min(MOST_OF_MANY);
+    if many > 1.0 { tolerance.max(many * TOLERANCE) } else { tolerance }
 }
 
 /// A change of friction matters by what else acts on both blocks: the lesser of both largest, which `most_n` is room for.
