@@ -81,9 +81,10 @@ pub enum StepError {
     },
     /// A scene that was to settle first does not.
     #[error(
-        "the scene has not come to rest in {steps} steps ({}). Block `{block}` has moved {} \
-         towards ({:.2}, {:.2}, {:.2}), and {} at least half as far: hold them, or raise settle.most_steps if they are only slow",
-        speed_left(*speed_ratio), metres(*gone_m), towards[0], towards[1], towards[2], other_blocks(*others)
+        "the scene has not come to rest in {steps} steps ({}{}). Block `{block}` has moved {} \
+         towards ({:.2}, {:.2}, {:.2}), and {} at least half as far: {}",
+        speed_left(*speed_ratio), no_less(*stalled), metres(*gone_m), towards[0], towards[1], towards[2], other_blocks(*others),
+        cure_of_unrest(*stalled)
     )]
     NotSettled {
         /// Steps done.
@@ -98,6 +99,8 @@ pub enum StepError {
         towards: [f64; 3],
         /// Number of other blocks that have gone at least half as far.
         others: usize,
+        /// Steps in which the speed left has not become less, where that was why it was given up.
+        stalled: Option<u64>,
     },
     /// An element is inside out.
     #[error(
@@ -135,6 +138,21 @@ impl StepError {
 /// Speed that is left of a scene that settles.
 fn speed_left(ratio: f64) -> String {
     if ratio.is_finite() { format!("speed {ratio:.1e} of the largest") } else { "speeds still rise".into() }
+}
+
+/// For how long it has been no less.
+fn no_less(stalled: Option<u64>) -> String {
+    stalled.map_or_else(String::new, |steps| format!(", and no less for {steps} steps"))
+}
+
+/// What helps a scene to come to rest.
+fn cure_of_unrest(stalled: Option<u64>) -> &'static str {
+    match stalled {
+        None => "hold them, or raise settle.most_steps if they are only slow",
+        Some(_) => {
+            "hold them; if they only vibrate, raise the tolerance to 1e-3 or give the contact springs against slip, shear_penalty_pa_m"
+        }
+    }
 }
 
 /// A length, without a power of ten where that is not needed.

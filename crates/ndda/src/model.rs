@@ -62,7 +62,10 @@ impl Model {
         // Contact that cannot be computed at the start stops the run with its own cause.
         match overlaps::refusal(&model.loaded, &mut model.simulation) {
             Ok(Some(refused)) => Err(model.loaded.errors(vec![refused])),
-            _ => Ok(model),
+            _ => {
+                model.loaded.warnings.extend(overlaps::warning(&model.loaded, &model.simulation));
+                Ok(model)
+            }
         }
     }
 

@@ -1,6 +1,8 @@
 //! Blocks that overlap at the start are refused with the list of pairs; with `settle` they come to rest first.
 
-use ndda::Model;
+use ndda::{Model, Run};
+use ndda_io::code::Code;
+use ndda_io::summary::LabelWord;
 use ndda_solver::Settle;
 
 use super::labelled::scene;
@@ -72,4 +74,44 @@ fn a_block_wholly_inside_the_solid_of_another_is_refused_but_not_one_in_its_holl
     // The hollow of the L is inside the box around it.
     assert_eq!(inside("extreme/concave.ron", "(1.5, 0.5, 1.2)"), None);
     assert!(says(inside("extreme/concave.ron", "(0.3, 0.5, 0.3)"), "ell"), "settling does not let it out");
+}
+
+/// A free cube of 1 m on a fixed one, in one place or sunk into it.
+fn cubes(at: &str) -> Result<Model, String> {
+    let text = format!(
+        "(title: \"two cubes\", time: (step_s: 1e-4, end_s: 0.1), gravity_m_s2: (0, 0, -9.81),
+          materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2650)],
+          blocks: [
+            (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1))),
+            (name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: {at}),
+          ],
+          contact: Potential(penalty_pa: 2e8, potential: Smooth(), friction: (friction_deg: 30)))"
+    );
+    Model::from_text(&text).map_err(|errors| errors.render(false))
+}
+
+#[test]
+fn blocks_in_the_same_place_are_refused() {
+    for at in ["(0, 0, 0)", "(1e-9, 0, 0)", "(0.001, 0, 0)", "(0, 0.3, 0.2)"] {
+        let text = cubes(at).err().unwrap_or_default();
+        assert!(text.contains("error[overlap]"), "{at}: {text}");
+    }
+}
+
+#[test]
+fn a_block_that_contact_throws_from_where_it_is_drawn_is_not_called_accurate() {
+    let label = |at: &str| {
+        let model = cubes(at).unwrap();
+        let is_warned = model.loaded.warnings.iter().any(|warning| warning.code == Code::Overlap);
+        let summary = Run::new(model).finish(&mut []).unwrap().summary;
+        (is_warned, summary.label.word)
+    };
+    for at in ["(0, 0, 0.995)", "(0, 0, 0.999)"] {
+        assert_eq!(label(at), (true, LabelWord::Inaccurate), "{at}");
+    }
+    // Touching, and as deep as contact carries it: ρ g L₀ h/2 k_n with L₀ = 1 m.
+    let depth_m = 2650.0 * 9.81 / (2.0 * 2e8);
+    for at in ["(0, 0, 1)".to_string(), format!("(0, 0, {})", 1.0 - depth_m)] {
+        assert!(!label(&at).0, "{at}");
+    }
 }

@@ -29,6 +29,8 @@ pub struct Invariants {
     pub unresolved_friction: Worst,
     /// Changes of slip velocities by friction when the search for it ended before it was found: the sum over all steps of the largest [m/s].
     pub friction_left_m_s: f64,
+    /// Largest speed at which overlaps as drawn throw a block [m/s].
+    pub drawn_overlap_m_s: Worst,
     /// penetration over tet height.
     pub max_penetration_ratio: f64,
     /// by how much the strength of a bond was exceeded where one broke, over its strength without normal stress.

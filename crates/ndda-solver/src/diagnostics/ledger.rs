@@ -78,6 +78,7 @@ impl Ledger {
             block_gain: Worst::default(),
             block_loss: Worst::default(),
             unresolved_friction: Worst::default(),
+            drawn_overlap_m_s: Worst::default(),
             max_penetration_ratio: 0.0,
             bond_overload: 0.0,
             lateral_drift_speed: Worst::default(),
@@ -215,6 +216,16 @@ impl Ledger {
     /// Speed that errors of block velocities are held against [m/s]: the largest so far, or that of blocks that hardly move.
     pub(crate) fn speed_scale_m_s(&self) -> f64 {
         self.largest_speed_m_s.max(self.slow_m_s)
+    }
+
+    /// Sets the speed below which blocks hardly move [m/s].
+    pub(crate) fn set_slow_m_s(&mut self, slow_m_s: f64) {
+        self.slow_m_s = slow_m_s;
+    }
+
+    /// Keeps the largest speed at which overlaps as drawn throw a block [m/s].
+    pub(crate) fn note_drawn_overlaps(&mut self, thrown: Worst) {
+        self.worst.drawn_overlap_m_s = thrown;
     }
 
     /// Keeps vibrations that a step turns over: the worst, or the last where they die out.

@@ -100,6 +100,18 @@ impl Simulation {
         self.newton.is_some() || !asked || self.problem.shapes.iter().all(rigid)
     }
 
+    /// Whether a block has fallen freely in the last step: its mass centre has the acceleration of gravity, to a thousandth.
+    pub fn falls_freely(&self, block: BlockId) -> bool {
+        let shape = self.shape(block);
+        if shape.kind == BodyKind::Fixed {
+            return false;
+        }
+        let gravity_m_s2 = self.problem.gravity_m_s2;
+        let acceleration_m_s2 =
+            shape.operator.center(&self.state.acceleration[self.blocks().nodes_of(block)]);
+        (acceleration_m_s2 - gravity_m_s2).norm() < 1e-3 * gravity_m_s2.norm()
+    }
+
     /// Largest speed of the run so far [m/s].
     pub fn largest_speed_m_s(&self) -> f64 {
         self.audit.ledger.largest_speed_m_s()

@@ -16,6 +16,7 @@ use crate::bodies::kind::BodyKind;
 use crate::error::StepError;
 use crate::step::Simulation;
 use crate::step::local_damping::LocalDamping;
+use crate::step::oscillation::Oscillation;
 use crate::step::settling_step::SettlingStep;
 
 /// Damping on the way to rest.
@@ -74,12 +75,25 @@ pub struct Settling {
     /// Velocities with which time begins.
     start: Vec<Vec3>,
     progress: Progress,
+    /// Least speed over the largest so far, and the step of that.
+    least: (f64, u64),
 }
 
 impl Settling {
     fn new(simulation: &Simulation, progress: Progress, start: Vec<Vec3>) -> Self {
         let settled = Settled { steps: 0, speed_ratio: f64::INFINITY, least_inertia: None };
-        Self { settled, from: simulation.state.position.clone(), start, progress }
+        Self { settled, from: simulation.state.position.clone(), start, progress, least: (f64::INFINITY, 0) }
+    }
+
+    /// Takes the speed that is left; how many steps it has not become less for, once these are many.
+    fn stalls(&mut self) -> Option<u64> {
+        let Settled { steps, speed_ratio, .. } = self.settled;
+        let (least, since) = &mut self.least;
+        if speed_ratio < LESS * *least {
+            (*least, *since) = (speed_ratio, steps);
+        }
+        let stalled = steps - *since;
+        (*least < 1.0 && stalled >= PATIENCE.max(2 * *since)).then_some(stalled)
     }
 
     /// How far it has come.
@@ -88,53 +102,12 @@ impl Settling {
     }
 }
 
-/// The oscillations of the whole scene.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-struct Oscillation {
-    energy_j: f64,
-    /// Largest energy at which it was stopped, older ones counting less; none before the first time.
-    peak_j: Option<f64>,
-    /// Steps since it was stopped, and between the last two stops.
-    since: u64,
-    between: u64,
-    /// Most steps between two stops: a quarter of the slowest oscillation.
-    longest: u64,
-}
-
 /// Steps between looks at how far blocks have gone.
 const LOOK: u64 = 100;
 
-/// Weight of the previous peak one oscillation later: a small one may be chance, many in a row are not.
-const REMEMBERED: f64 = 0.7;
-
-impl Oscillation {
-    /// Takes the energy after a step; true when the scene is past its peak.
-    fn is_past_peak(&mut self, energy_j: f64) -> bool {
-        // One that no longer gains any is where nothing drives it.
-        let past = energy_j <= self.energy_j;
-        self.since += 1;
-        if past {
-            (self.between, self.since) = (self.since, 0);
-            self.longest = self.longest.max(self.between);
-            self.peak_j = Some(self.energy_j.max(REMEMBERED * self.peak_j.unwrap_or(0.0)));
-        }
-        self.energy_j = if past { 0.0 } else { energy_j };
-        past
-    }
-
-    /// Energy that it may still have: what it has, and what its last oscillations had.
-    fn left_j(&self) -> f64 {
-        match self.peak_j {
-            // A oscillation that does not come back is over.
-            Some(peak_j) => {
-                let oscillations = self.since as f64 / self.between as f64;
-                (peak_j * REMEMBERED.powf(oscillations)).max(self.energy_j)
-            }
-            None if self.energy_j > 0.0 => f64::INFINITY,
-            None => 0.0,
-        }
-    }
-}
+/// A scene is given up where the speed left has not become less, by a tenth, for so many steps and twice as many as all before.
+const LESS: f64 = 0.9;
+const PATIENCE: u64 = 10_000;
 
 impl Simulation {
     /// Kinetic energy that its loads alone would give a block in a step [J].
@@ -212,18 +185,18 @@ impl Simulation {
         watch: &mut dyn FnMut(&Settled) -> ControlFlow<()>,
     ) -> Result<bool, StepError> {
         self.settling = Some(SettlingStep::new(at_s, 0.0));
-        let Settling { settled, from, progress, .. } = settling;
-        let extent_m = Aabb::around(from.iter()).diagonal();
-        while settled.speed_ratio > settle.tolerance {
-            let looks = settled.steps % LOOK == LOOK - 1;
-            if settled.steps == settle.most_steps || looks && self.farthest(from)[0].0 > extent_m {
-                return Err(self.not_settled(settled, from));
+        let extent_m = Aabb::around(settling.from.iter()).diagonal();
+        while settling.settled.speed_ratio > settle.tolerance {
+            let Settled { steps, speed_ratio, .. } = settling.settled;
+            let leaves = steps % LOOK == LOOK - 1 && self.farthest(&settling.from)[0].0 > extent_m;
+            let stalled = settling.stalls();
+            if steps == settle.most_steps || leaves || stalled.is_some() {
+                return Err(self.not_settled(settling, stalled));
             }
-            let speed_ratio = settled.speed_ratio.max(settle.tolerance);
-            self.settling = Some(SettlingStep::new(at_s, speed_ratio));
-            settled.speed_ratio = progress.step(self)?;
-            settled.steps += 1;
-            if watch(settled).is_break() {
+            self.settling = Some(SettlingStep::new(at_s, speed_ratio.max(settle.tolerance)));
+            settling.settled.speed_ratio = settling.progress.step(self)?;
+            settling.settled.steps += 1;
+            if watch(&settling.settled).is_break() {
                 return Ok(false);
             }
         }
@@ -284,7 +257,7 @@ impl Simulation {
     }
 
     /// Which blocks have moved on the way, and where to.
-    fn not_settled(&self, settled: &Settled, from: &[Vec3]) -> StepError {
+    fn not_settled(&self, Settling { settled, from, .. }: &Settling, stalled: Option<u64>) -> StepError {
         let moved = self.farthest(from);
         let (gone_m, block) = moved[0];
         let towards = if gone_m > 0.0 { self.way(from, block) / gone_m } else { Vec3::zeros() };
@@ -295,13 +268,15 @@ impl Simulation {
             gone_m,
             towards: towards.into(),
             others: moved[1..].iter().filter(|(gone, _)| *gone >= 0.5 * gone_m && *gone > 0.0).count(),
+            stalled,
         }
     }
 
     fn kinetic_energy_j(&self) -> f64 {
         let of_block = |block: BlockId| {
             let nodes = self.blocks().nodes_of(block);
-            self.inertia_factor(block) * self.shape(block).operator.kinetic_energy_j(&self.state.velocity[nodes])
+            self.inertia_factor(block)
+                * self.shape(block).operator.kinetic_energy_j(&self.state.velocity[nodes])
         };
         let mut total_j = 0.0;
         for block in self.blocks().ids() {

@@ -305,11 +305,18 @@ impl Simulation {
         Ledger::new(start, BlockDiagnostics::new(scales, self.newton.is_some()), self.slow_m_s())
     }
 
-    /// 0.01 √(g h): the speed of a fall through 1/20 000 of h, the lowest height of tetrahedra of blocks that move; zero without gravity or
-    /// contact [m/s].
+    /// The speed below which blocks hardly move, as far as widths are known or meshes tell [m/s].
     fn slow_m_s(&self) -> f64 {
+        if let Some(width_m) = self.audit.travel.smallest_moving_m(self) {
+            return self.slow_through_m_s(width_m);
+        }
         let moving = self.problem.shapes.iter().filter(|shape| shape.kind != BodyKind::Fixed);
-        let height_m = moving.map(|shape| shape.scale().height_m).fold(f64::INFINITY, f64::min);
+        self.slow_through_m_s(moving.map(|shape| shape.smallest_height_m).fold(f64::INFINITY, f64::min))
+    }
+
+    /// 0.01 √(g h): the speed of a fall through 1/20 000 of h, the lowest height of tetrahedra of elastic blocks, or the smallest width of others, that
+    /// move; zero without gravity or contact [m/s].
+    pub(super) fn slow_through_m_s(&self, height_m: f64) -> f64 {
         let slow = self.contact.is_some() && height_m.is_finite();
         if slow { HARDLY * (self.problem.gravity_m_s2.norm() * height_m).sqrt() } else { 0.0 }
     }

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 
 use ndda_contact::{PairResultant, resultants};
 use ndda_io::code::Code;
-use ndda_io::diagnostic::Diagnostic;
+use ndda_io::diagnostic::{Diagnostic, Severity};
 use ndda_io::read::LoadedScene;
 use ndda_mesh::geometry::{Aabb, tet_volume};
 use ndda_mesh::{BlockId, BlockSet, Vec3};
@@ -13,6 +13,8 @@ use ndda_solver::{BodyKind, Simulation, StepError};
 /// Mean depth over the smaller of two blocks' smallest tetrahedron heights. Blocks that are laid as deep as contact carries
 /// them at rest are well below.
 const MOST_DEPTH: f64 = 0.01;
+/// The same, below which blocks touch but for rounding.
+const LEAST_DEPTH: f64 = 1e-9;
 /// Force of a pair over the largest one, below which it is rounding.
 const ROUNDING: f64 = 1e-6;
 /// Pairs that are listed.
@@ -26,20 +28,28 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
     if !simulation.has_contact() {
         return Ok(None);
     }
-    if let Some((inner, outer)) = enclosed(simulation) {
-        let name = |block: BlockId| &simulation.blocks().names[block.index()];
-        let message = format!("block `{}` lies wholly inside block `{}`", name(inner), name(outer));
-        let help = "move one of them away: contact acts on surfaces that cross, and here none do";
-        return Ok(Some(loaded.diagnose_as(Code::Overlap, "blocks", message).with_help(help)));
+    let shared = in_the_same_place(simulation);
+    let refused = |shared: Option<&Shared>, names: &[String]| {
+        shared.map(|shared| {
+            loaded.diagnose_as(Code::Overlap, "blocks", shared.words(names)).with_help(shared.cure())
+        })
+    };
+    let wholly = shared.as_ref().filter(|shared| shared.is_wholly);
+    if wholly.is_some() {
+        return Ok(refused(wholly, &simulation.blocks().names));
     }
     if loaded.scene.settle.is_some() {
         return Ok(None);
     }
     let (report, mut facets) = simulation.contacts_at_start()?;
-    if report.past_centroid.is_none() && report.max_penetration_ratio <= MOST_DEPTH {
-        return Ok(None);
+    if report.past_centroid.is_none() && report.max_penetration_ratio <= LEAST_DEPTH {
+        return Ok(refused(shared.as_ref(), &simulation.blocks().names));
     }
     let found = resultants(simulation.blocks(), &mut facets);
+    simulation.note_drawn_overlaps(&found);
+    if report.past_centroid.is_none() && report.max_penetration_ratio <= MOST_DEPTH {
+        return Ok(refused(shared.as_ref(), &simulation.blocks().names));
+    }
     let largest_n = found.iter().map(|pair| pair.force_n.norm()).fold(0.0, f64::max);
     let mut pairs: Vec<(PairResultant, f64)> = found
         .into_iter()
@@ -50,7 +60,7 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
         .filter(|(_, ratio)| *ratio > MOST_DEPTH)
         .collect();
     if pairs.is_empty() {
-        return Ok(None);
+        return Ok(refused(shared.as_ref(), &simulation.blocks().names));
     }
     pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
     let name = |block: BlockId| &simulation.blocks().names[block.index()];
@@ -70,27 +80,94 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
     Ok(Some(loaded.diagnose_as(Code::Overlap, "blocks", message).with_help(help)))
 }
 
-/// A block with all nodes in the solid of another, and that other, unless both are fixed.
-fn enclosed(simulation: &Simulation) -> Option<(BlockId, BlockId)> {
+/// Two blocks in the same place.
+struct Shared {
+    inner: BlockId,
+    outer: BlockId,
+    /// A point in the solid of both [m].
+    at_m: Vec3,
+    /// Whether all nodes of the inner one are in the solid of the outer one.
+    is_wholly: bool,
+}
+
+impl Shared {
+    fn words(&self, names: &[String]) -> String {
+        let [inner, outer] = [self.inner, self.outer].map(|block| &names[block.index()]);
+        let at = self.at_m;
+        if self.is_wholly {
+            return format!("block `{inner}` lies wholly inside block `{outer}`");
+        }
+        format!(
+            "blocks `{inner}` and `{outer}` are in the same place: ({:.4}, {:.4}, {:.4}) m is inside both",
+            at.x, at.y, at.z
+        )
+    }
+
+    fn cure(&self) -> &'static str {
+        match self.is_wholly {
+            true => "move one of them away: contact acts on surfaces that cross, and here none do",
+            false => {
+                "move one of them away: contact is made for blocks that overlap by a small part of their size"
+            }
+        }
+    }
+}
+
+/// A block whose largest tetrahedron has its middle in the solid of another, and that other, unless both are fixed.
+fn in_the_same_place(simulation: &Simulation) -> Option<Shared> {
     let (blocks, position) = (simulation.blocks(), &simulation.state().position);
     let there = blocks.ids().filter(|&block| !simulation.is_absent(block));
     let mut boxes: Vec<(BlockId, Aabb)> =
         there.map(|block| (block, Aabb::around(&position[blocks.nodes_of(block)]))).collect();
     boxes.sort_by(|a, b| a.1.min.x.total_cmp(&b.1.min.x));
-    let within = |inner: &Aabb, outer: &Aabb| {
-        (0..3).all(|i| outer.min[i] < inner.min[i] && inner.max[i] < outer.max[i])
-    };
+    let holds_point = |outer: &Aabb, x: &Vec3| (0..3).all(|i| outer.min[i] <= x[i] && x[i] <= outer.max[i]);
     let places = BoxesByPlace::new(&boxes);
-    boxes.iter().find_map(|(inner, bounds)| {
-        let nodes = &position[blocks.nodes_of(*inner)];
+    boxes.iter().find_map(|(inner, _)| {
+        let at_m = middle_of_largest(blocks, position, *inner);
         let holds = |place: &usize| {
             let (outer, around) = &boxes[*place];
             let moves = [*inner, *outer].iter().any(|&block| !is_fixed(simulation, block));
-            moves && within(bounds, around) && nodes.iter().all(|x| is_in_solid(blocks, position, *outer, x))
+            let may = inner != outer && moves && holds_point(around, &at_m);
+            may && is_in_solid(blocks, position, *outer, &at_m)
         };
-        let outer = places.that_may_hold(&bounds.min).filter(holds).min();
-        outer.map(|outer| (*inner, boxes[outer].0))
+        let outer = boxes[places.that_may_hold(&at_m).filter(holds).min()?].0;
+        let is_within = |inner: BlockId, outer: BlockId| {
+            position[blocks.nodes_of(inner)].iter().all(|x| is_in_solid(blocks, position, outer, x))
+        };
+        let [inner, outer] = if is_within(outer, *inner) { [outer, *inner] } else { [*inner, outer] };
+        Some(Shared {
+            inner,
+            outer,
+            at_m: at_m + blocks.origin_m,
+            is_wholly: is_within(inner, outer) && !is_within(outer, inner),
+        })
     })
+}
+
+/// A warning for blocks that contact throws apart from where they are drawn, faster than errors of an accurate run may be.
+pub fn warning(loaded: &LoadedScene, simulation: &Simulation) -> Option<Diagnostic> {
+    let thrown = simulation.invariants().drawn_overlap_m_s;
+    let fastest_m_s = simulation.state().velocity.iter().map(|v| v.norm()).fold(0.0, f64::max);
+    if thrown.value <= crate::judge::verdict::SPEED * simulation.speed_scale_m_s().max(fastest_m_s) {
+        return None;
+    }
+    let name = &simulation.blocks().names[thrown.block as usize];
+    let message = format!(
+        "block `{name}` overlaps others as drawn, and contact throws it away at {:.2e} m/s",
+        thrown.value
+    );
+    let help = "move it, or let the scene come to rest before the run begins: `settle: ()`";
+    let mut found = loaded.diagnose_as(Code::Overlap, "blocks", message).with_help(help);
+    found.severity = Severity::Warning;
+    Some(found)
+}
+
+/// The middle of a block's largest tetrahedron [m].
+fn middle_of_largest(blocks: &BlockSet, position: &[Vec3], block: BlockId) -> Vec3 {
+    let corners = |tet: usize| blocks.tets[tet].map(|n| position[n.index()]);
+    let volume = |tet: &usize| tet_volume(&corners(*tet));
+    let largest = blocks.tets_of(block).max_by(|a, b| volume(a).total_cmp(&volume(b)));
+    corners(largest.expect("a block has tetrahedra")).iter().sum::<Vec3>() / 4.0
 }
 
 /// Boxes in grids, one for each power of two that some are no larger than: each box is in the cell of its lower corner.

@@ -17,7 +17,7 @@ const MOST_DEPTH: f64 = 0.05;
 /// Part of its strength by which a bond may be overloaded when it breaks.
 const BOND_OVERLOAD: f64 = 0.05;
 /// Limits of an accurate run: errors of speeds over the largest, and of places over an element size.
-const SPEED: f64 = 0.01;
+pub(crate) const SPEED: f64 = 0.01;
 const PLACE: f64 = 0.1;
 /// Strain up to which a linear law is taken for true: terms of second order are half of it, 5 % of the stress.
 const MOST_STRAIN: f64 = 0.1;
@@ -78,6 +78,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.push(spurious_contact_energy(simulation));
     entries.push(friction(simulation));
     entries.extend(friction_search(simulation));
+    entries.extend(drawn_overlaps(simulation));
     entries.extend(creep(simulation));
     entries.push(hops(simulation));
     entries.extend(contact(simulation));
@@ -165,6 +166,20 @@ fn friction_search(simulation: &Simulation) -> Option<Entry> {
         100.0 * SPEED
     );
     (left > 0.0).then(|| warned("friction search error / largest speed", left, SPEED, reason))
+}
+
+/// Whether blocks overlap as they are drawn, so that contact throws them apart; said only where it does.
+fn drawn_overlaps(simulation: &Simulation) -> Option<Entry> {
+    let thrown = simulation.invariants().drawn_overlap_m_s;
+    let part = thrown.value / simulation.speed_scale_m_s();
+    let reason = format!(
+        "block `{}` overlaps others as drawn, and contact throws it away at {:.2e} m/s, {:.1} % of the largest speed, limit {:.0} %: move it, or let the scene come to rest first, `settle: ()`",
+        name(simulation, thrown),
+        thrown.value,
+        100.0 * part,
+        100.0 * SPEED
+    );
+    (thrown.value > 0.0).then(|| warned("speed from drawn overlaps / largest speed", part, SPEED, reason))
 }
 
 /// Energy that contact makes or takes, pair by pair.

@@ -16,6 +16,8 @@ use super::schedule::Schedule;
 pub(crate) const MOVED: f64 = 0.01;
 /// A block rests if it moves at less than this part of its own largest speed.
 const RESTS: f64 = 0.01;
+/// Slower motion is rounding [m/s].
+const SLOWEST_M_S: f64 = 1e-12;
 /// It accelerates if it moves at more than this part of that.
 const ACCELERATES: f64 = 0.99;
 
@@ -85,7 +87,9 @@ impl LargestMotions {
         let (distance_m, block) = farthest.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))?;
         let speed_m_s = velocity_m_s(simulation, block).norm();
         let fastest_m_s = self.fastest_m_s.get(block.index()).copied().unwrap_or(0.0).max(speed_m_s);
-        let course = if speed_m_s <= RESTS * fastest_m_s {
+        // A boulder at the top of its flight is slow, too.
+        let rests = speed_m_s <= RESTS * fastest_m_s && !simulation.falls_freely(block);
+        let course = if rests || fastest_node_m_s(simulation, block) < SLOWEST_M_S {
             Course::AtRest
         } else if speed_m_s >= ACCELERATES * fastest_m_s {
             Course::Accelerating
@@ -101,6 +105,14 @@ impl LargestMotions {
             course,
         })
     }
+}
+
+/// Speed of a block's fastest node [m/s].
+fn fastest_node_m_s(simulation: &Simulation, block: BlockId) -> f64 {
+    simulation.state().velocity[simulation.blocks().nodes_of(block)]
+        .iter()
+        .map(|v| v.norm())
+        .fold(0.0, f64::max)
 }
 
 /// Whether forces can move a block: it is not fixed, and supports do not hold or drive all of its nodes.
@@ -234,6 +246,17 @@ fn row(simulation: &Simulation, block: BlockId) -> [f64; COLUMNS.len()] {
 mod tests {
     use crate::{Model, Run};
     use ndda_io::summary::Course;
+
+    #[test]
+    fn a_block_at_the_top_of_its_flight_is_not_at_rest() {
+        let text = "(title: \"thrown\", contact: Off, time: (step_s: 1e-3, end_s: 0.2), gravity_m_s2: (0, 0, -10),
+            materials: [(name: \"rock\", young_pa: 20e9, poisson: 0.25, density_kg_m3: 2600)],
+            blocks: [(name: \"cube\", material: \"rock\", body: Rigid, shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), velocity_m_s: (0, 0, 2))])";
+        let summary = Run::new(Model::from_text(text).unwrap()).finish(&mut []).unwrap().summary;
+        let motion = summary.motion.unwrap();
+        assert!(motion.speed_m_s < 1e-9, "{}", motion.speed_m_s);
+        assert_eq!(motion.course, Course::Moving);
+    }
 
     #[test]
     fn displacement_and_rotation_of_a_thrown_block_are_those_of_free_flight() {
