@@ -107,7 +107,7 @@ const TOWER: &str = "(title: \"tower\", time: (step_s: 2e-4, end_s: 1), gravity_
     contact: Potential(penalty_pa: 2e8, potential: Smooth(reference_m: 1), friction: (friction_deg: 30)))";
 
 #[test]
-fn a_tower_settles_as_deep_with_scaled_masses_in_half_the_steps() {
+fn a_tower_settles_as_deep_with_scaled_masses_in_two_thirds_of_the_steps() {
     let steps = [false, true].map(|mass_scaling| {
         let mut simulation = simulation(TOWER);
         let settle = Settle { mass_scaling, ..Settle::new(1e-6, 100_000) };
@@ -141,5 +141,5 @@ fn a_tower_settles_as_deep_with_scaled_masses_in_half_the_steps() {
         );
         settled.steps
     });
-    assert!(2 * steps[1] <= steps[0], "{steps:?}");
+    assert!(3 * steps[1] <= 2 * steps[0], "{steps:?}");
 }

@@ -87,9 +87,9 @@ impl LargestMotions {
         let (distance_m, block) = farthest.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)))?;
         let speed_m_s = velocity_m_s(simulation, block).norm();
         let fastest_m_s = self.fastest_m_s.get(block.index()).copied().unwrap_or(0.0).max(speed_m_s);
+        let is_slow = speed_m_s <= RESTS * fastest_m_s || fastest_node_m_s(simulation, block) < SLOWEST_M_S;
         // A boulder at the top of its flight is slow, too.
-        let rests = speed_m_s <= RESTS * fastest_m_s && !simulation.falls_freely(block);
-        let course = if rests || fastest_node_m_s(simulation, block) < SLOWEST_M_S {
+        let course = if is_slow && !simulation.falls_freely(block) {
             Course::AtRest
         } else if speed_m_s >= ACCELERATES * fastest_m_s {
             Course::Accelerating
