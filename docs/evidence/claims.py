@@ -4,19 +4,17 @@
   docs/evidence/claims.py                        how many numbers each page states, by what holds them
   docs/evidence/claims.py --csv                  all of them: file, line, number, holder, sentence
   docs/evidence/claims.py --sample N --seed S    a random sample of those that nothing reruns, to rerun by hand
-  docs/evidence/claims.py --ties                 fails where a number that docs/evidence/claims/ties.csv ties to its source differs from it
 
 Left out are the generated references of scenes and of the Python package, code, addresses, numbers of sections, figures, equations and
 years, and numbers in words. A number that a scene's header shares with the scene itself is a *setting*; whether another number is a
 measurement or a choice only a reader can tell.
 
-A row of ties.csv holds one number: a page, some words of it in which the number stands in braces, a source, and a factor between the two.
-Sources are `figure: ID: WHAT`, a row of docs/verification/figures.md, which the gate compares with the tests, and
-`csv: FILE: COLUMN=VALUE, …: COLUMN`, a cell of a file in docs/evidence. The number may differ from its source by one in its last digit.
+docs/evidence/ties.py compares the numbers that docs/evidence/claims/ties.csv ties to a source.
 """
 
 import argparse
 import csv
+import json
 import random
 import re
 import sys
@@ -27,12 +25,13 @@ from typing import NamedTuple
 ROOT = Path(__file__).resolve().parents[2]
 TIES = ROOT / "docs" / "evidence" / "claims" / "ties.csv"
 FIGURES = ROOT / "docs" / "verification" / "figures.md"
+BENCHES = ROOT / "benches" / "figures.json"
 GENERATED = {"docs/reference/scene.md", "docs/python/reference.md"}
 
 # What holds a number, the strongest first; what stands before `TABLE` is rerun by a machine.
 QUOTED = "quoted output, rerun by the gate"
 FIGURE = "figure of a test, compared by the gate"
-TIED = "tied to a figure or a data file, compared by the gate"
+TIED = "tied to its source, compared by the gate"
 TEST = "text compared by a test"
 NIGHT = "rerun at night"
 TABLE = "table that a script writes from data"
@@ -86,14 +85,7 @@ def main():
     parser.add_argument("--csv", action="store_true")
     parser.add_argument("--sample", type=int, metavar="N")
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--ties", action="store_true")
     given = parser.parse_args()
-    if given.ties:
-        faults = loose_ties()
-        if faults:
-            sys.exit("\n".join(faults) + "\nthe page or the source is out of date")
-        print(f"{len(ties())} numbers of the pages are those of their sources")
-        return
     found = claims()
     if given.csv:
         writer = csv.writer(sys.stdout, lineterminator="\n")
@@ -117,8 +109,9 @@ def claims():
         pieces, settings = (header(text), body_numbers(text)) if path.suffix == ".ron" else (markdown(name, text), set())
         for piece in pieces:
             for claim, place in numbers(name, piece):
-                if claim.holder in (NOTHING, TABLE) and (name, claim.line, claim.number) in tied:
-                    claim = claim._replace(holder=TIED)
+                held = tied.get((name, claim.line, claim.number))
+                if held and claim.holder in (NOTHING, TABLE):
+                    claim = claim._replace(holder=held)
                 elif claim.holder == NOTHING and value(claim.number) in settings:
                     claim = claim._replace(holder=SETTING)
                 found.append(claim)
@@ -246,47 +239,34 @@ def ties():
         return list(csv.DictReader(file))
 
 
+def span(tie, text):
+    """Where the number of a tie is in the text of its page; none unless its words are there once."""
+    if tie["page"].endswith(".ron"):
+        text = re.sub(r"^[ \t]*//", lambda match: " " * len(match[0]), text, flags=re.MULTILINE)
+    before, _, rest = tie["words"].partition("{")
+    number, _, after = rest.partition("}")
+    parts = (r"\s+".join(re.escape(word) for word in part.split(" ")) for part in (before, number, after))
+    hits = list(re.finditer("{}({}){}".format(*parts), text))
+    return hits[0].span(1) if len(hits) == 1 else None
+
+
 def place(tie):
     """Line of a tie's number in its page, and the number; a fault in words where the words are not there once."""
     text = (ROOT / tie["page"]).read_text(encoding="utf-8")
-    if tie["page"].endswith(".ron"):
-        text = re.sub(r"^[ \t]*//", "", text, flags=re.MULTILINE)
-    before, _, rest = tie["words"].partition("{")
-    number, _, after = rest.partition("}")
-    pattern = r"\s+".join(re.escape(word) for word in re.split(r"\s+", f"{before}\0{number}\0{after}"))
-    hits = list(re.finditer(pattern.replace("\0", "()"), text))
-    if len(hits) != 1:
-        return f"{tie['page']}: {len(hits)} times there: {tie['words']}"
-    return text.count("\n", 0, hits[0].start(1)) + 1, number
+    found = span(tie, text)
+    if found is None:
+        return f"{tie['page']}: not there once: {tie['words']}"
+    return text.count("\n", 0, found[0]) + 1, text[slice(*found)]
 
 
 def tied_places():
-    found = set()
+    """What holds the numbers that are tied."""
+    found = {}
     for tie in ties():
         there = place(tie)
         if not isinstance(there, str):
-            found.add((tie["page"], *there))
+            found[tie["page"], *there] = NIGHT if tie["when"] == "night" else TIED
     return found
-
-
-def loose_ties():
-    """What is wrong with the ties, in words."""
-    rows, faults = figure_rows(), []
-    for tie in ties():
-        there = place(tie)
-        if isinstance(there, str):
-            faults.append(there)
-            continue
-        try:
-            source = source_value(tie["source"], rows) * float(tie["factor"] or 1)
-        except (LookupError, ValueError, OSError) as fault:
-            faults.append(f"{tie['page']}: {tie['words']}: {tie['source']}: {fault}")
-            continue
-        number, digit = value(there[1]), last_digit(there[1])
-        # Half a digit is rounding; the rest is what the last digit of a source may be.
-        if abs(number - source) > 1.0 * digit + 1e-9 * abs(source):
-            faults.append(f"{tie['page']}:{there[0]}: {tie['words']}: {tie['source']} is {source:.6g}")
-    return faults
 
 
 def last_digit(number):
@@ -311,11 +291,10 @@ def figure_rows():
 def source_value(source, rows):
     kind, _, rest = source.partition(": ")
     if kind == "figure":
-        id_, _, what = rest.partition(": ")
-        (cell,) = set(rows[id_, what]) or {None}
-        if cell is None:
-            raise LookupError("no such row")
-        return float(cell)
+        cells = {cell for (id_, what), found in rows.items() if f"{id_}: {what}" == rest for cell in found}
+        if len(cells) != 1:
+            raise LookupError(f"{len(cells)} such rows")
+        return float(cells.pop())
     if kind == "csv":
         file, conditions, column = rest.split(": ")
         wanted = dict(part.split("=", 1) for part in conditions.split(", "))
@@ -324,7 +303,13 @@ def source_value(source, rows):
         if len(hits) != 1:
             raise LookupError(f"{len(hits)} such rows")
         return float(hits[0][column])
-    raise ValueError("a source begins with `figure: ` or `csv: `")
+    if kind == "bench":
+        crate, bench = rest.split(": ")
+        # The last record that has the crate.
+        kept = next(record["instructions"][crate] for record in reversed(json.loads(BENCHES.read_text())) if record["instructions"].get(crate))
+        counts = [kept[name] for name in bench.split("/")]
+        return counts[0] / (counts[1] if len(counts) > 1 else 1)
+    raise ValueError("a source begins with `figure: `, `csv: `, `bench: ` or `ndda `")
 
 
 if __name__ == "__main__":
