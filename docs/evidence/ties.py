@@ -40,6 +40,8 @@ ROOT = claims.ROOT
 RESULTS = claims.TIES.with_name("results.csv")
 COLUMNS = ["page", "words", "measured", "holds", "seconds", "date", "commit"]
 LIMIT_S = 3600
+# Exit code of the program after Ctrl-C.
+INTERRUPTED = 130
 
 
 class Fault(Exception):
@@ -181,6 +183,8 @@ class Sources:
         done = subprocess.run(
             [self.ndda, verb, *arguments, *out, *quiet], cwd=ROOT, text=True, capture_output=True, timeout=LIMIT_S, env=os.environ | {"NO_COLOR": "1"}
         )
+        if done.returncode < 0 or done.returncode == INTERRUPTED:
+            raise Fault("the run was interrupted")
         return folder, done.stdout + done.stderr
 
 
