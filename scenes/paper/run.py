@@ -7,6 +7,7 @@ Usage: python3 scenes/paper/run.py            all of it, with `cargo run --relea
        python3 scenes/paper/run.py --check    are the tables of docs/verification/paper.md those of the data?
        python3 scenes/paper/run.py --again FIGURE …   run these figures again at full length: does the data still hold?
        python3 scenes/paper/run.py --times    the times alone: on a machine that does nothing else
+       python3 scenes/paper/run.py --column   the runs of §4.3 that docs/evidence/paper/ensemble.csv lacks; without the file, all
        python3 scenes/paper/run.py --draw     pictures and tables from the data, without a run
 
 Needs python 3.9 or later; matplotlib for the pictures only.
@@ -18,6 +19,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import ensemble
 import results
 import tables
 import times
@@ -113,12 +115,12 @@ def changed(old, new):
 def text():
     """docs/verification/paper.md as it is, and as the data says."""
     now = TEXT.read_text(encoding="utf-8")
-    return now, tables.fill(now, results.read_rows(DATA / "cases.csv"), results.read_rows(DATA / "times.csv"))
+    return now, tables.fill(now, *(results.read_rows(DATA / name) for name in ("cases.csv", "times.csv", "ensemble.csv")))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    for name in ("--thin", "--check", "--times", "--draw"):
+    for name in ("--thin", "--check", "--times", "--column", "--draw"):
         parser.add_argument(name, action="store_true")
     parser.add_argument("--again", nargs="+", choices=results.FIGURES, metavar="FIGURE")
     asked = parser.parse_args()
@@ -126,6 +128,10 @@ def main():
         return again(build(), asked.again)
     if asked.thin:
         return thin(build())
+    if asked.column:
+        ensemble.measure(build(), HERE.parent, DATA / "ensemble.csv")
+        TEXT.write_text(text()[1], encoding="utf-8")
+        return None
     if not (asked.check or asked.draw):
         program = build()
         if not asked.times:
