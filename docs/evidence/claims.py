@@ -28,16 +28,17 @@ FIGURES = ROOT / "docs" / "verification" / "figures.md"
 BENCHES = ROOT / "benches" / "figures.json"
 GENERATED = {"docs/reference/scene.md", "docs/python/reference.md"}
 
-# What holds a number, the strongest first; what stands before `TABLE` is rerun by a machine.
+# What holds a number, the strongest first; what stands before `DATA` is rerun by a machine.
 QUOTED = "quoted output, rerun by the gate"
 FIGURE = "figure of a test, compared by the gate"
 TIED = "tied to its source, compared by the gate"
 TEST = "text compared by a test"
 NIGHT = "rerun at night"
-TABLE = "table that a script writes from data"
+DATA = "table compared with its data by the gate"
+TABLE = "table that a script wrote from data"
 SETTING = "setting of the scene"
 NOTHING = "nothing"
-HOLDERS = (QUOTED, FIGURE, TIED, TEST, NIGHT, TABLE, SETTING, NOTHING)
+HOLDERS = (QUOTED, FIGURE, TIED, TEST, NIGHT, DATA, TABLE, SETTING, NOTHING)
 
 # Pages of which a test or a script compares all numbers of a kind of line: page, part of the line, holder.
 LINES = (
@@ -48,7 +49,9 @@ LINES = (
 # Markers of what stands between them: page, holder.
 MARKED = {
     "docs/verification/figures.md": FIGURE,  # docs/evidence/figures.py --check
-    "docs/verification/paper.md": TEST,  # scenes/paper/run.py --check
+    "docs/verification/paper.md": DATA,  # scenes/paper/run.py --check
+    "docs/verification/performance.md": DATA,  # docs/evidence/performance.py --check, all but the tables of the peers
+    "docs/guide/error-and-time.md": DATA,  # docs/evidence/error_and_time.py --check
 }
 BEGIN = re.compile(r"<!-- (table|figures|tables of)\b.*-->")
 END = re.compile(r"<!-- (end|figures: end|tables of .*: end|end of table).*-->")
@@ -110,7 +113,7 @@ def claims():
         for piece in pieces:
             for claim, place in numbers(name, piece):
                 held = tied.get((name, claim.line, claim.number))
-                if held and claim.holder in (NOTHING, TABLE):
+                if held and claim.holder in (NOTHING, DATA, TABLE):
                     claim = claim._replace(holder=held)
                 elif claim.holder == NOTHING and value(claim.number) in settings:
                     claim = claim._replace(holder=SETTING)
@@ -171,7 +174,7 @@ def markdown(name, text):
             between = None
         elif BEGIN.search(stripped):
             close()
-            between = MARKED.get(name, TABLE)
+            between = TABLE if "peers" in stripped else MARKED.get(name, TABLE)
         elif stripped.startswith("|"):
             close()
             special = next((holder for page, part, holder in LINES if page == name and re.search(part, stripped)), NOTHING)
