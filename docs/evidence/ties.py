@@ -177,7 +177,7 @@ class Sources:
     def run(self, command):
         verb, *arguments = shlex.split(command)[1:]
         folder = Path(self.folder.name) / str(len(self.runs))
-        out = ["--out", str(folder)] if verb in ("run", "safety", "study", "certify", "rockfall") else []
+        out = ["--out", str(folder)] if verb in ("run", "mesh", "safety", "study", "certify", "rockfall") else []
         # Twins take as long as the run, and only a label wants them.
         quiet = ["--sensitivity", "never"] if verb == "run" and "--sensitivity" not in arguments else []
         done = subprocess.run(
