@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Writes the tables of docs/guide/error-and-time.md from the results kept in docs/evidence/error_time.
 
-Usage: error_and_time.py      (after docs/evidence/error_time/run.sh, which calls it)
+Usage: error_and_time.py [--check]      (after docs/evidence/error_time/run.sh, which calls it; --check fails where the page says otherwise)
 """
 
 import csv
 import re
+import sys
 from pathlib import Path
 
 DOCS = Path(__file__).resolve().parent.parent
@@ -77,12 +78,14 @@ def between(text, name, made):
     return f"{before}{begin}\n\n{made}\n\n{end}{rest.split(end)[1]}"
 
 
-def main():
-    text = PAGE.read_text(encoding="utf-8")
+def main(check):
+    text = now = PAGE.read_text(encoding="utf-8")
     for folder in sorted(path for path in KEPT.iterdir() if path.is_dir()):
         text = between(text, folder.name, "\n\n".join((times(folder), front(folder), failed(folder))))
+    if check and text != now:
+        sys.exit("docs/guide/error-and-time.md is out of date: docs/evidence/error_and_time.py writes it anew")
     PAGE.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:] == ["--check"])

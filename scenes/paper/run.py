@@ -5,7 +5,9 @@ and draws the pictures.
 Usage: python3 scenes/paper/run.py            all of it, with `cargo run --release`; goes on where it was interrupted
        python3 scenes/paper/run.py --thin     short runs of every case and nothing kept: does it all still run?
        python3 scenes/paper/run.py --check    are the tables of docs/verification/paper.md those of the data?
+       python3 scenes/paper/run.py --again FIGURE …   run these figures again at full length: does the data still hold?
        python3 scenes/paper/run.py --times    the times alone: on a machine that does nothing else
+       python3 scenes/paper/run.py --column   the runs of §4.3 that docs/evidence/paper/ensemble.csv lacks; without the file, all
        python3 scenes/paper/run.py --draw     pictures and tables from the data, without a run
 
 Needs python 3.9 or later; matplotlib for the pictures only.
@@ -17,6 +19,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+import ensemble
 import results
 import tables
 import times
@@ -28,6 +31,10 @@ TEXT = ROOT / "docs" / "verification" / "paper.md"
 # What makes a study short: the first moments, and for the collision a longer step.
 SHORT = {"fig3": ["time.step_s=1e-5"]}
 SHORT_OTHERS = ["time.end_s=0.024", "output.history_rows=6"]
+
+# What a case is compared by when it runs again: the part by which numbers may differ, and the size below which they are rounding.
+NUMBERS = ("step_s", "along_end", "along_max", "size_max", "along_late", "size_late", "energy_gain", "h")
+SAME, NOTHING = 0.01, 1e-9
 
 
 def build():
@@ -76,19 +83,55 @@ def thin(program):
                 raise SystemExit(f"{name}: {stopped}")
 
 
+def again(program, names):
+    """Runs figures at full length, and says which cases are no longer as they are kept."""
+    kept = {key(row): row for row in results.read_rows(DATA / "cases.csv")}
+    faults = []
+    with tempfile.TemporaryDirectory() as folder:
+        for name in names:
+            rows, _ = study(program, name, Path(folder), jobs=2)
+            faults += [f"{' '.join(key(row))}: {column} was {kept[key(row)][column]}, is {row[column]}" for row in rows for column in changed(kept[key(row)], row)]
+            print(f"{name}: {len(rows)} cases run again", flush=True)
+    if faults:
+        raise SystemExit("\n".join(faults) + "\ndocs/evidence/paper/cases.csv is out of date: scenes/paper/run.py writes it anew")
+
+
+def key(row):
+    return row["figure"], row["varied"], row["scheme"], row["start"]
+
+
+def changed(old, new):
+    """Columns that differ by more than rounding lets them."""
+    found = [] if old["status"] == new["status"] else ["status"]
+    for column in NUMBERS if not found else []:
+        if old[column] == new.get(column, ""):
+            continue
+        before, now = float(old[column]), float(new[column])
+        if abs(before - now) > SAME * abs(before) and max(abs(before), abs(now)) > NOTHING:
+            found.append(column)
+    return found
+
+
 def text():
     """docs/verification/paper.md as it is, and as the data says."""
     now = TEXT.read_text(encoding="utf-8")
-    return now, tables.fill(now, results.read_rows(DATA / "cases.csv"), results.read_rows(DATA / "times.csv"))
+    return now, tables.fill(now, *(results.read_rows(DATA / name) for name in ("cases.csv", "times.csv", "ensemble.csv")))
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    for name in ("--thin", "--check", "--times", "--draw"):
+    for name in ("--thin", "--check", "--times", "--column", "--draw"):
         parser.add_argument(name, action="store_true")
+    parser.add_argument("--again", nargs="+", choices=results.FIGURES, metavar="FIGURE")
     asked = parser.parse_args()
+    if asked.again:
+        return again(build(), asked.again)
     if asked.thin:
         return thin(build())
+    if asked.column:
+        ensemble.measure(build(), HERE.parent, DATA / "ensemble.csv")
+        TEXT.write_text(text()[1], encoding="utf-8")
+        return None
     if not (asked.check or asked.draw):
         program = build()
         if not asked.times:

@@ -2,6 +2,8 @@
 
 import re
 
+import ensemble
+
 SCHEMES = {"paper": "the paper's scheme", "Midpoint": "`Midpoint`", "GeneralizedAlpha": "`GeneralizedAlpha`"}
 END = "Midpoint, contact at the end"
 MARKERS = re.compile(r"(<!-- table: (\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
@@ -117,11 +119,16 @@ TABLES = {"fig3": collision, "fig5": penalties("fig5"), "fig6": penalties("fig6"
 TABLES |= {"fig10": angles("fig10"), "fig11": angles("fig11")}
 
 
-def fill(text, cases, timed):
+def columns(rows):
+    return table(["φ", "runs", "mean", "standard deviation", "range", "the paper"], ensemble.lines(rows))
+
+
+def fill(text, cases, timed, columned):
     """The text with its tables made anew."""
+    others = {"times": lambda: times(timed), "ensemble": lambda: columns(columned)}
 
     def made(match):
         name = match[2]
-        return match[1] + (times(timed) if name == "times" else TABLES[name](cases)) + match[3]
+        return match[1] + (others[name]() if name in others else TABLES[name](cases)) + match[3]
 
     return MARKERS.sub(made, text)
