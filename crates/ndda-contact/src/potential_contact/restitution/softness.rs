@@ -32,7 +32,7 @@ impl ContactDamping {
         }
         self.asked.clear();
         self.asked.resize(bodies.len(), 1);
-        for pair in &self.pairs {
+        for pair in &mut self.pairs {
             let mut softness = 0.0;
             for block in pair.blocks.iter().filter(|block| bodies[block.index()].deforms) {
                 if deformation.is_none() {
