@@ -1,7 +1,7 @@
 //! Stages of an evaluation: candidate pairs, frames, penalties, forces of facets, and their stiffness.
 
-use ndda_mesh::{Mat3, Vec3};
 use ndda_mesh::geometry::triangle_area_vector;
+use ndda_mesh::{Mat3, Vec3};
 use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;

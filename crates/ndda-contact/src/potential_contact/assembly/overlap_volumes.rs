@@ -27,7 +27,13 @@ struct Overlap {
 impl Default for Overlap {
     fn default() -> Self {
         let (origin, facing) = (Vec3::zeros(), Vec3::zeros());
-        Self { origin, facing, reach: [f64::NEG_INFINITY, f64::INFINITY], height_m: f64::INFINITY, depth_m: 0.0 }
+        Self {
+            origin,
+            facing,
+            reach: [f64::NEG_INFINITY, f64::INFINITY],
+            height_m: f64::INFINITY,
+            depth_m: 0.0,
+        }
     }
 }
 
@@ -60,7 +66,8 @@ impl OverlapVolumes {
         for (touch, &k) in touching() {
             let corners = input.blocks.triangle_corners(touch.triangle, input.position);
             let sums = integrals.sums_of(touch);
-            let (center, area) = (sums.center(&corners), sums.area * triangle_area_vector(&corners).normalize());
+            let (center, area) =
+                (sums.center(&corners), sums.area * triangle_area_vector(&corners).normalize());
             let overlap = &mut overlaps[k as usize];
             overlap.origin = center;
             overlap.facing += if touch.owner < touch.target { area } else { -area };
@@ -113,7 +120,6 @@ impl OverlapVolumes {
 #[cfg(test)]
 mod tests {
     use crate::VolumePotential;
-    use crate::contact_model::ContactModel;
     use crate::testing::{evaluate, test_box, test_set};
     use crate::{ContactHistory, ContactInput, PotentialContact};
     use nalgebra::Rotation3;

@@ -180,8 +180,19 @@ impl ContactDamping {
         }
     }
 
-    /// Pair by pair, until the damping of none changes.
+    /// Damping with E at the start of the step, then with that in the middle of the step which it leads to.
     fn solve(&mut self, scene: &DampingScene) {
+        self.sweep(scene);
+        let Self { points, pairs, changes, .. } = self;
+        let ContactInput { bodies, dt_s, .. } = *scene.input;
+        for pair in pairs {
+            pair.center_rates(&mut points[pair.range()], (bodies, changes), dt_s);
+        }
+        self.sweep(scene);
+    }
+
+    /// Pair by pair, until the damping of none changes.
+    fn sweep(&mut self, scene: &DampingScene) {
         let Self { points, pairs, changes, .. } = self;
         let largest_n = points.iter().map(|point| point.force_n).fold(0.0, f64::max);
         let ContactInput { bodies, dt_s, .. } = *scene.input;

@@ -3,17 +3,17 @@
 //! A spring of stiffness K between two blocks of reduced mass m has a dashpot α √(m K): the same α as along the normal, so that blocks that swing on their
 //! springs come to rest as those that bounce. Spring and dashpot together carry no more than the friction law allows, and the work is that of friction.
 //!
-//! Where blocks deform, the dashpots on a node of mass m take at most c = m/2Δt: with the velocity that the node has at the start of the step, more than
-//! 2 m/Δt would be unstable. The motion of blocks as a whole is solved for (`dashpot.rs`), and has no limit.
+//! Where blocks deform, the dashpots on a node of mass m, or on a block that moves by an affine map, take at most c = m/2Δt: with the velocity at the start
+//! of the step, more than 2 m/Δt would be unstable. The motion of blocks as a whole is solved for (`dashpot.rs`), and has no limit.
 
-use ndda_mesh::{BlockId, Vec3};
 use ndda_mesh::geometry::triangle_area_vector;
+use ndda_mesh::{BlockId, Mat3, Vec3};
 
 use crate::friction::facet::{FacetForce, STICKS, relative_velocity};
 use crate::friction::law::facet_basis;
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::ActiveFacet;
-use crate::model::{Bond, ContactHistory, ContactInput};
+use crate::model::{Body, Bond, ContactHistory, ContactInput};
 use crate::restitution::dashpot::{Dashpot, DashpotPair};
 use crate::restitution::law::weight_of_end;
 use crate::restitution::scene::DampingScene;
@@ -56,7 +56,8 @@ impl ContactDamping {
         for pair in &self.dashpot_pairs {
             for dashpot in &self.dashpots[pair.range()] {
                 let is_first = touching[dashpot.facet as usize].owner == pair.blocks[0];
-                self.shear_n[dashpot.facet as usize] = if is_first { dashpot.force_n } else { -dashpot.force_n };
+                self.shear_n[dashpot.facet as usize] =
+                    if is_first { dashpot.force_n } else { -dashpot.force_n };
             }
         }
     }
@@ -79,7 +80,8 @@ impl ContactDamping {
                 let touch = &touching[t as usize];
                 let (hits, sums) = (scene.integrals.overlaps_of(touch), scene.integrals.sums_of(touch));
                 let stiffness_n_m = stiffness_n_m(t);
-                let rate = stiffness_n_m * self.table.factor(blocks, touch.triangle, touch.target) / rate_per_s;
+                let rate =
+                    stiffness_n_m * self.table.factor(blocks, touch.triangle, touch.target) / rate_per_s;
                 let corners = blocks.triangle_corners(touch.triangle, scene.input.position);
                 let x = sums.center(&corners);
                 let slip_m_s = relative_velocity(touch, (hits, sums), scene.input) / sums.pressure;
@@ -105,39 +107,51 @@ impl ContactDamping {
 
     /// Keeps dashpots on blocks that deform within what a step can follow.
     fn limit_dashpots(&mut self, scene: &DampingScene) {
-        let ContactInput { blocks, bodies, dt_s, deformation, .. } = *scene.input;
-        let deforms = |block: &BlockId| bodies[block.index()].deforms;
+        let ContactInput { blocks, bodies, dt_s, deformation, affine, .. } = *scene.input;
+        let deforms = |block: BlockId| bodies[block.index()].deforms;
+        let is_affine = |block: BlockId| affine.get(block.index()).copied().unwrap_or(false);
         let Some(deformation) = deformation else { return };
-        if !self.dashpot_pairs.iter().any(|pair| pair.blocks.iter().any(deforms)) {
+        if !self.dashpot_pairs.iter().any(|pair| pair.blocks.iter().any(|block| deforms(*block))) {
             return;
         }
-        // Dashpots on each node [N s/m], then the part of them that it can follow.
-        let nodes = &mut self.of_node;
-        nodes.clear();
-        nodes.resize(scene.input.position.len(), 0.0);
+        // c Δt/m of each node, or of the first one of a block that moves by an affine map, where 1/m is that of all its motions.
+        let braked = &mut self.of_node;
+        braked.clear();
+        braked.resize(scene.input.position.len(), 0.0);
         for pair in &self.dashpot_pairs {
-            for block in pair.blocks.iter().filter(|block| deforms(block)) {
+            for block in pair.blocks.into_iter().filter(|block| deforms(*block)) {
+                let first = blocks.nodes_of(block).start;
                 for dashpot in &self.dashpots[pair.range()] {
-                    scene.each_weight(dashpot.facet, *block, |node, weight| nodes[node] += dashpot.rate * weight);
+                    let rate = dt_s * dashpot.rate;
+                    if is_affine(block) {
+                        braked[first] += rate * affine_inverse_mass(&bodies[block.index()], &dashpot.x);
+                    } else {
+                        scene.each_weight(dashpot.facet, block, |node, weight| {
+                            braked[node] += rate * weight.abs()
+                        });
+                    }
                 }
             }
         }
-        for block in blocks.ids().filter(deforms) {
-            let own = &mut nodes[blocks.nodes_of(block)];
+        for block in blocks.ids().filter(|block| deforms(*block) && !is_affine(*block)) {
+            let own = &mut braked[blocks.nodes_of(block)];
             deformation.masses(block, &mut |masses_kg| {
-                for (rate, mass_kg) in own.iter_mut().zip(masses_kg).filter(|(rate, _)| **rate > 0.0) {
-                    *rate = (MOST_BRAKED * mass_kg / (dt_s * *rate)).min(1.0);
-                }
+                own.iter_mut().zip(masses_kg).for_each(|(braked, mass_kg)| *braked /= mass_kg);
             });
         }
         for pair in &self.dashpot_pairs {
             for dashpot in &mut self.dashpots[pair.range()] {
-                let mut part = 1.0f64;
-                for block in pair.blocks.iter().filter(|block| deforms(block)) {
-                    scene.each_weight(dashpot.facet, *block, |node, weight| {
-                        part = if weight > 0.0 { part.min(nodes[node]) } else { part };
-                    });
+                let mut most = 0.0f64;
+                for block in pair.blocks.into_iter().filter(|block| deforms(*block)) {
+                    if is_affine(block) {
+                        most = most.max(braked[blocks.nodes_of(block).start]);
+                    } else {
+                        scene.each_weight(dashpot.facet, block, |node, weight| {
+                            most = if weight == 0.0 { most } else { most.max(braked[node]) };
+                        });
+                    }
                 }
+                let part = if most > MOST_BRAKED { MOST_BRAKED / most } else { 1.0 };
                 dashpot.rate *= part;
                 dashpot.lag = 1.0 - part;
             }
@@ -158,8 +172,7 @@ impl ContactDamping {
             let Some(([x, y], _)) = force.memory.filter(|_| force.spring.is_some()) else { continue };
             let corners = input.blocks.triangle_corners(touch.triangle, input.position);
             let basis = facet_basis(&corners, &dashpot.normal);
-            let force_n =
-                integrals.sums_of(touch).pressure * force.shear - (x * basis[0] + y * basis[1]);
+            let force_n = integrals.sums_of(touch).pressure * force.shear - (x * basis[0] + y * basis[1]);
             for (block, force_n) in [(touch.owner.index(), force_n), (touch.target.index(), -force_n)] {
                 let memory = &mut history.bodies[block];
                 memory.dashpot_n += force_n;
@@ -191,4 +204,14 @@ impl ContactDamping {
         });
         damped.fold(0.0, f64::max)
     }
+}
+
+/// Acceleration of a point [m/s²] by a unit force there, at most, of a body that moves by an affine map: 1/m + x·G⁻¹x, G = Σ m x xᵀ = ½ tr J − J.
+fn affine_inverse_mass(body: &Body, x: &Vec3) -> f64 {
+    let arm = x - body.center;
+    let second =
+        body.inverse_inertia.try_inverse().map(|inertia| 0.5 * inertia.trace() * Mat3::identity() - inertia);
+    let along =
+        second.and_then(|second| second.try_inverse()).map_or(0.0, |inverse| arm.dot(&(inverse * arm)));
+    1.0 / body.mass_kg + along.max(0.0)
 }

@@ -52,7 +52,8 @@ impl ContactDamping {
                 let rigid = pair.rigid_response(&bodies[block.index()], dt_s);
                 softness += (along - rigid).max(0.0);
             }
-            pair.set_rates(&mut self.points[pair.range()], softness, dt_s);
+            pair.softness = softness;
+            pair.set_rates(&mut self.points[pair.range()], dt_s, |_| 0.0);
         }
     }
 }
