@@ -27,7 +27,12 @@ pub fn plan(random: &mut Random, wanted: &Wanted) -> Plan {
         contact: laws::contact(random, young_pa, length_m),
         material: laws::material(random, young_pa),
     };
-    match random.whole(0, 99) {
+    // Those from 88 on have no contact.
+    let most = if wanted.damped { 87 } else { 99 };
+    if wanted.damped {
+        plan.contact = laws::damped(random, &plan.contact);
+    }
+    match random.whole(0, most) {
         0..45 => collision(&mut plan, random, wanted),
         45..65 => pile(&mut plan, random, wanted),
         65..75 => moved_base(&mut plan, random, wanted),

@@ -22,6 +22,8 @@ pub struct Wanted {
     pub free: bool,
     /// So many nodes that steps are shared among threads.
     pub large: bool,
+    /// Contacts with a coefficient of restitution below 1.
+    pub damped: bool,
 }
 
 /// A block as it is written.
@@ -74,11 +76,15 @@ struct Pace {
     time: String,
 }
 
+/// The first of the seeds whose contacts have a coefficient of restitution below 1.
+pub const FIRST_DAMPED: u64 = 1_000_000;
+
 /// The scene of a seed; attempts that cannot be built are followed by the next.
 pub fn case(seed: u64, wanted: &Wanted) -> Case {
     let mut random = Random::new(seed);
+    let wanted = Wanted { damped: wanted.damped || seed >= FIRST_DAMPED, ..*wanted };
     for _ in 0..100 {
-        if let Some(case) = attempt(seed, &mut random, wanted) {
+        if let Some(case) = attempt(seed, &mut random, &wanted) {
             return case;
         }
     }

@@ -55,6 +55,17 @@ pub fn contact(random: &mut Random, young_pa: f64, length_m: f64) -> String {
     format!("Potential(penalty_pa: {penalty_pa}, potential: {potential}{friction}{memory})")
 }
 
+/// The same contact with a coefficient of restitution below 1, often a small one.
+pub fn damped(random: &mut Random, contact: &str) -> String {
+    let restitution = match random.whole(0, 9) {
+        0 => 0.0,
+        1..3 => random.decades(0.01, 0.2),
+        _ => random.between(0.2, 0.95),
+    };
+    let open = contact.strip_suffix(')').expect("a contact in parentheses");
+    format!("{open}, restitution: {restitution})")
+}
+
 /// No friction, friction on velocities, or shear springs that may hold together.
 fn friction(random: &mut Random, stiffness_pa_m: f64) -> String {
     let friction_deg = random.between(5.0, 50.0);

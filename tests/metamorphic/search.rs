@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use ndda_io::scene::Scene;
 
-use crate::generator::{Case, Wanted, case};
+use crate::generator::{Case, FIRST_DAMPED, Wanted, case};
 
 /// Outcome of a case.
 pub enum Found {
@@ -25,11 +25,17 @@ pub fn number(name: &str) -> Option<u64> {
     std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name}={text} is no number")))
 }
 
-/// The seeds that are requested.
+/// The seeds that are requested; else the usual ones, and a quarter as many with damped contacts.
 pub fn seeds(usual: u64) -> Vec<u64> {
-    let first = number("NDDA_FIRST").unwrap_or(0);
-    let some = || (first..first + number("NDDA_CASES").unwrap_or(usual)).collect();
-    number("NDDA_SEED").map_or_else(some, |seed| vec![seed])
+    let (first, cases) = (number("NDDA_FIRST"), number("NDDA_CASES"));
+    if let Some(seed) = number("NDDA_SEED") {
+        return vec![seed];
+    }
+    if first.is_none() && cases.is_none() {
+        return (0..usual).chain(FIRST_DAMPED..FIRST_DAMPED + usual / 4).collect();
+    }
+    let first = first.unwrap_or(0);
+    (first..first + cases.unwrap_or(usual)).collect()
 }
 
 /// Whether a scene has the words that are requested, such as `contact_at: End()`.

@@ -83,10 +83,11 @@ impl Record {
 
 /// Subject of a reason, without its numbers.
 fn short(reason: &str) -> &'static str {
-    const KINDS: [(&str, &str); 26] = [
+    const KINDS: [(&str, &str); 27] = [
         ("deviates from Coulomb", "friction"),
         ("strains reach", "strains"),
         ("lumped masses", "lumped masses"),
+        ("does not resolve damping of contact", "contact damping"),
         ("does not resolve damping", "damping"),
         ("vibrate or jump", "ringing"),
         ("of the total energy was gained", "energy of all"),

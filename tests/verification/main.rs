@@ -15,6 +15,7 @@ mod bound_of_contact;
 mod brazilian_disc;
 mod cantilever;
 mod cavity;
+mod contact_damping;
 mod contact_fields;
 mod contact_patch;
 mod conveyor;

@@ -49,6 +49,9 @@ pub trait Deformation: Sync {
     /// vector per node of the block. The first column is the force of contact on each node [N] and becomes the velocity at the end of the step under all
     /// loads [m/s]; each other one is a force that acts all through the step, and becomes what it adds to that velocity.
     fn answer(&self, columns: &mut [Vec<Vec3>]);
+
+    /// Gives the masses of the nodes of a block [kg] to `work`.
+    fn masses(&self, block: BlockId, work: &mut dyn FnMut(&[f64]));
 }
 
 impl std::fmt::Debug for dyn Deformation + '_ {
@@ -154,7 +157,7 @@ pub struct ContactReport {
     pub dilation_work_j: f64,
     /// Largest change of a slip velocity by friction when the search for friction ended before it was found [m/s]; zero where it was found.
     pub friction_left_m_s: f64,
-    /// By how much dashpots of shear springs that the step does not resolve let blocks go too fast, at most [m/s].
+    /// By how much damping of contact that the step leaves out lets blocks go too fast, at most [m/s].
     pub dashpot_error_m_s: f64,
     /// By how much the strength of a bond was exceeded that broke in this evaluation, over its strength without normal stress.
     pub bond_overload: f64,
@@ -274,6 +277,10 @@ pub struct BodyMemory {
     pub push_n: Vec3,
     /// Their torque about the mass centre [N m].
     pub push_torque_n_m: Vec3,
+    /// Sum of the forces of dashpots beside shear springs [N].
+    pub dashpot_n: Vec3,
+    /// Their torque about the mass centre [N m].
+    pub dashpot_torque_n_m: Vec3,
     /// Length of the step [s].
     pub dt_s: f64,
 }

@@ -41,6 +41,13 @@ impl ContactModel for PotentialContact {
         let mut report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
         let blocks_of = |touch: &ActiveFacet| (touch.owner, touch.target);
         self.place_penalties(input);
+        if self.potential.law() != OverlapLaw::Linear
+            && let Some((ratio, t)) = self.overlaps.deepest()
+        {
+            let touch = &self.integrals.touching()[t];
+            report.max_penetration_ratio = ratio;
+            report.deepest = self.integrals.overlaps_of(touch).first().map(|hit| (touch.triangle, hit.tet));
+        }
         if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
             report.bond_overload = bond::break_overloaded(
                 joints,
@@ -69,12 +76,13 @@ impl ContactModel for PotentialContact {
         let damping = self.damping.as_deref().filter(|_| !input.bodies.is_empty());
         let left_pa = damping.map_or(&self.penalty_of_facet[..], ContactDamping::left_pa);
         let tilt_n_m = damping.map_or(&[][..], ContactDamping::tilt_n_m);
-        let shear_time_s = damping.map_or(&[][..], ContactDamping::shear_time_s);
-        let place = || place_forces(rows, &facets, integrals, (left_pa, shear_time_s), &self.hulls);
+        let dashpot_n = damping.map_or(&[][..], ContactDamping::shear_n);
+        let place = || place_forces(rows, &facets, integrals, (left_pa, dashpot_n), &self.hulls);
         join_if(integrals.touching().len() > GRAIN_FACETS, place, sort);
-        let spring_error_m_s =
-            |d: &ContactDamping| d.spring_error_m_s(&self.integrals, &self.forces, input.dt_s);
-        report.dashpot_error_m_s = damping.map_or(0.0, spring_error_m_s);
+        if let Some(damping) = damping {
+            report.dashpot_error_m_s = damping.error_m_s(&self.integrals, &self.forces, input.dt_s);
+            damping.remember_dashpots(input, &self.integrals, &self.forces, history);
+        }
         if let Some(joints) = self.joints.as_ref().filter(|_| has_friction) {
             let bodies = damping.map_or(input.bodies, ContactDamping::bodies);
             let input = &ContactInput { bodies, ..*input };

@@ -1,7 +1,7 @@
 //! Stages of an evaluation: candidate pairs, frames, penalties, forces of facets, and their stiffness.
 
-use ndda_mesh::Mat3;
 use ndda_mesh::geometry::triangle_area_vector;
+use ndda_mesh::{Mat3, Vec3};
 use rayon::prelude::*;
 
 use crate::affine::convex_target::ConvexBlocks;
@@ -238,7 +238,7 @@ pub(super) fn place_forces(
     FacetRows { forces, on_host, state }: FacetRows,
     scene: &FacetScene,
     integrals: &Integrals,
-    (penalty_of_facet, shear_time_s): (&[f64], &[f64]),
+    (penalty_of_facet, dashpot_n): (&[f64], &[Vec3]),
     hulls: &ConvexBlocks,
 ) {
     let touching = integrals.touching();
@@ -247,7 +247,7 @@ pub(super) fn place_forces(
     state.resize(touching.len() * state_len, 0.0);
     let place = |force: &mut FacetForce, t: usize, state: &mut [f64]| {
         let (overlaps, sums) = (integrals.overlaps_of(&touching[t]), integrals.sums_of(&touching[t]));
-        let pushes = (penalty_of_facet[t], shear_time_s.get(t).copied().unwrap_or(0.0));
+        let pushes = (penalty_of_facet[t], dashpot_n.get(t));
         *force = scene.force(&touching[t], overlaps, sums, pushes, state);
     };
     if state_len > 0 {
@@ -279,7 +279,7 @@ pub(super) fn for_each_facet<T: Send>(entries: &mut [T], fill: impl Fn((usize, &
 #[cfg(test)]
 mod tests {
     use super::*;
-    use ndda_mesh::{BlockId, Vec3};
+    use ndda_mesh::BlockId;
 
     use crate::contact_model::ContactModel;
     use crate::potential::contact_potential::ContactPotential;

@@ -72,6 +72,8 @@ pub struct Invariants {
     pub unresolved_speed: f64,
     /// largest error of velocities that damping leaves in a step, over the largest speed.
     pub damping_speed: f64,
+    /// error of velocities by damping of contact that steps leave out, at the end of the run, over the largest speed.
+    pub contact_damping_speed: f64,
     /// Most pairs looked at in a step.
     pub candidate_pairs_max: usize,
     /// Most pairs in contact in a step.

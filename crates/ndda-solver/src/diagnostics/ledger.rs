@@ -22,7 +22,7 @@ const LITTLE_STRAIN: f64 = 1e-2;
 /// Part of the largest speed of which it does not matter how much turns over in a step.
 const LITTLE: f64 = 1e-3;
 
-/// Part of the error of dashpots that is left after a step.
+/// Part of the error of damping of contact that is left after a step.
 const DASHPOTS_KEPT: f64 = 0.98;
 
 /// Sums over steps and extremes over samples.
@@ -56,7 +56,7 @@ pub struct Ledger {
     vibration: Vibration,
     unresolved_m_s: f64,
     damping_m_s: f64,
-    /// What dashpots of springs that steps do not resolve let blocks go too fast [m/s]; it fades, as they stop what is left of it.
+    /// By how much damping of contact that steps leave out lets blocks go too fast [m/s]; it fades, as damping stops what is left of it.
     dashpot_m_s: f64,
     rounding_j: f64,
     last_sample_s: f64,
@@ -100,6 +100,7 @@ impl Ledger {
             vibration: 0.0,
             unresolved_speed: 0.0,
             damping_speed: 0.0,
+            contact_damping_speed: 0.0,
             candidate_pairs_max: 0,
             contact_pairs_max: 0,
             candidate_pairs_total: 0,
@@ -361,8 +362,8 @@ impl Ledger {
             ringing: self.blocks.ringing(scale_m_s, self.rounding_j),
             vibration: self.vibration.over(self.largest_speed_m_s),
             unresolved_speed: speed(self.unresolved_m_s),
-            damping_speed: speed(self.damping_m_s)
-                .max(over(self.dashpot_m_s, scale_m_s.max(self.dashpot_m_s))),
+            damping_speed: speed(self.damping_m_s),
+            contact_damping_speed: over(self.dashpot_m_s, scale_m_s.max(self.dashpot_m_s)),
             ..self.worst
         }
     }

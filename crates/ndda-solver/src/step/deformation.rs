@@ -69,4 +69,9 @@ impl Deformation for StepDeformation<'_> {
             self.answer_block(BlockId(block as u32), body, columns);
         });
     }
+
+    fn masses(&self, block: BlockId, work: &mut dyn FnMut(&[f64])) {
+        let bodies = self.bodies.lock().unwrap_or_else(PoisonError::into_inner);
+        work(&self.simulation.problem.shapes[bodies[block.index()].shape].operator.node_mass);
+    }
 }

@@ -4,7 +4,7 @@
 //! surface of the overlap, and any other potential is integrated over the overlaps of tetrahedra. Forces never need
 //! U, except where its law is not linear; energies are requested when results are written.
 
-use ndda_mesh::geometry::{Aabb, triangle_area_vector};
+use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, TetId, Vec3};
 use pulp::Arch;
 use rayon::prelude::*;
@@ -13,10 +13,10 @@ use crate::affine::convex_target::ConvexBlocks;
 use crate::assembly::block_shares::{BlockShares, SHARE_BLOCKS, ShareScratch};
 use crate::assembly::facet_energy;
 use crate::assembly::overlap_parts::OverlapParts;
+use crate::assembly::overlap_volumes::OverlapVolumes;
 use crate::friction::openings::Openings;
 use crate::integration::integrals::Integrals;
 use crate::integration::linear::Linear;
-use crate::integration::overlap_pair::ActiveFacet;
 use crate::integration::polyhedron::{EmbeddedPolyhedron, Polyhedron, faces_of};
 use crate::integration::tet_frame::TetFrame;
 use crate::model::ContactInput;
@@ -39,8 +39,8 @@ pub(crate) struct BlockOverlaps {
     pressure_m2: Vec<f64>,
     /// Place in `pairs` of each facet that touches.
     pair_of_touch: Vec<u32>,
-    /// Where heights of each pair's overlap count from, and the direction in which the first block faces the other.
-    facing: Vec<(Vec3, Vec3)>,
+    /// Volumes of overlaps.
+    volumes: OverlapVolumes,
     shares: Vec<BlockShares>,
 }
 
@@ -48,6 +48,13 @@ impl BlockOverlaps {
     /// U [m³] and ∫ φ dA over both surfaces [m²] of each touching facet's pair, as [`add_touching`](Self::add_touching) found them.
     pub(crate) fn of_touching(&self) -> impl Iterator<Item = (f64, f64)> {
         self.pair_of_touch.iter().map(|&k| (self.overlap_m3[k as usize], self.pressure_m2[k as usize]))
+    }
+
+    /// Penetration of the deepest pair over the smallest height of the tetrahedra that it touches, and a facet of it, as
+    /// [`add_touching`](Self::add_touching) found them for a φ that is the same everywhere; none where nothing touches.
+    pub(crate) fn deepest(&self) -> Option<(f64, usize)> {
+        let (ratio, pair) = self.volumes.deepest()?;
+        Some((ratio, self.pair_of_touch.iter().position(|&k| k == pair)?))
     }
 
     /// Σ w(U) [m³].
@@ -120,7 +127,7 @@ impl BlockOverlaps {
         match field {
             _ if field.uniform().is_some() => {
                 let twice_phi = 2.0 * field.uniform().unwrap_or(0.0);
-                self.add_surfaces(input, integrals);
+                self.volumes.measure(input, integrals, &self.pair_of_touch, &mut self.overlap_m3);
                 self.overlap_m3.iter_mut().for_each(|overlap| *overlap *= twice_phi);
             }
             PotentialField::Element => {
@@ -145,33 +152,6 @@ impl BlockOverlaps {
             let k = self.place(touch.owner, touch.target).expect("listed above");
             self.pair_of_touch.push(k as u32);
             self.pressure_m2[k] += integrals.sums_of(touch).pressure;
-        }
-    }
-
-    /// The volume of overlaps, V = ∮ e·(x − o) e·n dS over the pieces of both surfaces, e being the direction in which the first block faces
-    /// the other. Walls along e do not count: blocks that share one exactly have no pieces on it.
-    fn add_surfaces(&mut self, input: &ContactInput, integrals: &Integrals) {
-        self.facing.clear();
-        self.facing.resize(self.pairs.len(), (Vec3::zeros(), Vec3::zeros()));
-        let pieces =
-            || integrals.touching().iter().zip(&self.pair_of_touch).map(|(touch, &k)| (touch, k as usize));
-        let on = |touch: &ActiveFacet| {
-            let corners = input.blocks.triangle_corners(touch.triangle, input.position);
-            let sums = integrals.sums_of(touch);
-            (sums.center(&corners), sums.area * triangle_area_vector(&corners).normalize())
-        };
-        for (touch, k) in pieces() {
-            let (center, area) = on(touch);
-            let (origin, facing) = &mut self.facing[k];
-            *origin = center;
-            *facing += if touch.owner < touch.target { area } else { -area };
-        }
-        for (touch, k) in pieces() {
-            let (center, area) = on(touch);
-            let (origin, facing) = &self.facing[k];
-            // The pieces of a block that is wholly inside the other face all ways: any direction will do.
-            let along = facing.try_normalize(0.0).unwrap_or_else(Vec3::z);
-            self.overlap_m3[k] += (center - origin).dot(&along) * area.dot(&along);
         }
     }
 

@@ -8,6 +8,7 @@ pub(crate) mod facet_energy;
 pub(crate) mod join_if;
 pub(crate) mod nodal_forces;
 pub(crate) mod overlap_parts;
+mod overlap_volumes;
 pub(crate) mod report;
 pub(crate) mod tangent;
 

@@ -60,7 +60,7 @@ impl FacetScene<'_> {
         touch: &ActiveFacet,
         hits: &[OverlapPair],
         sums: &FacetMoments,
-        (penalty_pa, shear_time_s): (f64, f64),
+        (penalty_pa, dashpot_n): (f64, Option<&Vec3>),
         state: &mut [f64],
     ) -> FacetForce {
         let mut force = FacetForce { facet: touch.facet, ..FacetForce::default() };
@@ -76,7 +76,7 @@ impl FacetScene<'_> {
                 joints,
                 touch,
                 (hits, sums),
-                (penalty_pa, shear_time_s, &normal),
+                (penalty_pa, dashpot_n, &normal),
                 (&mut force, state),
             );
         }
@@ -90,7 +90,7 @@ impl FacetScene<'_> {
         joints: &FrictionLawTable,
         touch: &ActiveFacet,
         (hits, sums): (&[OverlapPair], &FacetMoments),
-        (penalty_pa, shear_time_s, normal): (f64, f64, &Vec3),
+        (penalty_pa, dashpot_n, normal): (f64, Option<&Vec3>, &Vec3),
         (force, state): (&mut FacetForce, &mut [f64]),
     ) {
         let law = joints.law(self.input.blocks, touch.triangle, touch.target);
@@ -124,9 +124,13 @@ impl FacetScene<'_> {
         law.advance(&slip, &mut memory);
         let [x, y] = memory.shear_n;
         force.sticks = length([x, y]) < STICKS * law.capacity_n(&slip, &memory);
-        let shear_n = match shear_time_s {
-            0.0 => memory.shear_n,
-            _ => damped(law, &slip, &memory, shear_time_s),
+        let shear_n = match dashpot_n {
+            None => memory.shear_n,
+            Some(force_n) => {
+                // Both together bear no more than the law.
+                let trial = [0, 1].map(|i| memory.shear_n[i] + basis[i].dot(force_n));
+                capped(trial, law.capacity_n(&slip, &memory)).0
+            }
         };
         force.shear = (basis[0] * shear_n[0] + basis[1] * shear_n[1]) / sums.pressure;
         force.shear_slope = 0.5 * law.shear_stiffness_pa_m() * slip.area_m2 / sums.pressure;
@@ -185,13 +189,6 @@ impl FacetScene<'_> {
         let per_element = self.joints.is_some_and(|joints| joints.memory == Memory::Element);
         per_element.then(|| hits[0].tet)
     }
-}
-
-/// Force of a spring with a dashpot of so many seconds of its stiffness beside it, no more than the law bears.
-fn damped(law: &dyn FrictionLaw, slip: &FacetSlip, memory: &ShearMemory, time_s: f64) -> [f64; 2] {
-    let rate = 0.5 * law.shear_stiffness_pa_m() * slip.mean_area_m2 * time_s / slip.dt_s;
-    let trial = [0, 1].map(|i| memory.shear_n[i] - rate * slip.slip_m[i]);
-    capped(trial, law.capacity_n(slip, memory)).0
 }
 
 /// ∫ φ (v_contactor − v_target) dA: slip velocity at the centre of pressure, times the pressure.

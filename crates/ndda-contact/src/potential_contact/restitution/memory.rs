@@ -42,6 +42,8 @@ impl ContactDamping {
             spin_rad_s: body.spin_rad_s,
             push_n: Vec3::zeros(),
             push_torque_n_m: Vec3::zeros(),
+            dashpot_n: Vec3::zeros(),
+            dashpot_torque_n_m: Vec3::zeros(),
             dt_s,
         }));
         for (t, touch) in scene.integrals.touching().iter().enumerate() {

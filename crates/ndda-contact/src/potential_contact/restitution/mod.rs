@@ -7,6 +7,7 @@
 //! The force of a step depends on the velocity that it leads to, which is solved for (`pair.rs`): pair by pair, blocks being rigid, until the forces of
 //! all pairs stay. Forces beside the push, such as friction and those of supports, are those of the step before.
 
+mod dashpot;
 mod law;
 mod memory;
 mod pair;
@@ -23,6 +24,7 @@ use crate::assembly::couples::CoupleScene;
 use crate::friction::facet::relative_motion;
 use crate::integration::integrals::Integrals;
 use crate::model::{Body, ContactHistory, ContactInput};
+use crate::restitution::dashpot::{Dashpot, DashpotPair};
 use crate::restitution::pair::{Change, Pair, Point};
 
 pub(crate) use scene::DampingScene;
@@ -52,10 +54,12 @@ pub(crate) struct ContactDamping {
     /// Reduction of the pressure [Pa] by damping, and its moment about the centre of pressure [N m], on the facet.
     taken_pa: Vec<Vec3>,
     tilt_n_m: Vec<Vec3>,
-    /// Seconds of its stiffness that the dashpot beside the shear spring of each touching facet has; empty without springs.
-    shear_time_s: Vec<f64>,
-    /// Part of that which a step cannot resolve and leaves out.
-    shear_lag: Vec<f64>,
+    /// Dashpots beside shear springs, pair by pair, and the force of theirs on each touching facet [N]; none without springs.
+    dashpots: Vec<Dashpot>,
+    dashpot_pairs: Vec<DashpotPair>,
+    shear_n: Vec<Vec3>,
+    /// Room for a number of each node.
+    of_node: Vec<f64>,
     /// Blocks with the moments of damping among their loads.
     bodies: Vec<Body>,
 }
@@ -75,8 +79,10 @@ impl ContactDamping {
             left_pa: Vec::new(),
             taken_pa: Vec::new(),
             tilt_n_m: Vec::new(),
-            shear_time_s: Vec::new(),
-            shear_lag: Vec::new(),
+            dashpots: Vec::new(),
+            dashpot_pairs: Vec::new(),
+            shear_n: Vec::new(),
+            of_node: Vec::new(),
             bodies: Vec::new(),
         }
     }
@@ -90,7 +96,7 @@ impl ContactDamping {
         self.ask_blocks(scene);
         self.solve(scene);
         self.spread(scene);
-        self.damp_springs(scene);
+        self.damp_springs(scene, history);
         self.remember(scene, history);
     }
 
@@ -104,9 +110,9 @@ impl ContactDamping {
         &self.tilt_n_m
     }
 
-    /// Seconds of its stiffness that the dashpot beside the shear spring of each touching facet has; empty without springs.
-    pub(crate) fn shear_time_s(&self) -> &[f64] {
-        &self.shear_time_s
+    /// Force of the dashpot beside the shear spring of each touching facet on it [N]; empty without springs.
+    pub(crate) fn shear_n(&self) -> &[Vec3] {
+        &self.shear_n
     }
 
     /// Reduction of the pressure on each touching facet by damping [Pa].
@@ -174,8 +180,19 @@ impl ContactDamping {
         }
     }
 
-    /// Pair by pair, until the damping of none changes.
+    /// Damping with E at the start of the step, then with that in the middle of the step which it leads to.
     fn solve(&mut self, scene: &DampingScene) {
+        self.sweep(scene);
+        let Self { points, pairs, changes, .. } = self;
+        let ContactInput { bodies, dt_s, .. } = *scene.input;
+        for pair in pairs {
+            pair.center_rates(&mut points[pair.range()], (bodies, changes), dt_s);
+        }
+        self.sweep(scene);
+    }
+
+    /// Pair by pair, until the damping of none changes.
+    fn sweep(&mut self, scene: &DampingScene) {
         let Self { points, pairs, changes, .. } = self;
         let largest_n = points.iter().map(|point| point.force_n).fold(0.0, f64::max);
         let ContactInput { bodies, dt_s, .. } = *scene.input;

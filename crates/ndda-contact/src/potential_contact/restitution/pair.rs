@@ -56,7 +56,8 @@ impl Change {
         self.spin_rad_s += dt_s * (body.inverse_inertia * (x - body.center).cross(force_n));
     }
 
-    fn at(&self, body: &Body, x: &Vec3) -> Vec3 {
+    /// Change of the velocity at a point [m/s].
+    pub(super) fn at(&self, body: &Body, x: &Vec3) -> Vec3 {
         self.velocity_m_s + self.spin_rad_s.cross(&(x - body.center))
     }
 }
@@ -73,11 +74,36 @@ pub(super) struct Pair {
     pub push: Vec3,
     /// 1/m for it [1/kg].
     inverse_mass: f64,
+    /// By how much the surfaces of its blocks give way beyond the motion of these as rigid ones in a step [m/s per N].
+    pub softness: f64,
+    /// Part of the damping that the step leaves out.
+    pub lag: f64,
     /// √(2W/m) [m/s].
     stored_m_s: f64,
     /// Change of the relative motion by a force and a torque about the centre on the first block and the opposite on the second, all through a step
     /// [m/s, rad/s per N, N m].
     response: Matrix6<f64>,
+}
+
+/// Change of the relative motion of two blocks by a force and a torque about a centre on the first and the opposite on the second, all through a step
+/// [m/s, rad/s per N, N m].
+pub(super) fn response(both: [&Body; 2], center: &Vec3, dt_s: f64) -> Matrix6<f64> {
+    let mut response = Matrix6::zeros();
+    for body in both {
+        let arm = center - body.center;
+        for k in 0..6 {
+            let axis = Vec3::ith(k % 3, 1.0);
+            let (force, torque) = if k < 3 { (axis, arm.cross(&axis)) } else { (Vec3::zeros(), axis) };
+            let spin = body.inverse_inertia * torque;
+            let velocity = force / body.mass_kg + spin.cross(&arm);
+            let mut column = response.column_mut(k);
+            for i in 0..3 {
+                column[i] += dt_s * velocity[i];
+                column[i + 3] += dt_s * spin[i];
+            }
+        }
+    }
+    response
 }
 
 /// Velocity [m/s] that a unit force along `push` at x takes from or gives to the point itself, per second: 1/m + |r × n|²/J.
@@ -106,22 +132,19 @@ impl Pair {
         if !(stored_m_s > 0.0 && stored_m_s.is_finite()) {
             return None;
         }
-        let mut response = Matrix6::zeros();
-        for body in [a, b] {
-            let arm = center - body.center;
-            for k in 0..6 {
-                let axis = Vec3::ith(k % 3, 1.0);
-                let (force, torque) = if k < 3 { (axis, arm.cross(&axis)) } else { (Vec3::zeros(), axis) };
-                let spin = body.inverse_inertia * torque;
-                let velocity = force / body.mass_kg + spin.cross(&arm);
-                let mut column = response.column_mut(k);
-                for i in 0..3 {
-                    column[i] += dt_s * velocity[i];
-                    column[i + 3] += dt_s * spin[i];
-                }
-            }
-        }
-        Some(Self { blocks, points: range, center, total_n, push, inverse_mass, stored_m_s, response })
+        let response = response([a, b], &center, dt_s);
+        Some(Self {
+            blocks,
+            points: range,
+            center,
+            total_n,
+            push,
+            inverse_mass,
+            softness: 0.0,
+            lag: 0.0,
+            stored_m_s,
+            response,
+        })
     }
 
     /// Its points in the list of all.
@@ -134,14 +157,33 @@ impl Pair {
         dt_s * inverse_mass(body, &self.center, &self.push)
     }
 
-    /// Sets the rates of its points: F α/E, and no more than surfaces that give way by `softness` [m/s per N] beyond the rigid motion of their blocks can
-    /// follow within the step, each point by its share of the push.
-    pub(super) fn set_rates(&self, points: &mut [Point], softness: f64, dt_s: f64) {
+    /// Sets the rates of its points: F α/E, and no more than surfaces that give way can follow within the step, each point by its share of the push. E is
+    /// that at the middle of a step that changes the parting velocity of a point by so much [m/s].
+    pub(super) fn set_rates(&mut self, points: &mut [Point], dt_s: f64, change_m_s: impl Fn(&Point) -> f64) {
+        self.lag = 0.0;
         for point in points {
-            let rate = point.factor / self.stored_m_s.hypot(point.parting_m_s) * self.total_n;
+            let parting_m_s = point.parting_m_s + 0.5 * change_m_s(point);
+            let rate = point.factor / self.stored_m_s.hypot(parting_m_s) * self.total_n;
+            let over = (rate * self.softness).max(1.0);
             point.end = weight_of_end(rate * self.inverse_mass * dt_s);
-            point.rate = point.force_n / self.total_n * rate / (rate * softness).max(1.0);
+            point.rate = point.force_n / self.total_n * rate / over;
+            self.lag = self.lag.max(1.0 - 1.0 / over);
         }
+    }
+
+    /// Sets the rates for the middle of the step that has been found.
+    pub(super) fn center_rates(
+        &mut self,
+        points: &mut [Point],
+        (bodies, changes): (&[Body], &[Change]),
+        dt_s: f64,
+    ) {
+        let [a, b] = self.blocks.map(|block| block.index());
+        let change_m_s = |point: &Point| {
+            let both = changes[a].at(&bodies[a], &point.x) - changes[b].at(&bodies[b], &point.x);
+            point.push.dot(&both)
+        };
+        self.set_rates(points, dt_s, change_m_s);
     }
 
     /// Finds the damping of this pair while that of all others stays; returns the largest change [N].

@@ -4,14 +4,15 @@ use ndda_mesh::BlockId;
 use ndda_mesh::Vec3;
 
 use crate::affine::convex_target::ConvexBlocks;
+use crate::friction::bond;
 use crate::friction::facet::relative_velocity;
 use crate::friction::law::facet_basis;
-use crate::friction::law_table::FrictionLawTable;
+use crate::friction::law_table::{FrictionLawTable, Memory};
 use crate::friction::openings::Openings;
 use crate::friction::patches::moments::second_moment_m2;
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::ActiveFacet;
-use crate::model::ContactInput;
+use crate::model::{Bond, ContactInput};
 use crate::restitution::pair::{Point, four_points};
 
 /// Input of the damping of a step.
@@ -46,6 +47,25 @@ impl DampingScene<'_> {
         let sums = self.integrals.sums_of(&self.integrals.touching()[t]);
         let curvature = self.curvature_pa_m.get(t).copied().unwrap_or(0.0);
         self.penalty_pa[t] * sums.slope.iter().sum::<f64>() + curvature * sums.pressure
+    }
+
+    /// Stiffness of the shear spring of a facet [N/m]; zero where there is none, and where a bond bears the shear.
+    pub(super) fn shear_stiffness_n_m(&self, t: u32, bonds: &[Bond]) -> f64 {
+        let touch = &self.integrals.touching()[t as usize];
+        let Some(joints) = self.joints else { return 0.0 };
+        let Some(law) = joints.law(self.input.blocks, touch.triangle, touch.target) else { return 0.0 };
+        let stiffness_n_m = 0.5 * law.shear_stiffness_pa_m() * self.integrals.sums_of(touch).area;
+        if bonds.is_empty() {
+            return stiffness_n_m;
+        }
+        let by_element = joints.memory == Memory::Element;
+        let element = by_element.then(|| self.integrals.overlaps_of(touch)[0].tet);
+        let key = (touch.triangle, touch.target, element);
+        match bond::broken_part(bonds, self.input.blocks, joints.memory, key) {
+            Some(part) if law.fracture().is_some() => part * stiffness_n_m,
+            Some(_) => 0.0,
+            None => stiffness_n_m,
+        }
     }
 
     /// Shares of the nodes of one of both blocks in the push of a facet.

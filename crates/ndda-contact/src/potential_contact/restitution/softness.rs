@@ -32,7 +32,7 @@ impl ContactDamping {
         }
         self.asked.clear();
         self.asked.resize(bodies.len(), 1);
-        for pair in &self.pairs {
+        for pair in &mut self.pairs {
             let mut softness = 0.0;
             for block in pair.blocks.iter().filter(|block| bodies[block.index()].deforms) {
                 if deformation.is_none() {
@@ -52,7 +52,8 @@ impl ContactDamping {
                 let rigid = pair.rigid_response(&bodies[block.index()], dt_s);
                 softness += (along - rigid).max(0.0);
             }
-            pair.set_rates(&mut self.points[pair.range()], softness, dt_s);
+            pair.softness = softness;
+            pair.set_rates(&mut self.points[pair.range()], dt_s, |_| 0.0);
         }
     }
 }

@@ -46,6 +46,18 @@ pub(super) fn hops(simulation: &Simulation) -> Entry {
     warned("hops that grow by friction", worst.value, MOST_GROWING, reason)
 }
 
+/// Whether steps resolve the damping of contact; said only where they leave something out.
+pub(super) fn contact_damping(simulation: &Simulation) -> Option<Entry> {
+    let speed = simulation.invariants().contact_damping_speed;
+    let reason = format!(
+        "the step does not resolve damping of contact (`restitution` below 1): blocks may move against it too fast by {:.1} % of the largest speed, limit \
+         {:.0} %; reduce step_s, or raise the restitution",
+        100.0 * speed,
+        100.0 * SPEED
+    );
+    (speed > 0.0).then(|| warned("contact damping error / largest speed", speed, SPEED, reason))
+}
+
 /// Whether steps are short enough for blocks that ring on their contacts or supports.
 pub(super) fn ringing(simulation: &Simulation) -> Entry {
     let worst = simulation.invariants().ringing;
@@ -80,7 +92,7 @@ pub(super) fn within_a_step(simulation: &Simulation) -> [Entry; 3] {
         percent(SPEED)
     );
     let damping = format!(
-        "the step does not resolve damping: velocities are wrong by up to {:.1} % of the largest, limit {:.0} %; reduce step_s, and raise a `restitution` below 1 where blocks deform",
+        "the step does not resolve damping: velocities are wrong by up to {:.1} % of the largest, limit {:.0} %; reduce step_s",
         percent(worst.damping_speed),
         percent(SPEED)
     );
