@@ -219,11 +219,6 @@ impl Ledger {
         self.largest_speed_m_s.max(self.slow_m_s)
     }
 
-    /// Sets the speed below which blocks hardly move [m/s].
-    pub(crate) fn set_slow_m_s(&mut self, slow_m_s: f64) {
-        self.slow_m_s = slow_m_s;
-    }
-
     /// Keeps the largest speed at which overlaps as drawn throw a block [m/s].
     pub(crate) fn note_drawn_overlaps(&mut self, thrown: Worst) {
         self.worst.drawn_overlap_m_s = thrown;

@@ -31,6 +31,7 @@ pub(crate) mod sample;
 pub(crate) mod settle;
 pub(crate) mod settling_step;
 pub(crate) mod setup;
+pub(crate) mod slow_speed;
 pub(crate) mod snapshot;
 pub(crate) mod stage;
 pub(crate) mod stage_state;

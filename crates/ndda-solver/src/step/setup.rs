@@ -66,9 +66,6 @@ pub struct Setup {
     pub bolts: Vec<BoltSetup>,
 }
 
-/// Blocks hardly move below this part of the speed √(g h).
-const HARDLY: f64 = 0.01;
-
 impl Simulation {
     /// Assembles, factors each distinct block once, and sets the state at t = 0.
     ///
@@ -303,22 +300,6 @@ impl Simulation {
     pub(crate) fn new_ledger(&self, start: (Vec3, Vec3)) -> Ledger {
         let scales = self.problem.blocks.ids().map(|block| self.shape(block).scale()).collect();
         Ledger::new(start, BlockDiagnostics::new(scales, self.newton.is_some()), self.slow_m_s())
-    }
-
-    /// The speed below which blocks hardly move, as far as widths are known or meshes tell [m/s].
-    fn slow_m_s(&self) -> f64 {
-        if let Some(width_m) = self.audit.travel.smallest_moving_m(self) {
-            return self.slow_through_m_s(width_m);
-        }
-        let moving = self.problem.shapes.iter().filter(|shape| shape.kind != BodyKind::Fixed);
-        self.slow_through_m_s(moving.map(|shape| shape.smallest_height_m).fold(f64::INFINITY, f64::min))
-    }
-
-    /// 0.01 √(g h): the speed of a fall through 1/20 000 of h, the lowest height of tetrahedra of elastic blocks, or the smallest width of others, that
-    /// move; zero without gravity or contact [m/s].
-    pub(super) fn slow_through_m_s(&self, height_m: f64) -> f64 {
-        let slow = self.contact.is_some() && height_m.is_finite();
-        if slow { HARDLY * (self.problem.gravity_m_s2.norm() * height_m).sqrt() } else { 0.0 }
     }
 
     /// Force and torque from outside at the start, as blocks report them: torques of loads about the mass centre of free blocks, all

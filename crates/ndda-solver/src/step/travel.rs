@@ -97,19 +97,6 @@ impl Travel {
         }
     }
 
-    /// Smallest width of blocks that move as a whole, and lowest height of tetrahedra of others that move [m]; none before widths are known.
-    pub(super) fn smallest_moving_m(&self, simulation: &Simulation) -> Option<f64> {
-        let height_m = |(sweep, block): (&Sweep, BlockId)| {
-            let shape = simulation.shape(block);
-            match shape.kind {
-                BodyKind::Fixed => f64::INFINITY,
-                BodyKind::Elastic => shape.smallest_height_m,
-                BodyKind::Rigid | BodyKind::Affine => sweep.width_m,
-            }
-        };
-        self.sweeps.iter().zip(simulation.blocks().ids()).map(height_m).reduce(f64::min)
-    }
-
     /// The largest travel over width of two blocks that may meet.
     fn worst_pair(&mut self, dt_s: f64) -> Worst {
         let mut worst = Worst { value: FINE, block: 0 };
@@ -228,8 +215,6 @@ impl Simulation {
         let mut travel = std::mem::take(&mut self.audit.travel);
         if let Some(model) = self.contact.as_deref().filter(|_| travel.sweeps.is_empty()) {
             travel.place_widths(self, model);
-            let smallest_m = travel.smallest_moving_m(self).unwrap_or(f64::INFINITY);
-            self.audit.ledger.set_slow_m_s(self.slow_through_m_s(smallest_m));
         }
         let found = work(self, &mut travel);
         self.audit.travel = travel;

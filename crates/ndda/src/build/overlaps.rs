@@ -66,7 +66,10 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
     let name = |block: BlockId| &simulation.blocks().names[block.index()];
     let one = |(pair, ratio): &(PairResultant, f64)| {
         let (first, second, percent) = (name(pair.first), name(pair.second), 100.0 * ratio);
-        format!("`{first}` and `{second}` {:.2e} m deep on average, {percent:.1} % of an element size", pair.depth_m)
+        format!(
+            "`{first}` and `{second}` {:.2e} m deep on average, {percent:.1} % of an element size",
+            pair.depth_m
+        )
     };
     let listed: Vec<String> = pairs.iter().take(MOST_LISTED).map(one).collect();
     let more = pairs.len().saturating_sub(MOST_LISTED);
