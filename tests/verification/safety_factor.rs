@@ -171,6 +171,9 @@ fn a_column_slides_where_joints_weaken_and_topples_where_gravity_tilts() {
     let tan = |angle: f64| angle.to_radians().tan();
     holds("column on 15°, φ = 40°", &safety, tan(40.0) / tan(15.0));
     assert_eq!(kind(&safety), Kind::Sliding);
+    // The weight of the column acts beyond its edge at b/(h tan α) = 1.4928.
+    let told = safety.remarks.iter().any(|remark| remark.contains("1.49") && remark.contains("--by gravity"));
+    assert!(told, "{:?}", safety.remarks);
     let tilted = found(&scene("toppling_column"), Question::Gravity { towards: None });
     let (lower, upper) = bracket(&tilted);
     let rigid = 0.8 / (2.0 * tan(15.0));
