@@ -37,13 +37,14 @@ pub fn length(metres: f64) -> String {
 /// Trend, clockwise from the north (y), and plunge below the horizontal, negative upward, of a direction: `110.5°/37.9°`.
 pub fn trend_and_plunge([x, y, z]: [f64; 3]) -> String {
     let across = x.hypot(y);
-    let plunge_deg = (-z).atan2(across).to_degrees();
+    // Rounded here, so that there is neither a −0.0° nor a 360.0°.
+    let rounded = |angle: f64| (10.0 * angle.to_degrees()).round() / 10.0 + 0.0;
     // A direction has no trend where rounding alone makes one.
     if across <= 1e-6 * z.abs() {
         return if z > 0.0 { "upward" } else { "downward" }.into();
     }
-    let trend_deg = x.atan2(y).to_degrees().rem_euclid(360.0);
-    format!("{trend_deg:.1}°/{plunge_deg:.1}°")
+    let trend_deg = rounded(x.atan2(y)).rem_euclid(360.0);
+    format!("{trend_deg:.1}°/{:.1}°", rounded((-z).atan2(across)))
 }
 
 /// Reads a relative error, above 0 and below 1.

@@ -19,6 +19,9 @@ const TOPPLES: f64 = 0.5;
 pub(super) const SAME_PLANE: f64 = 0.985;
 /// Part of all contact force below which a plane does not count.
 const LITTLE: f64 = 0.05;
+/// Part of all contact force that a second plane carries at least along whose line with the first a block slides, and cosine of the angle between its direction and that line.
+const HARDLY: f64 = 0.005;
+const SAME_LINE: f64 = 0.9994;
 /// Steps over which contact forces are summed: contact of rigid blocks vibrates.
 const SUMMED: usize = 50;
 /// Sine of the angle by which a direction may leave a plane that a block slides on.
@@ -174,8 +177,15 @@ impl Motion {
     /// How the block moves on what it touches of blocks that rest.
     fn describe(&self, names: Names, touches: &[Touch]) -> MovingBlock {
         let direction = self.shift.try_normalize(0.0).unwrap_or_default();
-        let mut planes = planes(names, touches, self.block);
-        planes.retain(|plane| direction.dot(&Vec3::from(plane.normal)).abs() < ALONG);
+        let mut shares = planes(names, touches, self.block);
+        shares.retain(|(_, plane)| direction.dot(&Vec3::from(plane.normal)).abs() < ALONG);
+        let line_of = |a: &Plane, b: &Plane| Vec3::from(a.normal).cross(&Vec3::from(b.normal)).normalize();
+        let is_wedge = match shares.as_slice() {
+            [(_, a), (_, b)] => direction.dot(&line_of(a, b)).abs() > SAME_LINE,
+            _ => false,
+        };
+        shares.retain(|(share, _)| is_wedge || *share > LITTLE);
+        let planes: Vec<Plane> = shares.into_iter().map(|(_, plane)| plane).collect();
         // A block that turns in its plane stays on it.
         let within = match planes.as_slice() {
             [plane] => self.turn.dot(&Vec3::from(plane.normal)) * Vec3::from(plane.normal),
@@ -185,10 +195,7 @@ impl Motion {
             _ if self.is_large(self.turn - within) => Kind::Toppling,
             _ if !touches.iter().any(|touch| touch.block == self.block) => Kind::Falling,
             [_] => Kind::Sliding,
-            [a, b] => {
-                let line = Vec3::from(a.normal).cross(&Vec3::from(b.normal)).normalize();
-                if direction.dot(&line).abs() > SAME_PLANE { Kind::Wedge } else { Kind::Mixed }
-            }
+            [a, b] if direction.dot(&line_of(a, b)).abs() > SAME_PLANE => Kind::Wedge,
             _ => Kind::Mixed,
         };
         MovingBlock {
@@ -244,11 +251,12 @@ pub(super) fn normals_of(simulation: &Simulation, block: BlockId) -> Vec<Vec3> {
 fn normals_among(simulation: &Simulation, touches: &[Touch], block: BlockId) -> Vec<Vec3> {
     let blocks = simulation.blocks();
     let planes = planes((&blocks.names, &blocks.surface_names), touches, block);
-    planes.into_iter().map(|plane| Vec3::from(plane.normal)).collect()
+    let pressed = planes.into_iter().filter(|(share, _)| *share > LITTLE);
+    pressed.map(|(_, plane)| Vec3::from(plane.normal)).collect()
 }
 
-/// Planes at which a block is pressed, those of the largest forces first.
-fn planes((blocks, surfaces): Names, touches: &[Touch], block: BlockId) -> Vec<Plane> {
+/// Planes at which a block is pressed, with their part of all force, those of the largest first.
+fn planes((blocks, surfaces): Names, touches: &[Touch], block: BlockId) -> Vec<(f64, Plane)> {
     let mut found: Vec<(f64, Vec3, BlockId, Option<u32>)> = Vec::new();
     for touch in touches.iter().filter(|touch| touch.block == block) {
         match found.iter_mut().find(|(_, known, ..)| known.normalize().dot(&touch.normal) > SAME_PLANE) {
@@ -260,12 +268,14 @@ fn planes((blocks, surfaces): Names, touches: &[Touch], block: BlockId) -> Vec<P
         }
     }
     let all_n: f64 = found.iter().map(|plane| plane.0).sum();
-    found.retain(|plane| plane.0 > LITTLE * all_n);
+    found.retain(|plane| plane.0 > HARDLY * all_n);
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
     let joint = |surface: Option<u32>| surface.map(|surface| surfaces[surface as usize].clone());
     found
         .into_iter()
-        .map(|(_, normal, other, surface)| plane(&normal.normalize(), &blocks[other.index()], joint(surface)))
+        .map(|(push_n, normal, other, surface)| {
+            (push_n / all_n, plane(&normal.normalize(), &blocks[other.index()], joint(surface)))
+        })
         .collect()
 }
 
@@ -343,8 +353,10 @@ mod tests {
         let pressed = |push_n: f64| described(&[(a, 1e6), (b, push_n)], 0.1 * line, Vec3::zeros());
         assert_eq!(pressed(1e5).kind, Kind::Wedge);
         assert!(words(&[pressed(1e5)]).starts_with("`slope`: wedge sliding along the line of joint `J1`"));
-        // A plane that carries next to nothing does not count.
-        assert_eq!(pressed(1e3).kind, Kind::Sliding);
+        // 1 % of all force counts where the block moves along the line, but not where it leaves that, and next to nothing does not count.
+        assert_eq!((pressed(1e4).kind, pressed(1e3).kind), (Kind::Wedge, Kind::Sliding));
+        let beside = line + 0.1 * Vec3::y();
+        assert_eq!(described(&[(a, 1e6), (b, 1e4)], beside, Vec3::zeros()).kind, Kind::Sliding);
         assert_eq!(described(&[], 0.1 * line, Vec3::zeros()).kind, Kind::Falling);
     }
 }

@@ -64,7 +64,9 @@ pub fn text(safety: &Safety) -> String {
         ]
     });
     let header = ["factor", "blocks", "steps", "time [s]", "why"].map(String::from).to_vec();
-    let _ = writeln!(text, "{}", columns(header, rows.collect()));
+    if !safety.trials.is_empty() {
+        let _ = writeln!(text, "{}", columns(header, rows.collect()));
+    }
     for remark in &safety.remarks {
         let _ = writeln!(text, "note: {remark}");
     }
