@@ -122,12 +122,7 @@ fn a_tower_settles_as_deep_with_scaled_masses_in_half_the_steps() {
         let heights_m = [12.25, 8.25, 4.25, 0.25].iter().sum::<f64>();
         let expected = 2500.0 * 9.8 * heights_m / (2.0 * 2e8);
         let way = if mass_scaling { "scaled" } else { "true" };
-        row(
-            "settling",
-            &format!("depth of a tower of rigid blocks, {way} masses [m]"),
-            sunk,
-            Within(expected, 1e-2),
-        );
+        row("settling", &format!("depth of a tower of rigid blocks, {way} masses [m]"), sunk, Within(expected, 1e-2));
         for _ in 0..1000 {
             simulation.step().unwrap();
         }
