@@ -190,7 +190,7 @@ pub(crate) fn normal(dip_deg: f64, direction_deg: f64) -> Vec3 {
 
 /// Limit equilibrium of a dry wedge of equal friction (Hoek & Bray): along the line of intersection where both planes are pressed, else
 /// on the one that is.
-fn limit_equilibrium([a, b]: [(f64, f64); 2], friction_deg: f64) -> (f64, Kind) {
+pub(crate) fn limit_equilibrium([a, b]: [(f64, f64); 2], friction_deg: f64) -> (f64, Kind) {
     let (n_a, n_b) = (normal(a.0, a.1), normal(b.0, b.1));
     let line = n_a.cross(&n_b).normalize();
     let weight = -Vec3::z();

@@ -56,10 +56,11 @@ fn level(terrain: &Terrain, [i, right]: [usize; 2], [j, above]: [usize; 2]) -> O
     Some((cosine.clamp(0.0, 1.0) * (LEVELS - 1) as f64).round() as usize)
 }
 
-/// Distance of a place from the diagonal of the picture, from below at the left to above at the right, in parts of its sides.
+/// Distance of a place from the diagonal of the picture, from below at the left to above at the right, in parts of its sides; infinite at the frame.
 fn from_diagonal(axes: &Axes, at: [f64; 2]) -> f64 {
     let [u, v] = [0, 1].map(|i| (at[i] - axes.at[i]) / axes.size[i]);
-    (u + v - 1.0).abs()
+    let has_room = [u, v].iter().all(|part| (0.02..0.98).contains(part));
+    if has_room { (u + v - 1.0).abs() } else { f64::INFINITY }
 }
 
 /// Brightness of ground between the darkest, 0, and the lightest, 1.
