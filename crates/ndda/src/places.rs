@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use ndda_io::folder::SUMMARY;
+use ndda_io::folder::{CHECKPOINT, HISTORY, LOG, SUMMARY};
 use ndda_io::read;
 
 /// File of a factor of safety, folder beside it of the run that shows how blocks fail, and file of a rockfall.
@@ -25,7 +25,7 @@ pub fn folder_for(asked: Option<&Path>, file: &Path, suffix: &str) -> PathBuf {
 
 /// What a folder without a run holds instead, and what shows it or goes on with it.
 pub fn instead(folder: &Path) -> Option<String> {
-    if folder.join(SUMMARY).is_file() {
+    if [SUMMARY, HISTORY, CHECKPOINT, LOG].iter().any(|file| folder.join(file).is_file()) {
         return None;
     }
     let mechanism = folder.join(MECHANISM);
