@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use ndda::choose;
 use ndda::safety::{self, Kind, Plan, Question, Safety, Watch};
 use ndda_io::read;
 use ndda_mesh::Vec3;
@@ -82,8 +83,9 @@ fn wet_wedge() -> String {
 }
 
 fn to_error(text: &str, error: f64) -> Safety {
-    let loaded =
-        read::load_text("case.ron", text, &[], None).unwrap_or_else(|e| panic!("{}", e.render(false)));
+    let loaded = read::load_text("case.ron", text, &[], None);
+    let complete = |loaded| choose::complete(loaded, Path::new("."));
+    let loaded = loaded.and_then(complete).unwrap_or_else(|e| panic!("{}", e.render(false)));
     let (plan, stop) = (Plan { error, ..Plan::default() }, Arc::default());
     let watch = Watch { out: None, stop: &stop, tell: &|_| {} };
     safety::find(&loaded, ("case", Path::new(".")), &plan, &watch).unwrap_or_else(|e| panic!("{e}"))
