@@ -5,7 +5,7 @@ use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use ndda::rockfall::Model;
+use ndda::rockfall::{Model, map};
 use ndda_io::read;
 
 const COLUMNS: usize = 9;
@@ -157,7 +157,9 @@ fn folder() -> tempfile::TempDir {
 /// Whether an error names the file, or says that a release or a boulder has no place on the terrain that it gives.
 fn names(error: &str, file: &str) -> bool {
     error.contains(file)
-        || ["the terrain, x from", "the end of the terrain"].iter().any(|part| error.contains(part))
+        || ["the terrain, x from", "the end of the terrain", "is nowhere on the terrain"]
+            .iter()
+            .any(|part| error.contains(part))
 }
 
 /// Damages a file in many ways: whatever is refused names the file.
@@ -196,6 +198,37 @@ fn damaged_terrain_is_refused_by_its_name_whatever_its_format() {
     damaged("ground.tif", &geotiff());
     damaged("ascii.stl", stl_text().as_bytes());
     damaged("binary.stl", &stl_bytes());
+}
+
+#[test]
+fn the_map_of_reach_is_in_the_coordinates_of_the_terrains_file() {
+    let folder = folder();
+    // The south-eastern height is missing, and its cell with it; the corner of the grid is (500 000, 200 000).
+    let grid = esri(|i, j| if (i, j) == (COLUMNS - 1, 0) { -9999.0 } else { height_m(i, j) });
+    let grid = grid.replace("xllcenter 0", "xllcorner 500000").replace("yllcenter 0", "yllcorner 200000");
+    fs::write(folder.path().join("ground.asc"), grid).unwrap();
+    let text = scene("ground.asc").replace("class_grid: \"classes.asc\",", "");
+    let zones = text.find("zones: [").unwrap()..text.find("boulders: (").unwrap();
+    let text =
+        text.replace(&text[zones], "").replace("ground.asc\")", "ground.asc\", origin_m: (500000, 200000))");
+    let loaded = read::load_text("rockfall.ron", &text, &[], Some(folder.path())).unwrap();
+    let model = Model::new(loaded, folder.path(), (Some(1), None)).unwrap();
+    let falls = [model.fall(0)];
+    let written = map::esri_grid(&model, &map::reach(&model, &falls));
+    // Reach is counted between heights, the first of which is half a cell from the corner.
+    let path = folder.path().join("reach.asc");
+    fs::write(&path, &written).unwrap();
+    let read = ndda_io::mesh::terrain_grid::read(&path).unwrap();
+    assert_eq!(read.origin_m, [500_010.0, 200_010.0]);
+    assert_eq!((read.heights_m.len(), read.heights_m[0].len()), (ROWS - 1, COLUMNS - 1));
+    assert_eq!(read.heights_m[0][COLUMNS - 2], None, "{written}");
+    let known = read.heights_m.iter().flatten().filter_map(|part| *part);
+    assert_eq!(known.clone().count(), (ROWS - 1) * (COLUMNS - 1) - 1);
+    // Cells that were not reached are zero, and the boulder was where it was released.
+    assert!(known.clone().any(|part| part == 0.0) && known.clone().all(|part| part == 0.0 || part == 1.0));
+    let [x, y, _] = falls[0].path[0].at_m;
+    let cell = [x, y].map(|at| ((at - 0.5 * CELL_M) / CELL_M).floor() as usize);
+    assert_eq!(read.heights_m[cell[1]][cell[0]], Some(1.0));
 }
 
 /// Words in the place of numbers, and whether each is refused with its line wherever it stands.

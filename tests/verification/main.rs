@@ -57,6 +57,7 @@ mod restitution;
 mod rockfall;
 mod rocking_block;
 mod roof_wedge;
+mod safety_as_drawn;
 mod safety_factor;
 mod settling;
 mod shaken_base;

@@ -144,6 +144,33 @@ fn falls_depend_on_their_number_alone() {
 }
 
 #[test]
+fn what_was_not_seen_to_its_end_makes_probabilities_lower_bounds_and_is_said() {
+    let mut model = slope("", 8);
+    model.loaded.scene.time.end_s = 0.5;
+    let falls = falls(&model);
+    let outcome = Outcome::new(&model, "slope", &falls, 0.0);
+    let road = &outcome.lines[0];
+    assert_eq!((outcome.ends.still_moving, road.reached, road.might), (8, 0, 8));
+    // From that of none of eight to that of all.
+    assert_eq!(road.confidence_95, [wilson(0, 8)[0], wilson(8, 8)[1]]);
+    let said = outcome.to_string();
+    for part in [
+        "warning: 8 of 8 boulders still moved after 0.5 s: raise time.end_s",
+        "at least 0.0 % (0.0 to 100.0 %)",
+        "no median or 95 % value can be given: of 8 boulders 8 still moved at the end",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    // Somebody ended the computation after three.
+    let part = Outcome::new(&model, "slope", &falls[..3], 0.0);
+    assert_eq!((part.count, part.asked, part.lines[0].might), (3, 8, 3));
+    assert!(
+        part.to_string().contains("warning: interrupted: results are those of the 3 boulders of 8"),
+        "{part}"
+    );
+}
+
+#[test]
 fn a_boulder_that_leaves_the_terrain_is_said() {
     let model = scene(
         (&[60.0, 30.0, 0.0], 30.0),
@@ -155,7 +182,10 @@ fn a_boulder_that_leaves_the_terrain_is_said() {
     let falls = falls(&model);
     assert!(falls.iter().all(|fall| fall.end == End::LeftTerrain), "{:?}", falls[0].end);
     let said = Outcome::new(&model, "steep", &falls, 0.0).to_string();
-    assert!(said.contains("2 left the terrain"), "{said}");
+    assert!(
+        said.contains("runout: no median or 95 % value can be given: of 2 boulders 2 left the terrain"),
+        "{said}"
+    );
     // It may leave no sooner than its radius from the end, which is less than 0.9 m for this size.
     let last = falls[0].path.last().expect("a path").at_m[0];
     row(CASE, "place where it left the terrain [m]", last, Within(60.0, 0.03));

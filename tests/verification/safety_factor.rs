@@ -171,6 +171,9 @@ fn a_column_slides_where_joints_weaken_and_topples_where_gravity_tilts() {
     let tan = |angle: f64| angle.to_radians().tan();
     holds("column on 15°, φ = 40°", &safety, tan(40.0) / tan(15.0));
     assert_eq!(kind(&safety), Kind::Sliding);
+    // The weight of the column acts beyond its edge at b/(h tan α) = 1.4928.
+    let told = safety.remarks.iter().any(|remark| remark.contains("1.49") && remark.contains("--by gravity"));
+    assert!(told, "{:?}", safety.remarks);
     let tilted = found(&scene("toppling_column"), Question::Gravity { towards: None });
     let (lower, upper) = bracket(&tilted);
     let rigid = 0.8 / (2.0 * tan(15.0));
@@ -187,7 +190,7 @@ pub(crate) fn normal(dip_deg: f64, direction_deg: f64) -> Vec3 {
 
 /// Limit equilibrium of a dry wedge of equal friction (Hoek & Bray): along the line of intersection where both planes are pressed, else
 /// on the one that is.
-fn limit_equilibrium([a, b]: [(f64, f64); 2], friction_deg: f64) -> (f64, Kind) {
+pub(crate) fn limit_equilibrium([a, b]: [(f64, f64); 2], friction_deg: f64) -> (f64, Kind) {
     let (n_a, n_b) = (normal(a.0, a.1), normal(b.0, b.1));
     let line = n_a.cross(&n_b).normalize();
     let weight = -Vec3::z();

@@ -279,3 +279,71 @@ fn a_rockfall_is_told_from_scenes_of_blocks_and_keeps_earlier_results() {
     assert!(code == 5 && told.contains("or replace them by --force"), "{code} {told}");
     said(folder.path(), &[&words[..], &["--force"]].concat());
 }
+
+/// A folder with what a run of a small scene leaves.
+fn folder_of_a_run(folder: &Path) {
+    said(folder, &["run", "--example", "free_fall", "--quiet", "--out", "run"]);
+}
+
+#[test]
+fn answers_of_other_verbs_keep_out_of_the_folder_of_a_run() {
+    let folder = tempfile::tempdir().unwrap();
+    folder_of_a_run(folder.path());
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
+    for (verb, scene) in [("safety", "safety/plane_dry.ron"), ("rockfall", "works/rockfall.ron")] {
+        let (code, told) =
+            refused(folder.path(), &[verb, scenes.join(scene).to_str().unwrap(), "--out", "run"]);
+        assert!(code == 5 && told.contains("run holds the results of a run (summary.json)"), "{code} {told}");
+    }
+}
+
+/// What shows a factor of safety, or a rockfall, is said where a run is looked for.
+#[test]
+fn folders_without_a_run_say_what_they_hold() {
+    let folder = tempfile::tempdir().unwrap();
+    for (file, resume) in [("safety.json", "`ndda safety SCENE` goes on"), ("rockfall.json", "map.png")] {
+        let path = folder.path().join(file.trim_end_matches(".json"));
+        std::fs::create_dir(&path).unwrap();
+        std::fs::write(path.join(file), "{}").unwrap();
+        for verb in ["report", "resume"] {
+            let (code, told) = refused(folder.path(), &[verb, path.to_str().unwrap()]);
+            assert!(
+                code == 3 && told.contains(resume) && !told.contains("`ndda run"),
+                "{verb}: {code} {told}"
+            );
+        }
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_rockfall_that_is_interrupted_keeps_the_falls_that_have_ended() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/works/rockfall.ron");
+    let mut ndda = Command::new(env!("CARGO_BIN_EXE_ndda"));
+    let words = ["rockfall", scene.to_str().unwrap(), "--count", "100000", "--jobs", "1", "--out", "a"];
+    let mut running = ndda
+        .args(words)
+        .current_dir(folder.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // It says how far it is once falls have ended.
+    let mut line = String::new();
+    let mut told = std::io::BufReader::new(running.stderr.take().unwrap());
+    while !line.contains("of 100000 boulders") {
+        line.clear();
+        assert!(std::io::BufRead::read_line(&mut told, &mut line).unwrap() > 0, "it ended too early");
+    }
+    let id = running.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    let ended = running.wait_with_output().unwrap();
+    let said = String::from_utf8(ended.stdout).unwrap();
+    assert_eq!(ended.status.code(), Some(130), "{said}");
+    assert!(said.contains("warning: interrupted: results are those of the "), "{said}");
+    let file = std::fs::read_to_string(folder.path().join("a/rockfall.json")).unwrap();
+    let found: Value = serde_json::from_str(&file).unwrap();
+    assert!(found["asked"] == 100_000 && (1..1000).contains(&found["count"].as_u64().unwrap()), "{file}");
+    assert!(folder.path().join("a/reach.asc").is_file());
+}

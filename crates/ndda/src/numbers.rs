@@ -20,6 +20,33 @@ pub fn four_figures(value: f64) -> String {
     }
 }
 
+/// A length in the unit that people would give it in: `3.16 m`, `11.9 mm`, `0.15 µm`.
+pub fn length(metres: f64) -> String {
+    let (value, unit) = match metres.abs() {
+        0.0 => return "0 m".into(),
+        size if size >= 1.0 => (metres, "m"),
+        size if size >= 1e-4 => (1e3 * metres, "mm"),
+        _ => (1e6 * metres, "µm"),
+    };
+    match value.abs() {
+        size if size < 1e-2 => "less than 0.01 µm".into(),
+        size => format!("{value:.*} {unit}", (2 - size.log10().floor() as i32).clamp(0, 2) as usize),
+    }
+}
+
+/// Trend, clockwise from the north (y), and plunge below the horizontal, negative upward, of a direction: `110.5°/37.9°`.
+pub fn trend_and_plunge([x, y, z]: [f64; 3]) -> String {
+    let across = x.hypot(y);
+    // Rounded here, so that there is neither a −0.0° nor a 360.0°.
+    let rounded = |angle: f64| (10.0 * angle.to_degrees()).round() / 10.0 + 0.0;
+    // A direction has no trend where rounding alone makes one.
+    if across <= 1e-6 * z.abs() {
+        return if z > 0.0 { "upward" } else { "downward" }.into();
+    }
+    let trend_deg = rounded(x.atan2(y)).rem_euclid(360.0);
+    format!("{trend_deg:.1}°/{:.1}°", rounded((-z).atan2(across)))
+}
+
 /// Reads a relative error, above 0 and below 1.
 ///
 /// # Errors
@@ -47,5 +74,34 @@ pub fn direction(text: &str) -> Result<[f64; 3], String> {
     match numbers.ok().and_then(|numbers| <[f64; 3]>::try_from(numbers).ok()) {
         Some(numbers) if numbers.iter().all(|x| x.is_finite()) && numbers != [0.0; 3] => Ok(numbers),
         _ => Err("write three numbers that are not all zero, as 1,0,0".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_have_three_digits_and_the_unit_that_suits_them() {
+        for (metres, text) in [
+            (3.158, "3.16 m"),
+            (123.4, "123 m"),
+            (0.01188, "11.9 mm"),
+            (0.56, "560 mm"),
+            (1.4e-4, "0.14 mm"),
+            (8.3e-6, "8.30 µm"),
+            (5.8e-12, "less than 0.01 µm"),
+            (0.0, "0 m"),
+        ] {
+            assert_eq!(length(metres), text);
+        }
+    }
+
+    #[test]
+    fn a_direction_has_the_trend_and_plunge_of_a_map() {
+        assert_eq!(trend_and_plunge([1.0, 0.0, -1.0]), "90.0°/45.0°");
+        assert_eq!(trend_and_plunge([0.0, -2.0, 0.0]), "180.0°/0.0°");
+        assert_eq!(trend_and_plunge([-1.0, 0.0, 1.0]), "270.0°/-45.0°");
+        assert_eq!(trend_and_plunge([0.0, 0.0, -3.0]), "downward");
     }
 }

@@ -8,6 +8,7 @@ mod accuracy;
 mod boulder;
 mod classes;
 mod contact;
+mod crossed;
 mod draw;
 mod fall;
 pub mod files;
@@ -38,11 +39,11 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use ndda_io::WriteError;
 use ndda_io::code::Code;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::read::LoadedScene;
 use ndda_io::scene::Rockfall;
+use ndda_io::{OutputFolder, WriteError};
 use rayon::prelude::*;
 
 use crate::places;
@@ -80,12 +81,12 @@ pub enum RockfallError {
     /// Threads cannot be started.
     #[error("cannot start the threads: {0}; use a smaller --jobs")]
     Threads(#[from] rayon::ThreadPoolBuildError),
-    /// Somebody asked to end.
-    #[error("interrupted after {done} of {count} boulders: nothing is written; --count runs fewer")]
+    /// Somebody asked to end before any fall had ended.
+    #[error(
+        "interrupted before the first of {count} falls had ended: nothing is written; --count runs fewer"
+    )]
     Interrupted {
-        /// Boulders that had ended.
-        done: usize,
-        /// Of how many.
+        /// How many falls were asked for.
         count: usize,
     },
     /// A result cannot be written.
@@ -110,7 +111,7 @@ pub struct Request {
     pub force: bool,
 }
 
-/// Runs the rockfall of a scene and writes its results.
+/// Runs the rockfall of a scene and writes its results; those of the falls that have ended, once `stop` is raised.
 ///
 /// # Errors
 /// [`RockfallError`].
@@ -125,6 +126,7 @@ pub fn make(
     pool.install(|| {
         let model = Model::new(loaded, folder, (request.count, request.seed))?;
         let out = &request.out;
+        OutputFolder::refuse_run(out)?;
         if !request.force && files::outcome(out).exists() {
             return Err(RockfallError::Earlier(out.clone()));
         }
@@ -176,6 +178,7 @@ impl Model {
             .map_err(|message| refuse("rockfall.terrain", message))?;
         let unnamed = classes.map_or_else(Vec::new, |classes| classes.without_zone(&rockfall));
         let model = Self { rockfall, terrain, unnamed, loaded };
+        model.meets_the_terrain()?;
         let cells = model.reach_cells().map(|n| n as f64);
         if cells[0] * cells[1] > MOST_CELLS {
             let message = format!(
@@ -192,6 +195,22 @@ impl Model {
             return Err(RockfallError::Scene(model.loaded.errors(vec![found])));
         }
         Ok(model)
+    }
+
+    /// Refuses lines and a profile at which no boulder can be: none would be counted there, whatever they do.
+    fn meets_the_terrain(&self) -> Result<(), RockfallError> {
+        let lines = self.rockfall.lines.iter().enumerate().map(|(k, line)| {
+            (format!("rockfall.lines[{k}].points_m"), format!("line `{}`", line.name), &line.points_m)
+        });
+        let profile_m = Some(&self.rockfall.profile_m).filter(|corners| !corners.is_empty());
+        let profile = profile_m.map(|corners| ("rockfall.profile_m".into(), "the profile".into(), corners));
+        let missed = lines.chain(profile).filter(|(.., corners)| !self.terrain.is_crossed_by(corners));
+        let refuse = |(path, what, _): (String, String, _)| {
+            let found = self.loaded.diagnose_as(Code::CannotBuild, &path, self.terrain.is_missed_by(&what));
+            found.with_help("check its corners, or the terrain's origin_m")
+        };
+        let found: Vec<_> = missed.map(refuse).collect();
+        if found.is_empty() { Ok(()) } else { Err(RockfallError::Scene(self.loaded.errors(found))) }
     }
 
     /// What all boulders have in common.
@@ -237,10 +256,11 @@ impl Model {
         self.case().fall(boulder)
     }
 
-    /// All falls, side by side on the threads of the pool that this is called in.
+    /// All falls, side by side on the threads of the pool that this is called in. Once `stop` is raised no other fall begins, those on their way go on to
+    /// their end, and the answer is what has ended.
     ///
     /// # Errors
-    /// [`RockfallError::Interrupted`] once `stop` is raised.
+    /// [`RockfallError::Interrupted`] where that is none.
     pub fn falls(&self, stop: &AtomicBool, tell: &(dyn Fn(&str) + Sync)) -> Result<Vec<Fall>, RockfallError> {
         let (done, said) = (AtomicUsize::new(0), Mutex::new(Instant::now()));
         let count = self.rockfall.count as usize;
@@ -254,13 +274,16 @@ impl Model {
                 && said.elapsed() >= SAY
             {
                 *said = Instant::now();
-                tell(&format!("{done} of {count} boulders"));
+                let ends =
+                    if stop.load(Ordering::Relaxed) { ": ending after those that fall now" } else { "" };
+                tell(&format!("{done} of {count} boulders{ends}"));
             }
             Some(fall)
         };
         // One at a time, so that no thread waits for the long falls of another.
-        let falls: Option<Vec<Fall>> =
+        let falls: Vec<Option<Fall>> =
             (0..self.rockfall.count).into_par_iter().with_max_len(1).map(fall).collect();
-        falls.ok_or_else(|| RockfallError::Interrupted { done: done.into_inner(), count })
+        let falls: Vec<Fall> = falls.into_iter().flatten().collect();
+        if falls.is_empty() { Err(RockfallError::Interrupted { count }) } else { Ok(falls) }
     }
 }

@@ -13,6 +13,7 @@ mod remarks;
 mod report;
 mod rest;
 mod search;
+mod slender;
 mod trial;
 mod watched;
 
@@ -20,16 +21,18 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use ndda_io::WriteError;
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::read::LoadedScene;
+use ndda_io::{OutputFolder, WriteError};
 use ndda_solver::StepError;
 use serde::{Deserialize, Serialize};
 
 use crate::documents::write_json;
+use crate::places;
 
 pub use changes::{By, Question};
 pub use failing::BlockVelocity;
+pub use free_blocks::Moved;
 pub use mechanism::{Kind, Mechanism, MovingBlock, Plane};
 pub use report::text;
 pub use trial::{State, Trial};
@@ -79,6 +82,10 @@ pub struct Safety {
     pub error: f64,
     /// The answer.
     pub factor_of_safety: Bracket,
+    /// Blocks that do not stand as they are drawn, even with joints 32 times as strong, the farthest first; trials begin where they rest then. If they are those that fail,
+    /// or all, the upper end of the bracket is what follows from that: 1/32, or 1 where loads change. Left out where all stand.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub not_standing: Vec<Moved>,
     /// How blocks fail at the upper end. Left out where nothing fails.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mechanism: Option<Mechanism>,
@@ -96,6 +103,13 @@ pub struct Safety {
     /// Wall-clock time of these calls [s].
     #[serde(skip)]
     pub earlier_s: f64,
+}
+
+impl Safety {
+    /// Whether the scene stands as it is drawn, or what does not has no part in what fails.
+    pub fn stands_as_drawn(&self) -> bool {
+        self.not_standing.is_empty() || self.factor_of_safety.lower.is_some()
+    }
 }
 
 /// Schema of [`Safety`].
@@ -222,19 +236,20 @@ pub fn at(
 
 /// Folder of the run that shows how blocks fail.
 pub fn mechanism_folder(out: &Path) -> PathBuf {
-    out.join("mechanism")
+    out.join(places::MECHANISM)
 }
 
 /// File of the answer in a folder.
 pub fn file(out: &Path) -> PathBuf {
-    out.join("safety.json")
+    out.join(places::SAFETY)
 }
 
 /// Makes the folder of an answer; with `anew`, without the trials of an earlier call.
 ///
 /// # Errors
-/// The folder has the answer of another scene and is not to begin anew, or cannot be made.
+/// The folder has the answer of another scene and is not to begin anew, is that of a run, or cannot be made.
 pub fn make_folder(out: &Path, name: &str, anew: bool) -> Result<(), SafetyError> {
+    OutputFolder::refuse_run(out)?;
     if let Some(scene) = other_scene(out, name).filter(|_| !anew) {
         return Err(SafetyError::OtherScene { folder: out.to_path_buf(), scene });
     }

@@ -26,12 +26,13 @@ pub fn rockfall(args: &RockfallArgs) -> u8 {
     let file = input::file(&args.input);
     let (out, jobs) = (places::folder_for(args.out.as_deref(), &file, ""), args.jobs.map_or(0, usize::from));
     let request = Request { out, file, count: args.count, seed: args.seed, jobs, force: args.force };
-    match make(loaded, &request, &interrupt::watch(), &complain_unless(args.quiet)) {
-        Ok(outcome) if args.json => say(&format!("{:#}", json!(outcome))),
-        Ok(outcome) => say(&format!("{outcome}results in {}", request.out.display())),
+    let outcome = match make(loaded, &request, &interrupt::watch(), &complain_unless(args.quiet)) {
+        Ok(outcome) => outcome,
         Err(error) => return fail(&error, events),
-    }
-    exit::DONE
+    };
+    let words = || format!("{outcome}results in {}", request.out.display());
+    say(&if args.json { format!("{:#}", json!(outcome)) } else { words() });
+    if outcome.count < outcome.asked { exit::INTERRUPTED } else { exit::DONE }
 }
 
 /// Checks a scene of boulders; nothing if it is another one, or cannot be read.
@@ -40,6 +41,7 @@ pub fn check(input: &SceneArgs, events: Events) -> Option<u8> {
     let loaded = read::load(&file, &input.overrides).ok().filter(|found| found.scene.rockfall.is_some())?;
     Some(match Model::new(loaded, file.parent().unwrap_or(Path::new(".")), (None, None)) {
         Ok(model) => {
+            input::warn(&model.loaded, events);
             events.emit("finished", &json!({"exit_code": exit::DONE, "scene": file}));
             if !events.are_read() {
                 say(&format!("{}: no errors; {model}", file.display()));

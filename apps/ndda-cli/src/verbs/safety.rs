@@ -59,11 +59,8 @@ fn find(args: &SafetyArgs) -> u8 {
         Ok(found) => {
             let film = safety::mechanism_folder(&out);
             let fails = found.mechanism.is_some() && cfg!(feature = "report");
-            let next = if fails {
-                format!("; how blocks fail: ndda view {}", film.display())
-            } else {
-                String::new()
-            };
+            let view = || format!("; how blocks fail: ndda view {}", film.display());
+            let next = if fails { view() } else { String::new() };
             say(&format!("{}results in {}{next}", safety::text(&found), safety::file(&out).display()));
             exit::DONE
         }

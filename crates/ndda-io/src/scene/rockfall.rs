@@ -145,6 +145,22 @@ impl Scatter {
         }
     }
 
+    /// The value that half of all do not exceed.
+    pub fn median(&self) -> f64 {
+        match *self {
+            Self::LogNormal(mean, deviation) => mean / (1.0 + (deviation / mean).powi(2)).sqrt(),
+            Self::Triangular(least, likeliest, largest) => {
+                let (rise, fall, width) = (likeliest - least, largest - likeliest, largest - least);
+                if rise >= fall {
+                    least + (0.5 * width * rise).sqrt()
+                } else {
+                    largest - (0.5 * width * fall).sqrt()
+                }
+            }
+            _ => self.middle(),
+        }
+    }
+
     /// Mean, or likeliest value.
     pub fn middle(&self) -> f64 {
         match *self {

@@ -14,9 +14,9 @@ pub enum ReportError {
     /// There is no such folder.
     #[error("{} is not a folder: name the output folder of a run, as out/sliding_45", .0.display())]
     NotAFolder(PathBuf),
-    /// The folder is not one that `ndda run` wrote.
-    #[error("{} holds no run: it has neither summary.json nor history.csv; `ndda run SCENE --out DIR` writes them", .0.display())]
-    NotARun(PathBuf),
+    /// The folder is not one that `ndda run` wrote; what it holds instead, where that is known.
+    #[error("{} holds no run: it has neither summary.json nor history.csv; {}", .0.display(), .1.as_deref().unwrap_or("`ndda run SCENE --out DIR` writes them"))]
+    NotARun(PathBuf, Option<String>),
     /// The run is not over, or was killed.
     #[error("{} holds a run without its {missing}: wait if the run is still going; if it was killed, `ndda resume` finishes it", folder.display())]
     Incomplete {

@@ -8,6 +8,7 @@ use ndda_io::summary::Summary;
 
 use super::error::ReportError;
 use crate::certify::certificate::Certificate;
+use crate::places;
 use crate::study::record;
 use crate::view3d::bolts;
 
@@ -28,15 +29,18 @@ pub struct Input {
 }
 
 /// The folder of the run that a page shows: that of the shortest of the steps that a certificate is from, where `folder`
-/// holds one and no run of its own.
+/// holds one and no run of its own, or that of how blocks fail, where it holds a factor of safety.
 pub fn run_folder(folder: &Path) -> PathBuf {
     let of_certificate = || {
         let certificate = Certificate::read(folder)?;
         let finest = certificate.runs.get(2)?;
         Some(record::folder(folder, &finest.name).join(record::RESULTS))
     };
+    let mechanism = folder.join(places::MECHANISM);
     if folder.join(SUMMARY).is_file() {
         folder.to_path_buf()
+    } else if folder.join(places::SAFETY).is_file() && mechanism.join(SUMMARY).is_file() {
+        mechanism
     } else {
         of_certificate().unwrap_or_else(|| folder.to_path_buf())
     }
@@ -56,7 +60,7 @@ impl Input {
         let has = |name: &str| folder.join(name).is_file();
         let history = results::history_file(folder);
         if !has(SUMMARY) && history.is_none() && !has(CHECKPOINT) {
-            return Err(ReportError::NotARun(folder.to_path_buf()));
+            return Err(ReportError::NotARun(folder.to_path_buf(), places::instead(folder)));
         }
         let incomplete = |missing| ReportError::Incomplete { folder: folder.to_path_buf(), missing };
         if !has(SUMMARY) {

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use ndda_io::scene::{BoulderShape, BoulderSize, Boulders};
 use ndda_mesh::{BlockMesh, Vec3};
 
-use super::draw::{Draw, Of};
+use super::draw::{self, Draw, Of};
 
 /// Places that are tried for each face of a random polyhedron; the one farthest from all faces before is taken (Mitchell 1991).
 const CANDIDATES: usize = 12;
@@ -38,7 +38,7 @@ impl Boulder {
 
     /// The boulder with this number, of rock of this density.
     pub(super) fn draw(boulders: &Boulders, density_kg_m3: f64, draw: &Draw) -> Self {
-        let within = boulders.within.unwrap_or((0.0, f64::INFINITY));
+        let within = within(boulders);
         let size = |scatter| draw.value(Of::Size, 0, scatter, within);
         let volume_m3 = match &boulders.size {
             BoulderSize::Diameter { diameter_m } => PI / 6.0 * size(diameter_m).powi(3),
@@ -47,6 +47,14 @@ impl Boulder {
         };
         let which = draw.stream(Of::Shape, 0).uniform() * boulders.shapes.len() as f64;
         Self::of_shape(&boulders.shapes[which as usize], volume_m3, draw)
+    }
+
+    /// Part of the distribution of sizes that is beyond their limits: it is cut off.
+    pub(super) fn sizes_cut_off(boulders: &Boulders) -> f64 {
+        let (BoulderSize::Diameter { diameter_m: size }
+        | BoulderSize::Volume { volume_m3: size }
+        | BoulderSize::Mass { mass_kg: size }) = &boulders.size;
+        size.as_distribution().map_or(0.0, |distribution| draw::beyond(&distribution, within(boulders)))
     }
 
     /// A cube of a volume [m³].
@@ -75,6 +83,11 @@ impl Boulder {
         let radius_m = nodes.iter().map(|x| x.norm()).fold(0.0, f64::max);
         Self { mesh: BlockMesh { nodes, tets, ..BlockMesh::default() }, volume_m3, radius_m }
     }
+}
+
+/// Least and largest size.
+fn within(boulders: &Boulders) -> (f64, f64) {
+    boulders.within.unwrap_or((0.0, f64::INFINITY))
 }
 
 /// Diameter of a sphere of this volume [m].

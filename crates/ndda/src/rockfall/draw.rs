@@ -64,6 +64,11 @@ impl Draw {
     }
 }
 
+/// The part of a distribution that is not between two values.
+pub(super) fn beyond(distribution: &Distribution, (least, most): (f64, f64)) -> f64 {
+    below(distribution, least) + 1.0 - below(distribution, most)
+}
+
 /// The part of a distribution below a value.
 fn below(distribution: &Distribution, value: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
@@ -94,6 +99,16 @@ mod tests {
         // Symmetric limits leave the median; its standard error is half of the spread of 0.28 over √2000 times 1.25.
         assert!((values[1000] - 1.0).abs() < 0.03, "{}", values[1000]);
         assert_eq!(Draw::new(7, 3).value(Of::Size, 0, &Scatter::Always(2.0), (0.0, 1.0)), 2.0);
+    }
+
+    #[test]
+    fn what_is_cut_off_is_the_part_of_the_distribution_beyond_the_limits() {
+        // A normal number is beyond 1.96 deviations in 5 % of cases.
+        let part = beyond(&Distribution::Normal(1.0, 0.5), (1.0 - 0.98, 1.0 + 0.98));
+        assert!((part - 0.049_996).abs() < 1e-5, "{part}");
+        assert_eq!(beyond(&Distribution::Uniform(1.0, 3.0), (0.0, f64::INFINITY)), 0.0);
+        // Millimetres within limits in metres.
+        assert!(beyond(&Distribution::LogNormal(1000.0, 300.0), (0.4, 2.5)) > 1.0 - 1e-12);
     }
 
     #[test]

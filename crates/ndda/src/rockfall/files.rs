@@ -12,10 +12,11 @@ use super::result::Outcome;
 use super::spread::{AtLine, Spread};
 use super::{Model, map};
 use crate::documents::write_json;
+use crate::places;
 
 /// File of the outcome in a folder.
 pub fn outcome(out: &Path) -> PathBuf {
-    out.join("rockfall.json")
+    out.join(places::ROCKFALL)
 }
 
 /// Writes all files of an outcome but pictures into a folder.

@@ -18,17 +18,24 @@ pub fn reach(model: &Model, falls: &[Fall]) -> Vec<f64> {
     counts.into_iter().map(|count| f64::from(count) / all).collect()
 }
 
-/// The map of reach as an ESRI ASCII grid, in the coordinates of the scene; −1 where no boulder was.
+/// The map of reach as an ESRI ASCII grid, in the coordinates of the terrain's file; 0 where no boulder was, and −1, no data, where the ground has no height.
 pub fn esri_grid(model: &Model, reach: &[f64]) -> String {
     let [nx, ny] = model.reach_cells();
-    let [x, y] = model.terrain.origin_m;
-    let mut text = format!(
-        "ncols {nx}\nnrows {ny}\nxllcorner {x}\nyllcorner {y}\ncellsize {}\nNODATA_value -1\n",
-        model.cell_m()
-    );
-    for row in reach.chunks(nx).rev() {
-        let cells: Vec<String> =
-            row.iter().map(|&part| if part > 0.0 { format!("{part:.6}") } else { "-1".into() }).collect();
+    let terrain = &model.terrain;
+    let cell_m = model.cell_m();
+    let [x, y] = [0, 1].map(|axis| terrain.origin_m[axis] + terrain.zero_m[axis]);
+    let mut text =
+        format!("ncols {nx}\nnrows {ny}\nxllcorner {x}\nyllcorner {y}\ncellsize {cell_m}\nNODATA_value -1\n");
+    for (j, row) in reach.chunks(nx).enumerate().rev() {
+        let cell = |(i, &part): (usize, &f64)| {
+            let middle = [(0, i), (1, j)].map(|(axis, k)| terrain.origin_m[axis] + (k as f64 + 0.5) * cell_m);
+            match part {
+                part if part > 0.0 => format!("{part:.6}"),
+                _ if terrain.at(middle).is_some() => "0".into(),
+                _ => "-1".into(),
+            }
+        };
+        let cells: Vec<String> = row.iter().enumerate().map(cell).collect();
         text += &cells.join(" ");
         text.push('\n');
     }

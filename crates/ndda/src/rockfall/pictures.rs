@@ -47,8 +47,14 @@ pub fn draw(model: &Model, outcome: &Outcome, falls: &[Fall], out: &Path) -> Res
 /// How many falls there are, in words.
 fn subtitle(outcome: &Outcome) -> String {
     let ends = &outcome.ends;
-    format!(
+    let mut words = format!(
         "{} boulders, seed {}: {} at rest, {} left the terrain",
         outcome.count, outcome.seed, ends.rest, ends.left_terrain
-    )
+    );
+    for (count, what) in [(ends.still_moving, "still moved"), (ends.stopped, "not computed to the end")] {
+        if count > 0 {
+            words += &format!(", {count} {what}");
+        }
+    }
+    words
 }

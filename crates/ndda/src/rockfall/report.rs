@@ -4,10 +4,12 @@ use std::fmt::{self, Write as _};
 
 use super::Model;
 use super::result::{Ends, Outcome};
-use super::spread::Spread;
+use super::spread::{Runout, Spread};
 use crate::columns::columns;
 use crate::numbers::counted;
 
+/// Part of the sizes that is not worth a line where it is cut off.
+const LITTLE: f64 = 1e-3;
 /// Classes listed at most.
 const LISTED: usize = 8;
 
@@ -49,13 +51,15 @@ fn text(outcome: &Outcome) -> String {
     let Outcome { scene, title, count, ends, .. } = outcome;
     let mut text = format!("{scene}: {title}\n");
     let _ = writeln!(text, "{count} boulders over {} triangles: {}", outcome.triangles, ends_in_words(ends));
-    if let Some(runout) = &outcome.runout_m {
-        let _ = writeln!(
-            text,
-            "runout of those at rest: median {:.1} m, 95 % within {:.1} m, farthest {:.1} m",
-            runout.median, runout.percentile_95, runout.largest
-        );
+    for warning in &outcome.warnings {
+        let _ = writeln!(text, "warning: {warning}");
     }
+    if outcome.sizes_cut_off > LITTLE {
+        let percent = number(100.0 * outcome.sizes_cut_off);
+        let _ =
+            writeln!(text, "sizes: {percent} % of their distribution lies beyond `within` and is cut off");
+    }
+    let _ = writeln!(text, "runout: {}", runout(&outcome.runout_m, ends));
     if !outcome.lines.is_empty() {
         let header = [
             "line",
@@ -78,7 +82,13 @@ fn text(outcome: &Outcome) -> String {
             vec![
                 line.name.clone(),
                 line.reached.to_string(),
-                format!("{:.1} % ({:.1} to {:.1} %)", 100.0 * line.probability, 100.0 * low, 100.0 * high),
+                format!(
+                    "{}{:.1} % ({:.1} to {:.1} %)",
+                    if line.might > 0 { "at least " } else { "" },
+                    100.0 * line.probability,
+                    100.0 * low,
+                    100.0 * high
+                ),
                 spread(first.map(|f| f.height_m), 1.0),
                 spread(first.map(|f| f.top_m), 1.0),
                 spread(first.map(|f| f.speed_m_s), 1.0),
@@ -100,7 +110,7 @@ fn text(outcome: &Outcome) -> String {
     } else {
         let _ = writeln!(
             text,
-            "all accurate: energy error within {:.1e} of the largest kinetic energy, penetration within {:.1} % of a boulder's width",
+            "accurately computed: energy error within {:.1e} of the largest kinetic energy, penetration within {:.1} % of a boulder's width",
             accuracy.worst.energy,
             100.0 * accuracy.worst.depth
         );
@@ -118,6 +128,29 @@ fn number(value: f64) -> String {
     }
 }
 
+/// Median and 95th percentile, or why there are none, and the farthest boulder at rest.
+fn runout(runout: &Runout, ends: &Ends) -> String {
+    let Ends { left_terrain, still_moving, stopped, .. } = *ends;
+    let on_their_way = ends_in_words(&Ends { rest: 0, left_terrain, still_moving, stopped });
+    let count = ends.rest + left_terrain + still_moving + stopped;
+    let (mut known, mut unknown) = (Vec::new(), Vec::new());
+    for (name, value, words) in
+        [("median", runout.median, "median"), ("95 % value", runout.percentile_95, "95 % within")]
+    {
+        match value {
+            Some(value) => known.push(format!("{words} {value:.1} m")),
+            None => unknown.push(name),
+        }
+    }
+    let farthest = if on_their_way.is_empty() { "farthest" } else { "farthest at rest" };
+    known.extend(runout.largest.map(|largest| format!("{farthest} {largest:.1} m")));
+    if !unknown.is_empty() {
+        let unknown = unknown.join(" or ");
+        known.push(format!("no {unknown} can be given: of {count} boulders {on_their_way}"));
+    }
+    known.join(", ")
+}
+
 fn ends_in_words(ends: &Ends) -> String {
     let parts = [
         (ends.rest, "came to rest"),
@@ -128,4 +161,28 @@ fn ends_in_words(ends: &Ends) -> String {
     let said: Vec<String> =
         parts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}")).collect();
     said.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runout_says_what_cannot_be_given_and_why() {
+        let all = Runout { median: Some(212.4), percentile_95: Some(263.84), largest: Some(266.9) };
+        let ends = Ends { rest: 40, ..Ends::default() };
+        assert_eq!(runout(&all, &ends), "median 212.4 m, 95 % within 263.8 m, farthest 266.9 m");
+        let cut_off = Runout { percentile_95: None, ..all };
+        let ends = Ends { rest: 33, left_terrain: 7, ..Ends::default() };
+        assert_eq!(
+            runout(&cut_off, &ends),
+            "median 212.4 m, farthest at rest 266.9 m, no 95 % value can be given: of 40 boulders 7 left the terrain"
+        );
+        let none = Runout { median: None, percentile_95: None, largest: None };
+        let ends = Ends { still_moving: 8, ..Ends::default() };
+        assert_eq!(
+            runout(&none, &ends),
+            "no median or 95 % value can be given: of 8 boulders 8 still moved at the end"
+        );
+    }
 }

@@ -6,8 +6,9 @@ use super::accuracy::Accuracy;
 use super::fall::{End, Fall};
 use super::passage::{Moment, length_m};
 use super::profile;
-use super::spread::{AtLine, Spread};
-use super::{Model, map};
+use super::spread::{AtLine, Runout};
+use super::{Boulder, Model, map};
+use crate::numbers::counted;
 
 /// Schema of [`Outcome`].
 pub const SCHEMA: &str = "ndda.rockfall/1";
@@ -25,16 +26,20 @@ pub struct Outcome {
     pub scene: String,
     /// The scene's own title.
     pub title: String,
-    /// Boulders.
+    /// Boulders that fell.
     pub count: u32,
+    /// Boulders that were asked for: more, where somebody ended the computation.
+    pub asked: u32,
     /// Seed of all that was drawn.
     pub seed: u64,
     /// Triangles of the terrain.
     pub triangles: usize,
     /// How falls ended.
     pub ends: Ends,
-    /// Distance on the map from the release to the end, of boulders that came to rest [m]; none if none did.
-    pub runout_m: Option<Spread>,
+    /// Distance on the map from the release to the end [m].
+    pub runout_m: Runout,
+    /// Part of the distribution of sizes that `within` cuts off; sizes are drawn from the rest.
+    pub sizes_cut_off: f64,
     /// Lines, in the order of the scene.
     pub lines: Vec<LineResult>,
     /// Corners of the profile [m].
@@ -43,6 +48,8 @@ pub struct Outcome {
     pub part_m: f64,
     /// How accurate falls are.
     pub accuracy: Inaccurate,
+    /// What makes results less than they seem, with the remedy.
+    pub warnings: Vec<String>,
     /// Steps of all falls.
     pub steps: u64,
     /// Wall-clock time of the falls [s].
@@ -69,9 +76,11 @@ pub struct LineResult {
     pub name: String,
     /// Boulders that reached it.
     pub reached: usize,
-    /// Part of all boulders that did.
+    /// Boulders that had not, and whose falls were not over at the end: they might.
+    pub might: usize,
+    /// Part of all boulders that reached it; a lower bound where others might.
     pub probability: f64,
-    /// Where the probability lies with a confidence of 95 % (Wilson 1927).
+    /// Where the probability lies with a confidence of 95 % (Wilson 1927), from none to all of those that might.
     pub confidence_95: [f64; 2],
     /// What those had when they first reached it; none if none did.
     pub first: Option<AtLine>,
@@ -94,17 +103,21 @@ impl Outcome {
         let profile_m = profile::corners_m(model, falls);
         let part_m = model.rockfall.detail.part_m.unwrap_or(0.01 * length_m(&profile_m));
         let worst = falls.iter().fold(Accuracy::default(), |worst, fall| worst.worst(fall.accuracy));
-        let rested = falls.iter().filter(|fall| fall.end == End::Rest);
+        let rested = falls.iter().filter(|fall| fall.end == End::Rest).map(map::runout_m);
+        let runout_m = Runout::of(rested.clone().collect(), falls.len() - rested.count());
+        let boulders = &model.rockfall.boulders;
         Self {
             schema: SCHEMA.into(),
             version: env!("CARGO_PKG_VERSION").into(),
             scene: name.into(),
             title: model.loaded.scene.title.clone(),
-            count: model.rockfall.count,
+            count: falls.len() as u32,
+            asked: model.rockfall.count,
             seed: model.rockfall.seed,
             triangles: model.terrain.triangles(),
             ends: ends(falls),
-            runout_m: Spread::of(rested.map(map::runout_m).collect()),
+            runout_m,
+            sizes_cut_off: Boulder::sizes_cut_off(boulders),
             lines: lines(model, falls),
             part_m: part_m.max(length_m(&profile_m) / profile::MOST_STATIONS),
             profile_m,
@@ -113,6 +126,7 @@ impl Outcome {
                 reasons: worst.reasons(model.step_s(), model.rockfall.detail.impact_m_s),
                 worst,
             },
+            warnings: warnings(model, falls),
             steps: falls.iter().map(|fall| fall.steps).sum(),
             wall_s,
         }
@@ -132,16 +146,51 @@ fn ends(falls: &[Fall]) -> Ends {
     ends
 }
 
+/// Falls that are not there or not over, and what to change.
+fn warnings(model: &Model, falls: &[Fall]) -> Vec<String> {
+    let (count, asked) = (falls.len(), model.rockfall.count as usize);
+    let mut warnings = Vec::new();
+    if count < asked {
+        warnings.push(format!(
+            "interrupted: results are those of the {} of {asked} that had ended; run again with --force for all, or with --count {count}",
+            counted(count, "boulder", "boulders")
+        ));
+    }
+    let ends = ends(falls);
+    if ends.still_moving > 0 {
+        warnings.push(format!(
+            "{} of {count} boulders still moved after {} s: raise time.end_s; until then probabilities of reach are lower bounds",
+            ends.still_moving, model.loaded.scene.time.end_s
+        ));
+    }
+    let reason = falls.iter().find_map(|fall| match &fall.end {
+        End::Stopped(reason) => Some(reason),
+        _ => None,
+    });
+    if let Some(reason) = reason {
+        warnings.push(format!(
+            "{} of {count} falls could not be computed to the end, so that probabilities of reach are lower bounds: {reason}",
+            ends.stopped
+        ));
+    }
+    warnings
+}
+
 fn lines(model: &Model, falls: &[Fall]) -> Vec<LineResult> {
     let result = |(k, line): (usize, &ndda_io::scene::CountingLine)| {
         let first =
             |fall: &Fall| fall.passages.iter().find(|(line, _)| *line == k).map(|(_, moment)| *moment);
         let moments: Vec<Moment> = falls.iter().filter_map(first).collect();
+        let is_over = |fall: &Fall| matches!(fall.end, End::Rest | End::LeftTerrain);
+        let might = falls.iter().filter(|fall| !is_over(fall) && first(fall).is_none()).count();
+        let [low, _] = wilson(moments.len(), falls.len());
+        let [_, high] = wilson(moments.len() + might, falls.len());
         LineResult {
             name: line.name.clone(),
             reached: moments.len(),
+            might,
             probability: moments.len() as f64 / falls.len() as f64,
-            confidence_95: wilson(moments.len(), falls.len()),
+            confidence_95: [low, high],
             first: AtLine::of(&moments),
         }
     };

@@ -29,6 +29,33 @@ impl Spread {
     }
 }
 
+/// How far boulders get, where some were last seen on their way: those that left the terrain, still moved, or could not be computed to the end. They
+/// count as farther than all that came to rest.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Runout {
+    /// Median [m]; none where half of the boulders were last seen on their way.
+    pub median: Option<f64>,
+    /// The distance that 95 % do not exceed [m]; none where more than 5 % were last seen on their way.
+    pub percentile_95: Option<f64>,
+    /// The largest of those that came to rest [m]; none if none did.
+    pub largest: Option<f64>,
+}
+
+impl Runout {
+    /// Of the distances of boulders that came to rest, in any order, and so many that were last seen on their way.
+    pub fn of(mut rested_m: Vec<f64>, on_their_way: usize) -> Self {
+        rested_m.sort_by(f64::total_cmp);
+        let last = (rested_m.len() + on_their_way).saturating_sub(1);
+        let at = |part: f64| {
+            let place = part * last as f64;
+            let low = rested_m.get(place.floor() as usize)?;
+            let high = rested_m.get(place.ceil() as usize)?;
+            Some(low + place.fract() * (high - low))
+        };
+        Self { median: at(0.5), percentile_95: at(0.95), largest: rested_m.last().copied() }
+    }
+}
+
 /// Heights, speeds and energies at a line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct AtLine {
@@ -61,6 +88,21 @@ impl AtLine {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn boulders_that_were_last_seen_on_their_way_count_as_farther_than_all_others() {
+        let rested = |count: u32| (1..=count).rev().map(f64::from).collect::<Vec<_>>();
+        let whole = Runout { median: Some(51.0), percentile_95: Some(96.0), largest: Some(101.0) };
+        assert_eq!(Runout::of(rested(101), 0), whole);
+        // 97 of 101 at rest: the 96th of them is still one of these.
+        assert_eq!(Runout::of(rested(97), 4), Runout { largest: Some(97.0), ..whole });
+        assert_eq!(Runout::of(rested(95), 6), Runout { percentile_95: None, largest: Some(95.0), ..whole });
+        assert_eq!(
+            Runout::of(rested(18), 22),
+            Runout { median: None, percentile_95: None, largest: Some(18.0) }
+        );
+        assert_eq!(Runout::of(Vec::new(), 8), Runout { median: None, percentile_95: None, largest: None });
+    }
 
     #[test]
     fn percentiles_are_between_values() {

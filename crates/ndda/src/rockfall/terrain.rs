@@ -22,6 +22,8 @@ const MOST_HEIGHT_M: f64 = 1e5;
 pub struct Terrain {
     /// Place (x, y) of the south-western height [m].
     pub origin_m: [f64; 2],
+    /// Point (x, y) of the file's map that is (0, 0) in the scene [m].
+    pub zero_m: [f64; 2],
     /// Distance of heights along x and y [m].
     pub step_m: [f64; 2],
     /// Heights along x and along y.
@@ -47,7 +49,10 @@ impl Terrain {
                 let read = terrain_grid::read_sampled(&folder.join(file), *sample_m);
                 let mut grid = read.map_err(|error| error.to_string())?;
                 grid.origin_m = [0, 1].map(|i| grid.origin_m[i] - origin_m[i]);
-                return Self::of_grid(&grid, zones, classes).map_err(|problem| format!("{file}: {problem}"));
+                let terrain = Self::of_grid(&grid, zones, classes);
+                return terrain
+                    .map(|terrain| Self { zero_m: *origin_m, ..terrain })
+                    .map_err(|problem| format!("{file}: {problem}"));
             }
             Ground::Heights { origin_m, step_m, heights_m } => {
                 let some = |row: &Vec<f64>| row.iter().copied().map(Some).collect();
@@ -62,8 +67,8 @@ impl Terrain {
         sound(grid)?;
         let size = [grid.heights_m.first().map_or(0, Vec::len), grid.heights_m.len()];
         let heights_m = grid.heights_m.iter().flatten().map(|z| z.unwrap_or(f64::NAN)).collect();
-        let mut terrain =
-            Self { origin_m: grid.origin_m, step_m: grid.step_m, size, heights_m, zones: Vec::new() };
+        let TerrainGrid { origin_m, step_m, .. } = *grid;
+        let mut terrain = Self { origin_m, zero_m: [0.0; 2], step_m, size, heights_m, zones: Vec::new() };
         let cells = terrain.cells();
         if !(0..cells[1]).any(|j| (0..cells[0]).any(|i| terrain.has(i, j))) {
             return Err(

@@ -153,14 +153,35 @@ fn rotation_deg(simulation: &Simulation, block: BlockId) -> f64 {
     turn_deg(simulation, simulation.counted_from(), block)
 }
 
-/// Angle of the rotation that fits the motion of the nodes best, from 0 to 180 [°]: the orthogonal part of Σ m (x − c)(X − C)ᵀ by its
-/// singular values (Kabsch 1976).
-pub(crate) fn turn_deg(simulation: &Simulation, from: &[Vec3], block: BlockId) -> f64 {
+/// Angle of the rotation that fits the motion of the nodes best, from 0 to 180 [°].
+fn turn_deg(simulation: &Simulation, from: &[Vec3], block: BlockId) -> f64 {
+    let (angle, _) = angle_and_axis(&rotation(simulation, from, block));
+    angle.to_degrees()
+}
+
+/// The rotation that fits the motion of the nodes best: its axis, as long as its angle [rad].
+pub(crate) fn turn_rad(simulation: &Simulation, from: &[Vec3], block: BlockId) -> Vec3 {
+    let (angle, axis) = angle_and_axis(&rotation(simulation, from, block));
+    axis.try_normalize(0.0).map_or_else(Vec3::zeros, |axis| angle * axis)
+}
+
+/// Angle of a rotation from 0 to π, and its axis, as long as twice the sine of that.
+fn angle_and_axis(rotation: &Mat3) -> (f64, Vec3) {
+    let axial = Vec3::new(
+        rotation[(2, 1)] - rotation[(1, 2)],
+        rotation[(0, 2)] - rotation[(2, 0)],
+        rotation[(1, 0)] - rotation[(0, 1)],
+    );
+    (axial.norm().atan2(rotation.trace() - 1.0), axial)
+}
+
+/// The rotation that fits the motion of the nodes best: the orthogonal part of Σ m (x − c)(X − C)ᵀ by its singular values (Kabsch 1976).
+fn rotation(simulation: &Simulation, from: &[Vec3], block: BlockId) -> Mat3 {
     let (operator, nodes) = (&simulation.shape(block).operator, simulation.blocks().nodes_of(block));
     let now = &simulation.state().position[nodes.clone()];
     let start = &from[nodes];
     if now == start {
-        return 0.0;
+        return Mat3::identity();
     }
     let (center, first) = (operator.center(now), operator.center(start));
     let mut moment = Mat3::zeros();
@@ -168,17 +189,11 @@ pub(crate) fn turn_deg(simulation: &Simulation, from: &[Vec3], block: BlockId) -
         moment += mass * (x - center) * (old - first).transpose();
     }
     let parts = moment.svd(true, true);
-    let (Some(left), Some(right)) = (parts.u, parts.v_t) else { return 0.0 };
+    let (Some(left), Some(right)) = (parts.u, parts.v_t) else { return Mat3::identity() };
     let mut mirror = Mat3::identity();
     let smallest = parts.singular_values.imin();
     mirror[(smallest, smallest)] = (left * right).determinant().signum();
-    let rotation = left * mirror * right;
-    let axial = Vec3::new(
-        rotation[(2, 1)] - rotation[(1, 2)],
-        rotation[(0, 2)] - rotation[(2, 0)],
-        rotation[(1, 0)] - rotation[(0, 1)],
-    );
-    axial.norm().atan2(rotation.trace() - 1.0).to_degrees()
+    left * mirror * right
 }
 
 /// Writes `blocks.csv`: a row per block at the times of the frames.

@@ -13,7 +13,7 @@ use super::outputs::SavedRun;
 use super::run_log;
 use super::settling::OnTheWay;
 use crate::build::Choices;
-use crate::places::name_of;
+use crate::places::{self, name_of};
 use crate::{Model, model};
 
 /// A run that goes on.
@@ -59,6 +59,10 @@ impl Run {
     /// [`ResumeError`].
     pub fn resume_with(folder: &Path, choices: Choices) -> Result<Resumed, ResumeError> {
         let folder = OutputFolder::open(folder)?;
+        if let Some(instead) = places::instead(folder.path()) {
+            let path = folder.path().display();
+            return Err(ResumeError::Unusable(format!("{path} holds no run that could go on: {instead}")));
+        }
         let mut warnings = Vec::new();
         let saved = last_checkpoint(&folder, &mut warnings)?;
         let beside = saved.identity.folder().to_path_buf();

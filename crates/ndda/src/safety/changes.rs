@@ -88,6 +88,20 @@ pub fn has_springs(scene: &Scene) -> bool {
     self::frictions(frictions).iter().any(|friction| friction.shear_penalty_pa_m.is_some())
 }
 
+/// Whether some joint has cohesion or tensile strength.
+pub fn has_cohesion(scene: &Scene) -> bool {
+    let frictions = &mut scene.clone();
+    self::frictions(frictions).iter().any(|friction| friction.cohesion_pa > 0.0 || friction.tension_pa > 0.0)
+}
+
+/// Whether some joint has cohesion that it loses at once where it is exceeded.
+pub fn has_brittle_cohesion(scene: &Scene) -> bool {
+    let is_brittle = |friction: &&mut Friction| {
+        friction.cohesion_pa > 0.0 && friction.residual.is_none() && friction.fracture.is_none()
+    };
+    frictions(&mut scene.clone()).iter().any(is_brittle)
+}
+
 fn frictions(scene: &mut Scene) -> Vec<&mut Friction> {
     let Some(Contact::Potential { friction, material_pairs, rock_joints, .. }) = &mut scene.contact else {
         return Vec::new();

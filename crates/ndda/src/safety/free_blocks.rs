@@ -2,8 +2,9 @@
 
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{BodyKind, Simulation};
+use serde::{Deserialize, Serialize};
 
-use crate::run::motion::radius_m;
+use crate::run::motion::{radius_m, shift_m};
 
 /// Part of its radius that a block goes before it is in another place, where it may rest on others.
 pub const ELSEWHERE: f64 = 0.05;
@@ -23,28 +24,36 @@ pub fn gone_m(simulation: &Simulation, start: &[Vec3]) -> Vec<(BlockId, f64)> {
     free(simulation).map(|block| (block, gone(block))).collect()
 }
 
-/// How far the block went on the way to rest that went farthest, where it came to rest in another place.
-#[derive(Clone, Debug)]
+/// A block that does not stand as it is drawn: on the way to rest it went to another place.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Moved {
     /// Its name.
     pub block: String,
-    /// How far it went [m].
-    pub gone_m: f64,
+    /// How far its farthest node went \[m\].
+    pub moved_m: f64,
+    /// Direction in which its mass centre went, of length 1; zero where it only turned.
+    pub direction: [f64; 3],
 }
 
 impl Moved {
-    /// Since blocks were in some places; none where all are still in theirs.
-    pub fn farthest(simulation: &Simulation, begun: &[Vec3]) -> Option<Self> {
+    /// Blocks that are elsewhere than in some places, the farthest first.
+    pub fn since(simulation: &Simulation, begun: &[Vec3]) -> Vec<Self> {
         let is_elsewhere = |(block, gone_m): &(BlockId, f64)| {
             *gone_m > ELSEWHERE * radius_m(&simulation.shape(*block).operator)
         };
-        let gone = gone_m(simulation, begun).into_iter().filter(is_elsewhere);
-        let (block, gone_m) = gone.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        Some(Self { block: simulation.blocks().names[block.index()].clone(), gone_m })
+        let mut gone: Vec<_> = gone_m(simulation, begun).into_iter().filter(is_elsewhere).collect();
+        gone.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        let moved = |(block, moved_m): (BlockId, f64)| {
+            let shift = shift_m(simulation, begun, block);
+            let direction = shift.try_normalize(0.0).unwrap_or_default().into();
+            Self { block: simulation.blocks().names[block.index()].clone(), moved_m, direction }
+        };
+        gone.into_iter().map(moved).collect()
     }
 
     /// Whether blocks went much less far than with less strength.
-    pub fn is_held_back_from(&self, weaker: Option<&Self>) -> bool {
-        weaker.is_some_and(|weaker| self.gone_m < 0.5 * weaker.gone_m)
+    pub fn are_held_back(now: &[Self], weaker: &[Self]) -> bool {
+        let farthest_m = |moved: &[Self]| moved.first().map_or(0.0, |first| first.moved_m);
+        farthest_m(now) < 0.5 * farthest_m(weaker)
     }
 }

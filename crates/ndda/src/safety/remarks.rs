@@ -1,10 +1,19 @@
 //! What is said beside the answer, read off its trials and its mechanism.
 
-use super::{Bracket, Safety, State};
+use super::mechanism::Kind;
+use super::rest::STRONGEST;
+use super::slender::Slender;
+use super::{Bracket, By, Safety, State};
+use crate::numbers::{length, trend_and_plunge};
 
-/// Remarks to read before using the answer.
-pub fn of(answer: &Safety) -> Vec<String> {
-    let mut remarks = Vec::new();
+/// Remarks to read before using the answer; `is_brittle` where some cohesion is lost at once.
+pub fn of(answer: &Safety, slender: Option<&Slender>, is_brittle: bool) -> Vec<String> {
+    let mut remarks: Vec<String> = not_standing(answer).into_iter().collect();
+    if !answer.stands_as_drawn() {
+        return remarks;
+    }
+    remarks.extend(topples(answer, slender));
+    remarks.extend(is_brittle.then(|| brittle(answer)));
     let Bracket { lower, upper } = answer.factor_of_safety;
     let cut_off = answer.mechanism.as_ref().map(|how| &how.cut_off_by).filter(|sides| !sides.is_empty());
     if let Some(sides) = cut_off {
@@ -40,4 +49,137 @@ pub fn of(answer: &Safety) -> Vec<String> {
         ));
     }
     remarks
+}
+
+/// Blocks that do not stand as drawn, and what that means for the answer.
+fn not_standing(answer: &Safety) -> Option<String> {
+    let first = answer.not_standing.first()?;
+    let others = match answer.not_standing.len() - 1 {
+        0 => String::new(),
+        1 => " and another block".into(),
+        count => format!(" and {count} other blocks"),
+    };
+    let way = match first.direction {
+        [0.0, 0.0, 0.0] => String::new(),
+        direction => format!(" towards {}", trend_and_plunge(direction)),
+    };
+    let moves = format!(
+        "`{}`{others} moved {}{way} before the scene came to rest",
+        first.block,
+        length(first.moved_m)
+    );
+    Some(match (answer.stands_as_drawn(), answer.trials.is_empty()) {
+        (true, _) => {
+            format!(
+                "{moves}, even with joints {STRONGEST} times as strong: the factor is that of the others, from there on"
+            )
+        }
+        (false, true) => {
+            format!("{moves}: hold it by a support, or correct its loads, its water or its shape")
+        }
+        (false, false) => {
+            format!(
+                "{moves}, where it fails first: trials are of that place. Hold it by a support, or correct its loads, its water or its shape"
+            )
+        }
+    })
+}
+
+/// That a block may topple at a slope that is less steep than the answer says.
+fn topples(answer: &Safety, slender: Option<&Slender>) -> Option<String> {
+    let Slender { block, factor } = slender?;
+    let slides = answer.factor_of_safety.lower? > *factor;
+    let has_toppled = answer.mechanism.as_ref().is_some_and(|how| how.kind == Kind::Toppling);
+    (slides && answer.by == By::Strength && !has_toppled).then(|| {
+        format!(
+            "blocks may topple first: the weight of `{block}` acts beyond the edge of its base where the ratio of shear to normal force is {factor:.2} times as large: try --by gravity"
+        )
+    })
+}
+
+/// What becomes of cohesion that is exceeded.
+fn brittle(answer: &Safety) -> String {
+    let lower = answer.factor_of_safety.lower;
+    let standing = answer.trials.iter().find(|trial| Some(trial.factor) == lower);
+    let broken = standing.and_then(|trial| trial.broken_facets).filter(|[broken, _]| *broken > 0);
+    let found = match (broken, standing) {
+        (Some([broken, all]), Some(trial)) => {
+            format!(
+                "it was gone on {broken} of {all} facets in contact where blocks still stood, at {:.4}. ",
+                trial.factor
+            )
+        }
+        _ => String::new(),
+    };
+    format!(
+        "cohesion is lost for good, facet by facet, where it is exceeded (no `residual`): {found}Formulas with c A everywhere may give more; \
+         set `residual` to the peak values for joints that keep their cohesion while they slip"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::safety::{Mechanism, Moved, SCHEMA, Trial};
+
+    fn answer(lower: Option<f64>, upper: Option<f64>, not_standing: Vec<Moved>) -> Safety {
+        let trial = |factor| Trial {
+            factor,
+            state: State::Stands,
+            reason: String::new(),
+            block: String::new(),
+            history: Vec::new(),
+            steps: 0,
+            wall_s: 0.0,
+            broken_facets: Some([12, 40]),
+            velocities: Vec::new(),
+        };
+        Safety {
+            schema: SCHEMA.into(),
+            version: String::new(),
+            scene: String::new(),
+            title: String::new(),
+            scene_crc32: String::new(),
+            by: By::Strength,
+            error: 0.01,
+            factor_of_safety: Bracket { lower, upper },
+            not_standing,
+            mechanism: Some(Mechanism { kind: Kind::Sliding, words: String::new(), cut_off_by: Vec::new() }),
+            moving_blocks: Vec::new(),
+            trials: lower.map(trial).into_iter().collect(),
+            remarks: Vec::new(),
+            wall_s: 0.0,
+            known_trials: 0,
+            earlier_s: 0.0,
+        }
+    }
+
+    #[test]
+    fn a_slender_block_that_slides_later_than_it_topples_is_told() {
+        let slender = Slender { block: "column".into(), factor: 1.4928 };
+        let remarks = of(&answer(Some(3.118), Some(3.138), Vec::new()), Some(&slender), false);
+        assert!(
+            remarks.len() == 1 && remarks[0].contains("`column`") && remarks[0].contains("1.49"),
+            "{remarks:?}"
+        );
+        assert!(of(&answer(Some(1.2), Some(1.21), Vec::new()), Some(&slender), false).is_empty());
+    }
+
+    #[test]
+    fn what_does_not_stand_is_told_with_its_way() {
+        let moved = Moved { block: "a".into(), moved_m: 3.158, direction: [1.0, 0.0, 0.0] };
+        let alone = of(&answer(None, Some(1.0 / STRONGEST), vec![moved.clone()]), None, true);
+        assert!(alone.len() == 1 && alone[0].starts_with("`a` moved 3.16 m towards 90.0°/0.0°"), "{alone:?}");
+        let beside = of(&answer(Some(1.2), Some(1.21), vec![moved]), None, false);
+        assert!(
+            beside.len() == 1 && beside[0].contains("32 times as strong: the factor is that of the others"),
+            "{beside:?}"
+        );
+    }
+
+    #[test]
+    fn cohesion_that_is_gone_is_counted() {
+        let remarks = of(&answer(Some(1.2), Some(1.21), Vec::new()), None, true);
+        assert!(remarks.len() == 1 && remarks[0].contains("12 of 40 facets"), "{remarks:?}");
+    }
 }

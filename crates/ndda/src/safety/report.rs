@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
+use super::rest::STRONGEST;
 use super::{Bracket, By, Safety, State};
 use crate::columns::columns;
-use crate::numbers::counted;
+use crate::numbers::{counted, length, trend_and_plunge};
 
 /// Blocks that are named.
 const MOST_BLOCKS: usize = 12;
@@ -20,6 +21,11 @@ pub fn text(safety: &Safety) -> String {
         }
     };
     let answer = match safety.factor_of_safety {
+        Bracket { upper: Some(upper), .. } if !safety.stands_as_drawn() => {
+            format!(
+                "does not stand as drawn, even with joints {STRONGEST} times as strong: factor of safety below {upper:.3}"
+            )
+        }
         Bracket { lower: Some(lower), upper: Some(upper) } => {
             format!("factor of safety {lower:.4} to {upper:.4}")
         }
@@ -31,15 +37,14 @@ pub fn text(safety: &Safety) -> String {
     if let Some(mechanism) = &safety.mechanism {
         let _ = writeln!(text, "{}", mechanism.words);
         let rows = safety.moving_blocks.iter().take(MOST_BLOCKS).map(|block| {
-            let [x, y, z] = block.direction;
             vec![
                 block.name.clone(),
                 block.kind.to_string(),
-                format!("({x:.3}, {y:.3}, {z:.3})"),
-                format!("{:.2e}", block.gone_m),
+                trend_and_plunge(block.direction),
+                length(block.gone_m),
             ]
         });
-        let header = ["moving block", "how", "direction", "gone [m]"].map(String::from).to_vec();
+        let header = ["moving block", "how", "trend/plunge", "moved"].map(String::from).to_vec();
         let _ = writeln!(text, "{}", columns(header, rows.collect()));
         if safety.moving_blocks.len() > MOST_BLOCKS {
             let _ = writeln!(
@@ -59,7 +64,9 @@ pub fn text(safety: &Safety) -> String {
         ]
     });
     let header = ["factor", "blocks", "steps", "time [s]", "why"].map(String::from).to_vec();
-    let _ = writeln!(text, "{}", columns(header, rows.collect()));
+    if !safety.trials.is_empty() {
+        let _ = writeln!(text, "{}", columns(header, rows.collect()));
+    }
     for remark in &safety.remarks {
         let _ = writeln!(text, "note: {remark}");
     }
@@ -102,6 +109,7 @@ mod tests {
             reason: String::new(),
             block: String::new(),
             history: Vec::new(),
+            broken_facets: None,
             velocities: Vec::new(),
             steps: 10,
             wall_s: 1.0,
@@ -115,6 +123,7 @@ mod tests {
             by: By::Strength,
             error: 0.01,
             factor_of_safety: Bracket { lower: Some(1.0), upper: None },
+            not_standing: Vec::new(),
             mechanism: None,
             moving_blocks: Vec::new(),
             trials: vec![trial; 3],

@@ -17,28 +17,33 @@ use crate::Model;
 use crate::build::Choices;
 use crate::run::unless_stopped;
 
+/// Largest factor on the strength with which the scene is brought to rest.
+pub const STRONGEST: f64 = 32.0;
 /// Factors on the strength with which the scene is brought to rest, until it does.
-const STRENGTHS: [f64; 8] = [1.0, 1.5, 2.25, 3.375, 5.0, 8.0, 16.0, 32.0];
+const STRENGTHS: [f64; 8] = [1.0, 1.5, 2.25, 3.375, 5.0, 8.0, 16.0, STRONGEST];
 /// Tolerance of friction in trials, as a part of μN: small against the narrowest bracket.
 const FRICTION_TOLERANCE: f64 = 1e-4;
 
 /// The scene at rest, and with how many times its strength it came to rest.
 ///
-/// Blocks that come to rest elsewhere, a toe that slides out until it lies on the ground, did not stand: the scene is brought to rest with more strength, and only where
-/// that does not hold them either do they count as being at rest.
+/// Blocks that come to rest elsewhere, a toe that slides out until it lies on the ground, did not stand: the scene is brought to rest with more strength. Where that
+/// holds them back little, the largest is tried at once, and only where that does not hold them either do they count as being at rest; [`Start::moved`] names them.
 pub fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(Start, f64), SafetyError> {
     let (mut failed, mut elsewhere): (_, Option<(Start, f64)>) = (None, None);
+    let mut is_hopeless = false;
     for strength in STRENGTHS {
+        if is_hopeless && strength < STRONGEST {
+            continue;
+        }
+        // The last chance of a scene that has never come to rest has all the steps that it asks for.
+        let is_last = strength == STRONGEST && elsewhere.is_none();
         let mut changed = loaded.clone();
         changes::weaken(&mut changed.scene, 1.0 / strength);
         let softest = changes::shear_stiffness_pa_m(&mut changed.scene);
         let settle = changed.scene.settle.unwrap_or_default();
-        let gravity_m_s2 = Vec3::from(changed.scene.gravity_m_s2).norm();
-        let most_steps = if strength < STRENGTHS[STRENGTHS.len() - 1] {
-            settle.most_steps.min(most_steps(&changed.scene))
-        } else {
-            settle.most_steps
-        };
+        let gravity = Vec3::from(changed.scene.gravity_m_s2);
+        let most_steps =
+            if is_last { settle.most_steps } else { settle.most_steps.min(most_steps(&changed.scene)) };
         let model = Model::with(changed, folder, choices())?;
         if strength == STRENGTHS[0] {
             let not_held = model.loaded.warnings.iter().filter(|warning| warning.code == Code::NotHeld);
@@ -50,21 +55,21 @@ pub fn settled(loaded: &LoadedScene, folder: &Path, watch: &Watch) -> Result<(St
         }
         let begun = simulation.state().position.clone();
         let settle = Settle { most_steps, ..crate::build::settle(settle) };
-        let mut slide = (strength < STRENGTHS[STRENGTHS.len() - 1]).then(|| Slide::new(most_steps));
+        let mut slide = (!is_last).then(|| Slide::new(most_steps));
         match rest(&mut simulation, &settle, watch, &mut slide) {
             Ok(Rest::Slides) => {}
             Ok(Rest::Reached) => {
-                let moved = Moved::farthest(&simulation, &begun);
-                let start = Start::new(&mut simulation, gravity_m_s2, softest);
+                let moved = Moved::since(&simulation, &begun);
+                let start = Start::new(&mut simulation, gravity, softest);
                 let start = start.map_err(|source| SafetyError::NotSettled { strength, source })?;
-                let Some(moved) = moved else { return Ok((start, strength)) };
-                let before = elsewhere.take();
-                let gained =
-                    before.as_ref().is_none_or(|(start, _)| moved.is_held_back_from(start.moved.as_ref()));
-                if !gained {
-                    return Ok(before.expect("there is one, or strength gained"));
+                if moved.is_empty() {
+                    return Ok((start, strength));
                 }
-                elsewhere = Some((Start { moved: Some(moved), ..start }, strength));
+                let is_held = |(weaker, _): &(Start, f64)| Moved::are_held_back(&moved, &weaker.moved);
+                is_hopeless = !elsewhere.as_ref().is_none_or(is_held);
+                if !is_hopeless {
+                    elsewhere = Some((Start { moved, ..start }, strength));
+                }
             }
             Ok(Rest::Interrupted) => return Err(SafetyError::Interrupted),
             Err(source) => failed = Some(SafetyError::NotSettled { strength, source }),

@@ -1,6 +1,7 @@
 //! The bracket: the largest factor at which blocks stand, and the smallest at which they fail.
 
 mod march;
+mod next;
 
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
@@ -12,8 +13,7 @@ use ndda_io::scene::Contact;
 use ndda_solver::Snapshot;
 use rayon::prelude::*;
 
-use super::free_blocks::Moved;
-use super::rest::{choices, settled};
+use super::rest::{STRONGEST, choices, settled};
 use super::trial::{Course, Start, State, Trial};
 use super::{
     BlockVelocity, Bracket, By, Mechanism, MovingBlock, Plan, SCHEMA, Safety, SafetyError, Watch, changes,
@@ -21,13 +21,13 @@ use super::{
 };
 use crate::Model;
 use crate::numbers::counted;
+use next::bracket;
 
-/// Factor between the trials that look for a bracket.
-const STRIDE: f64 = 1.5;
 /// How far beyond a single factor blocks are looked at unpushed: what a push adds is far less.
 const BEYOND: f64 = 1.1;
-/// Trials inside a bracket that run side by side.
-const INSIDE: usize = 3;
+/// Criteria of trials are those of this error where a larger one is asked for. Coarser ones take blocks for standing that go on to fall, and the answers to two errors
+/// would exclude each other.
+const COARSEST: f64 = 0.01;
 
 /// What a trial found.
 struct Tried {
@@ -94,6 +94,7 @@ impl<'a> Search<'a> {
             by,
             error: plan.error,
             factor_of_safety: Bracket { lower: None, upper: None },
+            not_standing: start.moved.clone(),
             mechanism: None,
             moving_blocks: Vec::new(),
             trials: Vec::new(),
@@ -102,14 +103,9 @@ impl<'a> Search<'a> {
             known_trials: 0,
             earlier_s: 0.0,
         };
-        if strength > 1.0 {
+        if strength > 1.0 && start.moved.is_empty() {
             answer.remarks.push(format!(
                 "as written the scene does not come to rest; it does with joints {strength} times as strong, and trials begin from there"
-            ));
-        }
-        if let Some(Moved { block, gone_m }) = &start.moved {
-            answer.remarks.push(format!(
-                "block `{block}` moves {gone_m:.2e} m while the scene settles, whatever the strength of joints: trials begin from its place after that"
             ));
         }
         let (mut known, mut known_mechanism) = (Vec::new(), None);
@@ -138,21 +134,33 @@ impl<'a> Search<'a> {
     /// Runs trials until the bracket is as narrow as is asked for.
     pub fn answer(self) -> Result<Safety, SafetyError> {
         let before_s = self.answer.lock().expect("no trial panics").wall_s;
-        let last = if self.by.changes_loads() { self.march(before_s)? } else { self.bisect(before_s)? };
-        let (mechanism, moving) = self.mechanism(last)?;
+        let (mechanism, moving) = match self.none_stands() {
+            true => (None, Vec::new()),
+            false if self.by.changes_loads() => self.mechanism(self.march(before_s)?)?,
+            false => self.mechanism(self.bisect(before_s)?)?,
+        };
         let (may_push, repeated) = (self.may_push(), self.repeated.load(Ordering::Relaxed));
+        let (none_stands, as_drawn) = (self.none_stands(), self.as_drawn());
         let mut answer = self.answer.into_inner().expect("no trial panics");
         (answer.mechanism, answer.moving_blocks) = (mechanism, moving);
-        answer.remarks.extend(remarks::of(&answer));
+        let first = answer.moving_blocks.first();
+        let fails_elsewhere =
+            |first: &MovingBlock| self.start.moved.iter().any(|moved| moved.block == first.name);
+        if first.map_or(none_stands, fails_elsewhere) {
+            answer.factor_of_safety = Bracket { lower: None, upper: Some(as_drawn) };
+        }
+        let is_brittle = changes::has_brittle_cohesion(&self.loaded.scene);
+        answer.remarks.extend(remarks::of(&answer, self.start.slender.as_ref(), is_brittle));
         if repeated > 0 {
             answer.remarks.push(format!(
-                "{} left out of the table and repeated from nearer below, since a large change at once swings blocks beyond where they would rest",
+                "{} repeated in smaller steps of the factor, or pushed: a large change at once swings blocks beyond where they would rest",
                 counted(repeated, "trial was", "trials were")
             ));
         }
         // Springs that slipped on the way to rest keep their friction at its limit, and nothing pushes them.
         let upper = answer.factor_of_safety.upper;
         let fails_at_once = upper.is_some_and(|upper| upper * self.strength <= 1.0 + self.plan.error);
+        let fails_at_once = fails_at_once && answer.stands_as_drawn();
         if fails_at_once && !may_push {
             answer.remarks.push(
                 "blocks fail at the same strength at which they came to rest: if joints slipped while the scene settled, the answer depends on how; \
@@ -169,10 +177,23 @@ impl<'a> Search<'a> {
         Ok(answer)
     }
 
+    /// Whether every block that is free came to rest elsewhere: there is no state to begin from then.
+    fn none_stands(&self) -> bool {
+        self.start.moved.len() == self.start.free
+    }
+
+    /// The factor at which a scene fails as drawn, that does not stand with joints as strong as were tried.
+    fn as_drawn(&self) -> f64 {
+        if self.by.changes_loads() { 1.0 } else { 1.0 / STRONGEST }
+    }
+
     /// Whether blocks stand at one factor on the strength. What stands at a larger one unpushed stands here, too; what fails there is pushed here
     /// in the way in which it failed.
     pub fn at(&self, factor: f64) -> Result<State, SafetyError> {
         let start = &self.start.snapshot;
+        if self.none_stands() {
+            return Ok(if factor >= self.as_drawn() { State::Fails } else { State::Undecided });
+        }
         let beyond = match self.may_push() {
             true => self.try_factor(BEYOND * factor, start, &[], 0.0)?,
             false => return Ok(self.try_factor(factor, start, &[], 0.0)?.state),
@@ -221,7 +242,7 @@ impl<'a> Search<'a> {
     fn wanted(&self) -> Vec<f64> {
         let answer = self.answer.lock().expect("no trial panics");
         let known = |factor: &f64| answer.trials.iter().any(|trial| trial.factor == *factor);
-        let wanted = next(&answer, self.plan);
+        let wanted = next::factors(&answer, self.plan);
         wanted.into_iter().filter(|factor| !known(factor)).collect()
     }
 
@@ -285,11 +306,12 @@ impl<'a> Search<'a> {
     }
 
     fn course<'b>(&'b self, failing: &'b [BlockVelocity]) -> Course<'b> {
-        let (start, error, stop) = (&self.start, self.plan.error, self.watch.stop);
+        let (start, error, stop) = (&self.start, self.plan.error.min(COARSEST), self.watch.stop);
         let tolerance = self.loaded.scene.settle.unwrap_or_default().tolerance;
         let leans = self.by.changes_loads();
         let settle_tolerance = (leans || changes::has_springs_only(&self.loaded.scene)).then_some(tolerance);
-        Course { start, settle_tolerance, leans, error, failing, stop }
+        let has_cohesion = changes::has_cohesion(&self.loaded.scene);
+        Course { start, settle_tolerance, leans, has_cohesion, error, failing, stop }
     }
 
     /// How blocks fail at the upper end of the bracket: that trial once more, with its contacts.
@@ -306,7 +328,7 @@ impl<'a> Search<'a> {
         let failing = self.failing();
         let trial =
             self.course(&failing).run(&mut model.simulation, factor).ok_or(SafetyError::Interrupted)?;
-        let found = mechanism::of(&model, &self.start.position);
+        let found = mechanism::of(&mut model, &self.start.position);
         if let Some(out) = self.watch.out {
             film::record(self.model(factor, &from)?, &trial, out, self.watch.stop)?;
         }
@@ -328,49 +350,4 @@ fn earlier(out: &Path, asked: &Safety, watch: &Watch) -> Option<Safety> {
         ));
     }
     same.then_some(found)
-}
-
-/// The smallest factor at which blocks fail, and the largest below it at which they stand.
-fn bracket(trials: &[Trial]) -> Bracket {
-    let of = |state: State| trials.iter().filter(move |trial| trial.state == state).map(|trial| trial.factor);
-    let upper = of(State::Fails).reduce(f64::min);
-    let lower = of(State::Stands).filter(|factor| upper.is_none_or(|upper| *factor < upper)).reduce(f64::max);
-    Bracket { lower, upper }
-}
-
-/// Factors to try next: outwards until there is a bracket, inwards until it is narrow; around what is undecided.
-fn next(answer: &Safety, plan: &Plan) -> Vec<f64> {
-    if answer.trials.is_empty() {
-        return vec![1.0, STRIDE];
-    }
-    let first = answer.trials[0].factor;
-    let last = answer.trials[answer.trials.len() - 1].factor;
-    match bracket(&answer.trials) {
-        Bracket { lower: Some(lower), upper: Some(upper) } => inside(answer, (lower, upper), plan.error),
-        Bracket { upper: None, .. } if last < plan.most => {
-            vec![(last * STRIDE).min(plan.most), (last * STRIDE * STRIDE).min(plan.most)]
-        }
-        Bracket { lower: None, upper: Some(_) } if first > 1.0 / plan.most => {
-            vec![(first / STRIDE).max(1.0 / plan.most), (first / (STRIDE * STRIDE)).max(1.0 / plan.most)]
-        }
-        _ => Vec::new(),
-    }
-}
-
-fn inside(answer: &Safety, (lower, upper): (f64, f64), error: f64) -> Vec<f64> {
-    let is_wide = |a: f64, b: f64, error: f64| b / a > 1.0 + error;
-    let between = |a: f64, b: f64, part: f64| a * (b / a).powf(part);
-    let undecided = answer.trials.iter().filter(|t| t.factor > lower && t.factor < upper).map(|t| t.factor);
-    let undecided: Vec<f64> = undecided.collect();
-    match undecided.as_slice() {
-        [] if is_wide(lower, upper, error) => {
-            (1..=INSIDE).map(|k| between(lower, upper, k as f64 / (INSIDE + 1) as f64)).collect()
-        }
-        [] => Vec::new(),
-        [first, .., last] | [first @ last] => [(lower, *first), (*last, upper)]
-            .into_iter()
-            .filter(|(a, b)| is_wide(*a, *b, 0.5 * error))
-            .map(|(a, b)| between(a, b, 0.5))
-            .collect(),
-    }
 }

@@ -22,11 +22,13 @@ use std::time::Instant;
 
 use super::failing::{self, BlockVelocity};
 use super::free_blocks::{ELSEWHERE, Moved, free};
+use super::slender::Slender;
 use super::watched::Watched;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_solver::{LocalDamping, Settle, Simulation, Snapshot, StepError};
 use serde::{Deserialize, Serialize};
 
+use crate::numbers::length;
 use crate::run::motion::radius_m;
 use crate::run::unless_stopped;
 
@@ -90,6 +92,9 @@ pub struct Trial {
     pub steps: u64,
     /// Wall-clock time [s].
     pub wall_s: f64,
+    /// Facets in contact whose cohesion or tensile strength is gone at the end, and all of them, where joints have any.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub broken_facets: Option<[usize; 2]>,
     /// Velocities at the end of blocks that fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub velocities: Vec<BlockVelocity>,
@@ -109,19 +114,22 @@ pub struct Start {
     pub normals: Vec<Vec3>,
     /// CRC-32 of the blocks at rest.
     pub blocks_crc32: u32,
-    /// A block that came to rest elsewhere, whatever the strength.
-    pub moved: Option<Moved>,
+    /// Blocks that came to rest elsewhere, even with the largest strength.
+    pub moved: Vec<Moved>,
+    /// Free blocks.
+    pub free: usize,
+    /// The block that would topple first if the slope were made steeper.
+    pub slender: Option<Slender>,
 }
 
 impl Start {
-    /// Measures a scene that has come to rest; `softest_pa_m` is the shear stiffness of its springs, and `cohesion_pa` what they may
-    /// hold.
+    /// Measures a scene that has come to rest under gravity [m/s²]; `softest_pa_m` is the shear stiffness of its springs.
     ///
     /// # Errors
     /// [`StepError`].
     pub fn new(
         simulation: &mut Simulation,
-        gravity_m_s2: f64,
+        gravity: Vec3,
         softest_pa_m: Option<f64>,
     ) -> Result<Self, StepError> {
         let snapshot = simulation.snapshot();
@@ -141,14 +149,25 @@ impl Start {
             .fold(0.0, f64::max);
         let shear_m = softest_pa_m.map_or(0.0, |stiffness| shear_pa / stiffness);
         let mass_kg: f64 = free(simulation).map(|block| simulation.shape(block).operator.mass_kg).sum();
-        let gravity_m_s2 = if gravity_m_s2 > 0.0 { gravity_m_s2 } else { force_n / mass_kg };
+        let gravity_m_s2 = if gravity.norm() > 0.0 { gravity.norm() } else { force_n / mass_kg };
         // No size is smaller than its own rounding.
         let size_m = position.iter().map(|x| x.amax()).fold(0.0, f64::max);
         let elastic_m = normal_m.max(shear_m).max(1e-12 * size_m);
         let normals = super::mechanism::normals(simulation);
+        let slender = Slender::first(simulation, gravity);
         let rest: Vec<[f64; 3]> = simulation.blocks().rest_position.iter().map(|x| (*x).into()).collect();
         let blocks_crc32 = ndda_io::checkpoint::fingerprint(&rest);
-        Ok(Self { snapshot, position, elastic_m, gravity_m_s2, normals, blocks_crc32, moved: None })
+        Ok(Self {
+            snapshot,
+            position,
+            elastic_m,
+            gravity_m_s2,
+            normals,
+            blocks_crc32,
+            moved: Vec::new(),
+            free: free(simulation).count(),
+            slender,
+        })
     }
 }
 
@@ -162,7 +181,9 @@ pub struct Course<'a> {
     pub settle_tolerance: Option<f64>,
     /// Whether loads change, under which blocks lean before they fail.
     pub leans: bool,
-    /// Relative width of the bracket that is asked for.
+    /// Whether joints have cohesion or tensile strength.
+    pub has_cohesion: bool,
+    /// Relative error that criteria are as fine as.
     pub error: f64,
     /// Velocities with which blocks failed at a larger factor, to push them by; empty where they are not pushed.
     pub failing: &'a [BlockVelocity],
@@ -203,6 +224,7 @@ impl Course<'_> {
         };
         Some(Trial {
             factor,
+            broken_facets: self.has_cohesion.then(|| broken(simulation)),
             velocities,
             state,
             reason,
@@ -245,7 +267,7 @@ impl Course<'_> {
             if let Some((block, gone_m)) = watched.accelerating(&far_m) {
                 let name = &simulation.blocks().names[block.index()];
                 let reason =
-                    format!("block `{name}` accelerates; it had moved {gone_m:.2e} m when that was clear");
+                    format!("`{name}` accelerates; it had moved {} when that was clear", length(gone_m));
                 return Some(Ok((State::Fails, reason)));
             }
             resting = if fastest_m_s(simulation) < slow_m_s { resting + 1 } else { 0 };
@@ -299,9 +321,12 @@ impl Course<'_> {
             watched.begin(simulation);
             if let Some((block, gone_m)) = watched.beyond(far_m) {
                 let name = &simulation.blocks().names[block.index()];
-                let reason = format!(
-                    "block `{name}` moves {gone_m:.2e} m, more than elastic deformation explains, before the scene is at rest"
-                );
+                let reason = match settled {
+                    Ok(()) => {
+                        format!("`{name}` came to rest only after {}, in another place", length(gone_m))
+                    }
+                    Err(_) => format!("`{name}` had moved {}, and did not come to rest", length(gone_m)),
+                };
                 return Some(Ok(Some((State::Fails, reason))));
             }
             if !matches!(settled, Err(StepError::NotSettled { .. })) {
@@ -330,27 +355,32 @@ impl Course<'_> {
     fn at_the_end(&self, simulation: &Simulation, watched: &Watched, far_m: &[f64]) -> (State, String) {
         let time_s = simulation.time_s() - watched.times_s[0];
         let (speed_m_s, limit_m_s) = (watched.speed_m_s(far_m), self.threshold_m_s2() * time_s);
-        let gone_m = watched.farthest_m();
+        let gone = length(watched.farthest_m());
         let name = watched.name(simulation);
         let has_rested = watched.rested(RESTED, RESTED_WITHIN * self.start.elastic_m);
         if has_rested && watched.beyond(&self.elsewhere_m(simulation)).is_none() {
-            let reason = format!(
-                "all blocks came to rest within {time_s:.3} s; `{name}` went farthest, {gone_m:.2e} m"
-            );
+            let reason = format!("all came to rest within {time_s:.3} s; `{name}` moved farthest, by {gone}");
             (State::Stands, reason)
         } else if watched.beyond(far_m).is_some() && !watched.slowing(far_m) {
-            let reason =
-                format!("block `{name}` has moved {gone_m:.2e} m, and neither rests nor accelerates");
+            let reason = format!("`{name}` has moved {gone}, and neither rests nor accelerates");
             (State::Undecided, reason)
         } else if speed_m_s > limit_m_s {
             let reason = format!("blocks move at {speed_m_s:.2e} m/s after {time_s:.3} s, which is not rest");
             (State::Undecided, reason)
         } else {
-            let reason =
-                format!("no block went far within {time_s:.3} s; `{name}` went farthest, {gone_m:.2e} m");
+            let reason = match watched.beyond(far_m) {
+                Some(_) => format!("`{name}` slows to a stop after {gone}"),
+                None => format!("no block moves on in {time_s:.3} s; `{name}` moved farthest, by {gone}"),
+            };
             (State::Stands, reason)
         }
     }
+}
+
+/// Facets in contact whose cohesion is gone, and all of them.
+fn broken(simulation: &Simulation) -> [usize; 2] {
+    let facets = &simulation.state().contact.facets;
+    [facets.iter().filter(|facet| facet.broken).count(), facets.len()]
 }
 
 /// Largest speed of a block, by its kinetic energy [m/s].

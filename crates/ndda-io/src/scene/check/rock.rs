@@ -80,8 +80,13 @@ impl Check<'_> {
         let is_tilted = whole > 0.0 && (z >= 0.0 || level > LEVEL * whole);
         if is_tilted && self.scene.rock.iter().any(|rock| !rock.joints.is_empty()) {
             let tilt_deg = level.atan2(-z).to_degrees();
+            let tilted = if z > 0.0 && level <= LEVEL * whole {
+                "points up".into()
+            } else {
+                format!("is tilted by {tilt_deg:.1}° from −z")
+            };
             let message = format!(
-                "gravity is tilted by {tilt_deg:.1}° from −z, but dips of joints are measured from the plane of x and y, not from the horizontal of this gravity"
+                "gravity {tilted}, but dips of joints are measured from the plane of x and y, not from the horizontal of this gravity"
             );
             let help = "keep gravity along −z and turn the joints; or go on, if the dips are measured from the plane of x and y";
             self.warn(Code::DoesNotFit, "gravity_m_s2", message, help);
@@ -342,5 +347,7 @@ mod tests {
         assert_eq!(warned("(0, 0, 0)"), Vec::<String>::new());
         let tilted = warned("(5, 0, -8.660254037844386)");
         assert!(tilted.len() == 1 && tilted[0].contains("tilted by 30.0°"), "{tilted:?}");
+        let upward = warned("(0, 0, 9.81)");
+        assert!(upward.len() == 1 && upward[0].starts_with("gravity points up"), "{upward:?}");
     }
 }

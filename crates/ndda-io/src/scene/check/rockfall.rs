@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::{Check, LIGHT_M_S};
+use crate::scene::code::Code;
 use crate::scene::{
     BoulderShape, BoulderSize, Ground, Integrator, Release, ReleasePlace, Rockfall, Scatter, Solver, Step,
     Zone,
@@ -15,6 +16,8 @@ const MOST_BOULDERS: u32 = 1_000_000;
 const MOST_ZONES: usize = 10_000;
 /// Fewest and most faces of a random polyhedron.
 const FACES: std::ops::RangeInclusive<u32> = 6..=24;
+/// Diameter that boulders hardly have [m].
+const LARGEST_M: f64 = 30.0;
 /// Most that one axis of a boulder may be longer than another.
 const MOST_SLENDER: f64 = 10.0;
 
@@ -198,6 +201,7 @@ impl Check<'_> {
             let message = format!("{size:?} has boulders without size");
             self.error(path, message, "give `within`, with a least size above 0, or another distribution");
         }
+        self.likely_size(&format!("rockfall.boulders.size.{field}"), &boulders.size, (least, most));
         if boulders.shapes.is_empty() {
             self.misfit("rockfall.boulders.shapes", "there is no shape", "leave it out, or give one");
         }
@@ -218,6 +222,26 @@ impl Check<'_> {
                 let message = format!("{axes:?} cannot be the axes of a boulder");
                 self.error(format!("{path}.axes"), message, "give three above 0, none ten times another");
             }
+        }
+    }
+
+    /// Warns of sizes most of which are cut off, and of those that no boulder has.
+    fn likely_size(&mut self, path: &str, size: &BoulderSize, (least, most): (f64, f64)) {
+        let (scatter, unit, largest, likely) = match size {
+            BoulderSize::Diameter { diameter_m } => (diameter_m, "m", LARGEST_M, "1000 mm are 1 m"),
+            BoulderSize::Volume { volume_m3 } => (volume_m3, "m³", LARGEST_M.powi(3), "1000 l are 1 m³"),
+            BoulderSize::Mass { mass_kg } => (mass_kg, "kg", 5e3 * LARGEST_M.powi(3), "1 t is 1000 kg"),
+        };
+        let median = scatter.median();
+        if least < most && !(least..=most).contains(&median) {
+            let message = format!(
+                "the median, {median:.4} {unit}, is outside of `within` ({least}, {most}): more than half of the sizes are cut off"
+            );
+            let help = format!("the unit is {unit}: {likely}; else change `within`");
+            self.warn(Code::UnitSlip, path, message, help);
+        } else if median > largest {
+            let message = format!("the median is {median:.4} {unit}: no boulder is as large");
+            self.warn(Code::UnitSlip, path, message, format!("the unit is {unit}: {likely}"));
         }
     }
 
@@ -275,6 +299,62 @@ impl Scatter {
             Some(distribution) => distribution.check(),
             None if self.middle().is_finite() => Ok(()),
             None => Err(format!("{self:?}: must be a finite number")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::Scatter;
+    use crate::scene::code::Code;
+    use crate::scene::read::load_text;
+
+    /// What is taken for a slip in the units of a rockfall with boulders of this density, size and ground.
+    fn slips(density_kg_m3: &str, size: &str, friction_deg: &str) -> Vec<String> {
+        let text = format!(
+            "(title: \"t\", time: (end_s: 9), gravity_m_s2: (0, 0, -9.81),
+              materials: [(name: \"rock\", density_kg_m3: {density_kg_m3}, young_pa: 2e10, poisson: 0.2)],
+              rockfall: (
+                  terrain: Heights(origin_m: (0, 0), step_m: (1, 1), heights_m: [[0, 0], [0, 0]]),
+                  ground: (restitution: Always(0.3), friction_deg: {friction_deg}), boulders: (material: \"rock\", {size}),
+                  releases: [(name: \"edge\", place: Points([(0.5, 0.5)]))],
+              ))"
+        );
+        let loaded =
+            load_text("s.ron", &text, &[], None).unwrap_or_else(|errors| panic!("{}", errors.render(false)));
+        let slips = loaded.warnings.into_iter().filter(|found| found.code == Code::UnitSlip);
+        slips.map(|found| format!("{}: {}", found.path, found.message)).collect()
+    }
+
+    #[test]
+    fn numbers_in_other_units_are_warned_of() {
+        let metres = "size: Diameter(diameter_m: LogNormal(1, 0.3)), within: (0.4, 2.5)";
+        assert_eq!(slips("2700", metres, "Normal(34, 2)"), Vec::<String>::new());
+        let found = slips("2.7", metres, "Normal(0.6, 0.05)");
+        assert!(
+            found.len() == 2 && found[0].contains("density") && found[1].contains("friction"),
+            "{found:?}"
+        );
+        // The median is the mean over √(1 + 0.3²).
+        let found = slips("2700", &metres.replace("(1, 0.3)", "(1000, 300)"), "Normal(34, 2)");
+        assert!(
+            found.len() == 1 && found[0].contains("957.8263 m, is outside of `within` (0.4, 2.5)"),
+            "{found:?}"
+        );
+        let found = slips("2700", "size: Diameter(diameter_m: Always(800))", "Normal(34, 2)");
+        assert!(found.len() == 1 && found[0].contains("no boulder is as large"), "{found:?}");
+    }
+
+    #[test]
+    fn half_of_a_triangular_distribution_is_below_its_median() {
+        // The cumulative distribution of Triangular(a, c, b) is (x − a)²/((b − a)(c − a)) up to c.
+        for (a, c, b) in [(1.0, 4.0, 5.0), (1.0, 2.0, 5.0), (0.0, 1.0, 1.0)] {
+            let x = Scatter::Triangular(a, c, b).median();
+            let below = match x <= c {
+                true => (x - a) * (x - a) / ((b - a) * (c - a)),
+                false => 1.0 - (b - x) * (b - x) / ((b - a) * (b - c)),
+            };
+            assert!((below - 0.5f64).abs() < 1e-15, "{a} {c} {b}: {x}");
         }
     }
 }

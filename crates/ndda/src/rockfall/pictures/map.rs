@@ -79,7 +79,8 @@ impl<'a> Map<'a> {
                 hex(edge)
             ));
         }
-        let profile: Vec<[f64; 2]> = outcome.profile_m.iter().map(|corner| axes.place(*corner)).collect();
+        let profile: Vec<[f64; 2]> =
+            outcome.profile_m.iter().map(|corner| axes.place(self.within(*corner))).collect();
         let points: Vec<String> = profile.iter().map(|[x, y]| format!("{x:.1},{y:.1}")).collect();
         self.svg.raw(&format!(
             "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.3\" stroke-dasharray=\"2 4\"/>",
@@ -184,6 +185,19 @@ impl<'a> Map<'a> {
     }
 }
 
+/// The key to contours.
+fn contour(svg: &mut Svg, [x, y]: [f64; 2]) {
+    svg.line([x - 9.0, y], [x + 9.0, y], 1.0, ground::CONTOUR);
+}
+
+/// The key to the brightness of the ground.
+fn shade(svg: &mut Svg, [x, y]: [f64; 2]) {
+    for k in 0..6 {
+        let left = x - 9.0 + 3.0 * f64::from(k);
+        svg.rect([left, y - 5.0], [3.2, 10.0], ground::grey(f64::from(k) / 5.0));
+    }
+}
+
 /// White behind words.
 fn halo(svg: &mut Svg, [x, y]: [f64; 2], words: &str) {
     let width = 7.4 * words.chars().count() as f64 + 6.0;
@@ -233,7 +247,14 @@ pub(super) fn paths(model: &Model, outcome: &Outcome, falls: &[Fall]) -> String 
             svg.circle([x - 8.0 + 5.4 * f64::from(k), y], 1.0, INK);
         }
     };
-    map.key(y, &[("release", &start), ("came to rest", &rest), ("profile", &profile)]);
+    let marks: [Mark; 5] = [
+        ("release", &start),
+        ("came to rest", &rest),
+        ("profile", &profile),
+        ("contour, height [m]", &contour),
+        ("lit from north-west", &shade),
+    ];
+    map.key(y, &marks);
     map.finish(outcome)
 }
 
@@ -284,6 +305,6 @@ pub(super) fn reach(model: &Model, outcome: &Outcome, falls: &[Fall]) -> String 
     }
     let labels = [1e-3, 1e-2, 1e-1, 1.0].map(|p| (part(p), format!("{} %", short(100.0 * p))));
     let y = map_of.scale("fraction of boulders", viridis, &labels);
-    map_of.key(y, &[]);
+    map_of.key(y, &[("contour, height [m]", &contour), ("lit from north-west", &shade)]);
     map_of.finish(outcome)
 }

@@ -58,9 +58,9 @@ pub(super) fn draw(model: &Model, outcome: &Outcome, falls: &[Fall]) -> String {
     svg.words([LEFT, 45.0], 13.0, Anchor::Start, GREY, width, &format!("profile · {}", subtitle(outcome)));
     let exaggeration = height / (y[1] - y[0]) * length / width;
     let name = match (exaggeration - 1.0).abs() < 0.02 {
-        true => "terrain and paths, coloured by speed".to_string(),
+        true => "height of terrain and paths [m], coloured by speed".to_string(),
         false => format!(
-            "terrain and paths, coloured by speed; heights drawn {exaggeration:.2} times as large as lengths"
+            "height of terrain and paths [m], coloured by speed; drawn {exaggeration:.2} times as large as lengths"
         ),
     };
     section_of(&mut svg, &section, (model, outcome, falls), &ground);
