@@ -20,6 +20,15 @@ pub fn four_figures(value: f64) -> String {
     }
 }
 
+/// A value of pascals in six figures with the prefix that suits it: `1 MPa`, `20 GPa/m`, `10 Pa`.
+pub fn with_prefix(value: f64, unit: &str) -> String {
+    let prefixes = [(1e9, "G"), (1e6, "M"), (1e3, "k")];
+    let (size, prefix) = prefixes.into_iter().find(|(size, _)| value.abs() >= *size).unwrap_or((1.0, ""));
+    // Read again from its figures, so that none is there by rounding.
+    let figures: f64 = format!("{:.5e}", value / size).parse().unwrap_or(value / size);
+    format!("{figures} {prefix}{unit}")
+}
+
 /// Reads a relative error, above 0 and below 1.
 ///
 /// # Errors
@@ -47,5 +56,24 @@ pub fn direction(text: &str) -> Result<[f64; 3], String> {
     match numbers.ok().and_then(|numbers| <[f64; 3]>::try_from(numbers).ok()) {
         Some(numbers) if numbers.iter().all(|x| x.is_finite()) && numbers != [0.0; 3] => Ok(numbers),
         _ => Err("write three numbers that are not all zero, as 1,0,0".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_written_with_the_prefix_that_suits_them_and_without_rounding() {
+        for (value, said) in [
+            (1e6, "1 MPa"),
+            (10.0, "10 Pa"),
+            (9.999999999999999, "10 Pa"),
+            (20e9, "20 GPa"),
+            (1.25e5, "125 kPa"),
+            (0.0, "0 Pa"),
+        ] {
+            assert_eq!(with_prefix(value, "Pa"), said);
+        }
     }
 }

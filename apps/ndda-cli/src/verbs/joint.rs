@@ -40,7 +40,10 @@ fn test(args: &JointArgs) -> Result<TestOutcome, u8> {
     match args.test {
         JointTestKind::Closure => {
             let test = ClosureTest { stress_pa: args.normal_stress, normal, steps: args.steps };
-            TestOutcome::closure(&test).map_err(|error| error.to_string())
+            let is_given =
+                [args.amplitude.is_some(), args.cycles > 0, args.constant_volume, args.spring.is_some()];
+            let done = joint::refuse_of_shear(is_given).and_then(|()| TestOutcome::closure(&test));
+            done.map_err(|error| error.to_string())
         }
         JointTestKind::Shear => shear(args, &loaded, normal),
     }

@@ -21,7 +21,7 @@ pub fn plot(args: &PlotArgs) -> u8 {
         }
         Err(error) => {
             let code =
-                if matches!(error, PlotError::Write(_)) { exit::INPUT_OUTPUT } else { exit::BAD_INPUT };
+                if let PlotError::Write(error) = &error { exit::of_write(error) } else { exit::BAD_INPUT };
             events.fail(code, &error.to_string())
         }
     }

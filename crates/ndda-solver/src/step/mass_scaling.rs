@@ -64,7 +64,8 @@ impl Simulation {
         let center = operator.center(&self.state.position[self.blocks().nodes_of(block)]);
         let mut stiffness = Matrix6::zeros();
         for triangle in self.blocks().triangles_of(block) {
-            let [a, b, c] = self.blocks().triangles[triangle].map(|node| self.state.position[node.index()] - center);
+            let [a, b, c] =
+                self.blocks().triangles[triangle].map(|node| self.state.position[node.index()] - center);
             let doubled = (b - a).cross(&(c - a));
             let area_m2 = 0.5 * doubled.norm();
             if area_m2 == 0.0 {

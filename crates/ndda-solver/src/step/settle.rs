@@ -301,7 +301,8 @@ impl Simulation {
     fn kinetic_energy_j(&self) -> f64 {
         let of_block = |block: BlockId| {
             let nodes = self.blocks().nodes_of(block);
-            self.inertia_factor(block) * self.shape(block).operator.kinetic_energy_j(&self.state.velocity[nodes])
+            self.inertia_factor(block)
+                * self.shape(block).operator.kinetic_energy_j(&self.state.velocity[nodes])
         };
         let mut total_j = 0.0;
         for block in self.blocks().ids() {

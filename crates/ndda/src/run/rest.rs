@@ -38,7 +38,9 @@ impl fmt::Display for Resting<'_> {
             _ if left <= until => {
                 write!(f, "settled in {steps} steps")?;
                 return match least_inertia {
-                    Some(factor) => write!(f, ", inertia of rigid blocks scaled by factors of {factor:.2e} to 1"),
+                    Some(factor) => {
+                        write!(f, ", inertia of rigid blocks scaled by factors of {factor:.2e} to 1")
+                    }
                     None => Ok(()),
                 };
             }

@@ -145,7 +145,11 @@ mod tests {
     fn seen(most_steps: u64, falls: impl Fn(u64) -> bool) -> Option<u64> {
         let mut slide = Slide::new(most_steps);
         (1..=most_steps).find(|&steps| {
-            slide.is_seen(&Settled { steps, speed_ratio: if falls(steps) { 0.5 } else { 1.0 }, ..Settled::default() })
+            slide.is_seen(&Settled {
+                steps,
+                speed_ratio: if falls(steps) { 0.5 } else { 1.0 },
+                ..Settled::default()
+            })
         })
     }
 
