@@ -220,8 +220,9 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
         (
             stiff_pa,
             format!(
-                "contact is as compliant as half a block of {}, under {}",
+                "as stiff as half a block of {}; blocks overlap by at most {:.0e} of their size at rest under {}",
                 metres(block_m),
+                length_m * pressure_pa / (2.0 * rounded_up(stiff_pa) * block_m),
                 sizes.weight()
             ),
         )

@@ -47,6 +47,14 @@ pub fn positive(text: &str) -> Result<f64, String> {
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be finite and above zero".into()) }
 }
 
+/// Reads a whole number from zero on.
+///
+/// # Errors
+/// What to write instead.
+pub fn whole(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
+}
+
 /// Reads three numbers with commas between them, not all zero.
 ///
 /// # Errors

@@ -71,6 +71,12 @@ impl Parameters {
         node: &Node,
         begins: usize,
     ) -> Result<f64, Diagnostic> {
+        if !node.is_closed(text) && text[node.span.end..].trim().is_empty() {
+            let (path, at) = (tree.path_at(node.span.start), Some(node.span.clone()));
+            let cut_off =
+                Diagnostic::error(Code::Truncated, path, "the file ends inside this expression", at);
+            return Err(cut_off.with_help("a closing bracket is missing, or the file was cut off"));
+        }
         let names: Vec<&str> = self.list.iter().map(|parameter| parameter.name.as_str()).collect();
         let source = &text[begins..node.span.end];
         expression::evaluate(source, &names, &|name| self.value_of(name)).map_err(|mistake| {

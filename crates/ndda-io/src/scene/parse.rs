@@ -177,4 +177,74 @@ mod tests {
             ]
         );
     }
+
+    #[test]
+    fn commas_numbers_and_names_that_are_wrong_are_told_at_once() {
+        assert_eq!(
+            mistakes("step_s: 1e-3 end_s: 1", "poison: 0.2, poisson: 0,25", "cells: (1, 1, 1)"),
+            ["time.end_s syntax", "materials[0].poison unknown-field", "materials[0] syntax"]
+        );
+        assert_eq!(
+            mistakes("step_s: -1e-3 end_s: 1", "poisson: 0.7", "cells: (1, 1.5, -2)"),
+            [
+                "time.step_s out-of-range",
+                "time.end_s syntax",
+                "materials[0].poisson out-of-range",
+                "blocks[0].shape.cells[1] wrong-type",
+                "blocks[0].shape.cells[2] wrong-type"
+            ]
+        );
+    }
+
+    #[test]
+    fn what_may_follow_from_an_expression_that_is_wrong_is_not_told() {
+        let scene = |parameters: &str, step: &str, size: &str, frames: &str| {
+            let text = format!(
+                "(title: \"t\", parameters: ({parameters}), time: (step_s: {step}, end_s: 1),
+                  materials: [(name: \"rock\", density_kg_m3: -2700, young_pa: 2e10, poisson: 0.2)],
+                  blocks: [(name: \"a\", material: \"rok\", shape: Box(size_m: ({size}, 1, 1), cells: (1, 1, 1)))],
+                  output: (frames: {frames}))"
+            );
+            let refused = load_text("s.ron", &text, &[], None).unwrap_err();
+            let told = |found: &crate::diagnostic::Diagnostic| format!("{} {}", found.path, found.code);
+            refused.diagnostics.iter().map(told).collect::<Vec<_>>()
+        };
+        let others = ["materials[0].density_kg_m3 out-of-range", "blocks[0].material unknown-name"];
+        // A size of 1 − 2 m would be out of range, as would one that is computed from what a parameter should be.
+        for (parameters, size, own) in [
+            ("", "Calc(width_m - 2)", "blocks[0].shape.size_m[0] expression"),
+            ("width_m: Calc(wide_m)", "Calc(width_m - 2)", "parameters.width_m expression"),
+        ] {
+            let mut expected = vec![own];
+            expected.extend(others);
+            let mut found = scene(parameters, "1e-3", size, "1");
+            expected.sort_unstable();
+            found.sort_unstable();
+            assert_eq!(found, expected);
+        }
+        let all = scene("a_m: 1 b_m: 2", "1e-3", "Calc(a_m + b_m)", "1.5");
+        assert_eq!(all, ["parameters.b_m syntax", others[0], others[1], "output.frames wrong-type"]);
+    }
+
+    #[test]
+    fn a_bracket_a_decimal_point_and_calc_that_are_missing_are_named() {
+        let told = |rock: &str, dip: &str| {
+            let text = format!(
+                "(title: \"t\", parameters: (dip_1: 30), time: (step_s: 1e-3, end_s: 1),
+                  materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 2e10, poisson: 0.2)],
+                  rock: [(material: \"rock\", domain: Box(min_m: (0, 0, 0), max_m: (1, 1, 1)), joints: [
+                      Plane(name: \"a\", dip_deg: {dip}, dip_direction_deg: 0, point_m: (0, 0, 0){rock},
+                      Plane(name: \"b\", dip_deg: 9, dip_direction_deg: Calc(dip_1), point_m: (0, 0, 0))])])"
+            );
+            load_text("s.ron", &text, &[], None).unwrap_err().diagnostics
+        };
+        let [bracket, point, calc] =
+            [told("", "30"), told(")", "30,5"), told(")", "dip_1")].map(|found| found[0].clone());
+        assert_eq!(bracket.message, "a closing bracket is missing before `Plane`");
+        assert_eq!(point.help.unwrap(), "write a decimal point: 30.5");
+        assert_eq!(calc.help.unwrap(), "write Calc(dip_1)");
+        let cut_off = "(title: \"t\", parameters: (dip_1: 30), time: (step_s: 1e-3, end_s: Calc(dip_";
+        let found = load_text("s.ron", cut_off, &[], None).unwrap_err().diagnostics;
+        assert!(found.iter().all(|found| found.code.to_string() == "truncated"), "{found:?}");
+    }
 }

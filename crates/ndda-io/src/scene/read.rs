@@ -204,3 +204,30 @@ fn with_mistakes_of_values(
     sort(&mut found);
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_quote_the_text_as_it_is_written_after_values_have_been_chosen() {
+        let text = "(title: \"t\", parameters: (unused: 1), time: (end_s: 1),
+  materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 2e10, poisson: 0.2)],
+  blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+  contact: Potential(potential: Smooth(), friction: (friction_deg: 0.5)), output: (frames: 200000))";
+        let loaded = load_text("s.ron", text, &[], None).unwrap();
+        let chosen = |path: &str, value: f64| Chosen { path: path.into(), value, reason: "a \u{3c1}".into() };
+        let all = vec![chosen("contact.penalty_pa", 1e9), chosen("time.step_s", 1e-4)];
+        let complete = loaded.with_chosen(all, Path::new(".")).unwrap();
+        assert!(complete.text.contains("step_s: 1e-4 /*") && complete.scene.time.step_s == 1e-4);
+        assert_eq!(complete.warnings, loaded.warnings);
+        assert!(complete.warnings.len() > 2, "{:?}", complete.warnings);
+        let at = |path: &str| complete.diagnose(path, String::new()).span.unwrap();
+        assert_eq!(&text[at("output.frames")], "200000");
+        assert_eq!(complete.errors(Vec::new()).text, text);
+        // What was chosen is not written: its place is that of what is around it.
+        let refused = loaded.with_chosen(vec![chosen("time.step_s", -1.0)], Path::new(".")).unwrap_err();
+        let wrong = refused.diagnostics.iter().find(|found| found.path == "time.step_s").unwrap();
+        assert_eq!(&refused.text[wrong.span.clone().unwrap()], "(end_s: 1)");
+    }
+}

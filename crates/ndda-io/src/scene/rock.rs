@@ -351,22 +351,6 @@ pub struct Excavation {
     pub glue_pa_m: Option<f64>,
 }
 
-impl Rock {
-    /// Whether a block of this name comes from this rock.
-    pub fn makes(&self, block: &str) -> bool {
-        let is_number = |n: &str| !n.is_empty() && n.bytes().all(|c| c.is_ascii_digit());
-        let number = |stem: &str| {
-            block.strip_prefix(stem).and_then(|rest| rest.strip_prefix('_')).is_some_and(is_number)
-        };
-        self.stems().any(number)
-    }
-
-    /// The names that those of its blocks begin with.
-    fn stems(&self) -> impl Iterator<Item = &str> {
-        [self.name.as_str()].into_iter().chain(self.excavations.iter().map(|space| space.name.as_str()))
-    }
-}
-
 impl Discontinuity {
     /// Its name; of discs from a table that of those without a set.
     pub fn name(&self) -> &str {

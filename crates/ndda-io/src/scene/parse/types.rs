@@ -111,11 +111,16 @@ impl<'a> Reader<'a> {
             || !is_missing && self.doubtful.iter().any(|part| part.contains(&source));
         let told = words::explain(error, &self.plain, self.text, self.tree);
         let is_comma = told.code == Code::Syntax && stops_for_comma(&error.code);
+        let is_misplaced = told.code == Code::Syntax;
         if !follows {
             self.found.push(told);
         }
         if is_comma {
             return self.puts_comma::<T>(at);
+        }
+        // What stands after a bracket that is not closed is in another place than it seems.
+        if is_misplaced {
+            return false;
         }
         if let Some(number) = number_at(&error.code, &shape, plain, at) {
             self.suppose(number);
