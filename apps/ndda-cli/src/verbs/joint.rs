@@ -36,6 +36,7 @@ fn test(args: &JointArgs) -> Result<TestOutcome, u8> {
         return Err(exit::USAGE);
     }
     let loaded = scene(args)?;
+    input::warn(&loaded, Events::default());
     let normal = normal(args, &loaded);
     match args.test {
         JointTestKind::Closure => {
@@ -62,8 +63,7 @@ fn scene(args: &JointArgs) -> Result<LoadedScene, u8> {
         return read::load_text("--friction", SCENE_OF_A_LAW, &overrides, None)
             .map_err(|errors| events.refuse(&errors));
     }
-    let (scene, example) = (args.scene.clone(), args.example.clone());
-    input::scene(&SceneArgs { scene, example, overrides }, events)
+    input::scene(&SceneArgs { scene: args.scene.clone(), example: args.example.clone(), overrides }, events)
 }
 
 /// The normal stiffness that was given, else that of the scene.

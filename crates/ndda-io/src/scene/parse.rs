@@ -182,7 +182,7 @@ mod tests {
     fn commas_numbers_and_names_that_are_wrong_are_told_at_once() {
         assert_eq!(
             mistakes("step_s: 1e-3 end_s: 1", "poison: 0.2, poisson: 0,25", "cells: (1, 1, 1)"),
-            ["time.end_s syntax", "materials[0].poison unknown-field", "materials[0] syntax"]
+            ["time.end_s syntax", "materials[0].poison unknown-field", "materials[0].poisson syntax"]
         );
         assert_eq!(
             mistakes("step_s: -1e-3 end_s: 1", "poisson: 0.7", "cells: (1, 1.5, -2)"),

@@ -110,6 +110,9 @@ impl<'a> Reader<'a> {
         let follows = self.taken_out.iter().any(|earlier| whole.contains(&earlier.start))
             || !is_missing && self.doubtful.iter().any(|part| part.contains(&source));
         let told = words::explain(error, &self.plain, self.text, self.tree);
+        // A file that ends inside an expression ends before the scene does, too.
+        let is_cut_off = told.code == Code::Truncated;
+        let follows = follows || is_cut_off && self.plain.errors.iter().any(|e| e.code == Code::Truncated);
         let is_comma = told.code == Code::Syntax && stops_for_comma(&error.code);
         let is_misplaced = told.code == Code::Syntax;
         if !follows {
@@ -183,6 +186,8 @@ fn number_at(error: &RonError, shape: &Node, plain: &str, at: usize) -> Option<R
             | RonError::IntegerOutOfBounds
             | RonError::InvalidIntegerDigit { .. }
             | RonError::ExpectedComma
+            | RonError::ExpectedStructLikeEnd
+            | RonError::ExpectedArrayEnd
     );
     let leaf = shape.leaf_around(at).filter(|_| may_be)?.span.clone();
     let word = &plain[leaf.clone()];

@@ -63,8 +63,10 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
             at(Code::WrongType, message).with_help(REFERENCE)
         }
         code => {
-            if let Some((message, help)) = decimal_comma(code, text, start) {
-                return at(Code::Syntax, message).with_help(help);
+            if let Some((begins, number)) = decimal_comma(code, text, start) {
+                let message = format!("`{}` is two values", number.replace('.', ","));
+                let found = Diagnostic { path: tree.path_at(begins), ..at(Code::Syntax, message) };
+                return found.with_help(format!("write a decimal point: {number}"));
             }
             if let Some(name) = parameter_at(code, text, start, tree) {
                 let message = format!("`{name}` is a parameter, and not a number by itself");
@@ -92,19 +94,16 @@ fn is_choice(name: &str, text: &str, at: usize) -> bool {
     name.starts_with(char::is_uppercase) && rest.is_some_and(|rest| rest.starts_with('('))
 }
 
-/// That a number has a comma in the place of its point: `0,25` is two values.
-fn decimal_comma(error: &RonError, text: &str, at: usize) -> Option<(String, String)> {
+/// Byte and text of a number, with its point, that has a comma in the place of it: `0,25` is two values.
+fn decimal_comma(error: &RonError, text: &str, at: usize) -> Option<(usize, String)> {
     let wants_name = matches!(
         error,
         RonError::ExpectedIdentifier | RonError::InvalidIdentifier(_) | RonError::SuggestRawIdentifier(_)
     );
-    let digits = |c: &char| c.is_ascii_digit();
-    let decimals: String = text[at..].chars().take_while(digits).collect();
+    let decimals: String = text[at..].chars().take_while(char::is_ascii_digit).collect();
     let before = text[..at].strip_suffix(',').filter(|_| wants_name && !decimals.is_empty())?;
-    let whole = &before[before.trim_end_matches(|c: char| c.is_ascii_digit()).len()..];
-    let number = format!("{whole}.{decimals}");
-    (!whole.is_empty())
-        .then(|| (format!("`{whole},{decimals}` is two values"), format!("write a decimal point: {number}")))
+    let begins = before.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+    (begins < before.len()).then(|| (begins, format!("{}.{decimals}", &before[begins..])))
 }
 
 /// The parameter that stands where a number should.
@@ -152,7 +151,7 @@ fn brackets_of_choice(error: &RonError, text: &str, at: usize) -> Option<(String
 /// That the number around a byte is no count: RON stops at its point, its exponent, or its sign.
 fn no_count(error: &RonError, plain: &str, at: usize) -> Option<String> {
     let is_inside = match error {
-        RonError::ExpectedComma => true,
+        RonError::ExpectedComma | RonError::ExpectedStructLikeEnd | RonError::ExpectedArrayEnd => true,
         RonError::ExpectedInteger | RonError::IntegerOutOfBounds => false,
         _ => return None,
     };
