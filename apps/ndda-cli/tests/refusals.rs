@@ -50,7 +50,7 @@ fn a_scene_in_which_nothing_can_move_is_warned_of_and_not_certified_or_tuned() {
         let (code, text) = said(folder.path(), words);
         assert!(code == exit::BAD_INPUT && text.contains("error: no block can move"), "{words}: {text}");
     }
-    let (_, text) = said(folder.path(), "picture still.ron --size 200x100");
+    let (_, text) = said(folder.path(), "picture still.ron --size 200x160");
     assert!(text.contains("0 of 2 blocks may move"), "{text}");
 }
 

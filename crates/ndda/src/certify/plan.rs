@@ -7,8 +7,7 @@ use ndda_solver::Simulation;
 
 use super::chaos::DISTURBANCE;
 use super::error::CertifyError;
-use super::quantities::BLOCK;
-use super::report::named;
+use super::quantities::{BLOCK, named};
 use crate::build;
 use crate::run::recorder::{Extras, columns, held_blocks};
 use crate::study::case::Case;
