@@ -161,7 +161,8 @@ impl Merging {
     }
 }
 
-/// Two blocks that meet on a surface as one, if it is convex: what the planes of all their other faces enclose.
+/// Two blocks that meet on a surface as one, if it is convex: what the planes of all their other faces enclose. Each of these planes has both blocks
+/// on one side, so that the union holds them, and no more than them by its volume: where planes are evenly spaced, another cell of theirs may be as large.
 fn union(
     a: &Polyhedron,
     b: &Polyhedron,
@@ -176,6 +177,10 @@ fn union(
     let inside = corners.iter().sum::<Vec3>() / corners.len() as f64;
     for surface in faces {
         let plane = &surfaces[surface as usize].plane;
+        let side = plane.height_m(&inside).signum();
+        if corners.iter().any(|corner| side * plane.height_m(corner) < -tolerance.least_depth_m) {
+            return None;
+        }
         if let Split::Both { above, below } = split(&cell, plane, surface, tolerance) {
             cell = if plane.height_m(&inside) > 0.0 { above } else { below };
         }
@@ -187,6 +192,7 @@ fn union(
 
 #[cfg(test)]
 mod tests {
+    use super::super::polyhedron::Face;
     use super::super::{CutOptions, Discontinuity, JointSet, cut_blocks};
     use super::*;
 
@@ -242,6 +248,33 @@ mod tests {
         let mut blocks = cut_blocks(&domain, &[set(0.0, 0.0), set(90.0, 90.0)], &options).unwrap();
         let merged = blocks.merge_slivers(&domain, 1.0);
         assert!(merged.count > 100 && merged.volume_m3 <= domain.volume_m3(), "{merged:?}");
+    }
+
+    /// Whether a point is in a block.
+    fn holds(block: &Polyhedron, at: &Vec3) -> bool {
+        let is_behind = |face: &Face| {
+            let corner = block.vertices[face.vertices[0] as usize];
+            (at - corner).dot(&block.area_vector(face)) < 0.0
+        };
+        block.faces.iter().all(is_behind)
+    }
+
+    #[test]
+    fn each_point_is_in_one_block_after_most_cells_of_a_regular_grid_were_united() {
+        let domain = Domain::cuboid(Vec3::zeros(), Vec3::new(9.0, 8.0, 7.0)).unwrap();
+        let set = |dip, direction| Discontinuity::Set(JointSet::new("set", dip, direction, 0.5));
+        let sets = [set(40.0, 130.0), set(60.0, 220.0)];
+        let options = CutOptions { sliver_width_m: 1.0, ..CutOptions::default() };
+        let mut blocks = cut_blocks(&domain, &sets, &options).unwrap();
+        let merged = blocks.merge_slivers(&domain, 1.0);
+        assert!(merged.count > 300, "{merged:?}");
+        // Points of no regular grid: multiples of irrational numbers.
+        for i in 1..2000 {
+            let part = |irrational: f64| (f64::from(i) * irrational).fract();
+            let at = Vec3::new(9.0 * part(2f64.sqrt()), 8.0 * part(3f64.sqrt()), 7.0 * part(5f64.sqrt()));
+            let count = blocks.blocks.iter().filter(|block| holds(block, &at)).count();
+            assert_eq!(count, 1, "{at}");
+        }
     }
 
     #[test]
