@@ -139,7 +139,7 @@ pub enum Domain {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Slivers {
     /// Each is united with the neighbour with which it shares the largest face, provided that both together are convex; others stay. No
-    /// void is left; the joint between the two is closed there.
+    /// void is left; the joint between the two is closed there. What stays is not united with what is `removed`.
     #[default]
     Merge,
     /// They are taken out, and leave voids, into which blocks may fall.
