@@ -208,10 +208,10 @@ pub struct PlotArgs {
     #[arg(long, value_delimiter = ',', value_name = "NAME")]
     pub columns: Vec<String>,
     /// Column to draw against.
-    #[arg(long, default_value = "time_s", value_name = "NAME")]
+    #[arg(long, default_value = "time_s", value_name = "NAME", requires = "columns")]
     pub against: String,
     /// Logarithmic vertical axis; values not above zero are left out.
-    #[arg(long)]
+    #[arg(long, requires = "columns")]
     pub log: bool,
     /// The picture, .svg or .png.
     #[arg(long, short, default_value = "plot.svg", value_name = "FILE")]
@@ -232,7 +232,7 @@ pub struct MeshArgs {
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FIX")]
     pub fix: Vec<Fix>,
     /// Nodes nearer to each other than this fraction of a body's size are merged by `--fix merge`.
-    #[arg(long, default_value_t = 1e-9, value_name = "RATIO")]
+    #[arg(long, default_value_t = 1e-9, value_name = "RATIO", requires = "fix")]
     pub within: f64,
     /// Output folder [default: out/ and the name of the input with _mesh].
     #[arg(long, value_name = "DIR")]

@@ -28,6 +28,7 @@ pub const INTERRUPTED: u8 = 130;
 pub fn of_write(error: &WriteError) -> u8 {
     match error {
         WriteError::NotFinite { .. } => STOPPED,
+        WriteError::PictureEnding { .. } => BAD_INPUT,
         _ => INPUT_OUTPUT,
     }
 }

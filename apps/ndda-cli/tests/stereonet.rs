@@ -76,8 +76,8 @@ fn what_cannot_be_used_is_said_with_its_place() {
         ("none.csv", &[], "none.csv"),
         ("bad.csv", &["--set", "a=1"], "change the table"),
         ("none.ron", &[], "none.ron"),
-        (&scene, &["--friction", "95"], "--friction 95: write an angle from 0 to 90"),
-        (&scene, &["--lateral", "NaN"], "--lateral NaN"),
+        (&scene, &["--slope", "65/156", "--friction", "95"], "--friction 95: write an angle from 0 to 90"),
+        (&scene, &["--slope", "65/156", "--lateral", "NaN"], "--lateral NaN"),
     ] {
         let (code, _, said) = stereonet(folder.path(), input, words);
         assert!(code == exit::BAD_INPUT && said.contains(reason), "{input} {words:?}: {code} {said}");

@@ -28,6 +28,7 @@ pub mod record;
 mod reference;
 mod renamed;
 mod rock;
+mod rock_names;
 mod rockfall;
 #[cfg(feature = "schema")]
 pub mod schema;

@@ -63,6 +63,12 @@ pub enum WriteError {
         /// Names of those that are missing or empty.
         frames: Vec<String>,
     },
+    /// The name of a picture does not say which of the formats that there are.
+    #[error("{}: the name of a picture ends in .svg or .png", path.display())]
+    PictureEnding {
+        /// The file.
+        path: PathBuf,
+    },
     /// A folder that holds more than results: the root of the file system, or somebody's home.
     #[error("{} is not a folder for results: choose another one with --out", path.display())]
     NoResultFolder {

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt;
 
-use ndda_solver::Simulation;
+use ndda_solver::{Portion, Simulation};
 use serde::Serialize;
 
 use crate::numbers::counted;
@@ -27,11 +27,19 @@ pub struct BoltReport {
     pub bonded_m: f64,
     /// Blocks along it, from its head.
     pub blocks: Vec<String>,
+    /// Those in which it is bonded, from its head.
+    pub bonded_in: Vec<String>,
     /// Length that lies in no block, between its head and its end [m].
     pub outside_m: f64,
 }
 
 impl BoltReport {
+    /// The blocks that its free length runs through, where nothing but a plate ties it to them.
+    fn free_in(&self) -> Vec<&str> {
+        let is_free = |block: &&String| !self.bonded_in.contains(block);
+        self.blocks.iter().filter(is_free).map(String::as_str).collect()
+    }
+
     /// Whether a joint or a gap lies along it.
     fn crosses_a_joint(&self) -> bool {
         self.blocks.len() > 1 || self.outside_m > SHORT * self.bonded_m
@@ -49,10 +57,14 @@ impl BoltReports {
         let report = |index: usize| {
             let (name, portions) = simulation.bolt(index)?;
             let gaps = portions.windows(2).map(|pair| pair[1].from_m - pair[0].to_m);
+            let name_of = |part: &Portion| simulation.blocks().names[part.block.index()].clone();
+            let mut bonded_in: Vec<String> = simulation.bonded_parts(index).iter().map(name_of).collect();
+            bonded_in.dedup();
             Some(BoltReport {
                 name: name.to_string(),
                 bonded_m: simulation.bonded_m(index),
-                blocks: portions.iter().map(|p| simulation.blocks().names[p.block.index()].clone()).collect(),
+                blocks: portions.iter().map(name_of).collect(),
+                bonded_in,
                 outside_m: gaps.sum::<f64>() + (simulation.bolt_length_m(index) - portions.last()?.to_m),
             })
         };
@@ -116,7 +128,11 @@ impl fmt::Display for BoltReports {
             alone => write!(f, "; {alone} of them within one block, where they cross no joint")?,
         }
         for bolt in self.0.iter().take(LISTED) {
-            write!(f, "\n  {}: {:.3} m in {}", bolt.name, bolt.bonded_m, bolt.blocks.join(", "))?;
+            write!(f, "\n  {}: {:.3} m in {}", bolt.name, bolt.bonded_m, bolt.bonded_in.join(", "))?;
+            let free_in = bolt.free_in();
+            if !free_in.is_empty() {
+                write!(f, "; free in {}", free_in.join(", "))?;
+            }
             if bolt.outside_m > SHORT * bolt.bonded_m {
                 write!(f, "; {:.3} m in no block", bolt.outside_m)?;
             }
@@ -129,7 +145,7 @@ impl fmt::Display for BoltReports {
 mod tests {
     use super::*;
 
-    fn doubts(to_m: &str) -> Vec<String> {
+    fn reports(to_m: &str, grouted: &str) -> BoltReports {
         let text = format!(
             r#"(
                 title: "A bolt through two blocks", time: (step_s: 1e-4, end_s: 1e-3),
@@ -141,11 +157,30 @@ mod tests {
                 contact: Potential(penalty_pa: 1e9, friction: (friction_deg: 30)),
                 bolts: [(
                     name: "anchor", at: Line(from_m: (0.4, 0.45, 1.9), to_m: {to_m}),
-                    steel: (young_pa: 200e9, area_m2: 5e-4), grout: (stiffness_n_m2: 1e9, strength_n_m: 2e5),
+                    steel: (young_pa: 200e9, area_m2: 5e-4), grout: (stiffness_n_m2: 1e9, strength_n_m: 2e5{grouted}),
                 )],
             )"#
         );
-        BoltReports::new(&crate::Model::from_text(&text).unwrap().simulation).doubts(|_| 0)
+        BoltReports::new(&crate::Model::from_text(&text).unwrap().simulation)
+    }
+
+    fn doubts(to_m: &str) -> Vec<String> {
+        reports(to_m, "").doubts(|_| 0)
+    }
+
+    #[test]
+    fn a_bolt_is_bonded_where_its_grout_is_and_free_in_the_blocks_before() {
+        // The joint is 0.9 m from the head.
+        let to_m = "(0.4, 0.45, 0.2)";
+        for (grouted, said) in [
+            ("", "anchor: 1.700 m in top, foot"),
+            (", from_m: 1", "anchor: 0.700 m in foot; free in top"),
+            (", from_m: 0.5", "anchor: 1.200 m in top, foot"),
+            (", to_m: 0.8", "anchor: 0.800 m in top; free in foot"),
+        ] {
+            let told = reports(to_m, grouted).to_string();
+            assert_eq!(told.lines().last().unwrap().trim(), said);
+        }
     }
 
     #[test]

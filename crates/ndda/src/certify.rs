@@ -13,6 +13,7 @@ use std::path::PathBuf;
 
 use ndda_io::study::LoadedStudy;
 
+use crate::forecast::held;
 use crate::study::launch::Launch;
 use crate::study::make_folder;
 use crate::study::runner::CaseRunner;
@@ -36,7 +37,7 @@ impl Trial {
     /// A scene in `file` that is run in `out`, which is made; `steps` is the number of steps of its longest step.
     ///
     /// # Errors
-    /// [`CertifyError`] when the folder cannot be made.
+    /// [`CertifyError`] when nothing moves, or the folder cannot be made.
     pub fn new(
         model: &Model,
         (file, text): (PathBuf, String),
@@ -44,6 +45,9 @@ impl Trial {
         out: PathBuf,
         steps: u64,
     ) -> Result<Self, CertifyError> {
+        if !held::something_moves(&model.loaded.scene, model.simulation.blocks()) {
+            return Err(CertifyError::NothingMoves);
+        }
         make_folder(&out)?;
         // All runs have what was chosen for the scene as it is.
         let overrides = [choose::as_overrides(&model.loaded.chosen), overrides.to_vec()].concat();

@@ -21,6 +21,7 @@ use ndda_mesh::geometry::{Aabb, tet_volume, triangle_area_vector};
 use ndda_mesh::{BlockSet, Vec3};
 
 use crate::build::{self, Fault};
+use crate::forecast::held::NOTHING_MOVES;
 use crate::forecast::{admit, step};
 
 /// Part of the volume that is in blocks smaller than the size that counts.
@@ -188,6 +189,8 @@ fn small(mut volumes: Vec<f64>) -> f64 {
 
 /// Chooses the penalty where it is left out.
 fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
+    // Where nothing moves, any penalty serves.
+    let of_all = scene.materials.iter().map(|material| material.young_pa).fold(0.0, f64::max);
     let Some(Contact::Potential { penalty_pa, potential, depth_ratio, .. }) = &mut scene.contact else {
         return None;
     };
@@ -198,6 +201,11 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
         Potential::Smooth { reference_m } | Potential::Closure { reference_m, .. } => *reference_m,
         Potential::Element | Potential::Volume { .. } => 0.25 * sizes.height_m,
     };
+    if sizes.young_pa == 0.0 {
+        *penalty_pa = rounded_up(OF_YOUNG * of_all);
+        let reason = format!("{NOTHING_MOVES}; {OF_YOUNG:e} of Young's modulus");
+        return Some(Chosen { path: "contact.penalty_pa".into(), value: *penalty_pa, reason });
+    }
     let Sizes { block_m, fall_m, gravity_m_s2: g, density_kg_m3: rho, speed_m_s: v, load_pa, .. } = *sizes;
     let pressure_pa = rho * (v * v + 2.0 * g * fall_m) + 2.0 * load_pa;
     let shallow_pa = length_m * pressure_pa / (2.0 * *depth_ratio * block_m);
@@ -212,8 +220,9 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
         (
             stiff_pa,
             format!(
-                "contact is as compliant as half a block of {}, under {}",
+                "as stiff as half a block of {}; blocks overlap by at most {:.0e} of their size at rest under {}",
                 metres(block_m),
+                length_m * pressure_pa / (2.0 * rounded_up(stiff_pa) * block_m),
                 sizes.weight()
             ),
         )

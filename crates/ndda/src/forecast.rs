@@ -11,4 +11,5 @@ pub mod memory;
 pub(crate) mod rim;
 pub mod rounding;
 pub mod size;
+pub mod slivers;
 pub mod step;

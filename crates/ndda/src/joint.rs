@@ -49,6 +49,11 @@ pub enum JointError {
         /// The range that is allowed.
         advice: &'static str,
     },
+    /// An option of shear tests, given to another test.
+    #[error(
+        "{0} is for shear tests, and has no effect on the closure of a joint: leave it out, or give --test shear"
+    )]
+    OfShear(&'static str),
     /// A joint that may not open, or that a spring holds, needs a normal stiffness.
     #[error(
         "at constant volume the normal stress follows from a normal stiffness: give --joint-stiffness, or a scene with \
@@ -61,6 +66,16 @@ pub enum JointError {
         /// Slip then [m].
         slip_m: f64,
     },
+}
+
+/// Refuses options of shear tests in another test: whether an amplitude, cycles, constant volume and a spring are given.
+///
+/// # Errors
+/// [`JointError::OfShear`] with the first that is.
+pub fn refuse_of_shear(given: [bool; 4]) -> Result<(), JointError> {
+    let options = ["--amplitude", "--cycles", "--constant-volume", "--spring"];
+    let given = options.into_iter().zip(given).find(|(_, is_given)| *is_given);
+    given.map_or(Ok(()), |(option, _)| Err(JointError::OfShear(option)))
 }
 
 /// A number that must be above zero, and finite.

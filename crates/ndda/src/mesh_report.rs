@@ -11,8 +11,8 @@ use ndda_mesh::{BlockMesh, BlockSet, MeshError};
 use serde::Serialize;
 
 use crate::build::RockReport;
-use crate::forecast::held;
 use crate::forecast::step::{self, AdvisedStep};
+use crate::forecast::{held, slivers};
 use crate::numbers::{counted, four_figures};
 
 /// Most bars of the histogram of volumes.
@@ -93,6 +93,7 @@ impl MeshReport {
     pub fn of_scene(&mut self, scene: &Scene, blocks: &BlockSet) {
         self.steps = step::advise_materials(scene, blocks);
         self.warnings = held::sentences(scene, blocks);
+        self.warnings.extend(slivers::sentences(&self.rock));
     }
 
     /// The report as JSON.

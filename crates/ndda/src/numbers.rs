@@ -47,6 +47,15 @@ pub fn trend_and_plunge([x, y, z]: [f64; 3]) -> String {
     format!("{trend_deg:.1}°/{:.1}°", rounded((-z).atan2(across)))
 }
 
+/// A value of pascals in six figures with the prefix that suits it: `1 MPa`, `20 GPa/m`, `10 Pa`.
+pub fn with_prefix(value: f64, unit: &str) -> String {
+    let prefixes = [(1e9, "G"), (1e6, "M"), (1e3, "k")];
+    let (size, prefix) = prefixes.into_iter().find(|(size, _)| value.abs() >= *size).unwrap_or((1.0, ""));
+    // Read again from its figures, so that none is there by rounding.
+    let figures: f64 = format!("{:.5e}", value / size).parse().unwrap_or(value / size);
+    format!("{figures} {prefix}{unit}")
+}
+
 /// Reads a relative error, above 0 and below 1.
 ///
 /// # Errors
@@ -63,6 +72,14 @@ pub fn relative_error(text: &str) -> Result<f64, String> {
 pub fn positive(text: &str) -> Result<f64, String> {
     let number: f64 = text.parse().map_err(|_| "write a number, as 1e-2".to_string())?;
     if number > 0.0 && number.is_finite() { Ok(number) } else { Err("must be finite and above zero".into()) }
+}
+
+/// Reads a whole number from zero on.
+///
+/// # Errors
+/// What to write instead.
+pub fn whole(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
 }
 
 /// Reads three numbers with commas between them, not all zero.
@@ -103,5 +120,18 @@ mod tests {
         assert_eq!(trend_and_plunge([0.0, -2.0, 0.0]), "180.0°/0.0°");
         assert_eq!(trend_and_plunge([-1.0, 0.0, 1.0]), "270.0°/-45.0°");
         assert_eq!(trend_and_plunge([0.0, 0.0, -3.0]), "downward");
+    }
+
+    fn values_are_written_with_the_prefix_that_suits_them_and_without_rounding() {
+        for (value, said) in [
+            (1e6, "1 MPa"),
+            (10.0, "10 Pa"),
+            (9.999999999999999, "10 Pa"),
+            (20e9, "20 GPa"),
+            (1.25e5, "125 kPa"),
+            (0.0, "0 Pa"),
+        ] {
+            assert_eq!(with_prefix(value, "Pa"), said);
+        }
     }
 }

@@ -69,7 +69,7 @@ pub fn write_svg(path: &Path, svg: String) -> Result<(), WriteError> {
     let bytes = match path.extension().and_then(|ending| ending.to_str()) {
         Some("svg") => svg.into_bytes(),
         Some("png") => png(&svg).map_err(encode)?,
-        _ => return Err(encode("the name of a picture ends in .svg or .png".into())),
+        _ => return Err(WriteError::PictureEnding { path: path.to_path_buf() }),
     };
     atomic::write(path, &bytes)
 }

@@ -39,7 +39,7 @@ pub enum PlotError {
         file: PathBuf,
         /// The problem.
         reason: String,
-        /// The columns that it has.
+        /// The columns that it has, or those of them that are meant.
         names: Vec<String>,
     },
     /// There is no curve to draw.
@@ -48,6 +48,13 @@ pub enum PlotError {
     /// The picture cannot be written.
     #[error("{0}")]
     Write(#[from] WriteError),
+}
+
+impl PlotError {
+    /// Why the picture cannot be written, if that is it.
+    pub fn of_file(&self) -> Option<&WriteError> {
+        if let Self::Write(error) = self { Some(error) } else { None }
+    }
 }
 
 /// A picture to draw.
@@ -94,7 +101,10 @@ pub fn plot(plot: &Plot, out: &Path) -> Result<(), PlotError> {
     let mut lines = Vec::new();
     let (mut names, mut against) = (Vec::new(), String::new());
     for ((file, table), input) in files.iter().zip(&tables).zip(&plot.inputs) {
-        let place = |name: &str| find(table, name).map_err(|reason| lost(file, table, reason));
+        let place = |name: &str| {
+            let lost = |(reason, names)| PlotError::Column { file: file.clone(), reason, names };
+            find(table, name).map_err(lost)
+        };
         let x = place(&plot.against)?;
         against.clone_from(&table.names[x]);
         for column in &plot.columns {
@@ -126,20 +136,19 @@ fn label(input: &Path) -> String {
     named.file_name().unwrap_or(named.as_os_str()).to_string_lossy().into_owned()
 }
 
-fn lost(file: &Path, table: &Table, reason: String) -> PlotError {
-    PlotError::Column { file: file.to_path_buf(), reason, names: table.names.clone() }
-}
-
 /// The column called `name`, or the only one whose name begins so.
-fn find(table: &Table, name: &str) -> Result<usize, String> {
+fn find(table: &Table, name: &str) -> Result<usize, (String, Vec<String>)> {
     if let Some(exact) = table.names.iter().position(|known| known == name) {
         return Ok(exact);
     }
     let begins: Vec<usize> = (0..table.names.len()).filter(|i| table.names[*i].starts_with(name)).collect();
     match begins[..] {
         [only] => Ok(only),
-        [] => Err(format!("no column begins with `{name}`")),
-        _ => Err(format!("more than one column begins with `{name}`")),
+        [] => Err((format!("no column begins with `{name}`"), table.names.clone())),
+        _ => {
+            let those = begins.iter().map(|&i| table.names[i].clone()).collect();
+            Err((format!("more than one column begins with `{name}`"), those))
+        }
     }
 }
 
@@ -229,8 +238,8 @@ mod tests {
         let table = Table { names: names.to_vec(), columns: vec![Vec::new(); 5] };
         assert_eq!(find(&table, "t"), Ok(0));
         assert_eq!(find(&table, "kinetic"), Ok(1));
-        assert!(find(&table, "momentum").unwrap_err().contains("more than one"));
-        assert!(find(&table, "x").unwrap_err().contains("no column"));
+        assert!(find(&table, "momentum").unwrap_err().0.contains("more than one"));
+        assert!(find(&table, "x").unwrap_err().0.contains("no column"));
     }
 
     #[test]

@@ -55,7 +55,7 @@ pub enum ShakingError {
     #[error(transparent)]
     History(#[from] TableError),
     /// The history has no such velocity.
-    #[error("{}: {reason}; write --column with one of {names}", file.display())]
+    #[error("{}: {reason}; {}", file.display(), which_column(names))]
     Column {
         /// The history.
         file: PathBuf,
@@ -77,6 +77,13 @@ pub enum ShakingError {
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
+}
+
+fn which_column(names: &str) -> String {
+    match names.is_empty() {
+        true => "it has no velocities: give the scene `monitors`, and run it again".into(),
+        false => format!("write --column with one of {names}"),
+    }
 }
 
 /// What there is to know of a record.

@@ -37,6 +37,9 @@ pub const SLIDING_LATERAL_DEG: f64 = 20.0;
 /// Planes topple within this angle of the direction opposite to it [°] (Goodman 1989).
 const TOPPLING_LATERAL_DEG: f64 = 30.0;
 
+/// Dips up to a right angle, in radians, are below it.
+const RADIANS_AT_MOST: f64 = 1.6;
+
 /// Most sets that a table and a picture list.
 const MOST_LISTED: usize = 12;
 
@@ -100,6 +103,12 @@ pub struct Stereonet {
     pub wedges: Vec<Wedge>,
     /// Checks of all planes; wedges are those of two planes of different sets, or of any two if there is one set.
     pub checks: Option<Checks>,
+    /// Planes of a scene that are borders of rock that is removed or fixed, and no joints.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub borders: Vec<String>,
+    /// What is probably not meant.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// Whether friction was given; without it the checks are of directions alone.
     #[serde(skip)]
     pub has_friction: bool,
@@ -193,8 +202,21 @@ fn measure(planes: &Planes, slope: Option<Slope>) -> Stereonet {
         sets: sets.collect(),
         wedges,
         checks: slope.map(|slope| slope.checks(&planes.planes, set_of)),
+        borders: planes.borders.clone(),
+        warnings: in_radians(&planes.planes).into_iter().collect(),
         has_friction: true,
     }
+}
+
+/// That all planes are so nearly level that their angles are probably in radians.
+fn in_radians(planes: &[Orientation]) -> Option<String> {
+    let steepest = planes.iter().map(|plane| plane.dip_deg).fold(0.0, f64::max);
+    let are_level = planes.len() > 1 && steepest > 0.0 && steepest < RADIANS_AT_MOST;
+    are_level.then(|| {
+        format!(
+            "no plane dips by more than {steepest}°: angles are read as degrees, and these may be radians"
+        )
+    })
 }
 
 #[cfg(test)]

@@ -94,6 +94,7 @@ pub fn tune(
     if !trial.plan.scene.stages.is_empty() {
         return Err(CertifyError::Stages.into());
     }
+    trial.plan.check_names(&wanted.of)?;
     let mut runner = Runner {
         launch,
         plan: &trial.plan,

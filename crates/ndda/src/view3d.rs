@@ -256,6 +256,7 @@ fn read(request: &Request) -> Result<Film, ViewError> {
 fn check_options_of_scene(request: &Request) -> Result<(), ViewError> {
     match (request.frames, request.look.magnify) {
         (Frames::Most(_), _) => Err(ViewError::Still),
+        _ if !request.look.outlines => Err(ViewError::NotRun("--no-outlines")),
         (Frames::One(frame), _) if frame != FrameChoice::Auto => Err(ViewError::NotRun("--frame")),
         (_, factor) if factor != 1.0 => Err(ViewError::NotRun("--magnify")),
         _ => Ok(()),

@@ -48,9 +48,9 @@ pub struct JointArgs {
     /// Largest closure of the joint [m]: closure then follows a hyperbola (Bandis), with --joint-stiffness as its initial stiffness.
     #[arg(long, value_name = "M", requires = "joint_stiffness", allow_negative_numbers = true)]
     pub max_closure: Option<f64>,
-    /// Slip at which shearing ends, or turns round in a cyclic test [m].
-    #[arg(long, value_name = "M", default_value_t = 0.01, allow_negative_numbers = true)]
-    pub amplitude: f64,
+    /// Slip at which shearing ends, or turns round in a cyclic test [m] [default: 0.01].
+    #[arg(long, value_name = "M", allow_negative_numbers = true)]
+    pub amplitude: Option<f64>,
     /// Number of shear cycles, to the same slip on both sides of the start; 0 shears in one direction only.
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub cycles: u32,

@@ -22,10 +22,10 @@ pub struct StereonetArgs {
     #[arg(long, value_name = "DIP/DIRECTION", value_parser = parse_orientation)]
     pub slope: Option<Orientation>,
     /// Friction of the joints in degrees: planes and wedges slide if they are steeper [default: checks of directions alone].
-    #[arg(long, value_name = "DEGREES")]
+    #[arg(long, value_name = "DEGREES", requires = "slope")]
     pub friction: Option<f64>,
     /// Lateral limit [°]: planes slide only if their dip direction is within this angle of the slope's.
-    #[arg(long, value_name = "DEGREES", default_value_t = SLIDING_LATERAL_DEG)]
+    #[arg(long, value_name = "DEGREES", default_value_t = SLIDING_LATERAL_DEG, requires = "slope")]
     pub lateral: f64,
     /// The picture, .svg or .png.
     #[arg(long, short, default_value = "stereonet.svg", value_name = "FILE")]

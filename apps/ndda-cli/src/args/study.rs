@@ -57,7 +57,7 @@ pub struct SweepArgs {
     #[arg(long, value_enum, value_name = "KIND")]
     pub sampling: Option<Spread>,
     /// Seed of the samples [default: 0].
-    #[arg(long, value_name = "SEED")]
+    #[arg(long, value_name = "SEED", value_parser = ndda::numbers::whole)]
     pub seed: Option<u64>,
     /// Correlate two random parameters by their names: a,b=-0.5; may be repeated.
     #[arg(long, value_name = "A,B=R", allow_hyphen_values = true)]

@@ -36,11 +36,15 @@ fn test(args: &JointArgs) -> Result<TestOutcome, u8> {
         return Err(exit::USAGE);
     }
     let loaded = scene(args)?;
+    input::warn(&loaded, Events::default());
     let normal = normal(args, &loaded);
     match args.test {
         JointTestKind::Closure => {
             let test = ClosureTest { stress_pa: args.normal_stress, normal, steps: args.steps };
-            TestOutcome::closure(&test).map_err(|error| error.to_string())
+            let is_given =
+                [args.amplitude.is_some(), args.cycles > 0, args.constant_volume, args.spring.is_some()];
+            let done = joint::refuse_of_shear(is_given).and_then(|()| TestOutcome::closure(&test));
+            done.map_err(|error| error.to_string())
         }
         JointTestKind::Shear => shear(args, &loaded, normal),
     }
@@ -59,8 +63,7 @@ fn scene(args: &JointArgs) -> Result<LoadedScene, u8> {
         return read::load_text("--friction", SCENE_OF_A_LAW, &overrides, None)
             .map_err(|errors| events.refuse(&errors));
     }
-    let (scene, example) = (args.scene.clone(), args.example.clone());
-    input::scene(&SceneArgs { scene, example, overrides }, events)
+    input::scene(&SceneArgs { scene: args.scene.clone(), example: args.example.clone(), overrides }, events)
 }
 
 /// The normal stiffness that was given, else that of the scene.

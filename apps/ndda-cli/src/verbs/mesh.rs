@@ -123,7 +123,7 @@ fn finish(args: &MeshArgs, events: Events, measured: &MeshReport, input: &Input,
             events.emit("measured", &json!({"report": measured}));
             events.emit("finished", &json!({"exit_code": exit::DONE, "folder": folder}));
             if !args.json {
-                say(&format!("{}: no errors\n{measured}{files}", args.input.display()));
+                say(&format!("{}: no errors in the blocks\n{measured}{files}", args.input.display()));
             }
             exit::DONE
         }

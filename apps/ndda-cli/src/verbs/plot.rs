@@ -20,8 +20,7 @@ pub fn plot(args: &PlotArgs) -> u8 {
             exit::DONE
         }
         Err(error) => {
-            let code =
-                if matches!(error, PlotError::Write(_)) { exit::INPUT_OUTPUT } else { exit::BAD_INPUT };
+            let code = error.of_file().map_or(exit::BAD_INPUT, exit::of_write);
             events.fail(code, &error.to_string())
         }
     }

@@ -3432,6 +3432,10 @@ class Settle(Builder):
         Steps after which it is given up. Default: 1000000.
     damping : SettleDampingChoice, optional
         Damping on the way to rest. Default: `Kinetic`.
+    mass_scaling : bool, optional
+        Whether heavy rigid blocks have less inertia on the way to rest, so that contact makes all blocks
+        oscillate as fast as the fastest (weights stay as they are). Rest is reached in fewer steps; where
+        friction leaves several equilibria, another one may be found. Default: false.
 
     Examples
     --------
@@ -3442,7 +3446,8 @@ class Settle(Builder):
     tolerance: float | None = None
     most_steps: int | None = None
     damping: SettleDampingChoice | None = None
-    _kinds: ClassVar[Mapping[str, str]] = {"tolerance": "num", "most_steps": "int", "damping": "SettleDamping"}
+    mass_scaling: bool | None = None
+    _kinds: ClassVar[Mapping[str, str]] = {"tolerance": "num", "most_steps": "int", "damping": "SettleDamping", "mass_scaling": "bool"}
 
 
 class SettleDamping:
@@ -3742,7 +3747,8 @@ class Slivers:
     """
 
     # Each is united with the neighbour with which it shares the largest face, provided that both together are
-    # convex; others stay. No void is left; the joint between the two is closed there.
+    # convex; others stay. No void is left; the joint between the two is closed there. What stays is not united
+    # with what is `removed`.
     Merge: ClassVar[Literal["Merge"]] = "Merge"
     # They are taken out, and leave voids, into which blocks may fall.
     Remove: ClassVar[Literal["Remove"]] = "Remove"

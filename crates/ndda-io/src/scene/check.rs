@@ -36,6 +36,8 @@ const MOST_NODES: f64 = 5e7;
 const HUGE: f64 = 1e50;
 /// Gravity beyond it is that of a centrifuge, or in another unit [m/s²].
 const MUCH_GRAVITY: f64 = 50.0;
+/// Digits of the numbers of blocks of rock, at least.
+const DIGITS: usize = 4;
 /// Speed of light [m/s].
 const LIGHT_M_S: f64 = 299_792_458.0;
 
@@ -170,7 +172,14 @@ impl Check<'_> {
 
     /// The name of one block; those of a rock are looked for once it is cut.
     fn known_block(&mut self, path: String, name: &str) {
-        if !self.scene.rock.iter().any(|rock| rock.makes(name)) {
+        if self.scene.rock.iter().any(|rock| rock.makes(name)) {
+            let (stem, number) = name.rsplit_once('_').unwrap_or_default();
+            if number.len() < DIGITS && !self.scene.blocks.iter().any(|block| block.name == name) {
+                let help =
+                    format!("blocks of rock have numbers of {DIGITS} digits: `{stem}_{number:0>DIGITS$}`");
+                self.report(Code::UnknownName, path, format!("there is no block `{name}`"), help);
+            }
+        } else {
             let blocks: Vec<&str> = self.scene.blocks.iter().map(|b| b.name.as_str()).collect();
             self.known(path, "block", name, &blocks);
         }
@@ -180,7 +189,9 @@ impl Check<'_> {
     fn known_blocks(&mut self, path: String, pattern: &str) {
         if !pattern.contains('*') {
             self.known_block(path, pattern);
-        } else if self.scene.rock.is_empty() && !self.scene.blocks.iter().any(|b| matches(pattern, &b.name)) {
+        } else if !self.scene.rock.iter().any(|rock| rock.may_make(pattern))
+            && !self.scene.blocks.iter().any(|b| matches(pattern, &b.name))
+        {
             self.report(
                 Code::UnknownName,
                 path,

@@ -44,9 +44,16 @@ pub enum JointTableError {
         /// The range that is allowed.
         advice: &'static str,
     },
+    /// Several lines that cannot be used.
+    #[error("{}", in_lines(.0))]
+    Several(Vec<JointTableError>),
     /// There is no joint.
     #[error("{} has no joints: write a line for each below the names of the columns", .0.display())]
     Empty(PathBuf),
+}
+
+fn in_lines(errors: &[JointTableError]) -> String {
+    errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
 /// A plane of a table.
@@ -75,6 +82,8 @@ pub struct DiscRow {
 const OF_PLANES: &str = "dip_deg,dip_direction_deg,set";
 /// Columns of discs.
 const OF_DISCS: &str = "dip_deg,dip_direction_deg,x_m,y_m,z_m,radius_m,set";
+/// Most lines whose mistakes are told at once.
+const MOST_TOLD: usize = 20;
 /// Numbers beyond it have products that overflow.
 const HUGE: f64 = 1e50;
 
@@ -182,13 +191,24 @@ fn read<P, T>(
             return Err(JointTableError::NoColumn { path: path.to_path_buf(), column, columns });
         }
     }
-    let mut rows = Vec::new();
+    let (mut rows, mut wrong) = (Vec::new(), Vec::new());
     for cells in reader.into_records() {
-        let cells = cells.map_err(words)?;
-        let line = Row { path, header: &header, cells, columns };
-        rows.push(row(line.plane()?, more(&line)?));
+        let of_line = |cells| {
+            let line = Row { path, header: &header, cells, columns };
+            Ok(row(line.plane()?, more(&line)?))
+        };
+        match cells.map_err(words).and_then(of_line) {
+            Ok(row) => rows.push(row),
+            Err(error) if wrong.len() < MOST_TOLD => wrong.push(error),
+            Err(_) => break,
+        }
     }
-    if rows.is_empty() { Err(JointTableError::Empty(path.to_path_buf())) } else { Ok(rows) }
+    match wrong.len() {
+        0 if rows.is_empty() => Err(JointTableError::Empty(path.to_path_buf())),
+        0 => Ok(rows),
+        1 => Err(wrong.remove(0)),
+        _ => Err(JointTableError::Several(wrong)),
+    }
 }
 
 #[cfg(test)]
@@ -229,6 +249,12 @@ mod tests {
             let said = of(&format!("{header}\n{lines}")).unwrap_err();
             assert!(said.contains(words), "{said}");
         }
+        let both =
+            of(&format!("{header}\n91,130,0,0,0,1\n40,130,0,0,0,1\n40,130\n40,130,0,0,0,x\n")).unwrap_err();
+        assert!(
+            ["line 2, column 1", "line 4 has 2 values", "line 5, column 6"].iter().all(|w| both.contains(w)),
+            "{both}"
+        );
         assert!(of("dip_deg,dip_direction_deg\n40,130\n").unwrap_err().contains("no column x_m"));
         assert!(of("").unwrap_err().contains("no column dip_deg"));
         assert!(of("dip_deg,dip_direction_deg,Set\n40,130,a\n").unwrap_err().contains("write `set`"));

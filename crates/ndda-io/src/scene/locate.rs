@@ -97,7 +97,7 @@ impl Node {
     }
 
     /// Whether its bracket or its quotes are closed.
-    fn is_closed(&self, text: &str) -> bool {
+    pub(crate) fn is_closed(&self, text: &str) -> bool {
         let own = &text[self.span.clone()];
         match self.opening {
             Some(_) => self.is_bracket_closed,

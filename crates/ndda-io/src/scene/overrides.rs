@@ -16,9 +16,29 @@ const CHOICES: [&str; 6] = ["integrator", "contact", "reference", "shape", "on",
 /// struct.
 ///
 /// # Errors
-/// A diagnostic when an override has no `=` or its path leads nowhere.
-pub(crate) fn apply(text: &str, overrides: &[String]) -> Result<String, Diagnostic> {
-    overrides.iter().try_fold(text.to_string(), |text, one| apply_one(&text, one))
+/// A diagnostic for each override that has no `=` or whose path leads nowhere.
+pub(crate) fn apply(text: &str, overrides: &[String]) -> Result<String, Vec<Diagnostic>> {
+    let (mut text, mut refused) = (text.to_string(), Vec::new());
+    let mut lost: Vec<&str> = Vec::new();
+    for one in overrides {
+        let path = one.split('=').next().unwrap_or_default().trim();
+        match apply_one(&text, one) {
+            Ok(changed) => text = changed,
+            // What is inside a value that could not be set cannot be set either.
+            Err(_) if lost.iter().any(|outer| is_inside(path, outer)) => {}
+            Err(found) => {
+                refused.push(found);
+                lost.push(path);
+            }
+        }
+    }
+    if refused.is_empty() { Ok(text) } else { Err(refused) }
+}
+
+/// Whether a path leads to something inside the value at another one.
+fn is_inside(path: &str, outer: &str) -> bool {
+    let (path, outer) = (current_segments(path), current_segments(outer));
+    path.len() > outer.len() && path.starts_with(&outer)
 }
 
 fn apply_one(text: &str, one: &str) -> Result<String, Diagnostic> {
@@ -262,7 +282,7 @@ mod tests {
     const TEXT: &str = "(time: (step_s: 1e-3,), blocks: [(name: \"A\", at_m: (1, 2, 3))])";
 
     fn set(one: &str) -> String {
-        apply(TEXT, &[one.to_string()]).unwrap_or_else(|d| format!("{}: {}", d.path, d.message))
+        apply(TEXT, &[one.to_string()]).unwrap_or_else(|d| format!("{}: {}", d[0].path, d[0].message))
     }
 
     #[test]

@@ -23,27 +23,27 @@ fn unit_behind(node: &Node, text: &str) -> Option<Diagnostic> {
     })
 }
 
-/// That a comma is missing between two parameters.
-fn comma_missing(node: &Node, text: &str) -> Option<Diagnostic> {
+/// That commas are missing between parameters.
+fn commas_missing(node: &Node, text: &str) -> Vec<Diagnostic> {
     let missing = |pair: &&[Node]| !text[pair[0].span.end..pair[1].key_span.start].contains(',');
-    let pair = node.children.windows(2).find(missing)?;
-    let name = pair[1].key.as_deref().unwrap_or_default();
-    let at = pair[1].key_span.clone();
-    let refused =
-        Diagnostic::error(Code::Syntax, format!("{FIELD}.{name}"), "expected a comma before this", Some(at));
-    Some(refused.with_help("write a comma after each parameter"))
+    let refuse = |pair: &[Node]| {
+        let name = pair[1].key.as_deref().unwrap_or_default();
+        let (path, at) = (format!("{FIELD}.{name}"), Some(pair[1].key_span.clone()));
+        let refused = Diagnostic::error(Code::Syntax, path, "expected a comma before this", at);
+        refused.with_help("write a comma after each parameter")
+    };
+    node.children.windows(2).filter(missing).map(refuse).collect()
 }
 
-/// Reads the parameters of a scene; each may be computed from those before it.
+/// Reads the parameters of a scene; each may be computed from those before it. A value that is wrong is taken for 1, and said to be wrong.
 ///
 /// # Errors
-/// Everything that is wrong with them.
-pub(crate) fn read(text: &str, tree: &Node) -> Result<Parameters, Vec<Diagnostic>> {
+/// Why they cannot be read at all.
+pub(crate) fn read(text: &str, tree: &Node) -> Result<(Parameters, Vec<Diagnostic>), Vec<Diagnostic>> {
     let mut read = Parameters::default();
     let Some(node) = tree.children.iter().find(|child| child.key.as_deref() == Some(FIELD)) else {
-        return Ok(read);
+        return Ok((read, Vec::new()));
     };
-    let mut found = Vec::new();
     if node.opening != Some('(') || node.children.iter().any(|child| child.key.is_none()) {
         if let Some(refused) = unit_behind(node, text) {
             return Err(vec![refused]);
@@ -56,37 +56,33 @@ pub(crate) fn read(text: &str, tree: &Node) -> Result<Parameters, Vec<Diagnostic
         );
         return Err(vec![refused.with_help("write parameters: (height_m: 10, dip_deg: 35)")]);
     }
-    if let Some(refused) = comma_missing(node, text) {
-        return Err(vec![refused]);
-    }
-    // What is computed from a value that is wrong is not wrong itself.
-    let mut wrong: Vec<String> = Vec::new();
+    let mut found = commas_missing(node, text);
     for child in &node.children {
         let name = child.key.clone().unwrap_or_default();
-        let words = text[child.span.clone()].split(|c: char| !c.is_alphanumeric() && c != '_');
-        let follows = words.into_iter().any(|word| wrong.iter().any(|other| other == word));
-        let name_refused = read.refuse_name(&name, child.key_span.clone());
-        match (name_refused, value(text, tree, child, &read)) {
-            (None, Ok(value)) => {
-                read.add(name, value, child.key_span.clone());
-            }
-            (refused, value) => {
-                found.extend(refused);
-                if let Err(mistakes) = value {
-                    wrong.push(name);
-                    found.extend(mistakes.into_iter().filter(|_| !follows));
+        let refused = read.refuse_name(&name, child.key_span.clone());
+        // Another of the same name, or one that no expression can have, is no parameter.
+        let is_named = refused.is_none();
+        found.extend(refused);
+        match value(text, tree, child, &read) {
+            Ok((value, false)) if is_named => read.add(name, value, child.key_span.clone()),
+            Ok(_) if is_named => read.suppose(name, child.key_span.clone()),
+            Ok(_) => {}
+            Err(mistakes) => {
+                found.extend(mistakes);
+                if is_named {
+                    read.suppose(name, child.key_span.clone());
                 }
             }
         }
     }
-    if found.is_empty() { Ok(read) } else { Err(found) }
+    Ok((read, found))
 }
 
-/// Value of one parameter: a number, one with a unit, or one that is computed.
-fn value(text: &str, tree: &Node, node: &Node, earlier: &Parameters) -> Result<f64, Vec<Diagnostic>> {
-    let plain = units::resolve_value(text, tree, node, earlier)?;
+/// Value of one parameter, a number, one with a unit, or one that is computed, and whether it follows from one that is only supposed.
+fn value(text: &str, tree: &Node, node: &Node, earlier: &Parameters) -> Result<(f64, bool), Vec<Diagnostic>> {
+    let (plain, is_supposed) = units::resolve_value(text, tree, node, earlier)?;
     let number = plain.replace('_', "").trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    number.ok_or_else(|| {
+    number.map(|number| (number, is_supposed)).ok_or_else(|| {
         let path = tree.path_at(node.span.start);
         let message = "a parameter is one finite number";
         let refused = Diagnostic::error(Code::WrongType, path, message, Some(node.span.clone()));
@@ -165,7 +161,7 @@ mod tests {
             ("young_pa: 20 GPa, height_m: 8", "write Gigapascal(20), or 2e10"),
         ] {
             let text = format!("(parameters: ({written}))");
-            let found = super::read(&text, &crate::scene::locate::tree(&text)).err().unwrap();
+            let found = super::read(&text, &crate::scene::locate::tree(&text)).unwrap_err();
             assert!(found[0].help.as_ref().unwrap().contains(said), "{found:?}");
         }
     }

@@ -15,6 +15,8 @@ pub(crate) const FIELD: &str = "parameters";
 #[derive(Debug, Default)]
 pub(crate) struct Parameters {
     list: Vec<Parameter>,
+    /// Whether something has been computed from a value that is only supposed.
+    has_supposed: Cell<bool>,
 }
 
 #[derive(Debug)]
@@ -24,12 +26,24 @@ struct Parameter {
     /// Bytes of its name.
     at: Range<usize>,
     used: Cell<bool>,
+    /// Whether its value stands for one that is wrong.
+    is_supposed: bool,
 }
 
 impl Parameters {
     /// Adds a parameter; `at` are the bytes of its name.
     pub(crate) fn add(&mut self, name: String, value: f64, at: Range<usize>) {
-        self.list.push(Parameter { name, value, at, used: Cell::new(false) });
+        self.list.push(Parameter { name, value, at, used: Cell::new(false), is_supposed: false });
+    }
+
+    /// Adds a parameter whose value is wrong, so that what comes after it can be read.
+    pub(crate) fn suppose(&mut self, name: String, at: Range<usize>) {
+        self.list.push(Parameter { name, value: 1.0, at, used: Cell::new(true), is_supposed: true });
+    }
+
+    /// Whether something has been computed from a supposed value since this was last asked.
+    pub(crate) fn take_supposed(&self) -> bool {
+        self.has_supposed.replace(false)
     }
 
     /// Why a name cannot be that of another parameter.
@@ -57,6 +71,12 @@ impl Parameters {
         node: &Node,
         begins: usize,
     ) -> Result<f64, Diagnostic> {
+        if !node.is_closed(text) && text[node.span.end..].trim().is_empty() {
+            let (path, at) = (tree.path_at(node.span.start), Some(node.span.clone()));
+            let cut_off =
+                Diagnostic::error(Code::Truncated, path, "the file ends inside this expression", at);
+            return Err(cut_off.with_help("a closing bracket is missing, or the file was cut off"));
+        }
         let names: Vec<&str> = self.list.iter().map(|parameter| parameter.name.as_str()).collect();
         let source = &text[begins..node.span.end];
         expression::evaluate(source, &names, &|name| self.value_of(name)).map_err(|mistake| {
@@ -76,6 +96,7 @@ impl Parameters {
     fn value_of(&self, name: &str) -> Option<f64> {
         let parameter = self.list.iter().find(|parameter| parameter.name == name)?;
         parameter.used.set(true);
+        self.has_supposed.set(self.has_supposed.get() || parameter.is_supposed);
         Some(parameter.value)
     }
 

@@ -1,12 +1,11 @@
 //! Text to types: grammar, units, expressions and types, with every message at its place.
 
+mod types;
 mod words;
 
 use std::ops::Range;
 use std::path::Path;
 
-use ron::error::Error as RonError;
-use ron::extensions::Extensions;
 use serde::de::DeserializeOwned;
 
 use crate::limited;
@@ -15,10 +14,9 @@ use crate::scene::diagnostic::{Diagnostic, SceneErrors};
 use crate::scene::locate::{self, Node};
 use crate::scene::parameters::Parameters;
 use crate::scene::units::{self, Resolved};
-use words::explain;
+pub(crate) use types::Mistakes;
+use types::Reader;
 
-/// Mistakes of fields and types that are told at once.
-const MOST_MISTAKES: usize = 20;
 /// Name of standard input in messages.
 const STANDARD_INPUT: &str = "standard input";
 
@@ -72,108 +70,25 @@ pub(crate) fn refuse_blank(text: &str) -> Result<(), (&str, Diagnostic)> {
 }
 
 /// Text of a scene, or of a file that it includes, to types: values in the units of their fields, expressions as numbers.
-/// Numbers that are none, fields that do not exist and values of another type are found all at once, mistakes of grammar one at a time.
+/// Numbers that are none, fields that do not exist, commas that are missing and values of another type are found all at once, other mistakes of
+/// grammar one at a time.
 pub(crate) fn parse_with<T: DeserializeOwned>(
     text: &str,
     tree: &Node,
     parameters: &Parameters,
 ) -> Result<T, Mistakes<T>> {
-    refuse_not_finite(tree, text)?;
-    types_of(units::resolve(text, tree, parameters), text, tree)
-}
-
-/// What is wrong with a text, and what the rest of it says where nothing but fields that do not exist is.
-pub(crate) struct Mistakes<T> {
-    pub(crate) found: Vec<Diagnostic>,
-    pub(crate) rest: Option<T>,
-}
-
-impl<T> From<Vec<Diagnostic>> for Mistakes<T> {
-    fn from(found: Vec<Diagnostic>) -> Self {
-        Self { found, rest: None }
-    }
+    let mut plain = units::resolve(text, tree, parameters);
+    let infinite = not_finite(tree, text);
+    plain.supposed.extend(infinite.iter().filter_map(|found| found.span.clone()));
+    plain.errors.extend(infinite);
+    Reader::new(plain, text, tree).read()
 }
 
 /// Text of a study to types; the values that it sets stay as they are written, and are read with the scene.
 pub(crate) fn parse<T: DeserializeOwned>(text: &str, tree: &Node) -> Result<T, Vec<Diagnostic>> {
-    refuse_not_finite(tree, text)?;
-    types_of(Resolved::unchanged(text), text, tree).map_err(|mistakes| mistakes.found)
-}
-
-/// A value of a text, or else its mistakes: fields that do not exist or are missing, and values of another type. Each is taken out of the
-/// text so that the next one can be found.
-fn types_of<T: DeserializeOwned>(mut plain: Resolved, text: &str, tree: &Node) -> Result<T, Mistakes<T>> {
-    let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
-    let (mut found, mut taken_out): (Vec<Diagnostic>, Vec<Range<usize>>) = (Vec::new(), Vec::new());
-    let (mut rest, mut lacks_fields_only) = (None, true);
-    while found.len() < MOST_MISTAKES {
-        let error = match options.from_str(&plain.text) {
-            Ok(value) if plain.errors.is_empty() && found.is_empty() => return Ok(value),
-            Ok(value) => {
-                rest = Some(value);
-                break;
-            }
-            Err(error) => error,
-        };
-        let is_missing = matches!(error.code, RonError::MissingStructField { .. });
-        let is_unknown = matches!(error.code, RonError::NoSuchStructField { .. });
-        // Values whose units are wrong are of no type yet.
-        if !(is_missing || is_unknown || plain.errors.is_empty()) {
-            break;
-        }
-        let shape = locate::tree(&plain.text);
-        let at = words::after_blanks(&plain.text, words::offset(&plain.text, &error.span.start));
-        // RON points at the closing bracket of a struct that lacks a field.
-        let whole = is_missing.then(|| shape.closed_at(at)).flatten();
-        let whole = whole.map_or(at..at, |node| node.span.clone());
-        // A field may be missing only because it was taken out with a mistake of its own.
-        if !taken_out.iter().any(|earlier| whole.contains(&earlier.start)) {
-            found.push(explain(&error, &plain, text, tree));
-        }
-        let Some(entry) = shape.entry_around(whole.start).filter(|_| is_of_types(&error.code)) else { break };
-        lacks_fields_only &= is_unknown;
-        take_out(&mut plain.text, entry.clone());
-        taken_out.push(entry);
-    }
-    // In a field that does not exist, no unit is right.
-    let unknown = found.iter().filter(|earlier| earlier.code == Code::UnknownField);
-    let unknown = unknown.filter_map(|earlier| tree.entry_around(earlier.span.as_ref()?.start));
-    let unknown: Vec<Range<usize>> = unknown.collect();
-    let stands = |mistake: &&Diagnostic| {
-        let at = mistake.span.as_ref().map(|span| span.start);
-        !unknown.iter().any(|field| at.is_some_and(|at| field.contains(&at)))
-    };
-    found.extend(plain.errors.iter().filter(stands).cloned());
-    sort(&mut found);
-    // Where more than fields is missing, paths lead elsewhere.
-    let rest = rest.filter(|_| lacks_fields_only && plain.errors.is_empty());
-    Err(Mistakes { found, rest })
-}
-
-/// Whether a mistake is one of a field or a value, after which the rest of the text can still be read.
-fn is_of_types(error: &RonError) -> bool {
-    matches!(
-        error,
-        RonError::NoSuchStructField { .. }
-            | RonError::MissingStructField { .. }
-            | RonError::NoSuchEnumVariant { .. }
-            | RonError::InvalidValueForType { .. }
-            | RonError::ExpectedFloat
-            | RonError::ExpectedInteger
-            | RonError::IntegerOutOfBounds
-            | RonError::ExpectedString
-            | RonError::ExpectedBoolean
-            | RonError::SuggestRawIdentifier(_)
-    )
-}
-
-/// Puts blanks in the place of an entry and its comma, so that all others stay where they are.
-fn take_out(plain: &mut String, entry: Range<usize>) {
-    let comma = words::after_blanks(plain, entry.end);
-    let end = if plain[comma..].starts_with(',') { comma + 1 } else { entry.end };
-    let blank = |c: char| if c == '\n' { "\n".into() } else { " ".repeat(c.len_utf8()) };
-    let blanks: String = plain[entry.start..end].chars().map(blank).collect();
-    plain.replace_range(entry.start..end, &blanks);
+    let mut plain = Resolved::unchanged(text);
+    plain.errors = not_finite(tree, text);
+    Reader::new(plain, text, tree).read().map_err(|mistakes| mistakes.found)
 }
 
 /// Gives each message its place, and puts them in the order of the text.
@@ -201,7 +116,7 @@ pub(crate) fn place(tree: &Node, text: &str, path: &str) -> Option<Range<usize>>
 }
 
 /// Numbers that RON accepts and nothing can be computed with: NaN, infinities, and 1e400.
-fn refuse_not_finite(tree: &Node, text: &str) -> Result<(), Vec<Diagnostic>> {
+fn not_finite(tree: &Node, text: &str) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     tree.for_each_leaf(&mut |leaf| {
         let word = &text[leaf.span.clone()];
@@ -216,7 +131,7 @@ fn refuse_not_finite(tree: &Node, text: &str) -> Result<(), Vec<Diagnostic>> {
             found.push(Diagnostic::error(Code::NotFinite, path, message, place).with_help(help));
         }
     });
-    if found.is_empty() { Ok(()) } else { Err(found) }
+    found
 }
 
 #[cfg(test)]
@@ -261,5 +176,75 @@ mod tests {
                 "materials[0].poisson out-of-range"
             ]
         );
+    }
+
+    #[test]
+    fn commas_numbers_and_names_that_are_wrong_are_told_at_once() {
+        assert_eq!(
+            mistakes("step_s: 1e-3 end_s: 1", "poison: 0.2, poisson: 0,25", "cells: (1, 1, 1)"),
+            ["time.end_s syntax", "materials[0].poison unknown-field", "materials[0].poisson syntax"]
+        );
+        assert_eq!(
+            mistakes("step_s: -1e-3 end_s: 1", "poisson: 0.7", "cells: (1, 1.5, -2)"),
+            [
+                "time.step_s out-of-range",
+                "time.end_s syntax",
+                "materials[0].poisson out-of-range",
+                "blocks[0].shape.cells[1] wrong-type",
+                "blocks[0].shape.cells[2] wrong-type"
+            ]
+        );
+    }
+
+    #[test]
+    fn what_may_follow_from_an_expression_that_is_wrong_is_not_told() {
+        let scene = |parameters: &str, step: &str, size: &str, frames: &str| {
+            let text = format!(
+                "(title: \"t\", parameters: ({parameters}), time: (step_s: {step}, end_s: 1),
+                  materials: [(name: \"rock\", density_kg_m3: -2700, young_pa: 2e10, poisson: 0.2)],
+                  blocks: [(name: \"a\", material: \"rok\", shape: Box(size_m: ({size}, 1, 1), cells: (1, 1, 1)))],
+                  output: (frames: {frames}))"
+            );
+            let refused = load_text("s.ron", &text, &[], None).unwrap_err();
+            let told = |found: &crate::diagnostic::Diagnostic| format!("{} {}", found.path, found.code);
+            refused.diagnostics.iter().map(told).collect::<Vec<_>>()
+        };
+        let others = ["materials[0].density_kg_m3 out-of-range", "blocks[0].material unknown-name"];
+        // A size of 1 − 2 m would be out of range, as would one that is computed from what a parameter should be.
+        for (parameters, size, own) in [
+            ("", "Calc(width_m - 2)", "blocks[0].shape.size_m[0] expression"),
+            ("width_m: Calc(wide_m)", "Calc(width_m - 2)", "parameters.width_m expression"),
+        ] {
+            let mut expected = vec![own];
+            expected.extend(others);
+            let mut found = scene(parameters, "1e-3", size, "1");
+            expected.sort_unstable();
+            found.sort_unstable();
+            assert_eq!(found, expected);
+        }
+        let all = scene("a_m: 1 b_m: 2", "1e-3", "Calc(a_m + b_m)", "1.5");
+        assert_eq!(all, ["parameters.b_m syntax", others[0], others[1], "output.frames wrong-type"]);
+    }
+
+    #[test]
+    fn a_bracket_a_decimal_point_and_calc_that_are_missing_are_named() {
+        let told = |rock: &str, dip: &str| {
+            let text = format!(
+                "(title: \"t\", parameters: (dip_1: 30), time: (step_s: 1e-3, end_s: 1),
+                  materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 2e10, poisson: 0.2)],
+                  rock: [(material: \"rock\", domain: Box(min_m: (0, 0, 0), max_m: (1, 1, 1)), joints: [
+                      Plane(name: \"a\", dip_deg: {dip}, dip_direction_deg: 0, point_m: (0, 0, 0){rock},
+                      Plane(name: \"b\", dip_deg: 9, dip_direction_deg: Calc(dip_1), point_m: (0, 0, 0))])])"
+            );
+            load_text("s.ron", &text, &[], None).unwrap_err().diagnostics
+        };
+        let [bracket, point, calc] =
+            [told("", "30"), told(")", "30,5"), told(")", "dip_1")].map(|found| found[0].clone());
+        assert_eq!(bracket.message, "a closing bracket is missing before `Plane`");
+        assert_eq!(point.help.unwrap(), "write a decimal point: 30.5");
+        assert_eq!(calc.help.unwrap(), "write Calc(dip_1)");
+        let cut_off = "(title: \"t\", parameters: (dip_1: 30), time: (step_s: 1e-3, end_s: Calc(dip_";
+        let found = load_text("s.ron", cut_off, &[], None).unwrap_err().diagnostics;
+        assert!(found.iter().all(|found| found.code.to_string() == "truncated"), "{found:?}");
     }
 }

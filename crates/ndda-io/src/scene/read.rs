@@ -1,5 +1,6 @@
 //! Reading a scene: file → text → overrides → types → checks, with every message at its place.
 
+use std::ops::Range;
 use std::path::Path;
 
 use crate::scene::check;
@@ -22,8 +23,10 @@ use crate::summary::Chosen;
 pub struct LoadedScene {
     /// The scene.
     pub scene: Scene,
-    /// Its text, overrides included.
+    /// Its text, with overrides and the values that were chosen.
     pub text: String,
+    /// Its text as it is written, with overrides; messages quote it.
+    pub written: String,
     /// The file, as it was named.
     pub file: String,
     /// Entries that are probably not meant.
@@ -47,9 +50,36 @@ impl LoadedScene {
     /// # Errors
     /// Errors of the scene with these values.
     pub fn with_chosen(&self, chosen: Vec<Chosen>, folder: &Path) -> Result<Self, SceneErrors> {
-        let text = with_values(&self.text, &chosen).map_err(|refused| self.errors(vec![refused]))?;
-        let loaded = load_text(&self.file, &text, &[], Some(folder))?;
-        Ok(Self { chosen, ..loaded })
+        let mut texts = vec![self.text.clone()];
+        for choice in &chosen {
+            let text = with_values(&texts[texts.len() - 1], std::slice::from_ref(choice));
+            texts.push(text.map_err(|refused| self.errors(vec![refused]))?);
+        }
+        match load_text(&self.file, &texts[texts.len() - 1], &[], Some(folder)) {
+            Ok(mut loaded) => {
+                self.move_back(&mut loaded.warnings, &texts);
+                Ok(Self { chosen, written: self.written.clone(), ..loaded })
+            }
+            Err(mut errors) if errors.file == self.file => {
+                self.move_back(&mut errors.diagnostics, &texts);
+                Err(self.errors(errors.diagnostics))
+            }
+            Err(errors) => Err(errors),
+        }
+    }
+
+    /// Gives messages about the last of some texts their places in the first one, after which each has one more value inserted.
+    fn move_back(&self, found: &mut [Diagnostic], texts: &[String]) {
+        let tree = locate::tree(&self.written);
+        for diagnostic in found {
+            let Some(Range { mut start, mut end }) = diagnostic.span.clone() else { continue };
+            for pair in texts.windows(2).rev() {
+                (start, end) = (before(&pair[0], &pair[1], start), before(&pair[0], &pair[1], end));
+            }
+            // Of a value that is not written, the place is that of what is around it.
+            let around = || place(&tree, &self.written, &diagnostic.path);
+            diagnostic.span = if start < end { Some(start..end) } else { around() };
+        }
     }
 
     /// An error about the value at `path`, with its place in the text.
@@ -63,13 +93,19 @@ impl LoadedScene {
 
     /// A message of a kind about the value at `path`.
     pub fn diagnose_as(&self, code: Code, path: &str, message: String) -> Diagnostic {
-        Diagnostic::error(code, path, message, place(&locate::tree(&self.text), &self.text, path))
+        Diagnostic::error(code, path, message, place(&locate::tree(&self.written), &self.written, path))
     }
 
     /// Messages about this scene.
     pub fn errors(&self, diagnostics: Vec<Diagnostic>) -> SceneErrors {
-        SceneErrors { file: self.file.clone(), text: self.text.clone(), diagnostics }
+        SceneErrors { file: self.file.clone(), text: self.written.clone(), diagnostics }
     }
+}
+
+/// Byte of a text that a byte of the text with something inserted comes from.
+fn before(short: &str, long: &str, at: usize) -> usize {
+    let same = short.bytes().zip(long.bytes()).take_while(|(a, b)| a == b).count();
+    if at <= same { at } else { at.saturating_sub(long.len().saturating_sub(short.len())).max(same) }
 }
 
 /// The text of a scene with values that were chosen for it, and their reasons as comments.
@@ -86,7 +122,7 @@ pub fn with_values(text: &str, chosen: &[Chosen]) -> Result<String, Diagnostic> 
 /// Reads and checks a scene file, or standard input for `-`; files that it names are then beside the present folder.
 ///
 /// # Errors
-/// Everything that is wrong with it: syntax and types one at a time, values all at once.
+/// Everything that is wrong with it, as far as the rest can be read: mistakes of grammar but for missing commas hide what comes after them.
 pub fn load(path: &Path, overrides: &[String]) -> Result<LoadedScene, SceneErrors> {
     let text = text_of(path)?;
     let folder = path.parent().unwrap_or(Path::new("."));
@@ -114,11 +150,17 @@ pub fn load_text(
         return Err(fail(text, vec![refused.clone()]));
     }
     refuse_blank(text).map_err(|(text, refused)| fail(text, vec![refused]))?;
-    let text = overrides::apply(text, overrides).map_err(|refused| fail(text, vec![refused]))?;
+    let text = overrides::apply(text, overrides).map_err(|refused| fail(text, refused))?;
     let tree = locate::tree(&text);
-    let parameters = parameter_values::read(&text, &tree).map_err(|found| fail(&text, found))?;
-    let mut scene: Scene = parse_with(&text, &tree, &parameters)
-        .map_err(|mistakes| fail(&text, with_values_out_of_range(mistakes, (&text, &tree), folder)))?;
+    let (parameters, refused) = parameter_values::read(&text, &tree).map_err(|found| fail(&text, found))?;
+    let mut scene: Scene = match parse_with(&text, &tree, &parameters) {
+        Ok(scene) if refused.is_empty() => scene,
+        parsed => {
+            let mut mistakes = parsed.map_or_else(|mistakes| mistakes, Mistakes::none_in);
+            mistakes.found.extend(refused);
+            return Err(fail(&text, with_mistakes_of_values(mistakes, (&text, &tree), folder)));
+        }
+    };
     let beside = folder.unwrap_or(Path::new("."));
     let included = include::read(&mut scene, beside, (file, &text), &parameters)?;
     let mut found = check::problems(&scene, folder);
@@ -130,22 +172,62 @@ pub fn load_text(
     if found.iter().any(|d| d.severity == Severity::Error) {
         return Err(fail(&text, found));
     }
-    Ok(LoadedScene { scene, text, file: file.to_string(), warnings: found, chosen: Vec::new() })
+    Ok(LoadedScene {
+        scene,
+        written: text.clone(),
+        text,
+        file: file.to_string(),
+        warnings: found,
+        chosen: Vec::new(),
+    })
 }
 
-/// Fields that do not exist, and values out of their range beside them. Other checks might miss what was meant by those fields.
-fn with_values_out_of_range(
+/// Mistakes of fields and types, and beside them values out of their range and names of nothing, but for those that may follow from them.
+fn with_mistakes_of_values(
     mistakes: Mistakes<Scene>,
     (text, tree): (&str, &Node),
     folder: Option<&Path>,
 ) -> Vec<Diagnostic> {
     let mut found = mistakes.found;
     if let Some(rest) = mistakes.rest {
+        let has_all_names = mistakes.has_all_names && rest.include.is_empty();
         let mut values = check::problems(&rest, folder);
-        values.retain(|d| d.code == Code::OutOfRange && d.severity == Severity::Error);
+        values.retain(|d| {
+            let is_told = d.code == Code::OutOfRange || has_all_names && d.code == Code::UnknownName;
+            let at = place(tree, text, &d.path).unwrap_or_default();
+            let is_doubtful = mistakes.doubtful.iter().any(|part| part.start < at.end && at.start < part.end);
+            d.severity == Severity::Error && is_told && !is_doubtful
+        });
         locate_all(&mut values, text, tree);
         found.extend(values);
-        sort(&mut found);
     }
+    sort(&mut found);
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_quote_the_text_as_it_is_written_after_values_have_been_chosen() {
+        let text = "(title: \"t\", parameters: (unused: 1), time: (end_s: 1),
+  materials: [(name: \"rock\", density_kg_m3: 2700, young_pa: 2e10, poisson: 0.2)],
+  blocks: [(name: \"a\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)))],
+  contact: Potential(potential: Smooth(), friction: (friction_deg: 0.5)), output: (frames: 200000))";
+        let loaded = load_text("s.ron", text, &[], None).unwrap();
+        let chosen = |path: &str, value: f64| Chosen { path: path.into(), value, reason: "a \u{3c1}".into() };
+        let all = vec![chosen("contact.penalty_pa", 1e9), chosen("time.step_s", 1e-4)];
+        let complete = loaded.with_chosen(all, Path::new(".")).unwrap();
+        assert!(complete.text.contains("step_s: 1e-4 /*") && complete.scene.time.step_s == 1e-4);
+        assert_eq!(complete.warnings, loaded.warnings);
+        assert!(complete.warnings.len() > 2, "{:?}", complete.warnings);
+        let at = |path: &str| complete.diagnose(path, String::new()).span.unwrap();
+        assert_eq!(&text[at("output.frames")], "200000");
+        assert_eq!(complete.errors(Vec::new()).text, text);
+        // What was chosen is not written: its place is that of what is around it.
+        let refused = loaded.with_chosen(vec![chosen("time.step_s", -1.0)], Path::new(".")).unwrap_err();
+        let wrong = refused.diagnostics.iter().find(|found| found.path == "time.step_s").unwrap();
+        assert_eq!(&refused.text[wrong.span.clone().unwrap()], "(end_s: 1)");
+    }
 }

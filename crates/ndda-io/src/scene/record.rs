@@ -118,6 +118,13 @@ pub fn prepare(record: &Record, folder: &Path) -> Result<Prepared, RecordError> 
     let gap = gap(&rows);
     let (count, end_s) = (rows.len(), rows[rows.len() - 1].0);
     let mut told = format!("{}: {count} rows to {end_s:.6} s", file.display());
+    if let Some(named) = named.filter(|named| *named != unit) {
+        told += &format!(
+            ", read in {} and not in {}, the unit that the file names",
+            unit.symbol(),
+            named.symbol()
+        );
+    }
     let needed_s = record.filter_hz.and_then(|_| uneven(&rows));
     if let Some(spacing_s) = record.resample_s.or(needed_s) {
         let (given, new) = (rows.len(), ((end_s - rows[0].0) / spacing_s) as usize);

@@ -139,7 +139,7 @@ pub enum Domain {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub enum Slivers {
     /// Each is united with the neighbour with which it shares the largest face, provided that both together are convex; others stay. No
-    /// void is left; the joint between the two is closed there.
+    /// void is left; the joint between the two is closed there. What stays is not united with what is `removed`.
     #[default]
     Merge,
     /// They are taken out, and leave voids, into which blocks may fall.
@@ -349,22 +349,6 @@ pub struct Excavation {
     /// Stiffness of the glue [Pa/m]. Default: that of normal contact there.
     #[serde(default)]
     pub glue_pa_m: Option<f64>,
-}
-
-impl Rock {
-    /// Whether a block of this name comes from this rock.
-    pub fn makes(&self, block: &str) -> bool {
-        let is_number = |n: &str| !n.is_empty() && n.bytes().all(|c| c.is_ascii_digit());
-        let number = |stem: &str| {
-            block.strip_prefix(stem).and_then(|rest| rest.strip_prefix('_')).is_some_and(is_number)
-        };
-        self.stems().any(number)
-    }
-
-    /// The names that those of its blocks begin with.
-    fn stems(&self) -> impl Iterator<Item = &str> {
-        [self.name.as_str()].into_iter().chain(self.excavations.iter().map(|space| space.name.as_str()))
-    }
 }
 
 impl Discontinuity {

@@ -53,6 +53,15 @@ impl AccelerationUnit {
             Self::CentimetrePerSecondSquared => 0.01,
         }
     }
+
+    /// Its symbol.
+    pub(crate) fn symbol(self) -> &'static str {
+        match self {
+            Self::G => "g",
+            Self::MetrePerSecondSquared => "m/s²",
+            Self::CentimetrePerSecondSquared => "cm/s²",
+        }
+    }
 }
 
 /// The baseline of a record's velocity: the polynomial through zero at the first row that fits the velocity best, by least squares over time.

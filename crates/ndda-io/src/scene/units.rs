@@ -34,6 +34,8 @@ pub(crate) struct Resolved {
     pub text: String,
     /// Errors of units.
     pub errors: Vec<Diagnostic>,
+    /// Bytes of the source in whose place stands a value that is only supposed.
+    pub supposed: Vec<Range<usize>>,
     edits: Vec<Edit>,
 }
 
@@ -46,13 +48,13 @@ struct Edit {
 
 /// Turns every value of a text into a number in the unit of its field.
 pub(crate) fn resolve(text: &str, tree: &Node, parameters: &Parameters) -> Resolved {
-    let mut resolver = Resolver { text, tree, parameters, edits: Vec::new(), errors: Vec::new() };
+    let mut resolver = Resolver::new(text, tree, parameters);
     resolver.visit_fields();
-    let Resolver { edits, errors, .. } = resolver;
-    Resolved { text: edited(text, &edits, 0..text.len()), errors, edits }
+    let Resolver { edits, errors, supposed, .. } = resolver;
+    Resolved { text: edited(text, &edits, 0..text.len()), errors, supposed, edits }
 }
 
-/// One value in the unit of its field.
+/// One value in the unit of its field, and whether it follows from one that is only supposed.
 ///
 /// # Errors
 /// Errors of its units and expressions.
@@ -61,11 +63,14 @@ pub(crate) fn resolve_value(
     tree: &Node,
     node: &Node,
     parameters: &Parameters,
-) -> Result<String, Vec<Diagnostic>> {
-    let mut resolver = Resolver { text, tree, parameters, edits: Vec::new(), errors: Vec::new() };
+) -> Result<(String, bool), Vec<Diagnostic>> {
+    let mut resolver = Resolver::new(text, tree, parameters);
     resolver.visit(node, None);
     match resolver.errors.is_empty() {
-        true => Ok(edited(text, &resolver.edits, node.span.clone())),
+        true => {
+            let value = edited(text, &resolver.edits, node.span.clone());
+            Ok((value, !resolver.supposed.is_empty()))
+        }
         false => Err(resolver.errors),
     }
 }
@@ -112,9 +117,14 @@ struct Resolver<'a> {
     parameters: &'a Parameters,
     edits: Vec<Edit>,
     errors: Vec<Diagnostic>,
+    supposed: Vec<Range<usize>>,
 }
 
-impl Resolver<'_> {
+impl<'a> Resolver<'a> {
+    fn new(text: &'a str, tree: &'a Node, parameters: &'a Parameters) -> Self {
+        Self { text, tree, parameters, edits: Vec::new(), errors: Vec::new(), supposed: Vec::new() }
+    }
+
     /// Looks through the fields of a scene or of an included file.
     fn visit_fields(&mut self) {
         let tree = self.tree;
@@ -148,7 +158,7 @@ impl Resolver<'_> {
         let word = node.word(self.text);
         if word == CALC {
             let value = self.calculate(node);
-            return self.edit(node.span.clone(), value.map_or(String::new(), number));
+            return self.edit(node.span.clone(), number(value));
         }
         if DIMENSIONS.iter().any(|d| d.unit(word).is_some()) {
             return self.convert(node, word, own);
@@ -196,10 +206,7 @@ impl Resolver<'_> {
 
     fn convert_numbers(&mut self, node: &Node, unit: &Unit) {
         let calculated = match node.word(self.text) {
-            CALC => match self.calculate(node) {
-                Some(value) => Some(number(value)),
-                None => return,
-            },
+            CALC => Some(number(self.calculate(node))),
             _ => None,
         };
         if node.opening.is_none() || calculated.is_some() {
@@ -218,10 +225,18 @@ impl Resolver<'_> {
         }
     }
 
-    /// Value of `Calc(…)`; the brackets are part of the expression.
-    fn calculate(&mut self, node: &Node) -> Option<f64> {
+    /// Value of `Calc(…)`, whose brackets are part of the expression; 1 where it has none.
+    fn calculate(&mut self, node: &Node) -> f64 {
         let value = self.parameters.calculate(self.text, self.tree, node, node.span.start + CALC.len());
-        value.map_err(|refused| self.errors.push(refused)).ok()
+        let is_supposed = self.parameters.take_supposed();
+        if is_supposed || value.is_err() {
+            self.supposed.push(node.span.clone());
+        }
+        value.unwrap_or_else(|refused| {
+            // A mistake may follow from a value that is only supposed.
+            self.errors.extend((!is_supposed).then_some(refused));
+            1.0
+        })
     }
 
     fn edit(&mut self, at: Range<usize>, with: String) {
@@ -232,6 +247,13 @@ impl Resolver<'_> {
         let path = self.tree.path_at(node.span.start);
         let found = Diagnostic::error(Code::Unit, path, message, Some(node.span.clone()));
         self.errors.push(found.with_help(help));
+        self.supposed.push(node.span.clone());
+        // Several values keep their brackets.
+        let word = node.span.start..node.span.start + node.word(self.text).len();
+        match node.children.len() {
+            0 | 1 => self.edit(node.span.clone(), "1".into()),
+            _ => self.edit(word, String::new()),
+        }
     }
 }
 

@@ -22,7 +22,7 @@ const SAME_VOLUME: f64 = 1e-9;
 pub struct Merged {
     /// Their number.
     pub count: usize,
-    /// Their volume [m³].
+    /// Their volume, each part of it counted once [m³].
     pub volume_m3: f64,
 }
 
@@ -34,7 +34,7 @@ impl Blocks {
         self.merge_slivers_within(domain, sliver_width_m, &|_| 0)
     }
 
-    /// The same, but blocks are united only where `region` gives the same number for their centroids: on one side of the border of an excavation.
+    /// The same, but blocks are united only where `region` gives the same number for their centroids: on one side of a face of the rock or of the border of an excavation.
     pub fn merge_slivers_within(
         &mut self,
         domain: &Domain,
@@ -70,6 +70,8 @@ struct Merging {
     glued: Vec<bool>,
     /// Where each block is; a union is where its parts are.
     region: Vec<usize>,
+    /// What has come into each block from slivers [m³].
+    from_slivers_m3: Vec<f64>,
     /// Slivers by the bits of their width, which order as positive numbers do.
     thin: BTreeSet<(u64, u32)>,
 }
@@ -88,8 +90,8 @@ impl Merging {
             }
         }
         let region = blocks.blocks.iter().map(|block| region(&block.volume_and_centroid().1)).collect();
-        let (none, thin) = (Vec::new(), BTreeSet::new());
-        let mut merging = Self { sliver_width_m, blocks: none, shared, glued, region, thin };
+        let (none, thin, from_slivers_m3) = (Vec::new(), BTreeSet::new(), vec![0.0; count]);
+        let mut merging = Self { sliver_width_m, blocks: none, shared, glued, region, from_slivers_m3, thin };
         merging.blocks = blocks.blocks.iter().cloned().map(Some).collect();
         for sliver in &blocks.report.slivers {
             merging.note(sliver.block);
@@ -111,7 +113,10 @@ impl Merging {
         while let Some((_, sliver)) = self.thin.pop_first() {
             let Some((other, union)) = self.partner(sliver, surfaces, tolerance) else { continue };
             merged.count += 1;
-            merged.volume_m3 += self.blocks[sliver as usize].as_ref().map_or(0.0, Polyhedron::volume_m3);
+            // Of a sliver that slivers have been united with, these have been counted.
+            let volume_m3 = self.blocks[sliver as usize].as_ref().map_or(0.0, Polyhedron::volume_m3);
+            merged.volume_m3 += volume_m3 - self.from_slivers_m3[sliver as usize];
+            self.from_slivers_m3[other as usize] += volume_m3;
             self.thin.retain(|(_, block)| *block != other);
             self.unite(sliver, other, union);
             self.note(other);
@@ -156,7 +161,8 @@ impl Merging {
     }
 }
 
-/// Two blocks that meet on a surface as one, if it is convex: what the planes of all their other faces enclose.
+/// Two blocks that meet on a surface as one, if it is convex: what the planes of all their other faces enclose. Each of these planes has both blocks
+/// on one side, so that the union holds them, and no more than them by its volume: where planes are evenly spaced, another cell of theirs may be as large.
 fn union(
     a: &Polyhedron,
     b: &Polyhedron,
@@ -171,6 +177,10 @@ fn union(
     let inside = corners.iter().sum::<Vec3>() / corners.len() as f64;
     for surface in faces {
         let plane = &surfaces[surface as usize].plane;
+        let side = plane.height_m(&inside).signum();
+        if corners.iter().any(|corner| side * plane.height_m(corner) < -tolerance.least_depth_m) {
+            return None;
+        }
         if let Split::Both { above, below } = split(&cell, plane, surface, tolerance) {
             cell = if plane.height_m(&inside) > 0.0 { above } else { below };
         }
@@ -182,6 +192,7 @@ fn union(
 
 #[cfg(test)]
 mod tests {
+    use super::super::polyhedron::Face;
     use super::super::{CutOptions, Discontinuity, JointSet, cut_blocks};
     use super::*;
 
@@ -227,6 +238,57 @@ mod tests {
         let merged = blocks.merge_slivers_within(&domain, 0.4, &|at| if space.holds(at) { 1 } else { 0 });
         assert!(slivers > 20 && 5 * blocks.report.slivers.len() < slivers, "{slivers} {merged:?}");
         assert!((inside_m3(&blocks) / (4.2 * 4.2 * 3.8) - 1.0).abs() < 1e-9, "{}", inside_m3(&blocks));
+    }
+
+    #[test]
+    fn the_volume_of_slivers_is_counted_once_where_all_blocks_are_slivers() {
+        let domain = Domain::cuboid(Vec3::zeros(), Vec3::new(6.0, 6.0, 6.0)).unwrap();
+        let set = |dip, direction| Discontinuity::Set(JointSet::new("set", dip, direction, 0.5));
+        let options = CutOptions { sliver_width_m: 1.0, ..CutOptions::default() };
+        let mut blocks = cut_blocks(&domain, &[set(0.0, 0.0), set(90.0, 90.0)], &options).unwrap();
+        let merged = blocks.merge_slivers(&domain, 1.0);
+        assert!(merged.count > 100 && merged.volume_m3 <= domain.volume_m3(), "{merged:?}");
+    }
+
+    /// Whether a point is in a block.
+    fn holds(block: &Polyhedron, at: &Vec3) -> bool {
+        let is_behind = |face: &Face| {
+            let corner = block.vertices[face.vertices[0] as usize];
+            (at - corner).dot(&block.area_vector(face)) < 0.0
+        };
+        block.faces.iter().all(is_behind)
+    }
+
+    #[test]
+    fn each_point_is_in_one_block_after_most_cells_of_a_regular_grid_were_united() {
+        let domain = Domain::cuboid(Vec3::zeros(), Vec3::new(9.0, 8.0, 7.0)).unwrap();
+        let set = |dip, direction| Discontinuity::Set(JointSet::new("set", dip, direction, 0.5));
+        let sets = [set(40.0, 130.0), set(60.0, 220.0)];
+        let options = CutOptions { sliver_width_m: 1.0, ..CutOptions::default() };
+        let mut blocks = cut_blocks(&domain, &sets, &options).unwrap();
+        let merged = blocks.merge_slivers(&domain, 1.0);
+        assert!(merged.count > 300, "{merged:?}");
+        // Points of no regular grid: multiples of irrational numbers.
+        for i in 1..2000 {
+            let part = |irrational: f64| (f64::from(i) * irrational).fract();
+            let at = Vec3::new(9.0 * part(2f64.sqrt()), 8.0 * part(3f64.sqrt()), 7.0 * part(5f64.sqrt()));
+            let count = blocks.blocks.iter().filter(|block| holds(block, &at)).count();
+            assert_eq!(count, 1, "{at}");
+        }
+    }
+
+    #[test]
+    fn slivers_behind_a_face_do_not_unite_with_what_is_in_front_of_it() {
+        let (mut blocks, domain) = slope(0.5, 1.0);
+        // One of the planes of the first set, which goes through the origin.
+        let face = Vec3::new(38f64.to_radians().sin(), 0.0, 38f64.to_radians().cos());
+        let front_m3 = |blocks: &Blocks| {
+            let parts = blocks.blocks.iter().map(Polyhedron::volume_and_centroid);
+            parts.filter(|(_, at)| at.dot(&face) > 7.0).map(|(m3, _)| m3).sum::<f64>()
+        };
+        let before_m3 = front_m3(&blocks);
+        let merged = blocks.merge_slivers_within(&domain, 0.5, &|at| usize::from(at.dot(&face) > 7.0));
+        assert!(merged.count > 50 && (front_m3(&blocks) / before_m3 - 1.0).abs() < 1e-9, "{merged:?}");
     }
 
     /// Every face inside the domain is covered by neighbours, from both sides.

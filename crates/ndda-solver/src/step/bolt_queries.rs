@@ -28,8 +28,12 @@ impl Simulation {
 
     /// Bonded length of a bolt in blocks [m].
     pub fn bonded_m(&self, index: usize) -> f64 {
-        let bolt = self.bolts.as_ref().and_then(|bolts| bolts.list.get(index));
-        bolt.map_or(0.0, |bolt| bolt.bonded.iter().map(|part| part.to_m - part.from_m).sum())
+        self.bonded_parts(index).iter().map(|part| part.to_m - part.from_m).sum()
+    }
+
+    /// Parts of a bolt that are bonded in blocks, from its head.
+    pub fn bonded_parts(&self, index: usize) -> &[Portion] {
+        self.bolts.as_ref().and_then(|bolts| bolts.list.get(index)).map_or(&[], |bolt| &bolt.bonded)
     }
 
     /// Replaces `out` by the pieces of all bolts that are there, as they were when forces were last taken, at the present places of blocks.

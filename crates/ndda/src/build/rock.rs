@@ -137,7 +137,11 @@ pub(super) fn cut_rock(
     let refused = blocks.report.refused.iter().map(|(_, count)| count).sum();
     let (mut merged, slivers) = match rock.slivers {
         _ if rock.sliver_width_m == 0.0 => (Merged::default(), Vec::new()),
-        Slivers::Merge => (blocks.merge_slivers(&domain, rock.sliver_width_m), Vec::new()),
+        Slivers::Merge => {
+            // What stays and what is taken out meet at the faces of the rock, which slivers neither notch nor stand in front of.
+            let is_removed = |at: &Vec3| usize::from(holds(&rock.removed, at));
+            (blocks.merge_slivers_within(&domain, rock.sliver_width_m, &is_removed), Vec::new())
+        }
         Slivers::Remove => (Merged::default(), slivers(&blocks)),
     };
     let sliver_m3 = blocks.remove(&slivers);

@@ -2,6 +2,7 @@
 
 use ndda_io::WriteError;
 
+use crate::forecast::held::NOTHING_MOVES;
 use crate::study::error::StudyError;
 
 /// Why a scene cannot be certified.
@@ -39,6 +40,11 @@ pub enum CertifyError {
         "the scene has stages, whose ends differ from step to step: certify and tune one stage, as a scene of its own without `stages`"
     )]
     Stages,
+    /// Nothing that moves.
+    #[error(
+        "{NOTHING_MOVES}, so there is no motion whose error could be found: let blocks move by `body: Rigid`, Affine or Elastic"
+    )]
+    NothingMoves,
     /// No contact to make stiffer.
     #[error("--penalty: the scene has no contact: leave the option out")]
     NoContact,

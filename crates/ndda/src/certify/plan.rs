@@ -6,8 +6,10 @@ use ndda_solver::BodyKind;
 use ndda_solver::Simulation;
 
 use super::chaos::DISTURBANCE;
-use super::quantities::BLOCK;
+use super::error::CertifyError;
+use super::quantities::{BLOCK, named};
 use crate::build;
+use crate::run::recorder::{Extras, columns, held_blocks};
 use crate::study::case::Case;
 
 /// Rows of a history that errors are found from.
@@ -33,6 +35,8 @@ pub struct Plan {
     step_s: f64,
     /// The end of all runs [s].
     end_s: f64,
+    /// Columns of the histories of its runs.
+    columns: Vec<String>,
 }
 
 impl Plan {
@@ -51,7 +55,23 @@ impl Plan {
         }
         let step_s =
             if steps == build::steps(&scene.time) { scene.time.step_s } else { end_s / steps as f64 };
-        Self { scene: scene.clone(), common, steps, step_s, end_s }
+        let names = monitors.iter().map(|monitor| monitor.name.as_str());
+        let columns = columns(names, &held_blocks(simulation), Extras::of(scene));
+        Self { scene: scene.clone(), common, steps, step_s, end_s, columns }
+    }
+
+    /// Whether all names that are asked for begin a column of the histories.
+    ///
+    /// # Errors
+    /// [`CertifyError::NoQuantity`] with the columns that there are.
+    pub fn check_names(&self, of: &[String]) -> Result<(), CertifyError> {
+        let is_there = |wanted: &&String| self.columns.iter().any(|name| named(name, wanted));
+        match of.iter().find(|wanted| !is_there(wanted)) {
+            None => Ok(()),
+            Some(name) => {
+                Err(CertifyError::NoQuantity { name: name.clone(), known: self.columns[1..].join(", ") })
+            }
+        }
     }
 
     /// Step of the level `k`, Δt/2ᵏ [s].

@@ -108,6 +108,11 @@ pub fn quantities(history: &Table, of: &[String]) -> Vec<Quantity> {
     found
 }
 
+/// Whether a quantity is asked for by the beginning of its name, or of that of its block.
+pub fn named(quantity: &str, wanted: &str) -> bool {
+    quantity.starts_with(wanted) || quantity.strip_prefix(BLOCK).is_some_and(|name| name.starts_with(wanted))
+}
+
 /// The vector that a column is a component of, or itself.
 fn vector(name: &str) -> String {
     ["_x_", "_y_", "_z_"].iter().fold(name.to_string(), |name, axis| name.replace(axis, "_"))

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::certificate::{Certificate, Certified};
 use super::extrapolate::Behaviour;
-use super::quantities::BLOCK;
+use super::quantities::{BLOCK, named};
 use crate::columns::columns;
 use crate::numbers::counted;
 
@@ -80,11 +80,6 @@ pub fn vanishes(certificate: &Certificate, quantity: &Certified) -> bool {
     let others = certificate.quantities.iter().filter(|other| other.name.starts_with(vector));
     let largest = others.map(|other| other.value.abs() + other.largest_error).fold(0.0, f64::max);
     quantity.largest_error < NOTHING * largest
-}
-
-/// Whether a quantity is asked for by the beginning of its name, or of that of its block.
-pub fn named(quantity: &str, wanted: &str) -> bool {
-    quantity.starts_with(wanted) || quantity.strip_prefix(BLOCK).is_some_and(|name| name.starts_with(wanted))
 }
 
 /// The block that a quantity belongs to.

@@ -10,6 +10,7 @@ use serde::Serialize;
 
 use super::doubts::has_friction;
 use super::memory::readable;
+use crate::numbers::counted;
 use crate::run::fields::FieldWriter;
 use crate::run::recorder::{Extras, columns, held_blocks};
 use crate::run::schedule::{events, is_due};
@@ -178,8 +179,9 @@ impl fmt::Display for Guess {
         let steps = self.timed_steps;
         write!(
             f,
-            "a run would take about {:.1} s ({steps} steps timed; longer if more blocks come to touch)",
-            self.run_s
+            "a run would take about {:.1} s ({} timed; longer if more blocks come to touch)",
+            self.run_s,
+            counted(steps as usize, "step", "steps")
         )?;
         if self.settles {
             f.write_str(" once it has settled, for which it may need many times as long")?;

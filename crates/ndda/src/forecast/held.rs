@@ -14,6 +14,17 @@ const NOTHING: &str = "nothing is held, so all blocks fall together";
 /// Its cure.
 const HOLD: &str = "give a block `body: Fixed`, rock `fixed: […]`, or supports";
 
+/// What is said where nothing can move.
+pub const NOTHING_MOVES: &str = "no block can move: every block is fixed";
+/// Its cure.
+const LET_MOVE: &str =
+    "give blocks that are to move `body: Rigid`, Affine or Elastic, and hold rock by `fixed: […]`";
+
+/// Whether some block of a scene can move, or is moved by a support.
+pub fn something_moves(scene: &Scene, blocks: &BlockSet) -> bool {
+    !scene.supports.is_empty() || build::moving(scene, blocks).iter().any(Option::is_some)
+}
+
 /// Whether all blocks of a scene with gravity are free to fall.
 fn nothing_is(scene: &Scene, blocks: &BlockSet) -> bool {
     let held = !scene.supports.is_empty() || !scene.quiet.is_empty() || !scene.ties.is_empty();
@@ -24,8 +35,11 @@ fn nothing_is(scene: &Scene, blocks: &BlockSet) -> bool {
 /// Warnings about what holds the blocks of a scene: path, message and cure.
 fn found(scene: &Scene, blocks: &BlockSet) -> Vec<(String, String, &'static str)> {
     let mut found = Vec::new();
+    let list = if scene.blocks.is_empty() { "rock" } else { "blocks" };
+    if !something_moves(scene, blocks) {
+        found.push((list.to_string(), NOTHING_MOVES.to_string(), LET_MOVE));
+    }
     if nothing_is(scene, blocks) {
-        let list = if scene.blocks.is_empty() { "rock" } else { "blocks" };
         found.push((list.to_string(), NOTHING.to_string(), HOLD));
     }
     let rims = rim::leaving(scene, blocks);
@@ -42,7 +56,8 @@ pub fn sentences(scene: &Scene, blocks: &BlockSet) -> Vec<String> {
 /// The same at their places in the scene.
 pub fn warnings(loaded: &LoadedScene, blocks: &BlockSet) -> Vec<Diagnostic> {
     let warning = |(path, message, cure): (String, String, &str)| {
-        let found = loaded.diagnose_as(Code::NotHeld, &path, message).with_help(cure);
+        let code = if message == NOTHING_MOVES { Code::NoEffect } else { Code::NotHeld };
+        let found = loaded.diagnose_as(code, &path, message).with_help(cure);
         Diagnostic { severity: Severity::Warning, ..found }
     };
     found(&loaded.scene, blocks).into_iter().map(warning).collect()
@@ -54,6 +69,10 @@ mod tests {
 
     /// Codes of the warnings of two blocks, one on the other; `more` is said of the lower one.
     fn codes(more: &str, rest: &str) -> Vec<String> {
+        codes_of(more, "", "penalty_pa: 1e8, ", rest)
+    }
+
+    fn codes_of(more: &str, upper: &str, penalty: &str, rest: &str) -> Vec<String> {
         let block = |name: &str, z: f64, more: &str| {
             format!(
                 "(name: \"{name}\", material: \"rock\", shape: Box(size_m: (1, 1, 1), cells: (1, 1, 1)), at_m: (0, 0, {z}), {more}),"
@@ -62,9 +81,9 @@ mod tests {
         let text = format!(
             "(title: \"two\", time: (step_s: 1e-4, end_s: 1e-3), gravity_m_s2: (0, 0, -9.81),
             materials: [(name: \"rock\", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
-            blocks: [{}{}], contact: Potential(penalty_pa: 1e8, friction: (friction_deg: 30)), {rest})",
+            blocks: [{}{}], contact: Potential({penalty}friction: (friction_deg: 30)), {rest})",
             block("lower", 0.0, more),
-            block("upper", 1.0, "")
+            block("upper", 1.0, upper)
         );
         let model = Model::from_text(&text).unwrap();
         model.loaded.warnings.iter().map(|warning| warning.code.to_string()).collect()
@@ -75,5 +94,12 @@ mod tests {
         assert_eq!(codes("", ""), ["not-held"]);
         assert_eq!(codes("body: Fixed", ""), Vec::<String>::new());
         assert_eq!(codes("", "supports: [(block: \"lower\", on: All, hold: Fixed)]"), Vec::<String>::new());
+    }
+
+    #[test]
+    fn blocks_that_are_all_fixed_are_warned_of_with_and_without_a_penalty() {
+        for penalty in ["penalty_pa: 1e8, ", ""] {
+            assert_eq!(codes_of("body: Fixed", "body: Fixed", penalty, ""), ["no-effect"], "{penalty}");
+        }
     }
 }

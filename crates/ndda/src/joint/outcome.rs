@@ -8,6 +8,7 @@ use super::{
     closure_comparisons, friction, shear_comparisons,
 };
 use crate::build::friction::joint_law;
+use crate::numbers::with_prefix;
 
 /// Name and version of the JSON.
 const SCHEMA: &str = "ndda.joint/1";
@@ -58,12 +59,12 @@ impl TestOutcome {
             Hold::Stress => "at a constant normal stress of".to_string(),
             Hold::Volume => "at constant volume from a normal stress of".to_string(),
             Hold::Stiffness { stiffness_pa_m } => {
-                format!("held by {:e} GPa/m from a normal stress of", 1e-9 * stiffness_pa_m)
+                format!("held by {} from a normal stress of", with_prefix(stiffness_pa_m, "Pa/m"))
             }
         };
         Ok(Self {
             schema: SCHEMA,
-            title: format!("{name}: {}, {held} {} MPa", law.name(), 1e-6 * test.stress_pa),
+            title: format!("{name}: {}, {held} {}", law.name(), with_prefix(test.stress_pa, "Pa")),
             law: Some(law.name()),
             hold: Some(test.hold),
             normal_stress_pa: test.stress_pa,
@@ -81,7 +82,10 @@ impl TestOutcome {
         let rows = test.run()?;
         Ok(Self {
             schema: SCHEMA,
-            title: format!("closure of a joint up to a normal stress of {} MPa", 1e-6 * test.stress_pa),
+            title: format!(
+                "closure of a joint up to a normal stress of {}",
+                with_prefix(test.stress_pa, "Pa")
+            ),
             law: None,
             hold: None,
             normal_stress_pa: test.stress_pa,

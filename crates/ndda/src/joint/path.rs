@@ -4,6 +4,8 @@ use super::{JointError, positive};
 
 /// Steps of a test, at most.
 const MOST_STEPS: u64 = 10_000_000;
+/// Amplitude of a test for which none is given [m].
+const AMPLITUDE_M: f64 = 0.01;
 
 /// Whether a test has steps, and no more than its rows can be kept of.
 pub(super) fn steps(count: u64) -> Result<(), JointError> {
@@ -14,11 +16,12 @@ pub(super) fn steps(count: u64) -> Result<(), JointError> {
     Err(JointError::OutOfRange { what: "the number of steps", value: count as f64, advice })
 }
 
-/// Slips of a test: to the amplitude and no farther, or forth and back about the start so many times.
+/// Slips of a test: to the amplitude (1 cm where none is given) and no farther, or forth and back about the start so many times.
 ///
 /// # Errors
 /// [`JointError::OutOfRange`].
-pub fn path(amplitude_m: f64, cycles: u32, steps: u32) -> Result<Vec<f64>, JointError> {
+pub fn path(amplitude_m: impl Into<Option<f64>>, cycles: u32, steps: u32) -> Result<Vec<f64>, JointError> {
+    let amplitude_m = amplitude_m.into().unwrap_or(AMPLITUDE_M);
     positive("--amplitude", amplitude_m)?;
     let count = u64::from(steps).saturating_mul(if cycles == 0 { 1 } else { 4 * u64::from(cycles) });
     self::steps(count)?;

@@ -1,6 +1,6 @@
 //! Which joint of a scene is tested.
 
-use ndda_io::scene::{Contact, Friction, Potential, Scene, is_unset, matches};
+use ndda_io::scene::{Contact, Discontinuity, Friction, Potential, Scene, is_unset, matches};
 
 use super::NormalStiffness;
 
@@ -35,12 +35,14 @@ pub enum SelectError {
     #[error("the scene has no contact: give contact: Potential(…)")]
     NoContact,
     /// No such joint, or no law for it.
-    #[error("{wanted} has no law of its own in this scene, which has {known}")]
+    #[error("{wanted} has no law of its own in this scene, which has {known}{}", none_such(.joints))]
     Unknown {
         /// The joint or pair that was requested.
         wanted: String,
         /// Joints and pairs that have a law.
         known: String,
+        /// The joints of the scene, where the one that was requested is none of them.
+        joints: Option<String>,
     },
     /// The joint has no friction.
     #[error("{wanted} has no friction in this scene, and so nothing to test")]
@@ -72,10 +74,30 @@ pub fn friction<'a>(scene: &'a Scene, which: &Which) -> Result<&'a Friction, Sel
         }
     };
     match found {
-        None => Err(SelectError::Unknown { wanted, known: known(scene) }),
+        None => Err(SelectError::Unknown { wanted, known: known(scene), joints: joints_but(scene, which) }),
         Some(None) => Err(SelectError::Smooth { wanted }),
         Some(Some(friction)) => Ok(friction),
     }
+}
+
+fn none_such(joints: &Option<String>) -> String {
+    joints.as_ref().map_or(String::new(), |joints| format!("; there is no joint of this name: {joints}"))
+}
+
+/// The joints of a scene, if a joint is requested that is none of them; tables of discs may name more.
+fn joints_but(scene: &Scene, which: &Which) -> Option<String> {
+    let Which::Joint(wanted) = which else { return None };
+    let joints = || scene.rock.iter().flat_map(|rock| &rock.joints);
+    if joints().any(|joint| matches!(joint, Discontinuity::Discs { .. }) || matches(wanted, joint.name())) {
+        return None;
+    }
+    let mut names: Vec<&str> = joints().map(Discontinuity::name).collect();
+    names.dedup();
+    Some(if names.is_empty() {
+        "the scene cuts no rock".into()
+    } else {
+        format!("it has {}", names.join(", "))
+    })
 }
 
 /// Joints and pairs that have a law, as options of the command line.

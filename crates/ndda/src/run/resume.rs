@@ -58,6 +58,11 @@ impl Run {
     /// # Errors
     /// [`ResumeError`].
     pub fn resume_with(folder: &Path, choices: Choices) -> Result<Resumed, ResumeError> {
+        if !folder.is_dir() {
+            let what = if folder.exists() { "is no folder" } else { "does not exist" };
+            let message = format!("{} {what}: name the output folder of a run", folder.display());
+            return Err(ResumeError::Unusable(message));
+        }
         let folder = OutputFolder::open(folder)?;
         if let Some(instead) = places::instead(folder.path()) {
             let path = folder.path().display();

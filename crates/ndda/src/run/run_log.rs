@@ -12,7 +12,7 @@ use crate::machine;
 use crate::numbers::counted;
 
 /// Text before the scene's fingerprint.
-const CRC32: &str = "CRC-32 of its text ";
+const CRC32: &str = "CRC-32 of its text with the chosen values ";
 
 /// The fingerprint of the scene that the log in a folder begins with, if there is a log.
 pub fn scene_crc32(folder: &OutputFolder) -> Option<u32> {

@@ -47,7 +47,14 @@ pub fn fisher(planes: &[Orientation]) -> Option<Fisher> {
     let k = scatters.then(|| (count - 1.0) / apart);
     Some(Fisher {
         planes: poles.len(),
-        mean: Orientation::of_normal(&sum),
+        // One plane is its own mean, without rounding.
+        mean: match planes {
+            [only] => {
+                let dip_direction_deg = only.dip_direction_deg.rem_euclid(360.0);
+                Orientation { dip_direction_deg, ..*only }
+            }
+            _ => Orientation::of_normal(&sum),
+        },
         resultant,
         k,
         confidence_95_deg: scatters

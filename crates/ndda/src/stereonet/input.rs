@@ -4,13 +4,17 @@ use std::path::Path;
 
 use ndda_io::joint_table::{self, PlaneRow};
 use ndda_io::read;
-use ndda_io::scene::{Discontinuity, Scene};
+use ndda_io::scene::{Discontinuity, Rock, Scene, Whereabouts};
+use ndda_mesh::Vec3;
+use ndda_mesh::cut::dip_normal;
 
 use super::error::StereonetError;
 use super::orientation::Orientation;
 
 /// Most planes: every two of them may form a wedge.
 pub const MOST_PLANES: usize = 10_000;
+/// Sine of the angle, and distance [m], below which two planes are one.
+const SAME: f64 = 1e-6;
 /// Set of planes for which a table names none.
 const NO_SET: &str = "all";
 
@@ -25,6 +29,8 @@ pub struct Planes {
     pub set_of: Vec<usize>,
     /// Names of the sets, in the order in which they occur.
     pub sets: Vec<String>,
+    /// Names of planes of a scene that are borders of what is removed or fixed.
+    pub borders: Vec<String>,
 }
 
 impl Planes {
@@ -73,11 +79,27 @@ fn scene(file: &Path, overrides: &[String]) -> Result<Planes, StereonetError> {
     if planes.planes.is_empty() { Err(StereonetError::NoJoints(file.to_path_buf())) } else { Ok(planes) }
 }
 
+/// Whether a plane of a rock is a border of it, and no joint: the plane beyond which it is removed, or a level one below which it is fixed.
+fn is_border(rock: &Rock, joint: &Discontinuity) -> bool {
+    let Discontinuity::Plane { dip_deg, dip_direction_deg, point_m, .. } = joint else { return false };
+    let normal = dip_normal(*dip_deg, *dip_direction_deg);
+    let bounds = |place: &Whereabouts| {
+        let Whereabouts::Beyond { point_m: other_m, normal: beyond } = place else { return false };
+        let (beyond, from_other) = (Vec3::from(*beyond), Vec3::from(*point_m) - Vec3::from(*other_m));
+        let apart_m = from_other.dot(&normal).abs();
+        beyond.cross(&normal).norm() <= SAME * beyond.norm() && apart_m <= SAME * (1.0 + from_other.norm())
+    };
+    rock.removed.iter().any(bounds) || *dip_deg == 0.0 && rock.fixed.iter().any(bounds)
+}
+
 /// The mean orientation of each joint set and the orientation of each plane and disc; those of one name are one set.
 fn joints(scene: &Scene, folder: &Path) -> Result<Planes, StereonetError> {
     let mut planes = Planes { title: scene.title.clone(), ..Planes::default() };
-    for joint in scene.rock.iter().flat_map(|rock| &rock.joints) {
-        if let Some([dip_deg, dip_direction_deg]) = joint.orientation_deg() {
+    for (rock, joint) in scene.rock.iter().flat_map(|rock| rock.joints.iter().map(move |joint| (rock, joint)))
+    {
+        if is_border(rock, joint) {
+            planes.borders.push(joint.name().to_string());
+        } else if let Some([dip_deg, dip_direction_deg]) = joint.orientation_deg() {
             planes.push(Orientation { dip_deg, dip_direction_deg }, joint.name());
         }
         if let Discontinuity::Discs { file, .. } = joint {
@@ -116,6 +138,30 @@ mod tests {
         assert_eq!(planes.set_of, [0, 1, 0, 2]);
         assert_eq!(planes.planes[1], Orientation { dip_deg: 60.0, dip_direction_deg: 220.0 });
         assert_eq!(planes.of_set(0).len(), 2);
+    }
+
+    #[test]
+    fn the_face_and_the_floor_of_a_slope_are_no_joints_and_a_plane_that_rock_slides_on_is_one() {
+        let text = "(title: \"slope\", time: (step_s: 1e-3, end_s: 1),
+            materials: [(name: \"rock\", density_kg_m3: 2600, young_pa: 20e9, poisson: 0.25)],
+            rock: [(material: \"rock\", domain: Box(min_m: (-9, -9, -3), max_m: (9, 9, 9)),
+                joints: [
+                    Plane(name: \"face\", dip_deg: 60, dip_direction_deg: 90, point_m: (0, 0, 0)),
+                    Plane(name: \"floor\", dip_deg: 0, dip_direction_deg: 0, point_m: (0, 0, 0)),
+                    Plane(name: \"slide\", dip_deg: 30, dip_direction_deg: 90, point_m: (0, 0, 0)),
+                ],
+                removed: [Beyond(point_m: (0, 5, 0), normal: (Calc(sin(60)), 0, Calc(cos(60))))],
+                fixed: [Beyond(point_m: (4, 0, 0), normal: (0, 0, -1)),
+                        Beyond(point_m: (0, 0, 0), normal: (Calc(-sin(30)), 0, Calc(-cos(30))))])],
+            contact: Potential(penalty_pa: 1e8))";
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("slope.ron");
+        std::fs::write(&file, text).unwrap();
+        let planes = read(&file, &[]).unwrap();
+        assert_eq!(
+            (planes.sets, planes.borders),
+            (vec!["slide".into()], vec!["face".into(), "floor".into()])
+        );
     }
 
     #[test]

@@ -9,6 +9,9 @@ use serde::Serialize;
 
 use super::orientation::{Line, Orientation, between_deg};
 
+/// Angles nearer to each other than this are equal [°].
+const ROUNDING_DEG: f64 = 1e-9;
+
 /// A slope that is checked.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Slope {
@@ -44,8 +47,9 @@ pub struct Checks {
 
 impl Slope {
     /// Whether a line that descends comes out of the face: its plunge is less than the apparent dip of the face along its trend.
+    /// A line of the face itself does not, whatever its rounding.
     pub fn daylights(&self, line: &Line) -> bool {
-        line.plunge_deg < self.face.apparent_dip_deg(line.trend_deg)
+        line.plunge_deg < self.face.apparent_dip_deg(line.trend_deg) - ROUNDING_DEG
     }
 
     /// Plane sliding (Markland 1972): the plane is steeper than friction, its dip line daylights, and it dips within the lateral limit
@@ -63,11 +67,24 @@ impl Slope {
     }
 
     /// Flexural toppling (Goodman & Bray 1976): layers slip on each other, 90° − δ ≤ ψ − φ for a face of dip ψ, and dip into the slope
-    /// within the lateral limit (30° by Goodman, Introduction to rock mechanics, 1989).
+    /// within the lateral limit (30° by Goodman, Introduction to rock mechanics, 1989). An upright plane dips either way.
     pub fn topples(&self, plane: &Orientation) -> bool {
         let into = self.face.dip_direction_deg + 180.0;
+        let from_into = between_deg(plane.dip_direction_deg, into);
+        let is_upright = plane.dip_deg >= 90.0 - ROUNDING_DEG;
+        let from_into = if is_upright { from_into.min(180.0 - from_into) } else { from_into };
         90.0 - plane.dip_deg <= self.face.dip_deg - self.friction_deg
-            && between_deg(plane.dip_direction_deg, into) <= self.toppling_lateral_deg
+            && from_into <= self.toppling_lateral_deg
+    }
+
+    /// Why no wedge slides along a line; none where one may.
+    pub fn holds_wedge(&self, line: &Line) -> Option<&'static str> {
+        match (line.plunge_deg > self.friction_deg, self.daylights(line)) {
+            (true, true) => None,
+            (false, true) => Some("flatter than φ"),
+            (true, false) => Some("it does not come out of the face"),
+            (false, false) => Some("flatter than φ, and it does not come out of the face"),
+        }
     }
 
     /// All checks of all planes; wedges are those of two planes of different sets.
@@ -155,6 +172,32 @@ mod tests {
             (85.0, 180.0, false),
         ] {
             assert_eq!(slope.topples(&plane(dip, direction)), topples, "{dip}/{direction}");
+        }
+    }
+
+    #[test]
+    fn an_upright_plane_topples_whichever_of_its_two_directions_is_written() {
+        let slope = slope(65.0, 120.0, 30.0);
+        for direction in [120.0, 300.0, 91.0, 329.0] {
+            assert!(slope.topples(&plane(90.0, direction)), "{direction}");
+        }
+        assert!(!slope.topples(&plane(90.0, 210.0)) && !slope.topples(&plane(89.0, 120.0)));
+    }
+
+    #[test]
+    fn a_line_in_the_face_does_not_come_out_of_it_and_the_reason_that_holds_a_wedge_is_said() {
+        let slope = slope(65.0, 120.0, 30.0);
+        for direction in [30.0, 200.0, 285.0] {
+            let line = slope.face.intersection(&plane(60.0, direction)).unwrap();
+            assert!(!slope.daylights(&line), "{line:?}");
+        }
+        for (trend_deg, plunge_deg, why) in [
+            (120.0, 40.0, None),
+            (120.0, 20.0, Some("flatter than φ")),
+            (120.0, 70.0, Some("it does not come out of the face")),
+            (300.0, 5.0, Some("flatter than φ, and it does not come out of the face")),
+        ] {
+            assert_eq!(slope.holds_wedge(&Line { trend_deg, plunge_deg }), why);
         }
     }
 

@@ -72,7 +72,8 @@ impl Line {
     /// The line along a vector of any length, which may point upwards.
     pub fn of_vector(along: &Vec3) -> Self {
         let down = if along.z > 0.0 { -along } else { *along };
-        let plunge_deg = (-down.z).atan2(down.x.hypot(down.y)).to_degrees();
+        // Of a level line, −0 is 0.
+        let plunge_deg = (0.0 - down.z).atan2(down.x.hypot(down.y)).to_degrees();
         Self { trend_deg: down.x.atan2(down.y).to_degrees().rem_euclid(360.0), plunge_deg }
     }
 }
@@ -114,6 +115,8 @@ mod tests {
             assert!((plane.apparent_dip_deg(line.trend_deg) - line.plunge_deg).abs() < 1e-10);
         }
         assert_eq!(a.intersection(&a), None);
+        let level = Line::of_vector(&Vec3::new(1.0, 1.0, 0.0));
+        assert_eq!(format!("{:.1}", level.plunge_deg), "0.0");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::picture;
 use crate::picture::svg::{Anchor, Rgb, Svg};
 
 /// Width and height [px].
-const SIZE: [usize; 2] = [980, 690];
+const SIZE: [usize; 2] = [1080, 690];
 /// Middle and radius of the disc [px].
 const CENTRE: [f64; 2] = [320.0, 376.0];
 const RADIUS: f64 = 270.0;
@@ -22,7 +22,7 @@ const FACE: Rgb = [196, 40, 40];
 const KEY: [f64; 2] = [650.0, 84.0];
 const LINE: f64 = 22.0;
 /// Room of words in the key [px].
-const ROOM: f64 = 290.0;
+const ROOM: f64 = 390.0;
 /// Colour of the planes of sets that are not listed.
 const OTHERS: Rgb = [160, 160, 166];
 

@@ -2,13 +2,15 @@
 
 use std::fmt;
 
-use super::kinematics::Count;
+use super::kinematics::{Checks, Count};
 use super::orientation::Orientation;
 use super::{Set, Stereonet, Wedge};
 use crate::columns::columns;
 
 /// Most intersections that are listed.
 const MOST_WEDGES: usize = 15;
+/// Most sets that are named beside a count.
+const MOST_NAMED: usize = 12;
 
 impl fmt::Display for Orientation {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
@@ -27,6 +29,7 @@ impl Count {
 
 impl fmt::Display for Stereonet {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "warning: {warning}"))?;
         let listed = self.listed();
         let header =
             ["set", "planes", "mean dip/direction", "Fisher K", "95 % confidence cone [°]"].map(String::from);
@@ -36,6 +39,13 @@ impl fmt::Display for Stereonet {
             let more = self.sets.len() - listed.len();
             writeln!(f, "and {more} more sets with no more planes than these; --json lists all")?;
         }
+        if !self.borders.is_empty() {
+            let names = self.borders.join(", ");
+            writeln!(
+                f,
+                "not counted among the joints, as borders of rock that is removed or fixed: {names}"
+            )?;
+        }
         self.wedges_in_words(f)?;
         if let (Some(slope), Some(checks)) = (&self.slope, &self.checks) {
             let friction = match self.has_friction {
@@ -43,9 +53,21 @@ impl fmt::Display for Stereonet {
                 false => "friction not considered (--friction is not given)".into(),
             };
             writeln!(f, "slope {}, {friction}; kinematically possible:", slope.face)?;
-            writeln!(f, "  plane sliding      on {}", checks.plane_sliding.of_all("planes"))?;
+            let (sliding, toppling) = (checks.plane_sliding, checks.flexural_toppling);
+            let of_sets = |count: &dyn Fn(&Checks) -> Count| self.critical_sets(count);
+            writeln!(
+                f,
+                "  plane sliding      on {}{}",
+                sliding.of_all("planes"),
+                of_sets(&|c| c.plane_sliding)
+            )?;
             writeln!(f, "  wedge sliding      along {}", checks.wedge_sliding.of_all("intersections"))?;
-            writeln!(f, "  flexural toppling  on {}", checks.flexural_toppling.of_all("planes"))?;
+            writeln!(
+                f,
+                "  flexural toppling  on {}{}",
+                toppling.of_all("planes"),
+                of_sets(&|c| c.flexural_toppling)
+            )?;
         }
         match &self.picture {
             Some(file) => write!(f, "{}", file.display()),
@@ -55,6 +77,23 @@ impl fmt::Display for Stereonet {
 }
 
 impl Stereonet {
+    /// The sets with planes that meet a criterion, and how many of several do: `: J1, bedding (12)`.
+    fn critical_sets(&self, count: &dyn Fn(&Checks) -> Count) -> String {
+        let name = |set: &Set| {
+            let Count { critical, of } = count(set.checks.as_ref()?);
+            let name = &set.name;
+            (critical > 0).then(|| if of > 1 { format!("{name} ({critical})") } else { name.clone() })
+        };
+        let names: Vec<String> = self.sets.iter().filter_map(name).collect();
+        match names.len() {
+            0 => String::new(),
+            count if count > MOST_NAMED => {
+                format!(": {} and {} more sets", names[..MOST_NAMED].join(", "), count - MOST_NAMED)
+            }
+            _ => format!(": {}", names.join(", ")),
+        }
+    }
+
     /// Intersections of mean planes, where they are many those along which wedges may slide first.
     fn wedges_in_words(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let mut wedges: Vec<&Wedge> = self.wedges.iter().collect();
@@ -64,9 +103,12 @@ impl Stereonet {
         }
         for wedge in &wedges {
             let word = match wedge.critical {
-                Some(true) => ": a wedge may slide along it",
-                Some(false) => ": no wedge slides along it (flatter than φ, or not out of the face)",
-                None => "",
+                Some(true) => ": a wedge may slide along it".to_string(),
+                Some(false) => {
+                    let why = self.slope.and_then(|slope| slope.holds_wedge(&wedge.line));
+                    format!(": no wedge slides along it ({})", why.unwrap_or_default())
+                }
+                None => String::new(),
             };
             let [a, b] = &wedge.sets;
             let (trend, plunge) = (wedge.line.trend_deg, wedge.line.plunge_deg);

@@ -6,8 +6,7 @@ use ndda_io::table::Table;
 
 use super::TuneError;
 use crate::certify::extrapolate::estimate;
-use crate::certify::quantities::{Kind, Quantity, common_rows, quantities, values_of};
-use crate::certify::report::named;
+use crate::certify::quantities::{Kind, Quantity, common_rows, named, quantities, values_of};
 use crate::certify::runs::Ended;
 
 /// Differences of runs that halve the step are extrapolated with at most this order.

@@ -45,10 +45,13 @@ pub fn read(file: &Path, overrides: &[String], colour: &Colour) -> Result<Film, 
         other => return Err(ViewError::NoResults(other.to_string())),
     };
     let mut moves: Vec<bool> = build::moving(scene, &blocks).iter().map(Option::is_some).collect();
-    if !moves.contains(&true) {
+    // Where nothing moves, all blocks are drawn in colours.
+    let none_moves = !moves.contains(&true);
+    if none_moves {
         moves.fill(true);
     }
     let mut film = film(scene.title.clone(), &blocks, colouring, moves);
+    film.moved = none_moves.then_some(0);
     film.moments[0].bolts = bolts;
     Ok(film)
 }

@@ -53,7 +53,8 @@ pub(super) fn refuse_unless_results(path: &Path) -> Result<(), WriteError> {
 
 pub(super) fn refuse_unless_empty(path: &Path) -> Result<(), WriteError> {
     let names = names_but_probe(path)?;
-    if let Some(found) = names.iter().find(|name| is_ours(name)) {
+    let is_result = |name: &&String| is_ours(name) || *name == MESH_REPORT;
+    if let Some(found) = names.iter().find(is_result) {
         return Err(WriteError::EarlierRun { path: path.to_path_buf(), found: found.clone() });
     }
     match names.first() {

@@ -63,6 +63,25 @@ impl Check<'_> {
         self.positive(format!("{path}.steel.area_m2"), steel.area_m2, "m²");
         self.positive(format!("{path}.grout.stiffness_n_m2"), grout.stiffness_n_m2, "N/m²");
         self.positive(format!("{path}.grout.strength_n_m"), grout.strength_n_m, "N/m");
+        let of_grout = [
+            (
+                "stiffness_n_m2",
+                grout.stiffness_n_m2,
+                "N/m²",
+                1e5,
+                "grouted bolts have about 1 to 10 GN/m²: 2 GN/m² is 2e9",
+            ),
+            (
+                "strength_n_m",
+                grout.strength_n_m,
+                "N/m",
+                1e3,
+                "grouted bolts have about 50 to 1000 kN/m: 400 kN/m is 400e3",
+            ),
+        ];
+        for (field, value, unit, least, help) in of_grout {
+            self.small(format!("{path}.grout.{field}"), (value, unit), least, help);
+        }
         let optional = [
             ("steel.yield_n", steel.yield_n, "N"),
             ("steel.break_strain", steel.break_strain, ""),

@@ -12,13 +12,29 @@ const LEAST_LIKELY_DEG: f64 = 2.0;
 /// Largest roughness coefficient.
 const MOST_JRC: f64 = 20.0;
 
+/// Stiffness [Pa/m] below which a joint has none in any rock; clay has more.
+const SOFTEST_JOINT_PA_M: f64 = 1e4;
+/// Strength [Pa] that is the weight of some millimetres of rock.
+const LEAST_STRENGTH_PA: f64 = 100.0;
+/// Strength [Pa] below that of any wall of a joint; soil has more.
+const LEAST_WALL_PA: f64 = 1e4;
+
 impl Check<'_> {
+    /// Warns of a value with its unit that is positive and too small to mean anything.
+    pub(super) fn small(&mut self, path: String, (value, unit): (f64, &str), least: f64, help: &str) {
+        if value > 0.0 && value < least {
+            self.warn(Code::UnitSlip, path, format!("{value} {unit} is next to nothing"), help);
+        }
+    }
+
     /// Warns of an angle [°] that is probably a coefficient of friction.
     pub(super) fn coefficient(&mut self, path: String, angle_deg: f64) {
         if angle_deg > 0.0 && angle_deg < LEAST_LIKELY_DEG {
             let degrees = format!("{:.1}", angle_deg.atan().to_degrees());
             let message = format!("{angle_deg}° is less than any joint has");
-            let help = format!("if {angle_deg} is meant as the coefficient tan φ, write {degrees}");
+            let help = format!(
+                "if {angle_deg} is meant as the coefficient tan φ, write {degrees}; if it is in radians, Radians({angle_deg})"
+            );
             self.warn(Code::UnitSlip, path, message, help);
         }
     }
@@ -34,7 +50,12 @@ impl Check<'_> {
         }
         if let Some(penalty) = friction.shear_penalty_pa_m {
             self.positive(field("shear_penalty_pa_m"), penalty, "Pa/m");
+            let help = "joints have 1 to 100 GPa/m: 10 GPa/m is 10e9";
+            self.small(field("shear_penalty_pa_m"), (penalty, "Pa/m"), SOFTEST_JOINT_PA_M, help);
         }
+        let help = "the unit is pascal: 50 kPa is 50e3";
+        self.small(field("cohesion_pa"), (friction.cohesion_pa, "Pa"), LEAST_STRENGTH_PA, help);
+        self.small(field("tension_pa"), (friction.tension_pa, "Pa"), LEAST_STRENGTH_PA, help);
         for (name, strength) in [("cohesion_pa", friction.cohesion_pa), ("tension_pa", friction.tension_pa)] {
             if !(strength >= 0.0 && strength.is_finite()) {
                 let message = format!("{strength} Pa: must be zero or positive");
@@ -105,6 +126,8 @@ impl Check<'_> {
             );
         }
         self.positive(field("jcs_pa"), roughness.jcs_pa, "Pa");
+        let help = "walls of joints have 1 to 300 MPa: 100 MPa is 100e6";
+        self.small(field("jcs_pa"), (roughness.jcs_pa, "Pa"), LEAST_WALL_PA, help);
         self.positive(field("sample_m"), roughness.sample_m, "m");
         if let Some(length_m) = roughness.length_m {
             self.positive(field("length_m"), length_m, "m");

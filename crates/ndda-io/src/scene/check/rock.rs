@@ -11,6 +11,8 @@ use crate::scene::{Slivers, SpacingScatter, Whereabouts, matches};
 
 /// More points of Voronoi cells than this are a slip of the keyboard.
 const MOST_CELLS: u32 = 10_000_000;
+/// Dips up to a right angle, in radians, are below it.
+const RIGHT_ANGLE_AT_MOST: f64 = 1.6;
 /// Level part of a gravity that is still upright: a twentieth of a degree.
 const LEVEL: f64 = 1e-3;
 /// How a table of discs is written.
@@ -114,6 +116,8 @@ impl Check<'_> {
                 let message = format!("{} m: must not be negative", rock.sliver_width_m);
                 self.error(path("sliver_width_m"), message, "0 keeps all blocks as they are");
             }
+            self.widths(&path("sliver_width_m"), rock);
+            self.radians(&path("joints"), &rock.joints);
             for (list, places) in [("removed", &rock.removed), ("fixed", &rock.fixed)] {
                 for (k, place) in places.iter().enumerate() {
                     self.whereabouts(&path(&format!("{list}[{k}]")), place);
@@ -129,6 +133,36 @@ impl Check<'_> {
                     "give the block or the rock another name",
                 );
             }
+        }
+    }
+
+    /// Warns of slivers as wide as the slabs between two planes of a set.
+    fn widths(&mut self, path: &str, rock: &Rock) {
+        let spacing_m = |joint: &Discontinuity| match joint {
+            Discontinuity::Set { spacing_m, .. } => Some(*spacing_m),
+            _ => None,
+        };
+        let spacings = rock.joints.iter().filter_map(|joint| Some((joint.name(), spacing_m(joint)?)));
+        let least = spacings.min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((name, spacing_m)) = least.filter(|(_, spacing_m)| rock.sliver_width_m > *spacing_m) {
+            let width_m = rock.sliver_width_m;
+            let message = format!(
+                "{width_m} m is more than the spacing of `{name}`, {spacing_m} m, so that its slabs are slivers"
+            );
+            self.warn(Code::Inexact, path, message, "give a tenth of the smallest spacing, or less");
+        }
+    }
+
+    /// Warns of dips that are probably in radians: several joints, all of them nearly level.
+    fn radians(&mut self, path: &str, joints: &[Discontinuity]) {
+        let dips = joints.iter().filter_map(|joint| Some(joint.orientation_deg()?[0]));
+        let dips: Vec<f64> = dips.filter(|dip_deg| *dip_deg != 0.0).collect();
+        let are_small = dips.iter().all(|dip_deg| (0.0..RIGHT_ANGLE_AT_MOST).contains(dip_deg));
+        if dips.len() > 1 && are_small {
+            let listed = dips.iter().map(|dip_deg| format!("{dip_deg}°")).collect::<Vec<_>>().join(", ");
+            let message = format!("all joints are nearly level (dips of {listed})");
+            let help = format!("if these are radians, write Radians({})", dips[0]);
+            self.warn(Code::UnitSlip, path, message, help);
         }
     }
 

@@ -4,6 +4,11 @@ use super::Check;
 use crate::scene::code::Code;
 use crate::scene::{Pressure, Wet};
 
+/// Pressure of 1 cm of water [Pa].
+const LEAST_PA: f64 = 100.0;
+/// What pressures are in.
+const UNIT: &str = "the unit is pascal: 1 m of water is 9810, 10 kPa is 10e3";
+
 impl Check<'_> {
     pub(super) fn water(&mut self) {
         let scene = self.scene;
@@ -39,11 +44,16 @@ impl Check<'_> {
                 self.numbers(&format!("{path}.pressure_pa"), &[*pressure_pa]);
                 self.numbers(&format!("{path}.at_m"), at_m);
                 self.numbers(&format!("{path}.gradient_pa_m"), gradient_pa_m);
+                if *gradient_pa_m == [0.0; 3] {
+                    self.small(format!("{path}.pressure_pa"), (*pressure_pa, "Pa"), LEAST_PA, UNIT);
+                }
             }
             Pressure::Points { along, at_m, rows } => {
                 self.direction(format!("{path}.along"), along);
                 self.numbers(&format!("{path}.at_m"), at_m);
                 self.points(&format!("{path}.rows"), rows);
+                let most_pa = rows.iter().map(|row| row.1).fold(0.0, f64::max);
+                self.small(format!("{path}.rows"), (most_pa, "Pa at most"), LEAST_PA, UNIT);
             }
             Pressure::Least(fields) => {
                 if fields.is_empty() {

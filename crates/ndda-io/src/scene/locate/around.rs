@@ -21,6 +21,19 @@ impl Node {
         child.entry_around(offset).or(is_entry.then(|| child.begun()..child.span.end))
     }
 
+    /// Whether the name of a field begins at a byte.
+    pub(crate) fn has_key_at(&self, offset: usize) -> bool {
+        self.children.iter().any(|c| c.key.is_some() && c.key_span.start == offset || c.has_key_at(offset))
+    }
+
+    /// The word, number or string around or just before a byte.
+    pub(crate) fn leaf_around(&self, offset: usize) -> Option<&Self> {
+        if self.opening.is_none() {
+            return (self.span.start <= offset && offset <= self.span.end).then_some(self);
+        }
+        self.children.iter().find_map(|child| child.leaf_around(offset))
+    }
+
     /// The value whose closing bracket stands at a byte, or else the innermost one around the byte before.
     pub(crate) fn closed_at(&self, offset: usize) -> Option<&Self> {
         let mut node = self;

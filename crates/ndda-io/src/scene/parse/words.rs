@@ -5,6 +5,7 @@ use ron::error::{Error as RonError, Position, SpannedError};
 use crate::scene::code::Code;
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::locate::{Node, segments};
+use crate::scene::parameters::FIELD;
 use crate::scene::suggest::suggest;
 use crate::scene::units::{self, Resolved};
 
@@ -29,6 +30,10 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
         outer.as_ref().filter(|name| *name == word).map_or(String::new(), |name| format!(" of `{name}`"))
     };
     match &error.code {
+        RonError::NoSuchStructField { found, .. } if is_choice(found, text, start) => {
+            let message = format!("a closing bracket is missing before `{found}`");
+            at(Code::Syntax, message).with_help("close what stands before it with `)`")
+        }
         RonError::NoSuchStructField { expected, found, outer } => {
             at(Code::UnknownField, format!("there is no field `{found}`{}", of(outer)))
                 .with_help(suggest(found, expected))
@@ -58,6 +63,15 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
             at(Code::WrongType, message).with_help(REFERENCE)
         }
         code => {
+            if let Some((begins, number)) = decimal_comma(code, text, start) {
+                let message = format!("`{}` is two values", number.replace('.', ","));
+                let found = Diagnostic { path: tree.path_at(begins), ..at(Code::Syntax, message) };
+                return found.with_help(format!("write a decimal point: {number}"));
+            }
+            if let Some(name) = parameter_at(code, text, start, tree) {
+                let message = format!("`{name}` is a parameter, and not a number by itself");
+                return at(Code::WrongType, message).with_help(format!("write Calc({name})"));
+            }
             if let Some((message, help)) = brackets_of_choice(code, text, start) {
                 return at(Code::WrongType, message).with_help(help);
             }
@@ -72,6 +86,34 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
             at(kind, message).with_help(help)
         }
     }
+}
+
+/// Whether a name that is taken for a field is that of a choice with brackets, as the next item of a list is after one that is not closed.
+fn is_choice(name: &str, text: &str, at: usize) -> bool {
+    let rest = text[at..].strip_prefix(name).map(str::trim_start);
+    name.starts_with(char::is_uppercase) && rest.is_some_and(|rest| rest.starts_with('('))
+}
+
+/// Byte and text of a number, with its point, that has a comma in the place of it: `0,25` is two values.
+fn decimal_comma(error: &RonError, text: &str, at: usize) -> Option<(usize, String)> {
+    let wants_name = matches!(
+        error,
+        RonError::ExpectedIdentifier | RonError::InvalidIdentifier(_) | RonError::SuggestRawIdentifier(_)
+    );
+    let decimals: String = text[at..].chars().take_while(char::is_ascii_digit).collect();
+    let before = text[..at].strip_suffix(',').filter(|_| wants_name && !decimals.is_empty())?;
+    let begins = before.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+    (begins < before.len()).then(|| (begins, format!("{}.{decimals}", &before[begins..])))
+}
+
+/// The parameter that stands where a number should.
+fn parameter_at<'a>(error: &RonError, text: &'a str, at: usize, tree: &Node) -> Option<&'a str> {
+    let wants_number = matches!(error, RonError::ExpectedFloat | RonError::ExpectedInteger);
+    let rest = &text[at..];
+    let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(rest.len());
+    let known = tree.children.iter().find(|child| child.key.as_deref() == Some(FIELD))?;
+    let is_known = known.children.iter().any(|child| child.key.as_deref() == Some(&rest[..end]));
+    (wants_number && is_known).then_some(&rest[..end])
 }
 
 /// That a choice lacks its brackets, has some where it has no fields, or has values without names; with the remedy.
@@ -109,7 +151,7 @@ fn brackets_of_choice(error: &RonError, text: &str, at: usize) -> Option<(String
 /// That the number around a byte is no count: RON stops at its point, its exponent, or its sign.
 fn no_count(error: &RonError, plain: &str, at: usize) -> Option<String> {
     let is_inside = match error {
-        RonError::ExpectedComma => true,
+        RonError::ExpectedComma | RonError::ExpectedStructLikeEnd | RonError::ExpectedArrayEnd => true,
         RonError::ExpectedInteger | RonError::IntegerOutOfBounds => false,
         _ => return None,
     };

@@ -101,7 +101,7 @@ fn correlation_problems(study: &Study) -> Vec<Diagnostic> {
 pub(super) fn lost_paths(study: &Study, scene_text: &str) -> Vec<Diagnostic> {
     let refused = |text: &str, overrides: &[String]| match overrides::apply(text, overrides) {
         Ok(text) => unknown_field(&text),
-        Err(d) => Some(d),
+        Err(found) => found.into_iter().next(),
     };
     let common = as_overrides(&study.set);
     let lost = |path: String, d: Diagnostic| {
@@ -110,7 +110,7 @@ pub(super) fn lost_paths(study: &Study, scene_text: &str) -> Vec<Diagnostic> {
     };
     let text = match overrides::apply(scene_text, &common) {
         Ok(text) => text,
-        Err(d) => return vec![lost("set".into(), d)],
+        Err(found) => return found.into_iter().map(|d| lost("set".into(), d)).collect(),
     };
     let mut found = Vec::new();
     for (i, axis) in study.axes.iter().enumerate() {
@@ -136,7 +136,7 @@ pub(super) fn lost_paths(study: &Study, scene_text: &str) -> Vec<Diagnostic> {
 /// The first field of a text that no scene has.
 fn unknown_field(text: &str) -> Option<Diagnostic> {
     let tree = locate::tree(text);
-    let parameters = parameter_values::read(text, &tree).ok()?;
+    let (parameters, _) = parameter_values::read(text, &tree).ok()?;
     let found = parse_with::<Scene>(text, &tree, &parameters).err()?.found;
     found.into_iter().find(|d| d.code == Code::UnknownField)
 }
