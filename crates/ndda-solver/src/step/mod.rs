@@ -22,6 +22,7 @@ pub(crate) mod local_damping;
 pub(crate) mod plan;
 pub(crate) mod queries;
 pub(crate) mod quiet;
+pub(crate) mod ranks;
 pub(crate) mod release;
 pub(crate) mod report;
 pub(crate) mod sample;
@@ -56,6 +57,7 @@ use crate::step::control::Control;
 use crate::step::follower::Places;
 use crate::step::implicit_contact::Newton;
 use crate::step::loads::Loads;
+use crate::step::ranks::Ranks;
 use crate::step::settling_step::SettlingStep;
 use crate::step::stage_state::StageState;
 use crate::step::state::State;
@@ -102,6 +104,8 @@ pub struct Simulation {
     pub(crate) settling: Option<SettlingStep>,
     /// What stages keep; none in a scene without them.
     pub(crate) stage: Option<Box<StageState>>,
+    /// The ranks that take the steps together.
+    pub(crate) ranks: Ranks,
     pub(crate) scratch: Scratch,
     pub(crate) audit: Audit,
 }

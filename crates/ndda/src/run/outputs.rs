@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use ndda_io::scene::Scene;
@@ -17,6 +17,7 @@ use super::fields::{FieldWriter, SavedFields};
 use super::identity::Identity;
 use super::monitor::Monitor;
 use super::motion::BlockTable;
+use super::on_ranks::unless_ended;
 use super::recorder::{Extras, Recorder, SavedRecorder, held_blocks};
 use super::schedule::Schedule;
 use super::stage_log::{self, StageLog};
@@ -105,18 +106,18 @@ pub struct Course {
     pub checkpoints: bool,
 }
 
-/// Where a run is recorded, and how far it had come before.
-pub type Place = (Identity, OutputFolder, Option<Earlier>);
+/// Where a run is recorded.
+pub type Place = (Identity, OutputFolder);
 
 impl<'a, 'b> Outputs<'a, 'b> {
-    /// The outputs that a scene requests; in memory where there is no place.
+    /// The outputs that a scene requests, in memory where there is no place; they go on from where they were before.
     ///
     /// # Errors
     /// [`WriteError`] when a file cannot be written.
     pub fn new(
         (scene, simulation): (&Scene, &Simulation),
         (monitors, comparison): (Vec<Monitor>, Option<Comparison>),
-        place: Option<Place>,
+        (place, earlier): (Option<Place>, Option<Earlier>),
         observers: &'a mut [&'b mut dyn Sink],
         Course { steps, started, stop, checkpoints }: Course,
     ) -> Result<Self, WriteError> {
@@ -130,15 +131,15 @@ impl<'a, 'b> Outputs<'a, 'b> {
             false => Vec::new(),
         };
         let (mut saved, mut files, mut history, mut stage_log) = (None, None, None, StageLog::default());
-        if let Some((identity, folder, earlier)) = place {
+        let mut goes_on = None;
+        if let Some(earlier) = earlier {
+            saved = Some(earlier.recorder);
+            stage_log = earlier.stages;
+            goes_on =
+                Some((earlier.fields, earlier.contacts, earlier.blocks, earlier.bolts, earlier.wall_s));
+        }
+        if let Some((identity, folder)) = place {
             history = Some(folder.history());
-            let mut goes_on = None;
-            if let Some(earlier) = earlier {
-                saved = Some(earlier.recorder);
-                stage_log = earlier.stages;
-                goes_on =
-                    Some((earlier.fields, earlier.contacts, earlier.blocks, earlier.bolts, earlier.wall_s));
-            }
             let (saved_fields, saved_contacts, saved_blocks, saved_bolts, earlier_s) =
                 goes_on.unwrap_or_default();
             let frames = schedule(scene.output.frames);
@@ -309,7 +310,7 @@ impl Sink for Outputs<'_, '_> {
         for observer in self.observers.iter_mut() {
             ends |= observer.step_done(view)?.is_break();
         }
-        ends |= self.stop.load(Ordering::Relaxed);
+        ends |= unless_ended(&**view.simulation.ranks(), &self.stop).is_break();
         let ending = self.ending_stage(step).map(|at| self.stage_names[at - 1].clone());
         if let Some(name) = &ending {
             self.stages.end(name, view, &self.recorder);

@@ -9,6 +9,8 @@ pub(crate) mod join_if;
 pub(crate) mod nodal_forces;
 pub(crate) mod overlap_parts;
 pub(crate) mod report;
+pub(crate) mod shared_forces;
+mod shared_overlaps;
 pub(crate) mod tangent;
 
 pub use adjacency::BlockContactIndex;

@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use ndda_mesh::{BlockId, TetId};
+use ndda_ranks::{Communicator, RanksError};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -20,6 +21,7 @@ use crate::integration::pair_moments::{PairMoments, PsiRange};
 use crate::integration::pair_report::OverlapReport;
 use crate::integration::queue::RegionQueue;
 use crate::integration::region::{Pieces, Region};
+use crate::integration::shared_chunks::SharedChunks;
 use crate::integration::scene::{Scene, are_on_one_side, lies_in_a_plane_of};
 use crate::potential::contact_potential::PotentialField;
 
@@ -38,14 +40,14 @@ pub(crate) struct Chunk {
     /// Numbers of its facets, the block of the first, and how many pairs they have.
     facets: Range<u32>,
     first: BlockId,
-    pairs: usize,
+    pub(super) pairs: usize,
     /// Hits in the order of pairs.
     pub overlaps: Vec<OverlapPair>,
     /// Its number.
-    number: u32,
+    pub(super) number: u32,
     /// Facets that have some, ascending, and what theirs come to.
-    touching: Vec<ActiveFacet>,
-    sums: Vec<FacetMoments>,
+    pub(super) touching: Vec<ActiveFacet>,
+    pub(super) sums: Vec<FacetMoments>,
     /// Report on the overlapping pairs.
     pub report: OverlapReport,
 }
@@ -292,6 +294,8 @@ pub struct Integrals {
     touching: Vec<ActiveFacet>,
     /// The list that the chunks are of.
     list: Option<u64>,
+    /// What ranks hand each other.
+    shared: SharedChunks,
 }
 
 impl Default for Integrals {
@@ -303,13 +307,18 @@ impl Default for Integrals {
             used: 0,
             touching: Vec::new(),
             list: None,
+            shared: SharedChunks::default(),
         }
     }
 }
 
 impl Integrals {
-    /// Integrates all pairs. The division into chunks depends on the list of pairs alone.
-    pub fn update(&mut self, scene: &Scene) {
+    /// Integrates all pairs, on several ranks its part of them, and takes the rest from the others. The division into chunks depends on the list of
+    /// pairs alone.
+    ///
+    /// # Errors
+    /// [`RanksError`] when the ranks cannot go on.
+    pub fn update(&mut self, scene: &Scene, ranks: Option<&dyn Communicator>) -> Result<(), RanksError> {
         let list = Some(scene.candidates.version);
         if self.list != list {
             self.divide(scene.candidates);
@@ -318,7 +327,8 @@ impl Integrals {
         let (arch, used) = (self.arch, self.used);
         let threads = rayon::current_num_threads().max(self.scratch.len());
         self.scratch.resize_with(threads, Mutex::default);
-        let (chunks, scratch) = (&mut self.chunks[..used], &self.scratch);
+        let own = ranks.map_or(0..used, |ranks| self.shared.divide(ranks, &self.chunks[..used]));
+        let (chunks, scratch) = (&mut self.chunks[own], &self.scratch);
         let are_many = used > MANY_CHUNKS;
         let integrate = |chunk: &mut Chunk| {
             let own = &scratch[rayon::current_thread_index().unwrap_or(0)];
@@ -333,9 +343,13 @@ impl Integrals {
             [only] => integrate(only),
             many => many.par_iter_mut().with_max_len(MOST_CHUNKS).for_each(integrate),
         }
+        if let Some(ranks) = ranks {
+            self.shared.exchange(ranks, scene.candidates.version, &mut self.chunks[..used])?;
+        }
         self.touching.clear();
         let used = &self.chunks[..used];
         used.iter().for_each(|chunk| self.touching.extend_from_slice(&chunk.touching));
+        Ok(())
     }
 
     fn divide(&mut self, candidates: &Candidates) {
