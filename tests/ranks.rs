@@ -12,7 +12,11 @@ use ndda_ranks::{Communicator, RanksError, Threads};
 use ndda_solver::{Sink, SinkError, StepError, View};
 
 /// Does the same on each of some ranks, which are threads with so many threads of their own.
-fn on_ranks<R: Send>(size: usize, threads: usize, work: impl Fn(Arc<dyn Communicator>) -> R + Sync) -> Vec<R> {
+fn on_ranks<R: Send>(
+    size: usize,
+    threads: usize,
+    work: impl Fn(Arc<dyn Communicator>) -> R + Sync,
+) -> Vec<R> {
     let work = &work;
     std::thread::scope(|scope| {
         let rank = |rank| {
@@ -29,7 +33,8 @@ fn on_ranks<R: Send>(size: usize, threads: usize, work: impl Fn(Arc<dyn Communic
 /// A floor with blocks that fall, slide, hit each other and come to lie on each other.
 fn heap(body: &str, time: &str, contact: &str, more: &str) -> String {
     let block = |k: u32| {
-        let (x, y, z) = (f64::from(k % 3) * 1.05, f64::from(k / 3 % 2) * 0.9 + 0.1 * f64::from(k), f64::from(k / 3));
+        let (x, y, z) =
+            (f64::from(k % 3) * 1.05, f64::from(k / 3 % 2) * 0.9 + 0.1 * f64::from(k), f64::from(k / 3));
         format!(
             "(name: \"block_{k}\", material: \"rock\", body: {body}, shape: Box(size_m: (1, 1, 0.8), cells: (1, 1, 1)), \
              at_m: ({x}, {y}, {}), velocity_m_s: ({}, 0.1, -0.2), spin_rad_s: (0, 0.3, {})),",
@@ -57,7 +62,10 @@ fn outcome(text: &str, ranks: Option<&Arc<dyn Communicator>>) -> (Vec<Vec<u64>>,
     }
     let outcome = run.finish(&mut []).expect("it runs");
     let history = outcome.history.expect("it is in memory");
-    (history.columns.iter().map(|column| column.iter().map(|x| x.to_bits()).collect()).collect(), outcome.summary)
+    (
+        history.columns.iter().map(|column| column.iter().map(|x| x.to_bits()).collect()).collect(),
+        outcome.summary,
+    )
 }
 
 /// The run of a scene, on one process and on ranks.
@@ -95,8 +103,14 @@ fn integrators_and_ways_to_take_contact() {
         ("Elastic", "step_s: 4e-4, end_s: 0.032, integrator: Newmark(alpha: 0.5, delta: 1.0)"),
         ("Rigid", "step_s: 4e-4, end_s: 0.032, integrator: GeneralizedAlpha(radius: 0.6)"),
         ("Affine", "step_s: 4e-4, end_s: 0.032, integrator: Newmark(alpha: 0.25, delta: 0.5)"),
-        ("Elastic", "step_s: 1e-3, end_s: 0.03, integrator: Newmark(alpha: 0.5, delta: 1.0), contact_at: End()"),
-        ("Rigid", "step_s: 1e-3, end_s: 0.03, integrator: Newmark(alpha: 0.5, delta: 1.0), contact_at: End()"),
+        (
+            "Elastic",
+            "step_s: 1e-3, end_s: 0.03, integrator: Newmark(alpha: 0.5, delta: 1.0), contact_at: End()",
+        ),
+        (
+            "Rigid",
+            "step_s: 1e-3, end_s: 0.03, integrator: Newmark(alpha: 0.5, delta: 1.0), contact_at: End()",
+        ),
         ("Elastic", "step_s: 2e-3, end_s: 0.08, step: Auto()"),
     ] {
         same_on(&[2, 3], &heap(body, time, SMOOTH, ""));
@@ -127,7 +141,8 @@ fn potentials_friction_and_damping_of_contact() {
 
 #[test]
 fn scenes_that_settle_and_pass_through_stages() {
-    let settled = heap("Elastic", "step_s: 4e-4, end_s: 0.02", SMOOTH, "settle: (tolerance: 0.3, most_steps: 2000),");
+    let settled =
+        heap("Elastic", "step_s: 4e-4, end_s: 0.02", SMOOTH, "settle: (tolerance: 0.3, most_steps: 2000),");
     same_on(&[2], &settled);
     let stages = "stages: [(name: \"taken out\", remove: [\"block_8\"], then: Run(0.01))],";
     same_on(&[3], &heap("Rigid", "step_s: 4e-4, end_s: 0.02", SMOOTH, stages));
@@ -190,7 +205,8 @@ fn a_checkpoint_of_two_ranks_goes_on_on_three_and_on_one() {
         run.stop_when(stop.clone()).finish(&mut [&mut stopper]).unwrap().summary.status
     });
     assert_eq!(ended, [Status::Interrupted; 3]);
-    let last = Run::resume(&out).unwrap().run.sensitivity(Sensitivity::Never).finish(&mut []).unwrap().summary;
+    let last =
+        Run::resume(&out).unwrap().run.sensitivity(Sensitivity::Never).finish(&mut []).unwrap().summary;
     assert_eq!(last.status, Status::Done);
     let history = |folder: &Path| std::fs::read(folder.join("history.csv")).unwrap();
     assert!(history(&whole) == history(&out), "the histories differ");
@@ -247,7 +263,8 @@ fn a_rank_that_panics_ends_all() {
 #[test]
 fn a_block_that_fails_fails_on_all_ranks() {
     // So soft and so fast that a block is past what its material carries.
-    let text = heap("Elastic", "step_s: 5e-2, end_s: 1", "Potential(penalty_pa: 1e11, potential: Element)", "");
+    let text =
+        heap("Elastic", "step_s: 5e-2, end_s: 1", "Potential(penalty_pa: 1e11, potential: Element)", "");
     let run = |ranks: Option<Arc<dyn Communicator>>| {
         let mut simulation = Model::from_text(&text).unwrap().simulation;
         if let Some(ranks) = ranks {

@@ -55,8 +55,7 @@ impl From<RanksError> for Failure {
 impl From<WriteError> for Failure {
     fn from(error: WriteError) -> Self {
         // A number that is not finite is the fault of the run, not of the disk.
-        let code =
-            if matches!(error, WriteError::NotFinite { .. }) { crate::STOPPED } else { INPUT_OUTPUT };
+        let code = if matches!(error, WriteError::NotFinite { .. }) { crate::STOPPED } else { INPUT_OUTPUT };
         Self::of(code, &error)
     }
 }
@@ -66,17 +65,18 @@ pub fn refuse(words: &[String]) -> Failure {
     let verb = words.first().map_or("", String::as_str);
     Failure::of(
         crate::USAGE,
-        &format!("ndda-mpi runs and resumes scenes, and cannot `{verb}`: use `ndda {}` on one process", words.join(" ")),
+        &format!(
+            "ndda-mpi runs and resumes scenes, and cannot `{verb}`: use `ndda {}` on one process",
+            words.join(" ")
+        ),
     )
 }
 
 /// `ndda-mpi run`.
 pub fn run(args: &RunArgs, ranks: &Arc<dyn Communicator>) -> Result<u8, Failure> {
     let started = Instant::now();
-    let unusable = |errors: ndda_io::diagnostic::SceneErrors| Failure {
-        code: BAD_INPUT,
-        message: errors.render(false),
-    };
+    let unusable =
+        |errors: ndda_io::diagnostic::SceneErrors| Failure { code: BAD_INPUT, message: errors.render(false) };
     let model = Model::open(&args.scene, &args.overrides).map_err(unusable)?;
     if ranks.rank() == 0 && !args.how.quiet && !model.loaded.warnings.is_empty() {
         eprintln!("{}", model.loaded.errors(model.loaded.warnings.clone()).render(false).trim_end());
@@ -106,10 +106,14 @@ pub fn resume(args: &ResumeArgs, ranks: &Arc<dyn Communicator>) -> Result<u8, Fa
     };
     warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
     let (step, steps) = (run.model().simulation.state().step, run.model().steps());
-    say(ranks, &args.how, &match run.settling_steps() {
-        Some(settled) => format!("going on with settling after {settled} steps"),
-        None => format!("going on from step {step} of {steps}"),
-    });
+    say(
+        ranks,
+        &args.how,
+        &match run.settling_steps() {
+            Some(settled) => format!("going on with settling after {settled} steps"),
+            None => format!("going on from step {step} of {steps}"),
+        },
+    );
     finish(run, &args.folder, &args.how, ranks)
 }
 
@@ -135,9 +139,7 @@ fn finish(run: Run, folder: &Path, how: &HowArgs, ranks: &Arc<dyn Communicator>)
     let outcome = run.finish_watched(&mut [&mut progress], &mut |resting| tell(&resting.to_string()));
     match outcome {
         Ok(outcome) => Ok(conclude(&outcome.summary, folder.to_path_buf(), how, ranks)),
-        Err(RunError::Settling(error)) => {
-            Err(Failure::of(crate::STOPPED, &RunError::Settling(error)))
-        }
+        Err(RunError::Settling(error)) => Err(Failure::of(crate::STOPPED, &RunError::Settling(error))),
         Err(error @ RunError::InterruptedWhileSettling) => {
             say(ranks, how, &format!("{error}; to go on: ndda-mpi resume {}", folder.display()));
             Ok(INTERRUPTED)

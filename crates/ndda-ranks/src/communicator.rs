@@ -47,7 +47,9 @@ impl Topic {
     /// The topic of this number.
     pub fn of(number: u8) -> Option<Self> {
         use Topic::{Answers, Blocks, Decision, End, Forces, GivenUp, Pairs, Start};
-        [Pairs, Forces, Answers, Blocks, Decision, Start, End, GivenUp].into_iter().find(|t| *t as u8 == number)
+        [Pairs, Forces, Answers, Blocks, Decision, Start, End, GivenUp]
+            .into_iter()
+            .find(|t| *t as u8 == number)
     }
 }
 

@@ -48,7 +48,8 @@ mod tests {
                 let starts = divide(weights.iter().copied(), ranks);
                 assert_eq!((starts.len(), starts[0], starts[ranks]), (ranks + 1, 0, entries as usize));
                 assert!(starts.is_sorted());
-                let (total, most): (u64, u64) = (weights.iter().sum(), weights.iter().copied().max().unwrap_or(0));
+                let (total, most): (u64, u64) =
+                    (weights.iter().sum(), weights.iter().copied().max().unwrap_or(0));
                 for rank in 0..ranks {
                     let own: u64 = weights[share(&starts, rank)].iter().sum();
                     assert!(own <= total / ranks as u64 + most + 1, "{own} of {total} on {ranks}");

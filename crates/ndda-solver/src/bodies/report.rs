@@ -80,9 +80,8 @@ impl BlockReport {
             has_friction,
         } = drive;
         let of_block = [reaction, outside_torque, motion_impulse, orbital_impulse, impulse, impulse_moment];
-        let of_parts = [
-            shift_m_s, turn_m_s, force, torque, contact, carried, lag, load_m_s2, shift_m_s2, turn_m_s2,
-        ];
+        let of_parts =
+            [shift_m_s, turn_m_s, force, torque, contact, carried, lag, load_m_s2, shift_m_s2, turn_m_s2];
         let mut vectors = of_block.into_iter().chain(of_parts);
         let numbers = [
             motion_work_j,

@@ -32,11 +32,15 @@ impl<'a> StepDeformation<'a> {
     }
 
     /// The answers of the blocks that are asked for.
-    fn answer_some(&self, bodies: &mut [Body], columns: &mut [Vec<Vec3>], asked: impl Fn(usize) -> bool + Sync) {
+    fn answer_some(
+        &self,
+        bodies: &mut [Body],
+        columns: &mut [Vec<Vec3>],
+        asked: impl Fn(usize) -> bool + Sync,
+    ) {
         let each = bodies.par_iter_mut().zip(columns).enumerate();
-        each.filter(|(block, (_, columns))| !columns.is_empty() && asked(*block)).for_each(
-            |(block, (body, columns))| self.answer_block(BlockId(block as u32), body, columns),
-        );
+        each.filter(|(block, (_, columns))| !columns.is_empty() && asked(*block))
+            .for_each(|(block, (body, columns))| self.answer_block(BlockId(block as u32), body, columns));
     }
 
     /// Each rank asks its share of the blocks. One that fails is asked by all, so that all have its error.
@@ -54,7 +58,8 @@ impl<'a> StepDeformation<'a> {
         let own = share(&starts, ranks.rank());
         self.answer_some(bodies, columns, |block| own.contains(&block));
         let (mut packer, mut all) = (Packer::default(), Gathered::default());
-        for (body, columns) in bodies[own.clone()].iter().zip(&columns[own]).filter(|each| !each.1.is_empty()) {
+        for (body, columns) in bodies[own.clone()].iter().zip(&columns[own]).filter(|each| !each.1.is_empty())
+        {
             packer.put(&u8::from(body.error.is_none()));
             if body.error.is_none() {
                 packer.put_each(columns, |v| <[f64; 3]>::from(*v));
@@ -64,7 +69,8 @@ impl<'a> StepDeformation<'a> {
         let mut failed = vec![false; bodies.len()];
         for rank in (0..ranks.size()).filter(|rank| *rank != ranks.rank()) {
             let mut found = Unpacker::new(all.of(rank));
-            for block in share(&starts, rank).filter(|block| !columns[*block].is_empty()).collect::<Vec<_>>() {
+            for block in share(&starts, rank).filter(|block| !columns[*block].is_empty()).collect::<Vec<_>>()
+            {
                 failed[block] = found.take::<u8>() == 0;
                 if !failed[block] {
                     take(&mut found, &mut columns[block]);

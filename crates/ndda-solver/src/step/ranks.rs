@@ -97,7 +97,8 @@ impl Simulation {
                 let mut found = Unpacker::new(all.of(rank));
                 let theirs = simulation.runs_within(share(&simulation.ranks.starts, rank));
                 for run in theirs.filter(|run| is_shared(&bodies[run.start])).collect::<Vec<_>>() {
-                    failed[run.start] = !simulation.unpack_run(run.clone(), bodies, slices.again(), &mut found);
+                    failed[run.start] =
+                        !simulation.unpack_run(run.clone(), bodies, slices.again(), &mut found);
                 }
             }
             if failed.contains(&true) {

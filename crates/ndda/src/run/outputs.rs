@@ -135,8 +135,7 @@ impl<'a, 'b> Outputs<'a, 'b> {
         if let Some(earlier) = earlier {
             saved = Some(earlier.recorder);
             stage_log = earlier.stages;
-            goes_on =
-                Some((earlier.fields, earlier.contacts, earlier.blocks, earlier.bolts, earlier.wall_s));
+            goes_on = Some((earlier.fields, earlier.contacts, earlier.blocks, earlier.bolts, earlier.wall_s));
         }
         if let Some((identity, folder)) = place {
             history = Some(folder.history());

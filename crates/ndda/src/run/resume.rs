@@ -130,7 +130,10 @@ impl Run {
 }
 
 /// The last checkpoint that can be read, of the scene that the log begins with.
-pub(super) fn last_checkpoint(folder: &OutputFolder, warnings: &mut Vec<String>) -> Result<SavedRun, ResumeError> {
+pub(super) fn last_checkpoint(
+    folder: &OutputFolder,
+    warnings: &mut Vec<String>,
+) -> Result<SavedRun, ResumeError> {
     let scene = run_log::scene_crc32(folder);
     let of_this_run = |saved: &SavedRun| match scene {
         Some(known) if known != saved.identity.crc32() => {

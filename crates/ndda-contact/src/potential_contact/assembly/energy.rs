@@ -142,7 +142,9 @@ impl BlockOverlaps {
                 let own = element_pieces(input.blocks.tets.len());
                 self.add_cells(&Cells { input, table: &own, function: None, hulls })?;
             }
-            PotentialField::Pieces(table) => self.add_cells(&Cells { input, table, function: None, hulls })?,
+            PotentialField::Pieces(table) => {
+                self.add_cells(&Cells { input, table, function: None, hulls })?
+            }
             PotentialField::Function(field) => {
                 self.add_cells(&Cells { input, table: &field.regions, function: Some(field), hulls })?;
             }

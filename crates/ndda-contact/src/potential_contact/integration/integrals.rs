@@ -21,8 +21,8 @@ use crate::integration::pair_moments::{PairMoments, PsiRange};
 use crate::integration::pair_report::OverlapReport;
 use crate::integration::queue::RegionQueue;
 use crate::integration::region::{Pieces, Region};
-use crate::integration::shared_chunks::SharedChunks;
 use crate::integration::scene::{Scene, are_on_one_side, lies_in_a_plane_of};
+use crate::integration::shared_chunks::SharedChunks;
 use crate::potential::contact_potential::PotentialField;
 
 /// Pairs of a chunk: one task for a thread. Where there are many, chunks are larger, since each has memory of its own, most of which is not used.

@@ -3,9 +3,7 @@
 use std::ops::Range;
 
 use ndda_mesh::{BlockId, TetId, TriangleId};
-use ndda_ranks::{
-    Communicator, Gathered, Packed, Packer, RanksError, Topic, Unpacker, divide, share,
-};
+use ndda_ranks::{Communicator, Gathered, Packed, Packer, RanksError, Topic, Unpacker, divide, share};
 
 use crate::integration::integrals::Chunk;
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
