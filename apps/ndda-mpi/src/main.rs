@@ -78,9 +78,9 @@ fn end(ranks: &dyn Communicator, outcome: Result<u8, Failure>) -> u8 {
     let (code, message) = match outcome {
         Ok(code) => match ranks.exchange(Topic::End, &[code], &mut Gathered::default()) {
             Ok(()) => return code,
-            Err(error) if code == DONE => (STOPPED, format!("error: {error}")),
             // It has said already what went wrong.
-            Err(_) => return code,
+            Err(_) if code == STOPPED => return code,
+            Err(error) => (STOPPED, format!("error: {error}")),
         },
         Err(Failure { code, message }) => {
             ranks.give_up(message.trim_start_matches("error: "));

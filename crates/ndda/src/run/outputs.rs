@@ -2,13 +2,13 @@
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use ndda_io::scene::Scene;
 use ndda_io::table::Table;
 use ndda_io::{OutputFolder, WriteError, checkpoint};
-use ndda_solver::{Settling, Simulation, Sink, SinkError, Snapshot, View};
+use ndda_solver::{Settling, Simulation, Sink, SinkError, Snapshot, StepError, View};
 use serde::{Deserialize, Serialize};
 
 use super::bolts::{BoltTable, SavedBolts};
@@ -17,7 +17,6 @@ use super::fields::{FieldWriter, SavedFields};
 use super::identity::Identity;
 use super::monitor::Monitor;
 use super::motion::BlockTable;
-use super::on_ranks::unless_ended;
 use super::recorder::{Extras, Recorder, SavedRecorder, held_blocks};
 use super::schedule::Schedule;
 use super::stage_log::{self, StageLog};
@@ -309,7 +308,9 @@ impl Sink for Outputs<'_, '_> {
         for observer in self.observers.iter_mut() {
             ends |= observer.step_done(view)?.is_break();
         }
-        ends |= unless_ended(&**view.simulation.ranks(), &self.stop).is_break();
+        let asked = view.simulation.agree(self.stop.load(Ordering::Relaxed)).map_err(StepError::from)?;
+        self.stop.fetch_or(asked, Ordering::Relaxed);
+        ends |= asked;
         let ending = self.ending_stage(step).map(|at| self.stage_names[at - 1].clone());
         if let Some(name) = &ending {
             self.stages.end(name, view, &self.recorder);
