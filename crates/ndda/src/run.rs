@@ -30,6 +30,7 @@ use std::time::Instant;
 use ndda_io::summary::{LabelWord, MonitorEnd, Status, Summary};
 use ndda_io::table::Table;
 use ndda_io::{OutputFolder, WriteError, checkpoint, summary, tables};
+use ndda_ranks::{Communicator, agree};
 use ndda_solver::{Simulation, Sink, StartSnapshot};
 
 use crate::Model;
@@ -49,6 +50,15 @@ pub use twin::Sensitivity;
 /// Ends a loop when somebody has raised the flag.
 pub(crate) fn unless_stopped(stop: &AtomicBool) -> ControlFlow<()> {
     if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+}
+
+/// Ends a loop on all ranks when somebody has raised the flag of one of them, or when ranks cannot go on; all flags are raised then.
+pub(crate) fn unless_ended(ranks: &dyn Communicator, stop: &AtomicBool) -> ControlFlow<()> {
+    if matches!(agree(ranks, stop.load(Ordering::Relaxed)), Ok(false)) {
+        return ControlFlow::Continue(());
+    }
+    stop.store(true, Ordering::Relaxed);
+    ControlFlow::Break(())
 }
 
 /// A run that is about to begin, or to go on.

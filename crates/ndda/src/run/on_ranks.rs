@@ -1,27 +1,16 @@
 //! A run that several processes take together: each has the whole scene, the first one writes the files.
 
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use ndda_io::{OutputFolder, checkpoint};
-use ndda_ranks::{Communicator, Gathered, RanksError, Topic, agree};
+use ndda_ranks::{Communicator, Gathered, RanksError, Topic};
 
 use super::Run;
 use super::outputs::SavedRun;
 use super::resume::{ResumeError, Resumed, last_checkpoint};
 use crate::build::Choices;
 use crate::machine;
-
-/// Ends a loop on all ranks when somebody has raised the flag of one of them, or when ranks cannot go on; all flags are raised then.
-pub(crate) fn unless_ended(ranks: &dyn Communicator, stop: &AtomicBool) -> ControlFlow<()> {
-    if matches!(agree(ranks, stop.load(Ordering::Relaxed)), Ok(false)) {
-        return ControlFlow::Continue(());
-    }
-    stop.store(true, Ordering::Relaxed);
-    ControlFlow::Break(())
-}
 
 impl Run {
     /// Shares the steps of the run with other ranks. All of them make the same run with the same settings, and finish it; the first may

@@ -10,10 +10,9 @@ use ndda_io::{WriteError, checkpoint};
 use ndda_ranks::Alone;
 use ndda_solver::{Settled, Settling, StepError, StepReport};
 
-use super::on_ranks::unless_ended;
 use super::outputs::{Course, Earlier, Outputs, SavedRun};
 use super::rest::{Resting, Watch};
-use super::{Recording, Run, RunError, error, write_results};
+use super::{Recording, Run, RunError, error, unless_ended, write_results};
 use crate::judge::summary::{Ending, summarise};
 
 /// A scene that was on its way to rest when its run was interrupted.

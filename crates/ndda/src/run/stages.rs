@@ -8,10 +8,10 @@ use ndda_io::read::LoadedScene;
 use ndda_io::scene::Settle;
 use ndda_solver::{RunError, Settled, Simulation, StageStart, StepReport, TakeOverError};
 
-use super::on_ranks::unless_ended;
 use super::outputs::Outputs;
 use super::rest::Watch;
 use super::stage_log::ends;
+use super::unless_ended;
 use crate::build;
 use crate::model;
 

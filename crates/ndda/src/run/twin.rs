@@ -12,7 +12,7 @@ use ndda_mesh::geometry::tet_heights;
 use ndda_mesh::{BlockId, TetId, Vec3};
 use ndda_solver::{BodyKind, Settle, Simulation, StartSnapshot, StepError};
 
-use super::on_ranks::unless_ended;
+use super::unless_ended;
 use crate::judge::table::length;
 use crate::judge::words::SECOND_RUN;
 use crate::numbers::counted;

@@ -13,7 +13,7 @@ use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::broad_phase::finder::FEW_NODES;
 use crate::friction::openings::moved_out;
 use crate::integration::affine_target::{EvaluateHalfSpaces, PushRegions};
-use crate::integration::chunk_parts::{Results, Triangle, copy_into};
+use crate::integration::chunk_parts::{Chunk, Results, Triangle, copy_into};
 use crate::integration::clip::Outline;
 use crate::integration::function_moments::{Placed, add_function};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
@@ -33,24 +33,6 @@ const MANY_CHUNKS: usize = 1024;
 
 /// Most chunks that a thread takes at a time: with more, one waits for the other at the end.
 const MOST_CHUNKS: usize = 8;
-
-/// A run of facets and the hits among their pairs.
-#[derive(Default)]
-pub(crate) struct Chunk {
-    /// Numbers of its facets, the block of the first, and how many pairs they have.
-    facets: Range<u32>,
-    first: BlockId,
-    pub(super) pairs: usize,
-    /// Hits in the order of pairs.
-    pub overlaps: Vec<OverlapPair>,
-    /// Its number.
-    pub(super) number: u32,
-    /// Facets that have some, ascending, and what theirs come to.
-    pub(super) touching: Vec<ActiveFacet>,
-    pub(super) sums: Vec<FacetMoments>,
-    /// Report on the overlapping pairs.
-    pub report: OverlapReport,
-}
 
 /// A pair that may overlap.
 struct PendingPair {

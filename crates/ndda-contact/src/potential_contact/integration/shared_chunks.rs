@@ -5,7 +5,7 @@ use std::ops::Range;
 use ndda_mesh::{BlockId, TetId, TriangleId};
 use ndda_ranks::{Communicator, Gathered, Packed, Packer, RanksError, Topic, Unpacker, divide, share};
 
-use crate::integration::integrals::Chunk;
+use crate::integration::chunk_parts::Chunk;
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
 use crate::integration::pair_moments::OnTarget;
 use crate::integration::pair_report::OverlapReport;
