@@ -5,14 +5,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every crate of the workspace with the crates of the workspace that it may depend on.
-const ARROWS: [(&str, &[&str]); 8] = [
+const ARROWS: [(&str, &[&str]); 10] = [
     ("crates/ndda-mesh", &[]),
     ("crates/ndda-fem", &["ndda-mesh"]),
-    ("crates/ndda-contact", &["ndda-mesh"]),
-    ("crates/ndda-solver", &["ndda-mesh", "ndda-fem", "ndda-contact"]),
+    ("crates/ndda-ranks", &[]),
+    ("crates/ndda-contact", &["ndda-mesh", "ndda-ranks"]),
+    ("crates/ndda-solver", &["ndda-mesh", "ndda-ranks", "ndda-fem", "ndda-contact"]),
     ("crates/ndda-io", &["ndda-mesh"]),
-    ("crates/ndda", &["ndda-mesh", "ndda-fem", "ndda-contact", "ndda-solver", "ndda-io"]),
+    ("crates/ndda", &["ndda-mesh", "ndda-ranks", "ndda-fem", "ndda-contact", "ndda-solver", "ndda-io"]),
     ("apps/ndda-cli", &["ndda-mesh", "ndda-fem", "ndda-contact", "ndda-solver", "ndda-io", "ndda"]),
+    ("apps/ndda-mpi", &["ndda-ranks", "ndda-solver", "ndda-io", "ndda"]),
     ("apps/ndda-python", &["ndda-mesh", "ndda-contact", "ndda-solver", "ndda-io", "ndda", "ndda-cli"]),
 ];
 

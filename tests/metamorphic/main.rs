@@ -12,6 +12,7 @@ mod laws;
 mod mirrored;
 mod motion;
 mod random;
+mod ranks;
 mod renumbered;
 mod resumed;
 mod rotated;

@@ -1,6 +1,7 @@
 //! Input, output and history of a contact model.
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, TetId, TriangleId, Vec3};
+use ndda_ranks::{Communicator, RanksError};
 use serde::{Deserialize, Serialize};
 
 /// Input of a contact model: positions and velocities of the blocks, but neither materials nor integrators.
@@ -28,6 +29,8 @@ pub struct ContactInput<'a> {
     /// Tolerance of friction, as a fraction of the largest on a block, where only the final rest counts, as while a scene settles; zero where the motion itself
     /// counts.
     pub friction_tolerance: f64,
+    /// The ranks that evaluate contact together, each with the same input and history; none where this process does so alone.
+    pub ranks: Option<&'a dyn Communicator>,
 }
 
 /// Slip, force and work of the shear spring of a facet, or of several, in a step.
@@ -74,6 +77,7 @@ impl<'a> ContactInput<'a> {
             is_iterated: false,
             without_friction: false,
             friction_tolerance: 0.0,
+            ranks: None,
         }
     }
 }
@@ -192,6 +196,9 @@ pub enum ContactError {
         /// Numbers that the laws expect.
         expected: usize,
     },
+    /// The ranks that evaluate contact together cannot go on.
+    #[error(transparent)]
+    Ranks(#[from] RanksError),
     /// A friction law of the caller's own has failed.
     #[error("the friction law failed: {0}")]
     Law(String),

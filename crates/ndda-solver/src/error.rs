@@ -6,6 +6,7 @@ use ndda_contact::ContactError;
 use ndda_fem::quiet::NoWave;
 use ndda_fem::{FrameError, SupportError};
 use ndda_mesh::{TetId, TriangleId};
+use ndda_ranks::RanksError;
 
 use crate::linear::linear_solver::FactorError;
 
@@ -117,9 +118,20 @@ pub enum StepError {
         /// det F.
         volume_ratio: f64,
     },
+    /// The ranks that take the steps together cannot go on.
+    #[error(transparent)]
+    Ranks(#[from] RanksError),
 }
 
 impl StepError {
+    /// That contact could not be computed, at a time [s].
+    pub(crate) fn of_contact(time_s: f64, source: ContactError) -> Self {
+        match source {
+            ContactError::Ranks(error) => Self::Ranks(error),
+            source => Self::Contact { time_s, source },
+        }
+    }
+
     /// Its section in `docs/troubleshooting.md`.
     pub fn code(&self) -> &'static str {
         match self {
@@ -131,6 +143,7 @@ impl StepError {
             Self::Block { .. } => "block-failed",
             Self::NotSettled { .. } => "not-settled",
             Self::Inverted { .. } => "element-inverted",
+            Self::Ranks(_) => "rank-stopped",
         }
     }
 }

@@ -122,6 +122,7 @@ mod tests {
         assert_eq!(trend_and_plunge([0.0, 0.0, -3.0]), "downward");
     }
 
+    #[test]
     fn values_are_written_with_the_prefix_that_suits_them_and_without_rounding() {
         for (value, said) in [
             (1e6, "1 MPa"),

@@ -8,6 +8,7 @@ pub mod fields;
 mod identity;
 pub mod monitor;
 pub mod motion;
+mod on_ranks;
 mod outputs;
 mod pace;
 pub mod recorder;
@@ -29,6 +30,7 @@ use std::time::Instant;
 use ndda_io::summary::{LabelWord, MonitorEnd, Status, Summary};
 use ndda_io::table::Table;
 use ndda_io::{OutputFolder, WriteError, checkpoint, summary, tables};
+use ndda_ranks::{Communicator, agree};
 use ndda_solver::{Simulation, Sink, StartSnapshot};
 
 use crate::Model;
@@ -50,6 +52,15 @@ pub(crate) fn unless_stopped(stop: &AtomicBool) -> ControlFlow<()> {
     if stop.load(Ordering::Relaxed) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
 }
 
+/// Ends a loop on all ranks when somebody has raised the flag of one of them, or when ranks cannot go on; all flags are raised then.
+pub(crate) fn unless_ended(ranks: &dyn Communicator, stop: &AtomicBool) -> ControlFlow<()> {
+    if matches!(agree(ranks, stop.load(Ordering::Relaxed)), Ok(false)) {
+        return ControlFlow::Continue(());
+    }
+    stop.store(true, Ordering::Relaxed);
+    ControlFlow::Break(())
+}
+
 /// A run that is about to begin, or to go on.
 pub struct Run {
     model: Model,
@@ -61,6 +72,8 @@ pub struct Run {
     sensitivity: Sensitivity,
     /// The simulation as it was built, from which a twin begins; taken late in a run that is new.
     built: Option<StartSnapshot>,
+    /// How far it had come before, where it goes on.
+    earlier: Option<Earlier>,
     tell: Box<dyn Fn(&str) + Send>,
     on_the_way: Option<settling::OnTheWay>,
     started: Instant,
@@ -72,8 +85,6 @@ struct Recording {
     identity: Identity,
     folder: OutputFolder,
     log: RunLog,
-    /// How far it had come before, where it goes on.
-    earlier: Option<Earlier>,
 }
 
 /// Outcome of a run.
@@ -99,7 +110,8 @@ impl Run {
         let comparison = model.comparison();
         let name = name_of(Path::new(&model.loaded.file));
         let (started, stop) = (Instant::now(), Arc::default());
-        let (recording, strict, sensitivity, built) = (None, false, Sensitivity::default(), None);
+        let (recording, strict, sensitivity, built, earlier) =
+            (None, false, Sensitivity::default(), None, None);
         let tell = Box::new(|_: &str| {});
         let on_the_way = None;
         Self {
@@ -110,6 +122,7 @@ impl Run {
             strict,
             sensitivity,
             built,
+            earlier,
             tell,
             on_the_way,
             started,
@@ -126,21 +139,16 @@ impl Run {
         self.name = name_of(&scene_file);
         let loaded = &self.model.loaded;
         let identity = Identity::new(self.name.clone(), loaded.text.clone(), scene_file, &loaded.scene);
-        self.record_as(identity, folder, None)
+        self.record_as(identity, folder)
     }
 
-    fn record_as(
-        mut self,
-        identity: Identity,
-        folder: OutputFolder,
-        earlier: Option<Earlier>,
-    ) -> Result<Self, WriteError> {
+    fn record_as(mut self, identity: Identity, folder: OutputFolder) -> Result<Self, WriteError> {
         let mut log = RunLog::open(&folder, self.started)?;
         log.begin(&identity, rayon::current_num_threads())?;
         for warning in &self.model.loaded.warnings {
             log.line(&format!("warning: {}: {}", warning.path, warning.message))?;
         }
-        self.recording = Some(Recording { identity, folder, log, earlier });
+        self.recording = Some(Recording { identity, folder, log });
         Ok(self)
     }
 
@@ -224,7 +232,7 @@ impl Run {
     }
 
     fn goes_on(&self) -> bool {
-        self.recording.as_ref().is_some_and(|recording| recording.earlier.is_some())
+        self.earlier.is_some()
     }
 
     /// Steps, and writes all that there is to be known.
@@ -239,20 +247,18 @@ impl Run {
             comparison,
             name,
             recording,
+            earlier,
             ..
         } = self;
         let (scene, started) = (&loaded.scene, self.started);
         let (mut log, place) = match recording {
-            Some(Recording { identity, folder, log, earlier }) => {
-                (Some(log), Some((identity, folder, earlier)))
-            }
+            Some(Recording { identity, folder, log }) => (Some(log), Some((identity, folder))),
             None => (None, None),
         };
-        let earlier = place.as_ref().and_then(|(_, _, earlier)| earlier.as_ref());
-        let (earlier_s, goes_on) = (earlier.map_or(0.0, |earlier| earlier.wall_s), earlier.is_some());
+        let (earlier_s, goes_on) = (earlier.as_ref().map_or(0.0, |e| e.wall_s), earlier.is_some());
         let course = Course { steps, started, stop: self.stop.clone(), checkpoints: true };
         let mut outputs =
-            Outputs::new((scene, &simulation), (monitors, comparison), place, observers, course)?;
+            Outputs::new((scene, &simulation), (monitors, comparison), (place, earlier), observers, course)?;
         let setup_s = started.elapsed().as_secs_f64() - settled_s;
         let ended = if scene.stages.is_empty() {
             let go = if goes_on { ndda_solver::resume } else { ndda_solver::run };

@@ -43,7 +43,7 @@ fn refuse(error: &ResumeError, options: &Options) -> u8 {
         }
         ResumeError::Scene(errors) => options.events.refuse(errors),
         ResumeError::Write(error) => options.events.fail(exit::of_write(error), &error.to_string()),
-        ResumeError::Unusable(_) | ResumeError::DoesNotFit(_) => {
+        ResumeError::Unusable(_) | ResumeError::DoesNotFit(_) | ResumeError::Ranks(_) => {
             options.events.fail(exit::BAD_INPUT, &error.to_string())
         }
     }

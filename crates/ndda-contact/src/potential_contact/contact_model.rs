@@ -40,7 +40,7 @@ impl ContactModel for PotentialContact {
         let (candidates, integrals) = (&self.candidates, &self.integrals);
         let mut report = self.reporter.report(input, candidates, integrals, &self.frames, field)?;
         let blocks_of = |touch: &ActiveFacet| (touch.owner, touch.target);
-        self.place_penalties(input);
+        self.place_penalties(input)?;
         if self.potential.law() != OverlapLaw::Linear
             && let Some((ratio, t)) = self.overlaps.deepest()
         {
@@ -101,7 +101,10 @@ impl ContactModel for PotentialContact {
             stiffness_pa: &self.penalty_of_facet,
             curvature_pa_m: &self.curvature_of_facet,
         };
-        nodal_forces::add(&scene, output);
+        match input.ranks {
+            None => nodal_forces::add(&scene, output),
+            Some(ranks) => self.shared_forces.add(ranks, &scene, output)?,
+        }
         if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
             bond::add_forces(joints, input, &history.bonds, output);
         }
@@ -136,7 +139,7 @@ impl ContactModel for PotentialContact {
             field,
             hulls: &self.hulls,
         };
-        self.overlaps.integrate(input, &parts, law);
+        self.overlaps.integrate(input, &parts, law)?;
         if !self.openings.is_empty() {
             self.overlaps.replace_opened(input, &parts, &self.openings);
         }
@@ -154,7 +157,7 @@ impl ContactModel for PotentialContact {
         // Where forces were added last: that has made these the last ones.
         self.place_openings(input, history, Moment::Last);
         self.integrate(input)?;
-        self.place_penalties(input);
+        self.place_penalties(input)?;
         for t in 0..self.integrals.touching().len() {
             self.add_facet_stiffness(t, input, stiffness);
         }

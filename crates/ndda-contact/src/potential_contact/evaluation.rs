@@ -48,8 +48,8 @@ impl PotentialContact {
         let (blocks, position) = (input.blocks, input.position);
         let (candidates, frames, hulls) = (&self.candidates, &self.frames, &self.hulls);
         let openings = &self.openings;
-        self.integrals.update(&Scene { blocks, position, candidates, frames, field, hulls, openings });
-        Ok(())
+        let scene = Scene { blocks, position, candidates, frames, field, hulls, openings };
+        Ok(self.integrals.update(&scene, input.ranks)?)
     }
 
     /// Candidate pairs at `input.position`, and frames of their tetrahedra.
@@ -85,15 +85,15 @@ impl PotentialContact {
     }
 
     /// k_n dw/dU of each touching facet's pair of blocks [Pa].
-    pub(super) fn place_penalties(&mut self, input: &ContactInput) {
+    pub(super) fn place_penalties(&mut self, input: &ContactInput) -> Result<(), ContactError> {
         let touching = self.integrals.touching();
         self.penalty_of_facet.clear();
         self.curvature_of_facet.clear();
         if self.potential.law() == OverlapLaw::Linear {
             self.penalty_of_facet.resize(touching.len(), self.penalty_pa);
-            return;
+            return Ok(());
         }
-        let Some((_, field)) = &self.field else { return };
+        let Some((_, field)) = &self.field else { return Ok(()) };
         let parts = OverlapParts {
             candidates: &self.candidates,
             integrals: &self.integrals,
@@ -101,12 +101,13 @@ impl PotentialContact {
             field,
             hulls: &self.hulls,
         };
-        self.overlaps.add_touching(input, &parts);
+        self.overlaps.add_touching(input, &parts)?;
         let law = self.potential.law();
         for (overlap, pressure_m2) in self.overlaps.of_touching() {
             self.penalty_of_facet.push(self.penalty_pa * law.slope(overlap));
             self.curvature_of_facet.push(self.penalty_pa * law.curvature(overlap) * pressure_m2);
         }
+        Ok(())
     }
 
     /// Whether a friction law acts on whole faces.

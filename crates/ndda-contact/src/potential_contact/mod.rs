@@ -40,6 +40,7 @@ use crate::affine::convex_target::ConvexBlocks;
 use crate::assembly::adjacency::BlockContactIndex;
 use crate::assembly::energy;
 use crate::assembly::report::Reporter;
+use crate::assembly::shared_forces::SharedForces;
 use crate::broad_phase::candidates::Candidates;
 use crate::broad_phase::finder::BroadPhase;
 use crate::friction::facet::FacetForce;
@@ -100,6 +101,8 @@ pub struct PotentialContact {
     work_of_facet: Vec<f64>,
     /// By how much facets are moved out before they are clipped.
     openings: Openings,
+    /// What ranks hand each other of the forces on nodes.
+    shared_forces: SharedForces,
 }
 
 impl PotentialContact {
@@ -128,6 +131,7 @@ impl PotentialContact {
             state_of_facet: Vec::new(),
             work_of_facet: Vec::new(),
             openings: Openings::default(),
+            shared_forces: SharedForces::default(),
         }
     }
 

@@ -44,7 +44,8 @@ impl Frictionless {
         self.frames.place(&self.candidates, &self.hulls, input).expect("tetrahedra with volume");
         let (candidates, frames, field) = (&self.candidates, &self.frames, &PotentialField::Element);
         let (hulls, position, openings) = (&self.hulls, input.position, &Openings::default());
-        self.integrals.update(&Scene { blocks, position, candidates, frames, field, hulls, openings });
+        let scene = Scene { blocks, position, candidates, frames, field, hulls, openings };
+        self.integrals.update(&scene, None).expect("no other ranks");
         let integrals = &self.integrals;
         let touching = integrals.touching();
         let report =

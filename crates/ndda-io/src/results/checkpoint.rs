@@ -81,6 +81,17 @@ pub fn size(value: &impl Serialize) -> u64 {
     encoding.add(value).map_or(0, |()| encoding.bytes)
 }
 
+/// A value as bytes, to hand it to another process of the same program.
+pub fn to_bytes(value: &impl Serialize) -> Vec<u8> {
+    let mut encoding = Encoding::of(Vec::new());
+    encoding.add(value).map_or(Vec::new(), |()| encoding.to)
+}
+
+/// The value that [`to_bytes`] was given; none where it could not be encoded.
+pub fn from_bytes<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
+    postcard::from_bytes(bytes).ok()
+}
+
 /// Encoded values on their way to a file, never in memory as a whole.
 struct Encoding<W> {
     to: W,

@@ -1,6 +1,7 @@
 //! A block's report on a step.
 
 use ndda_mesh::Vec3;
+use ndda_ranks::{Packer, Unpacker};
 
 use crate::integrators::time_integrator::Inertia;
 
@@ -42,6 +43,85 @@ pub(crate) struct BlockReport {
     pub inertia: Inertia,
     /// Forcing of its rigid motion.
     pub drive: RigidForcing,
+}
+
+impl BlockReport {
+    /// Everything in it, in one order.
+    fn parts(&mut self) -> ([&mut Vec3; 16], [&mut f64; 10], [&mut bool; 3]) {
+        let Self {
+            reaction,
+            outside_torque,
+            motion_impulse,
+            orbital_impulse,
+            motion_work_j,
+            load_work_j,
+            damping_work_j,
+            radiated_j,
+            impulse,
+            impulse_moment,
+            damping_error_m_s,
+            friction_work_j,
+            speed_m_s,
+            contact_rate2,
+            lateral_drift,
+            inertia,
+            drive,
+        } = self;
+        let LateralDrift { shift_m_s, turn_m_s } = lateral_drift;
+        let Inertia { force, torque, contact, carried, lag } = inertia;
+        let RigidForcing {
+            load_m_s2,
+            shift_m_s2,
+            pressed_m_s2,
+            turn_m_s2,
+            is_held,
+            touches,
+            speed_m_s: fastest_m_s,
+            has_friction,
+        } = drive;
+        let of_block = [reaction, outside_torque, motion_impulse, orbital_impulse, impulse, impulse_moment];
+        let of_parts =
+            [shift_m_s, turn_m_s, force, torque, contact, carried, lag, load_m_s2, shift_m_s2, turn_m_s2];
+        let mut vectors = of_block.into_iter().chain(of_parts);
+        let numbers = [
+            motion_work_j,
+            load_work_j,
+            damping_work_j,
+            radiated_j,
+            damping_error_m_s,
+            friction_work_j,
+            speed_m_s,
+            contact_rate2,
+            pressed_m_s2,
+            fastest_m_s,
+        ];
+        let vectors = std::array::from_fn(|_| vectors.next().expect("sixteen of them"));
+        (vectors, numbers, [is_held, touches, has_friction])
+    }
+
+    /// Hands it to another rank.
+    pub(crate) fn pack(mut self, packer: &mut Packer) {
+        let (vectors, numbers, flags) = self.parts();
+        packer.put_each(&vectors, |v| <[f64; 3]>::from(**v));
+        packer.put_each(&numbers, |x| **x);
+        packer.put_each(&flags, |flag| u8::from(**flag));
+    }
+
+    /// Takes one from another rank.
+    pub(crate) fn unpack(found: &mut Unpacker) -> Self {
+        let mut report = Self::default();
+        let (vectors, numbers, flags) = report.parts();
+        for v in vectors {
+            *v = Vec3::from(found.take::<[f64; 3]>());
+        }
+        for x in numbers {
+            *x = found.take();
+        }
+        for flag in flags {
+            *flag = found.take::<u8>() == 1;
+        }
+        report
+    }
 }
 
 /// Forcing of a block's rigid motion.

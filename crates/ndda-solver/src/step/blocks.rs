@@ -70,6 +70,18 @@ impl Simulation {
 
     /// Each block alone, in parallel.
     pub(super) fn solve_blocks(&mut self) -> Result<(), StepError> {
+        if self.ranks.partners().is_some() {
+            self.solve_shared_blocks()?;
+        } else {
+            self.solve_all_blocks();
+        }
+        for (inertia, body) in self.state.inertia.iter_mut().zip(&self.bodies) {
+            *inertia = body.report.inertia;
+        }
+        self.stop_if_a_block_failed()
+    }
+
+    fn solve_all_blocks(&mut self) {
         self.with_bodies(|simulation, bodies, slices| {
             let starts = simulation.problem.blocks.node_starts();
             for_each_run(
@@ -83,10 +95,6 @@ impl Simulation {
                 },
             );
         });
-        for (inertia, body) in self.state.inertia.iter_mut().zip(&self.bodies) {
-            *inertia = body.report.inertia;
-        }
-        self.stop_if_a_block_failed()
     }
 
     /// The step of a run: congruent blocks are solved for together, others one by one; the bits are the same.

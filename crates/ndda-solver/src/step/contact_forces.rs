@@ -154,6 +154,7 @@ impl Simulation {
             is_iterated: facet_velocity.is_some(),
             without_friction: self.scratch.is_without_friction,
             friction_tolerance: self.settling.map_or(0.0, |settling| settling.friction_tolerance),
+            ranks: self.ranks.partners(),
         };
         let mut output = ContactOutput {
             force: &mut force,
@@ -161,6 +162,9 @@ impl Simulation {
             stiffness: &mut stiffness,
         };
         let mut report = model.add_forces(&input, &mut history, &mut output);
+        if let Some(error) = deformation.stopped() {
+            report = Err(error.into());
+        }
         if let Ok(ContactReport { action_reaction_error: error @ None, .. }) = &mut report {
             let before = if facet_velocity.is_none() { self.loads.total() } else { &[] };
             *error = Some(imbalance(&force, before));
@@ -171,7 +175,7 @@ impl Simulation {
         (self.scratch.contact_stiffness, self.bodies, self.scratch.seen_position) =
             (stiffness, bodies, seen_position);
         self.contact = Some(model);
-        report.map_err(|source| StepError::Contact { time_s, source })
+        report.map_err(|source| StepError::of_contact(time_s, source))
     }
 
     /// Stops where contact has lost its grip.

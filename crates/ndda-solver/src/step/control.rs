@@ -148,6 +148,9 @@ impl Simulation {
                 }
                 Err(rejection) => rejection,
             };
+            if let Rejection::Failed(error @ StepError::Ranks(_)) = rejection {
+                return Err(error);
+            }
             let halvings = self.state.control.halvings;
             let mut energy_check_cooldown = self.state.control.energy_check_cooldown;
             if let Rejection::Energy(gain) = rejection {

@@ -306,9 +306,10 @@ impl Simulation {
             is_iterated: true,
             friction_tolerance: 0.0,
             without_friction: false,
+            ranks: self.ranks.partners(),
         };
         let found = model.add_stiffness(&input, &self.state.contact, &mut newton.pairs);
-        found.map_err(|source| StepError::Contact { time_s, source })?;
+        found.map_err(|source| StepError::of_contact(time_s, source))?;
         for node in newton.pairs.iter().flat_map(|pair| pair.nodes) {
             newton.touched[self.problem.blocks.block_of(node).index()] = true;
         }

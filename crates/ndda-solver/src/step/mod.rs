@@ -25,6 +25,7 @@ pub(crate) mod oscillation;
 pub(crate) mod plan;
 pub(crate) mod queries;
 pub(crate) mod quiet;
+pub(crate) mod ranks;
 pub(crate) mod release;
 pub(crate) mod report;
 pub(crate) mod sample;
@@ -60,6 +61,7 @@ use crate::step::control::Control;
 use crate::step::follower::Places;
 use crate::step::implicit_contact::Newton;
 use crate::step::loads::Loads;
+use crate::step::ranks::Ranks;
 use crate::step::settling_step::SettlingStep;
 use crate::step::stage_state::StageState;
 use crate::step::state::State;
@@ -106,6 +108,8 @@ pub struct Simulation {
     pub(crate) settling: Option<SettlingStep>,
     /// What stages keep; none in a scene without them.
     pub(crate) stage: Option<Box<StageState>>,
+    /// The ranks that take the steps together.
+    pub(crate) ranks: Ranks,
     pub(crate) scratch: Scratch,
     pub(crate) audit: Audit,
 }

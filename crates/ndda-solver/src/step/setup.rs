@@ -32,6 +32,7 @@ use crate::step::control::{AutoStep, Control};
 use crate::step::follower::{FollowerPressure, Places};
 use crate::step::implicit_contact::{ImplicitContact, Newton};
 use crate::step::loads::{Loads, VaryingLoad};
+use crate::step::ranks::Ranks;
 use crate::step::report::StageTimes;
 use crate::step::state::State;
 use crate::step::state::StepState;
@@ -125,6 +126,7 @@ impl Simulation {
             control: None,
             settling: None,
             stage: None,
+            ranks: Ranks::default(),
             scratch: Scratch {
                 force: vec![Vec3::zeros(); nodes],
                 friction_force: vec![Vec3::zeros(); friction_nodes],

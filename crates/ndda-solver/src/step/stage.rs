@@ -89,6 +89,7 @@ impl Simulation {
             return Err(TakeOverError::RemembersAccelerations);
         }
         self.refuse_other_supports(before)?;
+        self.share_steps(before.ranks().clone());
         // A run that goes on from here has no step behind it that would have placed them elsewhere.
         before.place_loads_now();
         let (old, _) = before.look()?;

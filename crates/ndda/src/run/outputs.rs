@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use ndda_io::scene::Scene;
 use ndda_io::table::Table;
 use ndda_io::{OutputFolder, WriteError, checkpoint};
-use ndda_solver::{Settling, Simulation, Sink, SinkError, Snapshot, View};
+use ndda_solver::{Settling, Simulation, Sink, SinkError, Snapshot, StepError, View};
 use serde::{Deserialize, Serialize};
 
 use super::bolts::{BoltTable, SavedBolts};
@@ -105,18 +105,18 @@ pub struct Course {
     pub checkpoints: bool,
 }
 
-/// Where a run is recorded, and how far it had come before.
-pub type Place = (Identity, OutputFolder, Option<Earlier>);
+/// Where a run is recorded.
+pub type Place = (Identity, OutputFolder);
 
 impl<'a, 'b> Outputs<'a, 'b> {
-    /// The outputs that a scene requests; in memory where there is no place.
+    /// The outputs that a scene requests, in memory where there is no place; they go on from where they were before.
     ///
     /// # Errors
     /// [`WriteError`] when a file cannot be written.
     pub fn new(
         (scene, simulation): (&Scene, &Simulation),
         (monitors, comparison): (Vec<Monitor>, Option<Comparison>),
-        place: Option<Place>,
+        (place, earlier): (Option<Place>, Option<Earlier>),
         observers: &'a mut [&'b mut dyn Sink],
         Course { steps, started, stop, checkpoints }: Course,
     ) -> Result<Self, WriteError> {
@@ -130,15 +130,14 @@ impl<'a, 'b> Outputs<'a, 'b> {
             false => Vec::new(),
         };
         let (mut saved, mut files, mut history, mut stage_log) = (None, None, None, StageLog::default());
-        if let Some((identity, folder, earlier)) = place {
+        let mut goes_on = None;
+        if let Some(earlier) = earlier {
+            saved = Some(earlier.recorder);
+            stage_log = earlier.stages;
+            goes_on = Some((earlier.fields, earlier.contacts, earlier.blocks, earlier.bolts, earlier.wall_s));
+        }
+        if let Some((identity, folder)) = place {
             history = Some(folder.history());
-            let mut goes_on = None;
-            if let Some(earlier) = earlier {
-                saved = Some(earlier.recorder);
-                stage_log = earlier.stages;
-                goes_on =
-                    Some((earlier.fields, earlier.contacts, earlier.blocks, earlier.bolts, earlier.wall_s));
-            }
             let (saved_fields, saved_contacts, saved_blocks, saved_bolts, earlier_s) =
                 goes_on.unwrap_or_default();
             let frames = schedule(scene.output.frames);
@@ -309,7 +308,9 @@ impl Sink for Outputs<'_, '_> {
         for observer in self.observers.iter_mut() {
             ends |= observer.step_done(view)?.is_break();
         }
-        ends |= self.stop.load(Ordering::Relaxed);
+        let asked = view.simulation.agree(self.stop.load(Ordering::Relaxed)).map_err(StepError::from)?;
+        self.stop.fetch_or(asked, Ordering::Relaxed);
+        ends |= asked;
         let ending = self.ending_stage(step).map(|at| self.stage_names[at - 1].clone());
         if let Some(name) = &ending {
             self.stages.end(name, view, &self.recorder);

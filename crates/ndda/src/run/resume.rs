@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use ndda_io::diagnostic::SceneErrors;
 use ndda_io::{OutputFolder, WriteError, checkpoint, outside_files, read};
+use ndda_ranks::RanksError;
 use ndda_solver::Snapshot;
 
 use super::Run;
@@ -42,6 +43,9 @@ pub enum ResumeError {
     /// The folder cannot be read or written.
     #[error(transparent)]
     Write(#[from] WriteError),
+    /// The ranks of the run cannot go on.
+    #[error(transparent)]
+    Ranks(#[from] RanksError),
 }
 
 impl Run {
@@ -63,13 +67,23 @@ impl Run {
             let message = format!("{} {what}: name the output folder of a run", folder.display());
             return Err(ResumeError::Unusable(message));
         }
-        let folder = OutputFolder::open(folder)?;
-        if let Some(instead) = places::instead(folder.path()) {
-            let path = folder.path().display();
+        let own = OutputFolder::open(folder)?;
+        if let Some(instead) = places::instead(own.path()) {
+            let path = own.path().display();
             return Err(ResumeError::Unusable(format!("{path} holds no run that could go on: {instead}")));
         }
         let mut warnings = Vec::new();
-        let saved = last_checkpoint(&folder, &mut warnings)?;
+        let saved = (last_checkpoint(&own, &mut warnings)?, own.summary().exists());
+        let run = Self::resume_saved(saved, (folder, Some(own)), choices)?;
+        Ok(Resumed { run, warnings })
+    }
+
+    /// Resumes a run from its checkpoint and whether it has a summary; it is recorded in the folder if that is given as its own.
+    pub(super) fn resume_saved(
+        (saved, has_summary): (SavedRun, bool),
+        (folder, own): (&Path, Option<OutputFolder>),
+        choices: Choices,
+    ) -> Result<Self, ResumeError> {
         let beside = saved.identity.folder().to_path_buf();
         let meshes = beside.as_path();
         outside_files::verify(&saved.identity.outside, meshes)
@@ -79,8 +93,8 @@ impl Run {
         let mut run = Self::new(Model::resuming_with(loaded, meshes, choices)?);
         // Killed between its last step and its summary, a run still owes the summary.
         let steps = run.model.steps();
-        if saved.settling.is_none() && saved.snapshot.state.step >= steps && folder.summary().exists() {
-            return Err(ResumeError::HasEnded(folder.path().to_path_buf()));
+        if saved.settling.is_none() && saved.snapshot.state.step >= steps && has_summary {
+            return Err(ResumeError::HasEnded(folder.to_path_buf()));
         }
         let SavedRun { identity, snapshot, earlier, settling } = saved;
         if earlier.stages.at > 0 {
@@ -94,13 +108,15 @@ impl Run {
         let wall_s = earlier.wall_s;
         run.on_the_way = settling.map(|settling| OnTheWay { settling, wall_s });
         // Outputs begin when the scene is at rest.
-        let earlier = Some(earlier).filter(|_| run.on_the_way.is_none());
-        if earlier.is_none() {
+        run.earlier = Some(earlier).filter(|_| run.on_the_way.is_none());
+        if run.earlier.is_none() {
             let before = Duration::from_secs_f64(wall_s);
             run.started = run.started.checked_sub(before).unwrap_or(run.started);
         }
-        let run = run.record_as(identity, folder, earlier)?;
-        Ok(Resumed { run, warnings })
+        match own {
+            Some(folder) => Ok(run.record_as(identity, folder)?),
+            None => Ok(run),
+        }
     }
 }
 
@@ -123,7 +139,10 @@ impl Run {
 }
 
 /// The last checkpoint that can be read, of the scene that the log begins with.
-fn last_checkpoint(folder: &OutputFolder, warnings: &mut Vec<String>) -> Result<SavedRun, ResumeError> {
+pub(super) fn last_checkpoint(
+    folder: &OutputFolder,
+    warnings: &mut Vec<String>,
+) -> Result<SavedRun, ResumeError> {
     let scene = run_log::scene_crc32(folder);
     let of_this_run = |saved: &SavedRun| match scene {
         Some(known) if known != saved.identity.crc32() => {

@@ -1,15 +1,18 @@
 //! Bringing a scene to rest before time begins: with checkpoints on the way, and results where it ends on the way.
 
+use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use ndda_io::summary::{Invariants, Label, LabelWord, Named, Summary};
 use ndda_io::{WriteError, checkpoint};
+use ndda_ranks::Alone;
 use ndda_solver::{Settled, Settling, StepError, StepReport};
 
 use super::outputs::{Course, Earlier, Outputs, SavedRun};
 use super::rest::{Resting, Watch};
-use super::{Recording, Run, RunError, error, write_results};
+use super::{Recording, Run, RunError, error, unless_ended, write_results};
 use crate::judge::summary::{Ending, summarise};
 
 /// A scene that was on its way to rest when its run was interrupted.
@@ -42,13 +45,14 @@ impl Run {
             None => self.model.simulation.begin_to_settle(&settle),
         };
         let mut watch = Watch::new(None, given.tolerance);
+        let ranks = self.model.simulation.ranks().clone();
         loop {
             let began = Instant::now();
             let mut goes_on = |settled: &Settled| {
                 watch.step(settled, tell);
-                match stop.load(Ordering::Relaxed) || writes && began.elapsed() >= every {
-                    true => std::ops::ControlFlow::Break(()),
-                    false => std::ops::ControlFlow::Continue(()),
+                match unless_ended(&*ranks, &stop) {
+                    ControlFlow::Continue(()) if writes && began.elapsed() >= every => ControlFlow::Break(()),
+                    asked => asked,
                 }
             };
             match self.model.simulation.go_on_settling(&settle, &mut settling, &mut goes_on) {
@@ -79,12 +83,14 @@ impl Run {
     /// Summary, history and frames of a run that ends before its scene has come to rest: how it was at the start, and how it is now. Their
     /// times are those that the steps of settling would have taken.
     fn leave_unsettled(&mut self, settling: &Settling, error: Option<&StepError>) -> Result<(), WriteError> {
-        let Some(Recording { identity, folder, mut log, .. }) = self.recording.take() else { return Ok(()) };
+        let Some(Recording { identity, folder, mut log }) = self.recording.take() else { return Ok(()) };
+        // Other ranks have no part in what is written now.
+        self.model.simulation.share_steps(Arc::new(Alone));
         let (settled, started) = (settling.settled(), self.started);
         let (loaded, simulation) = (&self.model.loaded, &mut self.model.simulation);
         let monitors = std::mem::take(&mut self.model.monitors);
         let course = Course { steps: settled.steps, started, stop: self.stop.clone(), checkpoints: false };
-        let place = Some((identity, folder.clone(), None));
+        let place = (Some((identity, folder.clone())), None);
         let mut outputs =
             Outputs::new((&loaded.scene, simulation), (monitors, None), place, &mut [], course)?;
         let now = simulation.snapshot();

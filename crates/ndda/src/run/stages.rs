@@ -11,7 +11,7 @@ use ndda_solver::{RunError, Settled, Simulation, StageStart, StepReport, TakeOve
 use super::outputs::Outputs;
 use super::rest::Watch;
 use super::stage_log::ends;
-use super::unless_stopped;
+use super::unless_ended;
 use crate::build;
 use crate::model;
 
@@ -101,12 +101,13 @@ impl Course<'_> {
         let before = simulation.snapshot();
         let name = &self.loaded.scene.stages[outputs.stages.at - 1].name;
         let mut rest = Watch::new(Some(name), settle.tolerance);
+        let ranks = simulation.ranks().clone();
         let mut watch = |settled: &Settled| {
             // How it came to rest is said with the end of the stage.
             if settled.speed_ratio > settle.tolerance {
                 rest.step(settled, &mut |resting| (self.tell)(&resting.to_string()));
             }
-            unless_stopped(self.stop)
+            unless_ended(&*ranks, self.stop)
         };
         let report = ndda_solver::unseen_step(simulation, &mut [&mut *outputs])?;
         let settled = simulation.settle_within(&build::settle(*settle), &mut watch)?;

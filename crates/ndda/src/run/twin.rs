@@ -12,7 +12,7 @@ use ndda_mesh::geometry::tet_heights;
 use ndda_mesh::{BlockId, TetId, Vec3};
 use ndda_solver::{BodyKind, Settle, Simulation, StartSnapshot, StepError};
 
-use super::unless_stopped;
+use super::unless_ended;
 use crate::judge::table::length;
 use crate::judge::words::SECOND_RUN;
 use crate::numbers::counted;
@@ -168,11 +168,12 @@ fn run(
         pushed.state.velocity[simulation.blocks().nodes_of(block)].iter_mut().for_each(|v| *v += push);
     }
     simulation.restore(pushed).expect("it is of this simulation");
+    let ranks = simulation.ranks().clone();
     if let Some(settle) = settle {
-        simulation.settle_watched(settle, &mut |_| unless_stopped(stop))?;
+        simulation.settle_watched(settle, &mut |_| unless_ended(&*ranks, stop))?;
     }
     while simulation.state().step < steps {
-        if unless_stopped(stop) == ControlFlow::Break(()) {
+        if unless_ended(&*ranks, stop) == ControlFlow::Break(()) {
             return Ok(false);
         }
         simulation.step()?;

@@ -6,6 +6,7 @@
 
 use ndda_mesh::geometry::Aabb;
 use ndda_mesh::{BlockId, TetId, Vec3};
+use ndda_ranks::RanksError;
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -14,6 +15,7 @@ use crate::assembly::block_shares::{BlockShares, SHARE_BLOCKS, ShareScratch};
 use crate::assembly::facet_energy;
 use crate::assembly::overlap_parts::OverlapParts;
 use crate::assembly::overlap_volumes::OverlapVolumes;
+use crate::assembly::shared_overlaps::Shared;
 use crate::friction::openings::Openings;
 use crate::integration::integrals::Integrals;
 use crate::integration::linear::Linear;
@@ -82,21 +84,27 @@ impl BlockOverlaps {
     }
 
     /// U of any potential.
-    pub(crate) fn integrate(&mut self, input: &ContactInput, parts: &OverlapParts, law: OverlapLaw) {
+    pub(crate) fn integrate(
+        &mut self,
+        input: &ContactInput,
+        parts: &OverlapParts,
+        law: OverlapLaw,
+    ) -> Result<(), RanksError> {
         let OverlapParts { candidates, field, hulls, .. } = *parts;
         match (field, law) {
-            (_, OverlapLaw::Power { .. }) => self.add_touching(input, parts),
+            (_, OverlapLaw::Power { .. }) => self.add_touching(input, parts)?,
             (PotentialField::Element, _) => self.add_pieces(input, parts),
             (PotentialField::Pieces(table), _) => {
                 let near = (0..).zip(&candidates.neighbours).filter(|(k, _)| !hulls.are_apart(*k));
                 self.list(near.map(|(_, pair)| *pair));
-                self.add_cells(&Cells { input, table, function: None, hulls });
+                self.add_cells(&Cells { input, table, function: None, hulls })?;
             }
             (PotentialField::Function(field), _) => {
                 self.list(candidates.neighbours.iter().copied());
-                self.add_cells(&Cells { input, table: &field.regions, function: Some(field), hulls });
+                self.add_cells(&Cells { input, table: &field.regions, function: Some(field), hulls })?;
             }
         }
+        Ok(())
     }
 
     /// Puts U of pairs of blocks between which facets are moved out in place of that of their overlap, which may be none.
@@ -121,7 +129,14 @@ impl BlockOverlaps {
     }
 
     /// U and ∫ φ dA of the pairs of blocks that touch.
-    pub(crate) fn add_touching(&mut self, input: &ContactInput, parts: &OverlapParts) {
+    ///
+    /// # Errors
+    /// [`RanksError`] when ranks that share the work cannot go on.
+    pub(crate) fn add_touching(
+        &mut self,
+        input: &ContactInput,
+        parts: &OverlapParts,
+    ) -> Result<(), RanksError> {
         let OverlapParts { integrals, field, hulls, .. } = *parts;
         self.list_touching(integrals);
         match field {
@@ -132,13 +147,16 @@ impl BlockOverlaps {
             }
             PotentialField::Element => {
                 let own = element_pieces(input.blocks.tets.len());
-                self.add_cells(&Cells { input, table: &own, function: None, hulls });
+                self.add_cells(&Cells { input, table: &own, function: None, hulls })?;
             }
-            PotentialField::Pieces(table) => self.add_cells(&Cells { input, table, function: None, hulls }),
+            PotentialField::Pieces(table) => {
+                self.add_cells(&Cells { input, table, function: None, hulls })?
+            }
             PotentialField::Function(field) => {
-                self.add_cells(&Cells { input, table: &field.regions, function: Some(field), hulls });
+                self.add_cells(&Cells { input, table: &field.regions, function: Some(field), hulls })?;
             }
         }
+        Ok(())
     }
 
     /// Makes room for the pairs that touch, and adds up ∫ φ dA of both surfaces.
@@ -175,10 +193,14 @@ impl BlockOverlaps {
     }
 
     /// Any potential, over the overlaps of the cells of blocks that no face keeps apart.
-    fn add_cells(&mut self, cells: &Cells) {
+    fn add_cells(&mut self, cells: &Cells) -> Result<(), RanksError> {
+        let shared = Shared::new(cells.input.ranks, self.pairs.len());
+        let own = shared.own();
         let room = || Box::new([Polyhedron::default(), Polyhedron::default()]);
-        let pairs = self.overlap_m3.par_iter_mut().zip(&self.pairs).with_min_len(GRAIN_BLOCK_PAIRS);
+        let pairs = self.overlap_m3[own.clone()].par_iter_mut().zip(&self.pairs[own]);
+        let pairs = pairs.with_min_len(GRAIN_BLOCK_PAIRS);
         pairs.for_each_init(room, |room, (overlap, &(a, b))| *overlap = cells.overlap_of(a, b, room));
+        shared.exchange(&mut self.overlap_m3)
     }
 }
 

@@ -72,7 +72,8 @@ pub fn add(scene: &ScatterScene, output: &mut ContactOutput) {
     add_blocks(scene, 0..scene.blocks.len(), all);
 }
 
-fn add_blocks(scene: &ScatterScene, blocks: Range<usize>, output: ContactOutput) {
+/// Adds the forces on some blocks to their nodes, which `output` begins with.
+pub(super) fn add_blocks(scene: &ScatterScene, blocks: Range<usize>, output: ContactOutput) {
     match scene.adjacency.count(&blocks) {
         0 => {}
         _ if blocks.len() == 1 => add_block(scene, BlockId(blocks.start as u32), output),
@@ -115,7 +116,8 @@ fn prefetch(scene: &ScatterScene, on_block: &[u32]) {
     std::hint::black_box(last);
 }
 
-fn split(output: ContactOutput, node: usize) -> (ContactOutput, ContactOutput) {
+/// Output of the nodes before one of them, and of the rest.
+pub(super) fn split(output: ContactOutput, node: usize) -> (ContactOutput, ContactOutput) {
     let (f0, f1) = output.force.split_at_mut(node);
     let (s0, s1) = output.stiffness.split_at_mut(node);
     let (t0, t1) = output.friction_force.split_at_mut(node.min(output.friction_force.len()));

@@ -1,10 +1,31 @@
-//! Types of a chunk of the integration: the contactor's triangle, and lists of results.
+//! A chunk of the integration: its facets and results, and the contactor's triangle.
+
+use std::ops::Range;
 
 use ndda_mesh::geometry::triangle_area_vector;
-use ndda_mesh::{TriangleId, Vec3};
+use ndda_mesh::{BlockId, TriangleId, Vec3};
 
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
+use crate::integration::pair_report::OverlapReport;
 use crate::integration::scene::Scene;
+
+/// A run of facets and the hits among their pairs.
+#[derive(Default)]
+pub(crate) struct Chunk {
+    /// Numbers of its facets, the block of the first, and how many pairs they have.
+    pub(super) facets: Range<u32>,
+    pub(super) first: BlockId,
+    pub(super) pairs: usize,
+    /// Hits in the order of pairs.
+    pub overlaps: Vec<OverlapPair>,
+    /// Its number.
+    pub(super) number: u32,
+    /// Facets that have some, ascending, and what theirs come to.
+    pub(super) touching: Vec<ActiveFacet>,
+    pub(super) sums: Vec<FacetMoments>,
+    /// Report on the overlapping pairs.
+    pub report: OverlapReport,
+}
 
 /// A contactor's triangle.
 #[derive(Clone, Copy, Default)]

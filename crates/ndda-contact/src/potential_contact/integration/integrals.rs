@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use ndda_mesh::{BlockId, TetId};
+use ndda_ranks::{Communicator, RanksError};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -12,7 +13,7 @@ use crate::broad_phase::candidates::{Candidates, Facet};
 use crate::broad_phase::finder::FEW_NODES;
 use crate::friction::openings::moved_out;
 use crate::integration::affine_target::{EvaluateHalfSpaces, PushRegions};
-use crate::integration::chunk_parts::{Results, Triangle, copy_into};
+use crate::integration::chunk_parts::{Chunk, Results, Triangle, copy_into};
 use crate::integration::clip::Outline;
 use crate::integration::function_moments::{Placed, add_function};
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments, OverlapPair};
@@ -21,6 +22,7 @@ use crate::integration::pair_report::OverlapReport;
 use crate::integration::queue::RegionQueue;
 use crate::integration::region::{Pieces, Region};
 use crate::integration::scene::{Scene, are_on_one_side, lies_in_a_plane_of};
+use crate::integration::shared_chunks::SharedChunks;
 use crate::potential::contact_potential::PotentialField;
 
 /// Pairs of a chunk: one task for a thread. Where there are many, chunks are larger, since each has memory of its own, most of which is not used.
@@ -31,24 +33,6 @@ const MANY_CHUNKS: usize = 1024;
 
 /// Most chunks that a thread takes at a time: with more, one waits for the other at the end.
 const MOST_CHUNKS: usize = 8;
-
-/// A run of facets and the hits among their pairs.
-#[derive(Default)]
-pub(crate) struct Chunk {
-    /// Numbers of its facets, the block of the first, and how many pairs they have.
-    facets: Range<u32>,
-    first: BlockId,
-    pairs: usize,
-    /// Hits in the order of pairs.
-    pub overlaps: Vec<OverlapPair>,
-    /// Its number.
-    number: u32,
-    /// Facets that have some, ascending, and what theirs come to.
-    touching: Vec<ActiveFacet>,
-    sums: Vec<FacetMoments>,
-    /// Report on the overlapping pairs.
-    pub report: OverlapReport,
-}
 
 /// A pair that may overlap.
 struct PendingPair {
@@ -292,6 +276,8 @@ pub struct Integrals {
     touching: Vec<ActiveFacet>,
     /// The list that the chunks are of.
     list: Option<u64>,
+    /// What ranks hand each other.
+    shared: SharedChunks,
 }
 
 impl Default for Integrals {
@@ -303,13 +289,18 @@ impl Default for Integrals {
             used: 0,
             touching: Vec::new(),
             list: None,
+            shared: SharedChunks::default(),
         }
     }
 }
 
 impl Integrals {
-    /// Integrates all pairs. The division into chunks depends on the list of pairs alone.
-    pub fn update(&mut self, scene: &Scene) {
+    /// Integrates all pairs, on several ranks its part of them, and takes the rest from the others. The division into chunks depends on the list of
+    /// pairs alone.
+    ///
+    /// # Errors
+    /// [`RanksError`] when the ranks cannot go on.
+    pub fn update(&mut self, scene: &Scene, ranks: Option<&dyn Communicator>) -> Result<(), RanksError> {
         let list = Some(scene.candidates.version);
         if self.list != list {
             self.divide(scene.candidates);
@@ -318,7 +309,8 @@ impl Integrals {
         let (arch, used) = (self.arch, self.used);
         let threads = rayon::current_num_threads().max(self.scratch.len());
         self.scratch.resize_with(threads, Mutex::default);
-        let (chunks, scratch) = (&mut self.chunks[..used], &self.scratch);
+        let own = ranks.map_or(0..used, |ranks| self.shared.divide(ranks, &self.chunks[..used]));
+        let (chunks, scratch) = (&mut self.chunks[own], &self.scratch);
         let are_many = used > MANY_CHUNKS;
         let integrate = |chunk: &mut Chunk| {
             let own = &scratch[rayon::current_thread_index().unwrap_or(0)];
@@ -333,9 +325,13 @@ impl Integrals {
             [only] => integrate(only),
             many => many.par_iter_mut().with_max_len(MOST_CHUNKS).for_each(integrate),
         }
+        if let Some(ranks) = ranks {
+            self.shared.exchange(ranks, scene.candidates.version, &mut self.chunks[..used])?;
+        }
         self.touching.clear();
         let used = &self.chunks[..used];
         used.iter().for_each(|chunk| self.touching.extend_from_slice(&chunk.touching));
+        Ok(())
     }
 
     fn divide(&mut self, candidates: &Candidates) {

@@ -19,6 +19,7 @@ pub(crate) mod quadrature;
 pub(crate) mod queue;
 pub(crate) mod region;
 pub(crate) mod scene;
+mod shared_chunks;
 pub(crate) mod tet_frame;
 pub(crate) mod tet_overlap;
 
