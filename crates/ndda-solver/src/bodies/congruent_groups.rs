@@ -83,6 +83,13 @@ impl CongruentGroups {
         self.starts.windows(2).map(|ends| ends[0] as usize..ends[1] as usize)
     }
 
+    /// Lets runs end also where these blocks begin.
+    pub(crate) fn split(&mut self, firsts: &[usize]) {
+        self.starts.extend(firsts.iter().map(|first| *first as u32));
+        self.starts.sort_unstable();
+        self.starts.dedup();
+    }
+
     /// Neighbours in the list for which `congruent` holds, up to `most` in a run.
     pub(crate) fn group(blocks: usize, most: usize, congruent: impl Fn(usize, usize) -> bool) -> Self {
         let mut starts: Vec<u32> = vec![0];

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use ndda_mesh::{BlockId, Vec3};
 use ndda_ranks::{Alone, Communicator, Gathered, Packer, RanksError, Topic, Unpacker, agree, divide, share};
 
+use crate::bodies::batch::ENOUGH_TOGETHER;
 use crate::bodies::body::Body;
 use crate::bodies::congruent_groups::{NodeSlices, for_each_run};
 use crate::bodies::prototype::Prototype;
@@ -47,11 +48,13 @@ impl Simulation {
     pub fn share_steps(&mut self, ranks: Arc<dyn Communicator>) {
         self.ranks = Ranks::default();
         if ranks.size() > 1 {
-            let runs: Vec<Range<usize>> = self.problem.runs.ranges().collect();
-            let of_run = |run: &Range<usize>| self.weight_of(run.start) * run.len() as u64;
-            let starts = divide(runs.iter().map(of_run), ranks.size());
-            let first = |run: usize| runs.get(run).map_or(self.bodies.len(), |run| run.start);
-            self.ranks.starts = starts.into_iter().map(first).collect();
+            let weights = (0..self.bodies.len()).map(|block| self.weight_of(block));
+            let starts = divide(weights, ranks.size());
+            // Blocks that are solved for together have the bits of those that are solved for one by one.
+            self.problem.runs.split(&starts);
+            let few = self.problem.runs.ranges().filter(|run| run.len() < ENOUGH_TOGETHER);
+            few.for_each(|run| self.bodies[run.start].batch = None);
+            self.ranks.starts = starts;
         }
         self.ranks.all = ranks;
     }
