@@ -2,11 +2,13 @@
 //! forces of concave blocks, are tested in crates/ndda-contact/src/potential_contact/contact.rs; any bits in tests/never_panics.rs there.
 
 use nalgebra::Rotation3;
+use ndda::Model;
 use ndda_contact::reference::tet_pair;
 use ndda_contact::testing::{Random, evaluate, test_box, test_set};
 use ndda_contact::{ContactHistory, ContactInput, ContactModel, PotentialContact, VolumePotential};
 use ndda_mesh::{BlockId, BlockMesh, Mat3, Vec3};
 
+use super::labelled::scene;
 use super::{advance, extreme, farthest};
 use crate::evidence::Answer::{AtMost, Near};
 use crate::evidence::{rounding, row};
@@ -31,10 +33,10 @@ fn cubes_face_to_face_stay_where_they_are() {
 }
 
 #[test]
-fn a_cube_in_the_place_of_another_ends_in_a_stop_that_names_both() {
-    let mut simulation = extreme("coincident", &["blocks[1].at_m=(0,0,0)"]).simulation;
-    let stop = (0..2000).find_map(|_| simulation.step().err()).expect("a stop").to_string();
-    assert!(stop.contains("c000") && stop.contains("c100"), "{stop}");
+fn a_cube_in_the_place_of_another_is_refused_with_both_names() {
+    let refused = Model::open(&scene("extreme/coincident.ron"), &["blocks[1].at_m=(0,0,0)".into()]).err();
+    let text = refused.map(|errors| errors.render(false)).unwrap_or_default();
+    assert!(text.contains("error[overlap]") && text.contains("c000") && text.contains("c100"), "{text}");
 }
 
 #[test]

@@ -93,7 +93,8 @@ impl Settling {
             (*least, *since) = (speed_ratio, steps);
         }
         let stalled = steps - *since;
-        (*least < 1.0 && stalled >= PATIENCE.max(2 * *since)).then_some(stalled)
+        let slowest = PATIENT_QUARTERS * self.progress.oscillation.longest;
+        (*least < 1.0 && stalled >= PATIENCE.max(2 * *since).max(slowest)).then_some(stalled)
     }
 
     /// How far it has come.
@@ -105,9 +106,11 @@ impl Settling {
 /// Steps between looks at how far blocks have gone.
 const LOOK: u64 = 100;
 
-/// A scene is given up where the speed left has not become less, by a tenth, for so many steps and twice as many as all before.
+/// A scene is given up where the speed left has not become less, by a tenth, for so many steps, twice as many as all before, and so many quarters of its
+/// slowest oscillation.
 const LESS: f64 = 0.9;
 const PATIENCE: u64 = 10_000;
+const PATIENT_QUARTERS: u64 = 20;
 
 impl Simulation {
     /// Kinetic energy that its loads alone would give a block in a step [J].
