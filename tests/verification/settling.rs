@@ -1,10 +1,13 @@
 //! A scene that settles first starts in equilibrium: penetration, stress and rest.
 
+use std::ops::ControlFlow;
+
 use ndda_mesh::{BlockId, Vec3};
-use ndda_solver::{Damping, Settle, StepError};
+use ndda_solver::{Damping, Settle, Settled, StepError};
 
 use crate::evidence::Answer::{AtMost, Within};
 use crate::evidence::row;
+use crate::extreme::farthest;
 use crate::simulation;
 
 const SCENE: &str = "(title: \"stack\", time: (step_s: 1e-3, end_s: 1), gravity_m_s2: (0, 0, -9.8),
@@ -50,12 +53,10 @@ fn settles_as_deep_as_its_weight_asks_for(way: &str, damping: Damping) {
         simulation.step().unwrap();
     }
     // Friction between the blocks, which spread under their weight, holds a little stress that relaxes: a thousandth of the depth at most.
-    let moved = simulation.state().position.iter().zip(simulation.start_position());
-    let furthest = moved.map(|(x, start)| (x - start).norm()).fold(0.0, f64::max);
     row(
         "settling",
         &format!("motion afterwards over that depth, {way} damping"),
-        furthest / expected,
+        farthest(&simulation) / expected,
         AtMost(1e-3),
     );
     let sample = simulation.sample().unwrap();
@@ -131,15 +132,31 @@ fn a_tower_settles_as_deep_with_scaled_masses_in_two_thirds_of_the_steps() {
         for _ in 0..1000 {
             simulation.step().unwrap();
         }
-        let moved = simulation.state().position.iter().zip(simulation.start_position());
-        let furthest = moved.map(|(x, start)| (x - start).norm()).fold(0.0, f64::max);
         row(
             "settling",
             &format!("motion of that tower afterwards over its depth, {way} masses"),
-            furthest / expected,
+            farthest(&simulation) / expected,
             AtMost(1e-5),
         );
         settled.steps
     });
     assert!(3 * steps[1] <= 2 * steps[0], "{steps:?}");
+}
+
+#[test]
+fn settling_with_scaled_masses_goes_on_from_a_snapshot_with_the_same_bits() {
+    let settle = Settle { mass_scaling: true, ..Settle::new(1e-4, 100_000) };
+    let mut whole = simulation(TOWER);
+    whole.settle(&settle).unwrap();
+    let mut first = simulation(TOWER);
+    let mut settling = first.begin_to_settle(&settle);
+    let mut until = |settled: &Settled| match settled.steps {
+        100 => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    };
+    assert!(!first.go_on_settling(&settle, &mut settling, &mut until).unwrap());
+    let mut second = simulation(TOWER);
+    second.restore(first.snapshot()).unwrap();
+    assert!(second.go_on_settling(&settle, &mut settling, &mut |_| ControlFlow::Continue(())).unwrap());
+    assert_eq!(second.state().position, whole.state().position);
 }

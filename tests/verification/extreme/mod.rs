@@ -52,7 +52,7 @@ fn sunk(simulation: &Simulation, name: &str, height_m: f64) -> f64 {
 }
 
 /// The farthest that a node has moved since the start [m].
-fn farthest(simulation: &Simulation) -> f64 {
+pub(crate) fn farthest(simulation: &Simulation) -> f64 {
     let moved = simulation.state().position.iter().zip(simulation.start_position());
     moved.map(|(x, start): (&Vec3, &Vec3)| (x - start).norm()).fold(0.0, f64::max)
 }

@@ -7,7 +7,7 @@ use ndda_mesh::{Mat3, Vec3};
 #[derive(Clone, Debug)]
 pub struct RigidInertia {
     /// J about the mass centre [kg m²].
-    pub(super) inertia: Mat3,
+    pub(crate) inertia: Mat3,
     pub(super) inverse: Mat3,
     /// Inverse of the inertia of lumped masses: gives the spin of a rigid field of velocities from their moment.
     pub(super) inverse_lumped: Mat3,

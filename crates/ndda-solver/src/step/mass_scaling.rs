@@ -30,6 +30,9 @@ impl Simulation {
 
     /// Gives all blocks their own inertia again.
     pub(super) fn unscale_masses(&mut self) {
+        if self.scratch.inertia_factor.is_empty() {
+            return;
+        }
         self.scratch.inertia_factor.clear();
         let shapes = self.bodies.iter().map(|body| &self.problem.shapes[body.shape]);
         for (body, shape) in self.scratch.contact_bodies.iter_mut().zip(shapes) {
@@ -54,18 +57,16 @@ impl Simulation {
         }
     }
 
-    /// λ of a rigid block that is free to move [m²/kg]; 0 for others.
+    /// λ of a rigid block that is free to move [m²/kg]; 0 for others. It is that of its rest shape, so that settling goes on from a checkpoint with the same bits.
     fn clamped_rate2(&self, block: BlockId) -> f64 {
         let shape = self.shape(block);
         if shape.kind != BodyKind::Rigid || !shape.is_free() {
             return 0.0;
         }
-        let operator = &shape.operator;
-        let center = operator.center(&self.state.position[self.blocks().nodes_of(block)]);
+        let (rest, first) = (&shape.operator.rest, self.blocks().nodes_of(block).start);
         let mut stiffness = Matrix6::zeros();
         for triangle in self.blocks().triangles_of(block) {
-            let [a, b, c] =
-                self.blocks().triangles[triangle].map(|node| self.state.position[node.index()] - center);
+            let [a, b, c] = self.blocks().triangles[triangle].map(|node| rest[node.index() - first]);
             let doubled = (b - a).cross(&(c - a));
             let area_m2 = 0.5 * doubled.norm();
             if area_m2 == 0.0 {
@@ -77,10 +78,9 @@ impl Simulation {
                 stiffness += area_m2 / 3.0 * g * g.transpose();
             }
         }
-        let mut inertia = Matrix6::identity() * operator.mass_kg;
-        let arms: Vec<Vec3> =
-            self.state.position[self.blocks().nodes_of(block)].iter().map(|x| x - center).collect();
-        inertia.fixed_view_mut::<3, 3>(3, 3).copy_from(&operator.inertia(&arms, &arms));
+        let mut inertia = Matrix6::identity() * shape.operator.mass_kg;
+        let about_center = shape.rigid.as_ref().expect("a rigid shape").inertia;
+        inertia.fixed_view_mut::<3, 3>(3, 3).copy_from(&about_center);
         let factor = inertia.cholesky().expect("a validated block is not flat").l();
         let inverse = factor.try_inverse().expect("its factor is regular");
         (inverse * stiffness * inverse.transpose()).symmetric_eigenvalues().max()
