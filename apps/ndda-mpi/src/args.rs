@@ -10,12 +10,12 @@ use ndda::run::Sensitivity;
 #[derive(Debug, Parser)]
 #[command(name = "ndda-mpi", version, about, after_help = "mpirun -n 4 ndda-mpi run scenes/pile_1000.ron")]
 pub struct Args {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub verb: Verb,
 }
 
-/// What to do.
+/// The commands that several processes can carry out.
 #[derive(Debug, Subcommand)]
 pub enum Verb {
     /// Runs a scene; the files are those of `ndda run`, to the bit.
@@ -41,7 +41,7 @@ pub struct RunArgs {
     /// Replaces results that are there.
     #[arg(long)]
     pub force: bool,
-    /// How to run.
+    /// Options of both commands.
     #[command(flatten)]
     pub how: HowArgs,
 }
@@ -51,12 +51,12 @@ pub struct RunArgs {
 pub struct ResumeArgs {
     /// Folder of its results.
     pub folder: PathBuf,
-    /// How to run.
+    /// Options of both commands.
     #[command(flatten)]
     pub how: HowArgs,
 }
 
-/// How to run.
+/// Options of both commands.
 #[derive(Debug, ClapArgs)]
 pub struct HowArgs {
     /// Threads of each rank.

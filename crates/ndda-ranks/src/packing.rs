@@ -123,6 +123,15 @@ impl<'a> Unpacker<'a> {
         self.0 = rest;
         values.chunks_exact(T::BYTES).map(T::read)
     }
+
+    /// Replaces each entry of a list by what [`put_each`](Packer::put_each) made of one.
+    ///
+    /// # Panics
+    /// Where fewer were written.
+    pub fn take_into<T: Packed + 'a, E>(&mut self, entries: &mut [E], of: impl Fn(T) -> E) {
+        let found = self.take_each(entries.len());
+        entries.iter_mut().zip(found).for_each(|(entry, found)| *entry = of(found));
+    }
 }
 
 #[cfg(test)]
@@ -141,7 +150,9 @@ mod tests {
         for (found, x) in unpacker.take_each::<[f64; 2]>(odd.len()).zip(odd) {
             assert_eq!(found.map(f64::to_bits), [x, -x].map(f64::to_bits));
         }
-        assert_eq!(unpacker.take::<[u64; 2]>(), [1, u64::MAX]);
+        let mut pair = [[0; 2]];
+        unpacker.take_into(&mut pair, |found: [u64; 2]| found);
+        assert_eq!(pair, [[1, u64::MAX]]);
         assert!(unpacker.is_empty());
     }
 }

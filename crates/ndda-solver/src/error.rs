@@ -153,7 +153,7 @@ fn speed_left(ratio: f64) -> String {
     if ratio.is_finite() { format!("speed {ratio:.1e} of the largest") } else { "speeds still rise".into() }
 }
 
-/// For how long it has been no less.
+/// For how many steps the speed left has not become less.
 fn no_less(stalled: Option<u64>) -> String {
     stalled.map_or_else(String::new, |steps| format!(", and no less for {steps} steps"))
 }

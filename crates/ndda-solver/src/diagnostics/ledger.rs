@@ -51,7 +51,7 @@ pub struct Ledger {
     momentum_error: f64,
     angular_error: f64,
     largest_speed_m_s: f64,
-    /// Speed of blocks that hardly move: that of a fall through 1/20 000 of the lowest tetrahedron [m/s].
+    /// Speed of blocks that hardly move: that of a fall through 1/20 000 of their smallest size [m/s].
     slow_m_s: f64,
     vibration: Vibration,
     unresolved_m_s: f64,

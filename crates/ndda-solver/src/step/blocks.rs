@@ -73,7 +73,7 @@ impl Simulation {
         if self.ranks.partners().is_some() {
             self.solve_shared_blocks()?;
         } else {
-            self.solve_all_blocks();
+            self.with_bodies(|simulation, bodies, slices| simulation.step_runs(bodies, slices, &|_, _| true));
         }
         for (inertia, body) in self.state.inertia.iter_mut().zip(&self.bodies) {
             *inertia = body.report.inertia;
@@ -81,19 +81,18 @@ impl Simulation {
         self.stop_if_a_block_failed()
     }
 
-    fn solve_all_blocks(&mut self) {
-        self.with_bodies(|simulation, bodies, slices| {
-            let starts = simulation.problem.blocks.node_starts();
-            for_each_run(
-                &simulation.problem.runs,
-                bodies,
-                starts,
-                slices,
-                GRAIN_NODES,
-                &|first, run, slices| {
-                    simulation.step_run(first, run, slices);
-                },
-            );
+    /// Steps the runs that are asked for.
+    pub(super) fn step_runs(
+        &self,
+        bodies: &mut [Body],
+        slices: NodeSlices,
+        asked: &(impl Fn(usize, &[Body]) -> bool + Sync),
+    ) {
+        let starts = self.problem.blocks.node_starts();
+        for_each_run(&self.problem.runs, bodies, starts, slices, GRAIN_NODES, &|first, run, slices| {
+            if asked(first, run) {
+                self.step_run(first, run, slices);
+            }
         });
     }
 

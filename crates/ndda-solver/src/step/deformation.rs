@@ -10,7 +10,6 @@ use rayon::prelude::*;
 use crate::bodies::body::{Body, Motion};
 use crate::bodies::congruent_groups::Nodes;
 use crate::step::Simulation;
-use crate::step::ranks::take;
 
 /// The blocks of a simulation before their step.
 pub(crate) struct StepDeformation<'a> {
@@ -73,7 +72,7 @@ impl<'a> StepDeformation<'a> {
             {
                 failed[block] = found.take::<u8>() == 0;
                 if !failed[block] {
-                    take(&mut found, &mut columns[block]);
+                    found.take_into(&mut columns[block], |v: [f64; 3]| Vec3::from(v));
                 }
             }
         }

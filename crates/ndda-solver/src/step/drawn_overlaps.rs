@@ -18,10 +18,10 @@ struct Pressed {
 }
 
 impl Simulation {
-    /// Notes the largest speed at which overlaps at the start throw a free block [m/s], for the label, and gives it. Of the energy E = Σ ½ F d of its pairs,
+    /// Notes the largest speed at which overlaps at the start throw a free block [m/s], for the label. Of the energy E = Σ ½ F d of its pairs,
     /// d being their depths, a block may gain (ΔF/Σ F)² E, where ΔF is by how much contact exceeds what loads press against it: none where it lies as
     /// deep as contact carries it.
-    pub fn note_drawn_overlaps(&mut self, pairs: &[PairResultant]) -> Worst {
+    pub fn note_drawn_overlaps(&mut self, pairs: &[PairResultant]) {
         let mut pressed = vec![Pressed::default(); self.problem.blocks.len()];
         for pair in pairs {
             let (force_n, depth_m) = (pair.force_n.norm(), pair.depth_m.max(0.0));
@@ -44,6 +44,5 @@ impl Simulation {
             worst.take((2.0 * gained_j / shape.operator.mass_kg).sqrt(), block.index());
         }
         self.audit.ledger.note_drawn_overlaps(worst);
-        worst
     }
 }

@@ -87,6 +87,7 @@ impl Simulation {
         if shape.kind == BodyKind::Fixed {
             return;
         }
+        let inertia_factor = self.inertia_factor(block);
         let nodes = self.problem.blocks.nodes_of(block);
         let velocity = &mut self.state.velocity[nodes.clone()];
         let change = &mut damping.change[nodes.clone()];
@@ -94,7 +95,7 @@ impl Simulation {
             *change = v - *change;
         }
         let change_j = shape.operator.kinetic_energy_j(change);
-        damping.change_j += self.scratch.inertia_factor.get(block.index()).unwrap_or(&1.0) * change_j;
+        damping.change_j += inertia_factor * change_j;
         let Some(steps) = damping.steps else {
             let left = left(damping.factor, change_j, shape.operator.kinetic_energy_j(velocity));
             velocity.iter_mut().for_each(|v| *v *= left);

@@ -118,7 +118,7 @@ impl Simulation {
     }
 
     /// Speed that errors of block velocities are held against [m/s]: the largest so far or, where that is less, that of a fall through 1/20 000 of
-    /// the lowest tetrahedron of blocks that move, 0.01 √(g h).
+    /// h, 0.01 √(g h): the lowest height of tetrahedra of elastic blocks, or the smallest width of rigid and affine ones, that move.
     pub fn speed_scale_m_s(&self) -> f64 {
         self.audit.ledger.speed_scale_m_s()
     }

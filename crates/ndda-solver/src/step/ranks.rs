@@ -8,10 +8,10 @@ use ndda_ranks::{Alone, Communicator, Gathered, Packer, RanksError, Topic, Unpac
 
 use crate::bodies::batch::ENOUGH_TOGETHER;
 use crate::bodies::body::Body;
-use crate::bodies::congruent_groups::{NodeSlices, for_each_run};
+use crate::bodies::congruent_groups::NodeSlices;
 use crate::bodies::prototype::Prototype;
 use crate::bodies::report::BlockReport;
-use crate::step::{GRAIN_NODES, Simulation};
+use crate::step::Simulation;
 
 /// Unknowns from which on a block is solved for by one rank: sending the others what it reports takes longer than smaller ones do.
 const ENOUGH_UNKNOWNS: usize = 24;
@@ -111,21 +111,6 @@ impl Simulation {
         outcome
     }
 
-    /// Steps the runs that are asked for.
-    fn step_runs(
-        &self,
-        bodies: &mut [Body],
-        slices: NodeSlices,
-        asked: &(impl Fn(usize, &[Body]) -> bool + Sync),
-    ) {
-        let starts = self.problem.blocks.node_starts();
-        for_each_run(&self.problem.runs, bodies, starts, slices, GRAIN_NODES, &|first, run, slices| {
-            if asked(first, run) {
-                self.step_run(first, run, slices);
-            }
-        });
-    }
-
     /// The runs that begin within some blocks.
     fn runs_within(&self, blocks: Range<usize>) -> impl Iterator<Item = Range<usize>> {
         self.problem.runs.ranges().filter(move |run| blocks.contains(&run.start))
@@ -161,16 +146,11 @@ impl Simulation {
         for block in run {
             let nodes = self.problem.blocks.nodes_of(BlockId(block as u32));
             for values in [&mut *position, &mut *velocity, &mut *acceleration, &mut *internal_force] {
-                take(found, values.get_mut(nodes.clone()).unwrap_or(&mut []));
+                found
+                    .take_into(values.get_mut(nodes.clone()).unwrap_or(&mut []), |v: [f64; 3]| Vec3::from(v));
             }
             bodies[block].report = BlockReport::unpack(found);
         }
         true
     }
-}
-
-/// Takes vectors that a rank has packed.
-pub(super) fn take(found: &mut Unpacker, values: &mut [Vec3]) {
-    let new = found.take_each::<[f64; 3]>(values.len());
-    values.iter_mut().zip(new).for_each(|(value, new)| *value = Vec3::from(new));
 }

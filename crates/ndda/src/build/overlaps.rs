@@ -29,27 +29,35 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
         return Ok(None);
     }
     let shared = in_the_same_place(simulation);
-    let refused = |shared: Option<&Shared>, names: &[String]| {
-        shared.map(|shared| {
-            loaded.diagnose_as(Code::Overlap, "blocks", shared.words(names)).with_help(shared.cure())
-        })
-    };
-    let wholly = shared.as_ref().filter(|shared| shared.is_wholly);
-    if wholly.is_some() {
-        return Ok(refused(wholly, &simulation.blocks().names));
+    let is_wholly = shared.as_ref().is_some_and(|shared| shared.is_wholly);
+    let same_place = shared.map(|shared| {
+        let message = shared.words(&simulation.blocks().names);
+        loaded.diagnose_as(Code::Overlap, "blocks", message).with_help(shared.cure())
+    });
+    if is_wholly {
+        return Ok(same_place);
     }
     if loaded.scene.settle.is_some() {
         return Ok(None);
     }
     let (report, mut facets) = simulation.contacts_at_start()?;
-    if report.past_centroid.is_none() && report.max_penetration_ratio <= LEAST_DEPTH {
-        return Ok(refused(shared.as_ref(), &simulation.blocks().names));
+    let overlap = |ratio: f64| report.past_centroid.is_some() || report.max_penetration_ratio > ratio;
+    if !overlap(LEAST_DEPTH) {
+        return Ok(same_place);
     }
     let found = resultants(simulation.blocks(), &mut facets);
     simulation.note_drawn_overlaps(&found);
-    if report.past_centroid.is_none() && report.max_penetration_ratio <= MOST_DEPTH {
-        return Ok(refused(shared.as_ref(), &simulation.blocks().names));
+    let pairs = if overlap(MOST_DEPTH) { too_deep(simulation, found) } else { Vec::new() };
+    if pairs.is_empty() {
+        return Ok(same_place);
     }
+    let message = listed(&simulation.blocks().names, &pairs);
+    let help = "move them apart, or let them come to rest before the run begins: `settle: ()`";
+    Ok(Some(loaded.diagnose_as(Code::Overlap, "blocks", message).with_help(help)))
+}
+
+/// Pairs that overlap too deep, with their mean depth over an element's height, the deepest first.
+fn too_deep(simulation: &Simulation, found: Vec<PairResultant>) -> Vec<(PairResultant, f64)> {
     let largest_n = found.iter().map(|pair| pair.force_n.norm()).fold(0.0, f64::max);
     let mut pairs: Vec<(PairResultant, f64)> = found
         .into_iter()
@@ -59,17 +67,16 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
         .map(|pair| (pair, pair.depth_m / height_m(simulation, &pair)))
         .filter(|(_, ratio)| *ratio > MOST_DEPTH)
         .collect();
-    if pairs.is_empty() {
-        return Ok(refused(shared.as_ref(), &simulation.blocks().names));
-    }
     pairs.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let name = |block: BlockId| &simulation.blocks().names[block.index()];
+    pairs
+}
+
+/// The pairs in words.
+fn listed(names: &[String], pairs: &[(PairResultant, f64)]) -> String {
     let one = |(pair, ratio): &(PairResultant, f64)| {
-        let (first, second, percent) = (name(pair.first), name(pair.second), 100.0 * ratio);
-        format!(
-            "`{first}` and `{second}` {:.2e} m deep on average, {percent:.1} % of an element size",
-            pair.depth_m
-        )
+        let [first, second] = [pair.first, pair.second].map(|block| &names[block.index()]);
+        let (depth_m, percent) = (pair.depth_m, 100.0 * ratio);
+        format!("`{first}` and `{second}` {depth_m:.2e} m deep on average, {percent:.1} % of an element size")
     };
     let listed: Vec<String> = pairs.iter().take(MOST_LISTED).map(one).collect();
     let more = pairs.len().saturating_sub(MOST_LISTED);
@@ -78,9 +85,7 @@ pub fn refusal(loaded: &LoadedScene, simulation: &mut Simulation) -> Result<Opti
         1 => "two blocks overlap at the start".into(),
         n => format!("{n} pairs of blocks overlap at the start"),
     };
-    let message = format!("{what}: {}{more}", listed.join("; "));
-    let help = "move them apart, or let them come to rest before the run begins: `settle: ()`";
-    Ok(Some(loaded.diagnose_as(Code::Overlap, "blocks", message).with_help(help)))
+    format!("{what}: {}{more}", listed.join("; "))
 }
 
 /// Two blocks in the same place.

@@ -45,19 +45,13 @@ impl SharedForces {
             for block in share(&starts, rank).filter(|block| touches(*block) > 0) {
                 let ContactOutput { force, friction_force, stiffness } =
                     nodes_of(scene, output, &(block..block + 1));
-                take(&mut found, force);
-                take(&mut found, friction_force);
-                let new = found.take_each(stiffness.len());
-                stiffness.iter_mut().zip(new).for_each(|(k, new)| *k = new);
+                found.take_into(force, |v: [f64; 3]| Vec3::from(v));
+                found.take_into(friction_force, |v: [f64; 3]| Vec3::from(v));
+                found.take_into(stiffness, |k| k);
             }
         }
         Ok(())
     }
-}
-
-fn take(found: &mut Unpacker, nodes: &mut [Vec3]) {
-    let new = found.take_each::<[f64; 3]>(nodes.len());
-    nodes.iter_mut().zip(new).for_each(|(node, new)| *node = Vec3::from(new));
 }
 
 /// The nodes of some blocks.

@@ -30,9 +30,7 @@ impl<'a> Shared<'a> {
         packer.put_each(&entries[self.own()], |entry| *entry);
         ranks.exchange(Topic::Pairs, packer.bytes(), &mut all)?;
         for rank in 0..ranks.size() {
-            let entries = &mut entries[share(&self.starts, rank)];
-            let found = Unpacker::new(all.of(rank)).take_each(entries.len());
-            entries.iter_mut().zip(found).for_each(|(entry, found)| *entry = found);
+            Unpacker::new(all.of(rank)).take_into(&mut entries[share(&self.starts, rank)], |entry| entry);
         }
         Ok(())
     }
