@@ -169,7 +169,7 @@ fn pushed_mass_m_s(factor: f64) -> f64 {
 #[test]
 fn a_block_against_the_dashpots_of_its_shear_springs_moves_as_one_mass_whatever_the_step() {
     let mut found_accurate = Vec::new();
-    for body in ["Rigid", "Elastic"] {
+    for body in ["Rigid", "Affine", "Elastic"] {
         for (restitution, factor) in FACTORS {
             let exact = pushed_mass_m_s(factor);
             for step_s in [4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4] {

@@ -10,6 +10,7 @@ mod bolts_in_stages;
 mod bonded_bar;
 mod bonded_plate;
 mod bonded_rock;
+mod bonds_beside_friction;
 mod bouncing_block;
 mod bound_of_contact;
 mod brazilian_disc;

@@ -48,6 +48,7 @@ impl ContactModel for PotentialContact {
             report.max_penetration_ratio = ratio;
             report.deepest = self.integrals.overlaps_of(touch).first().map(|hit| (touch.triangle, hit.tet));
         }
+        self.bond_forces.clear();
         if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
             report.bond_overload = bond::break_overloaded(
                 joints,
@@ -56,6 +57,7 @@ impl ContactModel for PotentialContact {
                 input,
                 (history, &mut self.new_state),
             );
+            bond::find_forces(joints, input, &history.bonds, &mut self.bond_forces);
         }
         let has_friction = self.rubs_faces() && !input.bodies.is_empty() && !input.without_friction;
         self.damp(input, history);
@@ -86,7 +88,8 @@ impl ContactModel for PotentialContact {
         if let Some(joints) = self.joints.as_ref().filter(|_| has_friction) {
             let bodies = damping.map_or(input.bodies, ContactDamping::bodies);
             let input = &ContactInput { bodies, ..*input };
-            let scene = PatchScene { input, integrals: &self.integrals, joints, hulls: &self.hulls };
+            let (integrals, bonds) = (&self.integrals, &self.bond_forces[..]);
+            let scene = PatchScene { input, integrals, joints, hulls: &self.hulls, bonds };
             report.friction_left_m_s = self.faces.add(&scene, &mut self.forces, history);
         }
         let scene = ScatterScene {
@@ -105,9 +108,7 @@ impl ContactModel for PotentialContact {
             None => nodal_forces::add(&scene, output),
             Some(ranks) => self.shared_forces.add(ranks, &scene, output)?,
         }
-        if let Some(joints) = self.joints.as_ref().filter(|_| !history.bonds.is_empty()) {
-            bond::add_forces(joints, input, &history.bonds, output);
-        }
+        bond::add_forces(input.blocks, &self.bond_forces, output);
         if !self.openings.is_empty() {
             report.dilation_work_j = self.forces.iter().map(|force| force.dilation_work_j).sum();
         }

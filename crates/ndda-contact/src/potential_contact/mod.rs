@@ -43,6 +43,7 @@ use crate::assembly::report::Reporter;
 use crate::assembly::shared_forces::SharedForces;
 use crate::broad_phase::candidates::Candidates;
 use crate::broad_phase::finder::BroadPhase;
+use crate::friction::bond::BondForce;
 use crate::friction::facet::FacetForce;
 use crate::friction::openings::Openings;
 use crate::friction::patches::FrictionPatches;
@@ -96,6 +97,8 @@ pub struct PotentialContact {
     reporter: Reporter,
     new_facets: Vec<FacetMemory>,
     new_state: Vec<f64>,
+    /// Forces of the bonds that hold.
+    bond_forces: Vec<BondForce>,
     /// The friction laws' own numbers of each touching facet.
     state_of_facet: Vec<f64>,
     work_of_facet: Vec<f64>,
@@ -128,6 +131,7 @@ impl PotentialContact {
             reporter: Reporter::default(),
             new_facets: Vec::new(),
             new_state: Vec::new(),
+            bond_forces: Vec::new(),
             state_of_facet: Vec::new(),
             work_of_facet: Vec::new(),
             openings: Openings::default(),

@@ -12,7 +12,7 @@ pub(crate) struct Batch {
 }
 
 impl Batch {
-    /// Room for blocks with this factor.
+    /// Workspace for blocks with this factor.
     pub(crate) fn new(factor: &dyn Factor) -> Self {
         Self { lanes: vec![[0.0; MULTI]; factor.unknowns()], scratch: factor.new_multi_scratch() }
     }

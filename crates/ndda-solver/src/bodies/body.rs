@@ -25,7 +25,7 @@ pub(crate) struct Body {
     pub report: BlockReport,
     /// Why the last step failed.
     pub error: Option<BlockError>,
-    /// Room to solve for the run of congruent blocks that it leads.
+    /// Workspace to solve for the run of congruent blocks that it leads.
     pub batch: Option<Box<Batch>>,
 }
 
@@ -36,7 +36,7 @@ const NO_ROOM: &str = "blocks have memory to work in while they step";
 pub(crate) enum Motion {
     /// Elastic and affine blocks.
     Elastic(Box<ElasticBody>),
-    /// Such blocks outside their step, where many of one shape share memory (`rooms.rs`).
+    /// Such blocks outside their step, where many of one shape share memory (`workspaces.rs`).
     Resting(Kept),
     /// Rigid blocks.
     Rigid(RigidBody),

@@ -2,7 +2,7 @@
 
 use ndda_mesh::{BlockId, Vec3};
 
-use crate::bolts::chain::{Chain, Holder, Room};
+use crate::bolts::chain::{Chain, Holder, Workspace};
 use crate::bolts::embedding::{Anchor, Portion};
 use crate::bolts::law::Law;
 use crate::bolts::memory::{MemoryOf, Sizes};
@@ -73,7 +73,7 @@ pub(crate) struct Bolt {
 /// Memory of all bolts' solves, sized for the largest.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Work {
-    pub room: Room,
+    pub workspace: Workspace,
     /// Displacement of the rock along the bolt at its points and at its holders [m].
     pub along_m: Vec<f64>,
     pub rock_m: Vec<f64>,
@@ -135,9 +135,9 @@ impl Bolt {
     }
 
     /// Finds where the bar is in balance.
-    fn balance(&self, memory: &mut MemoryOf, rock_m: &[f64], room: &mut Room) {
+    fn balance(&self, memory: &mut MemoryOf, rock_m: &[f64], workspace: &mut Workspace) {
         let MemoryOf { displacement_m, slip_m, yielded_m, broken, .. } = memory;
-        self.chain_of((slip_m, yielded_m, broken), rock_m).solve(displacement_m, room);
+        self.chain_of((slip_m, yielded_m, broken), rock_m).solve(displacement_m, workspace);
     }
 
     /// Displacements of the rock along the bolt since it was installed.
@@ -184,7 +184,7 @@ impl Bolt {
         let mut jacked = self.clone();
         let stiffness_n_m = self.holders[plate].law.stiffness_n_m;
         jacked.holders[plate].law = Law::constant(stiffness_n_m, self.pretension_n);
-        jacked.balance(&mut memory, &work.rock_m, &mut work.room);
+        jacked.balance(&mut memory, &work.rock_m, &mut work.workspace);
         let head_m = memory.displacement_m[0] - work.rock_m[plate];
         memory.slip_m[plate] = head_m - self.pretension_n / stiffness_n_m;
         self.yield_parts(&mut memory, work);
@@ -194,7 +194,7 @@ impl Bolt {
     /// Balances the bar where the rock is now; what yields or breaks is remembered. Adds forces to the nodes.
     pub(crate) fn act(&self, position: &[Vec3], mut memory: MemoryOf, work: &mut Work, force: &mut [Vec3]) {
         self.follow_rock(position, memory.start_m, work);
-        self.balance(&mut memory, &work.rock_m, &mut work.room);
+        self.balance(&mut memory, &work.rock_m, &mut work.workspace);
         self.yield_parts(&mut memory, work);
         while self.break_steel(&mut memory, work) {}
         self.find_tensions(&memory, work);
@@ -274,7 +274,7 @@ impl Bolt {
             }
         }
         if breaks {
-            self.balance(memory, &work.rock_m, &mut work.room);
+            self.balance(memory, &work.rock_m, &mut work.workspace);
             let kept_j = self.chain(memory, &work.rock_m).potential_j(memory.displacement_m);
             let known_j = *memory.dissipated_j;
             // Slip that goes on as the pieces draw back is part of the energy set free.
@@ -313,12 +313,12 @@ impl Bolt {
     /// Energy stored and work of yielding further, with the rock at `position` [J]; nothing is remembered.
     pub(crate) fn potential_j(&self, position: &[Vec3], memory: &MemoryOf, work: &mut Work) -> f64 {
         self.follow_rock(position, memory.start_m, work);
-        let Work { room, rock_m, trial, .. } = work;
+        let Work { workspace, rock_m, trial, .. } = work;
         let rock_m = &rock_m[..];
         let u = &mut trial[..self.nodes_m.len()];
         u.copy_from_slice(memory.displacement_m);
         let chain = self.chain(memory, rock_m);
-        chain.solve(u, room);
+        chain.solve(u, workspace);
         let mut energy_j = chain.potential_j(u);
         let Some(dowel) = self.dowel else { return energy_j };
         for (crossing, slip_m) in self.each_crossing().zip(memory.dowel_slip_m.iter()) {

@@ -43,7 +43,7 @@ pub(crate) struct Chain<'a> {
 
 /// Memory of the solve, for the longest bar.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Room {
+pub(crate) struct Workspace {
     /// Rest of the forces on each node [N].
     rest: Vec<f64>,
     /// Rounding of it [N].
@@ -54,7 +54,7 @@ pub(crate) struct Room {
     trial: Vec<f64>,
 }
 
-impl Room {
+impl Workspace {
     /// For bars of so many nodes.
     pub(crate) fn new(nodes: usize) -> Self {
         let zeros = vec![0.0; nodes];
@@ -99,52 +99,52 @@ impl Chain<'_> {
     }
 
     /// u ← where the bar is in balance, from where it was; returns the number of iterations.
-    pub(crate) fn solve(&self, u: &mut [f64], room: &mut Room) -> u32 {
+    pub(crate) fn solve(&self, u: &mut [f64], workspace: &mut Workspace) -> u32 {
         for iteration in 0..MOST_ITERATIONS {
-            if self.gather(u, room) {
+            if self.gather(u, workspace) {
                 return iteration;
             }
-            self.find_step(u.len(), room);
-            self.go(u, room);
+            self.find_step(u.len(), workspace);
+            self.go(u, workspace);
         }
         MOST_ITERATIONS
     }
 
     /// Forces that are left and the stiffnesses of the moment; whether nothing is left but rounding.
-    fn gather(&self, u: &[f64], room: &mut Room) -> bool {
+    fn gather(&self, u: &[f64], workspace: &mut Workspace) -> bool {
         let nodes = u.len();
-        room.rest[..nodes].fill(0.0);
-        room.rounding[..nodes].fill(0.0);
-        room.held[..nodes].fill(0.0);
+        workspace.rest[..nodes].fill(0.0);
+        workspace.rounding[..nodes].fill(0.0);
+        workspace.held[..nodes].fill(0.0);
         for (k, holder) in self.holders.iter().enumerate() {
             let (i, x) = (holder.node as usize, self.offset_m(k, u));
-            room.rest[i] -= holder.law.force_n(x);
+            workspace.rest[i] -= holder.law.force_n(x);
             let size_m = u[i].abs() + self.rock_m[k].abs() + self.slip_m[k].abs();
-            room.rounding[i] += holder.law.stiffness_n_m * size_m;
-            room.held[i] += tangent(&holder.law, x);
+            workspace.rounding[i] += holder.law.stiffness_n_m * size_m;
+            workspace.held[i] += tangent(&holder.law, x);
         }
         for (i, law) in self.steel.iter().enumerate() {
-            room.link[i] = 0.0;
+            workspace.link[i] = 0.0;
             if self.broken[i] {
                 continue;
             }
             let x = self.stretch_m(i, u);
             let force_n = law.force_n(x);
-            room.rest[i] += force_n;
-            room.rest[i + 1] -= force_n;
+            workspace.rest[i] += force_n;
+            workspace.rest[i + 1] -= force_n;
             let size_m = u[i].abs() + u[i + 1].abs() + self.rest_m[i].abs() + self.yielded_m[i].abs();
             let rounding = law.stiffness_n_m * size_m;
-            room.rounding[i] += rounding;
-            room.rounding[i + 1] += rounding;
-            room.link[i] = tangent(law, x);
+            workspace.rounding[i] += rounding;
+            workspace.rounding[i + 1] += rounding;
+            workspace.link[i] = tangent(law, x);
         }
-        let mut pairs = room.rest[..nodes].iter().zip(&room.rounding[..nodes]);
+        let mut pairs = workspace.rest[..nodes].iter().zip(&workspace.rounding[..nodes]);
         pairs.all(|(rest, rounding)| rest.abs() <= 4.0 * f64::EPSILON * rounding)
     }
 
     /// step ← K⁻¹ rest. Node by node, all that is left of it is a spring E to the rock: E₊ = k₊ + l E/(l + E).
-    fn find_step(&self, nodes: usize, room: &mut Room) {
-        let Room { rest, held, link, step, .. } = room;
+    fn find_step(&self, nodes: usize, workspace: &mut Workspace) {
+        let Workspace { rest, held, link, step, .. } = workspace;
         for i in 0..nodes {
             step[i] = rest[i];
             if i > 0 {
@@ -161,8 +161,8 @@ impl Chain<'_> {
     }
 
     /// u ← u + t step, where the slope along it is well below that at t = 0.
-    fn go(&self, u: &mut [f64], room: &mut Room) {
-        let Room { rest, step, trial, .. } = room;
+    fn go(&self, u: &mut [f64], workspace: &mut Workspace) {
+        let Workspace { rest, step, trial, .. } = workspace;
         let (nodes, step) = (u.len(), &*step);
         let first: f64 = rest[..nodes].iter().zip(step).map(|(r, d)| r * d).sum();
         let place = |t: f64, trial: &mut [f64]| {

@@ -43,7 +43,7 @@ impl Bar {
 
     /// Pulls the head to −u, yields, and returns the pull.
     fn pull(&mut self, to_m: f64) -> f64 {
-        let mut room = Room::new(self.u.len());
+        let mut workspace = Workspace::new(self.u.len());
         let head = self.holders.len() - 1;
         self.rock_m[head] = -to_m;
         let mut u = std::mem::take(&mut self.u);
@@ -56,7 +56,7 @@ impl Bar {
             slip_m: &self.slip_m,
             rock_m: &self.rock_m,
         };
-        assert!(chain.solve(&mut u, &mut room) < 60);
+        assert!(chain.solve(&mut u, &mut workspace) < 60);
         let pull_n = chain.hold_n(head, &u);
         let slips: Vec<f64> =
             (0..=head).map(|k| self.holders[k].law.yielding(chain.offset_m(k, &u)).0).collect();
@@ -144,7 +144,7 @@ fn any_chain_comes_to_rest_and_nothing_near_is_lower() {
         seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (seed >> 11) as f64 / (1u64 << 53) as f64
     };
-    let (mut most, mut room) = (0, Room::new(40));
+    let (mut most, mut workspace) = (0, Workspace::new(40));
     for _ in 0..3000 {
         let nodes = 2 + (30.0 * random()) as usize;
         let mut bar = Bar::new(1.0, nodes - 1, f64::INFINITY);
@@ -165,7 +165,7 @@ fn any_chain_comes_to_rest_and_nothing_near_is_lower() {
             slip_m: &bar.slip_m,
             rock_m: &bar.rock_m,
         };
-        most = most.max(chain.solve(&mut bar.u, &mut room));
+        most = most.max(chain.solve(&mut bar.u, &mut workspace));
         let least_j = chain.potential_j(&bar.u);
         for i in 0..nodes {
             for change in [-1e-3, 1e-3] {

@@ -4,7 +4,7 @@ use ndda_mesh::{BlockSet, Vec3};
 
 use crate::bodies::kind::BodyKind;
 use crate::bolts::bolt::{Bolt, Work};
-use crate::bolts::chain::Room;
+use crate::bolts::chain::Workspace;
 use crate::bolts::error::BoltError;
 use crate::bolts::memory::{BoltMemory, Sizes};
 use crate::bolts::setup::BoltSetup;
@@ -39,7 +39,7 @@ impl Bolts {
         let list: Vec<Bolt> = setups.iter().map(build).collect::<Result<_, _>>()?;
         let most = |of: fn(&Bolt) -> usize| list.iter().map(of).max().unwrap_or(0);
         let mut work = Work {
-            room: Room::new(most(|bolt| bolt.nodes_m.len())),
+            workspace: Workspace::new(most(|bolt| bolt.nodes_m.len())),
             along_m: vec![0.0; most(|bolt| bolt.points.len())],
             rock_m: vec![0.0; most(|bolt| bolt.holders.len())],
             span_n: vec![0.0; most(|bolt| bolt.points.len())],

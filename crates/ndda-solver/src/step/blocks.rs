@@ -99,8 +99,8 @@ impl Simulation {
     /// The step of a run: congruent blocks are solved for together, others one by one; the bits are the same.
     pub(super) fn step_run(&self, first: usize, run: &mut [Body], mut slices: NodeSlices) {
         let starts = self.problem.blocks.node_starts();
-        let mut guests = self.problem.enter(run);
-        let run = guests.run();
+        let mut borrowed = self.problem.lend_memory(run);
+        let run = borrowed.run();
         let together = run[0].batch.is_some();
         if together {
             each_of_run(first, run, starts, slices.again(), |index, body: &mut Body, nodes| {

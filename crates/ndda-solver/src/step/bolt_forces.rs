@@ -15,9 +15,13 @@ impl Simulation {
     /// Finds the forces of bolts where contact is evaluated; what yields is remembered.
     pub(crate) fn find_bolt_forces(&mut self) {
         let Some(mut bolts) = self.bolts.take() else { return };
-        let mut room = take(&mut self.scratch.seen_position);
-        let position =
-            seen(&self.problem.blocks, &self.state.contact_offset, &self.scratch.contact_position, &mut room);
+        let mut workspace = take(&mut self.scratch.seen_position);
+        let position = seen(
+            &self.problem.blocks,
+            &self.state.contact_offset,
+            &self.scratch.contact_position,
+            &mut workspace,
+        );
         let Bolts { list, sizes, rows, work, force, .. } = &mut *bolts;
         rows.iter().for_each(|(node, _)| force[*node as usize] = Vec3::zeros());
         work.pairs.clear();
@@ -26,7 +30,7 @@ impl Simulation {
                 list[k].act(position, memory, work, force);
             }
         });
-        self.scratch.seen_position = room;
+        self.scratch.seen_position = workspace;
         self.bolts = Some(bolts);
     }
 
@@ -61,9 +65,9 @@ impl Simulation {
     /// Energy stored in bolts where blocks are now, and what they have taken [J].
     pub(crate) fn bolt_energies_j(&mut self) -> (f64, f64) {
         let Some(mut bolts) = self.bolts.take() else { return (0.0, 0.0) };
-        let mut room = take(&mut self.scratch.seen_position);
+        let mut workspace = take(&mut self.scratch.seen_position);
         let position =
-            seen(&self.problem.blocks, &self.state.contact_offset, &self.state.position, &mut room);
+            seen(&self.problem.blocks, &self.state.contact_offset, &self.state.position, &mut workspace);
         let mut stored_j = 0.0;
         let Bolts { list, sizes, work, .. } = &mut *bolts;
         self.state.bolts.each(sizes, |k, memory| {
@@ -71,7 +75,7 @@ impl Simulation {
                 stored_j += list[k].potential_j(position, &memory, work);
             }
         });
-        self.scratch.seen_position = room;
+        self.scratch.seen_position = workspace;
         self.bolts = Some(bolts);
         (stored_j, self.state.bolts.dissipated_j())
     }
@@ -79,9 +83,9 @@ impl Simulation {
     /// Installs the bolts that were not there before, where the rock is now.
     pub(crate) fn install_bolts(&mut self, before: &Self) {
         let Some(mut bolts) = self.bolts.take() else { return };
-        let mut room = take(&mut self.scratch.seen_position);
+        let mut workspace = take(&mut self.scratch.seen_position);
         let position =
-            seen(&self.problem.blocks, &self.state.contact_offset, &self.state.position, &mut room);
+            seen(&self.problem.blocks, &self.state.contact_offset, &self.state.position, &mut workspace);
         let was_installed = |k: usize| before.bolts.as_ref().is_some_and(|bolts| bolts.list[k].is_installed);
         let Bolts { list, sizes, work, .. } = &mut *bolts;
         self.state.bolts.each(sizes, |k, memory| {
@@ -89,7 +93,7 @@ impl Simulation {
                 list[k].install(position, memory, work);
             }
         });
-        self.scratch.seen_position = room;
+        self.scratch.seen_position = workspace;
         self.bolts = Some(bolts);
     }
 

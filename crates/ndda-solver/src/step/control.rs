@@ -13,8 +13,8 @@
 //! (`Simulation::may_collide_with`). h bounds ω_c Δt, and the work of contact is known from the ledger. Where blocks vibrate in contact, such bounds are
 //! hundreds of times what a step gains: what part of them steps gain is learnt where the balance is evaluated.
 
-use crate::bodies::rooms::Rooms;
 use crate::bodies::step_damping::StepDamping;
+use crate::bodies::workspaces::Workspaces;
 use crate::diagnostics::ledger::Ledger;
 use crate::error::StepError;
 use crate::linear::linear_solver::{Factor, LinearSolver};
@@ -83,7 +83,7 @@ pub(crate) struct Control {
     halvings: u32,
     /// The balance of energy after a step \[J\], and after which: it is that before the next.
     balance: Option<(u64, f64)>,
-    /// Room for a ledger that is evaluated and dropped.
+    /// Workspace for a ledger that is evaluated and dropped.
     spare_ledger: Ledger,
 }
 
@@ -311,7 +311,7 @@ impl Simulation {
 
     /// Memory of solves for the factors in use.
     fn renew_scratches(&mut self) {
-        self.problem.rooms.iter_mut().flatten().for_each(Rooms::renew);
+        self.problem.workspaces.iter_mut().flatten().for_each(Workspaces::renew);
         for body in &mut self.bodies {
             let shape = &self.problem.shapes[body.shape];
             let Some(factor) = shape.factor.as_deref() else { continue };

@@ -102,8 +102,8 @@ impl<'a> StepDeformation<'a> {
         };
         let shape = &simulation.problem.shapes[body.shape];
         let context = simulation.context_under(block.index(), shape, force);
-        let mut guests = simulation.problem.enter(std::slice::from_mut(body));
-        let body = guests.one();
+        let mut borrowed = simulation.problem.lend_memory(std::slice::from_mut(body));
+        let body = borrowed.one();
         body.try_step(shape, &context, &nodes);
         let Motion::Elastic(elastic) = &mut body.motion else {
             unreachable!("contact asks blocks that deform alone")

@@ -51,7 +51,7 @@ use rayon::prelude::*;
 use crate::bodies::body::Body;
 use crate::bodies::congruent_groups::CongruentGroups;
 use crate::bodies::prototype::Prototype;
-use crate::bodies::rooms::{Guests, Rooms};
+use crate::bodies::workspaces::{BorrowedRun, Workspaces};
 use crate::bolts::set::Bolts;
 use crate::diagnostics::ledger::Ledger;
 use crate::error::StepError;
@@ -120,7 +120,7 @@ pub(crate) struct Problem {
     /// Operators, supports and factors; congruent blocks share one.
     pub(crate) shapes: Vec<Prototype>,
     /// Memory to work in for the blocks of each shape; none where each has its own.
-    pub(crate) rooms: Vec<Option<Rooms>>,
+    pub(crate) workspaces: Vec<Option<Workspaces>>,
     /// Groups of congruent blocks that one thread solves together.
     pub(crate) runs: CongruentGroups,
     pub(crate) integrator: Box<dyn TimeIntegrator>,
@@ -137,9 +137,9 @@ pub(crate) struct Problem {
 
 impl Problem {
     /// Lets a run of blocks of one shape have memory to work in.
-    pub(crate) fn enter<'a>(&'a self, run: &'a mut [Body]) -> Guests<'a> {
+    pub(crate) fn lend_memory<'a>(&'a self, run: &'a mut [Body]) -> BorrowedRun<'a> {
         let shape = run[0].shape;
-        Guests::enter(&self.shapes[shape], self.rooms[shape].as_ref(), run)
+        BorrowedRun::new(&self.shapes[shape], self.workspaces[shape].as_ref(), run)
     }
 }
 

@@ -105,11 +105,11 @@ impl Simulation {
     }
 
     /// Whether blocks that share memory are solved for together.
-    fn has_runs_in_rooms(&self) -> bool {
-        let Problem { runs, rooms, shapes, .. } = &self.problem;
+    fn has_runs_in_workspaces(&self) -> bool {
+        let Problem { runs, workspaces, shapes, .. } = &self.problem;
         runs.ranges().filter(|run| run.len() >= ENOUGH_TOGETHER).any(|run| {
             let shape = self.bodies[run.start].shape;
-            rooms[shape].is_some() && shapes[shape].factor.is_some()
+            workspaces[shape].is_some() && shapes[shape].factor.is_some()
         })
     }
 
@@ -119,7 +119,7 @@ impl Simulation {
         let (count, tets) =
             stiff.fold((0, 0), |(n, tets), block| (n + 1, tets + self.problem.blocks.tets_of(block).len()));
         let stressed = |body: &Body| body.kept().is_some_and(|kept| kept.initial_force.is_some());
-        let batches = self.any_body(|body| body.batch.is_some()) || self.has_runs_in_rooms();
+        let batches = self.any_body(|body| body.batch.is_some()) || self.has_runs_in_workspaces();
         vec![
             Part::of(
                 "elasticity",

@@ -62,8 +62,8 @@ impl Simulation {
     fn add_block_to(&mut self, sample: &mut Sample, block: BlockId) -> Result<(), StepError> {
         let (range, time_s, contact_offset) =
             (self.problem.blocks.nodes_of(block), sample.time_s, self.state.contact_offset_of(block));
-        let mut guests = self.problem.enter(std::slice::from_mut(&mut self.bodies[block.index()]));
-        let body = guests.one();
+        let mut borrowed = self.problem.lend_memory(std::slice::from_mut(&mut self.bodies[block.index()]));
+        let body = borrowed.one();
         let shape = &self.problem.shapes[body.shape];
         let (position, velocity) = (&self.state.position[range.clone()], &self.state.velocity[range]);
         sample.kinetic_j += shape.operator.kinetic_energy_j(velocity);
@@ -116,8 +116,8 @@ impl Simulation {
         let borne_m2_s2 = self.audit.ledger.blocks().strain_speed2(block, die_out);
         let known_m_s = known * (largest_m_s * largest_m_s + borne_m2_s2).sqrt();
         let (range, time_s) = (self.problem.blocks.nodes_of(block), self.time_s());
-        let mut guests = self.problem.enter(std::slice::from_mut(&mut self.bodies[block.index()]));
-        let body = guests.one();
+        let mut borrowed = self.problem.lend_memory(std::slice::from_mut(&mut self.bodies[block.index()]));
+        let body = borrowed.one();
         let shape = &self.problem.shapes[body.shape];
         let Some(elastic) = body.elastic() else { return Ok(found) };
         let motion = (&self.state.position[range.clone()], &self.state.velocity[range]);
@@ -208,8 +208,9 @@ impl Simulation {
     pub fn recover_stress(&mut self, out: &mut [[f64; 6]]) -> Result<(), StepError> {
         let time_s = self.time_s();
         for block in self.problem.blocks.ids() {
-            let mut guests = self.problem.enter(std::slice::from_mut(&mut self.bodies[block.index()]));
-            let body = guests.one();
+            let mut borrowed =
+                self.problem.lend_memory(std::slice::from_mut(&mut self.bodies[block.index()]));
+            let body = borrowed.one();
             let shape = &self.problem.shapes[body.shape];
             let position = &self.state.position[self.problem.blocks.nodes_of(block)];
             let out = &mut out[self.problem.blocks.tets_of(block)];

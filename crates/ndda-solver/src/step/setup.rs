@@ -18,7 +18,7 @@ use crate::bodies::kind::BodyKind;
 use crate::bodies::prototype::{BodySetup, Mass, Prototype};
 use crate::bodies::report::BlockReport;
 use crate::bodies::rigid_body::RigidBody;
-use crate::bodies::rooms::{MANY, Rooms};
+use crate::bodies::workspaces::{MANY, Workspaces};
 use crate::bolts::memory::BoltMemory;
 use crate::bolts::setup::BoltSetup;
 use crate::diagnostics::block_diagnostics::BlockDiagnostics;
@@ -150,7 +150,7 @@ impl Simulation {
                 affine: Vec::new(),
                 runs: CongruentGroups::single(0),
                 blocks,
-                rooms: rooms(&shapes, &shape_of, newton_nodes > 0),
+                workspaces: workspaces(&shapes, &shape_of, newton_nodes > 0),
                 shapes,
                 base_step_s: step_s,
                 gravity_m_s2,
@@ -194,9 +194,9 @@ impl Simulation {
         let congruent =
             |a: usize, b: usize| shape_of[a] == shape_of[b] && shapes[shape_of[a]].factor.is_some();
         self.problem.runs = CongruentGroups::group(shape_of.len(), MULTI, congruent);
-        let has_rooms = |shape: usize| self.problem.rooms[shape].is_some();
+        let has_workspaces = |shape: usize| self.problem.workspaces[shape].is_some();
         for run in self.problem.runs.ranges().filter(|run| run.len() >= ENOUGH_TOGETHER) {
-            if has_rooms(shape_of[run.start]) {
+            if has_workspaces(shape_of[run.start]) {
                 continue;
             }
             let factor = shapes[shape_of[run.start]].factor.as_deref();
@@ -220,7 +220,7 @@ impl Simulation {
                 if let Some(initial) = &kept.initial_force {
                     internal.iter_mut().zip(initial).for_each(|(f, initial)| *f = *initial);
                 }
-                match self.problem.rooms[shape_index] {
+                match self.problem.workspaces[shape_index] {
                     Some(_) => Motion::Resting(kept),
                     None => Motion::Elastic(Box::new(ElasticBody::new(shape, kept))),
                 }
@@ -325,12 +325,12 @@ impl Simulation {
 }
 
 /// Memory to work in for blocks of each shape of which there are many; none where contact at the end of steps goes back to what blocks have tried.
-fn rooms(shapes: &[Prototype], shape_of: &[usize], is_iterated: bool) -> Vec<Option<Rooms>> {
+fn workspaces(shapes: &[Prototype], shape_of: &[usize], is_iterated: bool) -> Vec<Option<Workspaces>> {
     let mut count = vec![0; shapes.len()];
     shape_of.iter().for_each(|&shape| count[shape] += 1);
     let deforms = |shape: &Prototype| matches!(shape.kind, BodyKind::Elastic | BodyKind::Affine);
     let share = |(shape, count): (&Prototype, usize)| {
-        (count >= MANY && shape.is_free() && deforms(shape) && !is_iterated).then(Rooms::new)
+        (count >= MANY && shape.is_free() && deforms(shape) && !is_iterated).then(Workspaces::new)
     };
     shapes.iter().zip(count).map(share).collect()
 }

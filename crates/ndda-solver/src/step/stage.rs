@@ -197,8 +197,8 @@ impl Simulation {
         let (position, velocity) = (&self.state.position[nodes.clone()], &self.state.velocity[nodes.clone()]);
         let loads = self.loads.constant()[nodes.clone()].iter().zip(position).zip(&start[nodes]);
         let load_j = -loads.map(|((f, x), start)| f.dot(&(x - start))).sum::<f64>();
-        let mut guests = self.problem.enter(std::slice::from_mut(&mut self.bodies[block.index()]));
-        let body = guests.one();
+        let mut borrowed = self.problem.lend_memory(std::slice::from_mut(&mut self.bodies[block.index()]));
+        let body = borrowed.one();
         let shape: &Prototype = &self.problem.shapes[body.shape];
         let rigid_j = shape.operator.kinetic_energy_j(velocity) + load_j;
         let Some(elastic) = body.elastic() else { return Ok(rigid_j) };

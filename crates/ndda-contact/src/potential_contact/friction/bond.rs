@@ -123,30 +123,73 @@ fn hand_over(
     law.begin(&mut state[..law.state_len()]);
 }
 
-/// Adds the forces of bonds that hold.
-pub(crate) fn add_forces(
+/// What a bond that holds does to its facet, and the opposite to its target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BondForce {
+    facet: TriangleId,
+    tet: TetId,
+    /// Both blocks: that of the facet, and its target.
+    pub blocks: [BlockId; 2],
+    /// Shares of the nodes of the facet, and of those of the tetrahedron.
+    weights: [f64; 3],
+    lambda: [f64; 4],
+    /// Where it acts [m].
+    pub center: Vec3,
+    /// Force on the facet [N].
+    pub force_n: Vec3,
+    /// Change of it with the way of the facet, at most [N/m].
+    stiffness_n_m: f64,
+}
+
+impl BondForce {
+    /// Nodes of the facet (`k` = 0) or of the tetrahedron (1), each with its share of the force on the facet.
+    pub(crate) fn shares(&self, blocks: &BlockSet, k: usize, mut add: impl FnMut(usize, f64)) {
+        if k == 0 {
+            let triangle = &blocks.triangles[self.facet.index()];
+            triangle.iter().zip(self.weights).for_each(|(node, weight)| add(node.index(), weight));
+        } else {
+            let tet = &blocks.tets[self.tet.index()];
+            tet.iter().zip(self.lambda).for_each(|(node, lambda)| add(node.index(), -lambda));
+        }
+    }
+}
+
+/// The forces of bonds that hold.
+pub(crate) fn find_forces(
     joints: &FrictionLawTable,
     input: &ContactInput,
     bonds: &[Bond],
-    output: &mut ContactOutput,
+    forces: &mut Vec<BondForce>,
 ) {
     let blocks = input.blocks;
-    for bond in bonds {
-        let Some(law) = law(joints, blocks, bond) else { continue };
-        let stretch = Stretch::of(input, bond);
-        let force = stretch.tension_n(law) * stretch.normal + stretch.shear_n(law);
+    forces.clear();
+    forces.extend(bonds.iter().filter_map(|bond| {
+        let (law, stretch) = (law(joints, blocks, bond)?, Stretch::of(input, bond));
         let stiffness = law.shear_stiffness_pa_m().max(law.bond_stiffness_pa_m()) * stretch.half_area;
-        let stiffness = stretch.whole * stiffness;
-        let rows = 1.0 + stretch.lambda.iter().map(|l| l.abs()).sum::<f64>();
-        let mut add = |node: usize, weight: f64| {
-            output.force[node] += weight * force;
-            output.friction_force[node] += weight * force;
-            output.stiffness[node] += rows * stiffness * weight.abs();
-        };
-        let triangle = blocks.triangles[bond.facet.index()];
-        triangle.iter().zip(bond.weights).for_each(|(node, weight)| add(node.index(), weight));
-        let tet = blocks.tets[bond.tet.index()];
-        tet.iter().zip(stretch.lambda).for_each(|(node, lambda)| add(node.index(), -lambda));
+        Some(BondForce {
+            facet: bond.facet,
+            tet: bond.tet,
+            blocks: [blocks.triangle_block[bond.facet.index()], blocks.tet_block[bond.tet.index()]],
+            weights: bond.weights,
+            lambda: stretch.lambda,
+            center: stretch.center,
+            force_n: stretch.tension_n(law) * stretch.normal + stretch.shear_n(law),
+            stiffness_n_m: stretch.whole * stiffness,
+        })
+    }));
+}
+
+/// Adds the forces of bonds to the nodes.
+pub(crate) fn add_forces(blocks: &BlockSet, forces: &[BondForce], output: &mut ContactOutput) {
+    for bond in forces {
+        let rows = 1.0 + bond.lambda.iter().map(|l| l.abs()).sum::<f64>();
+        for k in 0..2 {
+            bond.shares(blocks, k, |node, weight| {
+                output.force[node] += weight * bond.force_n;
+                output.friction_force[node] += weight * bond.force_n;
+                output.stiffness[node] += rows * bond.stiffness_n_m * weight.abs();
+            });
+        }
     }
 }
 

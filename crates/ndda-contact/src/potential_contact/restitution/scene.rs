@@ -1,7 +1,6 @@
 //! What a step finds in contact, as damping sees it.
 
-use ndda_mesh::BlockId;
-use ndda_mesh::Vec3;
+use ndda_mesh::{BlockId, Mat3, Vec3};
 
 use crate::affine::convex_target::ConvexBlocks;
 use crate::friction::bond;
@@ -9,11 +8,11 @@ use crate::friction::facet::relative_velocity;
 use crate::friction::law::facet_basis;
 use crate::friction::law_table::{FrictionLawTable, Memory};
 use crate::friction::openings::Openings;
-use crate::friction::patches::moments::second_moment_m2;
+use crate::friction::patches::moments::{of_triangle, second_moment_m2};
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::ActiveFacet;
 use crate::model::{Bond, ContactInput};
-use crate::restitution::pair::{Point, four_points};
+use crate::restitution::pair::{Point, four_points, principal_angle};
 
 /// Input of the damping of a step.
 #[derive(Clone, Copy)]
@@ -96,7 +95,7 @@ impl DampingScene<'_> {
         let velocity = relative_velocity(touch, (overlaps, sums), self.input) / sums.pressure;
         let bodies = self.input.bodies;
         let spin = bodies[touch.owner.index()].spin_rad_s - bodies[touch.target.index()].spin_rad_s;
-        four_points(&moment, &facet_basis(&corners, &-unit)).map(|arm| Point {
+        four_points(&moment, &axes_of(&moment, &corners, &-unit)).map(|arm| Point {
             facet: t,
             arm,
             x: center + arm,
@@ -110,4 +109,13 @@ impl DampingScene<'_> {
             taken_n: 0.0,
         })
     }
+}
+
+/// Two unit vectors in a facet along which the pressure has its principal second moments; where it has none, those of the facet, so that the mirror image
+/// of a scene has the mirror images of both.
+fn axes_of(second_moment_m2: &Mat3, corners: &[Vec3; 3], normal: &Vec3) -> [Vec3; 2] {
+    let basis = facet_basis(corners, normal);
+    let own = || principal_angle(&of_triangle(corners), &basis);
+    let (sin, cos) = principal_angle(second_moment_m2, &basis).or_else(own).unwrap_or(0.0).sin_cos();
+    [cos * basis[0] + sin * basis[1], cos * basis[1] - sin * basis[0]]
 }

@@ -22,6 +22,7 @@ use crate::affine::surface::BlockFaces;
 use crate::assembly::adjacency::BlockContactIndex;
 use crate::assembly::couples::CoupleScene;
 use crate::assembly::join_if::join_if;
+use crate::friction::bond::BondForce;
 use crate::friction::facet::FacetForce;
 use crate::friction::law::FrictionLaw;
 use crate::friction::law_table::FrictionLawTable;
@@ -52,6 +53,8 @@ pub(crate) struct PatchScene<'a> {
     pub joints: &'a FrictionLawTable,
     /// Blocks that are affine convex targets.
     pub hulls: &'a ConvexBlocks,
+    /// What bonds do to the blocks.
+    pub bonds: &'a [BondForce],
 }
 
 impl PatchScene<'_> {
@@ -246,6 +249,11 @@ impl FrictionPatches {
                 self.is_asked[block] = true;
             }
         }
+        for bond in scene.bonds {
+            for (block, sign) in bond.blocks.iter().zip([1.0, -1.0]) {
+                self.bodies[block.index()].push(&bond.center, &(sign * bond.force_n));
+            }
+        }
         let Self { is_asked, adjacency, patches, summaries, bodies, .. } = self;
         let is_nodal = |body: &Body| scene.input.deformation.is_some() && body.deforms;
         let advance = |(block, body): (usize, &mut Body)| {
@@ -278,6 +286,7 @@ impl FrictionPatches {
         let is_nodal = |block: BlockId| is_asked[block.index()] && scene.input.bodies[block.index()].deforms;
         let found = SideScene { scene: *scene, forces, own_m2 };
         nodal.take_sides(&found, |block| is_nodal(block).then(|| adjacency.at(block).map(patch)));
+        nodal.add_bonds(scene);
         nodal.answer(scene, deformation);
         nodal.each_side(|block, number, side| {
             let k = usize::from(patches[number as usize].owner != block);

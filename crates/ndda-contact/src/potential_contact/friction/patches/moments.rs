@@ -37,8 +37,8 @@ pub(crate) fn second_moment_m2(
     0.5 * area_m2 / std::f64::consts::TAU * (Mat3::identity() - normal * normal.transpose())
 }
 
-/// Σ d dᵀ/12 for the corners about the centroid.
-fn of_triangle(corners: &[Vec3; 3]) -> Mat3 {
+/// Σ d dᵀ/12 for the corners about the centroid [m²].
+pub(crate) fn of_triangle(corners: &[Vec3; 3]) -> Mat3 {
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
     corners.iter().map(|x| (x - middle) * (x - middle).transpose()).sum::<Mat3>() / 12.0
 }

@@ -108,6 +108,19 @@ impl Nodal {
         });
     }
 
+    /// Adds what bonds do to the blocks that have taken sides.
+    pub(super) fn add_bonds(&mut self, scene: &PatchScene) {
+        let blocks = scene.input.blocks;
+        for bond in scene.bonds {
+            for (k, block) in bond.blocks.iter().enumerate() {
+                let (first, forces) = (blocks.nodes_of(*block).start, &mut self.columns[block.index()]);
+                if !forces.is_empty() {
+                    bond.shares(blocks, k, |node, weight| forces[node - first] += weight * bond.force_n);
+                }
+            }
+        }
+    }
+
     /// Lets the solver answer for all blocks: velocities and U in place of forces, or slips and Pᵀ U.
     pub(super) fn answer(&mut self, scene: &PatchScene, deformation: &dyn Deformation) {
         deformation.answer(&mut self.columns);

@@ -15,19 +15,19 @@ use crate::bodies::prototype::Prototype;
 pub(crate) const MANY: usize = 16;
 
 /// Memory for blocks of one shape.
-pub(crate) struct Rooms {
-    of_thread: Vec<Mutex<Room>>,
+pub(crate) struct Workspaces {
+    of_thread: Vec<Mutex<Workspace>>,
 }
 
 /// Memory for one run.
 #[derive(Default)]
-struct Room {
+struct Workspace {
     #[allow(clippy::vec_box)] // they go from here into blocks and back as they are
     bodies: Vec<Box<ElasticBody>>,
     batch: Option<Box<Batch>>,
 }
 
-impl Rooms {
+impl Workspaces {
     /// For the threads that there are now; more have to share.
     pub(crate) fn new() -> Self {
         Self { of_thread: (0..rayon::current_num_threads()).map(|_| Mutex::default()).collect() }
@@ -35,10 +35,10 @@ impl Rooms {
 
     /// Makes blocks find memory for the factors that their shape has now.
     pub(crate) fn renew(&mut self) {
-        self.of_thread.iter_mut().for_each(|room| *room = Mutex::default());
+        self.of_thread.iter_mut().for_each(|workspace| *workspace = Mutex::default());
     }
 
-    fn of_this_thread(&self) -> Option<MutexGuard<'_, Room>> {
+    fn of_this_thread(&self) -> Option<MutexGuard<'_, Workspace>> {
         let thread = rayon::current_thread_index().unwrap_or(0) % self.of_thread.len();
         // A thread that waits inside a step for others may take up another run; that one brings memory of its own.
         self.of_thread[thread].try_lock().ok()
@@ -46,35 +46,36 @@ impl Rooms {
 }
 
 /// A run of blocks, with memory to work in.
-pub(crate) struct Guests<'a> {
+pub(crate) struct BorrowedRun<'a> {
     run: &'a mut [Body],
-    room: Option<MutexGuard<'a, Room>>,
-    /// Whether they have to leave.
-    are_guests: bool,
+    workspace: Option<MutexGuard<'a, Workspace>>,
+    /// Whether memory has to be given back.
+    has_borrowed: bool,
 }
 
-impl<'a> Guests<'a> {
-    /// Lets the blocks of a run in that have no memory of their own.
-    pub(crate) fn enter(shape: &Prototype, rooms: Option<&'a Rooms>, run: &'a mut [Body]) -> Self {
-        let Some(rooms) = rooms else { return Self { run, room: None, are_guests: false } };
-        let mut room = rooms.of_this_thread();
+impl<'a> BorrowedRun<'a> {
+    /// Lends memory to those blocks of a run that have none of their own.
+    pub(crate) fn new(shape: &Prototype, workspaces: Option<&'a Workspaces>, run: &'a mut [Body]) -> Self {
+        let Some(workspaces) = workspaces else { return Self { run, workspace: None, has_borrowed: false } };
+        let mut workspace = workspaces.of_this_thread();
         for body in run.iter_mut() {
             let Motion::Resting(kept) = &mut body.motion else { continue };
             let kept = take(kept);
-            body.motion = Motion::Elastic(match room.as_mut().and_then(|room| room.bodies.pop()) {
-                Some(mut memory) => {
-                    memory.kept = kept;
-                    memory
-                }
-                None => Box::new(ElasticBody::new(shape, kept)),
-            });
+            body.motion =
+                Motion::Elastic(match workspace.as_mut().and_then(|workspace| workspace.bodies.pop()) {
+                    Some(mut memory) => {
+                        memory.kept = kept;
+                        memory
+                    }
+                    None => Box::new(ElasticBody::new(shape, kept)),
+                });
         }
         if let Some(factor) = shape.factor.as_deref().filter(|_| run.len() >= ENOUGH_TOGETHER) {
-            let batch = room.as_mut().and_then(|room| room.batch.take());
+            let batch = workspace.as_mut().and_then(|workspace| workspace.batch.take());
             run[0].batch = Some(batch.unwrap_or_else(|| Box::new(Batch::new(factor))));
         }
-        // Without a room of the thread, what is made here is dropped in the end.
-        Self { run, room, are_guests: true }
+        // Without the memory of the thread, what is made here is dropped in the end.
+        Self { run, workspace, has_borrowed: true }
     }
 
     /// The blocks.
@@ -88,25 +89,25 @@ impl<'a> Guests<'a> {
     }
 }
 
-impl Drop for Guests<'_> {
+impl Drop for BorrowedRun<'_> {
     fn drop(&mut self) {
-        if !self.are_guests {
+        if !self.has_borrowed {
             return;
         }
         for body in self.run.iter_mut() {
             match replace(&mut body.motion, Motion::Resting(Kept::default())) {
                 Motion::Elastic(mut memory) => {
                     body.motion = Motion::Resting(take(&mut memory.kept));
-                    if let Some(room) = &mut self.room {
-                        room.bodies.push(memory);
+                    if let Some(workspace) = &mut self.workspace {
+                        workspace.bodies.push(memory);
                     }
                 }
                 other => body.motion = other,
             }
         }
         let batch = self.run.first_mut().and_then(|first| first.batch.take());
-        if let (Some(room), Some(batch)) = (&mut self.room, batch) {
-            room.batch = Some(batch);
+        if let (Some(workspace), Some(batch)) = (&mut self.workspace, batch) {
+            workspace.batch = Some(batch);
         }
     }
 }
