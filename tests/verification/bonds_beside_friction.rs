@@ -37,7 +37,7 @@ fn pair(body: &str) -> Simulation {
           ],
           contact: Potential(penalty_pa: 1e8, potential: Smooth(reference_m: 1), material_pairs: [
               (between: (\"floor\", \"rough\"), friction: (friction_deg: 45)),
-              (between: (\"rough\", \"smooth\"), friction: (friction_deg: 45, shear_penalty_pa_m: 1e9, cohesion_pa: 1e8, tension_pa: 1e8)),
+              (between: (\"rough\", \"smooth\"), friction: (friction_deg: 45, shear_penalty_pa_m: 2e8, cohesion_pa: 1e8, tension_pa: 1e8)),
           ]))",
         material("floor"),
         material("rough"),

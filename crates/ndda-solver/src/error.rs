@@ -163,7 +163,7 @@ fn cure_of_unrest(stalled: Option<u64>) -> &'static str {
     match stalled {
         None => "hold them, or raise settle.most_steps if they are only slow",
         Some(_) => {
-            "hold them; if they only vibrate, raise the tolerance to 1e-3 or give the contact springs against slip, shear_penalty_pa_m"
+            "hold them; if they only vibrate, raise settle.tolerance to 1e-3"
         }
     }
 }
