@@ -115,7 +115,8 @@ def shown(measured, like):
     mantissa, _, exponent = like.replace("−", "-").partition("e")
     decimals = len(mantissa.partition(".")[2])
     if not exponent:
-        return f"{measured:.{decimals}f}"
+        space = re.search(r"\d([\s])\d{3}", mantissa)
+        return f"{measured:,.{decimals}f}".replace(",", space[1] if space else "")
     text = f"{measured:.{decimals}e}"
     return re.sub(r"e([+-])0*(\d+)", lambda m: f"e{m[1].strip('+')}{m[2]}", text)
 

@@ -1,5 +1,4 @@
-//! Blocks that bonds pull while friction holds them: the search for friction knows what bonds do, so that a patch that sticks stays where it is,
-//! and bonds and friction together never give energy.
+//! Blocks that bonds pull while friction holds them: a patch that sticks does not creep, and bonds and friction together never give energy.
 
 use ndda::Model;
 use ndda::run::Run;
@@ -64,7 +63,7 @@ fn a_block_that_friction_holds_does_not_creep_under_the_pull_of_a_bond() {
         let early_m = slip_m(&pair);
         advance(&mut pair, (1.0 / STEP_S) as u64);
         let creep_m_s = slip_m(&pair) - early_m;
-        // A search for friction that overlooked the bond would leave a slip of Δt g sin α.
+        // Slip velocity where the search for friction leaves out the force of the bond: Δt g sin α.
         let overlooked_m_s = STEP_S * ALONG_M_S2;
         let what = format!("{body}: creep of the cube that sticks, over Δt g sin α");
         row("bonds beside friction", &what, creep_m_s.abs() / overlooked_m_s, AtMost(1e-4));
@@ -90,7 +89,7 @@ fn glue_and_friction_together_never_give_energy() {
     let history = Run::new(model).finish(&mut []).unwrap().history.unwrap();
     let column = |name: &str| &history.columns[history.names.iter().position(|known| known == name).unwrap()];
     let most_j = |name: &str| column(name).iter().copied().fold(0.0, f64::max);
-    // What bonds store is booked as work of friction, which takes it: the sum is never above zero.
+    // Energy stored in bonds is booked as negative work of friction, so that the sum never exceeds zero.
     let given = most_j("friction_work_j") / most_j("strain_j");
     row(
         "bonds beside friction",

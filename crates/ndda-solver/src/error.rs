@@ -162,9 +162,7 @@ fn no_less(stalled: Option<u64>) -> String {
 fn cure_of_unrest(stalled: Option<u64>) -> &'static str {
     match stalled {
         None => "hold them, or raise settle.most_steps if they are only slow",
-        Some(_) => {
-            "hold them; if they only vibrate, damp contact, restitution: 0.9, or raise settle.tolerance"
-        }
+        Some(_) => "hold them; if they only vibrate, raise settle.tolerance",
     }
 }
 

@@ -97,7 +97,7 @@ pub struct PotentialContact {
     reporter: Reporter,
     new_facets: Vec<FacetMemory>,
     new_state: Vec<f64>,
-    /// Forces of the bonds that hold.
+    /// Forces of unbroken bonds.
     bond_forces: Vec<BondForce>,
     /// The friction laws' own numbers of each touching facet.
     state_of_facet: Vec<f64>,

@@ -30,7 +30,7 @@ pub(crate) struct Body {
 }
 
 /// A block without memory takes no step.
-const NO_ROOM: &str = "blocks have memory to work in while they step";
+const NO_WORKSPACE: &str = "blocks have memory to work in while they step";
 
 /// The ways in which a block moves.
 pub(crate) enum Motion {
@@ -51,7 +51,7 @@ impl Body {
             Motion::Elastic(body) => body.step(shape, context, nodes),
             Motion::Rigid(body) => body.step(shape, context, nodes),
             Motion::Fixed(body) => Ok(body.step(shape, context, nodes)),
-            Motion::Resting(_) => unreachable!("{NO_ROOM}"),
+            Motion::Resting(_) => unreachable!("{NO_WORKSPACE}"),
         };
         match report {
             Ok(report) => self.report = report,
@@ -103,7 +103,7 @@ impl Body {
             Motion::Elastic(body) => body.try_step(shape, context, nodes),
             Motion::Rigid(body) => body.try_step(shape, context, nodes),
             Motion::Fixed(_) => Ok(()),
-            Motion::Resting(_) => unreachable!("{NO_ROOM}"),
+            Motion::Resting(_) => unreachable!("{NO_WORKSPACE}"),
         };
         self.error = tried.err();
     }
@@ -114,7 +114,7 @@ impl Body {
             Motion::Elastic(body) => body.increment(),
             Motion::Rigid(body) => body.increment(),
             Motion::Fixed(body) => return body.end_position(shape, end_s, position, out),
-            Motion::Resting(_) => unreachable!("{NO_ROOM}"),
+            Motion::Resting(_) => unreachable!("{NO_WORKSPACE}"),
         };
         for ((end, x), u) in out.iter_mut().zip(position).zip(increment) {
             *end = x + u;
@@ -138,7 +138,7 @@ impl Body {
             }
             Motion::Rigid(body) => body.respond(shape, weights, force, out),
             Motion::Fixed(_) => out.fill(Vec3::zeros()),
-            Motion::Resting(_) => unreachable!("{NO_ROOM}"),
+            Motion::Resting(_) => unreachable!("{NO_WORKSPACE}"),
         }
     }
 

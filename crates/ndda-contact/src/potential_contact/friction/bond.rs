@@ -123,7 +123,7 @@ fn hand_over(
     law.begin(&mut state[..law.state_len()]);
 }
 
-/// What a bond that holds does to its facet, and the opposite to its target.
+/// Force of an unbroken bond on its facet; its target feels the opposite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct BondForce {
     facet: TriangleId,
@@ -137,7 +137,7 @@ pub(crate) struct BondForce {
     pub center: Vec3,
     /// Force on the facet [N].
     pub force_n: Vec3,
-    /// Change of it with the way of the facet, at most [N/m].
+    /// Largest change of the force per displacement of the facet [N/m].
     stiffness_n_m: f64,
 }
 
@@ -154,7 +154,7 @@ impl BondForce {
     }
 }
 
-/// The forces of bonds that hold.
+/// Adds the forces of unbroken bonds to a list.
 pub(crate) fn find_forces(
     joints: &FrictionLawTable,
     input: &ContactInput,
@@ -162,7 +162,6 @@ pub(crate) fn find_forces(
     forces: &mut Vec<BondForce>,
 ) {
     let blocks = input.blocks;
-    forces.clear();
     forces.extend(bonds.iter().filter_map(|bond| {
         let (law, stretch) = (law(joints, blocks, bond)?, Stretch::of(input, bond));
         let stiffness = law.shear_stiffness_pa_m().max(law.bond_stiffness_pa_m()) * stretch.half_area;

@@ -11,8 +11,6 @@ const LEFT: f64 = 1e-9;
 /// Where blocks turn from approach to parting within a step, a point is damped by at most so many times its mean velocity, whose sign is that of the
 /// work.
 const MEAN: f64 = 4.0;
-/// Second moments that differ by less than this part are the same.
-const TIE: f64 = 1e-6;
 /// Solutions of one pair until no point changes from one branch of the law to another.
 const MOST_ROUNDS: usize = 8;
 
@@ -291,15 +289,7 @@ impl Point {
     }
 }
 
-/// Angle from the first of two unit vectors to the axis of the largest of second moments in their plane; none where all axes are alike.
-pub(super) fn principal_angle(second_moment_m2: &Mat3, [s, t]: &[Vec3; 2]) -> Option<f64> {
-    let moment = |a: &Vec3, b: &Vec3| a.dot(&(second_moment_m2 * b));
-    let (xx, xy, yy) = (moment(s, s), moment(s, t), moment(t, t));
-    let half = 0.5 * (xx - yy);
-    (half.hypot(xy) > TIE * 0.5 * (xx + yy)).then(|| 0.5 * xy.atan2(half))
-}
-
-/// Arms of four points along two axes that have the same second moments along these as a pressure [m].
+/// Arms of four points, two on each of two axes, whose second moments along these are those of a pressure [m].
 pub(super) fn four_points(second_moment_m2: &Mat3, axes: &[Vec3; 2]) -> [Vec3; 4] {
     let [one, two] = axes.map(|axis| (2.0 * axis.dot(&(second_moment_m2 * axis)).max(0.0)).sqrt() * axis);
     [one, -one, two, -two]

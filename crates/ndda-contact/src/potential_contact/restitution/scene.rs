@@ -8,11 +8,11 @@ use crate::friction::facet::relative_velocity;
 use crate::friction::law::facet_basis;
 use crate::friction::law_table::{FrictionLawTable, Memory};
 use crate::friction::openings::Openings;
-use crate::friction::patches::moments::{of_triangle, second_moment_m2};
+use crate::friction::patches::moments::{of_triangle, principal, second_moment_m2};
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::ActiveFacet;
 use crate::model::{Bond, ContactInput};
-use crate::restitution::pair::{Point, four_points, principal_angle};
+use crate::restitution::pair::{Point, four_points};
 
 /// Input of the damping of a step.
 #[derive(Clone, Copy)]
@@ -111,11 +111,12 @@ impl DampingScene<'_> {
     }
 }
 
-/// Two unit vectors in a facet along which the pressure has its principal second moments; where it has none, those of the facet, so that the mirror image
-/// of a scene has the mirror images of both.
+/// Two unit vectors in the plane of a facet along the principal axes of its pressure or, where the pressure is alike in all directions, along those of the
+/// facet. In the mirror image of a scene they are the mirror images of both.
 fn axes_of(second_moment_m2: &Mat3, corners: &[Vec3; 3], normal: &Vec3) -> [Vec3; 2] {
     let basis = facet_basis(corners, normal);
-    let own = || principal_angle(&of_triangle(corners), &basis);
-    let (sin, cos) = principal_angle(second_moment_m2, &basis).or_else(own).unwrap_or(0.0).sin_cos();
+    let angle = |second_moment_m2: &Mat3| principal(second_moment_m2, &basis).2;
+    let found = angle(second_moment_m2).or_else(|| angle(&of_triangle(corners)));
+    let (sin, cos) = found.unwrap_or(0.0).sin_cos();
     [cos * basis[0] + sin * basis[1], cos * basis[1] - sin * basis[0]]
 }

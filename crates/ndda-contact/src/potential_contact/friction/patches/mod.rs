@@ -53,7 +53,7 @@ pub(crate) struct PatchScene<'a> {
     pub joints: &'a FrictionLawTable,
     /// Blocks that are affine convex targets.
     pub hulls: &'a ConvexBlocks,
-    /// What bonds do to the blocks.
+    /// Forces of unbroken bonds.
     pub bonds: &'a [BondForce],
 }
 

@@ -8,6 +8,8 @@ use crate::integration::clip::{Form, Outline, Polygon};
 use crate::integration::overlap_pair::ActiveFacet;
 use crate::model::ContactInput;
 
+/// Second moments that differ by less than this part are the same.
+const TIE: f64 = 1e-6;
 /// Facets of which less than this part touches count as a disc.
 const SMALL: f64 = 1e-3;
 
@@ -35,6 +37,16 @@ pub(crate) fn second_moment_m2(
     }
     // A disc of the same area: mean x² = mean y² = A/4π.
     0.5 * area_m2 / std::f64::consts::TAU * (Mat3::identity() - normal * normal.transpose())
+}
+
+/// Mean of the two principal second moments in the plane of two unit vectors and half of their difference [m²], and the angle from the first vector to
+/// the axis of the larger one; no angle where both are the same.
+pub(crate) fn principal(second_moment_m2: &Mat3, [s, t]: &[Vec3; 2]) -> (f64, f64, Option<f64>) {
+    let moment = |a: &Vec3, b: &Vec3| a.dot(&(second_moment_m2 * b));
+    let (xx, xy, yy) = (moment(s, s), moment(s, t), moment(t, t));
+    let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
+    let spread = half.hypot(xy);
+    (mean, spread, (spread > TIE * mean).then(|| 0.5 * xy.atan2(half)))
 }
 
 /// Σ d dᵀ/12 for the corners about the centroid [m²].

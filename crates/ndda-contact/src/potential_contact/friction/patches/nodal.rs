@@ -108,7 +108,7 @@ impl Nodal {
         });
     }
 
-    /// Adds what bonds do to the blocks that have taken sides.
+    /// Adds the forces of bonds to the nodes of blocks that have taken sides.
     pub(super) fn add_bonds(&mut self, scene: &PatchScene) {
         let blocks = scene.input.blocks;
         for bond in scene.bonds {

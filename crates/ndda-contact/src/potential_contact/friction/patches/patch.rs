@@ -5,13 +5,11 @@ use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use crate::friction::facet::{FacetForce, relative_motion};
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory};
 use crate::friction::patches::limit_surface::LimitSurface;
+use crate::friction::patches::moments::principal;
 use crate::friction::patches::{PatchScene, Place};
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments};
 use crate::model::{Body, ContactHistory, FaceMemory};
-
-/// Second moments that differ by less than this part are the same.
-const TIE: f64 = 1e-6;
 
 /// Summary of a patch.
 #[derive(Clone, Copy, Debug, Default)]
@@ -181,15 +179,8 @@ impl ContactPatch {
         forces: &[FacetForce],
     ) -> ([Vec3; 3], [f64; 2]) {
         let [s, t] = tangents(&self.normal);
-        let moment = |a: &Vec3, b: &Vec3| a.dot(&(self.second_moment_m2 * b));
-        let (xx, xy, yy) = (moment(&s, &s), moment(&s, &t), moment(&t, &t));
-        let (mean, half) = (0.5 * (xx + yy), 0.5 * (xx - yy));
-        let spread = half.hypot(xy);
-        let angle = if spread > TIE * mean {
-            0.5 * xy.atan2(half)
-        } else {
-            self.fourfold_angle(run, scene, forces, &[s, t])
-        };
+        let (mean, spread, angle) = principal(&self.second_moment_m2, &[s, t]);
+        let angle = angle.unwrap_or_else(|| self.fourfold_angle(run, scene, forces, &[s, t]));
         let (sin, cos) = angle.sin_cos();
         let along = s * cos + t * sin;
         // The lesser one is positive but for rounding.
