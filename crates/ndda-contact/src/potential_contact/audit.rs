@@ -104,7 +104,7 @@ impl ContactAudit for PotentialContact {
                 normal: -force.push.normalize(),
                 center: force.center,
                 push_n: sums.pressure * force.push,
-                friction_n: sums.pressure * force.shear,
+                friction_n: force.friction_n(sums),
                 sticks: force.sticks,
             });
         }

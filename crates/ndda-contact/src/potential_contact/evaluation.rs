@@ -64,7 +64,7 @@ impl PotentialContact {
             let by_triangle = self.joints.as_ref().is_some_and(|joints| !joints.act_on_faces_only());
             self.hulls.fit(input.blocks, &surfaces, phi_per_m, input.affine, by_triangle);
             if self.rubs_faces() {
-                self.faces.fit(input.blocks, &surfaces);
+                self.faces.fit(input.blocks, &surfaces, input.affine);
             }
             self.field = Some((tets, field.map_err(|e| ContactError::Potential(e.to_string()))?));
         }

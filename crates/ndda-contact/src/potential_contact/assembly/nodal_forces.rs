@@ -141,7 +141,8 @@ impl BlockNodes<'_> {
         let FacetMoments { weights: pressure, slope, .. } = scene.integrals.sums_of(touch);
         let nodes = scene.blocks.triangles[touch.triangle.index()];
         for a in 0..3 {
-            self.add(nodes[a].index(), pressure[a], force, scene.stiffness(t, slope[a], pressure[a]));
+            let stiffness = scene.stiffness(t, slope[a], pressure[a]);
+            self.add(nodes[a].index(), (pressure[a], slope[a]), force, stiffness);
         }
     }
 
@@ -156,7 +157,8 @@ impl BlockNodes<'_> {
         {
             let weights = on_target.pressure.iter().zip(on_target.slope);
             for (node, (pressure, slope)) in scene.blocks.tets[tet.index()].iter().zip(weights) {
-                self.add(node.index(), -pressure, force, scene.stiffness(t, slope.max(0.0), *pressure));
+                let stiffness = scene.stiffness(t, slope.max(0.0), *pressure);
+                self.add(node.index(), (-pressure, -slope), force, stiffness);
             }
         }
     }
@@ -180,16 +182,26 @@ impl BlockNodes<'_> {
                 continue;
             };
             let FacetMoments { weights, slope, .. } = scene.integrals.sums_of(touch);
-            face.shares(weights).iter().for_each(|(node, share)| self.add(node.index(), *share, force, 0.0));
+            if force.shear_by_area {
+                let pushed = FacetForce { shear: Vec3::zeros(), ..*force };
+                let shares = face.shares(weights);
+                shares.iter().for_each(|(node, share)| self.add(node.index(), (*share, 0.0), &pushed, 0.0));
+                face.shares(slope)
+                    .iter()
+                    .for_each(|(node, share)| self.add_friction(node.index(), *share, force));
+            } else {
+                let shares = face.shares(weights);
+                shares.iter().for_each(|(node, share)| self.add(node.index(), (*share, 0.0), force, 0.0));
+            }
             springs += scene.spring(t, &OnTarget::of(&face.on_host, weights, slope));
         }
         let host = scene.blocks.tets[whole.host.index()];
         for (t, force) in on_block.iter().map(|&t| (t as usize, &scene.forces[t as usize])) {
             if force.touches {
                 let on_host = &scene.on_host[t];
-                for (node, pressure) in host.iter().zip(on_host.pressure) {
+                for (node, (pressure, slope)) in host.iter().zip(on_host.pressure.iter().zip(on_host.slope)) {
                     // The corners of a host may be far from where it is pressed: its springs know better.
-                    self.add(node.index(), -pressure, force, 0.0);
+                    self.add(node.index(), (-pressure, -slope), force, 0.0);
                 }
                 springs += scene.spring(t, on_host);
             }
@@ -230,11 +242,21 @@ impl BlockNodes<'_> {
         }
     }
 
-    fn add(&mut self, node: usize, weight: f64, force: &FacetForce, stiffness: f64) {
+    /// The force of a facet on a node with these shares in its pressure and its slope.
+    fn add(&mut self, node: usize, (pressure, slope): (f64, f64), force: &FacetForce, stiffness: f64) {
         let i = node - self.first;
-        let friction = weight * force.shear;
-        self.output.force[i] += weight * force.push + friction;
+        let friction = if force.shear_by_area { slope } else { pressure } * force.shear;
+        self.output.force[i] += pressure * force.push + friction;
         self.output.stiffness[i] += 2.0 * stiffness;
+        if let Some(sum) = self.output.friction_force.get_mut(i) {
+            *sum += friction;
+        }
+    }
+
+    /// Its friction alone.
+    fn add_friction(&mut self, node: usize, share: f64, force: &FacetForce) {
+        let (i, friction) = (node - self.first, share * force.shear);
+        self.output.force[i] += friction;
         if let Some(sum) = self.output.friction_force.get_mut(i) {
             *sum += friction;
         }

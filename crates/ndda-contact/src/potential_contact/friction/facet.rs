@@ -17,8 +17,10 @@ pub(crate) const STICKS: f64 = 1.0 - 1e-9;
 pub struct FacetForce {
     /// −k n: what the facet's normal force is made of [Pa].
     pub push: Vec3,
-    /// Shear traction of friction [Pa].
+    /// Shear traction of friction [Pa], or friction per unit of ∫ |∂φ/∂n| dA [N/m].
     pub shear: Vec3,
+    /// Which of both it is.
+    pub shear_by_area: bool,
     /// Torque of friction about the centre of pressure, which `shear` does not have [N m].
     pub couple_n_m: Vec3,
     /// ½ k_s S / ∫ φ dA: what a shift of the facet adds to `shear` [Pa/m].
@@ -50,6 +52,14 @@ pub(crate) struct FacetScene<'a> {
     pub history: &'a ContactHistory,
     /// Normal penalty of contact without damping [Pa].
     pub elastic_pa: f64,
+}
+
+impl FacetForce {
+    /// Friction on the facet [N].
+    pub(crate) fn friction_n(&self, sums: &FacetMoments) -> Vec3 {
+        let weight = if self.shear_by_area { sums.slope.iter().sum() } else { sums.pressure };
+        weight * self.shear
+    }
 }
 
 impl FacetScene<'_> {

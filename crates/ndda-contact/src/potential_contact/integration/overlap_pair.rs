@@ -41,6 +41,12 @@ impl FacetMoments {
         }
     }
 
+    /// Centre of the contact's stiffness ∫ |∂φ/∂n| x dA / ∫ |∂φ/∂n| dA [m] on a facet with these corners.
+    pub(crate) fn middle(&self, corners: &[Vec3; 3]) -> Vec3 {
+        let [a, b, c] = self.slope;
+        (corners[0] * a + corners[1] * b + corners[2] * c) / (a + b + c)
+    }
+
     /// Centre of pressure ∫ φ x dA / ∫ φ dA [m] on a facet with these corners; the first where there is no pressure.
     pub(crate) fn center(&self, corners: &[Vec3; 3]) -> Vec3 {
         let [a, b, c] = self.weights;

@@ -9,10 +9,10 @@ mod limit_surface;
 pub(crate) mod moments;
 mod nodal;
 mod opposite;
+mod parts;
 mod patch;
 mod solve;
-
-use std::ops::Range;
+mod spread;
 
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use rayon::prelude::*;
@@ -28,7 +28,8 @@ use crate::friction::law::FrictionLaw;
 use crate::friction::law_table::FrictionLawTable;
 use crate::friction::patches::nodal::{Nodal, NodalSide, SideScene};
 use crate::friction::patches::opposite::Opposite;
-use crate::friction::patches::patch::{ContactPatch, Moved, PatchSummary, Remembered};
+use crate::friction::patches::parts::FaceParts;
+use crate::friction::patches::patch::{ContactPatch, Moved, PatchFacets, PatchSummary, Remembered};
 use crate::friction::patches::solve::newton::Newton;
 use crate::friction::patches::solve::stage::{self, Visits};
 use crate::friction::patches::solve::{CoupledPatch, Motion, Search};
@@ -90,13 +91,12 @@ type Place = (u32, BlockId, u32);
 /// Facets by face and target, and room for what a step finds.
 #[derive(Default)]
 pub(crate) struct FrictionPatches {
-    /// Face of each boundary triangle, numbered over all blocks.
-    face_of: Vec<u32>,
+    face_parts: FaceParts,
     /// Touching facets by face and target.
     by_face: Vec<Place>,
     /// Touching facets by patch, those of each patch among them, and the patch of each facet.
     order: Vec<Place>,
-    runs: Vec<Range<usize>>,
+    runs: Vec<PatchFacets>,
     run_of: Vec<u32>,
     opposite: Opposite,
     /// Patches by block.
@@ -125,26 +125,15 @@ pub(crate) struct FrictionPatches {
 
 impl FrictionPatches {
     /// Takes the faces of all blocks; once per set of blocks.
-    pub(crate) fn fit(&mut self, blocks: &BlockSet, surfaces: &[BlockFaces]) {
-        self.face_of.clear();
-        let mut next = 0;
-        for (block, BlockFaces { of_triangle, .. }) in blocks.ids().zip(surfaces) {
-            let named = &blocks.triangle_surface[blocks.triangles_of(block)];
-            let parts: Vec<_> = of_triangle.iter().zip(named).collect();
-            let mut distinct = parts.clone();
-            distinct.sort_unstable();
-            distinct.dedup();
-            self.face_of.extend(
-                parts.iter().map(|part| next + distinct.partition_point(|other| other < part) as u32),
-            );
-            next += distinct.len() as u32;
-        }
+    pub(crate) fn fit(&mut self, blocks: &BlockSet, surfaces: &[BlockFaces], affine: &[bool]) {
+        self.face_parts.fit(blocks, surfaces, affine);
     }
 
     /// Sorts touching facets by face and target; those of a block are together already, and its faces follow each other.
     pub(crate) fn arrange(&mut self, integrals: &Integrals) {
         self.by_face.clear();
-        let place = |(t, touch): (u32, &ActiveFacet)| (self.face_of[touch.triangle.index()], touch.target, t);
+        let place =
+            |(t, touch): (u32, &ActiveFacet)| (self.face_parts.face_of(touch.triangle), touch.target, t);
         let touching = integrals.touching();
         self.by_face.extend((0..).zip(touching).map(place));
         let of_one_block =
@@ -153,12 +142,12 @@ impl FrictionPatches {
     }
 
     /// Which facets each patch has.
-    fn join_faces(&mut self, scene: &PatchScene, forces: &[FacetForce]) {
-        let Self { opposite, by_face, order, runs, run_of, .. } = self;
-        opposite.join(scene, forces, (by_face, order), runs);
+    fn join_faces(&mut self, scene: &PatchScene, forces: &[FacetForce], history: &ContactHistory) {
+        let Self { opposite, by_face, order, runs, run_of, face_parts, .. } = self;
+        opposite.join(scene, (forces, history), (by_face, order), (face_parts, runs));
         run_of.resize(forces.len(), 0);
         for (number, run) in (0..).zip(&*runs) {
-            order[run.clone()].iter().for_each(|&(_, _, t)| run_of[t as usize] = number);
+            order[run.places.clone()].iter().for_each(|&(_, _, t)| run_of[t as usize] = number);
         }
     }
 
@@ -170,7 +159,7 @@ impl FrictionPatches {
         forces: &mut [FacetForce],
         history: &mut ContactHistory,
     ) -> f64 {
-        self.join_faces(scene, forces);
+        self.join_faces(scene, forces, history);
         self.find_patches(scene, forces, history);
         let blocks_of = |summary: &PatchSummary| (summary.owner, summary.target);
         self.adjacency.arrange(scene.input.blocks.len(), self.summaries.iter().map(blocks_of));
@@ -179,18 +168,16 @@ impl FrictionPatches {
         solve::find_tolerances(&mut self.summaries, scene.input.bodies, tolerance, &mut self.most_n);
         self.advance_bodies(scene);
         let left_m_s = self.solve(scene, forces).left_m_s;
-        let Self { patches, runs, run_of, order, new_faces, own_m2, .. } = self;
+        let Self { patches, runs, run_of, new_faces, own_m2, .. } = self;
         let spread = |((t, force), run): ((usize, &mut FacetForce), &u32)| {
-            let FacetMoments { pressure, .. } = *scene.sums(t as u32);
-            if pressure > 0.0 {
+            let (t, own_m2) = (t as u32, &own_m2[t]);
+            if scene.sums(t).pressure > 0.0 {
                 let patch = &patches[*run as usize];
-                patch.spread_to(force, (pressure, &own_m2[t]), patch.sign_of(scene.touch(t as u32)));
+                patch.spread_to(force, (scene, t, own_m2.trace()), patch.sign_of(scene.touch(t)));
             }
         };
-        let memory_of = |(patch, run): (&ContactPatch, &Range<usize>)| {
-            let (face, target, _) = order[run.start];
-            patch.has_friction().then(|| patch.memory(face, target))
-        };
+        let memory_of =
+            |(patch, run): (&ContactPatch, &PatchFacets)| patch.has_friction().then(|| patch.memory(run));
         // The old records have been read, so that their memory is free for the new ones.
         std::mem::swap(&mut history.faces, new_faces);
         join_if(
@@ -230,9 +217,9 @@ impl FrictionPatches {
         let patches = self.patches.par_chunks_mut(GRAIN_PATCHES);
         let found = patches.zip(self.summaries.par_chunks_mut(GRAIN_PATCHES));
         found.zip(runs.par_chunks(GRAIN_PATCHES)).for_each(|((patches, summaries), runs)| {
-            let mut remembered = Remembered::since(history, &order[runs[0].start]);
+            let mut remembered = Remembered::since(history, &runs[0]);
             for ((patch, summary), run) in patches.iter_mut().zip(summaries).zip(runs) {
-                patch.find(&order[run.clone()], scene, (forces, own), &mut remembered);
+                patch.find((&order[run.places.clone()], run), scene, (forces, own), &mut remembered);
                 *summary = patch.summary();
             }
         });
@@ -280,7 +267,7 @@ impl FrictionPatches {
         nodal.begin(scene.input.blocks.len());
         let Some(deformation) = scene.input.deformation else { return };
         let patch = |(k, _): (u32, f64)| {
-            let (run, summary) = (runs[k as usize].clone(), &summaries[k as usize]);
+            let (run, summary) = (runs[k as usize].places.clone(), &summaries[k as usize]);
             (k, &patches[k as usize], &order[run], summary.matters())
         };
         let is_nodal = |block: BlockId| is_asked[block.index()] && scene.input.bodies[block.index()].deforms;
@@ -338,8 +325,8 @@ impl FrictionPatches {
         let scene = Moved { blocks, integrals, moved };
         let Self { patches, runs, order, gaps_j, .. } = self;
         gaps_j.resize(patches.len(), 0.0);
-        let gap = |((gap_j, patch), run): ((&mut f64, &ContactPatch), &Range<usize>)| {
-            *gap_j = patch.coulomb_gap_j(&order[run.clone()], &scene, forces);
+        let gap = |((gap_j, patch), run): ((&mut f64, &ContactPatch), &PatchFacets)| {
+            *gap_j = patch.coulomb_gap_j(&order[run.places.clone()], &scene, forces);
         };
         gaps_j.par_iter_mut().zip(&*patches).zip(&*runs).with_min_len(GRAIN_PATCHES).for_each(gap);
         for (patch, &gap_j) in patches.iter().zip(&*gaps_j) {

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use crate::friction::facet::FacetForce;
 use crate::friction::patches::patch::ContactPatch;
+use crate::friction::patches::spread::Spread;
 use crate::friction::patches::{GRAIN_BODIES, PatchScene, Place};
 use crate::model::Deformation;
 
@@ -21,7 +22,7 @@ use crate::model::Deformation;
 struct Weight {
     /// Counted from the first of the block.
     node: u32,
-    /// ∫ φ N dA over that of the patch.
+    /// Its weight over that of the patch.
     share: f64,
     /// Force for a unit of T/r [1].
     twist: Vec3,
@@ -36,12 +37,13 @@ pub(super) struct NodalSide {
     rows: u32,
 }
 
-/// A patch on a block: its number, the end of its weights, and its two axes in the plane of contact.
+/// A patch on a block: its number, the end of its weights, its two axes in the plane of contact, and the twist of a force along each.
 #[derive(Clone, Copy, Debug)]
 struct Side {
     patch: u32,
     end: u32,
     axes: [Vec3; 2],
+    twist_of_force: [f64; 2],
 }
 
 /// The sides of patches on one block, and the shares of its nodes in them.
@@ -212,7 +214,8 @@ impl BlockSides {
             let FacetForce { push, shear, .. } = found.forces[t as usize];
             let is_owner = found.scene.owner(t) == block;
             let force = if is_owner { push + shear } else { -(push + shear) };
-            each_weight(&found.scene, t, is_owner, |node, w| nodes[node - first] += w * force);
+            Spread::default()
+                .each_node(&found.scene, (t, is_owner), |node, w| nodes[node - first] += w * force);
         }
     }
 
@@ -228,28 +231,32 @@ impl BlockSides {
         let nodes = scene.input.blocks.nodes_of(block);
         self.place_of.resize(nodes.len(), 0);
         let from = self.weights.len() as u32;
+        let spread = &patch.spread;
+        // Force on a node of share 1 at an arm of 1 m for a unit of T/r.
+        let per_arm_1_m = patch.surface.radius_m / spread.radius2_m2;
         for &(_, _, t) in run {
             let is_owner = scene.owner(t) == block;
-            let arm = forces[t as usize].center - patch.center;
-            let twist = patch.normal.cross(&arm) / patch.surface.radius_m;
-            each_weight(scene, t, is_owner, |node, w| {
-                let share = w / patch.pressure;
+            let arm = spread.center_of(scene, &forces[t as usize], t) - spread.center;
+            let twist = per_arm_1_m * patch.normal.cross(&arm);
+            spread.each_node(scene, (t, is_owner), |node, w| {
+                let share = w / spread.total;
                 self.add_weight(from, (node - nodes.start, share, share * twist));
             });
-            let (pressure, own_m2) = (scene.sums(t).pressure, own_m2[t as usize].trace());
-            if pressure > 0.0 {
-                let couple = pressure / patch.pressure * own_m2 / patch.surface.radius_m * patch.normal;
+            if scene.sums(t).pressure > 0.0 {
+                let share = spread.weight(scene, t) / spread.total;
+                let couple = share * own_m2[t as usize].trace() * per_arm_1_m * patch.normal;
                 scene.couples().each_force(scene.touch(t), is_owner, &couple, |node, force| {
                     self.add_weight(from, (node - nodes.start, 0.0, force));
                 });
             }
         }
-        let axes = [patch.axes[0], patch.axes[1]];
-        self.sides.push(Side { patch: number, end: self.weights.len() as u32, axes });
+        let (axes, twist_of_force) = ([patch.axes[0], patch.axes[1]], patch.twist_of_force());
+        self.sides.push(Side { patch: number, end: self.weights.len() as u32, axes, twist_of_force });
         let first = columns.len();
         columns.resize(first + 3 * nodes.len(), Vec3::zeros());
         for weight in &self.weights[from as usize..] {
-            let forces = [weight.share * axes[0], weight.share * axes[1], weight.twist];
+            let force = |k: usize| weight.share * axes[k] + twist_of_force[k] * weight.twist;
+            let forces = [force(0), force(1), weight.twist];
             for (k, force) in forces.iter().enumerate() {
                 columns[first + k * nodes.len() + weight.node as usize] += force;
             }
@@ -299,8 +306,9 @@ impl BlockSides {
             shift += weight.share * v;
             twist += weight.twist.dot(v);
         }
-        let [first, second] = &self.sides[place].axes;
-        Vec3::new(first.dot(&shift), second.dot(&shift), twist)
+        let Side { axes, twist_of_force, .. } = &self.sides[place];
+        let along = |k: usize| axes[k].dot(&shift) + twist_of_force[k] * twist;
+        Vec3::new(along(0), along(1), twist)
     }
 }
 
@@ -336,22 +344,5 @@ impl NodalSide {
     fn column(&self, k: usize) -> std::ops::Range<usize> {
         let start = (1 + 3 * self.place as usize + k) * self.rows as usize;
         start..start + self.rows as usize
-    }
-}
-
-/// ∫ φ N dA of each node that a facet is of, or of each that it presses on.
-fn each_weight(scene: &PatchScene, t: u32, is_owner: bool, mut add: impl FnMut(usize, f64)) {
-    let (touch, sums) = (scene.touch(t), scene.sums(t));
-    if sums.pressure <= 0.0 {
-        return;
-    }
-    if is_owner {
-        let triangle = &scene.input.blocks.triangles[touch.triangle.index()];
-        triangle.iter().zip(sums.weights).for_each(|(node, w)| add(node.index(), w));
-    } else {
-        for hit in scene.integrals.overlaps_of(touch) {
-            let tet = &scene.input.blocks.tets[hit.tet.index()];
-            tet.iter().zip(hit.on_target.pressure).for_each(|(node, w)| add(node.index(), w));
-        }
     }
 }

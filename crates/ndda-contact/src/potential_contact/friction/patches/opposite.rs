@@ -1,14 +1,19 @@
 //! Faces that lie on each other: two blocks that touch with flat faces have one patch, not one on either face.
 //!
 //! Both faces see the same slip, so which of the two would carry how much of a sticking friction is nearly undetermined, and
-//! Gauss–Seidel over both would hardly converge. Their pressures add up to that of one patch, whose friction is found once.
+//! Gauss–Seidel over both would hardly converge. Their pressures add up to that of one patch, whose friction is found once. Where one of both faces
+//! has parts (`parts.rs`), each part is a patch, and the facets of the other face are left without friction: those of the parts have all of it.
 
 use std::ops::Range;
 
+use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, Vec3};
 
 use crate::friction::facet::FacetForce;
+use crate::friction::patches::parts::{FaceParts, number_of, was_divided};
+use crate::friction::patches::patch::PatchFacets;
 use crate::friction::patches::{PatchScene, Place};
+use crate::model::ContactHistory;
 
 /// Faces whose normals are opposite but for so much lie on each other: the sine of about 8°.
 const TILT: f64 = 0.14;
@@ -21,8 +26,9 @@ struct Run {
     places: Range<usize>,
     owner: BlockId,
     target: BlockId,
-    /// Direction of its normal force, zero where it has no friction.
+    /// Direction of its normal force, zero where it has no friction, and ∫ φ dA.
     direction: Vec3,
+    pressure: f64,
     /// The run that lies on it.
     opposite: u32,
 }
@@ -40,24 +46,19 @@ impl Opposite {
     pub(super) fn join(
         &mut self,
         scene: &PatchScene,
-        forces: &[FacetForce],
+        (forces, history): (&[FacetForce], &ContactHistory),
         (by_face, order): (&[Place], &mut Vec<Place>),
-        patches: &mut Vec<Range<usize>>,
+        (faces, patches): (&FaceParts, &mut Vec<PatchFacets>),
     ) {
         self.find_runs(scene, forces, by_face);
         self.find_opposite(scene, by_face);
         order.clear();
         patches.clear();
+        let mut joined = Joined { scene, history, faces, by_face, order, patches };
         for (number, run) in (0..).zip(&self.runs) {
-            if run.opposite < number {
-                continue;
+            if run.opposite >= number {
+                joined.add(run, self.runs.get(run.opposite as usize));
             }
-            let start = order.len();
-            order.extend_from_slice(&by_face[run.places.clone()]);
-            if let Some(other) = self.runs.get(run.opposite as usize) {
-                order.extend_from_slice(&by_face[other.places.clone()]);
-            }
-            patches.push(start..order.len());
         }
     }
 
@@ -76,7 +77,8 @@ impl Opposite {
             }
             let places = start..start + places.len();
             start = places.end;
-            self.runs.push(Run { places, owner: scene.owner(first), target, direction, opposite: NONE });
+            let (owner, pressure, opposite) = (scene.owner(first), total, NONE);
+            self.runs.push(Run { places, owner, target, direction, pressure, opposite });
         }
     }
 
@@ -108,6 +110,75 @@ impl Opposite {
                 }
             }
         }
+    }
+}
+
+/// Patches that are put one after the other.
+struct Joined<'a> {
+    scene: &'a PatchScene<'a>,
+    history: &'a ContactHistory,
+    faces: &'a FaceParts,
+    by_face: &'a [Place],
+    order: &'a mut Vec<Place>,
+    patches: &'a mut Vec<PatchFacets>,
+}
+
+impl Joined<'_> {
+    /// Adds the patch, or the patches, of a run and the one that lies on it, if there is one.
+    fn add(&mut self, run: &Run, other: Option<&Run>) {
+        let (face, target, _) = self.by_face[run.places.start];
+        let runs = || std::iter::once(run).chain(other);
+        let start = self.order.len();
+        let Some(divided) = self.divided(runs(), (face, target)) else {
+            runs().for_each(|run| self.order.extend_from_slice(&self.by_face[run.places.clone()]));
+            return self.put(start, (number_of(face, None), target), 1.0);
+        };
+        for rest in runs().filter(|run| run.owner != divided.owner) {
+            self.order.extend_from_slice(&self.by_face[rest.places.clone()]);
+            self.put(start, (number_of(face, None), target), 0.0);
+        }
+        let total: f64 = runs().map(|run| run.pressure).sum();
+        let part = |place: &Place| self.faces.part_of(self.scene.touch(place.2).triangle);
+        let mut start = self.order.len();
+        self.order.extend_from_slice(&self.by_face[divided.places.clone()]);
+        self.order[start..].sort_unstable_by_key(|place| (part(place), place.2));
+        for places in self.order[start..].chunk_by(|a, b| part(a) == part(b)) {
+            let (places, face) = (start..start + places.len(), number_of(face, Some(part(&places[0]))));
+            start = places.end;
+            let weight = total / divided.pressure;
+            self.patches.push(PatchFacets { places, face, target, weight });
+        }
+    }
+
+    /// The run whose face has parts, if there is friction and it does not touch all over, or did not in a step before: that of the smaller face.
+    fn divided<'r>(
+        &self,
+        runs: impl Iterator<Item = &'r Run>,
+        (remembered, target): (u32, BlockId),
+    ) -> Option<&'r Run> {
+        let face = |run: &Run| self.by_face[run.places.start].0;
+        let area_m2 = |run: &Run| self.faces.area_m2(face(run));
+        let run = runs.min_by(|a, b| area_m2(a).total_cmp(&area_m2(b)))?;
+        if area_m2(run).is_infinite() || run.direction == Vec3::zeros() {
+            return None;
+        }
+        if was_divided(self.history, remembered, target) {
+            return Some(run);
+        }
+        let areas_m2 = self.by_face[run.places.clone()].iter().map(|place| {
+            let corners = self
+                .scene
+                .input
+                .blocks
+                .triangle_corners(self.scene.touch(place.2).triangle, self.scene.input.position);
+            [self.scene.sums(place.2).area, triangle_area_vector(&corners).norm()]
+        });
+        (!self.faces.is_closed(face(run), areas_m2)).then_some(run)
+    }
+
+    /// Makes a patch of the facets from a place on.
+    fn put(&mut self, start: usize, (face, target): (u32, BlockId), weight: f64) {
+        self.patches.push(PatchFacets { places: start..self.order.len(), face, target, weight });
     }
 }
 

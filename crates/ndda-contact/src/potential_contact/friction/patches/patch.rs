@@ -1,11 +1,15 @@
 //! A face of a block on another block, and the face that lies on it: where they press, how hard, and how they slip.
 
+use std::ops::Range;
+
 use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 
 use crate::friction::facet::{FacetForce, relative_motion};
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory};
 use crate::friction::patches::limit_surface::LimitSurface;
 use crate::friction::patches::moments::principal;
+use crate::friction::patches::parts::order_of;
+use crate::friction::patches::spread::Spread;
 use crate::friction::patches::{PatchScene, Place};
 use crate::integration::integrals::Integrals;
 use crate::integration::overlap_pair::{ActiveFacet, FacetMoments};
@@ -43,6 +47,17 @@ pub(super) struct Moved<'a> {
     pub moved: &'a [Vec3],
 }
 
+/// The facets of a patch, in a row among all.
+#[derive(Clone, Debug)]
+pub(super) struct PatchFacets {
+    pub places: Range<usize>,
+    /// Number of the face, and the block that it touches, under which its friction is remembered.
+    pub face: u32,
+    pub target: BlockId,
+    /// Normal force that its friction counts, over that of its facets: none of facets whose friction is on those of the face that lies on theirs.
+    pub weight: f64,
+}
+
 /// The contact of one face with one block; facets of the block's own face that lies on it count with the opposite sign.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactPatch {
@@ -67,6 +82,7 @@ pub(super) struct ContactPatch {
     pub second_moment_m2: Mat3,
     /// Whether one of both blocks deforms.
     pub deforms: bool,
+    pub spread: Spread,
     /// Friction of the last step, turned with the face; none at first touch.
     pub previous: Option<Friction>,
     /// Slip that loads other than contact bring within a step from rest: less is not resolved [m].
@@ -92,7 +108,7 @@ impl ContactPatch {
     /// The patch of the facets of a run.
     pub(super) fn find(
         &mut self,
-        run: &[Place],
+        (run, facets): (&[Place], &PatchFacets),
         scene: &PatchScene,
         (forces, own): (&[FacetForce], &[Mat3]),
         remembered: &mut Remembered,
@@ -100,7 +116,7 @@ impl ContactPatch {
         let (_, target, first) = run[0];
         let (owner, law) = (scene.owner(first), scene.law(run));
         let deforms = |block: BlockId| scene.input.bodies[block.index()].deforms;
-        let (has_law, deforms) = (law.is_some(), deforms(owner) || deforms(target));
+        let (has_law, deforms) = (law.is_some() && facets.weight > 0.0, deforms(owner) || deforms(target));
         *self = Self { owner, target, has_law, deforms, ..Self::default() };
         self.sum(run, scene, forces);
         self.measure(run, scene, forces, own);
@@ -112,15 +128,16 @@ impl ContactPatch {
             body.load_n.norm() / body.mass_kg
         };
         self.least_slip_m = scene.input.dt_s.powi(2) * load_m_s2(owner).max(load_m_s2(target));
-        self.most_n = law.map_or(0.0, |law| self.capacity_n(law));
+        self.most_n = law.map_or(0.0, |law| self.capacity_n(law, facets.weight));
+        self.find_spread(run, scene, (forces, |t: u32| own[t as usize].trace()));
         let (axes, second_moment_m2) = self.principal_axes(run, scene, forces);
         (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
-        let old = remembered.of(&run[0]).filter(|old| old.normal.dot(&self.normal) > 0.0);
+        let old = remembered.of(facets).filter(|old| old.normal.dot(&self.normal) > 0.0);
         self.previous = old.map(|old| old.turned_to(&self.normal));
     }
 
     /// The record of this patch for the next step, under its face and target block; without a normal where no friction was computed, since neither block can move.
-    pub(super) fn memory(&self, face: u32, target: BlockId) -> FaceMemory {
+    pub(super) fn memory(&self, &PatchFacets { face, target, .. }: &PatchFacets) -> FaceMemory {
         let Self { force_n, torque_n_m, slides, .. } = *self;
         let normal = if self.turn_rad.is_some() { self.normal } else { Vec3::zeros() };
         FaceMemory { face, target, force_n, torque_n_m, slides, normal }
@@ -144,17 +161,6 @@ impl ContactPatch {
     /// 1 for a facet of the owner, −1 for one of the target.
     pub(super) fn sign_of(&self, touch: &ActiveFacet) -> f64 {
         if touch.owner == self.owner { 1.0 } else { -1.0 }
-    }
-
-    /// Adds the patch's friction to one of its facets, of the owner or, with the opposite sign, of the target.
-    pub(super) fn spread_to(&self, force: &mut FacetForce, (pressure, own): (f64, &Mat3), sign: f64) {
-        if self.has_friction() {
-            let twist = sign * self.torque_n_m / self.pressure / self.radius2();
-            let arm = force.center - self.center;
-            force.shear = sign * self.force_n / self.pressure + twist * self.normal.cross(&arm);
-            force.couple_n_m = pressure * twist * own.trace() * self.normal;
-            force.sticks = !self.slides;
-        }
     }
 
     /// Pushes its owner or, with the opposite sign, its target by the normal force, and by friction of facets.
@@ -240,8 +246,9 @@ impl ContactPatch {
     }
 
     /// Most friction that a law allows [N].
-    fn capacity_n(&self, law: &dyn FrictionLaw) -> f64 {
-        let slip = FacetSlip { normal_n: self.normal_n, area_m2: self.area_m2, ..FacetSlip::default() };
+    fn capacity_n(&self, law: &dyn FrictionLaw, weight: f64) -> f64 {
+        let slip =
+            FacetSlip { normal_n: weight * self.normal_n, area_m2: self.area_m2, ..FacetSlip::default() };
         law.capacity_n(&slip, &ShearMemory::default())
     }
 
@@ -303,25 +310,26 @@ pub(super) struct Remembered<'a> {
 }
 
 impl<'a> Remembered<'a> {
-    pub(super) fn since(history: &'a ContactHistory, first: &Place) -> Self {
+    pub(super) fn since(history: &'a ContactHistory, first: &PatchFacets) -> Self {
         let start = history.faces.partition_point(|memory| Self::is_before(memory, first));
         Self { rest: &history.faces[start..] }
     }
 
-    fn is_before(memory: &FaceMemory, &(face, target, _): &Place) -> bool {
-        (memory.face, memory.target) < (face, target)
+    fn is_before(memory: &FaceMemory, facets: &PatchFacets) -> bool {
+        order_of(memory.face, memory.target) < order_of(facets.face, facets.target)
     }
 
     /// That of a face on a block, none before the last one asked for.
-    fn of(&mut self, place: &Place) -> Option<FaceMemory> {
-        let passed = self.rest.iter().take_while(|memory| Self::is_before(memory, place)).count();
+    fn of(&mut self, facets: &PatchFacets) -> Option<FaceMemory> {
+        let passed = self.rest.iter().take_while(|memory| Self::is_before(memory, facets)).count();
         self.rest = &self.rest[passed..];
-        self.rest.first().filter(|memory| (memory.face, memory.target) == (place.0, place.1)).copied()
+        let found = |memory: &&FaceMemory| (memory.face, memory.target) == (facets.face, facets.target);
+        self.rest.first().filter(found).copied()
     }
 }
 
 /// Two unit vectors across a normal.
-fn tangents(normal: &Vec3) -> [Vec3; 2] {
+pub(super) fn tangents(normal: &Vec3) -> [Vec3; 2] {
     let axis = [Vec3::x(), Vec3::y(), Vec3::z()][normal.iamin()];
     let first = normal.cross(&axis).normalize();
     [first, normal.cross(&first)]

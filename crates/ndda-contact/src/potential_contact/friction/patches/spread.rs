@@ -1,0 +1,118 @@
+//! How friction of a patch is spread over its facets.
+//!
+//! Between blocks that do not deform it is in proportion to the pressure. Where one does, it is in proportion to |∂φ/∂n| dA, the stiffness of the contact, which
+//! is that of the area that touches: friction that followed the pressure would push harder wherever a vibration presses harder, and so feed
+//! vibrations of a block that sticks (flutter), while a part that sticks to fixed weights of its points does no work. Force and torque are those
+//! of the patch with both.
+
+use ndda_mesh::Vec3;
+
+use crate::friction::facet::FacetForce;
+use crate::friction::patches::patch::ContactPatch;
+use crate::friction::patches::{PatchScene, Place};
+
+/// How friction of a patch is spread.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Spread {
+    pub by_area: bool,
+    /// Sum of the weights of facets, ∫ φ dA [m²] or ∫ |∂φ/∂n| dA [m], and their centre [m].
+    pub total: f64,
+    pub center: Vec3,
+    /// Mean square distance from it [m²].
+    pub radius2_m2: f64,
+}
+
+impl ContactPatch {
+    /// How its friction is spread, once it is known where it presses; `own_m2` are the second moments of facets about their own centres.
+    pub(super) fn find_spread(
+        &mut self,
+        run: &[Place],
+        scene: &PatchScene,
+        (forces, own_radius2_m2): (&[FacetForce], impl Fn(u32) -> f64),
+    ) {
+        let (total, center, radius2_m2) = (self.pressure, self.center, self.radius2());
+        self.spread = Spread { by_area: false, total, center, radius2_m2 };
+        if !self.deforms {
+            return;
+        }
+        let mut spread = Spread { by_area: true, ..Spread::default() };
+        let pressing = || run.iter().map(|place| place.2).filter(|t| scene.sums(*t).pressure > 0.0);
+        spread.total = pressing().map(|t| spread.weight(scene, t)).sum();
+        if spread.total > 0.0 {
+            let share = |t: u32| spread.weight(scene, t) / spread.total;
+            let center = |t: u32| spread.center_of(scene, &forces[t as usize], t);
+            let middle: Vec3 = pressing().map(|t| share(t) * center(t)).sum();
+            let radius2 = |t: u32| share(t) * ((center(t) - middle).norm_squared() + own_radius2_m2(t));
+            spread.radius2_m2 = pressing().map(radius2).sum();
+            spread.center = middle;
+            self.spread = spread;
+        }
+    }
+
+    /// What one newton along each axis of the patch adds to its torque about the centre of the spread, over r: it acts at the centre of pressure.
+    pub(super) fn twist_of_force(&self) -> [f64; 2] {
+        let arm = self.spread.center - self.center;
+        [0, 1].map(|k| -self.normal.dot(&arm.cross(&self.axes[k])) / self.surface.radius_m)
+    }
+
+    /// Adds the patch's friction to one of its facets, of the owner or, with the opposite sign, of the target.
+    pub(super) fn spread_to(
+        &self,
+        force: &mut FacetForce,
+        (scene, t, own_radius2_m2): (&PatchScene, u32, f64),
+        sign: f64,
+    ) {
+        if self.has_friction() {
+            let Spread { by_area, total, center, radius2_m2 } = self.spread;
+            let torque_n_m = self.torque_n_m - self.normal.dot(&(center - self.center).cross(&self.force_n));
+            let twist = sign * torque_n_m / total / radius2_m2;
+            let arm = self.spread.center_of(scene, force, t) - center;
+            force.shear = sign * self.force_n / total + twist * self.normal.cross(&arm);
+            force.couple_n_m = self.spread.weight(scene, t) * twist * own_radius2_m2 * self.normal;
+            force.shear_by_area = by_area;
+            force.sticks = !self.slides;
+        }
+    }
+}
+
+impl Spread {
+    /// The weight of a facet.
+    pub(super) fn weight(&self, scene: &PatchScene, t: u32) -> f64 {
+        let sums = scene.sums(t);
+        if self.by_area { sums.slope.iter().sum() } else { sums.pressure }
+    }
+
+    /// The centre of a facet [m].
+    pub(super) fn center_of(&self, scene: &PatchScene, force: &FacetForce, t: u32) -> Vec3 {
+        let sums = scene.sums(t);
+        if !self.by_area || sums.slope.iter().sum::<f64>() <= 0.0 {
+            return force.center;
+        }
+        let corners = scene.input.blocks.triangle_corners(scene.touch(t).triangle, scene.input.position);
+        sums.middle(&corners)
+    }
+
+    /// Weights of each node that a facet is of, or of each that it presses on.
+    pub(super) fn each_node(
+        &self,
+        scene: &PatchScene,
+        (t, is_owner): (u32, bool),
+        mut add: impl FnMut(usize, f64),
+    ) {
+        let (touch, sums) = (scene.touch(t), scene.sums(t));
+        if sums.pressure <= 0.0 {
+            return;
+        }
+        if is_owner {
+            let triangle = &scene.input.blocks.triangles[touch.triangle.index()];
+            let weights = if self.by_area { sums.slope } else { sums.weights };
+            triangle.iter().zip(weights).for_each(|(node, w)| add(node.index(), w));
+        } else {
+            for hit in scene.integrals.overlaps_of(touch) {
+                let tet = &scene.input.blocks.tets[hit.tet.index()];
+                let weights = if self.by_area { hit.on_target.slope } else { hit.on_target.pressure };
+                tet.iter().zip(weights).for_each(|(node, w)| add(node.index(), w));
+            }
+        }
+    }
+}
