@@ -25,6 +25,7 @@ mod damping_beyond_the_step;
 mod dilation;
 mod double_cantilever;
 mod driven_blocks;
+mod elastic_block_on_a_slope;
 mod elastic_waves;
 mod end_contact;
 mod evidence;

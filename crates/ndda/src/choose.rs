@@ -187,6 +187,31 @@ fn small(mut volumes: Vec<f64>) -> f64 {
     1.0
 }
 
+/// How deep contact lies at rest.
+pub(crate) struct Resting {
+    /// Overlap over the size of blocks, at most.
+    pub overlap: f64,
+    /// What presses, in words.
+    pub under: String,
+    /// The penalty with which the overlap is the `depth_ratio` of the scene [Pa].
+    pub penalty_pa: f64,
+}
+
+/// How deep contact lies under weight and loads; none where nothing presses, or its stiffness depends on the mesh.
+pub(crate) fn resting(scene: &Scene, blocks: &BlockSet) -> Option<Resting> {
+    let Some(Contact::Potential { penalty_pa, potential, depth_ratio, .. }) = &scene.contact else {
+        return None;
+    };
+    let (Potential::Smooth { reference_m } | Potential::Closure { reference_m, .. }) = potential else {
+        return None;
+    };
+    let sizes = Sizes::new(scene, blocks);
+    let pressure_pa = sizes.density_kg_m3 * sizes.gravity_m_s2 * sizes.fall_m + sizes.load_pa;
+    let overlap = reference_m * pressure_pa / (2.0 * penalty_pa * sizes.block_m);
+    let penalty_pa = rounded_up(penalty_pa * overlap / depth_ratio);
+    (overlap > 0.0).then(|| Resting { overlap, under: sizes.weight(), penalty_pa })
+}
+
 /// Chooses the penalty where it is left out.
 fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
     // Where nothing moves, any penalty serves.

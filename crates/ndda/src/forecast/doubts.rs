@@ -10,11 +10,14 @@ use super::idle;
 use super::step::Advice;
 use crate::bolt_report::BoltReports;
 use crate::build;
+use crate::choose;
 use crate::waves;
 
 /// Penalties over Young's modulus, for a potential of 1 m, outside of which contact is deep or requires short steps.
 const SOFT: f64 = 1e-6;
 const HARD: f64 = 1.0;
+/// Overlap at rest over the size of blocks from which on it is a doubt.
+const DEEP: f64 = 0.05;
 
 /// Doubts about a scene whose files are in `folder`; `advice` is the forecast of its contact.
 pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, folder: &Path) -> Vec<String> {
@@ -38,7 +41,21 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
         );
     }
     doubts.extend(penalty(scene, simulation, *penalty_pa, potential));
+    doubts.extend(depth(scene, simulation));
     doubts
+}
+
+/// Whether the weight of the rock presses blocks far into each other.
+fn depth(scene: &Scene, simulation: &Simulation) -> Option<String> {
+    let resting = choose::resting(scene, simulation.blocks())?;
+    (resting.overlap > DEEP).then(|| {
+        format!(
+            "blocks overlap by up to {:.0} % of their size at rest under {}, and may sink through each other: give a penalty_pa of {:.0e}, or leave it out",
+            100.0 * resting.overlap,
+            resting.under,
+            resting.penalty_pa
+        )
+    })
 }
 
 /// Whether some contacts of a scene have friction.

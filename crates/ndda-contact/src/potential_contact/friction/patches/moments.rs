@@ -49,6 +49,17 @@ pub(crate) fn principal(second_moment_m2: &Mat3, [s, t]: &[Vec3; 2]) -> (f64, f6
     (mean, spread, (spread > TIE * mean).then(|| 0.5 * xy.atan2(half)))
 }
 
+/// Angle of the axes of weights w at (x, y) whose second moments are the same, as those of a square: Σ w (x + iy)⁴ is real and negative along the axes
+/// of weights that lie in the corners.
+pub(crate) fn fourfold_angle(weights: impl Iterator<Item = (f64, [f64; 2])>) -> f64 {
+    let (mut real, mut imaginary) = (0.0, 0.0);
+    for (weight, [x, y]) in weights {
+        real += weight * (x * x * (x * x - 6.0 * y * y) + y.powi(4));
+        imaginary += weight * 4.0 * x * y * (x * x - y * y);
+    }
+    0.25 * (-imaginary).atan2(-real)
+}
+
 /// Σ d dᵀ/12 for the corners about the centroid [m²].
 pub(crate) fn of_triangle(corners: &[Vec3; 3]) -> Mat3 {
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;

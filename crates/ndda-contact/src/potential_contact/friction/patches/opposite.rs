@@ -131,11 +131,11 @@ impl Joined<'_> {
         let start = self.order.len();
         let Some(divided) = self.divided(runs(), (face, target)) else {
             runs().for_each(|run| self.order.extend_from_slice(&self.by_face[run.places.clone()]));
-            return self.put(start, (number_of(face, None), target), 1.0);
+            return self.put(start, run, (number_of(face, None), 1.0));
         };
         for rest in runs().filter(|run| run.owner != divided.owner) {
             self.order.extend_from_slice(&self.by_face[rest.places.clone()]);
-            self.put(start, (number_of(face, None), target), 0.0);
+            self.put(start, run, (number_of(face, None), 0.0));
         }
         let total: f64 = runs().map(|run| run.pressure).sum();
         let part = |place: &Place| self.faces.part_of(self.scene.touch(place.2).triangle);
@@ -146,7 +146,7 @@ impl Joined<'_> {
             let (places, face) = (start..start + places.len(), number_of(face, Some(part(&places[0]))));
             start = places.end;
             let weight = total / divided.pressure;
-            self.patches.push(PatchFacets { places, face, target, weight });
+            self.patches.push(PatchFacets { places, face, target, owner: run.owner, weight });
         }
     }
 
@@ -159,7 +159,11 @@ impl Joined<'_> {
         let face = |run: &Run| self.by_face[run.places.start].0;
         let area_m2 = |run: &Run| self.faces.area_m2(face(run));
         let run = runs.min_by(|a, b| area_m2(a).total_cmp(&area_m2(b)))?;
-        if area_m2(run).is_infinite() || run.direction == Vec3::zeros() {
+        // Without answers of nodes blocks count as rigid.
+        if self.scene.input.deformation.is_none()
+            || area_m2(run).is_infinite()
+            || run.direction == Vec3::zeros()
+        {
             return None;
         }
         if was_divided(self.history, remembered, target) {
@@ -176,9 +180,10 @@ impl Joined<'_> {
         (!self.faces.is_closed(face(run), areas_m2)).then_some(run)
     }
 
-    /// Makes a patch of the facets from a place on.
-    fn put(&mut self, start: usize, (face, target): (u32, BlockId), weight: f64) {
-        self.patches.push(PatchFacets { places: start..self.order.len(), face, target, weight });
+    /// Makes a patch of the facets from a place on, under the face of a run.
+    fn put(&mut self, start: usize, &Run { owner, target, .. }: &Run, (face, weight): (u32, f64)) {
+        let places = start..self.order.len();
+        self.patches.push(PatchFacets { places, face, target, owner, weight });
     }
 }
 

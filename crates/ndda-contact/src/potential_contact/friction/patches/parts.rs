@@ -2,25 +2,25 @@
 //!
 //! Friction that stops the mean slip of a face leaves its points free to slip against each other. Where vibrations open one end of a face and then the
 //! other, the mean is one of other points each time, and the block walks down a slope without any work of friction. So a face of
-//! an elastic block that has enough triangles has parts, cells of a grid along its principal axes at rest, whose friction is found for
-//! each; the facets of the face that lies on it are left without, since they do not tell the parts apart. A face that has touched all over since contact began needs no parts:
+//! an elastic block that has enough triangles has parts, the cells of a grid of three by three along its principal axes at rest, whose friction is found for each; the facets of the face that lies on it are left without, since they do not tell the parts apart. A face that has touched all over since contact began needs no parts:
 //! the weights of its points do not change.
 
 use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, Mat3, TriangleId, Vec3};
 
 use crate::affine::surface::BlockFaces;
-use crate::friction::patches::moments::{of_triangle, principal};
+use crate::friction::patches::moments::{fourfold_angle, of_triangle, principal};
 use crate::friction::patches::patch::tangents;
 use crate::model::{ContactHistory, FaceMemory};
 
-/// Numbers for each face and its parts, sixteen at most.
-const NUMBERS: u32 = 17;
-/// Triangles from which on a face has two by two or four by four parts: then each part of a square has two at least.
+/// Numbers for each face and its nine parts.
+const NUMBERS: u32 = 10;
+/// Triangles from which on a face has parts.
 const LEAST_TRIANGLES: usize = 8;
-const MANY_TRIANGLES: usize = 32;
-/// Part of a facet that touches where all of it does, but for rounding.
-const WHOLE: f64 = 1.0 - 1e-9;
+/// Distance from a line between two cells, over the size of a cell, within which a triangle lies on it.
+const ON_THE_LINE: f64 = 1e-6;
+/// Part of a facet that touches, from which on all of it counts as touching.
+const WHOLE: f64 = 0.99;
 
 /// The faces of all blocks.
 #[derive(Default)]
@@ -55,7 +55,6 @@ impl FaceParts {
             self.part_of.resize(self.face_of.len(), 0);
             self.area_m2.resize(self.area_m2.len() + distinct.len(), f64::INFINITY);
             self.triangles.resize(self.area_m2.len(), 0);
-            self.face_of[triangles.clone()].iter().for_each(|face| self.triangles[*face as usize] += 1);
             let deforms = !affine.get(block.index()).copied().unwrap_or(false);
             if deforms && triangles.len() >= LEAST_TRIANGLES {
                 self.divide(blocks, block);
@@ -68,26 +67,16 @@ impl FaceParts {
         let mut by_face: Vec<usize> = blocks.triangles_of(block).collect();
         by_face.sort_by_key(|&t| self.face_of[t]);
         for triangles in by_face.chunk_by(|&a, &b| self.face_of[a] == self.face_of[b]) {
+            let face = self.face_of[triangles[0]] as usize;
+            self.triangles[face] = triangles.len() as u32;
             if triangles.len() < LEAST_TRIANGLES {
                 continue;
             }
-            let face = RestFace::new(blocks, triangles);
-            let [along, across] = face.axes(blocks, triangles);
-            let n = if triangles.len() < MANY_TRIANGLES { 2 } else { 4 };
-            let extent = |axis: &Vec3| {
-                let places =
-                    triangles.iter().flat_map(|t| corners(blocks, *t)).map(|x| axis.dot(&(x - face.center)));
-                places.fold((0.0, 0.0), |(least, most): (f64, f64), x| (least.min(x), most.max(x)))
-            };
-            let extents = [extent(&along), extent(&across)];
-            for &t in triangles {
-                let arm = middle(&corners(blocks, t)) - face.center;
-                let cell = |axis: &Vec3, (least, most): (f64, f64)| {
-                    (((axis.dot(&arm) - least) / (most - least) * f64::from(n)) as u8).min(n - 1)
-                };
-                self.part_of[t] = cell(&along, extents[0]) + n * cell(&across, extents[1]);
+            let face_at_rest = RestFace::new(blocks, triangles);
+            for (&t, part) in triangles.iter().zip(face_at_rest.parts(blocks, triangles)) {
+                self.part_of[t] = part;
             }
-            self.area_m2[self.face_of[triangles[0]] as usize] = face.area_m2;
+            self.area_m2[face] = face_at_rest.area_m2;
         }
     }
 
@@ -135,38 +124,52 @@ pub(super) fn was_divided(history: &ContactHistory, face: u32, target: BlockId) 
 struct RestFace {
     area_m2: f64,
     center: Vec3,
-    normal: Vec3,
-    second_moment_m2: Mat3,
+    /// Its principal axes.
+    axes: [Vec3; 2],
 }
 
 impl RestFace {
     fn new(blocks: &BlockSet, triangles: &[usize]) -> Self {
-        let vector = |t: &usize| triangle_area_vector(&corners(blocks, *t));
-        let whole: Vec3 = triangles.iter().map(vector).sum();
+        let vectors =
+            || triangles.iter().map(|t| (triangle_area_vector(&corners(blocks, *t)), corners(blocks, *t)));
+        let whole: Vec3 = vectors().map(|(vector, _)| vector).sum();
         let area_m2 = whole.norm();
-        let share = |t: &usize| vector(t).norm() / area_m2;
-        let center: Vec3 = triangles.iter().map(|t| share(t) * middle(&corners(blocks, *t))).sum();
-        let moment = |t: &usize| {
-            let corners = corners(blocks, *t);
+        let share = |vector: &Vec3| vector.norm() / area_m2;
+        let center: Vec3 = vectors().map(|(vector, corners)| share(&vector) * middle(&corners)).sum();
+        let moment = |(vector, corners): (Vec3, [Vec3; 3])| {
             let arm = middle(&corners) - center;
-            share(t) * (arm * arm.transpose() + of_triangle(&corners))
+            share(&vector) * (arm * arm.transpose() + of_triangle(&corners))
         };
-        let second_moment_m2 = triangles.iter().map(moment).sum();
-        Self { area_m2, center, normal: whole / area_m2, second_moment_m2 }
+        let second_moment_m2: Mat3 = vectors().map(moment).sum();
+        let normal = whole / area_m2;
+        let [s, t] = tangents(&normal);
+        let angle = principal(&second_moment_m2, &[s, t]).2.unwrap_or_else(|| {
+            fourfold_angle(vectors().map(|(vector, corners)| {
+                let arm = middle(&corners) - center;
+                (share(&vector), [s.dot(&arm), t.dot(&arm)])
+            }))
+        });
+        let along = s * angle.cos() + t * angle.sin();
+        Self { area_m2, center, axes: [along, normal.cross(&along)] }
     }
 
-    /// Its principal axes; where all are the same, as those of a square, halfway between the direction of its first node and across it.
-    fn axes(&self, blocks: &BlockSet, triangles: &[usize]) -> [Vec3; 2] {
-        let [s, t] = tangents(&self.normal);
-        let along = match principal(&self.second_moment_m2, &[s, t]).2 {
-            Some(angle) => s * angle.cos() + t * angle.sin(),
-            None => {
-                let nodes = triangles.iter().flat_map(|t| blocks.triangles[*t]);
-                let first = nodes.min().map_or(s, |node| blocks.rest_position[node.index()] - self.center);
-                first + self.normal.cross(&first)
-            }
-        };
-        [along, self.normal.cross(&along)]
+    /// The cell of each triangle in a grid of three by three over the face; what lies on a line between two cells is of the middle one, so that a face and its mirror
+    /// image have the same parts.
+    fn parts(&self, blocks: &BlockSet, triangles: &[usize]) -> impl Iterator<Item = u8> {
+        let along = |axis: &Vec3, x: &Vec3| axis.dot(&(x - self.center));
+        let extents = self.axes.map(|axis| {
+            let places = triangles.iter().flat_map(|t| corners(blocks, *t)).map(|x| along(&axis, &x));
+            places.fold((0.0, 0.0), |(least, most): (f64, f64), x| (least.min(x), most.max(x)))
+        });
+        triangles.iter().map(move |t| {
+            let middle = middle(&corners(blocks, *t));
+            let [first, second] = [0, 1].map(|k| {
+                let (least, most) = extents[k];
+                let thirds = 3.0 * (along(&self.axes[k], &middle) - least) / (most - least);
+                u8::from(thirds > 1.0 - ON_THE_LINE) + u8::from(thirds > 2.0 + ON_THE_LINE)
+            });
+            first + 3 * second
+        })
     }
 }
 
@@ -183,7 +186,7 @@ mod tests {
     use super::*;
     use crate::testing::{test_box, test_set};
 
-    fn parts(size: [f64; 3], cells: [usize; 3], affine: bool) -> (BlockSet, FaceParts) {
+    fn parts(size: [f64; 3], cells: [u32; 3], affine: bool) -> (BlockSet, FaceParts) {
         let blocks = test_set(vec![test_box([0.3, -0.2, 0.1], size, cells)]);
         let mut parts = FaceParts::default();
         parts.fit(&blocks, &BlockFaces::of_all(&blocks), &[affine]);
@@ -191,24 +194,33 @@ mod tests {
     }
 
     #[test]
-    fn a_face_of_an_elastic_block_has_parts_of_the_same_area_even_where_it_is_square() {
+    fn a_face_of_an_elastic_block_has_parts_of_like_size_that_are_the_same_wherever_the_block_is() {
         for size in [[1.0, 2.0, 3.0], [1.0, 1.0, 1.0]] {
             let (blocks, parts) = parts(size, [4, 4, 4], false);
-            let mut areas = std::collections::BTreeMap::<u32, f64>::new();
-            for (t, corners) in blocks.triangles.iter().enumerate() {
-                let corners = corners.map(|node| blocks.rest_position[node.index()]);
-                let number = number_of(parts.face_of[t], Some(parts.part_of[t]));
-                *areas.entry(number).or_default() += triangle_area_vector(&corners).norm();
+            for face in 0..6 {
+                let of_face = parts.face_of.iter().zip(&parts.part_of).filter(|(of, _)| **of == face);
+                let mut sizes = [0; 9];
+                of_face.for_each(|(_, part)| sizes[usize::from(*part)] += 1);
+                assert!(sizes.iter().all(|count| (2..=8).contains(count)), "{size:?}: {sizes:?}");
             }
-            assert_eq!(areas.len(), 6 * 16);
-            for (number, area_m2) in areas {
-                let whole_m2 = parts.area_m2(number / NUMBERS);
-                assert!(
-                    (area_m2 / whole_m2 - 1.0 / 16.0).abs() < 1e-12,
-                    "part {number}: {area_m2} of {whole_m2}"
-                );
-            }
+            let turn = nalgebra::Rotation3::new(Vec3::new(0.3, -0.7, 0.4));
+            let mut turned = blocks.clone();
+            turned.rest_position.iter_mut().for_each(|x| *x = turn * *x);
+            let mut elsewhere = FaceParts::default();
+            elsewhere.fit(&turned, &BlockFaces::of_all(&turned), &[false]);
+            let (mut here, mut there) = (pairs_of(&parts), pairs_of(&elsewhere));
+            here.sort_unstable();
+            there.sort_unstable();
+            assert_eq!(here, there);
         }
+    }
+
+    /// Pairs of triangles that are of the same part of a face.
+    fn pairs_of(parts: &FaceParts) -> Vec<(usize, usize)> {
+        let number = |t: usize| number_of(parts.face_of[t], Some(parts.part_of[t]));
+        let count = parts.face_of.len();
+        let pairs = (0..count).flat_map(|a| (0..a).map(move |b| (a, b)));
+        pairs.filter(|(a, b)| number(*a) == number(*b)).collect()
     }
 
     #[test]

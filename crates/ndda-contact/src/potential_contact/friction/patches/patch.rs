@@ -7,7 +7,7 @@ use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use crate::friction::facet::{FacetForce, relative_motion};
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory};
 use crate::friction::patches::limit_surface::LimitSurface;
-use crate::friction::patches::moments::principal;
+use crate::friction::patches::moments::{fourfold_angle, principal};
 use crate::friction::patches::parts::order_of;
 use crate::friction::patches::spread::Spread;
 use crate::friction::patches::{PatchScene, Place};
@@ -51,9 +51,10 @@ pub(super) struct Moved<'a> {
 #[derive(Clone, Debug)]
 pub(super) struct PatchFacets {
     pub places: Range<usize>,
-    /// Number of the face, and the block that it touches, under which its friction is remembered.
+    /// Number of the face, and the block that it touches, under which its friction is remembered; the block of the face.
     pub face: u32,
     pub target: BlockId,
+    pub owner: BlockId,
     /// Normal force that its friction counts, over that of its facets: none of facets whose friction is on those of the face that lies on theirs.
     pub weight: f64,
 }
@@ -113,8 +114,7 @@ impl ContactPatch {
         (forces, own): (&[FacetForce], &[Mat3]),
         remembered: &mut Remembered,
     ) {
-        let (_, target, first) = run[0];
-        let (owner, law) = (scene.owner(first), scene.law(run));
+        let (&PatchFacets { owner, target, .. }, law) = (facets, scene.law(run));
         let deforms = |block: BlockId| scene.input.bodies[block.index()].deforms;
         let (has_law, deforms) = (law.is_some() && facets.weight > 0.0, deforms(owner) || deforms(target));
         *self = Self { owner, target, has_law, deforms, ..Self::default() };
@@ -194,8 +194,7 @@ impl ContactPatch {
         ([along, self.normal.cross(&along), self.normal], [mean + spread, least])
     }
 
-    /// Angle of the axes where both second moments are the same, as those of a square: it follows the facets, Σ p (x + iy)⁴ being real and
-    /// negative along the axes of facets that lie in the corners, so that it turns with the blocks.
+    /// Angle of the axes where both second moments are the same, as those of a square: it follows the facets, so that it turns with the blocks.
     fn fourfold_angle(
         &self,
         run: &[Place],
@@ -203,15 +202,11 @@ impl ContactPatch {
         forces: &[FacetForce],
         [s, t]: &[Vec3; 2],
     ) -> f64 {
-        let (mut real, mut imaginary) = (0.0, 0.0);
-        for &(_, _, facet) in run {
+        let corners = run.iter().map(|&(_, _, facet)| {
             let arm = forces[facet as usize].center - self.center;
-            let (x, y) = (s.dot(&arm), t.dot(&arm));
-            let pressure = scene.sums(facet).pressure.max(0.0);
-            real += pressure * (x * x * (x * x - 6.0 * y * y) + y.powi(4));
-            imaginary += pressure * 4.0 * x * y * (x * x - y * y);
-        }
-        0.25 * (-imaginary).atan2(-real)
+            (scene.sums(facet).pressure.max(0.0), [s.dot(&arm), t.dot(&arm)])
+        });
+        fourfold_angle(corners)
     }
 
     /// Energy [J] by which friction did less than Coulomb's law takes from a displacement of the surfaces, D(u, θ) + F·u + T θ ≥ 0: none where the
