@@ -18,6 +18,8 @@ pub struct Invariants {
     pub energy_loss: f64,
     /// largest gain that does not come back when contact parts, over the peak energy.
     pub lasting_gain: f64,
+    /// largest energy that contact damping gave, over the peak energy.
+    pub damping_gain: f64,
     /// largest loss that does not come back when contact parts, over the peak energy.
     pub lasting_loss: f64,
     /// largest lasting gain of the lighter block of a pair, over ½ m v V for the speed v of the impact and the largest

@@ -5,7 +5,7 @@ use ndda_solver::{Simulation, Worst};
 
 mod vibration;
 
-use vibration::{arriving_waves, contact_damping, creep, hops, ringing, within_a_step};
+use vibration::{arriving_waves, contact_damping, creep, energy_from_damping, hops, ringing, within_a_step};
 
 /// Energy gained or lost for good over the largest energy. Speeds are as its root: twice the 1 % that they may be off.
 const MOST_ENERGY: f64 = 0.02;
@@ -97,6 +97,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.push(ringing(simulation));
     entries.extend(within_a_step(simulation));
     entries.extend(contact_damping(simulation));
+    entries.extend(energy_from_damping(simulation));
     entries.extend(arriving_waves(simulation));
     entries.extend(bonds(simulation));
     if simulation.has_lumped_rotation() {

@@ -23,8 +23,11 @@ impl Ledger {
         self.radiated_j += radiated_j;
     }
 
-    /// Books the work of contact damping in a step [J].
+    /// Books the work of contact damping in a step [J], which is not to give energy.
     pub(crate) fn add_restitution_work(&mut self, work_j: f64) {
         self.restitution_work_j += work_j;
+        self.least_restitution_work_j = self.least_restitution_work_j.min(self.restitution_work_j);
+        self.damping_gain_j =
+            self.damping_gain_j.max(self.restitution_work_j - self.least_restitution_work_j);
     }
 }
