@@ -1,8 +1,8 @@
 //! Friction of whole faces, for laws that act on velocities.
 //!
 //! A face is a set of boundary triangles in one plane and of one surface. Its contact with another block is a patch, together with a
-//! face of the other block that lies on it (`opposite.rs`): its friction is one force F and one torque T about the normal, spread in
-//! proportion to the pressure, and obeys Coulomb's law point by point (`limit_surface.rs`). The friction of all patches is found
+//! face of the other block that lies on it (`opposite.rs`), or with a part of either (`parts.rs`): its friction is one force F and one torque T about the
+//! normal, spread over its facets (`spread.rs`), and obeys Coulomb's law point by point (`limit_surface.rs`). The friction of all patches is found
 //! together (`solve.rs`); blocks that deform answer to it at their nodes, as the solver says (`nodal.rs`).
 
 mod limit_surface;

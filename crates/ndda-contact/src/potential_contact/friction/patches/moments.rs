@@ -60,6 +60,13 @@ pub(crate) fn fourfold_angle(weights: impl Iterator<Item = (f64, [f64; 2])>) -> 
     0.25 * (-imaginary).atan2(-real)
 }
 
+/// Two unit vectors across a normal.
+pub(crate) fn tangents(normal: &Vec3) -> [Vec3; 2] {
+    let axis = [Vec3::x(), Vec3::y(), Vec3::z()][normal.iamin()];
+    let first = normal.cross(&axis).normalize();
+    [first, normal.cross(&first)]
+}
+
 /// Σ d dᵀ/12 for the corners about the centroid [m²].
 pub(crate) fn of_triangle(corners: &[Vec3; 3]) -> Mat3 {
     let middle = (corners[0] + corners[1] + corners[2]) / 3.0;

@@ -9,8 +9,7 @@ use ndda_mesh::geometry::triangle_area_vector;
 use ndda_mesh::{BlockId, BlockSet, Mat3, TriangleId, Vec3};
 
 use crate::affine::surface::BlockFaces;
-use crate::friction::patches::moments::{fourfold_angle, of_triangle, principal};
-use crate::friction::patches::patch::tangents;
+use crate::friction::patches::moments::{fourfold_angle, of_triangle, principal, tangents};
 use crate::model::{ContactHistory, FaceMemory};
 
 /// Numbers for each face and its nine parts.

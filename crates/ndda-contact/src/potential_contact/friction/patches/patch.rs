@@ -7,7 +7,7 @@ use ndda_mesh::{BlockId, BlockSet, Mat3, Vec3};
 use crate::friction::facet::{FacetForce, relative_motion};
 use crate::friction::law::{FacetSlip, FrictionLaw, ShearMemory};
 use crate::friction::patches::limit_surface::LimitSurface;
-use crate::friction::patches::moments::{fourfold_angle, principal};
+use crate::friction::patches::moments::{fourfold_angle, principal, tangents};
 use crate::friction::patches::parts::order_of;
 use crate::friction::patches::spread::Spread;
 use crate::friction::patches::{PatchScene, Place};
@@ -129,7 +129,7 @@ impl ContactPatch {
         };
         self.least_slip_m = scene.input.dt_s.powi(2) * load_m_s2(owner).max(load_m_s2(target));
         self.most_n = law.map_or(0.0, |law| self.capacity_n(law, facets.weight));
-        self.find_spread(run, scene, (forces, |t: u32| own[t as usize].trace()));
+        self.find_spread(run, scene, (forces, own));
         let (axes, second_moment_m2) = self.principal_axes(run, scene, forces);
         (self.axes, self.surface) = (axes, LimitSurface::new(self.most_n, second_moment_m2));
         let old = remembered.of(facets).filter(|old| old.normal.dot(&self.normal) > 0.0);
@@ -161,6 +161,39 @@ impl ContactPatch {
     /// 1 for a facet of the owner, −1 for one of the target.
     pub(super) fn sign_of(&self, touch: &ActiveFacet) -> f64 {
         if touch.owner == self.owner { 1.0 } else { -1.0 }
+    }
+
+    /// How its friction is spread, once it is known where it presses; `own` are the second moments of facets about their own centres.
+    fn find_spread(&mut self, run: &[Place], scene: &PatchScene, (forces, own): (&[FacetForce], &[Mat3])) {
+        let own_radius2_m2 = |t: u32| own[t as usize].trace();
+        let by_area = self.deforms.then(|| Spread::by_area(run, scene, (forces, own_radius2_m2))).flatten();
+        let (total, center, radius2_m2) = (self.pressure, self.center, self.radius2());
+        self.spread = by_area.unwrap_or(Spread { by_area: false, total, center, radius2_m2 });
+    }
+
+    /// What one newton along each axis adds to its torque about the centre of the spread, over r: it acts at the centre of pressure.
+    pub(super) fn twist_of_force(&self) -> [f64; 2] {
+        let arm = self.spread.center - self.center;
+        [0, 1].map(|k| -self.normal.dot(&arm.cross(&self.axes[k])) / self.surface.radius_m)
+    }
+
+    /// Adds the patch's friction to one of its facets, of the owner or, with the opposite sign, of the target.
+    pub(super) fn spread_to(
+        &self,
+        force: &mut FacetForce,
+        (scene, t, own_radius2_m2): (&PatchScene, u32, f64),
+        sign: f64,
+    ) {
+        if self.has_friction() {
+            let Spread { by_area, total, center, radius2_m2 } = self.spread;
+            let torque_n_m = self.torque_n_m - self.normal.dot(&(center - self.center).cross(&self.force_n));
+            let twist = sign * torque_n_m / total / radius2_m2;
+            let arm = self.spread.center_of(scene, force, t) - center;
+            force.shear = sign * self.force_n / total + twist * self.normal.cross(&arm);
+            force.couple_n_m = self.spread.weight(scene, t) * twist * own_radius2_m2 * self.normal;
+            force.shear_by_area = by_area;
+            force.sticks = !self.slides;
+        }
     }
 
     /// Pushes its owner or, with the opposite sign, its target by the normal force, and by friction of facets.
@@ -321,11 +354,4 @@ impl<'a> Remembered<'a> {
         let found = |memory: &&FaceMemory| (memory.face, memory.target) == (facets.face, facets.target);
         self.rest.first().filter(found).copied()
     }
-}
-
-/// Two unit vectors across a normal.
-pub(super) fn tangents(normal: &Vec3) -> [Vec3; 2] {
-    let axis = [Vec3::x(), Vec3::y(), Vec3::z()][normal.iamin()];
-    let first = normal.cross(&axis).normalize();
-    [first, normal.cross(&first)]
 }

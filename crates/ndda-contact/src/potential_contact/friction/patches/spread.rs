@@ -8,7 +8,6 @@
 use ndda_mesh::Vec3;
 
 use crate::friction::facet::FacetForce;
-use crate::friction::patches::patch::ContactPatch;
 use crate::friction::patches::{PatchScene, Place};
 
 /// How friction of a patch is spread.
@@ -22,60 +21,24 @@ pub(super) struct Spread {
     pub radius2_m2: f64,
 }
 
-impl ContactPatch {
-    /// How its friction is spread, once it is known where it presses; `own_m2` are the second moments of facets about their own centres.
-    pub(super) fn find_spread(
-        &mut self,
+impl Spread {
+    /// By the area that touches, over the facets of a patch; none where nothing presses. `own_radius2_m2` is of a facet about its own centre.
+    pub(super) fn by_area(
         run: &[Place],
         scene: &PatchScene,
         (forces, own_radius2_m2): (&[FacetForce], impl Fn(u32) -> f64),
-    ) {
-        let (total, center, radius2_m2) = (self.pressure, self.center, self.radius2());
-        self.spread = Spread { by_area: false, total, center, radius2_m2 };
-        if !self.deforms {
-            return;
-        }
-        let mut spread = Spread { by_area: true, ..Spread::default() };
+    ) -> Option<Self> {
+        let mut spread = Self { by_area: true, ..Self::default() };
         let pressing = || run.iter().map(|place| place.2).filter(|t| scene.sums(*t).pressure > 0.0);
         spread.total = pressing().map(|t| spread.weight(scene, t)).sum();
-        if spread.total > 0.0 {
-            let share = |t: u32| spread.weight(scene, t) / spread.total;
-            let center = |t: u32| spread.center_of(scene, &forces[t as usize], t);
-            let middle: Vec3 = pressing().map(|t| share(t) * center(t)).sum();
-            let radius2 = |t: u32| share(t) * ((center(t) - middle).norm_squared() + own_radius2_m2(t));
-            spread.radius2_m2 = pressing().map(radius2).sum();
-            spread.center = middle;
-            self.spread = spread;
-        }
+        let share = |t: u32| spread.weight(scene, t) / spread.total;
+        let center = |t: u32| spread.center_of(scene, &forces[t as usize], t);
+        let middle: Vec3 = pressing().map(|t| share(t) * center(t)).sum();
+        let radius2 = |t: u32| share(t) * ((center(t) - middle).norm_squared() + own_radius2_m2(t));
+        let radius2_m2 = pressing().map(radius2).sum();
+        (spread.total > 0.0).then_some(Self { center: middle, radius2_m2, ..spread })
     }
 
-    /// What one newton along each axis of the patch adds to its torque about the centre of the spread, over r: it acts at the centre of pressure.
-    pub(super) fn twist_of_force(&self) -> [f64; 2] {
-        let arm = self.spread.center - self.center;
-        [0, 1].map(|k| -self.normal.dot(&arm.cross(&self.axes[k])) / self.surface.radius_m)
-    }
-
-    /// Adds the patch's friction to one of its facets, of the owner or, with the opposite sign, of the target.
-    pub(super) fn spread_to(
-        &self,
-        force: &mut FacetForce,
-        (scene, t, own_radius2_m2): (&PatchScene, u32, f64),
-        sign: f64,
-    ) {
-        if self.has_friction() {
-            let Spread { by_area, total, center, radius2_m2 } = self.spread;
-            let torque_n_m = self.torque_n_m - self.normal.dot(&(center - self.center).cross(&self.force_n));
-            let twist = sign * torque_n_m / total / radius2_m2;
-            let arm = self.spread.center_of(scene, force, t) - center;
-            force.shear = sign * self.force_n / total + twist * self.normal.cross(&arm);
-            force.couple_n_m = self.spread.weight(scene, t) * twist * own_radius2_m2 * self.normal;
-            force.shear_by_area = by_area;
-            force.sticks = !self.slides;
-        }
-    }
-}
-
-impl Spread {
     /// The weight of a facet.
     pub(super) fn weight(&self, scene: &PatchScene, t: u32) -> f64 {
         let sums = scene.sums(t);
