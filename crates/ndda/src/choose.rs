@@ -141,6 +141,11 @@ impl Sizes {
         }
     }
 
+    /// Largest pressure of weight and loads at rest [Pa].
+    fn rest_pa(&self) -> f64 {
+        self.density_kg_m3 * self.gravity_m_s2 * self.fall_m + self.load_pa
+    }
+
     /// What presses on contacts, in words.
     fn weight(&self) -> String {
         let loads = match self.load_pa > 0.0 {
@@ -191,7 +196,7 @@ fn small(mut volumes: Vec<f64>) -> f64 {
 pub(crate) struct Resting {
     /// Overlap over the size of blocks, at most.
     pub overlap: f64,
-    /// What presses, in words.
+    /// The rock and loads above, as a phrase for a message.
     pub under: String,
     /// The penalty with which the overlap is the `depth_ratio` of the scene [Pa].
     pub penalty_pa: f64,
@@ -206,8 +211,7 @@ pub(crate) fn resting(scene: &Scene, blocks: &BlockSet) -> Option<Resting> {
         return None;
     };
     let sizes = Sizes::new(scene, blocks);
-    let pressure_pa = sizes.density_kg_m3 * sizes.gravity_m_s2 * sizes.fall_m + sizes.load_pa;
-    let overlap = reference_m * pressure_pa / (2.0 * penalty_pa * sizes.block_m);
+    let overlap = reference_m * sizes.rest_pa() / (2.0 * penalty_pa * sizes.block_m);
     let penalty_pa = rounded_up(penalty_pa * overlap / depth_ratio);
     (overlap > 0.0).then(|| Resting { overlap, under: sizes.weight(), penalty_pa })
 }
@@ -231,8 +235,8 @@ fn penalty(scene: &mut Scene, sizes: &Sizes) -> Option<Chosen> {
         let reason = format!("{NOTHING_MOVES}; {OF_YOUNG:e} of Young's modulus");
         return Some(Chosen { path: "contact.penalty_pa".into(), value: *penalty_pa, reason });
     }
-    let Sizes { block_m, fall_m, gravity_m_s2: g, density_kg_m3: rho, speed_m_s: v, load_pa, .. } = *sizes;
-    let pressure_pa = rho * (v * v + 2.0 * g * fall_m) + 2.0 * load_pa;
+    let Sizes { block_m, density_kg_m3: rho, speed_m_s: v, .. } = *sizes;
+    let pressure_pa = rho * v * v + 2.0 * sizes.rest_pa();
     let shallow_pa = length_m * pressure_pa / (2.0 * *depth_ratio * block_m);
     let stiff_pa = MOST_OF_YOUNG * sizes.young_pa * length_m / block_m;
     let (value, why) = if pressure_pa <= 0.0 {

@@ -182,16 +182,11 @@ impl BlockNodes<'_> {
                 continue;
             };
             let FacetMoments { weights, slope, .. } = scene.integrals.sums_of(touch);
-            if force.shear_by_area {
-                let pushed = FacetForce { shear: Vec3::zeros(), ..*force };
-                let shares = face.shares(weights);
-                shares.iter().for_each(|(node, share)| self.add(node.index(), (*share, 0.0), &pushed, 0.0));
-                face.shares(slope)
-                    .iter()
-                    .for_each(|(node, share)| self.add_friction(node.index(), *share, force));
-            } else {
-                let shares = face.shares(weights);
-                shares.iter().for_each(|(node, share)| self.add(node.index(), (*share, 0.0), force, 0.0));
+            let shares = face.shares(weights);
+            shares.iter().for_each(|(node, share)| self.add(node.index(), (*share, 0.0), force, 0.0));
+            if force.shear_by_area && slope.iter().sum::<f64>() > 0.0 {
+                let shares = face.shares(slope);
+                shares.iter().for_each(|(node, share)| self.add(node.index(), (0.0, *share), force, 0.0));
             }
             springs += scene.spring(t, &OnTarget::of(&face.on_host, weights, slope));
         }
@@ -248,15 +243,6 @@ impl BlockNodes<'_> {
         let friction = if force.shear_by_area { slope } else { pressure } * force.shear;
         self.output.force[i] += pressure * force.push + friction;
         self.output.stiffness[i] += 2.0 * stiffness;
-        if let Some(sum) = self.output.friction_force.get_mut(i) {
-            *sum += friction;
-        }
-    }
-
-    /// Its friction alone.
-    fn add_friction(&mut self, node: usize, share: f64, force: &FacetForce) {
-        let (i, friction) = (node - self.first, share * force.shear);
-        self.output.force[i] += friction;
         if let Some(sum) = self.output.friction_force.get_mut(i) {
             *sum += friction;
         }

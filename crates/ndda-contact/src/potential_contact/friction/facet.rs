@@ -17,9 +17,9 @@ pub(crate) const STICKS: f64 = 1.0 - 1e-9;
 pub struct FacetForce {
     /// −k n: what the facet's normal force is made of [Pa].
     pub push: Vec3,
-    /// Shear traction of friction [Pa], or friction per unit of ∫ |∂φ/∂n| dA [N/m].
+    /// Friction per unit of ∫ φ dA [Pa], or per unit of ∫ |∂φ/∂n| dA [N/m] where `shear_by_area` is set.
     pub shear: Vec3,
-    /// Which of both it is.
+    /// Whether friction is spread in proportion to |∂φ/∂n| dA, not to the pressure.
     pub shear_by_area: bool,
     /// Torque of friction about the centre of pressure, which `shear` does not have [N m].
     pub couple_n_m: Vec3,
@@ -57,8 +57,7 @@ pub(crate) struct FacetScene<'a> {
 impl FacetForce {
     /// Friction on the facet [N].
     pub(crate) fn friction_n(&self, sums: &FacetMoments) -> Vec3 {
-        let weight = if self.shear_by_area { sums.slope.iter().sum() } else { sums.pressure };
-        weight * self.shear
+        sums.friction_weight(self.shear_by_area) * self.shear
     }
 }
 

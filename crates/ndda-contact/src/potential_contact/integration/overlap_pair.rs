@@ -41,10 +41,16 @@ impl FacetMoments {
         }
     }
 
-    /// Centre of the contact's stiffness ∫ |∂φ/∂n| x dA / ∫ |∂φ/∂n| dA [m] on a facet with these corners.
-    pub(crate) fn middle(&self, corners: &[Vec3; 3]) -> Vec3 {
+    /// ∫ |∂φ/∂n| dA [m] where friction is spread by area, ∫ φ dA [m²] where by pressure.
+    pub(crate) fn friction_weight(&self, by_area: bool) -> f64 {
+        if by_area { self.slope.iter().sum() } else { self.pressure }
+    }
+
+    /// Centre of the area in contact, weighted by |∂φ/∂n| [m], on a facet with these corners; none where that is zero.
+    pub(crate) fn center_of_area(&self, corners: &[Vec3; 3]) -> Option<Vec3> {
         let [a, b, c] = self.slope;
-        (corners[0] * a + corners[1] * b + corners[2] * c) / (a + b + c)
+        let total = a + b + c;
+        (total > 0.0).then(|| (corners[0] * a + corners[1] * b + corners[2] * c) / total)
     }
 
     /// Centre of pressure ∫ φ x dA / ∫ φ dA [m] on a facet with these corners; the first where there is no pressure.

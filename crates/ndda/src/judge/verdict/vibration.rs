@@ -9,7 +9,7 @@ use super::{Entry, PLACE, SPEED, name, warned};
 /// Limit of vibrations: the speed that elasticity changes in one step, over the largest speed. A vibration of θ = ω Δt changes θ² of its speed and lags by
 /// θ²/12 per radian, so that this limit keeps the lag within [`SPEED`].
 const MOST_VIBRATION: f64 = 12.0 * SPEED;
-/// Energy that contact damping may give over the largest: speeds are as its root.
+/// Energy that contact damping may add, over the largest energy: the square of the error allowed in speeds.
 const MOST_GIVEN: f64 = SPEED * SPEED;
 /// Hops in a row that may each be longer than the one before: by chance one more is one in forty thousand.
 const MOST_GROWING: f64 = 7.0;
@@ -60,11 +60,11 @@ pub(super) fn contact_damping(simulation: &Simulation) -> Option<Entry> {
     (speed > 0.0).then(|| warned("contact damping error / largest speed", speed, SPEED, reason))
 }
 
-/// Whether contact damping gave energy in place of taking it; said only where it did.
+/// Whether contact damping added energy instead of removing it; shown only beyond the limit.
 pub(super) fn energy_from_damping(simulation: &Simulation) -> Option<Entry> {
     let gain = simulation.invariants().damping_gain;
     let reason = format!(
-        "contact damping (`restitution` below 1) added {:.2} % of the largest energy in place of removing it, limit {:.2} %, and blocks vibrate by it: reduce step_s",
+        "contact damping (`restitution` below 1) added {:.2} % of the largest energy instead of removing energy, limit {:.2} %, which makes blocks vibrate: reduce step_s",
         100.0 * gain,
         100.0 * MOST_GIVEN
     );

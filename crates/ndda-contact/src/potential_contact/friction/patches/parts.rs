@@ -173,7 +173,7 @@ impl RestFace {
 }
 
 fn corners(blocks: &BlockSet, triangle: usize) -> [Vec3; 3] {
-    blocks.triangles[triangle].map(|node| blocks.rest_position[node.index()])
+    blocks.triangle_corners(TriangleId(triangle as u32), &blocks.rest_position)
 }
 
 fn middle(corners: &[Vec3; 3]) -> Vec3 {

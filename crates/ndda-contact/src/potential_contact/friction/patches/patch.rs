@@ -55,7 +55,7 @@ pub(super) struct PatchFacets {
     pub face: u32,
     pub target: BlockId,
     pub owner: BlockId,
-    /// Normal force that its friction counts, over that of its facets: none of facets whose friction is on those of the face that lies on theirs.
+    /// Factor on the normal force of its facets in Coulomb's law: above 1 where they also carry the friction of the opposite face, whose facets then have 0.
     pub weight: f64,
 }
 
@@ -171,7 +171,7 @@ impl ContactPatch {
         self.spread = by_area.unwrap_or(Spread { by_area: false, total, center, radius2_m2 });
     }
 
-    /// What one newton along each axis adds to its torque about the centre of the spread, over r: it acts at the centre of pressure.
+    /// Torque about the centre of the spread of a unit force along each axis that acts at the centre of pressure, over r [1].
     pub(super) fn twist_of_force(&self) -> [f64; 2] {
         let arm = self.spread.center - self.center;
         [0, 1].map(|k| -self.normal.dot(&arm.cross(&self.axes[k])) / self.surface.radius_m)

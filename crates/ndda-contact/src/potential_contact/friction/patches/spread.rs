@@ -41,18 +41,16 @@ impl Spread {
 
     /// The weight of a facet.
     pub(super) fn weight(&self, scene: &PatchScene, t: u32) -> f64 {
-        let sums = scene.sums(t);
-        if self.by_area { sums.slope.iter().sum() } else { sums.pressure }
+        scene.sums(t).friction_weight(self.by_area)
     }
 
     /// The centre of a facet [m].
     pub(super) fn center_of(&self, scene: &PatchScene, force: &FacetForce, t: u32) -> Vec3 {
-        let sums = scene.sums(t);
-        if !self.by_area || sums.slope.iter().sum::<f64>() <= 0.0 {
+        if !self.by_area {
             return force.center;
         }
         let corners = scene.input.blocks.triangle_corners(scene.touch(t).triangle, scene.input.position);
-        sums.middle(&corners)
+        scene.sums(t).center_of_area(&corners).unwrap_or(force.center)
     }
 
     /// Weights of each node that a facet is of, or of each that it presses on.
