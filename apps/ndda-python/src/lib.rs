@@ -1,6 +1,7 @@
 //! The native part of the Python package `ndda`: scenes, simulations, arrays, exceptions, tools.
 //!
 //! Conveniences that are shorter in Python (patterns of names, loops with callbacks, builders, pictures) are in `python/ndda`.
+#![cfg(feature = "python")]
 
 mod arrays;
 mod begin;
