@@ -3,6 +3,8 @@
 //! Friction that stops only the mean slip of a face leaves its points free to slip against each other. If it follows the pressure, or if parts of the face
 //! open and close, vibrations grow until the block walks down the plane, whatever its friction angle.
 
+use ndda::judge::verdict;
+use ndda_io::summary::LabelWord;
 use ndda_mesh::Vec3;
 use ndda_solver::Simulation;
 
@@ -38,16 +40,20 @@ const CASE: Case = Case {
 };
 
 fn block(case: &Case, friction_deg: f64) -> Simulation {
+    simulation(&scene(case, friction_deg, RAMP_S, 1.0))
+}
+
+fn scene(case: &Case, friction_deg: f64, ramp_s: f64, restitution: f64) -> String {
     let Case { potential, penalty_pa, poisson, step_s, floor_cells, .. } = case;
-    simulation(&format!(
-        "(title: \"block\", time: (step_s: {step_s:e}, end_s: 1), gravity_m_s2: ({ALONG_M_S2}, 0, -{ACROSS_M_S2}), gravity_ramp_s: {RAMP_S},
+    format!(
+        "(title: \"block\", time: (step_s: {step_s:e}, end_s: 1), gravity_m_s2: ({ALONG_M_S2}, 0, -{ACROSS_M_S2}), gravity_ramp_s: {ramp_s},
           materials: [(name: \"rock\", young_pa: {YOUNG_PA:e}, poisson: {poisson}, density_kg_m3: {DENSITY_KG_M3})],
           blocks: [
               (name: \"floor\", material: \"rock\", body: Fixed, shape: Box(size_m: (3, 2, 0.5), cells: {floor_cells}), at_m: (-0.5, -0.5, -0.5)),
               (name: \"block\", material: \"rock\", shape: Box(size_m: (1.5, 1, {HEIGHT_M}), cells: (4, 3, 2))),
           ],
-          contact: Potential(penalty_pa: {penalty_pa:e}, potential: {potential}, friction: (friction_deg: {friction_deg})))"
-    ))
+          contact: Potential(penalty_pa: {penalty_pa:e}, potential: {potential}, friction: (friction_deg: {friction_deg}), restitution: {restitution}))"
+    )
 }
 
 /// Mean displacement of the nodes of the block [m].
@@ -85,6 +91,20 @@ fn it_stands_however_stiff_the_contact_and_whatever_the_mesh_of_the_floor() {
         );
         let along_m = moved_m(&block).x;
         row("elastic block on a slope", &what, along_m / elastic_m, AtMost(2.0));
+    }
+}
+
+#[test]
+fn where_it_chatters_on_undamped_contact_the_label_says_so() {
+    // Gravity acts suddenly on a block that stands, F = 1.046.
+    for (restitution, chatters) in [(1.0, true), (0.5, false)] {
+        let mut block = simulation(&scene(&CASE, 26.0, 0.0, restitution));
+        block.sample().unwrap();
+        advance(&mut block, 7500);
+        block.sample().unwrap();
+        let label = verdict::label(&block, None);
+        let says = label.reasons.iter().any(|reason| reason.contains("lost contact and regained it"));
+        assert_eq!((says, label.word == LabelWord::Inaccurate), (chatters, chatters), "{:?}", label.reasons);
     }
 }
 

@@ -14,7 +14,7 @@ use crate::linear::linear_solver::FactorError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// Contact could not be computed.
-    #[error("at t = {time_s} s: {source}")]
+    #[error("at t = {} s: {source}", shown(*time_s))]
     Contact {
         /// Time [s].
         time_s: f64,
@@ -23,8 +23,8 @@ pub enum StepError {
     },
     /// The limits are violated however short the step.
     #[error(
-        "at t = {time_s} s: contact is too stiff or too fast even for steps of {step_s:e} s: reduce penalty_pa, use \
-         a coarser mesh, or raise most_halvings"
+        "at t = {} s: contact is too stiff or too fast even for steps of {step_s:e} s: reduce penalty_pa, use \
+         a coarser mesh, or raise most_halvings", shown(*time_s)
     )]
     NoStepIsShortEnough {
         /// Time [s].
@@ -42,8 +42,8 @@ pub enum StepError {
     },
     /// Newton's method did not find the contact forces at the end of a step.
     #[error(
-        "at t = {time_s} s: contact at the end of the step did not converge in {iterations} evaluations \
-         (residual {residual:e}): reduce step_s, or raise the tolerance"
+        "at t = {} s: contact at the end of the step did not converge in {iterations} evaluations \
+         (residual {residual:e}): reduce step_s, or raise the tolerance", shown(*time_s)
     )]
     ContactNotSolved {
         /// Time [s].
@@ -55,8 +55,8 @@ pub enum StepError {
     },
     /// A block is past the depth at which contact pushes it out.
     #[error(
-        "at t = {time_s} s: triangle {} of block `{contactor}` is past the centroid of tetrahedron {} of block `{target}`, \
-         where the contact potential no longer pushes it out: raise penalty_pa or reduce step_s", triangle.0, tet.0
+        "at t = {} s: triangle {} of block `{contactor}` is past the centroid of tetrahedron {} of block `{target}`, \
+         where the contact potential no longer pushes it out: raise penalty_pa or reduce step_s", shown(*time_s), triangle.0, tet.0
     )]
     PastCentroid {
         /// Time [s].
@@ -71,7 +71,7 @@ pub enum StepError {
         tet: TetId,
     },
     /// A block could not take the step.
-    #[error("at t = {time_s} s: block `{block}`: {source}")]
+    #[error("at t = {} s: block `{block}`: {source}", shown(*time_s))]
     Block {
         /// Time [s].
         time_s: f64,
@@ -105,8 +105,8 @@ pub enum StepError {
     },
     /// An element is inside out.
     #[error(
-        "at t = {time_s} s: tetrahedron {} of block `{block}` is inverted (det F = {volume_ratio:e}): reduce step_s or the load",
-        tet.0
+        "at t = {} s: tetrahedron {} of block `{block}` is inverted (det F = {volume_ratio:e}): reduce step_s or the load",
+        shown(*time_s), tet.0
     )]
     Inverted {
         /// Time [s].
@@ -148,6 +148,11 @@ impl StepError {
     }
 }
 
+/// A time [s] to be shown: without the digits that are only rounding of sums of steps.
+fn shown(time_s: f64) -> f64 {
+    format!("{time_s:.12e}").parse().unwrap_or(time_s)
+}
+
 /// Speed that is left of a scene that settles.
 fn speed_left(ratio: f64) -> String {
     if ratio.is_finite() { format!("speed {ratio:.1e} of the largest") } else { "speeds still rise".into() }
@@ -162,7 +167,9 @@ fn no_less(stalled: Option<u64>) -> String {
 fn cure_of_unrest(stalled: Option<u64>) -> &'static str {
     match stalled {
         None => "hold them, or raise settle.most_steps if they are only slow",
-        Some(_) => "hold them; if they only vibrate, raise settle.tolerance",
+        Some(_) => {
+            "hold them, or leave out settle if they are to slide or fall; if they only vibrate, raise settle.tolerance"
+        }
     }
 }
 

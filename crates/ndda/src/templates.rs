@@ -13,6 +13,9 @@ pub struct Template {
     pub name: &'static str,
     /// Purpose.
     pub about: &'static str,
+    /// The command of the program that it is for.
+    #[serde(skip)]
+    pub verb: &'static str,
     /// The scene.
     #[serde(skip)]
     pub scene: &'static str,
@@ -48,19 +51,30 @@ impl Template {
 }
 
 const fn template(name: &'static str, about: &'static str, scene: &'static str) -> Template {
-    Template { name, about, scene, files: &[] }
+    Template { name, about, verb: "run", scene, files: &[] }
 }
 
 /// All templates; the first is the default.
-pub const TEMPLATES: [Template; 6] = [
+pub const TEMPLATES: [Template; 10] = [
     template("slide", "a block on a slope, with friction", include_str!("../templates/slide.ron")),
     template("collide", "two blocks that meet in flight", include_str!("../templates/collide.ron")),
     template("topple", "a slender block on a base that is shaken", include_str!("../templates/topple.ron")),
+    template("slope", "a slope in two joint sets", include_str!("../templates/slope.ron")),
+    template("wedge", "a wedge between two joints and a face", include_str!("../templates/wedge.ron")),
+    template("tunnel", "a wedge in the roof of a tunnel", include_str!("../templates/tunnel.ron")),
+    Template {
+        name: "rockfall",
+        about: "boulders that fall over terrain, for `ndda rockfall`",
+        verb: "rockfall",
+        scene: include_str!("../templates/rockfall.ron"),
+        files: &[("terrain.asc", include_str!("../templates/terrain.asc"))],
+    },
     template("column", "rock cut by joint sets, on a base", include_str!("../templates/column.ron")),
     template("pile", "blocks that fall into a box", include_str!("../templates/pile.ron")),
     Template {
         name: "mesh",
         about: "a block from a mesh file",
+        verb: "run",
         scene: include_str!("../templates/mesh.ron"),
         files: &[("block.msh", include_str!("../templates/block.msh"))],
     },

@@ -160,7 +160,8 @@ impl fmt::Display for Written {
         }
         match movable {
             Some(movable) => {
-                write!(f, "{moving} of {} moved", counted(*movable, "movable block", "movable blocks"))
+                let blocks = counted(*movable, "movable block", "movable blocks");
+                write!(f, "{moving} of {blocks} moved by more than 1 % of its radius")
             }
             None => write!(f, "{moving} of {blocks} blocks {}", if *is_scene { "may move" } else { "moved" }),
         }

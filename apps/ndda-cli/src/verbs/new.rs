@@ -35,7 +35,8 @@ pub fn new(args: &NewArgs) -> u8 {
         Ok(()) => {
             events.emit("finished", &json!({"exit_code": exit::DONE, "scene": scene}));
             if !args.json {
-                say(&format!("{} is written; next: ndda run {}", scene.display(), scene.display()));
+                let scene = scene.display();
+                say(&format!("{scene} is written; next: ndda {} {scene}", template.verb));
             }
             exit::DONE
         }

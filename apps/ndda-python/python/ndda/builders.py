@@ -816,9 +816,10 @@ class Contact:
         ----------
         penalty_pa : float, optional
             Normal penalty k_n [Pa]. With `Smooth`, contact is as compliant as E L₀/(2 k_n) of rock. The error
-            of settlements and waves is about that length relative to the block size; sliding and rebound are
-            almost unaffected. Default: chosen from the size of blocks, their loads and speeds so that contact
-            is at most `depth_ratio` deep, and said with its reason.
+            of settlements and waves is about that length relative to the block size; rebound hardly depends
+            on it. Nor does sliding, except near the limit of friction, where blocks also slip while they sink
+            in: a penalty ten times as large shows by how much. Default: chosen from the size of blocks, their
+            loads and speeds so that contact is at most `depth_ratio` deep, and said with its reason.
         depth_ratio : float, optional
             Depth of contact at rest over the size of small blocks, from which `penalty_pa` is chosen where it
             is left out. Default: 1e-4.

@@ -279,6 +279,7 @@ impl Prototype {
         BlockScale {
             mass_kg: self.operator.mass_kg,
             is_held: !self.is_free(),
+            deforms: matches!(self.kind, BodyKind::Elastic | BodyKind::Affine),
             radius_m: self.operator.rest.iter().map(|x| x.norm()).fold(0.0, f64::max),
             height_m: self.smallest_height_m,
         }

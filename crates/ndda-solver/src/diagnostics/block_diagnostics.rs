@@ -260,6 +260,19 @@ impl BlockDiagnostics {
         worst
     }
 
+    /// Most hops of a deforming block that chatters on its contact while it rubs; what a rigid one does on its contact is resolved, and agrees with closed
+    /// forms, and what rounding may have done does not count.
+    pub(crate) fn chattering_hops(&self, rounding_j: f64) -> Worst {
+        let mut worst = Worst::default();
+        for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            let (hops, speed_m_s) = balance.hops.short();
+            if scale.deforms && 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
+                worst.take(f64::from(hops), block);
+            }
+        }
+        worst
+    }
+
     /// Largest error of a velocity for ringing, over a speed; what rounding may have done does not count.
     pub(crate) fn ringing(&self, speed_m_s: f64, rounding_j: f64) -> Worst {
         let mut worst = Worst::default();
@@ -339,7 +352,8 @@ mod tests {
     use super::*;
 
     fn balances() -> BlockDiagnostics {
-        let scale = |mass_kg, is_held| BlockScale { mass_kg, is_held, radius_m: 2.0, height_m: 0.5 };
+        let scale =
+            |mass_kg, is_held| BlockScale { mass_kg, is_held, deforms: true, radius_m: 2.0, height_m: 0.5 };
         BlockDiagnostics::new(vec![scale(1e6, false), scale(2.0, false), scale(1.0, true)], false)
     }
 

@@ -10,6 +10,8 @@ use crate::bodies::report::RigidForcing;
 
 /// Length of a flight over that of the last one from which on it has grown.
 const GROWTH: f64 = 1.05;
+/// Length of a flight over that of the touch before, below which contact chatters: a block that bounces flies for longer.
+const SHORT: f64 = 10.0;
 
 /// The hops of one block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -23,6 +25,12 @@ pub(crate) struct Hops {
     /// Flights in a row that were longer than the one before, and the most so far.
     growing: u32,
     most: u32,
+    /// Length of this touch [s].
+    touch_s: f64,
+    /// Flights that were hardly longer than the touch before, friction acting in it.
+    short: u32,
+    /// Speed of the fastest node when one of these ended, the largest [m/s].
+    short_m_s: f64,
 }
 
 impl Hops {
@@ -30,8 +38,9 @@ impl Hops {
     pub(crate) fn add(&mut self, dt_s: f64, drive: &RigidForcing) {
         if drive.touches {
             if !self.touched {
-                self.land();
+                self.land(drive.speed_m_s);
             }
+            self.touch_s += dt_s;
             self.rubbed |= drive.has_friction;
         } else {
             self.flight_s += dt_s;
@@ -39,16 +48,26 @@ impl Hops {
         self.touched = drive.touches;
     }
 
-    fn land(&mut self) {
+    fn land(&mut self, speed_m_s: f64) {
         let grows = self.rubbed && self.last_flight_s > 0.0 && self.flight_s > GROWTH * self.last_flight_s;
         self.growing = if grows { self.growing + 1 } else { 0 };
         self.most = self.most.max(self.growing);
+        if self.rubbed && self.flight_s < SHORT * self.touch_s {
+            self.short += 1;
+            self.short_m_s = self.short_m_s.max(speed_m_s);
+        }
         (self.last_flight_s, self.flight_s, self.rubbed) = (self.flight_s, 0.0, false);
+        self.touch_s = 0.0;
     }
 
     /// Most flights in a row that were each longer than the one before, friction acting in between.
     pub(crate) fn most(&self) -> u32 {
         self.most
+    }
+
+    /// Flights that were hardly longer than the touch before, friction acting in it, and the largest speed at which one ended [m/s].
+    pub(crate) fn short(&self) -> (u32, f64) {
+        (self.short, self.short_m_s)
     }
 }
 
@@ -66,6 +85,24 @@ mod tests {
         }
         hops.add(1e-3, &on_ground);
         hops.most()
+    }
+
+    #[test]
+    fn flights_are_short_where_they_last_less_than_ten_times_the_touch_before_with_friction() {
+        let short = |touch: u32, flight: u32, has_friction: bool| {
+            let mut hops = Hops::default();
+            let on_ground =
+                RigidForcing { touches: true, has_friction, speed_m_s: 2.0, ..RigidForcing::default() };
+            for _ in 0..3 {
+                (0..touch).for_each(|_| hops.add(1e-3, &on_ground));
+                (0..flight).for_each(|_| hops.add(1e-3, &RigidForcing::default()));
+            }
+            hops.add(1e-3, &on_ground);
+            hops.short()
+        };
+        assert_eq!(short(2, 15, true), (3, 2.0));
+        assert_eq!(short(1, 15, true), (0, 0.0));
+        assert_eq!(short(2, 15, false), (0, 0.0));
     }
 
     #[test]

@@ -47,6 +47,8 @@ pub struct Invariants {
     pub creep_place: Worst,
     /// Hops of a block in a row, each longer than the one before, with friction in between.
     pub growing_hops: Worst,
+    /// Hops of a block with friction that were hardly longer than it touched before.
+    pub chattering_hops: Worst,
     /// |action + reaction| / |force| over the pairs.
     pub action_reaction: f64,
     /// smallest det F.

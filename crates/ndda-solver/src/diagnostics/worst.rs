@@ -9,6 +9,8 @@ pub(crate) struct BlockScale {
     pub mass_kg: f64,
     /// Whether supports hold it, so that no contact moves it as a whole.
     pub is_held: bool,
+    /// Whether it moves and deforms.
+    pub deforms: bool,
     /// Farthest node from the mass centre [m].
     pub radius_m: f64,
     /// Smallest height of its tetrahedra [m].

@@ -28,6 +28,7 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
     doubts.extend(BoltReports::new(simulation).doubts(|name| build::bolts::entry(scene, name)));
     doubts.extend(idle::findings(scene, simulation.blocks(), folder));
     let falls = scene.gravity_m_s2 != [0.0; 3];
+    doubts.extend(ramp(scene).filter(|_| falls));
     let Some(Contact::Potential { penalty_pa, potential, .. }) = &scene.contact else { return doubts };
     if falls && !has_friction(scene) {
         doubts.push(
@@ -40,9 +41,20 @@ pub fn doubts(scene: &Scene, simulation: &Simulation, advice: Option<&Advice>, f
             "no blocks touch at the start, so they fall while the scene settles: move them together".into(),
         );
     }
-    doubts.extend(penalty(scene, simulation, *penalty_pa, potential));
-    doubts.extend(depth(scene, simulation));
+    // The depth of contact at rest says more than the ratio of two stiffnesses.
+    doubts.extend(depth(scene, simulation).or_else(|| penalty(scene, simulation, *penalty_pa, potential)));
     doubts
+}
+
+/// Whether the run ends before gravity has grown to what it is to be.
+fn ramp(scene: &Scene) -> Option<String> {
+    let (ramp_s, end_s) = (scene.gravity_ramp_s, scene.time.end_s);
+    (scene.stages.is_empty() && scene.settle.is_none() && ramp_s > end_s).then(|| {
+        format!(
+            "the run ends at {end_s} s with {:.0} % of gravity, which grows until gravity_ramp_s = {ramp_s} s: raise time.end_s, or shorten the ramp",
+            100.0 * end_s / ramp_s
+        )
+    })
 }
 
 /// Whether the weight of the rock presses blocks far into each other.

@@ -77,9 +77,9 @@ impl fmt::Display for Advice {
         let Self { step_s, bound, .. } = self;
         let (from, to) = self.range();
         let verdict = match (from, to) {
-            (_, to) if to <= *bound => "Stable",
-            (from, _) if from > *bound => "Unstable",
-            _ => "Possibly unstable",
+            (_, to) if to <= *bound => "Time step stable",
+            (from, _) if from > *bound => "Time step unstable",
+            _ => "Time step possibly unstable",
         };
         let Forecast { block, .. } = self.worst();
         match &self.at_start {

@@ -43,7 +43,11 @@ pub struct Ending<'a> {
 /// The summary of a run.
 pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -> Summary {
     let worst = simulation.invariants();
-    let verdicts = verdict::verdicts(simulation);
+    let mut verdicts = verdict::verdicts(simulation);
+    if ending.stopped_by.is_some() {
+        // What stopped it is the reason that its energy was not measured at the end.
+        verdicts.0.retain(|(name, _)| name != verdict::UNMEASURED);
+    }
     let label = verdict::label(simulation, ending.stopped_by.as_deref());
     let beyond = verdicts.0.iter().any(|(_, v)| v.verdict == Judgement::Fail);
     let failed = ending.strict && (beyond || label.word == LabelWord::Inaccurate);

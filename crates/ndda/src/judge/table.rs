@@ -16,6 +16,8 @@ pub fn ending(summary: &Summary) -> String {
     let mut text = match (summary.label.word, summary.label.reasons.as_slice()) {
         (LabelWord::Accurate, _) => {
             let speeds = match summary.slow_error_m_s {
+                // What begins to slide moves slowly, and more than hardly.
+                Some(error_m_s) if accelerates(summary) => format!("speeds to {}/s", length(error_m_s)),
                 Some(error_m_s) => format!("blocks hardly move; speeds accurate to {}/s", length(error_m_s)),
                 None => "speeds to 1 % of the largest".into(),
             };
@@ -121,6 +123,10 @@ pub fn stage(end: &StageEnd) -> String {
 /// A time of so many steps, without the digits of rounding.
 pub fn time(time_s: f64) -> f64 {
     format!("{time_s:.12e}").parse().unwrap_or(time_s)
+}
+
+fn accelerates(summary: &Summary) -> bool {
+    summary.motion.as_ref().is_some_and(|motion| motion.course == Course::Accelerating)
 }
 
 /// Which blocks moved, and how far.

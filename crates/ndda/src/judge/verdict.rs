@@ -5,7 +5,9 @@ use ndda_solver::{Simulation, Worst};
 
 mod vibration;
 
-use vibration::{arriving_waves, contact_damping, creep, energy_from_damping, hops, ringing, within_a_step};
+use vibration::{
+    arriving_waves, chatter, contact_damping, creep, energy_from_damping, hops, ringing, within_a_step,
+};
 
 /// Energy gained or lost for good over the largest energy. Speeds are as its root: twice the 1 % that they may be off.
 const MOST_ENERGY: f64 = 0.02;
@@ -81,6 +83,7 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries.extend(drawn_overlaps(simulation));
     entries.extend(creep(simulation));
     entries.push(hops(simulation));
+    entries.extend(chatter(simulation));
     entries.extend(contact(simulation));
     entries.extend(lateral_drift(simulation));
     let verdict = if upright > 0.0 { Judgement::Pass } else { fail };
@@ -106,6 +109,9 @@ fn entries(simulation: &Simulation) -> Vec<Entry> {
     entries
 }
 
+/// Name of the check that energy was measured up to the end.
+pub(super) const UNMEASURED: &str = "time since energy was measured [s]";
+
 /// An error that nobody has measured does not pass.
 fn measured(simulation: &Simulation) -> Option<Entry> {
     let unsampled_s = simulation.unsampled_s();
@@ -113,8 +119,7 @@ fn measured(simulation: &Simulation) -> Option<Entry> {
     let reason = format!(
         "energy and momentum were not measured in the last {unsampled_s:.3e} s; call `Simulation::sample` before the label"
     );
-    (unsampled_s > 0.0)
-        .then(|| Entry::new("time since energy was measured [s]", verdict, Judgement::Fail, reason))
+    (unsampled_s > 0.0).then(|| Entry::new(UNMEASURED, verdict, Judgement::Fail, reason))
 }
 
 fn momentum(simulation: &Simulation) -> [Entry; 2] {

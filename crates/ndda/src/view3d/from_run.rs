@@ -287,7 +287,11 @@ impl Source {
                 false => [moment.values[t]; 3],
             })
         });
-        let range = range(values);
+        let mut range = range(values);
+        // Of lengths and speeds, the least colour is that of rest.
+        if matches!(unit, "m" | "m/s") {
+            range[0] = range[0].min(0.0);
+        }
         Colouring::Scale { label, unit, of_nodes, with_resting, range }
     }
 }

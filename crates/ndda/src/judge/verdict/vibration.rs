@@ -13,6 +13,8 @@ const MOST_VIBRATION: f64 = 12.0 * SPEED;
 const MOST_GIVEN: f64 = SPEED * SPEED;
 /// Hops in a row that may each be longer than the one before: by chance one more is one in forty thousand.
 const MOST_GROWING: f64 = 7.0;
+/// Short hops of a block while it rubs.
+const MOST_CHATTERING: f64 = 10.0;
 
 /// Whether blocks creep on shear springs while contact rings.
 pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
@@ -46,6 +48,18 @@ pub(super) fn hops(simulation: &Simulation) -> Entry {
         worst.value
     );
     warned("hops that grow by friction", worst.value, MOST_GROWING, reason)
+}
+
+/// Whether blocks that deform chatter on their contacts while they rub; said only where some do.
+pub(super) fn chatter(simulation: &Simulation) -> Option<Entry> {
+    let worst = simulation.invariants().chattering_hops;
+    let reason = format!(
+        "block `{}` lost contact and regained it {} times while friction acted on it, limit {MOST_CHATTERING}: how far it slides meanwhile depends on \
+         vibrations that nothing damps; give the contact a restitution of 0.5, or begin with settle: ()",
+        name(simulation, worst),
+        worst.value
+    );
+    (worst.value > 0.0).then(|| warned("hops while it rubs", worst.value, MOST_CHATTERING, reason))
 }
 
 /// Whether steps resolve the damping of contact; said only where they leave something out.
