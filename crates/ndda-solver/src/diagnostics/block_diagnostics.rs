@@ -251,26 +251,19 @@ impl BlockDiagnostics {
         });
     }
 
-    /// Most hops in a row that friction lets grow.
-    pub(crate) fn growing_hops(&self) -> Worst {
-        let mut worst = Worst::default();
-        for (block, balance) in self.balances.iter().enumerate() {
-            worst.take(f64::from(balance.hops.most()), block);
-        }
-        worst
-    }
-
-    /// Most hops of a deforming block that chatters on its contact while it rubs; what a rigid one does on its contact is resolved, and agrees with closed
-    /// forms, and what rounding may have done does not count.
-    pub(crate) fn chattering_hops(&self, rounding_j: f64) -> Worst {
-        let mut worst = Worst::default();
+    /// Most hops in a row that friction lets grow, and most hops of a block that deforms and chatters on its contact while it rubs; what a rigid one does
+    /// there is resolved. What rounding may have done does not count, nor hops that are slow beside the largest speed.
+    pub(crate) fn hops(&self, largest_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
+        let (mut growing, mut short) = (Worst::default(), Worst::default());
         for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {
+            growing.take(f64::from(balance.hops.most()), block);
             let (hops, speed_m_s) = balance.hops.short();
-            if scale.deforms && 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
-                worst.take(f64::from(hops), block);
+            let counts = scale.deforms && speed_m_s > 0.5 * largest_m_s;
+            if counts && 0.5 * scale.mass_kg * speed_m_s * speed_m_s > rounding_j {
+                short.take(f64::from(hops), block);
             }
         }
-        worst
+        (growing, short)
     }
 
     /// Largest error of a velocity for ringing, over a speed; what rounding may have done does not count.

@@ -4,6 +4,7 @@
 //! down, and lifts off again, each time for longer. A block that was dropped bounces too, but friction shortens its hops, and where it
 //! does not they are as often longer as shorter than the one before: eight that grow in a row are one in forty thousand.
 
+use ndda_mesh::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::bodies::report::RigidForcing;
@@ -12,6 +13,8 @@ use crate::bodies::report::RigidForcing;
 const GROWTH: f64 = 1.05;
 /// Length of a flight over that of the touch before, below which contact chatters: a block that bounces flies for longer.
 const SHORT: f64 = 10.0;
+/// Speed of the fastest node over what a touch adds to the velocity of its block, above which friction cannot stop the block in it.
+const STICKS: f64 = 3.0;
 
 /// The hops of one block.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -25,9 +28,10 @@ pub(crate) struct Hops {
     /// Flights in a row that were longer than the one before, and the most so far.
     growing: u32,
     most: u32,
-    /// Length of this touch [s].
+    /// Length of this touch [s], and what contact has added to the velocity of the block in it [m/s].
     touch_s: f64,
-    /// Flights that were hardly longer than the touch before, friction acting in it.
+    push_m_s: Vec3,
+    /// Flights that were hardly longer than the touch before, in which friction acted and could stop the block.
     short: u32,
     /// Speed of the fastest node when one of these ended, the largest [m/s].
     short_m_s: f64,
@@ -41,6 +45,7 @@ impl Hops {
                 self.land(drive.speed_m_s);
             }
             self.touch_s += dt_s;
+            self.push_m_s += dt_s * (drive.shift_m_s2 - drive.load_m_s2);
             self.rubbed |= drive.has_friction;
         } else {
             self.flight_s += dt_s;
@@ -52,12 +57,14 @@ impl Hops {
         let grows = self.rubbed && self.last_flight_s > 0.0 && self.flight_s > GROWTH * self.last_flight_s;
         self.growing = if grows { self.growing + 1 } else { 0 };
         self.most = self.most.max(self.growing);
-        if self.rubbed && self.flight_s < SHORT * self.touch_s {
+        // A block that is faster slips all through the touch, whatever vibrates: friction is μ times the push then.
+        let may_stick = speed_m_s < STICKS * self.push_m_s.norm();
+        if self.rubbed && may_stick && self.flight_s < SHORT * self.touch_s {
             self.short += 1;
             self.short_m_s = self.short_m_s.max(speed_m_s);
         }
         (self.last_flight_s, self.flight_s, self.rubbed) = (self.flight_s, 0.0, false);
-        self.touch_s = 0.0;
+        (self.touch_s, self.push_m_s) = (0.0, Vec3::zeros());
     }
 
     /// Most flights in a row that were each longer than the one before, friction acting in between.
@@ -65,7 +72,7 @@ impl Hops {
         self.most
     }
 
-    /// Flights that were hardly longer than the touch before, friction acting in it, and the largest speed at which one ended [m/s].
+    /// Flights that were hardly longer than the touch before, in which friction acted and could stop the block, and the largest speed at which one ended [m/s].
     pub(crate) fn short(&self) -> (u32, f64) {
         (self.short, self.short_m_s)
     }
@@ -88,11 +95,18 @@ mod tests {
     }
 
     #[test]
-    fn flights_are_short_where_they_last_less_than_ten_times_the_touch_before_with_friction() {
-        let short = |touch: u32, flight: u32, has_friction: bool| {
+    fn flights_are_short_where_they_last_less_than_ten_times_a_touch_in_which_friction_could_stop_the_block()
+    {
+        let short = |touch: u32, flight: u32, has_friction: bool, push_m_s2: f64| {
             let mut hops = Hops::default();
-            let on_ground =
-                RigidForcing { touches: true, has_friction, speed_m_s: 2.0, ..RigidForcing::default() };
+            let (shift_m_s2, speed_m_s) = (push_m_s2 * Vec3::z(), 2.0);
+            let on_ground = RigidForcing {
+                touches: true,
+                has_friction,
+                shift_m_s2,
+                speed_m_s,
+                ..RigidForcing::default()
+            };
             for _ in 0..3 {
                 (0..touch).for_each(|_| hops.add(1e-3, &on_ground));
                 (0..flight).for_each(|_| hops.add(1e-3, &RigidForcing::default()));
@@ -100,9 +114,11 @@ mod tests {
             hops.add(1e-3, &on_ground);
             hops.short()
         };
-        assert_eq!(short(2, 15, true), (3, 2.0));
-        assert_eq!(short(1, 15, true), (0, 0.0));
-        assert_eq!(short(2, 15, false), (0, 0.0));
+        assert_eq!(short(2, 15, true, 500.0), (3, 2.0));
+        assert_eq!(short(1, 15, true, 1000.0), (0, 0.0));
+        assert_eq!(short(2, 15, false, 500.0), (0, 0.0));
+        // It moves more than three times as fast as contact pushes it.
+        assert_eq!(short(2, 15, true, 300.0), (0, 0.0));
     }
 
     #[test]

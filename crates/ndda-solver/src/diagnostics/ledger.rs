@@ -340,6 +340,7 @@ impl Ledger {
         let (lateral_drift_speed, lateral_drift_place) =
             self.blocks.lateral_drift(scale_m_s, self.rounding_j);
         let (creep_speed, creep_place) = self.blocks.creep(scale_m_s);
+        let (growing_hops, chattering_hops) = self.blocks.hops(self.largest_speed_m_s, self.rounding_j);
         let (lumped_speed, lumped_place) = self.blocks.lumped(scale_m_s, self.rounding_j);
         let speed = |value_m_s: f64| over(value_m_s, self.largest_speed_m_s.max(value_m_s));
         Invariants {
@@ -357,8 +358,8 @@ impl Ledger {
             lateral_drift_place,
             creep_speed,
             creep_place,
-            growing_hops: self.blocks.growing_hops(),
-            chattering_hops: self.blocks.chattering_hops(self.rounding_j),
+            growing_hops,
+            chattering_hops,
             lumped_speed,
             lumped_place,
             turn_place: self.blocks.turned_over_height(),
