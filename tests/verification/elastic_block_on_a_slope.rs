@@ -100,7 +100,7 @@ fn where_it_chatters_on_undamped_contact_the_label_says_so() {
     for (restitution, chatters) in [(1.0, true), (0.5, false)] {
         let mut block = simulation(&scene(&CASE, 26.0, 0.0, restitution));
         block.sample().unwrap();
-        advance(&mut block, 7500);
+        advance(&mut block, 10_000);
         block.sample().unwrap();
         let label = verdict::label(&block, None);
         let says = label.reasons.iter().any(|reason| reason.contains("lost contact and regained it"));

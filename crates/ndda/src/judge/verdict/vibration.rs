@@ -14,7 +14,7 @@ const MOST_GIVEN: f64 = SPEED * SPEED;
 /// Hops in a row that may each be longer than the one before: by chance one more is one in forty thousand.
 const MOST_GROWING: f64 = 7.0;
 /// Short hops of a block while it rubs.
-const MOST_CHATTERING: f64 = 10.0;
+const MOST_CHATTERING: f64 = 15.0;
 
 /// Whether blocks creep on shear springs while contact rings.
 pub(super) fn creep(simulation: &Simulation) -> [Entry; 2] {
