@@ -68,7 +68,7 @@ fn energy_is_accounted_for_on_moved_bases() {
                 [("Rigid", "Fixed"), ("Affine", "Fixed"), ("Elastic", "Fixed"), ("Elastic", "Elastic")]
             {
                 let mut simulation = stack(body, base, law, gravity, &rows);
-                let (off, sample) = balance(&mut simulation, 2000);
+                let (off, sample) = balance(&mut simulation, 4000);
                 println!("{name}, {law}, {body} on {base}: {off:e}, {sample:?}");
                 worst = worst.max(off);
                 assert!(sample.friction_work_j < 0.0, "{name}, {law}, {body}: {sample:?}");
@@ -77,8 +77,8 @@ fn energy_is_accounted_for_on_moved_bases() {
         let what = format!(
             "energy from nowhere over the work of the base, {name}, three laws, four pairs of bodies"
         );
-        // Beyond what explicit contact holds back nothing is lost: rounding of 2000 steps, tenfold.
-        row("moved base", &what, worst, AtMost(10.0 * rounding(2000)));
+        // Beyond what explicit contact holds back nothing is lost: rounding of 4000 steps, tenfold.
+        row("moved base", &what, worst, AtMost(10.0 * rounding(4000)));
     }
 }
 

@@ -106,7 +106,7 @@ fn errors(seed: u64, kind: &str) -> [f64; 2] {
 
 #[test]
 fn friction_in_random_impacts_hardly_depends_on_the_step_whatever_body_it_is() {
-    let cases: u64 = std::env::var("NDDA_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(8);
+    let cases: u64 = std::env::var("NDDA_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(12);
     for kind in KINDS {
         let mut works = Vec::new();
         let mut speeds = Vec::new();

@@ -14,7 +14,7 @@ use crate::linear::linear_solver::FactorError;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum StepError {
     /// Contact could not be computed.
-    #[error("at t = {} s: {source}", shown(*time_s))]
+    #[error("at t = {} s: {source}", shown_time_s(*time_s))]
     Contact {
         /// Time [s].
         time_s: f64,
@@ -24,7 +24,7 @@ pub enum StepError {
     /// The limits are violated however short the step.
     #[error(
         "at t = {} s: contact is too stiff or too fast even for steps of {step_s:e} s: reduce penalty_pa, use \
-         a coarser mesh, or raise most_halvings", shown(*time_s)
+         a coarser mesh, or raise most_halvings", shown_time_s(*time_s)
     )]
     NoStepIsShortEnough {
         /// Time [s].
@@ -43,7 +43,7 @@ pub enum StepError {
     /// Newton's method did not find the contact forces at the end of a step.
     #[error(
         "at t = {} s: contact at the end of the step did not converge in {iterations} evaluations \
-         (residual {residual:e}): reduce step_s, or raise the tolerance", shown(*time_s)
+         (residual {residual:e}): reduce step_s, or raise the tolerance", shown_time_s(*time_s)
     )]
     ContactNotSolved {
         /// Time [s].
@@ -56,7 +56,7 @@ pub enum StepError {
     /// A block is past the depth at which contact pushes it out.
     #[error(
         "at t = {} s: triangle {} of block `{contactor}` is past the centroid of tetrahedron {} of block `{target}`, \
-         where the contact potential no longer pushes it out: raise penalty_pa or reduce step_s", shown(*time_s), triangle.0, tet.0
+         where the contact potential no longer pushes it out: raise penalty_pa or reduce step_s", shown_time_s(*time_s), triangle.0, tet.0
     )]
     PastCentroid {
         /// Time [s].
@@ -71,7 +71,7 @@ pub enum StepError {
         tet: TetId,
     },
     /// A block could not take the step.
-    #[error("at t = {} s: block `{block}`: {source}", shown(*time_s))]
+    #[error("at t = {} s: block `{block}`: {source}", shown_time_s(*time_s))]
     Block {
         /// Time [s].
         time_s: f64,
@@ -106,7 +106,7 @@ pub enum StepError {
     /// An element is inside out.
     #[error(
         "at t = {} s: tetrahedron {} of block `{block}` is inverted (det F = {volume_ratio:e}): reduce step_s or the load",
-        shown(*time_s), tet.0
+        shown_time_s(*time_s), tet.0
     )]
     Inverted {
         /// Time [s].
@@ -148,8 +148,8 @@ impl StepError {
     }
 }
 
-/// A time [s] to be shown: without the digits that are only rounding of sums of steps.
-fn shown(time_s: f64) -> f64 {
+/// A time to show \[s\]: that of a run, without the last digits, in which adding up its steps rounds.
+pub fn shown_time_s(time_s: f64) -> f64 {
     format!("{time_s:.12e}").parse().unwrap_or(time_s)
 }
 

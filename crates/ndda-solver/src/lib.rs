@@ -89,7 +89,7 @@ pub use bolts::span::Dowel;
 pub use diagnostics::energies::Sample;
 pub use diagnostics::invariants::Invariants;
 pub use diagnostics::worst::Worst;
-pub use error::{BlockError, SetupError, StepError};
+pub use error::{BlockError, SetupError, StepError, shown_time_s};
 pub use integrators::generalized_alpha::GeneralizedAlpha;
 pub use integrators::midpoint::Midpoint;
 pub use integrators::newmark::Newmark;

@@ -13,7 +13,7 @@ pub struct Template {
     pub name: &'static str,
     /// Purpose.
     pub about: &'static str,
-    /// The command of the program that it is for.
+    /// The command that runs it: `run` or `rockfall`.
     #[serde(skip)]
     pub verb: &'static str,
     /// The scene.
@@ -50,6 +50,7 @@ impl Template {
     }
 }
 
+/// A template for `ndda run`, without other files.
 const fn template(name: &'static str, about: &'static str, scene: &'static str) -> Template {
     Template { name, about, verb: "run", scene, files: &[] }
 }
@@ -63,19 +64,18 @@ pub const TEMPLATES: [Template; 10] = [
     template("wedge", "a wedge between two joints and a face", include_str!("../templates/wedge.ron")),
     template("tunnel", "a wedge in the roof of a tunnel", include_str!("../templates/tunnel.ron")),
     Template {
-        name: "rockfall",
-        about: "boulders that fall over terrain, for `ndda rockfall`",
         verb: "rockfall",
-        scene: include_str!("../templates/rockfall.ron"),
         files: &[("terrain.asc", include_str!("../templates/terrain.asc"))],
+        ..template(
+            "rockfall",
+            "boulders that fall over terrain, for `ndda rockfall`",
+            include_str!("../templates/rockfall.ron"),
+        )
     },
     template("column", "rock cut by joint sets, on a base", include_str!("../templates/column.ron")),
     template("pile", "blocks that fall into a box", include_str!("../templates/pile.ron")),
     Template {
-        name: "mesh",
-        about: "a block from a mesh file",
-        verb: "run",
-        scene: include_str!("../templates/mesh.ron"),
         files: &[("block.msh", include_str!("../templates/block.msh"))],
+        ..template("mesh", "a block from a mesh file", include_str!("../templates/mesh.ron"))
     },
 ];

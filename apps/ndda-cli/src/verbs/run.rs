@@ -173,7 +173,7 @@ fn conclude(summary: &Summary, folder: &Path, options: &Options) -> u8 {
         Status::Done => exit::DONE,
         Status::Failed => exit::FAILED,
         Status::Interrupted => {
-            let end_s = table::time(summary.end_s);
+            let end_s = ndda_solver::shown_time_s(summary.end_s);
             complain(&format!("interrupted at t = {end_s} s; to go on: ndda resume {}", folder.display()));
             exit::INTERRUPTED
         }

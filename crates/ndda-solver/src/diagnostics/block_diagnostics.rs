@@ -251,8 +251,8 @@ impl BlockDiagnostics {
         });
     }
 
-    /// Most hops in a row that friction lets grow, and most hops of a block that deforms and chatters on its contact while it rubs; what a rigid one does
-    /// there is resolved. What rounding may have done does not count, nor hops that are slow beside the largest speed.
+    /// Most hops in a row that friction lets grow, and most short hops of a block that deforms. Those of rigid blocks are resolved; hops that rounding may have
+    /// made do not count, nor those that are slow beside the largest speed.
     pub(crate) fn hops(&self, largest_m_s: f64, rounding_j: f64) -> (Worst, Worst) {
         let (mut growing, mut short) = (Worst::default(), Worst::default());
         for (block, (balance, scale)) in self.balances.iter().zip(&self.scales).enumerate() {

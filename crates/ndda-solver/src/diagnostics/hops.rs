@@ -1,4 +1,5 @@
-//! Blocks that hop ever longer while friction takes energy: undamped contact and friction feed the hops.
+//! Blocks that lose and regain contact while friction acts: hops that grow, which undamped contact and friction feed, and short ones, which make a block
+//! that deforms slide too far.
 //!
 //! Contact gives back all energy, and friction turns a part of the energy of sliding into that of rocking: a block that would stand lifts off, comes
 //! down, and lifts off again, each time for longer. A block that was dropped bounces too, but friction shortens its hops, and where it
@@ -57,7 +58,7 @@ impl Hops {
         let grows = self.rubbed && self.last_flight_s > 0.0 && self.flight_s > GROWTH * self.last_flight_s;
         self.growing = if grows { self.growing + 1 } else { 0 };
         self.most = self.most.max(self.growing);
-        // A block that is faster slips all through the touch, whatever vibrates: friction is μ times the push then.
+        // A faster block slips all through the touch, so that friction is μ times the normal force, however contact vibrates.
         let may_stick = speed_m_s < STICKS * self.push_m_s.norm();
         if self.rubbed && may_stick && self.flight_s < SHORT * self.touch_s {
             self.short += 1;

@@ -47,7 +47,7 @@ pub struct Invariants {
     pub creep_place: Worst,
     /// Hops of a block in a row, each longer than the one before, with friction in between.
     pub growing_hops: Worst,
-    /// Hops of a block with friction that were hardly longer than it touched before.
+    /// Short hops of a block that deforms: contact lost and soon regained, where friction acted and could stop the block.
     pub chattering_hops: Worst,
     /// |action + reaction| / |force| over the pairs.
     pub action_reaction: f64,

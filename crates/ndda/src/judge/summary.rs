@@ -45,7 +45,7 @@ pub fn summarise(simulation: &Simulation, recorder: &Recorder, ending: Ending) -
     let worst = simulation.invariants();
     let mut verdicts = verdict::verdicts(simulation);
     if ending.stopped_by.is_some() {
-        // What stopped it is the reason that its energy was not measured at the end.
+        // A run that stops between two samples has no energy at its end; the label says why it stopped.
         verdicts.0.retain(|(name, _)| name != verdict::UNMEASURED);
     }
     let label = verdict::label(simulation, ending.stopped_by.as_deref());

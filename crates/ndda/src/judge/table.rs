@@ -1,6 +1,7 @@
 //! The end of a run: a few lines for a person, and tables of everything.
 
 use ndda_io::summary::{BoltEnd, Course, Judgement, LabelWord, Motion, StageEnd, Summary, Verdict};
+use ndda_solver::shown_time_s;
 
 use super::reasons;
 use super::words::{SECOND_RUN, in_words};
@@ -16,7 +17,7 @@ pub fn ending(summary: &Summary) -> String {
     let mut text = match (summary.label.word, summary.label.reasons.as_slice()) {
         (LabelWord::Accurate, _) => {
             let speeds = match summary.slow_error_m_s {
-                // What begins to slide moves slowly, and more than hardly.
+                // A block that has only begun to slide is slow, too.
                 Some(error_m_s) if accelerates(summary) => format!("speeds to {}/s", length(error_m_s)),
                 Some(error_m_s) => format!("blocks hardly move; speeds accurate to {}/s", length(error_m_s)),
                 None => "speeds to 1 % of the largest".into(),
@@ -25,7 +26,7 @@ pub fn ending(summary: &Summary) -> String {
         }
         (LabelWord::Sensitive, reasons) => format!("sensitive: {}\n", reasons.join("; ")),
         (LabelWord::Inaccurate, reasons) => format!("inaccurate:{}\n", reasons::in_lines(reasons)),
-        (LabelWord::Stopped, _) => format!("stopped at t = {} s\n", time(summary.end_s)),
+        (LabelWord::Stopped, _) => format!("stopped at t = {} s\n", shown_time_s(summary.end_s)),
     };
     text.extend(summary.chosen.iter().map(|chosen| format!("{chosen}\n")));
     text.extend(summary.stages.iter().map(|end| format!("{}\n", stage(end))));
@@ -60,7 +61,7 @@ pub fn ending(summary: &Summary) -> String {
         "{} steps of {:e} s to t = {} s in {:.2} s",
         summary.steps,
         summary.step_s,
-        time(summary.end_s),
+        shown_time_s(summary.end_s),
         own_s(summary)
     ));
     if let Some(second_s) = second_run_s(summary) {
@@ -116,13 +117,8 @@ pub fn stage(end: &StageEnd) -> String {
     };
     let motion =
         if end.motion.can_move > 0 { format!("; {}", moved(&end.motion).trim_end()) } else { String::new() };
-    let (name, end_s, word) = (&end.name, time(end.end_s), end.label.word.as_str());
+    let (name, end_s, word) = (&end.name, shown_time_s(end.end_s), end.label.word.as_str());
     format!("stage `{name}` to t = {end_s} s{how}: {word} so far{motion}")
-}
-
-/// A time of so many steps, without the digits of rounding.
-pub fn time(time_s: f64) -> f64 {
-    format!("{time_s:.12e}").parse().unwrap_or(time_s)
 }
 
 fn accelerates(summary: &Summary) -> bool {
@@ -216,7 +212,7 @@ pub fn text(summary: &Summary) -> String {
         "{} steps of {:e} s to t = {} s in {:.2} s ({speed:.0} steps/s, {}); {}, {}, {solved}\n",
         summary.steps,
         summary.step_s,
-        time(summary.end_s),
+        shown_time_s(summary.end_s),
         own_s(summary),
         counted(summary.threads, "thread", "threads"),
         counted(summary.counts.blocks, "block", "blocks"),

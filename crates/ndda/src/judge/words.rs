@@ -4,7 +4,7 @@
 pub const SECOND_RUN: &str = "sensitivity";
 
 /// Key, and what a table says instead.
-const WORDS: [(&str, &str); 10] = [
+const WORDS: [(&str, &str); 9] = [
     ("ledger", "energy balance"),
     (SECOND_RUN, "second run (sensitivity)"),
     ("setup", "reading and building"),
@@ -13,7 +13,6 @@ const WORDS: [(&str, &str); 10] = [
     ("friction search error / largest speed", "friction convergence error / largest speed"),
     ("spurious contact energy", "energy made or lost by contact"),
     ("hops that grow by friction", "rebounds in a row, each longer"),
-    ("hops while it rubs", "contact lost and regained while sliding"),
     ("action minus reaction", "difference of action and reaction / force"),
 ];
 

@@ -288,7 +288,7 @@ impl Source {
             })
         });
         let mut range = range(values);
-        // Of lengths and speeds, the least colour is that of rest.
+        // Lengths and speeds are shown from rest on.
         if matches!(unit, "m" | "m/s") {
             range[0] = range[0].min(0.0);
         }

@@ -140,10 +140,10 @@ impl BlockNodes<'_> {
         }
         let FacetMoments { weights: pressure, slope, .. } = scene.integrals.sums_of(touch);
         let nodes = scene.blocks.triangles[touch.triangle.index()];
-        let rubbed = if force.shear_by_area { slope } else { pressure };
+        let friction = force.friction_shares(pressure, slope);
         for a in 0..3 {
             let stiffness = scene.stiffness(t, slope[a], pressure[a]);
-            self.add(nodes[a].index(), (pressure[a], rubbed[a]), force, stiffness);
+            self.add(nodes[a].index(), (pressure[a], friction[a]), force, stiffness);
         }
     }
 
@@ -157,10 +157,10 @@ impl BlockNodes<'_> {
         for OverlapPair { tet, on_target, .. } in scene.integrals.overlaps_of(&scene.integrals.touching()[t])
         {
             let OnTarget { pressure, slope } = on_target;
-            let rubbed = if force.shear_by_area { slope } else { pressure };
+            let friction = force.friction_shares(pressure, slope);
             for (b, node) in scene.blocks.tets[tet.index()].iter().enumerate() {
                 let stiffness = scene.stiffness(t, slope[b].max(0.0), pressure[b]);
-                self.add(node.index(), (-pressure[b], -rubbed[b]), force, stiffness);
+                self.add(node.index(), (-pressure[b], -friction[b]), force, stiffness);
             }
         }
     }
@@ -185,10 +185,10 @@ impl BlockNodes<'_> {
             };
             let FacetMoments { weights, slope, .. } = scene.integrals.sums_of(touch);
             let shares = face.shares(weights);
-            let rubbed = if force.shear_by_area { 0.0 } else { 1.0 };
-            shares
-                .iter()
-                .for_each(|(node, share)| self.add(node.index(), (*share, rubbed * share), force, 0.0));
+            for (node, share) in shares.iter() {
+                let friction = if force.shear_by_area { 0.0 } else { *share };
+                self.add(node.index(), (*share, friction), force, 0.0);
+            }
             if force.shear_by_area && slope.iter().sum::<f64>() > 0.0 {
                 let shares = face.shares(slope);
                 shares.iter().for_each(|(node, share)| self.add(node.index(), (0.0, *share), force, 0.0));
@@ -199,10 +199,10 @@ impl BlockNodes<'_> {
         for (t, force) in on_block.iter().map(|&t| (t as usize, &scene.forces[t as usize])) {
             if force.touches {
                 let on_host = &scene.on_host[t];
-                let rubbed = if force.shear_by_area { &on_host.slope } else { &on_host.pressure };
-                for (node, (pressure, rubbed)) in host.iter().zip(on_host.pressure.iter().zip(rubbed)) {
+                let friction = force.friction_shares(&on_host.pressure, &on_host.slope);
+                for (node, (pressure, friction)) in host.iter().zip(on_host.pressure.iter().zip(friction)) {
                     // The corners of a host may be far from where it is pressed: its springs know better.
-                    self.add(node.index(), (-pressure, -rubbed), force, 0.0);
+                    self.add(node.index(), (-pressure, -friction), force, 0.0);
                 }
                 springs += scene.spring(t, on_host);
             }
@@ -243,10 +243,10 @@ impl BlockNodes<'_> {
         }
     }
 
-    /// The force of a facet on a node with these shares in its pressure and in what spreads its friction.
-    fn add(&mut self, node: usize, (pressure, rubbed): (f64, f64), force: &FacetForce, stiffness: f64) {
+    /// The force of a facet on a node with these shares in its pressure and in its friction.
+    fn add(&mut self, node: usize, (pressure, friction): (f64, f64), force: &FacetForce, stiffness: f64) {
         let i = node - self.first;
-        let friction = rubbed * force.shear;
+        let friction = friction * force.shear;
         self.output.force[i] += pressure * force.push + friction;
         self.output.stiffness[i] += 2.0 * stiffness;
         if let Some(sum) = self.output.friction_force.get_mut(i) {

@@ -55,6 +55,15 @@ pub(crate) struct FacetScene<'a> {
 }
 
 impl FacetForce {
+    /// The shares of nodes in friction, out of theirs in ∫ φ dA and in ∫ |∂φ/∂n| dA.
+    pub(crate) fn friction_shares<'a, const N: usize>(
+        &self,
+        pressure: &'a [f64; N],
+        slope: &'a [f64; N],
+    ) -> &'a [f64; N] {
+        if self.shear_by_area { slope } else { pressure }
+    }
+
     /// Friction on the facet [N].
     pub(crate) fn friction_n(&self, sums: &FacetMoments) -> Vec3 {
         sums.friction_weight(self.shear_by_area) * self.shear
