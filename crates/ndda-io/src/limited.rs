@@ -13,7 +13,7 @@ pub const MOST_BYTES: u64 = 1 << 28;
 /// # Errors
 /// It cannot be read, is a folder, a pipe or a device, or is larger.
 pub fn file(path: &Path) -> io::Result<Vec<u8>> {
-    if !std::fs::metadata(path)?.is_file() {
+    if !std::fs::metadata(path).map_err(no_file)?.is_file() {
         return Err(io::Error::other("it is a folder, a pipe or a device: name a file"));
     }
     stream(path)
@@ -24,7 +24,15 @@ pub fn file(path: &Path) -> io::Result<Vec<u8>> {
 /// # Errors
 /// It cannot be read, or is larger.
 pub fn stream(path: &Path) -> io::Result<Vec<u8>> {
-    at_most(File::open(path)?, MOST_BYTES)
+    at_most(File::open(path).map_err(no_file)?, MOST_BYTES)
+}
+
+/// A file that is not there, in words that say what to do.
+fn no_file(error: io::Error) -> io::Error {
+    match error.kind() {
+        io::ErrorKind::NotFound => io::Error::new(error.kind(), "there is no such file; check its path"),
+        _ => error,
+    }
 }
 
 /// All of standard input. It can be read once only, and is kept for those who ask again.

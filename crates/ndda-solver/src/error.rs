@@ -225,8 +225,8 @@ pub enum BlockError {
     },
     /// A velocity is beyond what the material can carry, or not a number.
     #[error(
-        "node {node} moves at {speed_m_s:e} m/s, more than ten times its wave speed {wave_speed_m_s:e} m/s: \
-         reduce step_s, or the penalty if contact is stiff"
+        "node {node} moves at {speed_m_s:.3e} m/s, more than ten times the wave speed of its material, {wave_speed_m_s:.3e} m/s: \
+         reduce step_s, or penalty_pa if contact is stiff, and check young_pa and density_kg_m3"
     )]
     TooFast {
         /// The node, counted from the block's first.

@@ -39,6 +39,8 @@ const TOPPLING_LATERAL_DEG: f64 = 30.0;
 
 /// Dips up to a right angle, in radians, are below it.
 const RADIANS_AT_MOST: f64 = 1.6;
+/// Friction angles below it [°] are probably coefficients: no joint has one so small.
+const LEAST_LIKELY_DEG: f64 = 2.0;
 
 /// Most sets that a table and a picture list.
 const MOST_LISTED: usize = 12;
@@ -160,6 +162,7 @@ pub fn make(request: &Request) -> Result<Stereonet, StereonetError> {
     });
     let mut stereonet = measure(&planes, slope);
     stereonet.has_friction = request.friction_deg.is_some();
+    stereonet.warnings.extend(request.friction_deg.and_then(as_coefficient));
     stereonet.net = request.net;
     #[cfg(feature = "plots")]
     {
@@ -206,6 +209,15 @@ fn measure(planes: &Planes, slope: Option<Slope>) -> Stereonet {
         warnings: in_radians(&planes.planes).into_iter().collect(),
         has_friction: true,
     }
+}
+
+/// That an angle is so small that it is probably a coefficient of friction.
+fn as_coefficient(friction_deg: f64) -> Option<String> {
+    let is_small = 0.0 < friction_deg && friction_deg < LEAST_LIKELY_DEG;
+    is_small.then(|| {
+        let degrees = friction_deg.atan().to_degrees();
+        format!("--friction {friction_deg} is read as degrees; if it is the coefficient tan φ, write --friction {degrees:.1}")
+    })
 }
 
 /// That all planes are so nearly level that their angles are probably in radians.

@@ -161,7 +161,8 @@ impl fmt::Display for Written {
         match movable {
             Some(movable) => {
                 let blocks = counted(*movable, "movable block", "movable blocks");
-                write!(f, "{moving} of {blocks} moved by more than 1 % of its radius")
+                let whose = if *movable == 1 { "its radius" } else { "their radii" };
+                write!(f, "{moving} of {blocks} moved by more than 1 % of {whose}")
             }
             None => write!(f, "{moving} of {blocks} blocks {}", if *is_scene { "may move" } else { "moved" }),
         }

@@ -7,7 +7,7 @@ use ndda::judge::table;
 use ndda::run::{Resting, Sensitivity};
 use ndda::{Run, RunError, places};
 use ndda_io::folder::SUMMARY;
-use ndda_io::summary::{Judgement, LabelWord, Status, Summary};
+use ndda_io::summary::{LabelWord, Status, Summary};
 use ndda_io::{OutputFolder, WriteError};
 use serde::Serialize;
 
@@ -162,13 +162,8 @@ struct Finished<'a> {
     summary: &'a Summary,
 }
 
-/// Says what is beyond its limit, and gives the exit code.
+/// Says how a run ended that did not reach its end, and gives the exit code.
 fn conclude(summary: &Summary, folder: &Path, options: &Options) -> u8 {
-    for (name, _) in summary.verdicts.0.iter().filter(|(_, v)| v.verdict == Judgement::Fail) {
-        options.events.warn(&format!(
-            "{name} is beyond its limit: do not use this result; run.log says what to change"
-        ));
-    }
     let exit_code = match summary.status {
         Status::Done => exit::DONE,
         Status::Failed => exit::FAILED,

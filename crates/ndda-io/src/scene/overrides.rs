@@ -79,8 +79,10 @@ fn elsewhere(tree: &Node, text: &str, path: &str, value: &str) -> Option<String>
     let leaf = *current_segments(path).last()?;
     let mut found = Vec::new();
     paths_of(tree, text, leaf, "", &mut found);
-    found.retain(|known| segments(known) != segments(path));
-    if found.is_empty() {
+    // A name that is no parameter is said to be like one that is.
+    let of_parameters = |path: &str| path.starts_with(parameters::FIELD);
+    found.retain(|known| segments(known) != segments(path) && (!of_parameters(path) || of_parameters(known)));
+    if found.is_empty() && !of_parameters(path) {
         found.extend(
             OFTEN.iter().filter(|often| segments(often).last() == Some(&leaf)).map(ToString::to_string),
         );

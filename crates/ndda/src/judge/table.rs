@@ -219,7 +219,8 @@ pub fn text(summary: &Summary) -> String {
         counted(summary.counts.tets, "tetrahedron", "tetrahedra"),
     ));
     let verdicts = verdict_table(summary.verdicts.0.iter());
-    for part in [stage_table(summary), verdicts, monitor_table(summary), block_table(summary)] {
+    let parts = [stage_table(summary), verdicts, monitor_table(summary), block_table(summary)];
+    for part in parts.iter().filter(|part| !part.is_empty()) {
         text.push_str(&format!("{part}\n"));
     }
     for warning in &summary.warnings {
@@ -255,18 +256,24 @@ fn verdict_table<'a>(verdicts: impl Iterator<Item = &'a (String, Verdict)>) -> S
 
 fn monitor_table(summary: &Summary) -> String {
     let triple = |v: &[f64; 3]| format!("({:.6}, {:.6}, {:.6})", v[0], v[1], v[2]);
+    if summary.monitors.0.is_empty() {
+        return String::new();
+    }
     let monitors = summary.monitors.0.iter();
     let rows =
         monitors.map(|(name, end)| vec![name.clone(), triple(&end.displacement), triple(&end.velocity)]);
     framed(&["monitor", "displacement [m]", "velocity [m/s]"], rows.collect())
 }
 
-/// The blocks; where they are very many, those that have gone farthest.
+/// The blocks that have moved; where they are very many, those that have gone farthest.
 fn block_table(summary: &Summary) -> String {
     let triple = |v: &[f64; 3]| format!("({:.6}, {:.6}, {:.6})", v[0], v[1], v[2]);
     let all = &summary.blocks.0;
-    let mut shown: Vec<usize> = (0..all.len()).collect();
-    if all.len() > MOST_BLOCKS {
+    let largest_m = |place: &usize| all[*place].1.motion.largest_m;
+    let (mut shown, still): (Vec<usize>, Vec<usize>) =
+        (0..all.len()).partition(|place| largest_m(place) > 0.0);
+    let moved = shown.len();
+    if moved > MOST_BLOCKS {
         let farthest_m = |place: &usize| all[*place].1.motion.farthest_m;
         shown.select_nth_unstable_by(MOST_BLOCKS, |a, b| {
             farthest_m(b).total_cmp(&farthest_m(a)).then(a.cmp(b))
@@ -274,10 +281,16 @@ fn block_table(summary: &Summary) -> String {
         shown.truncate(MOST_BLOCKS);
         shown.sort_unstable();
     }
-    let others = match all.len() - shown.len() {
+    let mut others = match moved - shown.len() {
         0 => String::new(),
         others => format!("{others} more blocks went less far: `summary.json` has all\n"),
     };
+    if !still.is_empty() {
+        others += &format!("{} did not move\n", counted(still.len(), "block", "blocks"));
+    }
+    if shown.is_empty() {
+        return others;
+    }
     let rows = shown.into_iter().map(|place| {
         let (name, end) = &all[place];
         let motion = &end.motion;

@@ -218,16 +218,22 @@ impl Pair {
     fn solve(&self, points: &[Point]) -> Vector6<f64> {
         let (mut motion, mut branches) = (Vector6::zeros(), None);
         for _ in 0..MOST_ROUNDS {
-            let (mut matrix, mut side, mut found) = (Matrix6::identity(), Vector6::zeros(), 0u64);
+            let law = |point: &Point, wrench: &Vector6<f64>| point.law(point.free_m_s + wrench.dot(&motion));
+            let found = points.iter().fold(0u64, |found, point| {
+                found.wrapping_mul(31).wrapping_add(law(point, &self.wrench(point)).number)
+            });
+            if branches == Some(found) {
+                break;
+            }
+            let (mut matrix, mut side) = (Matrix6::identity(), Vector6::zeros());
             for point in points {
                 let wrench = self.wrench(point);
-                let law = point.law(point.free_m_s + wrench.dot(&motion));
-                found = found.wrapping_mul(31).wrapping_add(law.number);
+                let law = law(point, &wrench);
                 let push = self.response * wrench;
                 side -= push * (law.constant_n + law.rate * (point.parting_m_s + law.end * point.free_m_s));
                 matrix += push * wrench.transpose() * (law.rate * law.end);
             }
-            let Some(inverse) = matrix.try_inverse().filter(|_| branches != Some(found)) else { break };
+            let Some(inverse) = matrix.try_inverse() else { break };
             (motion, branches) = (inverse * side, Some(found));
         }
         motion

@@ -3,6 +3,9 @@
 use super::Check;
 use crate::scene::code::Code;
 
+/// Young's modulus [Pa] of diamond, more or less: what is above it was written in another unit.
+const STIFFEST_PA: f64 = 1.2e12;
+
 impl Check<'_> {
     pub(super) fn materials(&mut self) {
         let scene = self.scene;
@@ -30,6 +33,11 @@ impl Check<'_> {
                     format!("{} Pa is softer than any rock", material.young_pa),
                     help,
                 );
+            }
+            if material.young_pa > STIFFEST_PA {
+                let message = format!("{:e} Pa is stiffer than any material", material.young_pa);
+                let help = "the unit is pascal: 20 GPa is 20e9, or Gigapascal(20)";
+                self.warn(Code::UnitSlip, path("young_pa"), message, help);
             }
             let density = material.density_kg_m3;
             if density > 0.0 && !(100.0..=20000.0).contains(&density) {

@@ -269,6 +269,15 @@ impl Check<'_> {
         }
         for (k, joint) in rock.joints.iter().enumerate() {
             self.joint(&format!("{path}.joints[{k}]"), joint, folder);
+            let is_set = |joint: &Discontinuity| matches!(joint, Discontinuity::Set { .. });
+            if is_set(joint)
+                && rock.joints[..k].iter().any(|other| is_set(other) && other.name() == joint.name())
+            {
+                let message =
+                    format!("two sets are named `{}`: laws and results take them for one", joint.name());
+                let help = "give each set its own name, unless that is meant";
+                self.warn(Code::BadName, format!("{path}.joints[{k}].name"), message, help);
+            }
         }
     }
 

@@ -18,11 +18,12 @@ impl Check<'_> {
                     format!("a step of {} s is longer than the run, end_s: {}", time.step_s, time.end_s);
                 self.error("time.step_s", message, "shorten the step, or end the run later");
             } else if time.end_s / time.step_s > MOST_STEPS {
-                let message = format!("{:.1e} steps of step_s up to end_s", time.end_s / time.step_s);
+                let count = time.end_s / time.step_s;
+                let message = format!("{count:.1e} steps of {:e} s up to {:e} s", time.step_s, time.end_s);
                 self.error(
-                    "time.step_s",
+                    "time",
                     message,
-                    "at most 1e9 steps are taken: make step_s larger, or end_s smaller",
+                    "at most 1e9 steps are taken: make end_s smaller, or step_s larger",
                 );
             } else if time.step_s > 0.1 * time.end_s && self.scene.stages.is_empty() {
                 self.warn(

@@ -50,7 +50,7 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
             let path = tree.path_at(span.start);
             let message = format!("the field `{field}`{} is missing", of(outer));
             Diagnostic::error(Code::MissingField, path, message, Some(span))
-                .with_help(format!("write `{field}: …,` (see docs/reference/scene.md)"))
+                .with_help(format!("write {field}: {} (see docs/reference/scene.md)", example(field)))
         }
         RonError::DuplicateStructField { field, outer } => {
             at(Code::DuplicateField, format!("the field `{field}`{} is written twice", of(outer)))
@@ -80,11 +80,37 @@ pub(super) fn explain(error: &SpannedError, plain: &Resolved, text: &str, tree: 
                 return Diagnostic { path: field.0, ..at(Code::Syntax, message) }
                     .with_help(units::advice(number, symbol, &field.1));
             }
+            if let Some(help) = bare_angle(code, text, start, &path) {
+                return at(Code::WrongType, in_words(code)).with_help(help);
+            }
             let (kind, message, help) = no_count(code, &plain.text, begins)
                 .map(|message| (Code::WrongType, message, COUNTS))
                 .unwrap_or_else(|| grammar(code, text, start));
             at(kind, message).with_help(help)
         }
+    }
+}
+
+/// How friction is written of which only the angle is given.
+fn bare_angle(error: &RonError, text: &str, at: usize, path: &str) -> Option<String> {
+    let is_field = matches!(error, RonError::ExpectedStructLike | RonError::ExpectedNamedStructLike(_))
+        && path.rsplit('.').next() == Some("friction");
+    let number: String = text[at..].chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+    (is_field && !number.is_empty()).then(|| format!("write friction: (friction_deg: {number})"))
+}
+
+/// What stands behind the name of a field that is missing.
+fn example(field: &str) -> &'static str {
+    match field {
+        "cells" => "(1, 1, 1), the number of cells along x, y and z; more for blocks that deform",
+        "title" => "\"A block on a slope\",",
+        "name" => "\"block\",",
+        "material" => "\"rock\", the name of one of the materials",
+        "young_pa" => "Gigapascal(20)",
+        "poisson" => "0.25",
+        "density_kg_m3" => "2650",
+        "end_s" => "1, the time that is computed",
+        _ => "…,",
     }
 }
 
@@ -152,7 +178,9 @@ fn brackets_of_choice(error: &RonError, text: &str, at: usize) -> Option<(String
 fn no_count(error: &RonError, plain: &str, at: usize) -> Option<String> {
     let is_inside = match error {
         RonError::ExpectedComma | RonError::ExpectedStructLikeEnd | RonError::ExpectedArrayEnd => true,
-        RonError::ExpectedInteger | RonError::IntegerOutOfBounds => false,
+        RonError::ExpectedInteger | RonError::IntegerOutOfBounds | RonError::InvalidIntegerDigit { .. } => {
+            false
+        }
         _ => return None,
     };
     let of_number = |c: &u8| c.is_ascii_digit() || b"._eE+-".contains(c);
@@ -164,7 +192,9 @@ fn no_count(error: &RonError, plain: &str, at: usize) -> Option<String> {
     }
     let number = plain[begins..ends].replace('_', "");
     let value = number.parse::<f64>().ok().filter(|_| number.contains(|c: char| c.is_ascii_digit()))?;
+    let is_short = number.contains(['e', 'E']) && (0.0..=f64::from(u32::MAX)).contains(&value);
     Some(match value.fract() == 0.0 {
+        true if is_short => format!("a count has no exponent: write {value} for {number}"),
         true => format!("{value} is not a count that can be used"),
         false => format!("the value {value} is not a whole number"),
     })
