@@ -19,7 +19,7 @@ use crate::friction::patches::limit_surface::{LimitSurface, solved};
 use crate::friction::patches::nodal::{Nodal, NodalSide};
 use crate::friction::patches::patch::{ContactPatch, PatchSummary};
 use crate::friction::patches::solve::newton::Newton;
-use crate::friction::patches::solve::stage::{Visits, solve_stage};
+use crate::friction::patches::solve::stage::{Left, Visits, solve_stage};
 use crate::model::Body;
 
 /// γ of Alexander's method.
@@ -286,14 +286,13 @@ impl CoupledPatch {
         [self.owner, self.target]
     }
 
-    /// Friction of this patch while that of the others stays; by how much its slip changed [m/s], zero where its friction changed by less than
-    /// the tolerance.
-    fn advance(&mut self, motion: &mut Motion, time_s: f64, is_first: bool) -> f64 {
+    /// Friction of this patch while that of the others stays; by how much it changed, nothing where that is less than the tolerance.
+    fn advance(&mut self, motion: &mut Motion, time_s: f64, is_first: bool) -> Left {
         let slip = self.slip(motion);
         let free_slip = slip - GAMMA * (self.flexibility * self.force);
         let change_n = (self.stiffness * (free_slip - self.free_slip)).amax() / GAMMA;
         if !is_first && self.is_found && change_n <= self.tolerance_n {
-            return 0.0;
+            return Left::default();
         }
         motion.visits.count += 1;
         let start = self.slip_for(&free_slip).unwrap_or(slip);
@@ -309,10 +308,10 @@ impl CoupledPatch {
         self.force = force;
         self.push(motion, &change, time_s);
         if change.amax() <= self.tolerance_n {
-            return 0.0;
+            return Left::default();
         }
         motion.visits.push(self.blocks());
-        GAMMA * (self.flexibility * change).amax()
+        Left { slip_m_s: GAMMA * (self.flexibility * change).amax(), times: change.amax() / self.tolerance_n }
     }
 
     /// Slip that is expected where it would be so much without its own friction, from what was found last, σ + (A + D″)⁻¹ A δ; none where that stuck.

@@ -26,6 +26,12 @@ pub(crate) fn visits_alone(patches: usize) -> usize {
     (VISITS_ALONE * patches).max(FEW_VISITS)
 }
 
+/// Visits, of each patch on average and of few patches together, after which a search may end although friction still changes by ten times what does not
+/// matter, and as many again for each further factor of ten; most factors.
+const EASED_EACH: usize = 10;
+const EASED_VISITS: usize = 1_000;
+const MOST_EASED: usize = 3;
+
 /// Which patches are to be visited: those of which a block was pushed by more than a tolerance since the last visit.
 #[derive(Default)]
 pub(crate) struct Visits {
@@ -77,12 +83,14 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
     let most_visits = most_visits.max(MOST_VISITS);
     let most_sweeps = SHORT_SWEEPS * most_visits / count.max(1);
     motion.visits.begin(count, motion.bodies.len());
-    let (mut sweeps, mut left_m_s) = (0, 0.0);
+    let eased = if motion.is_iterated { usize::MAX } else { (EASED_EACH * count).max(EASED_VISITS) };
+    let (mut sweeps, mut left) = (0, Left::default());
     let (mut steps, mut is_tried, mut between) = (0, false, VISITS_BETWEEN * count);
     let mut next = motion.alone;
     while sweeps < most_sweeps && motion.visits.count < most_visits {
-        left_m_s = sweep(patches, motion, time_s, sweeps);
-        if left_m_s == 0.0 {
+        left = sweep(patches, motion, time_s, sweeps);
+        let factors = (motion.visits.count / eased).min(MOST_EASED);
+        if left.slip_m_s == 0.0 || !is_tried && left.times <= 10f64.powi(factors as i32) {
             break;
         }
         sweeps += 1;
@@ -91,7 +99,8 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
             between *= PATIENCE;
             next = motion.visits.count + between;
         }
-        if motion.visits.count >= next && steps < NEWTON_STEPS {
+        let has_room = motion.visits.count + (1 + VISITS_BETWEEN) * count < most_visits;
+        if motion.visits.count >= next && steps < NEWTON_STEPS && has_room {
             if steps == 0 {
                 newton.begin(patches, motion.bodies, time_s);
             }
@@ -100,15 +109,24 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
             (steps, is_tried, next) = (steps + 1, true, motion.visits.count + between);
         }
     }
-    Search { visits: motion.visits.count, left_m_s }
+    Search { visits: motion.visits.count, left_m_s: left.slip_m_s }
 }
 
-/// A sweep over all patches that are to be visited, to and fro by turns; the largest change of a slip [m/s].
-fn sweep(patches: &mut [CoupledPatch], motion: &mut Motion, time_s: f64, number: usize) -> f64 {
-    let mut left_m_s: f64 = 0.0;
+/// Largest change of a visit: of a slip [m/s], and of friction as a multiple of what does not matter; none where no patch changed by more than that.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Left {
+    pub slip_m_s: f64,
+    pub times: f64,
+}
+
+/// A sweep over all patches that are to be visited, to and fro by turns.
+fn sweep(patches: &mut [CoupledPatch], motion: &mut Motion, time_s: f64, number: usize) -> Left {
+    let mut left = Left::default();
     let mut visit = |k: usize, patch: &mut CoupledPatch| {
         if motion.visits.visit(k, patch.blocks()) {
-            left_m_s = patch.advance(motion, time_s, number == 0).max(left_m_s);
+            let of_patch = patch.advance(motion, time_s, number == 0);
+            left.slip_m_s = left.slip_m_s.max(of_patch.slip_m_s);
+            left.times = left.times.max(of_patch.times);
         }
     };
     let each = patches.iter_mut().enumerate();
@@ -117,5 +135,5 @@ fn sweep(patches: &mut [CoupledPatch], motion: &mut Motion, time_s: f64, number:
     } else {
         each.rev().for_each(|(k, patch)| visit(k, patch));
     }
-    left_m_s
+    left
 }
