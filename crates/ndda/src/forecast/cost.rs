@@ -57,6 +57,8 @@ pub struct Guess {
     pub timed_steps: u64,
     /// Wall-clock time of a run on as many threads as this process has, if contacts stay as many [s].
     pub run_s: f64,
+    /// Whether blocks touched in these steps; none where they cannot.
+    pub touches: Option<bool>,
     /// Whether the scene comes to rest first, in steps that nobody knows beforehand and `run_s` leaves out.
     pub settles: bool,
     /// Time of the twin that shows whether the motion is sensitive, which a run makes if three or more blocks move; none where fewer can [s].
@@ -77,7 +79,7 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
     let started = Instant::now();
     let mut timed_steps = 0;
     // The first one makes lists that the others keep.
-    simulation.step()?;
+    let touches = simulation.step()?.contact.contact_pairs > 0;
     let first_s = started.elapsed().as_secs_f64();
     let (timed, mut step_s) = timed_steps_of(simulation, steps.saturating_sub(1), TIMED)?;
     timed_steps += timed;
@@ -91,6 +93,8 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
             step_s = if timed > 0 { later_s } else { step_s };
         }
     }
+    let touches = touches || (timed_steps + 1 < steps && simulation.step()?.contact.contact_pairs > 0);
+    let touches = simulation.has_contact().then_some(touches);
     let started = Instant::now();
     simulation.sample()?;
     let row_s = started.elapsed().as_secs_f64();
@@ -105,7 +109,15 @@ pub fn guess(scene: &Scene, simulation: &mut Simulation) -> Result<Guess, SinkEr
         .then_some(first_s + steps as f64 * step_s);
     let files = files(scene, simulation, (rows, frames), frame.len() as u64);
     let settles = scene.settle.is_some();
-    Ok(Guess { timed_steps, run_s, settles, twin_s, memory_bytes: machine::peak_memory_bytes(), files })
+    Ok(Guess {
+        timed_steps,
+        run_s,
+        touches,
+        settles,
+        twin_s,
+        memory_bytes: machine::peak_memory_bytes(),
+        files,
+    })
 }
 
 /// Does steps for so long, at least a few and at most `most`; gives how many, and the time of one [s].
@@ -179,9 +191,14 @@ impl fmt::Display for Guess {
         let steps = self.timed_steps;
         write!(
             f,
-            "a run would take about {:.1} s ({} timed; longer if more blocks come to touch)",
+            "a run would take about {:.1} s ({} timed{})",
             self.run_s,
-            counted(steps as usize, "step", "steps")
+            counted(steps as usize, "step", "steps"),
+            match self.touches {
+                Some(true) => "; longer if more blocks come to touch",
+                Some(false) => ", in which no blocks touch; longer once they do",
+                None => "",
+            }
         )?;
         if self.settles {
             f.write_str(" once it has settled, for which it may need many times as long")?;

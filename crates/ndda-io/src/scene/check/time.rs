@@ -19,9 +19,12 @@ impl Check<'_> {
                 self.error("time.step_s", message, "shorten the step, or end the run later");
             } else if time.end_s / time.step_s > MOST_STEPS {
                 let count = time.end_s / time.step_s;
-                let message = format!("{count:.1e} steps of {:e} s up to {:e} s", time.step_s, time.end_s);
+                let message = format!(
+                    "{count:.1e} steps of step_s = {:e} s up to end_s = {:e} s",
+                    time.step_s, time.end_s
+                );
                 self.error(
-                    "time",
+                    "time.end_s",
                     message,
                     "at most 1e9 steps are taken: make end_s smaller, or step_s larger",
                 );

@@ -294,8 +294,9 @@ impl FrictionPatches {
             }
         }
         coupled.iter().for_each(|patch| patch.push_nodes(nodal));
-        let alone = stage::visits_alone(coupled.len());
-        let mut motion = Motion { bodies, nodal, dt_s, is_iterated, visits, alone };
+        let (alone, eased) =
+            (stage::visits_alone(coupled.len()), stage::visits_eased(coupled.len(), is_iterated));
+        let mut motion = Motion { bodies, nodal, dt_s, is_iterated, visits, alone, eased };
         let search = solve::solve(coupled, start, (&mut motion, newton));
         for found in coupled.iter() {
             found.hand_over(&mut patches[found.patch as usize], (start, bodies), dt_s);

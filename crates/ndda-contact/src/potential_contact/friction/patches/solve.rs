@@ -251,6 +251,8 @@ pub(super) struct Motion<'a> {
     pub visits: &'a mut Visits,
     /// Visits before Newton's method.
     pub alone: usize,
+    /// Visits after which a search may leave more than what does not matter.
+    pub eased: usize,
 }
 
 /// Finds the friction of patches that are not slight; `motion` comes with the velocities at the end of the step under all loads, normal forces and

@@ -29,8 +29,13 @@ pub(crate) fn visits_alone(patches: usize) -> usize {
 /// Visits, of each patch on average and of few patches together, after which a search may end although friction still changes by ten times what does not
 /// matter, and as many again for each further factor of ten; most factors.
 const EASED_EACH: usize = 10;
-const EASED_VISITS: usize = 1_000;
+const EASED_VISITS: usize = 4_000;
 const MOST_EASED: usize = 3;
+
+/// Visits after which a search may leave ten times what does not matter; never where the solver compares forces of one evaluation with the next.
+pub(crate) fn visits_eased(patches: usize, is_iterated: bool) -> usize {
+    if is_iterated { usize::MAX } else { (EASED_EACH * patches).max(EASED_VISITS) }
+}
 
 /// Which patches are to be visited: those of which a block was pushed by more than a tolerance since the last visit.
 #[derive(Default)]
@@ -83,13 +88,12 @@ pub(super) fn solve_stage(patches: &mut [CoupledPatch], motion: &mut Motion, new
     let most_visits = most_visits.max(MOST_VISITS);
     let most_sweeps = SHORT_SWEEPS * most_visits / count.max(1);
     motion.visits.begin(count, motion.bodies.len());
-    let eased = if motion.is_iterated { usize::MAX } else { (EASED_EACH * count).max(EASED_VISITS) };
     let (mut sweeps, mut left) = (0, Left::default());
     let (mut steps, mut is_tried, mut between) = (0, false, VISITS_BETWEEN * count);
     let mut next = motion.alone;
     while sweeps < most_sweeps && motion.visits.count < most_visits {
         left = sweep(patches, motion, time_s, sweeps);
-        let factors = (motion.visits.count / eased).min(MOST_EASED);
+        let factors = (motion.visits.count / motion.eased).min(MOST_EASED);
         if left.slip_m_s == 0.0 || !is_tried && left.times <= 10f64.powi(factors as i32) {
             break;
         }

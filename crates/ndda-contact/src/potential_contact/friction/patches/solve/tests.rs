@@ -100,6 +100,7 @@ fn solved_with(tolerance: f64, alone: usize) -> Solved {
         is_iterated: false,
         visits: &mut Visits::default(),
         alone: alone * coupled.len(),
+        eased: usize::MAX,
     };
     let search = solve(&mut coupled, &start, (&mut motion, &mut Newton::default()));
     let slight = summaries.iter().filter(|summary| summary.is_slight()).count();
