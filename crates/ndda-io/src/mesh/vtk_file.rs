@@ -11,7 +11,7 @@ mod legacy;
 mod polyhedra;
 mod sections;
 mod write;
-mod write_legacy;
+pub(super) mod write_legacy;
 mod xml;
 
 use std::path::Path;
@@ -22,8 +22,7 @@ use crate::mesh::{MeshFile, MeshFileError};
 pub use data::Array;
 pub(crate) use data::{Data, TETRA};
 pub use polyhedra::write as write_polyhedra;
-pub use write::write;
-pub use write_legacy::write as write_legacy;
+pub(crate) use write::write;
 
 /// Reads a mesh: `.vtu` (ASCII, binary, appended; plain or zlib) or legacy `.vtk` (ASCII or binary).
 ///

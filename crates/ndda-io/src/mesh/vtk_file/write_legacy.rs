@@ -17,7 +17,7 @@ const TETRAHEDRON: i32 = 10;
 ///
 /// # Errors
 /// As [`write`](super::write()).
-pub fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
+pub(crate) fn write(path: &Path, bodies: &[(String, BlockMesh)]) -> Result<(), WriteError> {
     let joined = Joined::new(path, bodies)?;
     let (nodes, tets) = (joined.nodes.len(), joined.tets.len());
     if u32::try_from(5 * tets).is_err() {
